@@ -1,0 +1,47 @@
+#include "Common/CommonOptions.h"
+
+#include <tbb/global_control.h>
+#include <tbb/version.h>
+
+#include <memory>
+
+namespace adaptiso {
+
+void declareCommonOptions(CLI::App& app, CommonOptions& options) {
+    constexpr const char* kGroup = "Running";
+    app.add_option("--threads", options.threads, "Use N threads (default: all of the machine's)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1024).description(""))
+        ->group(kGroup);
+    app.add_flag("-q,--quiet", options.isQuiet, "Print nothing but errors")->group(kGroup);
+    app.add_option("--json", options.json,
+                   "Write a report to FILE, or to stdout when FILE is -, in place of the text")
+        ->type_name("FILE")
+        ->group(kGroup);
+    app.set_version_flag(
+        "--version", [&app] { return versionText(app.get_name()); }, "Print the version and exit");
+}
+
+std::string programVersion() {
+    return ADAPTISO_VERSION;
+}
+
+std::string versionText(const std::string& programName) {
+    return programName + " " + programVersion() +
+           "\nbuilt with ITK " ADAPTISO_ITK_VERSION ", VTK " ADAPTISO_VTK_VERSION ", oneTBB " +
+           std::to_string(TBB_VERSION_MAJOR) + "." + std::to_string(TBB_VERSION_MINOR) + ".0";
+}
+
+struct ThreadLimit::Impl {
+    tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(const CommonOptions& options) {
+    if (!options.threads) return;
+    impl_.reset(new Impl{{tbb::global_control::max_allowed_parallelism,
+                          static_cast<std::size_t>(*options.threads)}});
+}
+
+ThreadLimit::~ThreadLimit() = default;
+
+}  // namespace adaptiso

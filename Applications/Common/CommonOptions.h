@@ -1,0 +1,41 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+namespace adaptiso {
+
+/// What every program takes.
+struct CommonOptions {
+    std::optional<int> threads;  ///< none: as many as the machine has
+    bool isQuiet = false;
+    std::string json;  ///< a file's name, "-" for stdout, empty for no report
+
+    bool wantsJson() const { return !json.empty(); }
+    bool wantsJsonOnStdout() const { return json == "-"; }
+};
+
+/// Adds --threads, --quiet, --json and --version.
+void declareCommonOptions(CLI::App& app, CommonOptions& options);
+
+/// "0.1.0"
+std::string programVersion();
+
+/// Name, version and what libraries it stands on, as --version prints them.
+std::string versionText(const std::string& programName);
+
+/// While one lives, parallel work takes no more threads than asked for.
+class ThreadLimit {
+public:
+    explicit ThreadLimit(const CommonOptions& options);
+    ~ThreadLimit();
+    ThreadLimit(const ThreadLimit&) = delete;
+    ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace adaptiso

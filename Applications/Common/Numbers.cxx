@@ -1,0 +1,35 @@
+#include "Common/Numbers.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace adaptiso {
+
+std::optional<double> parseFiniteNumber(std::string_view text) {
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+    double value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [last, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc{} || last != end || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
+
+std::string formatNumber(double value) {
+    if (value == 0) return "0";
+    const double size = std::abs(value);
+    const auto format =
+        size >= 1e-6 && size < 1e15 ? std::chars_format::fixed : std::chars_format::general;
+    std::array<char, 64> text;
+    const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value, format);
+    return {text.data(), end};
+}
+
+std::string formatCount(long long value) {
+    std::string text = std::to_string(value);
+    const std::size_t firstDigit = value < 0 ? 1 : 0;
+    for (std::size_t at = text.size(); at > firstDigit + 3;) text.insert(at -= 3, 1, ',');
+    return text;
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,30 @@
+#include "Common/Resources.h"
+
+#include <sys/resource.h>
+
+namespace adaptiso {
+
+double peakMemoryMb() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;  // Linux counts KiB
+}
+
+double StageTimer::seconds(std::string_view stage) const {
+    for (const auto& [name, seconds] : stages_) {
+        if (name == stage) return seconds;
+    }
+    return 0;
+}
+
+void StageTimer::add(std::string_view stage, double seconds) {
+    for (auto& [name, sum] : stages_) {
+        if (name == stage) {
+            sum += seconds;
+            return;
+        }
+    }
+    stages_.emplace_back(stage, seconds);
+}
+
+}  // namespace adaptiso

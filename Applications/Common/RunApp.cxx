@@ -1,0 +1,111 @@
+#include "Common/RunApp.h"
+
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <sstream>
+#include <string_view>
+
+#include "Common/AtomicOutput.h"
+#include "Common/Numbers.h"
+#include "Common/Resources.h"
+
+namespace adaptiso::detail {
+namespace {
+
+/// `text` as one line without control characters: a file's name or a header's text that got into a
+/// message can neither break the line nor talk to the terminal.
+std::string oneLine(std::string_view text) {
+    std::string line(text);
+    for (char& c : line) {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    }
+    while (!line.empty() && line.back() == ' ') line.pop_back();
+    return line;
+}
+
+/// Help texts folded to 80 columns; CLI11 2.1 leaves that to the terminal.
+class FoldedHelp : public CLI::Formatter {
+public:
+    std::string make_option_desc(const CLI::Option* option) const override {
+        constexpr std::size_t kColumns = 80;
+        return folded(option->get_description(), kColumns - get_column_width());
+    }
+
+private:
+    static std::string folded(const std::string& text, std::size_t width) {
+        std::istringstream words(text);
+        std::string result;
+        std::size_t used = 0;
+        for (std::string word; words >> word; used += word.size()) {
+            if (used > 0) {
+                const bool isFull = used + 1 + word.size() > width;
+                result += isFull ? '\n' : ' ';
+                used = isFull ? 0 : used + 1;
+            }
+            result += word;
+        }
+        return result;
+    }
+};
+
+int fail(const Program& program, std::string_view message, ExitCode code) {
+    std::cerr << program.name << ": " << oneLine(message) << '\n';
+    return code;
+}
+
+int failUsage(const Program& program, std::string_view message) {
+    fail(program, message, kExitUsage);
+    std::cerr << "Try '" << program.name << " --help'.\n";
+    return kExitUsage;
+}
+
+int runParsed(const Program& program, const std::function<int()>& run) {
+    try {
+        return run();
+    } catch (const UsageError& error) {
+        return failUsage(program, error.what());
+    } catch (const InvalidInput& error) {
+        return fail(program, error.what(), kExitBadInput);
+    } catch (const FileError& error) {
+        return fail(program, error.what(), kExitBadInput);
+    } catch (const std::filesystem::filesystem_error& error) {
+        return fail(program, error.what(), kExitBadInput);
+    } catch (const std::bad_alloc&) {
+        return fail(program,
+                    "not enough memory (" + formatNumber(std::round(peakMemoryMb())) +
+                        " MB were in use); a machine with more of it, or a smaller image, will do",
+                    kExitBadInput);
+    } catch (const std::exception& error) {
+        return fail(program, std::string("internal error (please report it): ") + error.what(),
+                    kExitInternalError);
+    } catch (...) {
+        return fail(program, "internal error (please report it)", kExitInternalError);
+    }
+}
+
+}  // namespace
+
+int runApp(int argc, const char* const* argv, const Program& program,
+           const std::function<void(CLI::App&)>& declare, const std::function<int()>& run) {
+    removeOutputsOnSignals();
+    CLI::App app(program.description, program.name);
+    app.formatter(std::make_shared<FoldedHelp>());
+    app.footer(program.footer);
+    try {
+        declare(app);
+        app.parse(argc, argv);
+    } catch (const CLI::Success& asked) {
+        return app.exit(asked);  // --help, --version
+    } catch (const CLI::ParseError& error) {
+        return failUsage(program, error.what());
+    } catch (const UsageError& error) {
+        return failUsage(program, error.what());
+    }
+    return runParsed(program, run);
+}
+
+}  // namespace adaptiso::detail

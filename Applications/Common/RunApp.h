@@ -1,0 +1,50 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "Common/ExitCodes.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+
+/// The command line asks for something that makes no sense (exit code 2).
+class UsageError : public Error {
+public:
+    using Error::Error;
+};
+
+/// How a program presents itself.
+struct Program {
+    std::string name;         ///< "adaptiso-mesh"
+    std::string description;  ///< first lines of --help
+    std::string footer;       ///< last lines of --help: examples, exit codes
+};
+
+namespace detail {
+int runApp(int argc, const char* const* argv, const Program& program,
+           const std::function<void(CLI::App&)>& declare, const std::function<int()>& run);
+}  // namespace detail
+
+/// The whole of a main(): reads the command line, runs the program, and turns whatever is thrown
+/// into one line on stderr ("name: what is wrong") and an exit code. Nothing is thrown.
+///
+/// UsageError and what CLI11 refuses: 2, with a hint at --help. InvalidInput, FileError: 3. Too
+/// little memory: 3, since a smaller input or a larger machine mends it. All else: 4.
+///
+/// Signals that end the program (Ctrl-C among them) first remove temporary files (AtomicOutput);
+/// reaching the limit of a file's size is an error of writing (3), not a signal.
+///
+/// \param declare  adds the program's options to the parser, bound to the Options given
+/// \param run      does the work and returns the exit code
+template <class Options>
+int runApp(int argc, const char* const* argv, const Program& program,
+           void (*declare)(CLI::App&, Options&), int (*run)(const Options&)) {
+    Options options;
+    return detail::runApp(
+        argc, argv, program, [&](CLI::App& app) { declare(app, options); },
+        [&] { return run(options); });
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,194 @@
+#include "CommandLine.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "Common/Numbers.h"
+#include "adaptiso/MeshIO/Formats.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr const char* kInput = "Input";
+constexpr const char* kSurface = "Surface";
+constexpr const char* kOutput = "Output";
+constexpr const char* kPieces = "Pieces (of a closed surface)";
+
+std::string knownExtensions() {
+    std::string list;
+    for (const MeshFormat& format : meshFormats()) {
+        for (const std::string_view extension : format.extensions) {
+            if (!list.empty()) list += ' ';
+            list += extension;
+        }
+    }
+    return list;
+}
+
+std::vector<IsovalueChoice> parseIsovalues(const std::vector<std::string>& texts) {
+    std::vector<IsovalueChoice> choices;
+    for (const std::string& text : texts) {
+        IsovalueChoice choice;
+        if (text != "auto") {
+            choice.value = parseFiniteNumber(text);
+            if (!choice.value) {
+                throw UsageError("--iso " + text + ": must be a finite number, or auto");
+            }
+        }
+        if (std::find(choices.begin(), choices.end(), choice) != choices.end()) {
+            throw UsageError("--iso " + text + ": given twice");
+        }
+        choices.push_back(choice);
+    }
+    return choices;
+}
+
+double parseVolume(const std::string& text) {
+    const std::optional<double> volume = parseFiniteNumber(text);
+    if (!volume || *volume < 0) {
+        throw UsageError("--min-volume " + text + ": must be a number of mm3, 0 or more");
+    }
+    return *volume;
+}
+
+/// What one option alone can't tell.
+void checkCombinations(const MeshOptions& options) {
+    const bool needsVolumes = options.selection.fillCavities || options.selection.minVolumeMm3 > 0;
+    if (options.index.border == Border::Open && needsVolumes) {
+        throw UsageError(
+            "--min-volume and --fill-cavities need closed surfaces, not --border open");
+    }
+}
+
+/// An option that takes one of a few words, each standing for a value; `words` in the order of the
+/// help text.
+template <class Value, class Target>
+CLI::Option* addChoice(CLI::App& app, const std::string& name, Target& target,
+                       const std::vector<std::pair<std::string, Value>>& words,
+                       const std::string& description) {
+    std::vector<std::string> names;
+    for (const auto& [word, value] : words) names.push_back(word);
+    const auto choose = [&target, words](const std::string& text) {
+        const auto chosen = std::find_if(words.begin(), words.end(),
+                                         [&](const auto& word) { return word.first == text; });
+        if (chosen != words.end()) target = chosen->second;  // the check has refused all others
+    };
+    return app.add_option_function<std::string>(name, choose, description)
+        ->check(CLI::IsMember(names).description(""))
+        ->type_name(CLI::detail::join(names, "|"));
+}
+
+void declareInput(CLI::App& app, MeshOptions& options) {
+    app.add_option("INPUT", options.input,
+                   "A 3-D image: NIfTI, NRRD, MetaImage, MGH, a DICOM file, or a folder that "
+                   "holds the slices of one DICOM series")
+        ->type_name("")
+        ->required();
+    app.add_option("--series", options.series,
+                   "Which series of a DICOM folder with several: its number in the list that "
+                   "reading the folder without this option prints, or its UID")
+        ->type_name("N|UID")
+        ->group(kInput);
+}
+
+void declareSurface(CLI::App& app, MeshOptions& options) {
+    app.add_option_function<std::vector<std::string>>(
+           "--iso",
+           [&options](const std::vector<std::string>& texts) {
+               options.isovalues = parseIsovalues(texts);
+           },
+           "The isovalue: inside is where the image is >= V; auto lets Otsu's method choose. "
+           "Give it several times for several surfaces")
+        ->type_name("V|auto")
+        ->required()
+        ->allow_extra_args(false)
+        ->group(kSurface);
+    addChoice<Method>(app, "--method", options.method,
+                      {{"boxes", Method::Boxes}, {"mc", Method::MarchingCubes}},
+                      "boxes: adaptive, few triangles where the surface is flat (default); "
+                      "mc: marching cubes, every voxel at full resolution")
+        ->group(kSurface);
+    addChoice<int>(app, "--block-size", options.index.blockSize,
+                   {{"2", 2}, {"4", 4}, {"8", 8}, {"16", 16}},
+                   "Largest box of the method boxes, in voxels a side (default: 4)")
+        ->group(kSurface);
+    addChoice<Border>(app, "--border", options.index.border,
+                      {{"closed", Border::Closed}, {"open", Border::Open}},
+                      "Where a surface meets the border of the image: closed there (default), or "
+                      "left open")
+        ->group(kSurface);
+}
+
+void declarePieces(CLI::App& app, MeshOptions& options) {
+    app.add_flag("--fill-cavities", options.selection.fillCavities,
+                 "Drop inner surfaces, and all that lies inside them")
+        ->group(kPieces);
+    app.add_option_function<std::string>(
+           "--min-volume",
+           [&options](const std::string& text) {
+               options.selection.minVolumeMm3 = parseVolume(text);
+           },
+           "Drop pieces with less than MM3 cubic millimetres of material, fill cavities with less")
+        ->type_name("MM3")
+        ->group(kPieces);
+    app.add_flag("--largest", options.selection.largestOnly,
+                 "Keep the piece with the most material only (with --border open: the largest "
+                 "area)")
+        ->group(kPieces);
+}
+
+void declareOutput(CLI::App& app, MeshOptions& options) {
+    app.add_option(
+           "-o,--output", options.output,
+           "The file to write (default: <INPUT>-iso<V>.vtp in the current folder). {iso} in "
+           "its name stands for the isovalue; without it, several surfaces get -iso<V> "
+           "before the extension. The format follows from the extension: " +
+               knownExtensions())
+        ->type_name("OUT")
+        ->group(kOutput);
+    addChoice<CoordinateFrame>(app, "--coordinates", options.frame,
+                               {{"ras", CoordinateFrame::Ras},
+                                {"lps", CoordinateFrame::Lps},
+                                {"tkras", CoordinateFrame::TkRas},
+                                {"voxel", CoordinateFrame::Voxel}},
+                               "The points' frame: scanner RAS mm (default), scanner LPS mm, "
+                               "FreeSurfer's surface RAS mm (default for its formats), or voxel "
+                               "indices")
+        ->group(kOutput);
+    app.add_flag("--check-crossings", options.checksCrossings,
+                 "Count the pairs of triangles that cross each other, for the reports")
+        ->group(kOutput);
+}
+
+constexpr const char* kFooter = R"(Examples:
+  adaptiso-mesh brain.nii.gz --iso 100
+      writes brain-iso100.vtp into the current folder
+  adaptiso-mesh head.nrrd --iso auto --largest --fill-cavities -o head.stl
+  adaptiso-mesh ct/ --iso -300 --iso 250 -o 'ct-{iso}.ply' --json report.json
+      one DICOM series, skin and bone, from one reading
+  adaptiso-mesh T1.mgz --iso 90 -o lh.pial
+      a FreeSurfer surface in tkRAS
+
+Exit codes: 0 done, 2 wrong usage, 3 bad input (or no memory or disk left),
+4 internal error. When it is not 0, no file was written.)";
+
+}  // namespace
+
+Program meshProgram() {
+    return {"adaptiso-mesh",
+            "Makes adaptive, watertight triangle meshes of isosurfaces from MRI and CT images.",
+            kFooter};
+}
+
+void declareMeshOptions(CLI::App& app, MeshOptions& options) {
+    declareInput(app, options);
+    declareSurface(app, options);
+    declarePieces(app, options);
+    declareOutput(app, options);
+    declareCommonOptions(app, options.common);
+    app.callback([&options] { checkCombinations(options); });
+}
+
+}  // namespace adaptiso

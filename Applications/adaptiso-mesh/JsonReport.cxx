@@ -1,0 +1,189 @@
+#include "JsonReport.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "Common/CommonOptions.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Components listed in full; a noisy image has thousands.
+constexpr std::size_t kMaxComponents = 100;
+
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json vector(const Vec3& v) {
+    return {number(v.x), number(v.y), number(v.z)};
+}
+
+template <class T>
+Json orNull(const std::optional<T>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
+std::string baseName(const std::filesystem::path& path) {
+    std::error_code error;
+    if (path.has_filename() && path != "." && path != "..") return path.filename().string();
+    return std::filesystem::canonical(path, error).filename().string();
+}
+
+std::string_view frameWord(CoordinateFrame frame) {
+    switch (frame) {
+        case CoordinateFrame::Ras:
+            return "ras";
+        case CoordinateFrame::Lps:
+            return "lps";
+        case CoordinateFrame::TkRas:
+            return "tkras";
+        case CoordinateFrame::Voxel:
+            return "voxel";
+    }
+    throw InternalError("jsonReport: unknown coordinate frame");
+}
+
+std::string_view borderWord(Border border) {
+    return border == Border::Closed ? "closed" : "open";
+}
+
+std::string_view methodWord(Method method) {
+    return method == Method::Boxes ? "boxes" : "mc";
+}
+
+Json inputJson(const MeshRun& run) {
+    const InputSummary& input = run.input;
+    const ImageGeometry& geometry = input.geometry;
+    Json directions = Json::array();  // rows, as ITK and NRRD users know them
+    Mat3 direction;
+    for (int axis = 0; axis < 3; ++axis) {
+        direction.column[axis] = normalized(geometry.indexToPhysical.column[axis]);
+    }
+    for (const Vec3& row : transpose(direction).column) directions.push_back(vector(row));
+    return {{"file", baseName(run.options.input)},
+            {"format", input.format},
+            {"sizeVoxels", geometry.size},
+            {"spacingMm", vector(geometry.spacingMm())},
+            {"originMm", vector(geometry.originMm)},
+            {"direction", directions},
+            {"pixelType", toString(input.pixelType)},
+            {"minimum", number(input.range.minimum)},
+            {"maximum", number(input.range.maximum)},
+            {"warnings", input.warnings}};
+}
+
+Json optionsJson(const MeshOptions& options) {
+    return {{"method", methodWord(options.method)},
+            {"blockSize", options.index.blockSize},
+            {"border", borderWord(options.index.border)},
+            {"largest", options.selection.largestOnly},
+            {"minVolumeMm3", options.selection.minVolumeMm3},
+            {"fillCavities", options.selection.fillCavities},
+            {"threads", orNull(options.common.threads)}};
+}
+
+Json boxesJson(const std::vector<BoxCount>& boxes) {
+    Json list = Json::array();
+    for (const BoxCount& count : boxes) {
+        list.push_back(
+            {{"size", count.size}, {"shared", count.shared}, {"unshared", count.unshared}});
+    }
+    return list;
+}
+
+/// The largest components: by what they enclose, those of an open surface by their area.
+Json componentsJson(const TopologyReport& topology) {
+    const bool isClosed = topology.isClosed();
+    const auto size = [&](const SurfaceComponent& component) {
+        return isClosed ? std::abs(component.signedVolumeMm3) : component.areaMm2;
+    };
+    std::vector<SurfaceComponent> components = topology.components;
+    std::stable_sort(components.begin(), components.end(),
+                     [&](const auto& a, const auto& b) { return size(a) > size(b); });
+    components.resize(std::min(components.size(), kMaxComponents));
+    Json list = Json::array();
+    for (const SurfaceComponent& component : components) {
+        list.push_back({{"vertices", component.vertices},
+                        {"triangles", component.triangles},
+                        {"genus", orNull(component.genus())},
+                        {"areaMm2", number(component.areaMm2)},
+                        {"volumeMm3", component.isClosed() ? number(component.signedVolumeMm3)
+                                                           : Json(nullptr)}});
+    }
+    return list;
+}
+
+Json soundnessJson(const SurfaceSummary& surface) {
+    const TopologyReport& topology = surface.topology;
+    return {{"closed", topology.isClosed()},
+            {"boundaryEdges", topology.count(TopologyDefect::BoundaryEdge)},
+            {"nonManifoldEdges", topology.count(TopologyDefect::NonManifoldEdge)},
+            {"inconsistentEdges", topology.count(TopologyDefect::InconsistentEdge)},
+            {"nonManifoldVertices", topology.count(TopologyDefect::NonManifoldVertex)},
+            {"degenerateTriangles", topology.count(TopologyDefect::DegenerateTriangle)},
+            {"duplicateTriangles", topology.count(TopologyDefect::DuplicateTriangle)},
+            {"unusedVertices", topology.count(TopologyDefect::UnusedVertex)},
+            {"crossingPairs", orNull(surface.crossingPairs)}};
+}
+
+Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {
+    const ExtractionStatistics& statistics = surface.statistics;
+    const TopologyReport& topology = surface.topology;
+    return {{"isovalue", surface.isovalue},
+            {"isovalueChosenBy", surface.isAutomatic ? "otsu" : "user"},
+            {"method", methodWord(run.options.method)},
+            {"blocks",
+             {{"size", run.options.index.blockSize},
+              {"total", statistics.blocksTotal},
+              {"active", statistics.blocksActive},
+              {"nodesVisited", statistics.indexNodesVisited}}},
+            {"boxes", boxesJson(statistics.boxes)},
+            {"boxesChangingTopology", statistics.boxesChangingTopology},
+            {"triangles", topology.triangles},
+            {"vertices", topology.vertices},
+            {"marchingCubesTriangles", statistics.marchingCubesTriangles},
+            {"areaMm2", number(surface.areaMm2)},
+            {"volumeMm3", orNull(surface.volumeMm3)},
+            {"genus", orNull(topology.genus())},
+            {"componentCount", topology.components.size()},
+            {"components", componentsJson(topology)},
+            {"soundness", soundnessJson(surface)},
+            {"output",
+             {{"file", surface.file.filename().string()},
+              {"format", surface.format->name},
+              {"coordinates", frameWord(surface.frame)},
+              {"bytes", surface.bytes}}}};
+}
+
+Json secondsJson(const StageTimer& timer) {
+    Json seconds = Json::object();
+    for (const auto& [stage, time] : timer.stages()) seconds[stage] = time;
+    seconds["total"] = timer.total();
+    return seconds;
+}
+
+}  // namespace
+
+std::string jsonReport(const MeshRun& run) {
+    Json surfaces = Json::array();
+    for (const SurfaceSummary& surface : run.surfaces) {
+        surfaces.push_back(surfaceJson(run, surface));
+    }
+    const Json report{{"schema", "adaptiso-mesh/1"},
+                      {"program", {{"name", "adaptiso-mesh"}, {"version", programVersion()}}},
+                      {"input", inputJson(run)},
+                      {"options", optionsJson(run.options)},
+                      {"surfaces", surfaces},
+                      {"seconds", secondsJson(run.timer)},
+                      {"peakMemoryMb", peakMemoryMb()}};
+    // a file's name need not be UTF-8: what is not becomes U+FFFD
+    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace adaptiso

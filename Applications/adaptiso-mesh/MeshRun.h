@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "Common/Resources.h"
+#include "Pipeline.h"
+#include "adaptiso/Core/Volume.h"
+#include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/MeshIO/Formats.h"
+#include "adaptiso/MeshQuality/Topology.h"
+
+namespace adaptiso {
+
+/// What is known of the volume once it has been read.
+struct InputSummary {
+    std::string format;
+    ImageGeometry geometry;
+    PixelType pixelType{};
+    ValueRange range{};
+    std::vector<std::string> warnings;
+};
+
+/// What is known of one surface once it has been written.
+struct SurfaceSummary {
+    double isovalue = 0;
+    bool isAutomatic = false;
+    ExtractionStatistics statistics;  ///< of the whole surface, before pieces were dropped
+    TopologyReport topology;          ///< of what was written
+    double areaMm2 = 0;
+    std::optional<double> volumeMm3;            ///< none of an open surface
+    std::optional<std::int64_t> crossingPairs;  ///< none when not asked for
+    std::filesystem::path file;
+    const MeshFormat* format = nullptr;
+    CoordinateFrame frame{};
+    std::uintmax_t bytes = 0;
+};
+
+/// One run of the program, for the reports.
+struct MeshRun {
+    const MeshOptions& options;
+    InputSummary input;
+    std::vector<SurfaceSummary> surfaces;
+    StageTimer timer;
+};
+
+}  // namespace adaptiso

@@ -1,0 +1,256 @@
+#include "Pipeline.h"
+
+#include <algorithm>
+#include <iostream>
+#include <utility>
+
+#include "Common/AtomicOutput.h"
+#include "Common/ExitCodes.h"
+#include "Common/Numbers.h"
+#include "Common/Progress.h"
+#include "Common/RunApp.h"
+#include "JsonReport.h"
+#include "MeshRun.h"
+#include "OutputNames.h"
+#include "TextReport.h"
+#include "adaptiso/ImageIO/Otsu.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The stages of a run, as progress, `seconds` of the report and README.md name them.
+constexpr const char* kRead = "read";
+constexpr const char* kIndex = "index";
+constexpr const char* kExtract = "extract";
+constexpr const char* kPieces = "pieces";
+constexpr const char* kCheck = "check";
+constexpr const char* kCrossings = "crossings";
+constexpr const char* kWrite = "write";
+
+std::string isovalueText(const IsovalueChoice& choice) {
+    return choice.isAutomatic() ? "auto" : formatNumber(*choice.value);
+}
+
+const MeshFormat& formatOf(const fs::path& path) {
+    try {
+        return findMeshFormat(path);
+    } catch (const InvalidInput& error) {
+        throw UsageError(error.what());
+    }
+}
+
+CoordinateFrame frameOf(const MeshOptions& options, const MeshFormat& format) {
+    const CoordinateFrame frame = options.frame.value_or(defaultFrame(format));
+    if (frame == CoordinateFrame::Voxel && !format.holdsVoxelFrame) {
+        throw UsageError("--coordinates voxel: " + std::string(format.name) +
+                         " holds points in mm only");
+    }
+    return frame;
+}
+
+/// Everything about the outputs that can be told before the volume is read.
+void checkOutputs(const MeshOptions& options) {
+    const bool hasJsonFile = options.common.wantsJson() && !options.common.wantsJsonOnStdout();
+    const fs::path json = hasJsonFile ? options.common.json : "";
+    std::vector<fs::path> files;
+    for (const IsovalueChoice& choice : options.isovalues) {
+        files.push_back(outputPath(options, isovalueText(choice)));
+        frameOf(options, formatOf(files.back()));
+    }
+    if (hasJsonFile) {
+        const auto isJson = [&](const fs::path& file) {
+            return fs::weakly_canonical(fs::absolute(file)) ==
+                   fs::weakly_canonical(fs::absolute(json));
+        };
+        if (std::any_of(files.begin(), files.end(), isJson)) {
+            throw UsageError("--json " + json.string() + ": is the name of the mesh too");
+        }
+        files.push_back(json);
+    }
+    for (const fs::path& file : files) {
+        checkNotInput(file, options.input);
+        checkOutput(file);
+    }
+}
+
+std::string rangeText(const MeshRun& run) {
+    const ValueRange& range = run.input.range;
+    const std::string file = run.options.input.filename().string();
+    if (range.minimum > range.maximum) return file + " holds no numbers";
+    return file + " holds values from " + formatNumber(range.minimum) + " to " +
+           formatNumber(range.maximum);
+}
+
+/// \throws InvalidInput when the surface would be empty, or the border of the image alone
+void checkIsovalue(double isovalue, const MeshRun& run) {
+    const std::string name = "--iso " + formatNumber(isovalue);
+    if (!(isovalue <= run.input.range.maximum)) {
+        throw InvalidInput(name + ": no voxel reaches it; " + rangeText(run));
+    }
+    if (isovalue <= run.input.range.minimum) {
+        throw InvalidInput(name + ": every voxel reaches it, so there is no surface; " +
+                           rangeText(run));
+    }
+}
+
+/// The isovalues to take: Otsu's for auto, all of them checked against the volume.
+std::vector<double> chooseIsovalues(const VolumeView& volume, const MeshRun& run) {
+    std::vector<double> isovalues;
+    for (const IsovalueChoice& choice : run.options.isovalues) {
+        const double isovalue = choice.isAutomatic() ? otsuThreshold(volume) : *choice.value;
+        checkIsovalue(isovalue, run);
+        if (std::find(isovalues.begin(), isovalues.end(), isovalue) != isovalues.end()) {
+            throw InvalidInput("--iso auto: is " + formatNumber(isovalue) +
+                               " here, which is given as well");
+        }
+        isovalues.push_back(isovalue);
+    }
+    return isovalues;
+}
+
+InputSummary summarize(const ReadVolume& read) {
+    const VolumeView& view = read.volume.view();
+    return {read.format, view.geometry(), view.pixelType(), valueRange(view), read.warnings};
+}
+
+/// The output's promise, kept or nothing is written: no defect; with an open border no defect but
+/// open edges.
+void requireSound(const TopologyReport& topology, Border border) {
+    std::string faults;
+    for (int n = 0; n < kTopologyDefectCount; ++n) {
+        const auto defect = static_cast<TopologyDefect>(n);
+        if (topology.count(defect) == 0) continue;
+        if (border == Border::Open && defect == TopologyDefect::BoundaryEdge) continue;
+        faults += (faults.empty() ? "" : ", ") + std::string(toString(defect)) + ": " +
+                  std::to_string(topology.count(defect));
+    }
+    if (!faults.empty()) throw InternalError("the surface is not sound (" + faults + ")");
+}
+
+/// \throws InvalidInput when nothing is left
+TriangleMesh keepPieces(const TriangleMesh& mesh, const ComponentSelection& selection) {
+    TriangleMesh kept = selectComponents(mesh, selection);
+    if (kept.triangles.empty()) {
+        throw InvalidInput("--min-volume " + formatNumber(selection.minVolumeMm3) +
+                           ": no piece of the surface has as much");
+    }
+    return kept;
+}
+
+/// Makes one surface and writes it under its temporary name.
+SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index, double isovalue,
+                           const IsovalueChoice& choice, MeshRun& run, ProgressLine& progress,
+                           std::vector<AtomicOutput>& outputs) {
+    const MeshOptions& options = run.options;
+    SurfaceSummary summary;
+    summary.isovalue = isovalue;
+    summary.isAutomatic = choice.isAutomatic();
+    summary.file = outputPath(options, formatNumber(isovalue));
+    summary.format = &formatOf(summary.file);
+    summary.frame = frameOf(options, *summary.format);
+
+    Extraction extraction = run.timer.time(kExtract, [&] {
+        ExtractionOptions extract;
+        extract.isovalue = isovalue;
+        extract.method = options.method;
+        extract.computeNormals = summary.format->holdsNormals;
+        extract.progress = progress.callback();
+        return extractSurface(volume, index, extract);
+    });
+    summary.statistics = std::move(extraction.statistics);
+    if (extraction.mesh.triangles.empty()) {
+        throw InvalidInput("--iso " + formatNumber(isovalue) +
+                           ": the surface is empty; no two neighbouring voxels lie on both sides");
+    }
+
+    TriangleMesh mesh = std::move(extraction.mesh);
+    if (!options.selection.keepsAll()) {
+        progress.show(kPieces);
+        mesh = run.timer.time(kPieces, [&] { return keepPieces(mesh, options.selection); });
+    }
+
+    progress.show(kCheck);
+    run.timer.time(kCheck, [&] {
+        summary.topology = checkTopology(mesh);
+        requireSound(summary.topology, options.index.border);
+        summary.areaMm2 = surfaceArea(mesh);
+        if (summary.topology.isClosed()) summary.volumeMm3 = enclosedVolume(mesh);
+    });
+
+    if (options.checksCrossings) {
+        progress.show(kCrossings);
+        summary.crossingPairs = run.timer.time(
+            kCrossings, [&] { return findSelfIntersections(mesh, {.maxPairs = 0}).pairCount; });
+    }
+
+    progress.show(kWrite);
+    run.timer.time(kWrite, [&] {
+        AtomicOutput& output = outputs.emplace_back(summary.file);
+        MeshWriteOptions write;
+        write.frame = summary.frame;
+        write.volume = volume.geometry();
+        output.write([&](const fs::path& path) { writeMesh(mesh, path, write); });
+        summary.bytes = fs::file_size(output.temporary());
+    });
+    return summary;
+}
+
+void printWarnings(const MeshRun& run) {
+    if (run.options.common.isQuiet) return;
+    for (const std::string& warning : run.input.warnings) {
+        std::cerr << "adaptiso-mesh: warning: " << warning << '\n';
+    }
+}
+
+void report(const MeshRun& run, const std::string& json) {
+    if (run.options.common.wantsJsonOnStdout()) {
+        std::cout << json;
+    } else if (!run.options.common.isQuiet) {
+        printReport(std::cout, run);
+    }
+    if (!std::cout.flush()) throw FileError("standard output: can't be written");
+}
+
+}  // namespace
+
+int runMesh(const MeshOptions& options) {
+    const ThreadLimit threads(options.common);
+    ProgressLine progress(options.common.isQuiet);
+    MeshRun run{options, {}, {}, {}};
+    checkOutputs(options);
+
+    progress.show(kRead);
+    const ReadVolume read =
+        run.timer.time(kRead, [&] { return readVolume(options.input, {options.series}); });
+    const VolumeView& volume = read.volume.view();
+    run.input = run.timer.time(kRead, [&] { return summarize(read); });
+    progress.clear();
+    printWarnings(run);
+    const std::vector<double> isovalues =
+        run.timer.time(kRead, [&] { return chooseIsovalues(volume, run); });
+
+    progress.show(kIndex);
+    const SpanSpaceIndex index =
+        run.timer.time(kIndex, [&] { return SpanSpaceIndex::build(volume, options.index); });
+
+    std::vector<AtomicOutput> outputs;
+    for (std::size_t n = 0; n < isovalues.size(); ++n) {
+        run.surfaces.push_back(
+            makeSurface(volume, index, isovalues[n], options.isovalues[n], run, progress, outputs));
+    }
+    const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
+    if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
+        outputs.emplace_back(options.common.json).writeText(json);
+    }
+    AtomicOutput::commit(outputs);
+    progress.clear();
+    report(run, json);
+    return kExitOk;
+}
+
+}  // namespace adaptiso

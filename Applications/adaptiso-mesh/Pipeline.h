@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "Common/CommonOptions.h"
+#include "adaptiso/Extraction/Components.h"
+#include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
+
+namespace adaptiso {
+
+/// An isovalue as asked for.
+struct IsovalueChoice {
+    std::optional<double> value;  ///< none: chosen by Otsu's method
+
+    bool isAutomatic() const { return !value; }
+    friend bool operator==(const IsovalueChoice&, const IsovalueChoice&) = default;
+};
+
+/// What adaptiso-mesh is asked to do.
+struct MeshOptions {
+    std::filesystem::path input;
+    std::optional<std::string> series;  ///< which of a DICOM folder's series
+    std::vector<IsovalueChoice> isovalues;
+    std::filesystem::path output;  ///< empty: named after the input, in the current folder
+    Method method = Method::Boxes;
+    IndexOptions index;
+    ComponentSelection selection;
+    std::optional<CoordinateFrame> frame;  ///< none: the output format's own
+    bool checksCrossings = false;
+    CommonOptions common;
+};
+
+/// Reads the volume, extracts and checks the surfaces, and writes all of them or none.
+/// \return an exit code
+/// \throws UsageError     the output's format is unknown or can't hold the frame
+/// \throws FileError      the input can't be read, the output can't be written
+/// \throws InvalidInput   an isovalue that cuts nothing, or nothing is left of a surface
+/// \throws InternalError  a surface is not sound
+int runMesh(const MeshOptions& options);
+
+}  // namespace adaptiso

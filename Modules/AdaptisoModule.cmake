@@ -1,0 +1,117 @@
+# adaptiso_module(): one call declares one module, the layer it stands on and what it may use.
+#
+#   adaptiso_module(<Name> LAYER <n> [DEPENDS <Module>...] [MAY_INCLUDE itk|vtk|gdcm...]
+#                   [PUBLIC <target>...] [PRIVATE <target>...] [PACKAGES <find_package line>...])
+#
+# Makes the library adaptiso<Name> (alias adaptiso::<Name>) of Modules/<Name>, whose own
+# CMakeLists.txt lists the sources. Configuring fails when
+#   - a module rests on one of its own or a higher layer;
+#   - a source includes a header of a module that it does not name under DEPENDS;
+#   - a source includes ITK, VTK, GDCM or CLI11 without naming it under MAY_INCLUDE.
+# PACKAGES are what a consumer of this module has to find, each as one string with the arguments
+# of find_package(): "VTK 9.1 COMPONENTS CommonCore IOXML".
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(ADAPTISO_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    # false alarms at "text" + std::string() in GCC 12 (its bugs 105329, 105651)
+    list(APPEND ADAPTISO_WARNINGS -Wno-restrict)
+endif()
+
+# find_package() with the arguments in one string, as adaptiso_module(PACKAGES) takes them.
+macro(adaptiso_find_package arguments)
+    separate_arguments(_adaptiso_arguments UNIX_COMMAND "${arguments}")
+    find_package(${_adaptiso_arguments} REQUIRED)
+endmacro()
+
+function(adaptiso_compile_options target)
+    target_compile_options(${target} PRIVATE ${ADAPTISO_WARNINGS}
+                           $<$<BOOL:${ADAPTISO_WARNINGS_AS_ERRORS}>:-Werror>)
+    if(ADAPTISO_SANITIZE)
+        target_compile_options(${target} PRIVATE -fsanitize=${ADAPTISO_SANITIZE}
+                               -fno-omit-frame-pointer -fno-sanitize-recover=all)
+        target_link_options(${target} PUBLIC -fsanitize=${ADAPTISO_SANITIZE})
+    endif()
+    if(ADAPTISO_COVERAGE)
+        target_compile_options(${target} PRIVATE --coverage -O0 -g)
+        target_link_options(${target} PUBLIC --coverage)
+    endif()
+endfunction()
+
+function(adaptiso_check_layers name layer)
+    cmake_parse_arguments(A "" "" "DEPENDS;MAY_INCLUDE" ${ARGN})
+    foreach(dependency IN LISTS A_DEPENDS)
+        get_property(below GLOBAL PROPERTY ADAPTISO_LAYER_${dependency})
+        if(below STREQUAL "" OR NOT below LESS layer)
+            message(FATAL_ERROR "Module ${name} (layer ${layer}) may not rest on ${dependency} "
+                                "(layer '${below}'): only lower layers, declared before it.")
+        endif()
+    endforeach()
+    get_target_property(sources adaptiso${name} SOURCES)
+    get_target_property(directory adaptiso${name} SOURCE_DIR)
+    file(GLOB_RECURSE headers "${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.h")
+    list(TRANSFORM sources PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/${name}/" REGEX "^[^/]")
+    foreach(source IN LISTS sources headers)
+        if(NOT EXISTS "${source}")
+            continue()
+        endif()
+        file(STRINGS "${source}" includes REGEX "^[ \t]*#[ \t]*include")
+        foreach(line IN LISTS includes)
+            if(line MATCHES "adaptiso/([A-Za-z]+)/" AND NOT CMAKE_MATCH_1 STREQUAL name
+               AND NOT CMAKE_MATCH_1 IN_LIST A_DEPENDS)
+                message(FATAL_ERROR "${source} includes module ${CMAKE_MATCH_1}, which "
+                                    "Modules/CMakeLists.txt does not list for ${name}: ${line}")
+            endif()
+            foreach(library itk vtk gdcm CLI)
+                if(line MATCHES "[<\"]${library}[A-Z/]" AND NOT library IN_LIST A_MAY_INCLUDE)
+                    message(FATAL_ERROR "${source}: ${name} may not include ${library}: ${line}")
+                endif()
+            endforeach()
+        endforeach()
+    endforeach()
+endfunction()
+
+function(adaptiso_module name)
+    cmake_parse_arguments(A "" "LAYER" "DEPENDS;MAY_INCLUDE;PUBLIC;PRIVATE;PACKAGES" ${ARGN})
+    set(target adaptiso${name})
+    add_library(${target})
+    add_library(adaptiso::${name} ALIAS ${target})
+    set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    target_include_directories(${target} PUBLIC
+        $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/${name}/include>
+        $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/${name}/src)
+    foreach(dependency IN LISTS A_DEPENDS)
+        target_link_libraries(${target} PUBLIC adaptiso${dependency})
+    endforeach()
+    target_link_libraries(${target} PUBLIC ${A_PUBLIC} PRIVATE ${A_PRIVATE})
+    adaptiso_compile_options(${target})
+    add_subdirectory(${name})
+
+    adaptiso_check_layers(${name} ${A_LAYER} DEPENDS ${A_DEPENDS} MAY_INCLUDE ${A_MAY_INCLUDE})
+    set_property(GLOBAL PROPERTY ADAPTISO_LAYER_${name} ${A_LAYER})
+    set_property(GLOBAL APPEND PROPERTY ADAPTISO_MODULES ${name})
+
+    install(TARGETS ${target} EXPORT adaptiso-${name} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(DIRECTORY ${name}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+    install(EXPORT adaptiso-${name} NAMESPACE adaptiso:: FILE adaptiso-${name}.cmake
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adaptiso)
+    set_property(GLOBAL APPEND_STRING PROPERTY ADAPTISO_CONFIG_MODULES
+        "set(_adaptiso_${name}_DEPENDS ${A_DEPENDS})\nset(_adaptiso_${name}_PACKAGES \"${A_PACKAGES}\")\n")
+endfunction()
+
+function(adaptiso_install_package)
+    get_property(ADAPTISO_MODULES GLOBAL PROPERTY ADAPTISO_MODULES)
+    get_property(ADAPTISO_CONFIG_MODULES GLOBAL PROPERTY ADAPTISO_CONFIG_MODULES)
+    configure_package_config_file(${PROJECT_SOURCE_DIR}/Modules/adaptisoConfig.cmake.in
+        ${PROJECT_BINARY_DIR}/adaptisoConfig.cmake
+        INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adaptiso)
+    write_basic_package_version_file(${PROJECT_BINARY_DIR}/adaptisoConfigVersion.cmake
+        COMPATIBILITY SameMinorVersion)
+    install(FILES ${PROJECT_BINARY_DIR}/adaptisoConfig.cmake
+            ${PROJECT_BINARY_DIR}/adaptisoConfigVersion.cmake
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adaptiso)
+endfunction()

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "adaptiso/Core/TriangleMesh.h"
+
+namespace adaptiso {
+
+/// The point of the triangle a, b, c that lies nearest to `p`. Triangles without area are taken as
+/// the segment or point that they are.
+Vec3 closestPointOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Squared distance from a point to a box; 0 inside.
+double squaredDistance(const Vec3& p, const BoundingBox& box);
+
+/// They share a point; touching is enough.
+bool overlaps(const BoundingBox& a, const BoundingBox& b);
+
+/// The nearest place of a surface.
+struct ClosestPoint {
+    std::int64_t triangle = -1;  ///< triangle number; -1: the surface is empty, or too far away
+    double squaredDistanceMm2 = std::numeric_limits<double>::infinity();
+    Vec3 pointMm;
+};
+
+/// A binary tree of axis-aligned boxes over the triangles of a mesh: finds the nearest triangle to
+/// a point and the triangles near a box.
+///
+/// Triangles are halved by their centres along the longest side, down to leaves of up to four. The
+/// nodes lie in one array in depth-first order; where children lie follows from counts alone, so a
+/// node is nothing but its box. Triangles with a non-finite corner are left out.
+/// Cost: O(T log T) to build, in parallel; 32 bytes a triangle, as much again while building.
+/// Queries take O(log T + k) on surfaces. The same mesh gives the same tree and the same answers,
+/// whatever the number of threads; queries may run in parallel.
+class AabbTree {
+public:
+    /// Keeps a reference to `mesh`, which must outlive the tree and not change.
+    /// \pre triangles name points that are there \throws InvalidInput otherwise
+    explicit AabbTree(const TriangleMesh& mesh);
+    explicit AabbTree(TriangleMesh&&) = delete;
+
+    /// The nearest triangle to `p`, and where on it. Of triangles equally near one is chosen,
+    /// always the same.
+    /// \param hint  a triangle that is thought to be near, to save time; -1: none
+    /// \pre p is finite; hint < the number of triangles
+    ClosestPoint closestPoint(const Vec3& p, std::int64_t hint = -1) const;
+
+    /// Calls visit(triangle) for every triangle whose box overlaps `box`, in an order that is
+    /// always the same.
+    template <class Visit>
+    void forEachOverlap(const BoundingBox& box, const Visit& visit) const;
+
+    /// Number of triangles in the tree.
+    std::int64_t triangleCount() const { return static_cast<std::int64_t>(order_.size()); }
+
+    BoundingBox triangleBox(std::int64_t triangle) const;
+
+private:
+    static constexpr std::int64_t kLeafTriangles = 4;
+
+    /// A node and the leaves below it.
+    struct Subtree {
+        std::int64_t node, firstLeaf, leaves;
+
+        bool isLeaf() const { return leaves == 1; }
+        Subtree left() const { return {node + 1, firstLeaf, leaves / 2}; }
+        Subtree right() const {
+            return {node + 2 * (leaves / 2), firstLeaf + leaves / 2, leaves - leaves / 2};
+        }
+    };
+    /// Halving leaves no more than 64 levels, with one subtree a level left to do.
+    using Stack = std::array<Subtree, 64>;
+
+    struct Item;
+    void build(std::vector<Item>& items, const Subtree& subtree);
+    Subtree root() const { return {0, 0, (triangleCount() + kLeafTriangles - 1) / kLeafTriangles}; }
+    std::int64_t leafBegin(std::int64_t leaf) const { return leaf * kLeafTriangles; }
+    std::int64_t leafEnd(std::int64_t leaf) const {
+        const std::int64_t end = (leaf + 1) * kLeafTriangles;
+        return end < triangleCount() ? end : triangleCount();
+    }
+    void improve(ClosestPoint& best, const Vec3& p, std::int64_t triangle) const;
+
+    const TriangleMesh* mesh_;
+    std::vector<std::int64_t> order_;  ///< triangle numbers, leaf after leaf
+    std::vector<BoundingBox> boxes_;   ///< of every node
+};
+
+template <class Visit>
+void AabbTree::forEachOverlap(const BoundingBox& box, const Visit& visit) const {
+    if (order_.empty() || !overlaps(box, boxes_[0])) return;
+    Stack stack;
+    std::size_t depth = 0;
+    stack[depth++] = root();
+    while (depth > 0) {
+        const Subtree at = stack[--depth];
+        if (at.isLeaf()) {
+            for (std::int64_t n = leafBegin(at.firstLeaf); n < leafEnd(at.firstLeaf); ++n) {
+                if (overlaps(box, triangleBox(order_[n]))) visit(order_[n]);
+            }
+            continue;
+        }
+        const Subtree left = at.left(), right = at.right();
+        if (overlaps(box, boxes_[right.node])) stack[depth++] = right;
+        if (overlaps(box, boxes_[left.node])) stack[depth++] = left;
+    }
+}
+
+inline bool overlaps(const BoundingBox& a, const BoundingBox& b) {
+    return a.minimum.x <= b.maximum.x && b.minimum.x <= a.maximum.x && a.minimum.y <= b.maximum.y &&
+           b.minimum.y <= a.maximum.y && a.minimum.z <= b.maximum.z && b.minimum.z <= a.maximum.z;
+}
+
+}  // namespace adaptiso

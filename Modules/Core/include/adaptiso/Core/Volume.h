@@ -1,0 +1,169 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/ImageGeometry.h"
+
+namespace adaptiso {
+
+enum class PixelType { UInt8, Int8, UInt16, Int16, UInt32, Int32, UInt64, Int64, Float32, Float64 };
+
+/// "uint8", "int16", "float32", ...
+std::string_view toString(PixelType type);
+std::size_t bytesPerPixel(PixelType type);
+
+template <class T>
+constexpr PixelType pixelTypeOf();
+template <>
+constexpr PixelType pixelTypeOf<std::uint8_t>() {
+    return PixelType::UInt8;
+}
+template <>
+constexpr PixelType pixelTypeOf<std::int8_t>() {
+    return PixelType::Int8;
+}
+template <>
+constexpr PixelType pixelTypeOf<std::uint16_t>() {
+    return PixelType::UInt16;
+}
+template <>
+constexpr PixelType pixelTypeOf<std::int16_t>() {
+    return PixelType::Int16;
+}
+template <>
+constexpr PixelType pixelTypeOf<std::uint32_t>() {
+    return PixelType::UInt32;
+}
+template <>
+constexpr PixelType pixelTypeOf<std::int32_t>() {
+    return PixelType::Int32;
+}
+template <>
+constexpr PixelType pixelTypeOf<std::uint64_t>() {
+    return PixelType::UInt64;
+}
+template <>
+constexpr PixelType pixelTypeOf<std::int64_t>() {
+    return PixelType::Int64;
+}
+template <>
+constexpr PixelType pixelTypeOf<float>() {
+    return PixelType::Float32;
+}
+template <>
+constexpr PixelType pixelTypeOf<double>() {
+    return PixelType::Float64;
+}
+
+/// The samples of a scalar image in their own type, x (i) fastest, tightly packed. Owns nothing.
+template <class T>
+struct TypedVolumeView {
+    const T* samples = nullptr;
+    ImageGeometry geometry;
+
+    std::int64_t strideY() const { return geometry.size[0]; }
+    std::int64_t strideZ() const { return geometry.size[0] * geometry.size[1]; }
+    const T& at(std::int64_t i, std::int64_t j, std::int64_t k) const {
+        return samples[i + j * strideY() + k * strideZ()];
+    }
+};
+
+/// A view of a scalar image of any pixel type: what every algorithm takes. Owns nothing; the
+/// samples must outlive it.
+///
+/// \pre size >= 1 along every axis, |determinant(indexToPhysical)| > 0 and finite
+///      \throws InvalidInput otherwise
+class VolumeView {
+public:
+    template <class T>
+    VolumeView(const T* samples, const ImageGeometry& geometry)
+        : VolumeView(samples, pixelTypeOf<T>(), geometry) {}
+    VolumeView(const void* samples, PixelType type, const ImageGeometry& geometry);
+
+    PixelType pixelType() const { return type_; }
+    const ImageGeometry& geometry() const { return geometry_; }
+    const void* samples() const { return samples_; }
+    std::size_t byteCount() const {
+        return static_cast<std::size_t>(geometry_.voxelCount()) * bytesPerPixel(type_);
+    }
+
+    /// \pre pixelTypeOf<T>() == pixelType()
+    template <class T>
+    TypedVolumeView<T> as() const {
+        return {static_cast<const T*>(samples_), geometry_};
+    }
+
+private:
+    const void* samples_;
+    PixelType type_;
+    ImageGeometry geometry_;
+};
+
+/// Calls `f` with the TypedVolumeView of the volume's own pixel type and returns what it returns.
+template <class F>
+decltype(auto) dispatchPixelType(const VolumeView& volume, F&& f) {
+    switch (volume.pixelType()) {
+        case PixelType::UInt8:
+            return f(volume.as<std::uint8_t>());
+        case PixelType::Int8:
+            return f(volume.as<std::int8_t>());
+        case PixelType::UInt16:
+            return f(volume.as<std::uint16_t>());
+        case PixelType::Int16:
+            return f(volume.as<std::int16_t>());
+        case PixelType::UInt32:
+            return f(volume.as<std::uint32_t>());
+        case PixelType::Int32:
+            return f(volume.as<std::int32_t>());
+        case PixelType::UInt64:
+            return f(volume.as<std::uint64_t>());
+        case PixelType::Int64:
+            return f(volume.as<std::int64_t>());
+        case PixelType::Float32:
+            return f(volume.as<float>());
+        case PixelType::Float64:
+            return f(volume.as<double>());
+    }
+    throw InternalError("dispatchPixelType: unknown pixel type");
+}
+
+/// An image that owns its samples, whoever allocated them (an ITK image, a vector, a mapped file).
+class Volume {
+public:
+    /// `owner` keeps `view`'s samples alive.
+    Volume(VolumeView view, std::shared_ptr<const void> owner)
+        : view_(view), owner_(std::move(owner)) {}
+
+    template <class T>
+    static Volume fromSamples(std::vector<T> samples, const ImageGeometry& geometry) {
+        if (static_cast<std::int64_t>(samples.size()) != geometry.voxelCount()) {
+            throw InvalidInput("Volume::fromSamples: the number of samples differs from the size");
+        }
+        auto owner = std::make_shared<const std::vector<T>>(std::move(samples));
+        return Volume(VolumeView(owner->data(), geometry), owner);
+    }
+
+    const VolumeView& view() const { return view_; }
+    operator const VolumeView&() const { return view_; }  // NOLINT: a Volume is a VolumeView
+
+private:
+    VolumeView view_;
+    std::shared_ptr<const void> owner_;
+};
+
+/// Smallest and largest sample, NaN left aside, as doubles. A volume of NaN alone gives
+/// {+inf, -inf}.
+struct ValueRange {
+    double minimum;
+    double maximum;
+};
+ValueRange valueRange(const VolumeView& volume);
+
+}  // namespace adaptiso

@@ -1,0 +1,102 @@
+#include "adaptiso/Core/Volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <string>
+
+#include "adaptiso/Core/Parallel.h"
+
+namespace adaptiso {
+
+std::string_view toString(PixelType type) {
+    switch (type) {
+        case PixelType::UInt8:
+            return "uint8";
+        case PixelType::Int8:
+            return "int8";
+        case PixelType::UInt16:
+            return "uint16";
+        case PixelType::Int16:
+            return "int16";
+        case PixelType::UInt32:
+            return "uint32";
+        case PixelType::Int32:
+            return "int32";
+        case PixelType::UInt64:
+            return "uint64";
+        case PixelType::Int64:
+            return "int64";
+        case PixelType::Float32:
+            return "float32";
+        case PixelType::Float64:
+            return "float64";
+    }
+    return "unknown";
+}
+
+std::size_t bytesPerPixel(PixelType type) {
+    switch (type) {
+        case PixelType::UInt8:
+        case PixelType::Int8:
+            return 1;
+        case PixelType::UInt16:
+        case PixelType::Int16:
+            return 2;
+        case PixelType::UInt32:
+        case PixelType::Int32:
+        case PixelType::Float32:
+            return 4;
+        case PixelType::UInt64:
+        case PixelType::Int64:
+        case PixelType::Float64:
+            return 8;
+    }
+    return 0;
+}
+
+VolumeView::VolumeView(const void* samples, PixelType type, const ImageGeometry& geometry)
+    : samples_(samples), type_(type), geometry_(geometry) {
+    for (const std::int64_t extent : geometry.size) {
+        if (extent < 1) {
+            throw InvalidInput("VolumeView: the image has " + std::to_string(extent) +
+                               " voxels along an axis, must have at least 1");
+        }
+    }
+    const double volumeMm3 = geometry.voxelVolumeMm3();
+    if (!(volumeMm3 > 0) || !std::isfinite(volumeMm3) ||
+        !std::isfinite(squaredNorm(geometry.originMm))) {
+        throw InvalidInput("VolumeView: the image's axes span no volume (voxel volume " +
+                           std::to_string(volumeMm3) + " mm3)");
+    }
+}
+
+ValueRange valueRange(const VolumeView& volume) {
+    return dispatchPixelType(volume, [](const auto& view) {
+        ValueRange range{std::numeric_limits<double>::infinity(),
+                         -std::numeric_limits<double>::infinity()};
+        std::mutex mutex;
+        parallelForPieces(view.geometry.voxelCount(), std::int64_t{1} << 20,
+                          [&](std::int64_t begin, std::int64_t end) {
+                              using T = std::decay_t<decltype(*view.samples)>;
+                              T low = std::numeric_limits<T>::max(),
+                                high = std::numeric_limits<T>::lowest();
+                              bool found = false;
+                              for (std::int64_t i = begin; i < end; ++i) {
+                                  const T value = view.samples[i];
+                                  if (!(value == value)) continue;  // NaN
+                                  found = true;
+                                  low = value < low ? value : low;
+                                  high = value > high ? value : high;
+                              }
+                              if (!found) return;
+                              const std::lock_guard lock(mutex);
+                              range.minimum = std::min(range.minimum, static_cast<double>(low));
+                              range.maximum = std::max(range.maximum, static_cast<double>(high));
+                          });
+        return range;
+    });
+}
+
+}  // namespace adaptiso

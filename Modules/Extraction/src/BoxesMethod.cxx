@@ -1,0 +1,73 @@
+#include "BoxesMethod.h"
+
+#include "BoxSurface.h"
+#include "FillLoops.h"
+#include "SurfaceLoops.h"
+
+namespace adaptiso::detail {
+namespace {
+
+template <int N, class Id>
+Extraction extract(const VolumeView& volume, ActiveBlocks active,
+                   const ExtractionOptions& options) {
+    const BlockGrid grid = active.grid();
+    const auto report = [&](double fraction) {
+        if (options.progress) options.progress("extract", fraction);
+    };
+    const auto sampler = LatticeSampler::make(volume, options.isovalue, grid.border);
+    Extraction result;
+    report(0);
+    BoxSurface<N, Id> surface = makeBoxSurface<N, Id>(*sampler, std::move(active));
+    result.statistics.boxes = surface.boxCounts;
+    result.statistics.boxesChangingTopology = surface.boxesChangingTopology;
+    result.statistics.marchingCubesTriangles = surface.marchingCubesTriangles;
+    report(0.5);
+    SurfaceLoops<Id> loops = makeSurfaceLoops<N, Id>(std::move(surface));
+    report(0.7);
+    result.mesh = fillLoops(std::move(loops), *sampler, volume.geometry(), grid.offset,
+                            result.statistics.edgesSplit);
+    report(1);
+    return result;
+}
+
+template <int N>
+Extraction extractWithBlocks(const VolumeView& volume, ActiveBlocks active,
+                             const ExtractionOptions& options) {
+    // at most every lattice edge of the active blocks is a vertex
+    const std::int64_t vertices = 3 * N * N * N * active.count();
+    if (vertices < static_cast<std::int64_t>(HalfEdge<std::uint32_t>::kLimit)) {
+        return extract<N, std::uint32_t>(volume, std::move(active), options);
+    }
+    return extract<N, std::uint64_t>(volume, std::move(active), options);
+}
+
+}  // namespace
+
+Extraction extractBoxes(const VolumeView& volume, const SpanSpaceIndex& index,
+                        const ExtractionOptions& options) {
+    BlockQuery query = index.blocksAt(options.isovalue);
+    const std::int64_t visited = query.nodesVisited;
+    ActiveBlocks active(index.grid(), std::move(query.blocks));
+    const std::int64_t activeCount = active.count();
+    Extraction result;
+    switch (index.grid().blockSize) {
+        case 2:
+            result = extractWithBlocks<2>(volume, std::move(active), options);
+            break;
+        case 4:
+            result = extractWithBlocks<4>(volume, std::move(active), options);
+            break;
+        case 8:
+            result = extractWithBlocks<8>(volume, std::move(active), options);
+            break;
+        default:
+            result = extractWithBlocks<16>(volume, std::move(active), options);
+            break;
+    }
+    result.statistics.blocksTotal = index.grid().blockCount();
+    result.statistics.blocksActive = activeCount;
+    result.statistics.indexNodesVisited = visited;
+    return result;
+}
+
+}  // namespace adaptiso::detail

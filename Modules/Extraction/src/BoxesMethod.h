@@ -1,0 +1,12 @@
+#pragma once
+
+#include "adaptiso/Extraction/Extraction.h"
+
+namespace adaptiso::detail {
+
+/// The thesis's method: simple cubic boxes, iso-line loops where resolutions meet, merged facets
+/// of discretized marching cubes elsewhere. Arguments as in extractSurface.
+Extraction extractBoxes(const VolumeView& volume, const SpanSpaceIndex& index,
+                        const ExtractionOptions& options);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,45 @@
+#include "adaptiso/Extraction/Extraction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "BoxesMethod.h"
+#include "MarchingCubes.h"
+#include "SurfaceLoops.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+
+std::string_view toString(Method method) {
+    switch (method) {
+        case Method::Boxes:
+            return "boxes";
+        case Method::MarchingCubes:
+            return "mc";
+    }
+    return "unknown";
+}
+
+Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
+                          const ExtractionOptions& options) {
+    if (!std::isfinite(options.isovalue)) {
+        throw InvalidInput("extractSurface: the isovalue is not a finite number");
+    }
+    const Index3& size = volume.geometry().size;
+    if (index.grid().volumeSize != size || index.pixelType() != volume.pixelType()) {
+        throw InvalidInput("extractSurface: the index was built from another volume");
+    }
+    if (*std::max_element(size.begin(), size.end()) > detail::EdgeKey::kMaximumExtent) {
+        throw InvalidInput("extractSurface: more than " +
+                           std::to_string(detail::EdgeKey::kMaximumExtent) +
+                           " samples along an axis");
+    }
+    Extraction result = options.method == Method::MarchingCubes
+                            ? detail::extractMarchingCubes(volume, index, options)
+                            : detail::extractBoxes(volume, index, options);
+    if (!options.computeNormals) result.mesh.normals = {};
+    return result;
+}
+
+}  // namespace adaptiso

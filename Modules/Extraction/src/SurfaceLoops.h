@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "BoxSurface.h"
+#include "LatticeSampler.h"
+
+namespace adaptiso::detail {
+
+/// A closed loop of vertices to be filled with triangles; inside runs to its left.
+struct Loop {
+    std::uint64_t first;  ///< of its vertices
+    std::uint64_t key;    ///< of a merged facet: PlaneKey; of others: BoxKey
+    bool isPlane;         ///< boundary of a merged facet, on one plane by its midpoints
+};
+
+/// The plane of a merged facet: all boxes of one size, one of the 26 directions, one offset.
+/// Loops with equal keys lie in the same plane and do not overlap.
+struct PlaneKey {
+    std::uint64_t word = 0;
+
+    static PlaneKey make(const std::array<int, 3>& normal, int level, std::int64_t offset) {
+        const int code = (normal[0] + 1) + 3 * (normal[1] + 1) + 9 * (normal[2] + 1);
+        return {static_cast<std::uint64_t>(code) << 59 | static_cast<std::uint64_t>(level) << 56 |
+                static_cast<std::uint64_t>(offset + (std::int64_t{1} << 54))};
+    }
+    std::array<int, 3> normal() const {
+        const int code = static_cast<int>(word >> 59);
+        return {code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1};
+    }
+    int level() const { return static_cast<int>(word >> 56 & 7); }
+};
+
+/// A box of the grid: lattice position and size of the box whose faces a loop runs on.
+struct BoxKey {
+    std::uint64_t word = 0;
+
+    static BoxKey make(const Index3& low, int log2Size) {
+        return {static_cast<std::uint64_t>(low[0]) | static_cast<std::uint64_t>(low[1]) << 20 |
+                static_cast<std::uint64_t>(low[2]) << 40 |
+                static_cast<std::uint64_t>(log2Size) << 60};
+    }
+    std::int64_t low(int axis) const {
+        return static_cast<std::int64_t>(word >> 20 * axis & 0xFFFFF);
+    }
+    int size() const { return 1 << (word >> 60); }
+};
+
+/// A lattice edge as one word: lattice position (20 bits an axis) and axis.
+struct EdgeKey {
+    std::uint64_t word = 0;
+    static constexpr std::int64_t kMaximumExtent = (1 << 20) - 64;  ///< samples along an axis
+
+    static EdgeKey make(const Index3& p, int axis) {
+        return {static_cast<std::uint64_t>(p[0]) | static_cast<std::uint64_t>(p[1]) << 20 |
+                static_cast<std::uint64_t>(p[2]) << 40 | static_cast<std::uint64_t>(axis) << 60};
+    }
+    std::int64_t position(int axis) const {
+        return static_cast<std::int64_t>(word >> 20 * axis & 0xFFFFF);
+    }
+    int axis() const { return static_cast<int>(word >> 60); }
+
+    /// In sample indices, `offset` being the lattice position of sample 0.
+    LatticeEdge latticeEdge(std::int64_t offset) const {
+        return {{position(0) - offset, position(1) - offset, position(2) - offset}, axis()};
+    }
+};
+
+/// All loops, in terms of the vertices that remain, numbered 0 .. vertices.size().
+template <class Id>
+struct SurfaceLoops {
+    int blockSize = 0;              ///< N: size of the boxes of level 0
+    std::vector<Loop> loops;        ///< and one more at the end, for its `first`
+    std::vector<Id> corners;        ///< vertices of all loops
+    std::vector<EdgeKey> vertices;  ///< the lattice edge that each vertex lies on
+};
+
+/// Follows the boundaries of merged facets across boxes and blocks, and drops the vertices that no
+/// loop needs (thesis 5.2, 5.4): inside a merged facet; and where exactly two loops pass, each
+/// straight on (a merged facet) or within a face of its box (an iso-line loop), one of them at
+/// least a merged facet. Both loops at a vertex drop it together, so no crack opens.
+template <int N, class Id>
+SurfaceLoops<Id> makeSurfaceLoops(BoxSurface<N, Id> surface);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <zlib.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <vector>
+
+namespace adaptiso::detail {
+
+/// The bytes of a file from an offset on, as they are or inflated. Every read that can't be
+/// fulfilled throws FileError: nobody downstream sees bytes that are not in the file.
+class ByteSource {
+public:
+    enum class Encoding { Raw, Deflate };  ///< Deflate: gzip or zlib, whichever it is
+
+    ByteSource(std::filesystem::path file, std::uint64_t offset, Encoding encoding);
+
+    /// Raw, or Deflate where the file begins with gzip's magic.
+    static ByteSource openPlainOrGzip(const std::filesystem::path& file);
+
+    /// \throws FileError when `byteCount` bytes can't possibly follow (cheap; before allocating)
+    void requireRoomFor(std::uint64_t byteCount) const;
+
+    /// Reads up to `byteCount` bytes; fewer only at the end.
+    std::size_t readSome(void* out, std::size_t byteCount);
+    /// \throws FileError when the data end early
+    void read(void* out, std::uint64_t byteCount);
+    void skip(std::uint64_t byteCount);
+    /// Past the next '\n'.
+    void skipLine();
+
+    /// Checks the checksum of compressed data by inflating what is left (at most 64 MiB of it).
+    void finish();
+
+private:
+    struct InflateEnd {
+        void operator()(z_stream* stream) const {
+            inflateEnd(stream);
+            delete stream;
+        }
+    };
+
+    std::size_t readRaw(void* out, std::size_t byteCount);
+    std::size_t readInflated(void* out, std::size_t byteCount);
+    bool refillInput();
+    bool nextMemberBegins();
+    [[noreturn]] void refuseTruncated(std::uint64_t missing) const;
+
+    std::filesystem::path file_;
+    std::ifstream stream_;
+    std::uint64_t rawBytes_ = 0;  ///< from the offset to the end of the file
+    std::unique_ptr<z_stream, InflateEnd> inflater_;
+    std::vector<unsigned char> input_;
+    bool inflateDone_ = false;
+};
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,90 @@
+#include "HeaderText.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+#include "ByteSource.h"
+#include "FileFault.h"
+
+namespace adaptiso::detail {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\n\v\f";
+
+template <class T>
+std::optional<T> parseAll(std::string_view text) {
+    text = trimmed(text);
+    if (text.starts_with('+')) text.remove_prefix(1);
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(kBlanks);
+    if (begin == std::string_view::npos) return {};
+    return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+std::string lowerCase(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return lower;
+}
+
+std::vector<std::string_view> words(std::string_view text) {
+    std::vector<std::string_view> found;
+    for (text = trimmed(text); !text.empty();) {
+        const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
+        found.push_back(text.substr(0, end));
+        text = trimmed(text.substr(end));
+    }
+    return found;
+}
+
+std::optional<double> parseNumber(std::string_view text) {
+    return parseAll<double>(text);
+}
+
+std::optional<std::int64_t> parseInteger(std::string_view text) {
+    return parseAll<std::int64_t>(text);
+}
+
+std::string readHead(const fs::path& file, std::size_t most) {
+    std::string head(most, '\0');
+    head.resize(ByteSource(file, 0, ByteSource::Encoding::Raw).readSome(head.data(), most));
+    return head;
+}
+
+fs::path requireDataFile(const fs::path& headerFile, std::string_view name) {
+    const fs::path relative(name);
+    const bool leaves =
+        relative.is_absolute() || std::any_of(relative.begin(), relative.end(),
+                                              [](const fs::path& part) { return part == ".."; });
+    if (leaves) {
+        refuse(headerFile,
+               fmt::format("names a data file outside its own folder ('{}')", printable(name)),
+               "put the data file beside the header and name it there");
+    }
+    if (name.empty() || name.find('%') != std::string_view::npos) {
+        refuse(headerFile, fmt::format("its data file '{}' is no plain file name", printable(name)),
+               "join the slices into one data file");
+    }
+    fs::path data = headerFile.parent_path() / relative;
+    requireRegularFile(data);
+    std::error_code error;
+    if (fs::equivalent(data, headerFile, error)) {
+        refuse(headerFile, "names itself as its data file", "repair the header");
+    }
+    return data;
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What NRRD's and MetaImage's text headers share.
+namespace adaptiso::detail {
+
+std::string_view trimmed(std::string_view text);
+std::string lowerCase(std::string_view text);
+/// Cut at blanks.
+std::vector<std::string_view> words(std::string_view text);
+
+/// All of `text` as one number; nothing else, no NaN or infinity for integers.
+std::optional<double> parseNumber(std::string_view text);
+std::optional<std::int64_t> parseInteger(std::string_view text);
+
+/// The first bytes of a file, at most `most` of them.
+std::string readHead(const std::filesystem::path& file, std::size_t most);
+
+/// The file that a header names as its data: in the header's folder or below it.
+/// \throws FileError when the name is absolute, leaves the folder, is a pattern or a list, or the
+///         header itself, or no regular file
+std::filesystem::path requireDataFile(const std::filesystem::path& headerFile,
+                                      std::string_view name);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,270 @@
+#include <fmt/core.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "FileFault.h"
+#include "HeaderText.h"
+#include "ItkDecoder.h"
+#include "Readers.h"
+
+// The header is read here before ITK sees the file: MetaIO opens whatever file a header names,
+// leaves memory uninitialised where data are short, and crashes on odd NDims. ITK decodes the
+// samples. Keys: itk.org/Wiki/ITK/MetaIO/Documentation.
+namespace adaptiso::detail {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
+
+struct MetaHeader {
+    std::map<std::string, std::string, std::less<>> fields;
+    std::uint64_t byteCount = 0;  ///< up to and with the ElementDataFile line
+
+    std::optional<std::string_view> find(std::initializer_list<std::string_view> names) const {
+        for (const std::string_view name : names) {
+            const auto it = fields.find(name);
+            if (it != fields.end()) return it->second;
+        }
+        return std::nullopt;
+    }
+    std::string_view require(const fs::path& file, std::string_view name) const {
+        if (const auto value = find({name})) return *value;
+        refuse(file, fmt::format("its MetaImage header misses {}", name), "repair the header");
+    }
+};
+
+MetaHeader parseHeader(const fs::path& file) {
+    const std::string text = readHead(file, kLongestHeader);
+    MetaHeader header;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string_view line = trimmed(std::string_view(text).substr(begin, end - begin));
+        begin = std::min(end + 1, text.size());
+        header.byteCount = begin;
+        if (line.empty()) continue;
+        const std::size_t sign = line.find_first_of("=:");
+        if (sign == std::string_view::npos) {
+            refuse(file, "its MetaImage header is damaged (a line is no 'key = value')",
+                   "repair the header");
+        }
+        const std::string name(trimmed(line.substr(0, sign)));
+        if (!header.fields.emplace(name, trimmed(line.substr(sign + 1))).second) {
+            refuse(file, fmt::format("its MetaImage header has '{}' twice", printable(name)),
+                   "repair the header");
+        }
+        if (name == "ElementDataFile") return header;
+    }
+    refuse(file,
+           text.size() == kLongestHeader ? "its MetaImage header is longer than 1 MiB"
+                                         : "its MetaImage header has no ElementDataFile",
+           "repair the header");
+}
+
+PixelType parseType(const fs::path& file, std::string_view text) {
+    static const std::map<std::string_view, PixelType> kTypes = {
+        {"MET_CHAR", PixelType::Int8},       {"MET_UCHAR", PixelType::UInt8},
+        {"MET_SHORT", PixelType::Int16},     {"MET_USHORT", PixelType::UInt16},
+        {"MET_INT", PixelType::Int32},       {"MET_UINT", PixelType::UInt32},
+        {"MET_LONG", PixelType::Int32},      {"MET_ULONG", PixelType::UInt32},
+        {"MET_LONG_LONG", PixelType::Int64}, {"MET_ULONG_LONG", PixelType::UInt64},
+        {"MET_FLOAT", PixelType::Float32},   {"MET_DOUBLE", PixelType::Float64}};
+    const auto it = kTypes.find(text);
+    if (it == kTypes.end()) {
+        refuse(file, fmt::format("unsupported ElementType '{}'", printable(text)),
+               "convert it to a scalar integer or float type");
+    }
+    return it->second;
+}
+
+bool parseFlag(const fs::path& file, const MetaHeader& header,
+               std::initializer_list<std::string_view> names) {
+    const std::string text = lowerCase(header.find(names).value_or("false"));
+    if (text == "true" || text == "1") return true;
+    if (text == "false" || text == "0") return false;
+    refuse(
+        file,
+        fmt::format("its MetaImage header is damaged: {} is '{}'", *names.begin(), printable(text)),
+        "it must be True or False");
+}
+
+/// `count` finite numbers under one of several names, or nothing when none of them is there.
+std::optional<std::vector<double>> parseNumbers(const fs::path& file, const MetaHeader& header,
+                                                std::initializer_list<std::string_view> names,
+                                                std::size_t count) {
+    const auto text = header.find(names);
+    if (!text) return std::nullopt;
+    std::vector<double> numbers;
+    for (const std::string_view word : words(*text)) {
+        const auto value = parseNumber(word);
+        if (!value || !std::isfinite(*value)) {
+            refuse(file,
+                   fmt::format("its MetaImage header is damaged: {} holds '{}', not a "
+                               "finite number",
+                               *names.begin(), printable(word)),
+                   "repair the header");
+        }
+        numbers.push_back(*value);
+    }
+    if (numbers.size() != count) {
+        refuse(file,
+               fmt::format("its MetaImage header is damaged: {} holds {} numbers, must "
+                           "hold {}",
+                           *names.begin(), numbers.size(), count),
+               "repair the header");
+    }
+    return numbers;
+}
+
+struct Extents {
+    std::size_t dimensions = 3;
+    Index3 size{};
+};
+
+/// 3 dimensions, or 4 with a single volume.
+Extents parseExtents(const fs::path& file, const MetaHeader& header) {
+    const auto dimensions = parseInteger(header.require(file, "NDims"));
+    if (!dimensions || *dimensions < 1 || *dimensions > 10) {
+        refuse(file, "its MetaImage header is damaged: NDims must be 1 to 10", "repair the header");
+    }
+    if (*dimensions != 3 && *dimensions != 4) {
+        refuse(file, fmt::format("has {} dimensions, must have 3", *dimensions),
+               "extract one volume first");
+    }
+    Extents extents{static_cast<std::size_t>(*dimensions), {}};
+    const auto sizes = words(header.require(file, "DimSize"));
+    if (sizes.size() != extents.dimensions) {
+        refuse(file,
+               fmt::format("its MetaImage header is damaged: DimSize holds {} numbers for "
+                           "NDims {}",
+                           sizes.size(), extents.dimensions),
+               "repair the header");
+    }
+    for (std::size_t axis = 0; axis < extents.dimensions; ++axis) {
+        const auto extent = parseInteger(sizes[axis]);
+        if (!extent) {
+            refuse(file, "its MetaImage header is damaged: DimSize holds no whole numbers",
+                   "repair the header");
+        }
+        if (axis < 3) {
+            extents.size[axis] = *extent;
+        } else if (*extent != 1) {
+            refuse(file, fmt::format("is 4-D: it holds {} volumes", *extent),
+                   "extract one volume first");
+        }
+    }
+    return extents;
+}
+
+void requireScalar(const fs::path& file, const MetaHeader& header) {
+    const auto text = header.find({"ElementNumberOfChannels"});
+    if (text && parseInteger(*text) != 1) {
+        refuse(file,
+               fmt::format("has {} channels (colour or vectors), must have 1", printable(*text)),
+               "extract one scalar channel first");
+    }
+}
+
+/// Row a of TransformMatrix is the direction of axis a; LPS mm, as ITK writes it.
+ImageGeometry geometryOf(const fs::path& file, const MetaHeader& header, const Extents& extents,
+                         std::vector<std::string>& warnings) {
+    const std::size_t n = extents.dimensions;
+    const std::string units = lowerCase(header.find({"DistanceUnits"}).value_or("mm"));
+    if (units != "mm" && units != "?") {
+        refuse(file, fmt::format("its DistanceUnits are '{}'", printable(units)), "save it in mm");
+    }
+    auto spacing = parseNumbers(file, header, {"ElementSpacing"}, n);
+    if (!spacing) spacing = parseNumbers(file, header, {"ElementSize"}, n);
+    if (!spacing) {
+        warnings.emplace_back("no ElementSpacing: a spacing of 1 mm was used");
+        spacing.emplace(n, 1.0);
+    }
+    const auto matrix =
+        parseNumbers(file, header, {"TransformMatrix", "Rotation", "Orientation"}, n * n);
+    if (!matrix) warnings.emplace_back("no TransformMatrix: the axes were taken as LPS");
+    const auto origin = parseNumbers(file, header, {"Offset", "Origin", "Position"}, n);
+
+    ImageGeometry geometry{extents.size, {}, {}};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!((*spacing)[axis] > 0)) {
+            refuse(file,
+                   fmt::format("voxel spacing {} must be above zero (not zero, not negative)",
+                               number((*spacing)[axis])),
+                   "repair ElementSpacing");
+        }
+        for (std::size_t row = 0; row < 3; ++row) {
+            const double direction = matrix ? (*matrix)[axis * n + row] : (axis == row ? 1 : 0);
+            geometry.indexToPhysical.column[axis][static_cast<int>(row)] =
+                (*spacing)[axis] * direction;
+        }
+        if (origin) geometry.originMm[static_cast<int>(axis)] = (*origin)[axis];
+    }
+    return geometry;
+}
+
+void requireAllData(const fs::path& file, const MetaHeader& header, std::uint64_t byteCount) {
+    const std::string_view name = header.require(file, "ElementDataFile");
+    const bool isLocal = lowerCase(name) == "local";
+    if (name.starts_with("LIST") || words(name).size() > 1) {
+        refuse(file, "its data are a list or pattern of slice files",
+               "join the slices into one data file");
+    }
+    if (!parseFlag(file, header, {"BinaryData"})) {
+        refuse(file, "its data are text (BinaryData is not True)", "save it as binary");
+    }
+    const fs::path dataFile = isLocal ? file : requireDataFile(file, name);
+    const bool isCompressed = parseFlag(file, header, {"CompressedData"});
+    parseFlag(file, header, {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"});
+
+    std::uint64_t begin = isLocal ? header.byteCount : 0;
+    if (const auto text = header.find({"HeaderSize"})) {
+        const auto skip = parseInteger(*text);
+        const std::uint64_t fileBytes = requireRegularFile(dataFile);
+        if (!skip || *skip < -1 || (isCompressed && *skip != 0) ||
+            (isLocal && *skip > 0 && static_cast<std::uint64_t>(*skip) < begin)) {
+            refuse(
+                file,
+                fmt::format("its MetaImage header is damaged: HeaderSize '{}'", printable(*text)),
+                "repair the header");
+        }
+        if (*skip > 0) begin = static_cast<std::uint64_t>(*skip);
+        if (*skip == -1 && fileBytes >= byteCount) begin = std::max(begin, fileBytes - byteCount);
+    }
+    ByteSource source(dataFile, begin,
+                      isCompressed ? ByteSource::Encoding::Deflate : ByteSource::Encoding::Raw);
+    source.requireRoomFor(byteCount);
+    source.skip(byteCount);
+    source.finish();
+}
+
+}  // namespace
+
+bool looksLikeMetaImage(std::string_view head) {
+    head = trimmed(head);
+    for (const std::string_view key : {"ObjectType", "NDims", "Comment", "BinaryData", "DimSize"}) {
+        if (head.starts_with(key) && trimmed(head.substr(key.size())).starts_with('=')) {
+            return true;
+        }
+    }
+    return false;
+}
+
+ReadVolume readMetaImage(const fs::path& file) {
+    const MetaHeader header = parseHeader(file);
+    const Extents extents = parseExtents(file, header);
+    requireScalar(file, header);
+    const PixelType type = parseType(file, header.require(file, "ElementType"));
+    const std::uint64_t byteCount = requireImageBytes(file, extents.size, type);
+    std::vector<std::string> warnings;
+    const ImageGeometry geometry = geometryOf(file, header, extents, warnings);
+    requireUsableGeometry(file, geometry);
+    requireAllData(file, header, byteCount);
+    return {decodeWithItk(ItkFormat::MetaImage, file, type, geometry), "MetaImage",
+            std::move(warnings)};
+}
+
+}  // namespace adaptiso::detail

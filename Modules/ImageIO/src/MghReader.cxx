@@ -1,0 +1,87 @@
+#include <fmt/core.h>
+
+#include <array>
+#include <bit>
+
+#include "FileFault.h"
+#include "HeaderBytes.h"
+#include "Readers.h"
+#include "Samples.h"
+
+// ITK 5.2 as packaged has no MGH reader. Layout: FreeSurfer's utils/mriio.cpp (mghRead),
+// big-endian.
+namespace adaptiso::detail {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kHeaderBytes = 284;
+
+PixelType pixelTypeOfCode(const fs::path& file, std::int32_t code) {
+    switch (code) {
+        case 0:
+            return PixelType::UInt8;
+        case 1:
+            return PixelType::Int32;
+        case 3:
+            return PixelType::Float32;
+        case 4:
+            return PixelType::Int16;
+        case 10:
+            return PixelType::UInt16;
+        default:
+            refuse(file, fmt::format("unsupported MGH data type {}", code),
+                   "convert it with mri_convert");
+    }
+}
+
+/// vox2ras: Mdc times spacing; c_ras is the centre, voxel size / 2 (mghRead).
+ImageGeometry geometryOf(const HeaderBytes& bytes, const Index3& size,
+                         std::vector<std::string>& warnings) {
+    Mat3 ras{{{{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}}}};  // FreeSurfer's default: coronal, 1 mm
+    Vec3 centre;
+    if (bytes.at<std::int16_t>(28) > 0) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const double spacing = bytes.at<float>(30 + 4 * axis);
+            for (int row = 0; row < 3; ++row) {
+                ras.column[axis][row] = spacing * bytes.at<float>(42 + 12 * axis + 4 * row);
+            }
+            centre[axis] = bytes.at<float>(78 + 4 * axis);
+        }
+    } else {
+        warnings.emplace_back(
+            "the file says that its orientation is not known; FreeSurfer's "
+            "default (coronal, 1 mm) was taken");
+    }
+    const Vec3 half{static_cast<double>(size[0]) / 2, static_cast<double>(size[1]) / 2,
+                    static_cast<double>(size[2]) / 2};
+    const Mat3 toLps = Mat3::diagonal(-1, -1, 1);
+    return {size, toLps * (centre - ras * half), toLps * ras};
+}
+
+}  // namespace
+
+ReadVolume readMgh(const fs::path& file) {
+    std::array<char, kHeaderBytes> buffer{};
+    ByteSource source = ByteSource::openPlainOrGzip(file);
+    if (source.readSome(buffer.data(), kHeaderBytes) < kHeaderBytes) {
+        refuse(file, "truncated: too short for an MGH header (284 bytes)", "get the whole file");
+    }
+    const HeaderBytes bytes({buffer.data(), buffer.size()}, std::endian::big);
+    if (bytes.at<std::int32_t>(0) != 1) {
+        refuse(file, "not an MGH file: its version is not 1", "check what it is");
+    }
+    const Index3 size{bytes.at<std::int32_t>(4), bytes.at<std::int32_t>(8),
+                      bytes.at<std::int32_t>(12)};
+    const auto frames = bytes.at<std::int32_t>(16);
+    if (frames != 1) {
+        refuse(file, fmt::format("is 4-D: it holds {} volumes", frames),
+               "extract one volume first");
+    }
+    const SampleLayout layout{pixelTypeOfCode(file, bytes.at<std::int32_t>(20)), std::endian::big};
+    std::vector<std::string> warnings;
+    const ImageGeometry geometry = geometryOf(bytes, size, warnings);
+    return {readSamples(file, source, layout, geometry), "MGH", std::move(warnings)};
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "adaptiso/ImageIO/ReadVolume.h"
+
+/// One reader a format, one .cxx a reader; all keep readVolume's contract.
+namespace adaptiso::detail {
+
+ReadVolume readNifti(const std::filesystem::path& file);
+ReadVolume readNrrd(const std::filesystem::path& file);
+ReadVolume readMetaImage(const std::filesystem::path& file);
+ReadVolume readMgh(const std::filesystem::path& file);
+ReadVolume readDicomFile(const std::filesystem::path& file);
+ReadVolume readDicomFolder(const std::filesystem::path& folder, const ReadOptions& options);
+
+/// What the first bytes of a file (inflated, at most 548) say.
+bool looksLikeNifti(std::string_view head);
+bool looksLikeNrrd(std::string_view head);
+bool looksLikeMetaImage(std::string_view head);
+bool looksLikeDicom(std::string_view head);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace adaptiso {
+
+/// The frame in which a file holds its points. Inside the library it is always Lps.
+enum class CoordinateFrame {
+    Ras,    ///< scanner right-anterior-superior, mm (NIfTI, nibabel, 3D Slicer's display)
+    Lps,    ///< scanner left-posterior-superior, mm (DICOM, ITK)
+    TkRas,  ///< FreeSurfer surface RAS ("tkRAS") of one volume's geometry, mm
+    Voxel,  ///< continuous voxel indices (i, j, k) of one volume, from 0 at the first voxel's
+            ///< centre
+};
+
+/// The name written into files: "RAS mm", "LPS mm", "tkRAS mm", "voxel indices".
+std::string_view toString(CoordinateFrame frame);
+
+/// What comments and header lines say: "CoordinateFrame: RAS mm".
+std::string frameMarker(CoordinateFrame frame);
+
+/// The frame that a text names with frameMarker()'s words, wherever they stand in it.
+std::optional<CoordinateFrame> findFrameMarker(std::string_view text);
+
+/// The frame of this name (as toString() gives it), if it is one.
+std::optional<CoordinateFrame> parseCoordinateFrame(std::string_view name);
+
+}  // namespace adaptiso

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "adaptiso/MeshIO/CoordinateFrame.h"
+
+namespace adaptiso {
+
+enum class MeshFormatId { VtkXml, VtkLegacy, Ply, Stl, Obj, Off, Gifti, FreeSurfer, OpenMeeg };
+
+/// How finely a format keeps a coordinate.
+enum class CoordinatePrecision {
+    Float64,     ///< the very double
+    Float32,     ///< rounded to single precision: 24 bits, 8 nm at 100 mm
+    NineDigits,  ///< text of nine significant digits: 0.1 nm at 100 mm
+};
+
+/// What one file format can hold. Every format here is both read and written.
+struct MeshFormat {
+    MeshFormatId id;
+    std::string_view name;                         ///< for people: "STL (binary)"
+    std::span<const std::string_view> extensions;  ///< lower case, with the dot
+    CoordinatePrecision precision;
+    bool holdsNormals;         ///< normals given to writeMesh() come back from readMesh()
+    bool holdsFrame;           ///< the file says its coordinate frame
+    bool holdsVoxelFrame;      ///< its points may be voxel indices rather than mm
+    bool holdsVolumeGeometry;  ///< the geometry of the volume comes back (CoordinateFrame::TkRas)
+    bool sharesVertices;       ///< vertices no triangle uses, and their order, come back
+    std::int64_t maxElements;  ///< largest number of points, and of triangles
+};
+
+/// All formats, in the order in which help texts list them.
+std::span<const MeshFormat> meshFormats();
+
+/// The format of a file, by its name alone: the extension, whatever its case ("lh.pial" has the
+/// extension ".pial").
+/// \throws InvalidInput  no format has this extension; the message lists those that are known
+const MeshFormat& findMeshFormat(const std::filesystem::path& path);
+
+/// The frame that users of a format expect: tkRAS of FreeSurfer surfaces, scanner RAS otherwise.
+CoordinateFrame defaultFrame(const MeshFormat& format);
+
+}  // namespace adaptiso

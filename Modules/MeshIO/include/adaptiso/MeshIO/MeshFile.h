@@ -1,0 +1,72 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/MeshIO/Formats.h"
+
+namespace adaptiso {
+
+struct MeshWriteOptions {
+    CoordinateFrame frame = CoordinateFrame::Ras;
+    /// The volume that the surface was made from. TkRas and Voxel need it; a FreeSurfer surface
+    /// in TkRas keeps it in its footer.
+    std::optional<ImageGeometry> volume;
+    /// FreeSurfer footer only: the volume's file name, without folder and without anything that
+    /// names a patient. Empty: "unknown". Printable ASCII without space, '/', '\\', '='.
+    std::string volumeName;
+};
+
+/// Writes a surface in the format that the file's name asks for (findMeshFormat()).
+///
+/// The same mesh and options give the same bytes: no date, user or machine is written. The file
+/// is written in place; a caller who wants whole files or none writes to a temporary name and
+/// renames.
+///
+/// FreeSurfer surfaces are taken for TkRas by every reader. With frame TkRas the footer holds
+/// `volume`. With Ras or Lps the footer describes a neutral volume (256^3, 1 mm) so placed that
+/// its tkRAS is the very frame written: FreeSurfer, freeview and nibabel, which go from tkRAS to
+/// scanner RAS through the footer, find the right place; MNE, which does not look at it, needs
+/// TkRas. (The other way to say it, tag 2 useRealRAS = 1, makes nibabel and MNE drop the footer.)
+///
+/// OpenMEEG's .tri holds normals always: area-weighted ones where the mesh has none. It says
+/// neither frame nor unit. STL holds triangles only: vertices that no triangle uses are lost.
+///
+/// \param mesh  LPS mm
+/// \throws InvalidInput  unknown extension; frame without its volume, or that the format can't
+///         hold; a mesh without triangles, with a triangle's index out of range, a coordinate
+///         that is not finite (or too large for float), normals that are not one per point, or
+///         more elements than the format can count
+/// \throws FileError     the file can't be written (no such folder, no permission, disk full)
+void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
+               const MeshWriteOptions& options = {});
+
+/// What a file holds, as stored: nothing is moved to another frame.
+struct MeshFile {
+    TriangleMesh mesh;                     ///< >= 1 triangle, indices in range, all finite
+    std::optional<CoordinateFrame> frame;  ///< if the file says so
+    std::optional<ImageGeometry> volume;   ///< from a FreeSurfer surface's footer (frame TkRas)
+};
+
+/// Reads a triangle surface in the format that the file's name says.
+///
+/// Files are taken for hostile: only regular files are opened, no other file is opened on their
+/// word, and no count in them is believed beyond what the file's size can hold. Polygons with
+/// more than three corners and triangle strips are refused, not cut up. STL corners with equal
+/// coordinates become one vertex, numbered by first use. OBJ normals are kept if no vertex has
+/// two. GIFTI and FreeSurfer files hold no normals.
+///
+/// \throws InvalidInput  unknown extension
+/// \throws FileError     "<file>: what is wrong; what to do"
+MeshFile readMesh(const std::filesystem::path& path);
+
+/// The same from bytes in memory (pipes, archives, fuzzers).
+/// \throws FileError  "<name>: what is wrong; what to do"
+MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name);
+
+}  // namespace adaptiso

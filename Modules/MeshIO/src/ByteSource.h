@@ -1,0 +1,75 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "ByteSink.h"
+
+namespace adaptiso::meshio {
+
+/// Fails with FileError "<what>; the file is cut off or damaged, ...". decodeMesh() puts the
+/// file's name in front.
+[[noreturn]] void damaged(const std::string& what);
+
+/// Fails with FileError "<what>; <advice>": a sound file of a kind that is not read.
+[[noreturn]] void unsupported(const std::string& what, const std::string& advice);
+
+/// Damaged unless `bytesLeft` can hold `count` records of at least `bytesEach` (> 0) bytes: to be
+/// asked before anything of that size is allocated or looped over.
+void requireRoom(std::string_view what, std::int64_t count, std::int64_t bytesEach,
+                 std::size_t bytesLeft);
+
+template <class T>
+T loadAs(const char* bytes, std::endian order) {
+    T value;
+    std::memcpy(&value, bytes, sizeof(T));
+    return order == std::endian::native ? value : swappedBytes(value);
+}
+
+/// Walks over the bytes of a file: numbers, lines and words. Going past the end is damage.
+class ByteSource {
+public:
+    explicit ByteSource(std::string_view bytes) : bytes_(bytes) {}
+
+    std::size_t left() const { return bytes_.size() - position_; }
+    std::size_t position() const { return position_; }
+    bool atEnd() const { return left() == 0; }
+    std::string_view rest() const { return bytes_.substr(position_); }
+    void seek(std::size_t position) { position_ = position; }  ///< \pre <= the number of bytes
+
+    std::string_view take(std::size_t count);
+    template <class T>
+    T number(std::endian order) {
+        return loadAs<T>(take(sizeof(T)).data(), order);
+    }
+    /// Up to the next line feed, without it and without a carriage return before it.
+    std::string_view line();
+    /// The next word (no space inside); empty at the end of the bytes.
+    std::string_view word();
+    /// The next word; damage at the end.
+    std::string_view requireWord(std::string_view what);
+    std::int64_t integerWord(std::string_view what);
+    double realWord(std::string_view what);
+
+private:
+    std::string_view bytes_;
+    std::size_t position_ = 0;
+};
+
+/// The number that `word` spells, all of it; damage otherwise. `what` is what it stands for.
+std::int64_t toInteger(std::string_view word, std::string_view what);
+double toReal(std::string_view word, std::string_view what);
+
+/// `value` as float; damage where float can't hold it (NaN passes: decodeMesh() refuses it).
+float toFloat(double value, std::string_view what);
+
+/// `text` with what a terminal can't show as '?', cut at 40 characters: for messages.
+std::string printable(std::string_view text);
+
+std::string lowerCase(std::string_view text);
+std::string_view trimmed(std::string_view text);
+
+}  // namespace adaptiso::meshio

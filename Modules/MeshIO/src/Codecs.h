@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "ByteSink.h"
+#include "adaptiso/MeshIO/MeshFile.h"
+
+namespace adaptiso::meshio {
+
+/// What an encoder writes: a mesh already in `options.frame`, checked by writeMesh().
+struct MeshRecord {
+    const TriangleMesh& mesh;
+    const MeshWriteOptions& options;
+};
+
+// One pair a format, each in its own .cxx. Decoders throw FileError without the file's name; what
+// they return is checked by decodeMesh() (indices, finite numbers, normals one per point), which
+// also scales normals to unit length.
+void encodeVtkXml(const MeshRecord& record, ByteSink& sink);
+void encodeVtkLegacy(const MeshRecord& record, ByteSink& sink);
+void encodePly(const MeshRecord& record, ByteSink& sink);
+void encodeStl(const MeshRecord& record, ByteSink& sink);
+void encodeObj(const MeshRecord& record, ByteSink& sink);
+void encodeOff(const MeshRecord& record, ByteSink& sink);
+void encodeGifti(const MeshRecord& record, ByteSink& sink);
+void encodeFreeSurfer(const MeshRecord& record, ByteSink& sink);
+void encodeOpenMeeg(const MeshRecord& record, ByteSink& sink);
+
+MeshFile decodeVtkXml(std::string_view bytes);
+MeshFile decodeVtkLegacy(std::string_view bytes);
+MeshFile decodePly(std::string_view bytes);
+MeshFile decodeStl(std::string_view bytes);
+MeshFile decodeObj(std::string_view bytes);
+MeshFile decodeOff(std::string_view bytes);
+MeshFile decodeGifti(std::string_view bytes);
+MeshFile decodeFreeSurfer(std::string_view bytes);
+MeshFile decodeOpenMeeg(std::string_view bytes);
+
+/// Who wrote the file and in which frame, on one line: "adaptiso surface, CoordinateFrame: RAS mm".
+std::string headerLine(CoordinateFrame frame);
+
+/// A normal as a file has it, whatever its length. Damage where float can't hold it.
+Normal storedNormal(const Vec3& v);
+
+/// Refuses a polygon that is not a triangle.
+[[noreturn]] void refusePolygon(std::int64_t corners);
+
+}  // namespace adaptiso::meshio

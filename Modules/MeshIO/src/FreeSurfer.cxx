@@ -1,0 +1,187 @@
+// FreeSurfer triangle surface, big endian: FF FF FE, a comment and an empty line, int32 V, T,
+// float32 points, int32 triangles, then tags: 2 (int32 useRealRAS), 20 (eight lines of text: the
+// geometry of the volume). As FreeSurfer's MRISwriteTriangularSurface, nibabel's
+// write_geometry and MNE's write_surface do it.
+#include <array>
+#include <cmath>
+
+#include "ByteSource.h"
+#include "Codecs.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+
+namespace adaptiso::meshio {
+namespace {
+
+constexpr std::string_view kTriangleMagic = "\xFF\xFF\xFE";
+constexpr std::int32_t kUseRealRasTag = 2;
+constexpr std::int32_t kGeometryTag = 20;
+
+/// LPS <-> RAS.
+constexpr Vec3 flipped(const Vec3& v) {
+    return {-v.x, -v.y, v.z};
+}
+
+Vec3 halfSize(const ImageGeometry& volume) {
+    const auto half = [&](int axis) { return static_cast<double>(volume.size[axis]) / 2; };
+    return {half(0), half(1), half(2)};
+}
+
+/// A volume whose tkRAS is `frame` (Ras or Lps) itself: FreeSurfer's conformed volume around the
+/// scanner's origin, for Lps turned by half a turn about the z axis.
+ImageGeometry neutralVolume(CoordinateFrame frame) {
+    ImageGeometry volume = conformedGeometry(ImageGeometry{});
+    if (frame == CoordinateFrame::Lps) {
+        const Mat3 halfTurn = Mat3::diagonal(-1, -1, 1);
+        volume.originMm = halfTurn * volume.originMm;
+        volume.indexToPhysical = halfTurn * volume.indexToPhysical;
+    }
+    return volume;
+}
+
+void requireNeutralName(const std::string& name) {
+    for (const char c : name) {
+        if (c <= ' ' || c > '~' || c == '/' || c == '\\' || c == '=') {
+            throw InvalidInput("writeMesh: the volume name " + printable(name) +
+                               " must be a file name of printable ASCII without folder, space "
+                               "or '='");
+        }
+    }
+}
+
+void encodeRow(std::string_view key, const Vec3& v, ByteSink& sink) {
+    sink << key << v.x << " " << v.y << " " << v.z << "\n";
+}
+
+void encodeFooter(const ImageGeometry& volume, const std::string& name, ByteSink& sink) {
+    sink.bigEndian(kUseRealRasTag);
+    sink.bigEndian(std::int32_t{0});
+    sink.bigEndian(kGeometryTag);
+    sink << "valid = 1  # volume info valid\n";
+    sink << "filename = " << (name.empty() ? "unknown" : name) << "\n";
+    sink << "volume = " << volume.size[0] << " " << volume.size[1] << " " << volume.size[2] << "\n";
+    encodeRow("voxelsize = ", volume.spacingMm(), sink);
+    const auto& axes = volume.indexToPhysical.column;
+    encodeRow("xras   = ", flipped(normalized(axes[0])), sink);
+    encodeRow("yras   = ", flipped(normalized(axes[1])), sink);
+    encodeRow("zras   = ", flipped(normalized(axes[2])), sink);
+    encodeRow("cras   = ", flipped(volume.toPhysical(halfSize(volume))), sink);
+}
+
+/// The text after "key =" of the next line.
+ByteSource footerValue(ByteSource& source, std::string_view key) {
+    const std::string_view line = source.line();
+    const std::size_t equals = line.find('=');
+    if (equals == std::string_view::npos || trimmed(line.substr(0, equals)) != key) {
+        damaged("its volume geometry lacks the line '" + std::string(key) + " ='");
+    }
+    return ByteSource(line.substr(equals + 1));
+}
+
+Vec3 footerVec(ByteSource& source, std::string_view key) {
+    ByteSource value = footerValue(source, key);
+    Vec3 v;
+    for (int axis = 0; axis < 3; ++axis) v[axis] = value.realWord(key);
+    return v;
+}
+
+/// The geometry after tag 20; nothing if it says of itself that it is not valid.
+std::optional<ImageGeometry> decodeGeometry(ByteSource& source) {
+    const bool isValid = footerValue(source, "valid").integerWord("valid") != 0;
+    footerValue(source, "filename");
+    ImageGeometry volume;
+    ByteSource size = footerValue(source, "volume");
+    for (std::int64_t& extent : volume.size) extent = size.integerWord("volume");
+    const Vec3 spacing = footerVec(source, "voxelsize");
+    Mat3& axes = volume.indexToPhysical;
+    axes.column[0] = spacing.x * flipped(footerVec(source, "xras"));
+    axes.column[1] = spacing.y * flipped(footerVec(source, "yras"));
+    axes.column[2] = spacing.z * flipped(footerVec(source, "zras"));
+    const Vec3 centre = flipped(footerVec(source, "cras"));
+    if (!isValid) return std::nullopt;
+
+    constexpr std::int64_t kMostVoxels = std::int64_t{1} << 20;  // along an axis
+    for (const std::int64_t extent : volume.size) {
+        if (extent < 1 || extent > kMostVoxels) {
+            damaged("its volume has " + std::to_string(extent) + " voxels along an axis");
+        }
+    }
+    volume.originMm = centre - axes * halfSize(volume);
+    if (!(volume.voxelVolumeMm3() > 0) || !std::isfinite(volume.voxelVolumeMm3()) ||
+        !std::isfinite(squaredNorm(volume.originMm))) {
+        damaged("its volume geometry spans no volume");
+    }
+    return volume;
+}
+
+struct Footer {
+    bool usesRealRas = false;
+    std::optional<ImageGeometry> volume;
+};
+
+/// The tags after the triangles; those that FreeSurfer may add after the geometry are left.
+Footer decodeFooter(ByteSource& source) {
+    Footer footer;
+    while (source.left() >= 2 * sizeof(std::int32_t)) {
+        const auto tag = source.number<std::int32_t>(std::endian::big);
+        if (tag == kUseRealRasTag) {
+            footer.usesRealRas = source.number<std::int32_t>(std::endian::big) != 0;
+        } else if (tag == kGeometryTag) {
+            footer.volume = decodeGeometry(source);
+        } else {
+            break;
+        }
+    }
+    return footer;
+}
+
+}  // namespace
+
+void encodeFreeSurfer(const MeshRecord& record, ByteSink& sink) {
+    const TriangleMesh& mesh = record.mesh;
+    const MeshWriteOptions& options = record.options;
+    requireNeutralName(options.volumeName);
+    sink << kTriangleMagic << headerLine(options.frame) << "\n\n";
+    sink.bigEndian(static_cast<std::int32_t>(mesh.points.size()));
+    sink.bigEndian(static_cast<std::int32_t>(mesh.triangles.size()));
+    for (const Vec3& p : mesh.points) {
+        for (int axis = 0; axis < 3; ++axis) sink.bigEndian(static_cast<float>(p[axis]));
+    }
+    for (const Triangle& t : mesh.triangles) {
+        for (const VertexId vertex : t) sink.bigEndian(static_cast<std::int32_t>(vertex));
+    }
+    const bool isTkRas = options.frame == CoordinateFrame::TkRas;
+    encodeFooter(isTkRas ? *options.volume : neutralVolume(options.frame),
+                 isTkRas ? options.volumeName : std::string(), sink);
+}
+
+MeshFile decodeFreeSurfer(std::string_view bytes) {
+    ByteSource source(bytes);
+    const std::string_view magic = source.take(kTriangleMagic.size());
+    if (magic == "\xFF\xFF\xFF" || magic == "\xFF\xFF\xFD") {
+        unsupported("it is a FreeSurfer surface of quadrangles",
+                    "only triangles are read: convert it with mris_convert");
+    }
+    if (magic != kTriangleMagic) damaged("it does not begin with FF FF FE");
+    MeshFile file;
+    const std::optional<CoordinateFrame> said = findFrameMarker(source.line());
+    if (source.rest().starts_with('\n')) source.take(1);
+    const std::int64_t points = source.number<std::int32_t>(std::endian::big);
+    const std::int64_t triangles = source.number<std::int32_t>(std::endian::big);
+    requireRoom("points", points, 3 * sizeof(float), source.left());
+    file.mesh.points.resize(points);
+    for (Vec3& p : file.mesh.points) {
+        for (int axis = 0; axis < 3; ++axis) p[axis] = source.number<float>(std::endian::big);
+    }
+    requireRoom("triangles", triangles, 3 * sizeof(std::int32_t), source.left());
+    file.mesh.triangles.resize(triangles);
+    for (Triangle& t : file.mesh.triangles) {
+        for (VertexId& vertex : t) vertex = source.number<std::int32_t>(std::endian::big);
+    }
+    const Footer footer = decodeFooter(source);
+    file.frame = said ? *said : footer.usesRealRas ? CoordinateFrame::Ras : CoordinateFrame::TkRas;
+    if (file.frame == CoordinateFrame::TkRas) file.volume = footer.volume;
+    return file;
+}
+
+}  // namespace adaptiso::meshio

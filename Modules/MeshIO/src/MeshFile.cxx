@@ -1,0 +1,203 @@
+#include "adaptiso/MeshIO/MeshFile.h"
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <new>
+
+#include "ByteSource.h"
+#include "Codecs.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+
+namespace adaptiso {
+namespace {
+
+using Encoder = void (*)(const meshio::MeshRecord&, meshio::ByteSink&);
+using Decoder = MeshFile (*)(std::string_view);
+
+struct Codec {
+    Encoder encode;
+    Decoder decode;
+};
+
+Codec codecOf(MeshFormatId id) {
+    switch (id) {
+        case MeshFormatId::VtkXml:
+            return {meshio::encodeVtkXml, meshio::decodeVtkXml};
+        case MeshFormatId::VtkLegacy:
+            return {meshio::encodeVtkLegacy, meshio::decodeVtkLegacy};
+        case MeshFormatId::Ply:
+            return {meshio::encodePly, meshio::decodePly};
+        case MeshFormatId::Stl:
+            return {meshio::encodeStl, meshio::decodeStl};
+        case MeshFormatId::Obj:
+            return {meshio::encodeObj, meshio::decodeObj};
+        case MeshFormatId::Off:
+            return {meshio::encodeOff, meshio::decodeOff};
+        case MeshFormatId::Gifti:
+            return {meshio::encodeGifti, meshio::decodeGifti};
+        case MeshFormatId::FreeSurfer:
+            return {meshio::encodeFreeSurfer, meshio::decodeFreeSurfer};
+        case MeshFormatId::OpenMeeg:
+            return {meshio::encodeOpenMeeg, meshio::decodeOpenMeeg};
+    }
+    throw InternalError("codecOf: unknown mesh format");
+}
+
+/// What is wrong with `mesh`, or an empty text. Coordinates must be in [-limit, limit].
+std::string findFault(const TriangleMesh& mesh, double limit) {
+    if (mesh.triangles.empty()) return "it has no triangle";
+    if (!mesh.normals.empty() && mesh.normals.size() != mesh.points.size()) {
+        return "it has " + std::to_string(mesh.normals.size()) + " normals for " +
+               std::to_string(mesh.points.size()) + " points, must be one each or none";
+    }
+    const auto points = static_cast<VertexId>(mesh.points.size());
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!(std::abs(mesh.points[i][axis]) <= limit)) {
+                return "coordinate " + std::to_string(axis) + " of point " + std::to_string(i) +
+                       " is " + std::to_string(mesh.points[i][axis]) +
+                       ", must be finite and within single precision";
+            }
+        }
+    }
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+        if (!std::isfinite(squaredNorm(toVec3(mesh.normals[i])))) {
+            return "the normal of point " + std::to_string(i) + " is not finite";
+        }
+    }
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (const VertexId vertex : mesh.triangles[t]) {
+            if (vertex < 0 || vertex >= points) {
+                return "triangle " + std::to_string(t) + " uses point " + std::to_string(vertex) +
+                       ", must be 0 to " + std::to_string(points - 1);
+            }
+        }
+    }
+    return {};
+}
+
+constexpr double kFloatMax = std::numeric_limits<float>::max();
+
+void requireWritable(const TriangleMesh& mesh, const MeshFormat& format,
+                     const MeshWriteOptions& options, const std::string& file) {
+    const std::string fault = findFault(mesh, kFloatMax);
+    if (!fault.empty()) throw InvalidInput("writeMesh: " + file + ": the mesh is bad: " + fault);
+    const std::size_t most = std::max(mesh.points.size(), mesh.triangles.size());
+    if (most > static_cast<std::uint64_t>(format.maxElements)) {
+        throw InvalidInput("writeMesh: " + file + ": " + std::string(format.name) +
+                           " files hold at most " + std::to_string(format.maxElements) +
+                           " points and triangles, the mesh has " + std::to_string(most));
+    }
+    if (options.frame == CoordinateFrame::Voxel && !format.holdsVoxelFrame) {
+        throw InvalidInput("writeMesh: " + file + ": " + std::string(format.name) +
+                           " files hold mm, not voxel indices; write RAS, LPS or tkRAS");
+    }
+}
+
+/// Scales normals that are not of unit length; the others keep their very bits.
+void scaleToUnitLength(std::vector<Normal>& normals) {
+    constexpr double kFloatSlack = 1e-6;  // of the squared length of a unit vector kept as float
+    for (Normal& normal : normals) {
+        const Vec3 v = toVec3(normal);
+        if (std::abs(squaredNorm(v) - 1) > kFloatSlack) normal = toNormal(v);
+    }
+}
+
+std::string systemReason() {
+    return errno != 0 ? std::strerror(errno) : "unknown reason";
+}
+
+/// The bytes of a regular file.
+std::string readBytes(const std::filesystem::path& path) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status)) {
+        throw FileError(path.string() + ": no such file; check the name");
+    }
+    if (!fs::is_regular_file(status)) {
+        throw FileError(path.string() + ": not a regular file; give a file on disk");
+    }
+    errno = 0;
+    std::ifstream stream(path, std::ios::binary);
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (!stream || error) {
+        throw FileError(path.string() + ": can't be opened (" + systemReason() +
+                        "); check its permissions");
+    }
+    std::string bytes(size, '\0');
+    stream.read(bytes.data(), static_cast<std::streamsize>(size));
+    if (static_cast<std::uintmax_t>(stream.gcount()) != size) {
+        throw FileError(path.string() + ": only " + std::to_string(stream.gcount()) + " of " +
+                        std::to_string(size) + " bytes can be read; check the disk");
+    }
+    return bytes;
+}
+
+}  // namespace
+
+namespace meshio {
+
+std::string headerLine(CoordinateFrame frame) {
+    return "adaptiso surface, " + frameMarker(frame);
+}
+
+Normal storedNormal(const Vec3& v) {
+    return {toFloat(v.x, "a normal"), toFloat(v.y, "a normal"), toFloat(v.z, "a normal")};
+}
+
+void refusePolygon(std::int64_t corners) {
+    unsupported("it has a polygon of " + std::to_string(corners) + " corners",
+                "only triangles are read: triangulate it first");
+}
+
+}  // namespace meshio
+
+void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
+               const MeshWriteOptions& options) {
+    const MeshFormat& format = findMeshFormat(path);
+    requireWritable(mesh, format, options, path.string());
+    const TriangleMesh moved = toFrame(mesh, options.frame, options.volume);
+    requireWritable(moved, format, options, path.string());
+
+    errno = 0;
+    std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+    if (!stream) {
+        throw FileError(path.string() + ": can't be made (" + systemReason() +
+                        "); check that the folder exists and may be written to");
+    }
+    meshio::ByteSink sink(stream);
+    codecOf(format.id).encode({moved, options}, sink);
+    sink.finish();
+    stream.close();
+    if (!stream) {
+        throw FileError(path.string() + ": can't be written (" + systemReason() +
+                        "); free space on the disk or write elsewhere");
+    }
+}
+
+MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name) {
+    const std::string prefix = std::string(name) + ": ";
+    try {
+        MeshFile file = codecOf(format.id).decode(bytes);
+        const std::string fault = findFault(file.mesh, std::numeric_limits<double>::max());
+        if (!fault.empty()) meshio::damaged(fault);
+        scaleToUnitLength(file.mesh.normals);
+        return file;
+    } catch (const FileError& error) {
+        throw FileError(prefix + error.what());
+    } catch (const std::bad_alloc&) {
+        throw FileError(prefix + "the surface does not fit into memory; use a larger machine");
+    }
+}
+
+MeshFile readMesh(const std::filesystem::path& path) {
+    const MeshFormat& format = findMeshFormat(path);
+    return decodeMesh(readBytes(path), format, path.string());
+}
+
+}  // namespace adaptiso

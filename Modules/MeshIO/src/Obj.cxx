@@ -1,0 +1,122 @@
+// Wavefront OBJ: "v x y z", "vn x y z", "f a//a b//b c//c", numbered from 1. Groups, materials
+// and texture coordinates are passed over when read.
+#include "ByteSource.h"
+#include "Codecs.h"
+
+namespace adaptiso::meshio {
+namespace {
+
+constexpr std::int64_t kNone = -1;
+
+Vec3 readVec(ByteSource& line, std::string_view what) {
+    Vec3 v;
+    for (int axis = 0; axis < 3; ++axis) v[axis] = line.realWord(what);
+    return v;
+}
+
+/// From a number in a face (from 1, or negative: back from the last) to an index from 0.
+std::int64_t resolved(std::string_view word, std::size_t count, std::string_view what) {
+    const std::int64_t number = toInteger(word, what);
+    if (number >= 0) return number - 1;  // 0 is none: -1 is refused below or by decodeMesh()
+    return static_cast<std::int64_t>(count) + number;
+}
+
+class ObjDecoder {
+public:
+    void decodeLine(std::string_view text) {
+        ByteSource line(text);
+        const std::string_view kind = line.word();
+        if (kind == "v") {
+            mesh_.points.push_back(readVec(line, "a coordinate"));
+        } else if (kind == "vn") {
+            normals_.push_back(storedNormal(readVec(line, "a normal")));
+        } else if (kind == "f") {
+            decodeFace(line);
+        } else if (kind.starts_with('#') && !frame_) {
+            frame_ = findFrameMarker(text);
+        }
+    }
+
+    MeshFile finish() && {
+        const bool eachHasOne =
+            oneNormalEach_ && !normals_.empty() && normalOf_.size() == mesh_.points.size();
+        for (std::size_t i = 0; eachHasOne && i < normalOf_.size(); ++i) {
+            if (normalOf_[i] == kNone) return {std::move(mesh_), frame_, std::nullopt};
+        }
+        if (eachHasOne) {
+            for (const std::int64_t n : normalOf_) mesh_.normals.push_back(normals_[n]);
+        }
+        return {std::move(mesh_), frame_, std::nullopt};
+    }
+
+private:
+    void decodeFace(ByteSource& line) {
+        Triangle triangle{};
+        std::int64_t corners = 0;
+        for (std::string_view word = line.word(); !word.empty(); word = line.word(), ++corners) {
+            if (corners < 3) triangle[corners] = decodeCorner(word);
+        }
+        if (corners < 3) damaged("a face has " + std::to_string(corners) + " corners");
+        if (corners > 3) refusePolygon(corners);
+        mesh_.triangles.push_back(triangle);
+    }
+
+    /// "v", "v/vt", "v//vn" or "v/vt/vn".
+    VertexId decodeCorner(std::string_view word) {
+        const std::size_t first = word.find('/');
+        const VertexId vertex =
+            resolved(word.substr(0, first), mesh_.points.size(), "a face's vertex");
+        const std::size_t second =
+            first == std::string_view::npos ? first : word.find('/', first + 1);
+        if (second == std::string_view::npos) {
+            oneNormalEach_ = false;
+        } else {
+            noteNormal(vertex, resolved(word.substr(second + 1), normals_.size(), "a normal"));
+        }
+        return vertex;
+    }
+
+    void noteNormal(VertexId vertex, std::int64_t normal) {
+        const auto count = static_cast<std::int64_t>(normals_.size());
+        if (normal < 0 || normal >= count) damaged("a face uses a normal that is not there");
+        if (vertex < 0 || vertex >= static_cast<std::int64_t>(mesh_.points.size())) return;
+        if (normalOf_.size() < mesh_.points.size()) normalOf_.resize(mesh_.points.size(), kNone);
+        std::int64_t& noted = normalOf_[vertex];
+        if (noted != kNone && !(normals_[noted] == normals_[normal])) oneNormalEach_ = false;
+        noted = normal;
+    }
+
+    TriangleMesh mesh_;
+    std::optional<CoordinateFrame> frame_;
+    std::vector<Normal> normals_;         ///< as listed in the file
+    std::vector<std::int64_t> normalOf_;  ///< of each vertex; kNone where no face gave one yet
+    bool oneNormalEach_ = true;
+};
+
+}  // namespace
+
+void encodeObj(const MeshRecord& record, ByteSink& sink) {
+    const TriangleMesh& mesh = record.mesh;
+    sink << "# " << headerLine(record.options.frame) << "\n";
+    for (const Vec3& p : mesh.points) sink << "v " << p.x << " " << p.y << " " << p.z << "\n";
+    for (const Normal& n : mesh.normals) {
+        sink << "vn " << double{n.x} << " " << double{n.y} << " " << double{n.z} << "\n";
+    }
+    for (const Triangle& t : mesh.triangles) {
+        sink << "f";
+        for (const VertexId vertex : t) {
+            sink << " " << vertex + 1;
+            if (!mesh.normals.empty()) sink << "//" << vertex + 1;
+        }
+        sink << "\n";
+    }
+}
+
+MeshFile decodeObj(std::string_view bytes) {
+    ByteSource source(bytes);
+    ObjDecoder decoder;
+    while (!source.atEnd()) decoder.decodeLine(source.line());
+    return std::move(decoder).finish();
+}
+
+}  // namespace adaptiso::meshio

@@ -1,0 +1,77 @@
+// OFF: "OFF", "V T 0", V lines "x y z", T lines "3 a b c" from 0; '#' begins a comment.
+#include "ByteSource.h"
+#include "Codecs.h"
+
+namespace adaptiso::meshio {
+namespace {
+
+/// Lines without their comments, empty ones left out; keeps the frame that a comment names.
+class OffLines {
+public:
+    explicit OffLines(std::string_view bytes) : source_(bytes) {}
+
+    ByteSource next(std::string_view what) {
+        while (!source_.atEnd()) {
+            const std::string_view line = source_.line();
+            const std::size_t comment = line.find('#');
+            if (comment != std::string_view::npos && !frame) {
+                frame = findFrameMarker(line.substr(comment));
+            }
+            const std::string_view content = trimmed(line.substr(0, comment));
+            if (!content.empty()) return ByteSource(content);
+        }
+        damaged("it ends where " + std::string(what) + " is due");
+    }
+    std::size_t left() const { return source_.left(); }
+
+    std::optional<CoordinateFrame> frame;
+
+private:
+    ByteSource source_;
+};
+
+}  // namespace
+
+void encodeOff(const MeshRecord& record, ByteSink& sink) {
+    const TriangleMesh& mesh = record.mesh;
+    sink << "OFF\n# " << headerLine(record.options.frame) << "\n";
+    sink << static_cast<std::int64_t>(mesh.points.size()) << " "
+         << static_cast<std::int64_t>(mesh.triangles.size()) << " 0\n";
+    for (const Vec3& p : mesh.points) sink << p.x << " " << p.y << " " << p.z << "\n";
+    for (const Triangle& t : mesh.triangles) {
+        sink << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
+    }
+}
+
+MeshFile decodeOff(std::string_view bytes) {
+    OffLines lines(bytes);
+    ByteSource line = lines.next("the word OFF");
+    const std::string_view magic = line.word();
+    if (magic != "OFF" && magic != "COFF") {
+        unsupported("it begins with " + printable(magic) + ", must begin with OFF or COFF",
+                    "save it as plain OFF text");
+    }
+    if (trimmed(line.rest()).empty()) line = lines.next("the number of points");
+    const std::int64_t points = line.integerWord("the number of points");
+    const std::int64_t triangles = line.integerWord("the number of faces");
+    requireRoom("points", points, 5, lines.left());    // at least "0 0 0"
+    requireRoom("faces", triangles, 7, lines.left());  // at least "3 0 0 0"
+
+    MeshFile file;
+    file.mesh.points.resize(points);
+    for (Vec3& p : file.mesh.points) {
+        line = lines.next("a point");
+        for (int axis = 0; axis < 3; ++axis) p[axis] = line.realWord("a coordinate");
+    }
+    file.mesh.triangles.resize(triangles);
+    for (Triangle& t : file.mesh.triangles) {
+        line = lines.next("a face");
+        const std::int64_t corners = line.integerWord("the number of corners");
+        if (corners != 3) refusePolygon(corners);
+        for (VertexId& vertex : t) vertex = line.integerWord("a face's vertex");
+    }
+    file.frame = lines.frame;
+    return file;
+}
+
+}  // namespace adaptiso::meshio

@@ -1,0 +1,27 @@
+#pragma once
+
+// How XML formats pack binary data: base64 and zlib.
+
+#include <string>
+#include <string_view>
+
+namespace adaptiso::meshio {
+
+std::string encodeBase64(std::string_view bytes);
+
+/// Bytes that `text` spells; white space in it is passed over, decoding stops at padding.
+/// Damage at any other character.
+std::string decodeBase64(std::string_view text);
+
+/// Characters that `bytes` bytes take, padding included.
+constexpr std::size_t base64Length(std::size_t bytes) {
+    return (bytes + 2) / 3 * 4;
+}
+
+std::string deflated(std::string_view bytes);
+
+/// The bytes that a zlib or gzip stream holds. Grows with what comes out, never by what a header
+/// promises; damage unless it is exactly `expectedBytes`.
+std::string inflated(std::string_view stream, std::size_t expectedBytes);
+
+}  // namespace adaptiso::meshio

@@ -1,0 +1,331 @@
+// VTK legacy PolyData (.vtk). Written by VTK: binary (big endian), double points; version 4.2,
+// which old programs read too, unless the surface needs the 64-bit cells of 5.1.
+//
+// Read here, not by vtkPolyDataReader: that one allocates what the file claims and walks cell
+// lists unchecked. Read: text and binary, versions 1 to 5.1.
+#include <vtkNew.h>
+#include <vtkPolyDataWriter.h>
+
+#include <limits>
+#include <vector>
+
+#include "ByteSource.h"
+#include "VtkEncode.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso::meshio {
+namespace {
+
+enum class Stored { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float, Double };
+
+Stored parseType(std::string_view word) {
+    struct Entry {
+        std::string_view name;
+        Stored type;
+    };
+    static constexpr Entry kEntries[] = {
+        {"float", Stored::Float},        {"double", Stored::Double},
+        {"int", Stored::Int32},          {"unsigned_int", Stored::UInt32},
+        {"vtktypeint64", Stored::Int64}, {"vtktypeuint64", Stored::UInt64},
+        {"vtkidtype", Stored::Int32},  // as VTK writes ids before version 5
+        {"long", Stored::Int64},         {"unsigned_long", Stored::UInt64},
+        {"short", Stored::Int16},        {"unsigned_short", Stored::UInt16},
+        {"char", Stored::Int8},          {"signed_char", Stored::Int8},
+        {"unsigned_char", Stored::UInt8}};
+    for (const Entry& entry : kEntries) {
+        if (lowerCase(word) == entry.name) return entry.type;
+    }
+    unsupported("it holds numbers of the type " + printable(word), "save it without them");
+}
+
+std::int64_t bytesOf(Stored type) {
+    switch (type) {
+        case Stored::Int8:
+        case Stored::UInt8:
+            return 1;
+        case Stored::Int16:
+        case Stored::UInt16:
+            return 2;
+        case Stored::Int32:
+        case Stored::UInt32:
+        case Stored::Float:
+            return 4;
+        case Stored::Int64:
+        case Stored::UInt64:
+        case Stored::Double:
+            return 8;
+    }
+    return 0;
+}
+
+/// Walks through the sections of a file; keeps the surface and passes over the rest.
+class LegacyDecoder {
+public:
+    explicit LegacyDecoder(std::string_view bytes) : source_(bytes) {}
+
+    MeshFile decode() {
+        decodeHead();
+        while (decodeSection()) {
+        }
+        return std::move(file_);
+    }
+
+private:
+    void decodeHead() {
+        constexpr std::string_view kMagic = "# vtk DataFile Version ";
+        const std::string_view first = source_.line();
+        if (!first.starts_with(kMagic)) damaged("it does not begin with '# vtk DataFile Version'");
+        hasOffsets_ = toReal(trimmed(first.substr(kMagic.size())), "the version") >= 5;
+        file_.frame = findFrameMarker(source_.line());
+        const std::string encoding = lowerCase(trimmed(source_.line()));
+        if (encoding != "ascii" && encoding != "binary") {
+            damaged("its third line is " + printable(encoding) + ", must be ASCII or BINARY");
+        }
+        isBinary_ = encoding == "binary";
+        if (lowerCase(source_.word()) != "dataset" || lowerCase(source_.word()) != "polydata") {
+            unsupported("it is not a PolyData", "save the surface as PolyData");
+        }
+    }
+
+    /// False at the end, and at a section of unknown length: what follows is no part of a surface.
+    bool decodeSection() {
+        const std::string section = lowerCase(source_.word());
+        ByteSource line(source_.line());
+        if (section == "points") {
+            decodePoints(line);
+        } else if (section == "polygons") {
+            decodePolygons(line);
+        } else if (section == "vertices" || section == "lines") {
+            readCells(line);
+        } else if (section == "triangle_strips") {
+            unsupported("it holds triangle strips",
+                        "only triangles are read: triangulate it first");
+        } else if (section == "point_data" || section == "cell_data") {
+            tuples_ = line.integerWord("the number of tuples");
+            isPointData_ = section == "point_data";
+        } else if (section == "normals") {
+            decodeNormals(line);
+        } else if (section == "vectors") {
+            line.requireWord("a name");
+            skipNumbers(tuples_, 3, parseType(line.requireWord("a type")));
+        } else if (section == "scalars") {
+            skipScalars(line);
+        } else if (section == "field") {
+            skipField(line);
+        } else if (section == "metadata") {
+            skipMetadata();
+        } else {
+            return false;
+        }
+        return true;
+    }
+
+    void decodePoints(ByteSource& line) {
+        const std::int64_t count = line.integerWord("the number of points");
+        const auto values = readVectors(count, parseType(line.requireWord("a type")), "points");
+        file_.mesh.points = values;
+    }
+
+    void decodeNormals(ByteSource& line) {
+        line.requireWord("a name");
+        const auto values = readVectors(tuples_, parseType(line.requireWord("a type")), "normals");
+        if (!isPointData_) return;
+        file_.mesh.normals.clear();
+        for (const Vec3& value : values) file_.mesh.normals.push_back(storedNormal(value));
+    }
+
+    void decodePolygons(ByteSource& line) {
+        const std::vector<std::int64_t> cells = readCells(line);
+        for (std::size_t i = 0; i < cells.size(); i += 4) {
+            if (cells[i] != 3) refusePolygon(cells[i]);
+            if (i + 4 > cells.size()) damaged("its list of polygons breaks off");
+            file_.mesh.triangles.push_back({cells[i + 1], cells[i + 2], cells[i + 3]});
+        }
+    }
+
+    /// Cells as a list of: number of corners, corners. Stops being sound at the first polygon
+    /// that is not a triangle.
+    std::vector<std::int64_t> readCells(ByteSource& line) {
+        const std::int64_t first = line.integerWord("the number of cells");
+        const std::int64_t second = line.integerWord("the size of the cells");
+        return hasOffsets_ ? readOffsetCells(first, second)
+                           : readIntegers(second, Stored::Int32, "cells");
+    }
+
+    std::vector<std::int64_t> readOffsetCells(std::int64_t offsetCount, std::int64_t cornerCount) {
+        const auto offsets = readNamedIntegers("offsets", offsetCount);
+        const auto corners = readNamedIntegers("connectivity", cornerCount);
+        std::vector<std::int64_t> cells;
+        for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
+            const std::int64_t begin = offsets[i], end = offsets[i + 1];
+            if (begin < 0 || begin > end || end > cornerCount) damaged("a cell's offset is wrong");
+            cells.push_back(end - begin);
+            cells.insert(cells.end(), corners.begin() + begin, corners.begin() + end);
+        }
+        return cells;
+    }
+
+    std::vector<std::int64_t> readNamedIntegers(std::string_view name, std::int64_t count) {
+        if (lowerCase(source_.word()) != name) damaged("its cells lack " + std::string(name));
+        ByteSource line(source_.line());
+        return readIntegers(count, parseType(line.requireWord("a type")), name);
+    }
+
+    void skipScalars(ByteSource& line) {
+        line.requireWord("a name");
+        const Stored type = parseType(line.requireWord("a type"));
+        const std::string_view components = line.word();
+        if (lowerCase(source_.word()) != "lookup_table") damaged("its scalars lack a lookup table");
+        source_.line();
+        skipNumbers(tuples_, components.empty() ? 1 : toInteger(components, "components"), type);
+    }
+
+    void skipField(ByteSource& line) {
+        line.requireWord("a name");
+        const std::int64_t arrays = line.integerWord("the number of arrays");
+        for (std::int64_t i = 0; i < arrays; ++i) {
+            std::string_view name = source_.requireWord("a field array");
+            if (lowerCase(name) == "metadata") {
+                skipMetadata();
+                name = source_.requireWord("a field array");
+            }
+            ByteSource array(source_.line());
+            const std::int64_t components = array.integerWord("components");
+            const std::int64_t tuples = array.integerWord("tuples");
+            const std::string_view type = array.requireWord("a type");
+            if (lowerCase(type) == "string") {
+                skipStrings(tuples, components);
+            } else {
+                skipNumbers(tuples, components, parseType(type));
+            }
+        }
+    }
+
+    /// Strings are a line each in text; in binary files, the two highest bits of the first byte
+    /// tell how many bytes hold the length: 3: 1, 2: 2, 1: 4, 0: 8 (vtkDataWriter).
+    void skipStrings(std::int64_t tuples, std::int64_t components) {
+        requireRoom("components", components, 1, source_.left());
+        if (components == 0) return;
+        requireRoom("strings", tuples, components, source_.left());
+        for (std::int64_t i = 0; i < tuples * components; ++i) {
+            if (!isBinary_) {
+                source_.line();
+                continue;
+            }
+            const auto first = source_.number<std::uint8_t>(std::endian::big);
+            std::uint64_t length = first & 0x3F;
+            for (int more = (1 << (3 - first / 64)) - 1; more > 0; --more) {
+                length = length << 8 | source_.number<std::uint8_t>(std::endian::big);
+            }
+            source_.take(length);
+        }
+    }
+
+    void skipMetadata() {
+        while (!source_.atEnd() && !trimmed(source_.line()).empty()) {
+        }
+    }
+
+    void requireNumbers(std::int64_t tuples, std::int64_t components, Stored type,
+                        std::string_view what) const {
+        requireRoom("components", components, 1, source_.left());
+        const std::int64_t each = isBinary_ ? bytesOf(type) : 2;  // a digit and a space
+        if (components > 0) requireRoom(what, tuples, components * each, source_.left() + 1);
+    }
+
+    void skipNumbers(std::int64_t tuples, std::int64_t components, Stored type) {
+        requireNumbers(tuples, components, type, "tuples");
+        if (isBinary_) {
+            source_.take(components == 0 ? 0 : tuples * components * bytesOf(type));
+            return;
+        }
+        for (std::int64_t i = 0; components > 0 && i < tuples * components; ++i) {
+            source_.requireWord("a number");
+        }
+    }
+
+    double realNumber(Stored type) {
+        if (!isBinary_) return source_.realWord("a number");
+        switch (type) {
+            case Stored::Float:
+                return source_.number<float>(std::endian::big);
+            case Stored::Double:
+                return source_.number<double>(std::endian::big);
+            default:
+                return static_cast<double>(binaryInteger(type));
+        }
+    }
+
+    std::int64_t binaryInteger(Stored type) {
+        switch (type) {
+            case Stored::Int8:
+                return source_.number<std::int8_t>(std::endian::big);
+            case Stored::UInt8:
+                return source_.number<std::uint8_t>(std::endian::big);
+            case Stored::Int16:
+                return source_.number<std::int16_t>(std::endian::big);
+            case Stored::UInt16:
+                return source_.number<std::uint16_t>(std::endian::big);
+            case Stored::Int32:
+                return source_.number<std::int32_t>(std::endian::big);
+            case Stored::UInt32:
+                return source_.number<std::uint32_t>(std::endian::big);
+            case Stored::Int64:
+            case Stored::UInt64:
+                return source_.number<std::int64_t>(std::endian::big);
+            default:
+                damaged("its cells are not whole numbers");
+        }
+    }
+
+    std::vector<Vec3> readVectors(std::int64_t count, Stored type, std::string_view what) {
+        requireNumbers(count, 3, type, what);
+        std::vector<Vec3> vectors(count);
+        for (Vec3& v : vectors) {
+            for (int axis = 0; axis < 3; ++axis) v[axis] = realNumber(type);
+        }
+        return vectors;
+    }
+
+    std::vector<std::int64_t> readIntegers(std::int64_t count, Stored type, std::string_view what) {
+        requireNumbers(count, 1, type, what);
+        std::vector<std::int64_t> integers(count);
+        for (std::int64_t& integer : integers) {
+            integer = isBinary_ ? binaryInteger(type) : source_.integerWord(what);
+        }
+        return integers;
+    }
+
+    ByteSource source_;
+    MeshFile file_;
+    bool isBinary_ = false;
+    bool hasOffsets_ = false;   ///< cells as offsets and connectivity (version 5)
+    bool isPointData_ = false;  ///< the attributes at this place are of points
+    std::int64_t tuples_ = 0;   ///< tuples of each attribute array at this place
+};
+
+}  // namespace
+
+void encodeVtkLegacy(const MeshRecord& record, ByteSink& sink) {
+    constexpr std::size_t kMost32BitTriangles = std::numeric_limits<std::int32_t>::max() / 4;
+    const bool fits32Bits = record.mesh.triangles.size() <= kMost32BitTriangles &&
+                            record.mesh.points.size() <= kMost32BitTriangles;
+    vtkNew<vtkPolyDataWriter> writer;
+    writer->SetInputData(toLabelledPolyData(record));
+    writer->SetHeader(headerLine(record.options.frame).c_str());
+    writer->SetFileTypeToBinary();
+    writer->SetFileVersion(fits32Bits ? vtkDataWriter::VTK_LEGACY_READER_VERSION_4_2
+                                      : vtkDataWriter::VTK_LEGACY_READER_VERSION_5_1);
+    writer->WriteToOutputStringOn();
+    if (writer->Write() == 0) {
+        throw InternalError("encodeVtkLegacy: VTK failed to encode the surface");
+    }
+    sink << std::string_view(writer->GetOutputString(),
+                             static_cast<std::size_t>(writer->GetOutputStringLength()));
+}
+
+MeshFile decodeVtkLegacy(std::string_view bytes) {
+    return LegacyDecoder(bytes).decode();
+}
+
+}  // namespace adaptiso::meshio

@@ -1,0 +1,324 @@
+// VTK XML PolyData (.vtp). Written by VTK: appended, base64, zlib, double points, 64-bit headers.
+//
+// Read here, not by vtkXMLPolyDataReader: that one allocates what the file claims and follows
+// offsets and block tables unchecked. Read: one piece; text, base64 or raw data, inline or
+// appended, plain or zlib, either byte order.
+#include <vtkNew.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include <vector>
+
+#include "ByteSource.h"
+#include "Packing.h"
+#include "VtkEncode.h"
+#include "Xml.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso::meshio {
+namespace {
+
+struct DataArray {
+    XmlAttributes attributes;  ///< empty: the file has no such array
+    std::string text;          ///< inline data
+};
+
+/// Collects the arrays that make up the surface, up to the appended data.
+class VtpHandler : public XmlHandler {
+public:
+    void onStart(const std::string& element, const XmlAttributes& attributes) override {
+        if (path_.empty()) startFile(element, attributes);
+        if (element == "Piece") startPiece(attributes);
+        if (element == "PointData") normalsName_ = attributeOr(attributes, "Normals", "");
+        if (element == "DataArray" || element == "Array") startArray(attributes);
+        if (element == "AppendedData") appended = attributes;
+        path_.push_back(element);
+    }
+    void onEnd(const std::string&) override {
+        path_.pop_back();
+        if (path_.size() < arrayDepth_) array_ = nullptr;
+    }
+    void onText(std::string_view text) override {
+        // text of elements inside an array (InformationKey) is none of its data
+        if (array_ != nullptr && path_.size() == arrayDepth_) array_->text.append(text);
+    }
+    bool isDone() const override { return !appended.empty(); }
+
+    XmlAttributes file, piece, appended;
+    DataArray points, normals, connectivity, offsets, frame;
+
+private:
+    void startFile(const std::string& element, const XmlAttributes& attributes) {
+        if (element != "VTKFile" || requireAttribute(attributes, "type") != "PolyData") {
+            damaged("its XML is not a VTKFile of the type PolyData");
+        }
+        file = attributes;
+    }
+
+    void startPiece(const XmlAttributes& attributes) {
+        if (!piece.empty()) unsupported("it holds several pieces", "save it as one piece");
+        piece = attributes;
+        if (attributeOr(attributes, "NumberOfStrips", "0") != "0") {
+            unsupported("it holds triangle strips",
+                        "only triangles are read: triangulate it first");
+        }
+    }
+
+    void startArray(const XmlAttributes& attributes) {
+        const std::string_view parent = path_.empty() ? std::string_view() : path_.back();
+        const std::string name = attributeOr(attributes, "Name", "");
+        array_ = nullptr;
+        if (parent == "Points") array_ = &points;
+        if (parent == "Polys" && name == "connectivity") array_ = &connectivity;
+        if (parent == "Polys" && name == "offsets") array_ = &offsets;
+        if (parent == "PointData" && !normalsName_.empty() && name == normalsName_) {
+            array_ = &normals;
+        }
+        if (parent == "FieldData" && name == kFrameFieldName) array_ = &frame;
+        if (array_ == nullptr) return;
+        *array_ = {attributes, {}};
+        arrayDepth_ = path_.size() + 1;
+    }
+
+    std::vector<std::string> path_;  ///< the elements around this place
+    std::string normalsName_;
+    DataArray* array_ = nullptr;
+    std::size_t arrayDepth_ = 0;
+};
+
+/// Gets at the bytes of arrays, however they are kept.
+class ArrayReader {
+public:
+    ArrayReader(const VtpHandler& handler, std::string_view appendedData)
+        : appendedData_(appendedData),
+          appendedIsRaw_(attributeOr(handler.appended, "encoding", "base64") == "raw"),
+          order_(attributeOr(handler.file, "byte_order", "LittleEndian") == "BigEndian"
+                     ? std::endian::big
+                     : std::endian::little),
+          wordBytes_(attributeOr(handler.file, "header_type", "UInt32") == "UInt64" ? 8 : 4) {
+        const std::string compressor = attributeOr(handler.file, "compressor", "");
+        isCompressed_ = !compressor.empty();
+        if (isCompressed_ && compressor != "vtkZLibDataCompressor") {
+            unsupported("it is compressed by " + printable(compressor),
+                        "save it with zlib or without");
+        }
+    }
+
+    /// Numbers of any stored type, `count` of them.
+    template <class T>
+    std::vector<T> numbers(const DataArray& array, std::int64_t count, std::string_view what) {
+        if (array.attributes.empty()) damaged("it has no " + std::string(what));
+        if (requireAttribute(array.attributes, "format") == "ascii") {
+            return textNumbers<T>(array.text, count, what);
+        }
+        const std::string& type = requireAttribute(array.attributes, "type");
+        if (type == "Float32") return binaryNumbers<float, T>(array, count, what);
+        if (type == "Float64") return binaryNumbers<double, T>(array, count, what);
+        if (type == "Int32") return binaryNumbers<std::int32_t, T>(array, count, what);
+        if (type == "Int64") return binaryNumbers<std::int64_t, T>(array, count, what);
+        unsupported("its " + std::string(what) + " have the type " + printable(type),
+                    "save them as Float64 or Int64");
+    }
+
+    /// The first string of a string array: characters up to a zero byte.
+    std::string firstString(const DataArray& array) {
+        constexpr std::int64_t kMostCharacters = 64;
+        std::string text;
+        if (requireAttribute(array.attributes, "format") == "ascii") {
+            ByteSource words(array.text);
+            for (std::int64_t i = 0; i < kMostCharacters; ++i) {
+                const std::string_view word = words.word();
+                if (word.empty() || word == "0") break;
+                text += static_cast<char>(toInteger(word, "a character"));
+            }
+            return text;
+        }
+        text = blockBytes(array, std::nullopt, "strings");
+        return text.substr(0, std::min(text.find('\0'), text.size()));
+    }
+
+private:
+    template <class T>
+    static std::vector<T> textNumbers(std::string_view text, std::int64_t count,
+                                      std::string_view what) {
+        requireRoom(what, count, 2, text.size() + 1);  // a digit and a space each
+        ByteSource words(text);
+        std::vector<T> values(count);
+        for (T& value : values) {
+            if constexpr (std::is_integral_v<T>) {
+                value = words.integerWord(what);
+            } else {
+                value = words.realWord(what);
+            }
+        }
+        return values;
+    }
+
+    template <class Stored, class T>
+    std::vector<T> binaryNumbers(const DataArray& array, std::int64_t count,
+                                 std::string_view what) {
+        if (std::is_integral_v<T> != std::is_integral_v<Stored>) {
+            damaged("its " + std::string(what) + " have the wrong type of number");
+        }
+        constexpr std::int64_t kBestRatio = 1032;  // of deflate
+        const std::size_t mostBytes =
+            std::max(array.text.size(), appendedData_.size()) * (isCompressed_ ? kBestRatio : 1);
+        requireRoom(what, count, sizeof(Stored), mostBytes);
+        const std::string bytes = blockBytes(array, count * sizeof(Stored), what);
+        std::vector<T> values(count);
+        for (std::int64_t i = 0; i < count; ++i) {
+            values[i] = static_cast<T>(loadAs<Stored>(bytes.data() + i * sizeof(Stored), order_));
+        }
+        return values;
+    }
+
+    /// The unpacked bytes of an array: exactly `expected` of them, where that is given.
+    std::string blockBytes(const DataArray& array, std::optional<std::size_t> expected,
+                           std::string_view what) {
+        std::string_view data = trimmed(array.text);
+        bool isRaw = false;
+        if (requireAttribute(array.attributes, "format") == "appended") {
+            const std::int64_t offset =
+                toInteger(requireAttribute(array.attributes, "offset"), "an offset");
+            requireRoom("bytes before its " + std::string(what), offset, 1, appendedData_.size());
+            data = appendedData_.substr(offset);
+            isRaw = appendedIsRaw_;
+        }
+        const std::string bytes =
+            isCompressed_ ? unpackedBlocks(data, isRaw) : plainBlock(data, isRaw);
+        if (expected && bytes.size() != *expected) {
+            damaged("its " + std::string(what) + " take " + std::to_string(bytes.size()) +
+                    " bytes, must be " + std::to_string(*expected));
+        }
+        return bytes;
+    }
+
+    /// The first `count` bytes that `data` stands for; moves `data` behind them.
+    static std::string takeBytes(std::string_view& data, std::size_t count, bool isRaw) {
+        const std::size_t length = isRaw ? count : base64Length(count);
+        if (count > data.size() || length > data.size()) damaged("its data is cut off");
+        const std::string_view taken = data.substr(0, length);
+        data.remove_prefix(length);
+        std::string bytes = isRaw ? std::string(taken) : decodeBase64(taken);
+        if (bytes.size() < count) damaged("its base64 data is cut off");
+        bytes.resize(count);
+        return bytes;
+    }
+
+    std::uint64_t headerWord(std::string_view header, std::size_t index) const {
+        const char* const word = header.data() + index * wordBytes_;
+        return wordBytes_ == 8 ? loadAs<std::uint64_t>(word, order_)
+                               : loadAs<std::uint32_t>(word, order_);
+    }
+
+    /// A word with the number of bytes, then these; both in one run of base64.
+    std::string plainBlock(std::string_view data, bool isRaw) const {
+        std::string_view ahead = data;
+        const std::uint64_t size = headerWord(takeBytes(ahead, wordBytes_, isRaw), 0);
+        if (size > data.size()) damaged("its data is cut off");
+        return takeBytes(data, wordBytes_ + size, isRaw).substr(wordBytes_);
+    }
+
+    /// Number of blocks, bytes of a block, of the last one (0: full), packed bytes of each; then,
+    /// in a second run of base64, the blocks.
+    std::string unpackedBlocks(std::string_view data, bool isRaw) const {
+        std::string_view ahead = data;
+        const std::uint64_t blocks = headerWord(takeBytes(ahead, wordBytes_, isRaw), 0);
+        if (blocks > data.size() / wordBytes_) damaged("its table of blocks is cut off");
+        const std::string header = takeBytes(data, (3 + blocks) * wordBytes_, isRaw);
+        std::uint64_t packedBytes = 0;
+        for (std::size_t block = 0; block < blocks; ++block) {
+            const std::uint64_t packed = headerWord(header, 3 + block);
+            if (packed > data.size() - packedBytes) damaged("its data is cut off");
+            packedBytes += packed;
+        }
+        const std::string packed = takeBytes(data, packedBytes, isRaw);
+        std::string bytes;
+        std::size_t begin = 0;
+        for (std::size_t block = 0; block < blocks; ++block) {
+            const std::uint64_t last = headerWord(header, 2);
+            const std::uint64_t size =
+                block + 1 == blocks && last != 0 ? last : headerWord(header, 1);
+            const std::uint64_t length = headerWord(header, 3 + block);
+            bytes += inflated(std::string_view(packed).substr(begin, length), size);
+            begin += length;
+        }
+        return bytes;
+    }
+
+    std::string_view appendedData_;
+    bool appendedIsRaw_;
+    std::endian order_;
+    std::size_t wordBytes_;
+    bool isCompressed_ = false;
+};
+
+/// What follows the '_' of the AppendedData element that begins at `position`.
+std::string_view findAppendedData(std::string_view bytes, std::size_t position) {
+    const std::size_t end = bytes.find('>', position);
+    const std::size_t mark = end == std::string_view::npos ? end : bytes.find('_', end);
+    if (mark == std::string_view::npos) damaged("its appended data does not begin with '_'");
+    return bytes.substr(mark + 1);
+}
+
+std::int64_t pieceCount(const VtpHandler& handler, std::string_view name) {
+    return toInteger(requireAttribute(handler.piece, name), name);
+}
+
+void decodeTriangles(const VtpHandler& handler, ArrayReader& reader, TriangleMesh& mesh) {
+    const std::int64_t count = pieceCount(handler, "NumberOfPolys");
+    const auto offsets = reader.numbers<std::int64_t>(handler.offsets, count, "polygon offsets");
+    for (std::int64_t i = 0; i < count; ++i) {
+        const std::int64_t corners = offsets[i] - (i == 0 ? 0 : offsets[i - 1]);
+        if (corners != 3) refusePolygon(corners);
+    }
+    const auto corners = reader.numbers<VertexId>(handler.connectivity, 3 * count, "polygons");
+    mesh.triangles.resize(count);
+    for (std::int64_t i = 0; i < count; ++i) {
+        mesh.triangles[i] = {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
+    }
+}
+
+}  // namespace
+
+void encodeVtkXml(const MeshRecord& record, ByteSink& sink) {
+    vtkNew<vtkXMLPolyDataWriter> writer;
+    writer->SetInputData(toLabelledPolyData(record));
+    writer->SetDataModeToAppended();
+    writer->EncodeAppendedDataOn();
+    writer->SetCompressorTypeToZLib();
+    writer->SetHeaderTypeToUInt64();
+    writer->SetByteOrderToLittleEndian();
+    writer->WriteToOutputStringOn();
+    if (writer->Write() == 0) throw InternalError("encodeVtkXml: VTK failed to encode the surface");
+    sink << writer->GetOutputString();
+}
+
+MeshFile decodeVtkXml(std::string_view bytes) {
+    VtpHandler handler;
+    const std::size_t end = parseXml(bytes, handler);
+    if (handler.piece.empty()) damaged("it has no piece");
+    ArrayReader reader(handler,
+                       handler.isDone() ? findAppendedData(bytes, end) : std::string_view());
+    MeshFile file;
+    const std::int64_t points = pieceCount(handler, "NumberOfPoints");
+    requireRoom("points", points, 1, 1032 * bytes.size());  // so that 3 * points can't overflow
+    const auto coordinates = reader.numbers<double>(handler.points, 3 * points, "points");
+    for (std::int64_t i = 0; i < points; ++i) {
+        file.mesh.points.push_back(
+            {coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]});
+    }
+    if (!handler.normals.attributes.empty()) {
+        const auto normals = reader.numbers<double>(handler.normals, 3 * points, "normals");
+        for (std::int64_t i = 0; i < points; ++i) {
+            file.mesh.normals.push_back(
+                storedNormal({normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]}));
+        }
+    }
+    decodeTriangles(handler, reader, file.mesh);
+    if (!handler.frame.attributes.empty()) {
+        file.frame = parseCoordinateFrame(reader.firstString(handler.frame));
+    }
+    return file;
+}
+
+}  // namespace adaptiso::meshio

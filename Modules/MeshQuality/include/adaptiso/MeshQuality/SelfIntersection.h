@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "adaptiso/Core/TriangleMesh.h"
+
+namespace adaptiso {
+
+/// Whether two triangles cross, decided exactly (orient2d, orient3d).
+///
+/// Triangles are closed: they cross when they have a point in common, be it one that touches.
+/// Corners at the same place are shared, whatever their numbers (so an unwelded mesh is not all
+/// crossings), and what hangs together by a shared corner or edge anyway doesn't count:
+///   - one corner shared: they cross when they meet in more than that corner;
+///   - two shared: when they lie in one plane, on the same side of the shared edge (a fold);
+///   - three shared: always (one lies on the other).
+/// A triangle whose corners lie exactly on a line crosses nothing. \pre corners are finite
+bool trianglesCross(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
+struct SelfIntersectionOptions {
+    std::int64_t maxPairs = 1000;  ///< pairs to name; all are counted
+};
+
+/// Numbers of two triangles that cross, the smaller first.
+using TrianglePair = std::array<std::int64_t, 2>;
+
+struct SelfIntersections {
+    std::int64_t pairCount = 0;
+    std::vector<TrianglePair> pairs;  ///< the first of them, ascending
+};
+
+/// All pairs of triangles of `mesh` that cross, as trianglesCross has it. Triangles with a
+/// non-finite corner cross nothing.
+/// \pre triangles name points that are there, options.maxPairs >= 0 \throws InvalidInput otherwise
+/// Cost: O(T log T + pairs of overlapping boxes), in parallel; an AabbTree of memory. The same
+/// mesh gives the same bytes, whatever the number of threads.
+SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
+                                        const SelfIntersectionOptions& options = {});
+
+}  // namespace adaptiso

@@ -1,0 +1,203 @@
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Predicates.h"
+
+namespace adaptiso {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+/// `p` seen along an axis.
+Point2 dropAxis(const Vec3& p, int axis) {
+    return {p[(axis + 1) % 3], p[(axis + 2) % 3]};
+}
+
+/// An axis along which the triangle is seen with area; -1 when its corners lie on a line.
+int axisWithArea(const Corners& t) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (orient2d(dropAxis(t[0], axis), dropAxis(t[1], axis), dropAxis(t[2], axis)) != 0) {
+            return axis;
+        }
+    }
+    return -1;
+}
+
+bool haveOneSign(int a, int b, int c) {
+    return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
+}
+
+bool areOnOneSide(int a, int b, int c) {
+    return (a > 0 && b > 0 && c > 0) || (a < 0 && b < 0 && c < 0);
+}
+
+/// \pre p lies on the line through a and b
+bool isBetween(const Point2& p, const Point2& a, const Point2& b) {
+    return std::min(a[0], b[0]) <= p[0] && p[0] <= std::max(a[0], b[0]) &&
+           std::min(a[1], b[1]) <= p[1] && p[1] <= std::max(a[1], b[1]);
+}
+
+bool segmentsMeet(const Point2& p, const Point2& q, const Point2& a, const Point2& b) {
+    const int pSide = orient2d(a, b, p), qSide = orient2d(a, b, q);
+    const int aSide = orient2d(p, q, a), bSide = orient2d(p, q, b);
+    if (pSide * qSide < 0 && aSide * bSide < 0) return true;
+    return (pSide == 0 && isBetween(p, a, b)) || (qSide == 0 && isBetween(q, a, b)) ||
+           (aSide == 0 && isBetween(a, p, q)) || (bSide == 0 && isBetween(b, p, q));
+}
+
+/// \pre p, q and the triangle lie in one plane, the triangle has area
+bool segmentMeetsCoplanarTriangle(const Vec3& p, const Vec3& q, const Corners& t) {
+    const int axis = axisWithArea(t);
+    const Point2 p2 = dropAxis(p, axis), q2 = dropAxis(q, axis);
+    const Point2 a = dropAxis(t[0], axis), b = dropAxis(t[1], axis), c = dropAxis(t[2], axis);
+    return haveOneSign(orient2d(a, b, p2), orient2d(b, c, p2), orient2d(c, a, p2)) ||
+           segmentsMeet(p2, q2, a, b) || segmentsMeet(p2, q2, b, c) || segmentsMeet(p2, q2, c, a);
+}
+
+/// pSide, qSide: orient3d of the triangle and p, q. \pre the triangle has area
+bool segmentMeetsTriangle(const Vec3& p, int pSide, const Vec3& q, int qSide, const Corners& t) {
+    if (pSide * qSide > 0) return false;
+    if (pSide == 0 && qSide == 0) return segmentMeetsCoplanarTriangle(p, q, t);
+    // The line through p and q goes through the triangle when it passes all sides the same way.
+    return haveOneSign(orient3d(p, q, t[0], t[1]), orient3d(p, q, t[1], t[2]),
+                       orient3d(p, q, t[2], t[0]));
+}
+
+/// Side of the plane of `t` on which each corner of `other` lies.
+std::array<int, 3> sidesOf(const Corners& t, const Corners& other) {
+    return {orient3d(t[0], t[1], t[2], other[0]), orient3d(t[0], t[1], t[2], other[1]),
+            orient3d(t[0], t[1], t[2], other[2])};
+}
+
+/// Whatever two triangles share ends on a side of one of them.
+bool crossWithoutSharing(const Corners& a, const Corners& b) {
+    const std::array<int, 3> ofB = sidesOf(a, b);
+    if (areOnOneSide(ofB[0], ofB[1], ofB[2])) return false;
+    const std::array<int, 3> ofA = sidesOf(b, a);
+    if (areOnOneSide(ofA[0], ofA[1], ofA[2])) return false;
+    for (int n = 0; n < 3; ++n) {
+        const int next = (n + 1) % 3;
+        if (segmentMeetsTriangle(b[n], ofB[n], b[next], ofB[next], a) ||
+            segmentMeetsTriangle(a[n], ofA[n], a[next], ofA[next], b)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// What triangles share besides their corner v reaches from v to a side opposite it: on the way
+/// out from v, a point leaves one of the two first. \pre a[0] == b[0], nothing else is shared
+bool crossBeyondCorner(const Corners& a, const Corners& b) {
+    const int b1 = orient3d(a[0], a[1], a[2], b[1]), b2 = orient3d(a[0], a[1], a[2], b[2]);
+    if (b1 * b2 > 0) return false;
+    const int a1 = orient3d(b[0], b[1], b[2], a[1]), a2 = orient3d(b[0], b[1], b[2], a[2]);
+    if (a1 * a2 > 0) return false;
+    return segmentMeetsTriangle(b[1], b1, b[2], b2, a) ||
+           segmentMeetsTriangle(a[1], a1, a[2], a2, b);
+}
+
+/// \pre a[0] == b[0], a[1] == b[1], the third corners differ
+bool crossBeyondEdge(const Corners& a, const Corners& b) {
+    if (orient3d(a[0], a[1], a[2], b[2]) != 0) return false;
+    const int axis = axisWithArea(a);
+    const Point2 p = dropAxis(a[0], axis), q = dropAxis(a[1], axis);
+    return orient2d(p, q, dropAxis(a[2], axis)) == orient2d(p, q, dropAxis(b[2], axis));
+}
+
+/// Swaps corners so that shared ones come first, in the same order. \return how many are shared.
+int alignSharedCorners(Corners& a, Corners& b) {
+    int shared = 0;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = shared; j < 3; ++j) {
+            if (a[i] != b[j]) continue;
+            std::swap(a[i], a[shared]);
+            std::swap(b[j], b[shared]);
+            ++shared;
+            break;
+        }
+    }
+    return shared;
+}
+
+bool areFinite(const Corners& corners) {
+    return std::all_of(corners.begin(), corners.end(),
+                       [](const Vec3& p) { return std::isfinite(p.x + p.y + p.z); });
+}
+
+Corners cornersOf(const TriangleMesh& mesh, std::int64_t triangle) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    return {mesh.points[a], mesh.points[b], mesh.points[c]};
+}
+
+}  // namespace
+
+bool trianglesCross(const Corners& a, const Corners& b) {
+    Corners first = a, second = b;
+    const int shared = alignSharedCorners(first, second);
+    bool cross = false;
+    switch (shared) {
+        case 0:
+            cross = crossWithoutSharing(first, second);
+            break;
+        case 1:
+            cross = crossBeyondCorner(first, second);
+            break;
+        case 2:
+            cross = crossBeyondEdge(first, second);
+            break;
+        default:
+            cross = true;
+    }
+    // Only the few that seem to cross are asked whether they are triangles at all.
+    return cross && axisWithArea(a) >= 0 && axisWithArea(b) >= 0;
+}
+
+SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
+                                        const SelfIntersectionOptions& options) {
+    if (options.maxPairs < 0) {
+        throw InvalidInput("findSelfIntersections: maxPairs is " +
+                           std::to_string(options.maxPairs) + ", must be at least 0");
+    }
+    const AabbTree tree(mesh);
+    const auto count = static_cast<std::int64_t>(mesh.triangles.size());
+    constexpr std::int64_t kGrain = 4096;
+    std::vector<SelfIntersections> ofPiece((count + kGrain - 1) / kGrain);
+    parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+        SelfIntersections& found = ofPiece[begin / kGrain];
+        std::vector<std::int64_t> others;
+        for (std::int64_t n = begin; n < end; ++n) {
+            const Corners corners = cornersOf(mesh, n);
+            if (!areFinite(corners)) continue;
+            others.clear();
+            tree.forEachOverlap(tree.triangleBox(n), [&](std::int64_t other) {
+                if (other > n && trianglesCross(corners, cornersOf(mesh, other))) {
+                    others.push_back(other);
+                }
+            });
+            std::sort(others.begin(), others.end());
+            found.pairCount += static_cast<std::int64_t>(others.size());
+            for (const std::int64_t other : others) {
+                if (static_cast<std::int64_t>(found.pairs.size()) >= options.maxPairs) break;
+                found.pairs.push_back({n, other});
+            }
+        }
+    });
+
+    SelfIntersections result;
+    for (const SelfIntersections& piece : ofPiece) {
+        result.pairCount += piece.pairCount;
+        const auto room = options.maxPairs - static_cast<std::int64_t>(result.pairs.size());
+        const auto taken = std::min(room, static_cast<std::int64_t>(piece.pairs.size()));
+        result.pairs.insert(result.pairs.end(), piece.pairs.begin(), piece.pairs.begin() + taken);
+    }
+    return result;
+}
+
+}  // namespace adaptiso

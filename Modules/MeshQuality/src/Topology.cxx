@@ -1,0 +1,417 @@
+#include "adaptiso/MeshQuality/Topology.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "adaptiso/Core/Parallel.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr double kMinAltitude = 1e-9;  // of the longest edge; checkTopology says why
+constexpr std::int64_t kGrain = 1 << 14;
+
+bool isFinite(const Vec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+bool isInRange(const TriangleMesh& mesh, const Triangle& t) {
+    const auto count = static_cast<VertexId>(mesh.points.size());
+    return std::all_of(t.begin(), t.end(), [&](VertexId v) { return v >= 0 && v < count; });
+}
+
+bool hasRepeatedIndex(const Triangle& t) {
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+/// Takes part in edges, fans and components.
+bool isConnecting(const TriangleMesh& mesh, const Triangle& t) {
+    return isInRange(mesh, t) && !hasRepeatedIndex(t);
+}
+
+/// \pre indices in range
+bool isDegenerate(const TriangleMesh& mesh, const Triangle& t) {
+    if (hasRepeatedIndex(t)) return true;
+    const Vec3 &a = mesh.points[t[0]], &b = mesh.points[t[1]], &c = mesh.points[t[2]];
+    const double longest2 = std::max({squaredNorm(b - a), squaredNorm(c - b), squaredNorm(a - c)});
+    return norm(areaVector2(a, b, c)) <= kMinAltitude * longest2;  // false with NaN
+}
+
+/// The triangles round every vertex: those of vertex v are triangle[first[v]] ... in ascending
+/// order, up to triangle[first[v + 1]].
+struct VertexTriangles {
+    std::vector<std::int64_t> first;
+    std::vector<std::int64_t> triangle;
+};
+
+VertexTriangles collectVertexTriangles(const TriangleMesh& mesh) {
+    VertexTriangles result;
+    result.first.assign(mesh.points.size() + 2, 0);
+    // Counted two places on and filled one place on, so that filling leaves `first` right.
+    for (const Triangle& t : mesh.triangles) {
+        if (!isConnecting(mesh, t)) continue;
+        for (const VertexId v : t) ++result.first[v + 2];
+    }
+    std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
+    result.triangle.resize(result.first.back());
+    for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
+        if (!isConnecting(mesh, mesh.triangles[n])) continue;
+        for (const VertexId v : mesh.triangles[n]) {
+            result.triangle[result.first[v + 1]++] = static_cast<std::int64_t>(n);
+        }
+    }
+    result.first.pop_back();
+    return result;
+}
+
+/// What the triangles round one vertex say. Edges are counted at their lower end, duplicates at
+/// the lowest corner, so that each counts once.
+struct VertexFacts {
+    std::uint32_t edges = 0;
+    std::uint32_t boundaryEdges = 0;
+    std::uint32_t nonManifoldEdges = 0;
+    std::uint32_t inconsistentEdges = 0;
+    std::uint32_t duplicateTriangles = 0;
+    bool isNonManifold = false;
+};
+
+/// Looks at the star of one vertex after the other; keeps its buffers.
+class StarInspector {
+public:
+    StarInspector(const TriangleMesh& mesh, const VertexTriangles& around)
+        : mesh_(mesh), around_(around) {}
+
+    /// Calls onDefect(defect, triangle or -1, vertices) for each defect counted at `v`.
+    template <class OnDefect>
+    VertexFacts inspect(VertexId v, const OnDefect& onDefect) {
+        gather(v);
+        VertexFacts facts;
+        inspectSpokes(v, facts, onDefect);
+        inspectDuplicates(v, facts, onDefect);
+        if (facts.isNonManifold) {
+            onDefect(TopologyDefect::NonManifoldVertex, -1, Triangle{v, -1, -1});
+        }
+        return facts;
+    }
+
+private:
+    /// An edge of the star from the vertex to `rim`, as one of its triangles sees it.
+    struct Spoke {
+        VertexId rim;
+        std::int32_t triangle;  ///< place in triangles_
+        bool isOutgoing;        ///< the triangle runs from the vertex to `rim`
+    };
+    struct StarTriangle {
+        std::int64_t triangle;
+        VertexId low, high;   ///< the other two corners, sorted
+        std::int32_t parent;  ///< of the union-find forest that makes fans
+    };
+
+    void gather(VertexId v) {
+        triangles_.clear();
+        spokes_.clear();
+        for (std::int64_t n = around_.first[v]; n < around_.first[v + 1]; ++n) {
+            const Triangle& t = mesh_.triangles[around_.triangle[n]];
+            const int corner = t[0] == v ? 0 : t[1] == v ? 1 : 2;
+            const VertexId next = t[(corner + 1) % 3], last = t[(corner + 2) % 3];
+            const auto place = static_cast<std::int32_t>(triangles_.size());
+            spokes_.push_back({next, place, true});
+            spokes_.push_back({last, place, false});
+            triangles_.push_back(
+                {around_.triangle[n], std::min(next, last), std::max(next, last), place});
+        }
+        std::sort(spokes_.begin(), spokes_.end(), [](const Spoke& a, const Spoke& b) {
+            return std::pair(a.rim, a.triangle) < std::pair(b.rim, b.triangle);
+        });
+    }
+
+    std::int32_t fanOf(std::int32_t place) {
+        while (triangles_[place].parent != place) {
+            place = triangles_[place].parent = triangles_[triangles_[place].parent].parent;
+        }
+        return place;
+    }
+
+    template <class OnDefect>
+    void inspectSpokes(VertexId v, VertexFacts& facts, const OnDefect& onDefect) {
+        std::size_t fans = triangles_.size();
+        for (std::size_t begin = 0, end = 0; begin < spokes_.size(); begin = end) {
+            const VertexId rim = spokes_[begin].rim;
+            for (end = begin + 1; end < spokes_.size() && spokes_[end].rim == rim; ++end) {
+                const std::int32_t a = fanOf(spokes_[begin].triangle);
+                const std::int32_t b = fanOf(spokes_[end].triangle);
+                if (a == b) continue;
+                triangles_[std::max(a, b)].parent = std::min(a, b);
+                --fans;
+            }
+            const std::size_t sides = end - begin;
+            facts.isNonManifold = facts.isNonManifold || sides > 2;
+            if (rim < v) continue;  // counted at the other end
+            ++facts.edges;
+            const Triangle ends{v, rim, -1};
+            if (sides == 1) {
+                ++facts.boundaryEdges;
+                onDefect(TopologyDefect::BoundaryEdge, triangles_[spokes_[begin].triangle].triangle,
+                         ends);
+            } else if (sides > 2) {
+                ++facts.nonManifoldEdges;
+                onDefect(TopologyDefect::NonManifoldEdge, -1, ends);
+            } else if (spokes_[begin].isOutgoing == spokes_[begin + 1].isOutgoing) {
+                ++facts.inconsistentEdges;
+                onDefect(TopologyDefect::InconsistentEdge, -1, ends);
+            }
+        }
+        facts.isNonManifold = facts.isNonManifold || fans > 1;
+    }
+
+    template <class OnDefect>
+    void inspectDuplicates(VertexId v, VertexFacts& facts, const OnDefect& onDefect) {
+        std::erase_if(triangles_, [&](const StarTriangle& t) { return t.low < v; });
+        std::sort(
+            triangles_.begin(), triangles_.end(), [](const StarTriangle& a, const StarTriangle& b) {
+                return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+            });
+        for (std::size_t n = 1; n < triangles_.size(); ++n) {
+            const StarTriangle &a = triangles_[n - 1], &b = triangles_[n];
+            if (a.low != b.low || a.high != b.high) continue;
+            ++facts.duplicateTriangles;
+            onDefect(TopologyDefect::DuplicateTriangle, b.triangle, Triangle{v, b.low, b.high});
+        }
+    }
+
+    const TriangleMesh& mesh_;
+    const VertexTriangles& around_;
+    std::vector<StarTriangle> triangles_;
+    std::vector<Spoke> spokes_;
+};
+
+std::vector<VertexFacts> inspectVertices(const TriangleMesh& mesh, const VertexTriangles& around) {
+    const auto count = static_cast<std::int64_t>(mesh.points.size());
+    std::vector<VertexFacts> facts(mesh.points.size());
+    parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+        StarInspector inspector(mesh, around);
+        for (VertexId v = begin; v < end; ++v) {
+            facts[v] = inspector.inspect(v, [](TopologyDefect, std::int64_t, const Triangle&) {});
+        }
+    });
+    return facts;
+}
+
+/// Counts defects and keeps the first few of each.
+class DefectRecorder {
+public:
+    DefectRecorder(const TriangleMesh& mesh, const TopologyOptions& options, TopologyReport& report)
+        : mesh_(mesh), maxExamples_(options.maxExamplesPerDefect), report_(report) {}
+
+    bool wantsExample(TopologyDefect defect) const {
+        return kept_[static_cast<std::size_t>(defect)] < maxExamples_;
+    }
+    void count(TopologyDefect defect, std::int64_t number) {
+        report_.defects[static_cast<std::size_t>(defect)] += number;
+    }
+    void keepExample(TopologyDefect defect, std::int64_t triangle, const Triangle& vertices) {
+        if (!wantsExample(defect)) return;
+        ++kept_[static_cast<std::size_t>(defect)];
+        report_.examples.push_back({defect, triangle, vertices, middle(vertices)});
+    }
+    void add(TopologyDefect defect, std::int64_t triangle, const Triangle& vertices) {
+        count(defect, 1);
+        keepExample(defect, triangle, vertices);
+    }
+
+private:
+    /// Middle of those vertices that are there.
+    Vec3 middle(const Triangle& vertices) const {
+        Vec3 sum;
+        int number = 0;
+        for (const VertexId v : vertices) {
+            if (v < 0 || v >= static_cast<VertexId>(mesh_.points.size())) continue;
+            sum += mesh_.points[v];
+            ++number;
+        }
+        return number > 0 ? 1.0 / number * sum : sum;
+    }
+
+    const TriangleMesh& mesh_;
+    int maxExamples_;
+    TopologyReport& report_;
+    std::array<int, kTopologyDefectCount> kept_{};
+};
+
+void recordVertexDefects(const TriangleMesh& mesh, const VertexTriangles& around,
+                         const std::vector<VertexFacts>& facts, DefectRecorder& recorder) {
+    StarInspector inspector(mesh, around);
+    const auto keep = [&](TopologyDefect defect, std::int64_t triangle, const Triangle& vertices) {
+        recorder.keepExample(defect, triangle, vertices);
+    };
+    for (std::size_t n = 0; n < facts.size(); ++n) {
+        const auto v = static_cast<VertexId>(n);
+        const std::array<std::pair<TopologyDefect, std::int64_t>, 5> found{{
+            {TopologyDefect::BoundaryEdge, facts[n].boundaryEdges},
+            {TopologyDefect::NonManifoldEdge, facts[n].nonManifoldEdges},
+            {TopologyDefect::InconsistentEdge, facts[n].inconsistentEdges},
+            {TopologyDefect::DuplicateTriangle, facts[n].duplicateTriangles},
+            {TopologyDefect::NonManifoldVertex, facts[n].isNonManifold ? 1 : 0},
+        }};
+        bool isWanted = false;
+        for (const auto& [defect, number] : found) {
+            recorder.count(defect, number);
+            isWanted = isWanted || (number > 0 && recorder.wantsExample(defect));
+        }
+        if (isWanted) inspector.inspect(v, keep);
+    }
+}
+
+void recordPointDefects(const TriangleMesh& mesh, const VertexTriangles& around,
+                        DefectRecorder& recorder) {
+    // A vertex that only a triangle with a repeated index names is used, if to no purpose.
+    std::vector<bool> isNamed(mesh.points.size());
+    for (const Triangle& t : mesh.triangles) {
+        if (isConnecting(mesh, t)) continue;
+        for (const VertexId v : t) {
+            if (v >= 0 && v < static_cast<VertexId>(mesh.points.size())) isNamed[v] = true;
+        }
+    }
+    for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+        const Triangle where{static_cast<VertexId>(n), -1, -1};
+        if (around.first[n] == around.first[n + 1] && !isNamed[n]) {
+            recorder.add(TopologyDefect::UnusedVertex, -1, where);
+        }
+        if (!isFinite(mesh.points[n])) recorder.add(TopologyDefect::NonFiniteVertex, -1, where);
+    }
+}
+
+void recordTriangleDefects(const TriangleMesh& mesh, DefectRecorder& recorder) {
+    for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
+        const Triangle& t = mesh.triangles[n];
+        const auto number = static_cast<std::int64_t>(n);
+        if (!isInRange(mesh, t)) {
+            recorder.add(TopologyDefect::IndexOutOfRange, number, t);
+        } else if (isDegenerate(mesh, t)) {
+            recorder.add(TopologyDefect::DegenerateTriangle, number, t);
+        }
+    }
+}
+
+/// The smallest vertex number of the piece that each vertex belongs to.
+std::vector<VertexId> labelComponents(const TriangleMesh& mesh) {
+    std::vector<VertexId> parent(mesh.points.size());
+    std::iota(parent.begin(), parent.end(), VertexId{0});
+    const auto root = [&](VertexId v) {
+        while (parent[v] != v) v = parent[v] = parent[parent[v]];
+        return v;
+    };
+    for (const Triangle& t : mesh.triangles) {
+        if (!isConnecting(mesh, t)) continue;
+        for (int side = 0; side < 2; ++side) {
+            const VertexId a = root(t[side]), b = root(t[side + 1]);
+            parent[std::max(a, b)] = std::min(a, b);
+        }
+    }
+    for (VertexId& p : parent) p = parent[p];  // a parent is smaller, so it is a root by now
+    return parent;
+}
+
+std::vector<SurfaceComponent> measureComponents(const TriangleMesh& mesh,
+                                                const VertexTriangles& around,
+                                                const std::vector<VertexFacts>& facts) {
+    std::vector<VertexId> component = labelComponents(mesh);
+    std::vector<SurfaceComponent> components;
+    for (std::size_t n = 0; n < facts.size(); ++n) {
+        const auto v = static_cast<VertexId>(n);
+        if (around.first[v] == around.first[v + 1]) continue;
+        // Labels become component numbers as we pass: a root comes before the rest of its piece.
+        if (component[v] == v) {
+            component[v] = static_cast<std::int64_t>(components.size());
+            components.emplace_back().firstVertex = v;
+        } else {
+            component[v] = component[component[v]];
+        }
+        SurfaceComponent& piece = components[component[v]];
+        ++piece.vertices;
+        piece.edges += facts[n].edges;
+        piece.boundaryEdges += facts[n].boundaryEdges;
+        piece.isManifold = piece.isManifold && !facts[n].isNonManifold;
+        piece.isOriented = piece.isOriented && facts[n].inconsistentEdges == 0;
+    }
+    for (const Triangle& t : mesh.triangles) {
+        if (!isConnecting(mesh, t)) continue;
+        SurfaceComponent& piece = components[component[t[0]]];
+        ++piece.triangles;
+        const Vec3 apex = mesh.points[piece.firstVertex];  // nearby: less cancellation
+        const Vec3 &a = mesh.points[t[0]], &b = mesh.points[t[1]], &c = mesh.points[t[2]];
+        if (!isFinite(a) || !isFinite(b) || !isFinite(c) || !isFinite(apex)) continue;
+        const Vec3 area2 = areaVector2(a, b, c);
+        piece.areaMm2 += norm(area2) / 2;
+        piece.signedVolumeMm3 += dot(a - apex, area2) / 6;
+    }
+    return components;
+}
+
+}  // namespace
+
+std::string_view toString(TopologyDefect defect) {
+    switch (defect) {
+        case TopologyDefect::BoundaryEdge:
+            return "boundary edge";
+        case TopologyDefect::NonManifoldEdge:
+            return "non-manifold edge";
+        case TopologyDefect::InconsistentEdge:
+            return "inconsistently oriented edge";
+        case TopologyDefect::NonManifoldVertex:
+            return "non-manifold vertex";
+        case TopologyDefect::DegenerateTriangle:
+            return "degenerate triangle";
+        case TopologyDefect::DuplicateTriangle:
+            return "duplicate triangle";
+        case TopologyDefect::UnusedVertex:
+            return "unused vertex";
+        case TopologyDefect::NonFiniteVertex:
+            return "non-finite vertex";
+        case TopologyDefect::IndexOutOfRange:
+            return "index out of range";
+    }
+    return "unknown";
+}
+
+std::optional<std::int64_t> SurfaceComponent::genus() const {
+    if (!isClosed() || !isManifold || !isOriented) return std::nullopt;
+    return (2 - eulerCharacteristic()) / 2;
+}
+
+bool TopologyReport::isSound() const {
+    return std::all_of(defects.begin(), defects.end(), [](std::int64_t n) { return n == 0; });
+}
+
+std::optional<std::int64_t> TopologyReport::genus() const {
+    std::int64_t sum = 0;
+    for (const SurfaceComponent& component : components) {
+        const auto genus = component.genus();
+        if (!genus) return std::nullopt;
+        sum += *genus;
+    }
+    return sum;
+}
+
+TopologyReport checkTopology(const TriangleMesh& mesh, const TopologyOptions& options) {
+    TopologyReport report;
+    report.vertices = static_cast<std::int64_t>(mesh.points.size());
+    report.triangles = static_cast<std::int64_t>(mesh.triangles.size());
+
+    const VertexTriangles around = collectVertexTriangles(mesh);
+    const std::vector<VertexFacts> facts = inspectVertices(mesh, around);
+
+    DefectRecorder recorder(mesh, options, report);
+    recordVertexDefects(mesh, around, facts, recorder);
+    recordPointDefects(mesh, around, recorder);
+    recordTriangleDefects(mesh, recorder);
+
+    report.components = measureComponents(mesh, around, facts);
+    for (const SurfaceComponent& component : report.components) report.edges += component.edges;
+    return report;
+}
+
+}  // namespace adaptiso

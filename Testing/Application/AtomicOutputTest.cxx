@@ -1,0 +1,123 @@
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "Common/AtomicOutput.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+class AtomicOutputTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = fs::path(::testing::TempDir()) / ("AtomicOutput-" + std::string(test->name()));
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    std::vector<std::string> names() const {
+        std::vector<std::string> names;
+        for (const auto& entry : fs::directory_iterator(folder_)) {
+            names.push_back(entry.path().filename().string());
+        }
+        return names;
+    }
+    static std::string text(const fs::path& path) {
+        std::ifstream file(path);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+
+    fs::path folder_;
+};
+
+using Names = std::vector<std::string>;
+
+TEST_F(AtomicOutputTest, AppearsWithItsCommit) {
+    const fs::path target = folder_ / "a.txt";
+    std::vector<AtomicOutput> outputs;
+    outputs.emplace_back(target).writeText("whole");
+    EXPECT_FALSE(fs::exists(target));
+    EXPECT_EQ(outputs[0].temporary().extension(), ".txt");
+    EXPECT_EQ(outputs[0].temporary().parent_path(), folder_);
+    AtomicOutput::commit(outputs);
+    outputs.clear();
+    EXPECT_EQ(text(target), "whole");
+    EXPECT_EQ(names(), Names{"a.txt"});
+}
+
+TEST_F(AtomicOutputTest, LeavesNothingWithoutACommit) {
+    std::ofstream(folder_ / "a.txt") << "old";
+    AtomicOutput(folder_ / "a.txt").writeText("new");
+    EXPECT_EQ(names(), Names{"a.txt"});
+    EXPECT_EQ(text(folder_ / "a.txt"), "old");
+}
+
+TEST_F(AtomicOutputTest, NamesTheTargetWhenTheWriterFails) {
+    AtomicOutput output(folder_ / "a.txt");
+    try {
+        output.write([](const fs::path& path) { throw FileError(path.string() + ": disk full"); });
+        FAIL() << "the error was swallowed";
+    } catch (const FileError& error) {
+        EXPECT_EQ(error.what(), (folder_ / "a.txt").string() + ": disk full");
+    }
+}
+
+TEST_F(AtomicOutputTest, NoticesAWriterThatLeavesNoFile) {
+    AtomicOutput output(folder_ / "a.txt");
+    EXPECT_THROW(output.write([](const fs::path& path) { fs::remove(path); }), FileError);
+}
+
+TEST_F(AtomicOutputTest, TwoOfOneTargetDoNotMeet) {
+    const AtomicOutput first(folder_ / "a.txt");
+    const AtomicOutput second(folder_ / "a.txt");
+    EXPECT_NE(first.temporary(), second.temporary());
+}
+
+TEST_F(AtomicOutputTest, TakesTheLongestNames) {
+    const std::string name = std::string(251, 'n') + ".txt";  // NAME_MAX is 255
+    std::vector<AtomicOutput> outputs;
+    outputs.emplace_back(folder_ / name).writeText("x");
+    AtomicOutput::commit(outputs);
+    EXPECT_EQ(names(), Names{name});
+}
+
+TEST_F(AtomicOutputTest, FollowsALinkThatLeadsToNoFileYet) {
+    fs::create_symlink("real.txt", folder_ / "link.txt");
+    std::vector<AtomicOutput> outputs;
+    outputs.emplace_back(folder_ / "link.txt").writeText("x");
+    AtomicOutput::commit(outputs);
+    EXPECT_TRUE(fs::is_symlink(folder_ / "link.txt"));
+    EXPECT_EQ(text(folder_ / "real.txt"), "x");
+}
+
+TEST_F(AtomicOutputTest, RefusesTargetsThatCanNotBeFiles) {
+    EXPECT_THROW(AtomicOutput(folder_ / "missing" / "a.txt"), FileError);
+    EXPECT_THROW(AtomicOutput{folder_}, FileError);
+    EXPECT_THROW(AtomicOutput("/dev/null"), FileError);
+    EXPECT_EQ(names(), Names{});
+}
+
+TEST_F(AtomicOutputTest, ASignalRemovesTheTemporaryAndEndsTheProcess) {
+    EXPECT_EXIT(
+        {
+            removeOutputsOnSignals();
+            AtomicOutput output(folder_ / "a.txt");
+            output.writeText("half");
+            raise(SIGTERM);
+        },
+        ::testing::KilledBySignal(SIGTERM), "");
+    EXPECT_EQ(names(), Names{});
+}
+
+}  // namespace
+}  // namespace adaptiso

@@ -1,0 +1,45 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "Common/Numbers.h"
+
+namespace adaptiso {
+namespace {
+
+TEST(ParseFiniteNumber, ReadsDecimalNumbers) {
+    EXPECT_EQ(parseFiniteNumber("100"), 100);
+    EXPECT_EQ(parseFiniteNumber("-0.5"), -0.5);
+    EXPECT_EQ(parseFiniteNumber("+2.5e3"), 2500);
+    EXPECT_EQ(parseFiniteNumber(".5"), 0.5);
+}
+
+TEST(ParseFiniteNumber, RefusesWhatIsNoFiniteNumber) {
+    for (const char* text : {"", " 1", "1 ", "1x", "x", "nan", "inf", "-inf", "1e999", "0x10",
+                             "1,5", "+-1", "++1", "--1", "+"}) {
+        EXPECT_EQ(parseFiniteNumber(text), std::nullopt) << text;
+    }
+}
+
+TEST(FormatNumber, IsShortAndReadsBack) {
+    EXPECT_EQ(formatNumber(100), "100");
+    EXPECT_EQ(formatNumber(100000), "100000");
+    EXPECT_EQ(formatNumber(-200.25), "-200.25");
+    EXPECT_EQ(formatNumber(0.1), "0.1");
+    EXPECT_EQ(formatNumber(-0.0), "0");
+    for (const double value :
+         {1.0 / 3, 1e-300, -123456789.125, 1e22, std::numeric_limits<double>::max()}) {
+        EXPECT_EQ(parseFiniteNumber(formatNumber(value)), value);
+    }
+}
+
+TEST(FormatCount, GroupsThousands) {
+    EXPECT_EQ(formatCount(0), "0");
+    EXPECT_EQ(formatCount(999), "999");
+    EXPECT_EQ(formatCount(1000), "1,000");
+    EXPECT_EQ(formatCount(-123456), "-123,456");
+    EXPECT_EQ(formatCount(1234567), "1,234,567");
+}
+
+}  // namespace
+}  // namespace adaptiso

@@ -1,0 +1,241 @@
+"""Outputs: names, formats, frames, what goes to stdout, and the same bytes for every number of
+threads."""
+
+import math
+import os
+import struct
+import subprocess
+
+from support import BAD_INPUT, MESH, OK, ApplicationTest, ball, main, noise, onion, write_nifti
+
+FORMATS = (".vtp", ".vtk", ".ply", ".stl", ".obj", ".off", ".gii", ".surf", ".pial", ".white",
+           ".tri")
+
+
+def stl_points(path):
+    """The corners of a binary STL, three a triangle."""
+    data = path.read_bytes()
+    count = struct.unpack_from("<I", data, 80)[0]
+    return [struct.unpack_from("<3f", data, 84 + 50 * t + 12 + 12 * corner)
+            for t in range(count) for corner in range(3)]
+
+
+class Names(ApplicationTest):
+    def setUp(self):
+        super().setUp()
+        self.path("scans").mkdir()
+        write_nifti(self.path("scans/ball.v2.nii"), ball(12, 4))
+
+    def test_default_is_in_the_current_folder(self):
+        done = self.mesh("scans/ball.v2.nii", "--iso", "100")
+        self.assertEqual(self.names(), ["ball.v2-iso100.vtp", "scans"])
+        self.assertIn("ball.v2-iso100.vtp", done.stdout)
+        self.assertEqual(done.stderr, "")
+
+    def test_isovalues_are_written_short(self):
+        for text in ("100.50", "1e2", "+99", "101.0"):
+            self.mesh("scans/ball.v2.nii", f"--iso={text}")
+        self.assertEqual(self.names(), ["ball.v2-iso100.5.vtp", "ball.v2-iso100.vtp",
+                                        "ball.v2-iso101.vtp", "ball.v2-iso99.vtp", "scans"])
+
+    def test_several_isovalues(self):
+        self.mesh("scans/ball.v2.nii", "--iso", "90", "--iso", "100", "-o", "out.stl")
+        self.mesh("scans/ball.v2.nii", "--iso", "90", "--iso", "100", "-o", "at{iso}mm.off")
+        self.mesh("scans/ball.v2.nii", "--iso", "90", "--iso", "100", "-o", "lh.surf.gii")
+        self.assertEqual(self.names(), ["at100mm.off", "at90mm.off", "lh-iso100.surf.gii",
+                                        "lh-iso90.surf.gii", "out-iso100.stl", "out-iso90.stl",
+                                        "scans"])
+
+    def test_several_isovalues_give_what_each_gives_alone(self):
+        self.mesh("scans/ball.v2.nii", "--iso", "110", "--iso", "100", "-o", "{iso}.ply")
+        self.mesh("scans/ball.v2.nii", "--iso", "100", "-o", "alone.ply")
+        self.assertEqual(self.path("100.ply").read_bytes(), self.path("alone.ply").read_bytes())
+        self.assertNotEqual(self.path("110.ply").read_bytes(), self.path("alone.ply").read_bytes())
+
+    def test_existing_file_is_replaced_through_a_link_too(self):
+        self.path("real.ply").write_text("old")
+        self.path("link.ply").symlink_to("real.ply")
+        self.mesh("scans/ball.v2.nii", "--iso", "100", "-o", "link.ply")
+        self.assertTrue(self.path("link.ply").is_symlink())
+        self.assertTrue(self.path("real.ply").read_bytes().startswith(b"ply"))
+
+    def test_new_files_get_the_rights_that_the_user_wants(self):
+        self.mesh("scans/ball.v2.nii", "--iso", "100", "-o", "a.ply",
+                  preexec_fn=lambda: os.umask(0o027))
+        self.assertEqual(self.path("a.ply").stat().st_mode & 0o777, 0o640)
+
+
+class BadOutput(ApplicationTest):
+    def setUp(self):
+        super().setUp()
+        write_nifti(self.path("ball.nii"), ball(12, 4))
+
+    def refused(self, pattern, *arguments):
+        self.assert_fails(BAD_INPUT, pattern, *arguments)
+
+    def refused_to_a_user(self, pattern, *arguments):
+        """As refused(), but not as root, who may write everywhere."""
+        if os.geteuid() != 0:
+            return self.refused(pattern, *arguments)
+        self.folder.chmod(0o777)
+        nobody = {"user": 65534, "group": 65534, "extra_groups": []}
+        try:
+            self.assert_fails(BAD_INPUT, pattern, *arguments, **nobody)
+        except PermissionError:
+            self.skipTest("the program lies where root alone may go")
+
+    def test_missing_folder_is_told_before_the_input_is_read(self):
+        self.refused("there is no folder nowhere", "missing.nii", "--iso", "100", "-o",
+                     "nowhere/a.ply")
+        self.refused("there is no folder nowhere", "missing.nii", "--iso", "100", "--json",
+                     "nowhere/a.json")
+
+    def test_write_protected_folder(self):
+        self.path("locked").mkdir(mode=0o555)
+        self.refused_to_a_user("folder can't be written", "missing.nii", "--iso", "100", "-o",
+                     "locked/a.ply")
+
+    def test_write_protected_file(self):
+        self.path("a.ply").write_text("precious")
+        self.path("a.ply").chmod(0o444)
+        self.refused_to_a_user("write-protected", "missing.nii", "--iso", "100", "-o", "a.ply")
+
+    def test_names_that_are_no_regular_file(self):
+        self.path("folder.ply").mkdir()
+        os.mkfifo(self.path("pipe.ply"))
+        for name in ("folder.ply", "pipe.ply"):
+            with self.subTest(name):
+                done = self.run_mesh("ball.nii", "--iso", "100", "-o", name)
+                self.assertEqual(done.returncode, BAD_INPUT)
+                self.assertIn("not a regular file", done.stderr)
+
+    def test_input_is_never_overwritten(self):
+        # a legacy VTK file can be image and mesh; what it holds is not looked at
+        self.path("image.vtk").write_text("# vtk DataFile Version 3.0\n")
+        self.path("link.vtk").symlink_to("image.vtk")
+        for name in ("image.vtk", "./image.vtk", "link.vtk"):
+            with self.subTest(name):
+                self.refused("is the input", "image.vtk", "--iso", "100", "-o", name)
+        self.refused("is the input", "ball.nii", "--iso", "100", "--json", "ball.nii")
+
+    def test_full_standard_output(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([MESH, "ball.nii", "--iso", "100"], cwd=self.folder, stdout=full,
+                                  stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, BAD_INPUT)
+        self.assertIn("standard output", done.stderr)
+        self.assertEqual(self.names(), ["ball-iso100.vtp", "ball.nii"])  # as README.md says
+
+    def test_reader_that_stops_early_costs_no_file(self):
+        subprocess.run(f"{MESH} ball.nii --iso 100 | true", cwd=self.folder, shell=True, check=True)
+        self.assertEqual(self.names(), ["ball-iso100.vtp", "ball.nii"])
+
+
+class Formats(ApplicationTest):
+    def setUp(self):
+        super().setUp()
+        write_nifti(self.path("ball.nii"), ball(16, 5, origin=(10, -20, 30)))
+
+    def test_every_format_is_written(self):
+        for extension in FORMATS:
+            with self.subTest(extension):
+                report = self.report("ball.nii", "--iso", "100", "-o", f"lh{extension}")
+                size = self.path(f"lh{extension}").stat().st_size
+                triangles = report["surfaces"][0]["triangles"]
+                self.assertEqual(report["surfaces"][0]["output"]["bytes"], size)
+                # no format takes less than an index of 4 bytes, or digit and space, a corner
+                self.assertGreater(size, 6 * triangles)
+
+    def test_the_help_lists_no_other_format(self):
+        text = self.mesh("--help").stdout
+        for extension in FORMATS:
+            self.assertIn(extension, text)
+
+    def test_files_hold_no_trace_of_input_user_or_folder(self):
+        self.path("ball.nii").rename(self.path("Mustermann.nii"))
+        for extension in FORMATS:
+            with self.subTest(extension):
+                self.mesh("Mustermann.nii", "--iso", "100", "-o", f"lh{extension}")
+                data = self.path(f"lh{extension}").read_bytes()
+                self.assertNotIn(b"Mustermann", data)
+                self.assertNotIn(self.folder.name.encode(), data)
+
+    def test_frames_are_where_the_ball_is(self):
+        # voxel (i, j, k) is at RAS (10 + i, j - 20, 30 + k); the ball's middle is voxel 7.5
+        # tkRAS of a 16^3 volume of 1 mm: (8 - i, k - 8, 8 - j)
+        middles = {"ras": (17.5, -12.5, 37.5), "lps": (-17.5, 12.5, 37.5),
+                   "tkras": (0.5, -0.5, 0.5)}
+        for frame, middle in middles.items():
+            with self.subTest(frame):
+                self.mesh("ball.nii", "--iso", "100", "-o", "a.stl", "--coordinates", frame,
+                          "--method", "mc")
+                points = stl_points(self.path("a.stl"))
+                for axis in range(3):
+                    values = [p[axis] for p in points]
+                    # the image is symmetric, so the mesh's box is to rounding in float
+                    self.assertAlmostEqual((min(values) + max(values)) / 2, middle[axis], 4)
+                    self.assertAlmostEqual(max(values) - min(values), 10, delta=0.5)
+
+    def test_default_frames(self):
+        for extension, frame in ((".ply", "ras"), (".gii", "ras"), (".pial", "tkras")):
+            report = self.report("ball.nii", "--iso", "100", "-o", f"lh{extension}")
+            self.assertEqual(report["surfaces"][0]["output"]["coordinates"], frame)
+
+    def test_triangles_are_outward_in_every_frame(self):
+        for frame in ("ras", "lps", "tkras"):
+            self.mesh("ball.nii", "--iso", "100", "-o", "a.stl", "--coordinates", frame,
+                      "--method", "mc")
+            points = stl_points(self.path("a.stl"))
+            volume = 0
+            for a, b, c in zip(points[0::3], points[1::3], points[2::3]):
+                volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
+                           a[2] * (b[0] * c[1] - b[1] * c[0])) / 6
+            # chords of up to sqrt(3) mm lie 3 / (8 * 5) mm inside the sphere: 1.5 % of the radius
+            self.assertAlmostEqual(volume / (4 / 3 * math.pi * 5 ** 3), 1, delta=0.045, msg=frame)
+
+
+class Streams(ApplicationTest):
+    def setUp(self):
+        super().setUp()
+        write_nifti(self.path("ball.nii"), ball(12, 4))
+
+    def test_quiet_prints_nothing(self):
+        done = self.mesh("ball.nii", "--iso", "100", "--quiet")
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+
+    def test_json_on_stdout_takes_the_place_of_the_text(self):
+        done = self.mesh("ball.nii", "--iso", "100", "--json", "-")
+        self.assertTrue(done.stdout.startswith("{") and done.stdout.endswith("}\n"))
+
+    def test_json_file_leaves_the_text(self):
+        done = self.mesh("ball.nii", "--iso", "100", "--json", "report.json")
+        self.assertIn("ball-iso100.vtp", done.stdout)
+        self.assertTrue(self.path("report.json").read_text().startswith("{"))
+
+    def test_progress_is_for_terminals_only(self):
+        leader, follower = os.openpty()
+        done = subprocess.run([MESH, "ball.nii", "--iso", "100"], cwd=self.folder, stderr=follower,
+                              stdout=subprocess.PIPE)
+        os.close(follower)
+        shown = os.read(leader, 100000)
+        os.close(leader)
+        self.assertEqual(done.returncode, OK)
+        self.assertIn(b"read ...", shown)
+        self.assertTrue(shown.endswith(b"\r\x1b[K"), shown)
+
+
+class Threads(ApplicationTest):
+    def test_same_bytes_for_every_number(self):
+        write_nifti(self.path("noise.nii"), noise(24))
+        write_nifti(self.path("onion.nii"), onion())
+        for name, isovalue in (("noise", 200), ("onion", 0)):
+            for threads in (1, 2, 7):
+                self.mesh(f"{name}.nii", "--iso", isovalue, "--threads", threads, "-o",
+                          f"{name}{threads}.ply")
+            one = self.path(f"{name}1.ply").read_bytes()
+            self.assertEqual(one, self.path(f"{name}2.ply").read_bytes())
+            self.assertEqual(one, self.path(f"{name}7.ply").read_bytes())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,118 @@
+#!/usr/bin/env bash
+# Runs the README's two commands, twice each, in a fresh clone on a minimal Debian 12 made for it,
+# and prints the minutes they take and the megabytes they install. Not part of ctest: it downloads
+# a whole system and builds everything. Needs root, debootstrap and git.
+#
+#   Testing/BareMachine/try.sh [COMMIT [LOG]]       HEAD, /tmp/adaptiso-bare-machine.log
+#
+# Works in a folder under /tmp and in mount and process namespaces of its own: when it ends, however
+# it ends, its mounts and processes are gone. It removes the folder and leaves the log. Packages
+# come from where this machine gets them (mirror and proxy are taken from apt's configuration).
+set -euo pipefail
+
+if [ "$(id -u)" -ne 0 ]; then
+    echo "try.sh: must run as root (debootstrap, chroot)" >&2
+    exit 2
+fi
+if [ "${ADAPTISO_BARE_INSIDE:-}" != yes ]; then
+    self=$(realpath "${BASH_SOURCE[0]}")
+    ADAPTISO_BARE_INSIDE=yes exec unshare --mount --propagation private --pid --fork \
+        --kill-child "$self" "$@"
+fi
+
+repository=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
+commit=$(git -C "$repository" rev-parse --verify "${1:-HEAD}^{commit}")
+log=$(realpath "${2:-/tmp/adaptiso-bare-machine.log}")
+work=$(mktemp -d /tmp/adaptiso-bare.XXXXXX)
+root=$work/root
+clone=/home/adaptiso
+
+removeAll() {
+    local status=$?
+    if [ "$status" -ne 0 ] && [ -e "$log" ]; then
+        tail -n 30 "$log" >&2
+        echo "try.sh: failed; the whole log is $log" >&2
+    fi
+    for mounted in "$root/proc" "$root/dev/shm" "$root/dev/pts"; do
+        if mountpoint -q "$mounted"; then
+            umount "$mounted"
+        fi
+    done
+    rm -rf --one-file-system "$work"
+}
+trap removeAll EXIT
+trap 'exit 130' INT TERM
+
+# The first Debian mirror that apt on this machine uses.
+aptMirror() {
+    cat /etc/apt/sources.list /etc/apt/sources.list.d/*.list /etc/apt/sources.list.d/*.sources \
+        2>/dev/null | sed -nE 's/^(URIs:|deb( +\[[^]]*\])?) +([^ ]+\/debian\/?)( .*)?$/\3/p' | head -n 1
+}
+
+makeRoot() {
+    debootstrap --variant=minbase bookworm "$root" "$(aptMirror)"
+    for sources in /etc/apt/sources.list /etc/apt/sources.list.d/debian.sources; do
+        if [ -e "$sources" ]; then
+            rm -f "$root/etc/apt/sources.list"
+            cp "$sources" "$root$sources"
+        fi
+    done
+    apt-config dump | grep -iE '^Acquire::(http|https)::.*Proxy' \
+        >"$root/etc/apt/apt.conf.d/90proxy" || true
+    cp /etc/resolv.conf /etc/hosts "$root/etc/"
+    mount -t proc proc "$root/proc"
+    mkdir -p "$root/dev/shm" "$root/dev/pts"
+    mount -t tmpfs tmpfs "$root/dev/shm"
+    # pseudo-terminals, which every running system has: a test of the programs opens one
+    mount -t devpts -o newinstance,ptmxmode=0666 devpts "$root/dev/pts"
+    ln -sf pts/ptmx "$root/dev/ptmx"
+}
+
+# Megabytes of the system in $root, without the clone and apt's downloads.
+systemMegabytes() {
+    du -smx --exclude="$root$clone" --exclude="$root/var/cache/apt" \
+        --exclude="$root/var/lib/apt/lists" "$root" | cut -f 1
+}
+
+# runInside NAME COMMAND: runs it in the clone as root, times it, adds a line to the summary.
+runInside() {
+    local before after began seconds
+    before=$(systemMegabytes)
+    began=$SECONDS
+    echo "######## $1: $2"
+    env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
+        chroot "$root" bash -c "cd $clone && $2" </dev/null
+    seconds=$((SECONDS - began))
+    after=$(systemMegabytes)
+    printf '%-22s %3d min %02d s   %5d MB installed\n' "$1" $((seconds / 60)) $((seconds % 60)) \
+        $((after - before)) >>"$work/summary"
+}
+
+requireFile() {
+    if [ ! -s "$root$clone/$1" ]; then
+        echo "try.sh: $1 is missing or empty" >&2
+        return 1
+    fi
+}
+
+tryAll() {
+    makeRoot
+    git clone -q --no-local "$repository" "$root$clone"
+    git -C "$root$clone" -c advice.detachedHead=false checkout -q "$commit"
+    printf 'commit %s on Debian %s, %s cores, %s MB before\n' "$commit" \
+        "$(cat "$root/etc/debian_version")" "$(nproc)" "$(systemMegabytes)" >"$work/summary"
+
+    runInside "quickstart" Applications/quickstart/run.sh
+    requireFile out/quickstart/brain.vtp
+    requireFile out/quickstart/brain.png
+    runInside "quickstart, again" Applications/quickstart/run.sh
+    runInside "tests" Testing/run.sh
+    runInside "tests, again" Testing/run.sh
+    printf 'clone with its build folders: %s MB\n' "$(du -sm "$root$clone" | cut -f 1)" \
+        >>"$work/summary"
+    cat "$work/summary"
+}
+
+echo "try.sh: writing $log"
+tryAll >"$log" 2>&1
+cat "$work/summary"

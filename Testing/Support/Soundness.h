@@ -1,0 +1,37 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <source_location>
+
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/TriangleMesh.h"
+
+namespace adaptiso::testing {
+
+/// What isSound forgives.
+struct SoundnessOptions {
+    /// Boundary edges are allowed, but only with both ends on one border face of this volume: at
+    /// index 0 or size - 1 of the same axis, to within 1e-6 of an index.
+    std::optional<ImageGeometry> openAtBorderOf;
+};
+
+/// Open at the border of a volume with this geometry and nowhere else.
+SoundnessOptions openOnlyAtBorder(const ImageGeometry& geometry);
+
+/// The check that every test makes of every mesh it builds: a closed, oriented 2-manifold fit for
+/// use. A failure says what is wrong and where, the first few of each kind.
+///
+/// Every edge lies in exactly two triangles that run along it in opposite directions; the
+/// triangles of every vertex form one fan; indices lie in range, coordinates are finite; no
+/// triangle comes twice or has no area (an altitude below 1e-9 of its longest edge); no vertex is
+/// unused; normals, if any, are one a point and of length 1. An empty mesh is sound.
+/// Shares no code with MeshQuality's checkTopology, so that each can catch the other out.
+::testing::AssertionResult isSound(const TriangleMesh& mesh, const SoundnessOptions& options = {});
+
+/// EXPECT_TRUE(isSound(mesh, options)), reported at the caller's line.
+void expectSound(const TriangleMesh& mesh, const SoundnessOptions& options = {},
+                 const std::source_location& where = std::source_location::current());
+
+}  // namespace adaptiso::testing

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Installs the packages, builds everything and runs the tests (all but those labelled long).
+# Debian 12, as root or with sudo. Running it again is harmless. Ends with ctest's own summary.
+#
+#   Testing/run.sh [CTEST-OPTION...]       e.g. Testing/run.sh -L unit, Testing/run.sh -R KdTree
+set -euo pipefail
+
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$top"
+
+. Applications/quickstart/packages.sh
+installPackages Applications/quickstart/packages.txt Testing/packages.txt
+
+cmake --log-level=WARNING --preset release
+cmake --build --preset release
+exec ctest --preset release --output-on-failure -LE long -j 2 "$@"
