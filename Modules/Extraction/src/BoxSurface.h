@@ -21,8 +21,6 @@ template <class Id>
 struct HalfEdge {
     static constexpr Id kMarkA = Id{1} << (8 * sizeof(Id) - 1);
     static constexpr Id kMarkB = Id{1} << (8 * sizeof(Id) - 2);
-    /// Numbers below it fit.
-    static constexpr Id kLimit = kMarkB;
 
     Id word = 0;
 

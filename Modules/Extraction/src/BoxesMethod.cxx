@@ -33,9 +33,11 @@ Extraction extract(const VolumeView& volume, ActiveBlocks active,
 template <int N>
 Extraction extractWithBlocks(const VolumeView& volume, ActiveBlocks active,
                              const ExtractionOptions& options) {
-    // at most every lattice edge of the active blocks is a vertex
+    // at most every lattice edge of the active blocks is a vertex, with few corners of loops at
+    // each
+    constexpr std::int64_t kMaximumCornersAtVertex = 16;
     const std::int64_t vertices = 3 * N * N * N * active.count();
-    if (vertices < static_cast<std::int64_t>(HalfEdge<std::uint32_t>::kLimit)) {
+    if (vertices * kMaximumCornersAtVertex <= std::int64_t{0xFFFFFFFF}) {
         return extract<N, std::uint32_t>(volume, std::move(active), options);
     }
     return extract<N, std::uint64_t>(volume, std::move(active), options);

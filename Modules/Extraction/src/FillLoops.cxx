@@ -12,11 +12,12 @@
 namespace adaptiso::detail {
 namespace {
 
-/// Loops that are filled together: one, or all those of a plane in which there are holes.
+/// Loops that are filled together: one, or all those of a plane in which there are holes. They
+/// stand together in the filler's order, up to those of the next region.
+template <class Id>
 struct Region {
-    std::uint32_t firstLoop;  ///< in the order of regions' loops
-    std::uint32_t loopCount;
-    std::uint64_t firstTriangle;
+    Id firstLoop;
+    Id firstTriangle;
 };
 
 template <class Id>
@@ -27,8 +28,8 @@ public:
         makeRegions();
     }
 
-    std::uint64_t triangleCount() const { return triangleCount_; }
-    std::size_t regionCount() const { return regions_.size(); }
+    std::uint64_t triangleCount() const { return regions_.back().firstTriangle; }
+    std::size_t regionCount() const { return regions_.size() - 1; }
 
     /// Work space of one thread.
     struct Scratch {
@@ -42,41 +43,36 @@ public:
 
     /// Fills region r into scratch.triangles (by scratch.vertices).
     void fill(std::size_t r, Scratch& scratch) const {
-        const Region& region = regions_[r];
         scratch.vertices.clear();
         scratch.next.clear();
         scratch.triangles.clear();
-        for (std::uint32_t l = 0; l < region.loopCount; ++l) {
-            appendLoop(order_[region.firstLoop + l], scratch);
+        for (Id l = regions_[r].firstLoop; l < regions_[r + 1].firstLoop; ++l) {
+            appendLoop(order_[l], scratch);
         }
-        const Loop& loop = loops_.loops[order_[region.firstLoop]];
+        const LoopKey key = loops_.keys[order_[regions_[r].firstLoop]];
         if (scratch.vertices.size() == 3) {
             scratch.triangles.push_back({0, 1, 2});
-        } else if (loop.isPlane) {
-            fillPlane(PlaneKey{loop.key}, scratch);
+        } else if (key.isPlane()) {
+            fillPlane(PlaneKey{key.word}, scratch);
         } else {
-            fillSpace(BoxKey{loop.key}, scratch);
+            fillSpace(BoxKey{key.word}, scratch);
         }
     }
 
     std::uint64_t firstTriangle(std::size_t r) const { return regions_[r].firstTriangle; }
-    std::uint64_t lastTriangle(std::size_t r) const {
-        return r + 1 < regions_.size() ? regions_[r + 1].firstTriangle : triangleCount_;
-    }
+    std::uint64_t lastTriangle(std::size_t r) const { return regions_[r + 1].firstTriangle; }
 
     /// The region that triangle t belongs to.
     std::size_t regionOf(std::uint64_t t) const {
         const auto after = std::upper_bound(regions_.begin(), regions_.end(), t,
-                                            [](std::uint64_t triangle, const Region& region) {
+                                            [](std::uint64_t triangle, const Region<Id>& region) {
                                                 return triangle < region.firstTriangle;
                                             });
         return static_cast<std::size_t>(after - regions_.begin()) - 1;
     }
 
 private:
-    std::uint64_t size(std::uint32_t l) const {
-        return loops_.loops[l + 1].first - loops_.loops[l].first;
-    }
+    Id size(Id l) const { return loops_.firstCorner[l + 1] - loops_.firstCorner[l]; }
 
     /// Place of a vertex on a plane, by the midpoint of its box edge in half lattice steps, seen
     /// along the first axis that the normal is not at right angles to.
@@ -96,15 +92,15 @@ private:
     int boxSizeOf(const PlaneKey& plane) const { return loops_.blockSize >> plane.level(); }
 
     /// Twice the area that a loop encloses on its plane: negative for a hole.
-    std::int64_t signedArea(std::uint32_t l) const {
-        const PlaneKey plane{loops_.loops[l].key};
+    std::int64_t signedArea(Id l) const {
+        const PlaneKey plane{loops_.keys[l].word};
         const int boxSize = boxSizeOf(plane);
-        const std::uint64_t first = loops_.loops[l].first, n = size(l);
-        const PlanarCorner origin = place(loops_.corners[first], plane, boxSize);
+        const Id* corner = &loops_.corners[loops_.firstCorner[l]];
+        const PlanarCorner origin = place(corner[0], plane, boxSize);
         PlanarCorner before = origin;
         std::int64_t area = 0;
-        for (std::uint64_t i = 1; i < n; ++i) {
-            const PlanarCorner p = place(loops_.corners[first + i], plane, boxSize);
+        for (Id i = 1; i < size(l); ++i) {
+            const PlanarCorner p = place(corner[i], plane, boxSize);
             area +=
                 (before.u - origin.u) * (p.v - origin.v) - (before.v - origin.v) * (p.u - origin.u);
             before = p;
@@ -113,59 +109,60 @@ private:
     }
 
     void makeRegions() {
-        const std::uint32_t count = static_cast<std::uint32_t>(loops_.loops.size() - 1);
-        std::vector<std::uint8_t> isHole(count, 0);
-        parallelForPieces(count, 4096, [&](std::int64_t begin, std::int64_t end) {
-            for (std::int64_t l = begin; l < end; ++l) {
-                const std::uint32_t loop = static_cast<std::uint32_t>(l);
-                isHole[loop] = loops_.loops[loop].isPlane && signedArea(loop) < 0;
+        const std::int64_t count = static_cast<std::int64_t>(loops_.count());
+        constexpr std::int64_t kPiece = 4096;
+        std::vector<std::vector<Id>> holesOf((count + kPiece - 1) / kPiece);
+        parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
+            for (Id l = static_cast<Id>(begin); l < static_cast<Id>(end); ++l) {
+                if (loops_.keys[l].isPlane() && signedArea(l) < 0) {
+                    holesOf[begin / kPiece].push_back(l);
+                }
             }
         });
         std::vector<std::uint64_t> planesWithHoles;
-        for (std::uint32_t l = 0; l < count; ++l) {
-            if (isHole[l]) planesWithHoles.push_back(loops_.loops[l].key);
+        std::vector<Id> holes;
+        for (const auto& some : holesOf) {
+            holes.insert(holes.end(), some.begin(), some.end());
+            for (const Id l : some) planesWithHoles.push_back(loops_.keys[l].word);
         }
         std::sort(planesWithHoles.begin(), planesWithHoles.end());
-        std::vector<std::uint32_t> grouped;
+
+        std::vector<Id> grouped;
         order_.reserve(count);
-        regions_.reserve(count);
-        for (std::uint32_t l = 0; l < count; ++l) {
-            const Loop& loop = loops_.loops[l];
-            if (loop.isPlane &&
-                std::binary_search(planesWithHoles.begin(), planesWithHoles.end(), loop.key)) {
+        regions_.reserve(count + 1);
+        Id triangles = 0;
+        for (Id l = 0; l < static_cast<Id>(count); ++l) {
+            if (loops_.keys[l].isPlane() &&
+                std::binary_search(planesWithHoles.begin(), planesWithHoles.end(),
+                                   loops_.keys[l].word)) {
                 grouped.push_back(l);
-            } else {
-                addRegion(static_cast<std::uint32_t>(order_.size()), 1, size(l) - 2);
-                order_.push_back(l);
+                continue;
             }
+            regions_.push_back({static_cast<Id>(order_.size()), triangles});
+            order_.push_back(l);
+            triangles += size(l) - 2;
         }
-        std::stable_sort(grouped.begin(), grouped.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return loops_.loops[a].key < loops_.loops[b].key;
-        });
+        std::stable_sort(grouped.begin(), grouped.end(),
+                         [&](Id a, Id b) { return loops_.keys[a].word < loops_.keys[b].word; });
         for (std::size_t i = 0; i < grouped.size();) {
-            const std::uint32_t first = static_cast<std::uint32_t>(order_.size());
-            const std::uint64_t key = loops_.loops[grouped[i]].key;
-            std::uint64_t triangles = 0;
-            for (; i < grouped.size() && loops_.loops[grouped[i]].key == key; ++i) {
+            regions_.push_back({static_cast<Id>(order_.size()), triangles});
+            const std::uint64_t key = loops_.keys[grouped[i]].word;
+            for (; i < grouped.size() && loops_.keys[grouped[i]].word == key; ++i) {
                 order_.push_back(grouped[i]);
                 triangles += size(grouped[i]);
-                triangles += isHole[grouped[i]] ? 2 : -2;
+                const bool isHole = std::binary_search(holes.begin(), holes.end(), grouped[i]);
+                triangles = isHole ? triangles + 2 : triangles - 2;
             }
-            addRegion(first, static_cast<std::uint32_t>(order_.size()) - first, triangles);
         }
+        regions_.push_back({static_cast<Id>(order_.size()), triangles});
     }
 
-    void addRegion(std::uint32_t first, std::uint32_t loops, std::uint64_t triangles) {
-        regions_.push_back({first, loops, triangleCount_});
-        triangleCount_ += triangles;
-    }
-
-    void appendLoop(std::uint32_t l, Scratch& scratch) const {
+    void appendLoop(Id l, Scratch& scratch) const {
         const std::uint32_t base = static_cast<std::uint32_t>(scratch.vertices.size());
-        const std::uint64_t first = loops_.loops[l].first, n = size(l);
-        for (std::uint64_t i = 0; i < n; ++i) {
-            scratch.vertices.push_back(loops_.corners[first + i]);
-            scratch.next.push_back(base + static_cast<std::uint32_t>((i + 1) % n));
+        const Id* corner = &loops_.corners[loops_.firstCorner[l]];
+        for (Id i = 0; i < size(l); ++i) {
+            scratch.vertices.push_back(corner[i]);
+            scratch.next.push_back(base + static_cast<std::uint32_t>((i + 1) % size(l)));
         }
     }
 
@@ -203,15 +200,21 @@ private:
     const SurfaceLoops<Id>& loops_;
     const TriangleMesh& mesh_;
     bool isMirrored_;
-    std::vector<std::uint32_t> order_;
-    std::vector<Region> regions_;
-    std::uint64_t triangleCount_ = 0;
+    std::vector<Id> order_;            ///< loops, region after region
+    std::vector<Region<Id>> regions_;  ///< and the end
 };
+
+/// Room for what split chords add, so that the mesh is not copied for a few of them.
+std::size_t withSpare(std::size_t count) {
+    return count + count / 256 + 16;
+}
 
 template <class Id>
 void placeVertices(const SurfaceLoops<Id>& loops, const LatticeSampler& sampler,
                    std::int64_t latticeOffset, TriangleMesh& mesh) {
     const std::int64_t count = static_cast<std::int64_t>(loops.vertices.size());
+    mesh.points.reserve(withSpare(count));
+    mesh.normals.reserve(withSpare(count));
     mesh.points.resize(count);
     mesh.normals.resize(count);
     parallelForPieces(count, 4096, [&](std::int64_t begin, std::int64_t end) {
@@ -226,6 +229,7 @@ void placeVertices(const SurfaceLoops<Id>& loops, const LatticeSampler& sampler,
 
 template <class Id>
 void fillAll(const LoopFiller<Id>& filler, TriangleMesh& mesh) {
+    mesh.triangles.reserve(withSpare(filler.triangleCount()));
     mesh.triangles.resize(filler.triangleCount());
     const std::int64_t count = static_cast<std::int64_t>(filler.regionCount());
     parallelForPieces(count, 512, [&](std::int64_t begin, std::int64_t end) {

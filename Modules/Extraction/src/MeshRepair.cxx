@@ -42,18 +42,18 @@ std::vector<CrowdedEdge> findCrowdedEdges(const TriangleMesh& mesh) {
     };
     forEachUpward([&](VertexId a, VertexId) { ++first[a + 1]; });
     for (std::size_t v = 0; v < vertices; ++v) first[v + 1] += first[v];
-    // the far vertex as its distance from the near one fits 32 bits unless the mesh is enormous
+    // how far the other vertex is, in numbers: 32 bits hold that in all but enormous meshes
     std::vector<std::uint32_t> far(first[vertices]);
-    std::vector<std::uint64_t> fill(first.begin(), first.end() - 1);
     forEachUpward([&](VertexId a, VertexId b) {
         if (b - a > 0xFFFFFFFF) throw InternalError("findCrowdedEdges: mesh too large");
-        far[fill[a]++] = static_cast<std::uint32_t>(b - a);
+        far[first[a]++] = static_cast<std::uint32_t>(b - a);
     });
+    // filling has moved every start to its end, which is the next one's start
 
     std::map<std::pair<VertexId, VertexId>, std::vector<std::uint64_t>> crowded;
     for (std::size_t v = 0; v < vertices; ++v) {
-        const auto begin = far.begin() + static_cast<std::ptrdiff_t>(first[v]),
-                   end = far.begin() + static_cast<std::ptrdiff_t>(first[v + 1]);
+        const auto begin = far.begin() + static_cast<std::ptrdiff_t>(v > 0 ? first[v - 1] : 0),
+                   end = far.begin() + static_cast<std::ptrdiff_t>(first[v]);
         std::sort(begin, end);
         for (auto at = std::adjacent_find(begin, end); at != end;
              at = std::adjacent_find(at + 1, end)) {

@@ -117,7 +117,8 @@ private:
 };
 
 /// Divides boxes until each is simple and, where the grid ends within a block (open border), none
-/// reaches over the last sample: `cells[axis]` cells of the block lie in the volume.
+/// that holds surface reaches over the last sample: `cells[axis]` cells of the block lie in the
+/// volume.
 template <int N>
 BoxTree<N> makeSimpleBoxes(const BlockSamples<N>& samples, const std::array<int, 3>& cells) {
     const VariationTrees<N> variation(samples);
@@ -128,7 +129,10 @@ BoxTree<N> makeSimpleBoxes(const BlockSamples<N>& samples, const std::array<int,
         for (int axis = 0; axis < 3; ++axis) {
             overBorder |= box.low(axis) < cells[axis] && cells[axis] < box.low(axis) + box.size;
         }
-        if (!overBorder && variation.isSimple(box)) return;
+        if (variation.isSimple(box)) {
+            const unsigned corners = samples.corners(box);
+            if (!overBorder || corners == 0 || corners == 255) return;  // an empty box cuts nothing
+        }
         tree.divide(box);
         const int half = box.size / 2;
         for (int child = 0; child < 8; ++child) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <unordered_map>
+#include <tuple>
 
 namespace adaptiso::detail {
 namespace {
@@ -22,6 +22,7 @@ public:
 
     void traceAll() {
         result_.blockSize = N;
+        result_.corners.reserve(cornerCount());
         for (std::int64_t b = 0; b < surface_.active.count(); ++b) {
             const Chunk<Id>& chunk = surface_.chunks[b / surface_.kChunkBlocks];
             const std::int64_t local = b % surface_.kChunkBlocks;
@@ -36,7 +37,7 @@ public:
                 }
             }
         }
-        result_.loops.push_back({result_.corners.size(), 0, false});
+        result_.firstCorner.push_back(static_cast<Id>(result_.corners.size()));
     }
 
     /// Two edges of the surface that join the same two vertices would be one edge of four
@@ -55,6 +56,21 @@ public:
 private:
     using Half = HalfEdge<Id>;
     static constexpr Id kDropped = std::numeric_limits<Id>::max();
+
+    std::size_t cornerCount() const {
+        std::size_t count = 0;
+        for (const Chunk<Id>& chunk : surface_.chunks) {
+            count += chunk.halfEdges.size();
+            for (const BoxRecord& box : chunk.boxes) {
+                if (box.isShared()) continue;
+                const Half* first = &chunk.halfEdges[box.firstHalfEdge];
+                for (int h = 0; h < cases_[box.boxCase].halfEdgeCount; ++h) {
+                    count -= first[h].isErased();
+                }
+            }
+        }
+        return count;
+    }
 
     Half& half(std::int64_t block, const BoxRecord& box, int h) {
         return surface_.chunks[block / surface_.kChunkBlocks].halfEdges[box.firstHalfEdge + h];
@@ -78,8 +94,9 @@ private:
         return p;
     }
 
-    void beginLoop(std::uint64_t key, bool isPlane) {
-        result_.loops.push_back({result_.corners.size(), key, isPlane});
+    void beginLoop(LoopKey key) {
+        result_.keys.push_back(key);
+        result_.firstCorner.push_back(static_cast<Id>(result_.corners.size()));
     }
 
     void takeIsoLineLoops(std::int64_t block, const BoxRecord& record, std::size_t end) {
@@ -87,16 +104,16 @@ private:
         bool starting = true;
         for (std::size_t h = record.firstHalfEdge; h < end; ++h) {
             const Half& half = chunk.halfEdges[h];
-            if (starting) beginLoop(boxKey(block, record), false);
+            if (starting) beginLoop(boxKey(block, record));
             result_.corners.push_back(half.vertex());
             pass(half.vertex(), half.isInFace(), false);
             starting = half.isLast();
         }
     }
 
-    std::uint64_t boxKey(std::int64_t block, const BoxRecord& record) const {
+    LoopKey boxKey(std::int64_t block, const BoxRecord& record) const {
         const Box box = surface_.boxOf(record);
-        return BoxKey::make(latticeLow(block, box), BoxTree<N>::kLevels - record.level()).word;
+        return BoxKey::make(latticeLow(block, box), BoxTree<N>::kLevels - record.level());
     }
 
     void takeFacets(std::int64_t block, const BoxRecord& box) {
@@ -115,7 +132,7 @@ private:
 
     /// A facet in none of the 13 families stays as it is.
     void takeOddFacet(std::int64_t block, const BoxRecord& box, const CaseFacet& facet) {
-        beginLoop(boxKey(block, box), false);
+        beginLoop(boxKey(block, box));
         for (int i = 0; i < facet.size; ++i) {
             Half& corner = half(block, box, facet.firstHalfEdge + i);
             corner.visit();
@@ -127,7 +144,7 @@ private:
 
     /// Follows the boundary of a merged facet once round (Freeman's chain), from `start`.
     void traceMergedFacet(const HalfEdgeRef& start) {
-        beginLoop(planeKey(start), true);
+        beginLoop(planeKey(start));
         std::array<std::int8_t, 3> before{};
         const std::array<std::int8_t, 3> firstDirection = direction(start);
         HalfEdgeRef at = start;
@@ -166,7 +183,7 @@ private:
                a[2] * b[0] == a[0] * b[2] && a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0;
     }
 
-    std::uint64_t planeKey(const HalfEdgeRef& ref) const {
+    LoopKey planeKey(const HalfEdgeRef& ref) const {
         const BoxCase& boxCase = caseOf(ref);
         const CaseHalfEdge& half = boxCase.halfEdge[ref.half];
         const auto& n = boxCase.facet[half.facet].normal;
@@ -178,7 +195,7 @@ private:
             const int mid = a == edgeAxis(half.edge) ? 1 : 2 * (corner >> a & 1);
             offset += n[a] * (2 * low[a] + box.size * mid);
         }
-        return PlaneKey::make({n[0], n[1], n[2]}, ref.box->level(), offset).word;
+        return PlaneKey::make({n[0], n[1], n[2]}, ref.box->level(), offset);
     }
 
     // An edge of the loops after dropping, with the smallest vertex dropped on it (kDropped: none).
@@ -188,8 +205,8 @@ private:
 
     template <class F>
     void forEachRun(const F& f) const {
-        for (std::size_t l = 0; l + 1 < result_.loops.size(); ++l) {
-            const std::size_t first = result_.loops[l].first, last = result_.loops[l + 1].first;
+        for (std::size_t l = 0; l < result_.count(); ++l) {
+            const std::size_t first = result_.firstCorner[l], last = result_.firstCorner[l + 1];
             std::size_t start = first;
             while (start < last && isDropped(result_.corners[start])) ++start;
             if (start == last) continue;
@@ -209,24 +226,28 @@ private:
     }
 
     bool keepOnePass() {
-        // few edges have dropped vertices; those without are looked up only among the pairs found
-        struct PairHash {
-            std::size_t operator()(const std::pair<Id, Id>& p) const {
-                return static_cast<std::size_t>((p.first * 0x9E3779B97F4A7C15u) ^
-                                                (p.second * 0xC2B2AE3D27D4EB4Fu));
-            }
-        };
-        std::unordered_map<std::pair<Id, Id>, Id, PairHash> runs;
-        std::vector<Id> keep;
+        // few edges have dropped vertices: only where such a run ends are others compared with it
+        std::vector<Run> runs;
+        std::vector<bool> endsRun(uses_.size());
         forEachRun([&](const Run& run) {
             if (run.dropped == kDropped) return;
-            const auto [known, isNew] = runs.try_emplace({run.a, run.b}, run.dropped);
-            if (!isNew && known->second != run.dropped) keep.push_back(run.dropped);
+            runs.push_back(run);
+            endsRun[run.a] = endsRun[run.b] = true;
         });
+        const auto byEnds = [](const Run& p, const Run& q) {
+            return std::tie(p.a, p.b, p.dropped) < std::tie(q.a, q.b, q.dropped);
+        };
+        std::sort(runs.begin(), runs.end(), byEnds);
+        std::vector<Id> keep;
+        for (std::size_t i = 1; i < runs.size(); ++i) {
+            const Run &p = runs[i - 1], &q = runs[i];
+            if (p.a == q.a && p.b == q.b && p.dropped != q.dropped) keep.push_back(q.dropped);
+        }
         forEachRun([&](const Run& run) {
-            if (run.dropped != kDropped) return;
-            const auto known = runs.find({run.a, run.b});
-            if (known != runs.end()) keep.push_back(known->second);
+            if (run.dropped != kDropped || !endsRun[run.a] || !endsRun[run.b]) return;
+            const auto at =
+                std::lower_bound(runs.begin(), runs.end(), Run{run.a, run.b, 0}, byEnds);
+            if (at != runs.end() && at->a == run.a && at->b == run.b) keep.push_back(at->dropped);
         });
         for (const Id v : keep) uses_[v].needed = true;
         return !keep.empty();
@@ -260,15 +281,15 @@ private:
 
     void compress(const std::vector<Id>& number) {
         std::size_t out = 0;
-        for (std::size_t l = 0; l + 1 < result_.loops.size(); ++l) {
-            const std::size_t first = result_.loops[l].first, last = result_.loops[l + 1].first;
-            result_.loops[l].first = out;
+        for (std::size_t l = 0; l < result_.count(); ++l) {
+            const std::size_t first = result_.firstCorner[l], last = result_.firstCorner[l + 1];
+            result_.firstCorner[l] = static_cast<Id>(out);
             for (std::size_t i = first; i < last; ++i) {
                 const Id n = number[result_.corners[i]];
                 if (n != kDropped) result_.corners[out++] = n;
             }
         }
-        result_.loops.back().first = out;
+        result_.firstCorner.back() = static_cast<Id>(out);
         result_.corners.resize(out);
         result_.corners.shrink_to_fit();
     }

@@ -8,35 +8,38 @@
 
 namespace adaptiso::detail {
 
-/// A closed loop of vertices to be filled with triangles; inside runs to its left.
-struct Loop {
-    std::uint64_t first;  ///< of its vertices
-    std::uint64_t key;    ///< of a merged facet: PlaneKey; of others: BoxKey
-    bool isPlane;         ///< boundary of a merged facet, on one plane by its midpoints
+/// What a loop bounds, as one word: a part of a plane (PlaneKey) or, in space, a disc in a box
+/// (BoxKey). The top bit tells them apart.
+struct LoopKey {
+    std::uint64_t word = 0;
+    static constexpr std::uint64_t kPlane = std::uint64_t{1} << 63;
+
+    bool isPlane() const { return word & kPlane; }
 };
 
-/// The plane of a merged facet: all boxes of one size, one of the 26 directions, one offset.
-/// Loops with equal keys lie in the same plane and do not overlap.
+/// The plane of a merged facet: boxes of one size, one of the 26 directions, one offset. Loops with
+/// equal keys lie in the same plane and do not overlap.
 struct PlaneKey {
     std::uint64_t word = 0;
 
-    static PlaneKey make(const std::array<int, 3>& normal, int level, std::int64_t offset) {
+    static LoopKey make(const std::array<int, 3>& normal, int level, std::int64_t offset) {
         const int code = (normal[0] + 1) + 3 * (normal[1] + 1) + 9 * (normal[2] + 1);
-        return {static_cast<std::uint64_t>(code) << 59 | static_cast<std::uint64_t>(level) << 56 |
-                static_cast<std::uint64_t>(offset + (std::int64_t{1} << 54))};
+        return {LoopKey::kPlane | static_cast<std::uint64_t>(code) << 58 |
+                static_cast<std::uint64_t>(level) << 55 |
+                static_cast<std::uint64_t>(offset + (std::int64_t{1} << 53))};
     }
     std::array<int, 3> normal() const {
-        const int code = static_cast<int>(word >> 59);
+        const int code = static_cast<int>(word >> 58 & 31);
         return {code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1};
     }
-    int level() const { return static_cast<int>(word >> 56 & 7); }
+    int level() const { return static_cast<int>(word >> 55 & 7); }
 };
 
 /// A box of the grid: lattice position and size of the box whose faces a loop runs on.
 struct BoxKey {
     std::uint64_t word = 0;
 
-    static BoxKey make(const Index3& low, int log2Size) {
+    static LoopKey make(const Index3& low, int log2Size) {
         return {static_cast<std::uint64_t>(low[0]) | static_cast<std::uint64_t>(low[1]) << 20 |
                 static_cast<std::uint64_t>(low[2]) << 40 |
                 static_cast<std::uint64_t>(log2Size) << 60};
@@ -71,9 +74,12 @@ struct EdgeKey {
 template <class Id>
 struct SurfaceLoops {
     int blockSize = 0;              ///< N: size of the boxes of level 0
-    std::vector<Loop> loops;        ///< and one more at the end, for its `first`
-    std::vector<Id> corners;        ///< vertices of all loops
+    std::vector<LoopKey> keys;      ///< of each loop
+    std::vector<Id> firstCorner;    ///< of each loop in `corners`, and the end
+    std::vector<Id> corners;        ///< vertices of all loops; the inside runs to their left
     std::vector<EdgeKey> vertices;  ///< the lattice edge that each vertex lies on
+
+    std::size_t count() const { return keys.size(); }
 };
 
 /// Follows the boundaries of merged facets across boxes and blocks, and drops the vertices that no

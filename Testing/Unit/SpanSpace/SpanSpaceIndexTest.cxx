@@ -1,0 +1,107 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "Support/AnalyticVolumes.h"
+#include "adaptiso/SpanSpace/SpanSpaceIndex.h"
+
+namespace adaptiso::testing {
+namespace {
+
+/// The blocks with a sample inside and a sample outside, sample by sample.
+template <class T>
+std::vector<std::uint32_t> blocksByDefinition(const VolumeView& volume, const BlockGrid& grid,
+                                              double isovalue) {
+    const auto view = volume.as<T>();
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t b = 0; b < grid.blockCount(); ++b) {
+        const Index3 first = grid.firstSample(b);
+        bool inside = false, outside = false;
+        for (int z = 0; z <= grid.blockSize; ++z) {
+            for (int y = 0; y <= grid.blockSize; ++y) {
+                for (int x = 0; x <= grid.blockSize; ++x) {
+                    const Index3 p{first[0] + x, first[1] + y, first[2] + z};
+                    bool isIn = true;
+                    for (int a = 0; a < 3; ++a) isIn &= p[a] >= 0 && p[a] < view.geometry.size[a];
+                    if (!isIn) {
+                        outside |= grid.border == Border::Closed;
+                        continue;
+                    }
+                    const bool reaches = static_cast<double>(view.at(p[0], p[1], p[2])) >= isovalue;
+                    (reaches ? inside : outside) = true;
+                }
+            }
+        }
+        if (inside && outside) found.push_back(b);
+    }
+    return found;
+}
+
+}  // namespace
+
+TEST(SpanSpaceIndex, FindsTheBlocksThatAScanFinds) {
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        std::uint64_t state = seed;
+        Index3 size;
+        for (auto& extent : size) extent = 1 + static_cast<std::int64_t>(nextRandom(state) % 30);
+        const Volume volume = randomVolume<std::int16_t>(size, 12, seed);
+        for (const int blockSize : {2, 4, 8, 16}) {
+            for (const Border border : {Border::Closed, Border::Open}) {
+                const SpanSpaceIndex index = SpanSpaceIndex::build(volume, {blockSize, border});
+                for (const double isovalue : {-1.0, 0.0, 0.5, 3.0, 7.0, 10.5, 11.0, 12.0}) {
+                    EXPECT_EQ(index.blocksAt(isovalue).blocks,
+                              blocksByDefinition<std::int16_t>(volume, index.grid(), isovalue));
+                }
+            }
+        }
+    }
+}
+
+TEST(SpanSpaceIndex, TakesNotANumberAsOutside) {
+    const float kNan = std::nanf("");
+    ImageGeometry geometry;
+    geometry.size = {3, 3, 3};
+    std::vector<float> samples(27, 5.0F);
+    samples[13] = kNan;
+    const Volume volume = Volume::fromSamples(samples, geometry);
+    const SpanSpaceIndex open = SpanSpaceIndex::build(volume, {2, Border::Open});
+    EXPECT_EQ(open.blocksAt(4).blocks, blocksByDefinition<float>(volume, open.grid(), 4));
+    EXPECT_TRUE(open.blocksAt(6).blocks.empty());
+}
+
+TEST(SpanSpaceIndex, KeepsTheExtremesOfATypeApart) {
+    ImageGeometry geometry;
+    geometry.size = {4, 4, 4};
+    std::vector<std::uint8_t> samples(64, 0);
+    samples[21] = 255;
+    const Volume volume = Volume::fromSamples(samples, geometry);
+    const SpanSpaceIndex index = SpanSpaceIndex::build(volume, {2, Border::Closed});
+    for (const double isovalue : {-5.0, 0.0, 0.001, 1.0, 254.5, 255.0, 255.5, 1e9}) {
+        EXPECT_EQ(index.blocksAt(isovalue).blocks,
+                  blocksByDefinition<std::uint8_t>(volume, index.grid(), isovalue))
+            << isovalue;
+    }
+}
+
+TEST(SpanSpaceIndex, VisitsFewNodesBesidesTheAnswer) {
+    const AnalyticVolume truth =
+        sampled<std::uint8_t>(sphere({}, 50), centredGeometry({128, 128, 128}));
+    const SpanSpaceIndex index = SpanSpaceIndex::build(truth.volume, {4, Border::Closed});
+    for (const double isovalue : {10.0, 40.0, 64.0, 100.0, 127.0}) {
+        const BlockQuery query = index.blocksAt(isovalue);
+        // the bound of issue 3: 1.2 times the answer and the square root of all blocks
+        EXPECT_LE(static_cast<double>(query.nodesVisited),
+                  1.2 * static_cast<double>(query.blocks.size()) +
+                      std::sqrt(static_cast<double>(index.grid().blockCount())))
+            << isovalue;
+    }
+}
+
+TEST(SpanSpaceIndex, HoldsTwoSamplesAndANumberForEachBlock) {
+    const Volume volume = randomVolume<std::uint8_t>({33, 33, 33}, 200, 1);
+    const SpanSpaceIndex index = SpanSpaceIndex::build(volume, {4, Border::Open});
+    EXPECT_EQ(index.memoryBytes(), static_cast<std::size_t>(index.grid().blockCount()) * 6);
+}
+
+}  // namespace adaptiso::testing
