@@ -7,7 +7,6 @@
 
 #include "ByteSource.h"
 #include "Codecs.h"
-#include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 
 namespace adaptiso::meshio {
@@ -37,16 +36,6 @@ ImageGeometry neutralVolume(CoordinateFrame frame) {
         volume.indexToPhysical = halfTurn * volume.indexToPhysical;
     }
     return volume;
-}
-
-void requireNeutralName(const std::string& name) {
-    for (const char c : name) {
-        if (c <= ' ' || c > '~' || c == '/' || c == '\\' || c == '=') {
-            throw InvalidInput("writeMesh: the volume name " + printable(name) +
-                               " must be a file name of printable ASCII without folder, space "
-                               "or '='");
-        }
-    }
 }
 
 void encodeRow(std::string_view key, const Vec3& v, ByteSink& sink) {
@@ -140,7 +129,6 @@ Footer decodeFooter(ByteSource& source) {
 void encodeFreeSurfer(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
     const MeshWriteOptions& options = record.options;
-    requireNeutralName(options.volumeName);
     sink << kTriangleMagic << headerLine(options.frame) << "\n\n";
     sink.bigEndian(static_cast<std::int32_t>(mesh.points.size()));
     sink.bigEndian(static_cast<std::int32_t>(mesh.triangles.size()));

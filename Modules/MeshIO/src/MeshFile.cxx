@@ -82,6 +82,16 @@ std::string findFault(const TriangleMesh& mesh, double limit) {
 
 constexpr double kFloatMax = std::numeric_limits<float>::max();
 
+void requireNeutralName(const std::string& name) {
+    for (const char c : name) {
+        if (c <= ' ' || c > '~' || c == '/' || c == '\\' || c == '=') {
+            throw InvalidInput("writeMesh: the volume name " + meshio::printable(name) +
+                               " must be a file name of printable ASCII without folder, space "
+                               "or '='");
+        }
+    }
+}
+
 void requireWritable(const TriangleMesh& mesh, const MeshFormat& format,
                      const MeshWriteOptions& options, const std::string& file) {
     const std::string fault = findFault(mesh, kFloatMax);
@@ -96,6 +106,7 @@ void requireWritable(const TriangleMesh& mesh, const MeshFormat& format,
         throw InvalidInput("writeMesh: " + file + ": " + std::string(format.name) +
                            " files hold mm, not voxel indices; write RAS, LPS or tkRAS");
     }
+    if (format.holdsVolumeGeometry) requireNeutralName(options.volumeName);
 }
 
 /// Scales normals that are not of unit length; the others keep their very bits.

@@ -38,6 +38,11 @@ public:
     }
 
     MeshFile finish() && {
+        if (isNumberedAlike()) {
+            return {{std::move(mesh_.points), std::move(normals_), std::move(mesh_.triangles)},
+                    frame_,
+                    std::nullopt};
+        }
         const bool eachHasOne =
             oneNormalEach_ && !normals_.empty() && normalOf_.size() == mesh_.points.size();
         for (std::size_t i = 0; eachHasOne && i < normalOf_.size(); ++i) {
@@ -50,6 +55,18 @@ public:
     }
 
 private:
+    /// One normal for each vertex, under the same number: then vertices that no face uses have
+    /// theirs too.
+    bool isNumberedAlike() const {
+        if (!oneNormalEach_ || normalOf_.empty() || normals_.size() != mesh_.points.size()) {
+            return false;
+        }
+        for (std::size_t i = 0; i < normalOf_.size(); ++i) {
+            if (normalOf_[i] != kNone && normalOf_[i] != static_cast<std::int64_t>(i)) return false;
+        }
+        return true;
+    }
+
     void decodeFace(ByteSource& line) {
         Triangle triangle{};
         std::int64_t corners = 0;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <unordered_map>
+#include <vector>
 
 #include "ByteSource.h"
 #include "Codecs.h"
@@ -14,36 +14,60 @@ namespace {
 constexpr std::size_t kHeaderBytes = 80;
 constexpr std::size_t kTriangleBytes = 50;
 
-using Corner = std::array<float, 3>;
+/// The bits of a corner's three float coordinates: equal where the coordinates are equal numbers.
+using Corner = std::array<std::uint32_t, 3>;
 
-struct CornerHash {
-    std::size_t operator()(const Corner& corner) const {
-        std::uint64_t hash = 0;
-        for (const float c : corner) {
-            hash = (hash ^ std::bit_cast<std::uint32_t>(c)) * 0x9E3779B97F4A7C15u;
-            hash ^= hash >> 29;
+std::uint32_t coordinateBits(float c) {
+    return std::bit_cast<std::uint32_t>(c + 0.0f);  // -0 becomes +0: equal numbers, equal bits
+}
+
+/// The mesh of triangles given as three corners each: corners with equal coordinates become one
+/// vertex, numbered by first use. By sorting: there are files that make any fixed hash slow.
+TriangleMesh welded(const std::vector<Corner>& corners) {
+    struct Use {
+        Corner corner;
+        std::int64_t number;
+        bool operator<(const Use& other) const {
+            return corner != other.corner ? corner < other.corner : number < other.number;
         }
-        return hash;
+    };
+    std::vector<Use> uses;
+    uses.reserve(corners.size());
+    for (const Corner& corner : corners) {
+        uses.push_back({corner, static_cast<std::int64_t>(uses.size())});
     }
-};
-
-/// Gives corners with equal coordinates one vertex, numbered by first use.
-class VertexMerger {
-public:
-    explicit VertexMerger(TriangleMesh& mesh) : mesh_(mesh) {}
-
-    VertexId vertexOf(Corner corner) {
-        for (float& c : corner) c += 0.0f;  // -0 becomes +0: equal numbers, equal bits
-        const auto next = static_cast<VertexId>(mesh_.points.size());
-        const auto [entry, isNew] = vertices_.try_emplace(corner, next);
-        if (isNew) mesh_.points.push_back({corner[0], corner[1], corner[2]});
-        return entry->second;
+    std::sort(uses.begin(), uses.end());
+    std::vector<std::int64_t> firstUse(corners.size());
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+        const bool isFirst = i == 0 || uses[i].corner != uses[i - 1].corner;
+        firstUse[uses[i].number] = isFirst ? uses[i].number : firstUse[uses[i - 1].number];
     }
 
-private:
-    TriangleMesh& mesh_;
-    std::unordered_map<Corner, VertexId, CornerHash> vertices_;
-};
+    TriangleMesh mesh;
+    mesh.triangles.resize(corners.size() / 3);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const std::size_t first = firstUse[i];
+        VertexId& vertex = mesh.triangles[i / 3][i % 3];
+        if (first == i) {
+            vertex = static_cast<VertexId>(mesh.points.size());
+            const auto coordinate = [&](int axis) {
+                return std::bit_cast<float>(corners[i][axis]);
+            };
+            mesh.points.push_back({coordinate(0), coordinate(1), coordinate(2)});
+        } else {
+            vertex = mesh.triangles[first / 3][first % 3];
+        }
+    }
+    return mesh;
+}
+
+/// The point as the file keeps it: the normal follows from what readers see.
+Vec3 rounded(const Vec3& p) {
+    // volatile: GCC 12 at -O2 drops vectorized double -> float -> double conversions
+    const volatile float x = static_cast<float>(p.x), y = static_cast<float>(p.y),
+                         z = static_cast<float>(p.z);
+    return {x, y, z};
+}
 
 void encodeVec(const Vec3& v, ByteSink& sink) {
     for (int axis = 0; axis < 3; ++axis) sink.littleEndian(static_cast<float>(v[axis]));
@@ -54,49 +78,57 @@ MeshFile decodeBinary(ByteSource source) {
     file.frame = findFrameMarker(source.take(kHeaderBytes));
     const std::int64_t count = source.number<std::uint32_t>(std::endian::little);
     requireRoom("triangles", count, kTriangleBytes, source.left());
-    file.mesh.triangles.resize(count);
-    VertexMerger merger(file.mesh);
-    for (Triangle& triangle : file.mesh.triangles) {
+    std::vector<Corner> corners(3 * count);
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
         ByteSource record(source.take(kTriangleBytes));
         record.take(3 * sizeof(float));  // the normal follows from the corners
-        for (VertexId& vertex : triangle) {
-            Corner corner;
-            for (float& c : corner) c = record.number<float>(std::endian::little);
-            vertex = merger.vertexOf(corner);
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::uint32_t& bits : corners[i + k]) {
+                bits = coordinateBits(record.number<float>(std::endian::little));
+            }
         }
     }
+    file.mesh = welded(corners);
     return file;
 }
 
 MeshFile decodeText(ByteSource source) {
     MeshFile file;
-    file.frame = findFrameMarker(source.line());
-    VertexMerger merger(file.mesh);
-    Triangle triangle{};
-    int corners = 0;
-    for (std::string_view word = source.word(); !word.empty(); word = source.word()) {
-        if (lowerCase(word) == "vertex") {
-            if (corners == 3) refusePolygon(4);
-            Corner corner;
-            for (float& c : corner) {
-                c = toFloat(source.realWord("a coordinate"), "a coordinate");
+    std::vector<Corner> corners;
+    std::size_t loop = 0;  // corners of the facet at this place
+    bool isOpen = false;   // inside a solid
+    for (std::string word = lowerCase(source.word()); !word.empty();
+         word = lowerCase(source.word())) {
+        if (word == "solid" || word == "endsolid") {
+            isOpen = word == "solid";
+            const std::string_view name = source.line();
+            if (!file.frame) file.frame = findFrameMarker(name);
+        } else if (word == "vertex") {
+            if (loop++ == 3) refusePolygon(4);
+            for (std::uint32_t& bits : corners.emplace_back()) {
+                bits = coordinateBits(toFloat(source.realWord("a coordinate"), "a coordinate"));
             }
-            triangle[corners++] = merger.vertexOf(corner);
-        } else if (lowerCase(word) == "endloop") {
-            if (corners != 3) damaged("a facet has " + std::to_string(corners) + " corners");
-            file.mesh.triangles.push_back(triangle);
-            corners = 0;
+        } else if (word == "endloop") {
+            if (loop != 3) damaged("a facet has " + std::to_string(loop) + " corners");
+            loop = 0;
         }
     }
-    if (corners != 0) damaged("it ends inside a facet");
+    if (loop != 0) damaged("it ends inside a facet");
+    if (isOpen) damaged("it ends without the word 'endsolid'");
+    file.mesh = welded(corners);
     return file;
 }
 
+/// Programs write binary files with headers that begin with "solid", and text that begins with
+/// "SOLID" or a blank line: the size tells, and zero bytes, which text has none of.
 bool looksBinary(std::string_view bytes) {
-    if (!bytes.starts_with("solid")) return true;
-    if (bytes.size() < kHeaderBytes + 4) return false;
-    const auto count = loadAs<std::uint32_t>(bytes.data() + kHeaderBytes, std::endian::little);
-    return bytes.size() == kHeaderBytes + 4 + kTriangleBytes * std::uint64_t{count};
+    if (bytes.size() >= kHeaderBytes + 4) {
+        const auto count = loadAs<std::uint32_t>(bytes.data() + kHeaderBytes, std::endian::little);
+        if (bytes.size() == kHeaderBytes + 4 + kTriangleBytes * std::uint64_t{count}) return true;
+    }
+    constexpr std::size_t kLook = 1024;
+    const std::string head = lowerCase(trimmed(bytes.substr(0, kLook)));
+    return !head.starts_with("solid") || head.find('\0') != std::string::npos;
 }
 
 }  // namespace
@@ -108,7 +140,8 @@ void encodeStl(const MeshRecord& record, ByteSink& sink) {
     sink << header;
     sink.littleEndian(static_cast<std::uint32_t>(mesh.triangles.size()));
     for (const Triangle& t : mesh.triangles) {
-        const Vec3 &a = mesh.points[t[0]], &b = mesh.points[t[1]], &c = mesh.points[t[2]];
+        const Vec3 a = rounded(mesh.points[t[0]]), b = rounded(mesh.points[t[1]]),
+                   c = rounded(mesh.points[t[2]]);
         encodeVec(normalized(areaVector2(a, b, c)), sink);
         for (const Vec3& corner : {a, b, c}) encodeVec(corner, sink);
         sink.littleEndian(std::uint16_t{0});

@@ -27,7 +27,9 @@ vtkSmartPointer<Array> copiedArray(const std::vector<Row>& rows) {
     auto array = vtkSmartPointer<Array>::New();
     array->SetNumberOfComponents(3);
     array->SetNumberOfTuples(static_cast<vtkIdType>(rows.size()));
-    std::memcpy(array->GetPointer(0), rows.data(), rows.size() * sizeof(Row));
+    if (!rows.empty()) {
+        std::memcpy(array->GetPointer(0), rows.data(), rows.size() * sizeof(Row));
+    }
     return array;
 }
 
@@ -38,7 +40,9 @@ vtkSmartPointer<vtkCellArray> toCells(const std::vector<Triangle>& triangles) {
     for (vtkIdType i = 0; i <= count; ++i) offsets->SetValue(i, 3 * i);
     vtkNew<vtkIdTypeArray> corners;
     corners->SetNumberOfValues(3 * count);
-    std::memcpy(corners->GetPointer(0), triangles.data(), triangles.size() * sizeof(Triangle));
+    if (count > 0) {
+        std::memcpy(corners->GetPointer(0), triangles.data(), triangles.size() * sizeof(Triangle));
+    }
     auto cells = vtkSmartPointer<vtkCellArray>::New();
     cells->SetData(offsets, corners);
     return cells;

@@ -186,6 +186,7 @@ private:
         for (std::int64_t i = 0; i < arrays; ++i) {
             std::string_view name = source_.requireWord("a field array");
             if (lowerCase(name) == "metadata") {
+                source_.line();
                 skipMetadata();
                 name = source_.requireWord("a field array");
             }

@@ -132,7 +132,8 @@ public:
             }
             return text;
         }
-        text = blockBytes(array, std::nullopt, "strings");
+        constexpr std::size_t kMostBytes = std::size_t{1} << 16;  // of all strings of the array
+        text = blockBytes(array, kMostBytes, "strings");
         return text.substr(0, std::min(text.find('\0'), text.size()));
     }
 
@@ -163,7 +164,12 @@ private:
         const std::size_t mostBytes =
             std::max(array.text.size(), appendedData_.size()) * (isCompressed_ ? kBestRatio : 1);
         requireRoom(what, count, sizeof(Stored), mostBytes);
-        const std::string bytes = blockBytes(array, count * sizeof(Stored), what);
+        const std::size_t due = count * sizeof(Stored);
+        const std::string bytes = blockBytes(array, due, what);
+        if (bytes.size() != due) {
+            damaged("its " + std::string(what) + " take " + std::to_string(bytes.size()) +
+                    " bytes, must be " + std::to_string(due));
+        }
         std::vector<T> values(count);
         for (std::int64_t i = 0; i < count; ++i) {
             values[i] = static_cast<T>(loadAs<Stored>(bytes.data() + i * sizeof(Stored), order_));
@@ -171,9 +177,9 @@ private:
         return values;
     }
 
-    /// The unpacked bytes of an array: exactly `expected` of them, where that is given.
-    std::string blockBytes(const DataArray& array, std::optional<std::size_t> expected,
-                           std::string_view what) {
+    /// The unpacked bytes of an array; damage, and nothing unpacked, where they are compressed
+    /// and claim to be more than `most`.
+    std::string blockBytes(const DataArray& array, std::size_t most, std::string_view what) {
         std::string_view data = trimmed(array.text);
         bool isRaw = false;
         if (requireAttribute(array.attributes, "format") == "appended") {
@@ -183,13 +189,7 @@ private:
             data = appendedData_.substr(offset);
             isRaw = appendedIsRaw_;
         }
-        const std::string bytes =
-            isCompressed_ ? unpackedBlocks(data, isRaw) : plainBlock(data, isRaw);
-        if (expected && bytes.size() != *expected) {
-            damaged("its " + std::string(what) + " take " + std::to_string(bytes.size()) +
-                    " bytes, must be " + std::to_string(*expected));
-        }
-        return bytes;
+        return isCompressed_ ? unpackedBlocks(data, isRaw, most) : plainBlock(data, isRaw);
     }
 
     /// The first `count` bytes that `data` stands for; moves `data` behind them.
@@ -220,7 +220,7 @@ private:
 
     /// Number of blocks, bytes of a block, of the last one (0: full), packed bytes of each; then,
     /// in a second run of base64, the blocks.
-    std::string unpackedBlocks(std::string_view data, bool isRaw) const {
+    std::string unpackedBlocks(std::string_view data, bool isRaw, std::size_t most) const {
         std::string_view ahead = data;
         const std::uint64_t blocks = headerWord(takeBytes(ahead, wordBytes_, isRaw), 0);
         if (blocks > data.size() / wordBytes_) damaged("its table of blocks is cut off");
@@ -238,6 +238,10 @@ private:
             const std::uint64_t last = headerWord(header, 2);
             const std::uint64_t size =
                 block + 1 == blocks && last != 0 ? last : headerWord(header, 1);
+            if (size > most - bytes.size()) {
+                damaged("its blocks of compressed data unpack to more than " +
+                        std::to_string(most) + " bytes");
+            }
             const std::uint64_t length = headerWord(header, 3 + block);
             bytes += inflated(std::string_view(packed).substr(begin, length), size);
             begin += length;
@@ -268,8 +272,8 @@ void decodeTriangles(const VtpHandler& handler, ArrayReader& reader, TriangleMes
     const std::int64_t count = pieceCount(handler, "NumberOfPolys");
     const auto offsets = reader.numbers<std::int64_t>(handler.offsets, count, "polygon offsets");
     for (std::int64_t i = 0; i < count; ++i) {
-        const std::int64_t corners = offsets[i] - (i == 0 ? 0 : offsets[i - 1]);
-        if (corners != 3) refusePolygon(corners);
+        if (offsets[i] < 3 * i) damaged("its polygon offsets do not grow");
+        if (offsets[i] != 3 * i + 3) refusePolygon(offsets[i] - 3 * i);
     }
     const auto corners = reader.numbers<VertexId>(handler.connectivity, 3 * count, "polygons");
     mesh.triangles.resize(count);
