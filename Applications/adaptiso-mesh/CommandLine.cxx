@@ -157,8 +157,8 @@ void declareOutput(CLI::App& app, MeshOptions& options) {
                                "FreeSurfer's surface RAS mm (default for its formats), or voxel "
                                "indices")
         ->group(kOutput);
-    app.add_flag("--check-crossings", options.checksCrossings,
-                 "Count the pairs of triangles that cross each other, for the reports")
+    app.add_flag("--check-crossings,!--no-check-crossings", options.checksCrossings,
+                 "Count the pairs of triangles that cross each other, for the reports (default)")
         ->group(kOutput);
 }
 

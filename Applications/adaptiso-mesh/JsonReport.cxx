@@ -145,6 +145,7 @@ Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {
               {"nodesVisited", statistics.indexNodesVisited}}},
             {"boxes", boxesJson(statistics.boxes)},
             {"boxesChangingTopology", statistics.boxesChangingTopology},
+            {"edgesSplit", statistics.edgesSplit},
             {"triangles", topology.triangles},
             {"vertices", topology.vertices},
             {"marchingCubesTriangles", statistics.marchingCubesTriangles},

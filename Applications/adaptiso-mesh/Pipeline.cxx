@@ -15,6 +15,7 @@
 #include "TextReport.h"
 #include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
@@ -143,6 +144,13 @@ TriangleMesh keepPieces(const TriangleMesh& mesh, const ComponentSelection& sele
 }
 
 /// Makes one surface and writes it under its temporary name.
+/// The volume whose frame is written. For tkRAS an image that is not stored as FreeSurfer stores
+/// volumes stands for the one that FreeSurfer makes of it: by its own axes tkRAS would mirror the
+/// head, and MNE and FreeSurfer know the subject by that volume.
+ImageGeometry frameVolume(CoordinateFrame frame, const ImageGeometry& image) {
+    return frame == CoordinateFrame::TkRas && !image.isMirrored() ? conformedGeometry(image) : image;
+}
+
 SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index, double isovalue,
                            const IsovalueChoice& choice, MeshRun& run, ProgressLine& progress,
                            std::vector<AtomicOutput>& outputs) {
@@ -193,7 +201,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         AtomicOutput& output = outputs.emplace_back(summary.file);
         MeshWriteOptions write;
         write.frame = summary.frame;
-        write.volume = volume.geometry();
+        write.volume = frameVolume(summary.frame, volume.geometry());
         output.write([&](const fs::path& path) { writeMesh(mesh, path, write); });
         summary.bytes = fs::file_size(output.temporary());
     });

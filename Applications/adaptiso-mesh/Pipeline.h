@@ -30,7 +30,7 @@ struct MeshOptions {
     IndexOptions index;
     ComponentSelection selection;
     std::optional<CoordinateFrame> frame;  ///< none: the output format's own
-    bool checksCrossings = false;
+    bool checksCrossings = true;
     CommonOptions common;
 };
 

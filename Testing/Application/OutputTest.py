@@ -162,9 +162,9 @@ class Formats(ApplicationTest):
 
     def test_frames_are_where_the_ball_is(self):
         # voxel (i, j, k) is at RAS (10 + i, j - 20, 30 + k); the ball's middle is voxel 7.5
-        # tkRAS of a 16^3 volume of 1 mm: (8 - i, k - 8, 8 - j)
+        # tkRAS: RAS less that of the image's middle, voxel (8, 8, 8), at (18, -12, 38)
         middles = {"ras": (17.5, -12.5, 37.5), "lps": (-17.5, 12.5, 37.5),
-                   "tkras": (0.5, -0.5, 0.5)}
+                   "tkras": (-0.5, -0.5, -0.5)}
         for frame, middle in middles.items():
             with self.subTest(frame):
                 self.mesh("ball.nii", "--iso", "100", "-o", "a.stl", "--coordinates", frame,

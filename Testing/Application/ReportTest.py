@@ -36,19 +36,18 @@ def keys_of(value, path=""):
 class Schema(ApplicationTest):
     def test_keys_are_the_documented_ones(self):
         write_nifti(self.path("onion.nii"), onion())
-        report = self.report("onion.nii", "--iso", "0", "--iso", "1", "--largest",
-                             "--check-crossings")
+        report = self.report("onion.nii", "--iso", "0", "--iso", "1", "--largest")
         self.assertEqual(keys_of(report), documented_keys())
 
     def test_optional_stages_are_not_there_when_not_asked_for(self):
         write_nifti(self.path("ball.nii"), ball())
-        report = self.report("ball.nii", "--iso", "100")
+        report = self.report("ball.nii", "--iso", "100", "--no-check-crossings")
         self.assertEqual(documented_keys() - keys_of(report),
                          {"seconds.pieces", "seconds.crossings"})
 
     def test_types(self):
         write_nifti(self.path("onion.nii"), onion())
-        report = self.report("onion.nii", "--iso", "0", "--check-crossings")
+        report = self.report("onion.nii", "--iso", "0")
         surface = report["surfaces"][0]
         for component in surface["components"]:
             self.assertEqual(component.keys(), COMPONENT.keys())
@@ -119,7 +118,8 @@ class Numbers(ApplicationTest):
                                     border)["surfaces"][0]["soundness"]
             self.assertEqual(soundness.pop("closed"), border == "closed")
             self.assertEqual(soundness.pop("boundaryEdges") == 0, border == "closed")
-            self.assertIsNone(soundness.pop("crossingPairs"))
+            # the method does not exclude them; noise has some
+            self.assertGreaterEqual(soundness.pop("crossingPairs"), 0)
             self.assertEqual(set(soundness.values()), {0})
 
     def test_open_surfaces_have_no_volume(self):
