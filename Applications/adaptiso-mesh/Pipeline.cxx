@@ -148,7 +148,8 @@ TriangleMesh keepPieces(const TriangleMesh& mesh, const ComponentSelection& sele
 /// volumes stands for the one that FreeSurfer makes of it: by its own axes tkRAS would mirror the
 /// head, and MNE and FreeSurfer know the subject by that volume.
 ImageGeometry frameVolume(CoordinateFrame frame, const ImageGeometry& image) {
-    return frame == CoordinateFrame::TkRas && !image.isMirrored() ? conformedGeometry(image) : image;
+    return frame == CoordinateFrame::TkRas && !image.isMirrored() ? conformedGeometry(image)
+                                                                  : image;
 }
 
 SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index, double isovalue,
