@@ -1,0 +1,92 @@
+// compareExtraction VOLUME --iso V: this library and vtkFlyingEdges3D on one scan, side by side.
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <string>
+
+#include "Comparison.h"
+#include "ComparisonReport.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
+
+namespace adaptiso::benchmarks {
+namespace {
+
+// as the programs of Applications/ exit
+constexpr int kExitUsage = 2;
+constexpr int kExitBadInput = 3;
+constexpr int kExitInternal = 4;
+
+struct Arguments {
+    std::string volume;
+    std::string json;
+    std::string commit;
+    ComparisonOptions options;
+};
+
+void declareOptions(CLI::App& app, Arguments& arguments) {
+    app.add_option("volume", arguments.volume, "A scan, as adaptiso-mesh takes it")->required();
+    app.add_option("--iso", arguments.options.isovalue, "Isovalue of the surface")
+        ->type_name("V")
+        ->check(CLI::Number)
+        ->required();
+    app.add_option("--json", arguments.json, "Write the numbers to FILE")->type_name("FILE");
+    app.add_option("--repeats", arguments.options.repeats, "Timed runs of each (default 5)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000));
+    app.add_option("--threads", arguments.options.threads, "Threads of each side (default 2)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1024));
+    app.add_option("--commit", arguments.commit, "What the JSON says was measured")
+        ->type_name("TEXT");
+}
+
+void writeJsonFile(const std::string& path, const Comparison& comparison,
+                   const ComparisonContext& context) {
+    std::ofstream file(path);
+    writeJson(file, comparison, context);
+    file.close();
+    if (!file) throw FileError(path + ": can't be written");
+}
+
+void run(const Arguments& arguments) {
+    const ReadVolume input = readVolume(arguments.volume);
+    const VolumeView& volume = input.volume;
+    const Comparison comparison = compareExtractions(volume, arguments.options);
+    const ComparisonContext context{arguments.volume, arguments.commit, arguments.options,
+                                    volume.pixelType(), volume.geometry()};
+    writeMarkdown(std::cout, comparison, context);
+    if (!arguments.json.empty()) writeJsonFile(arguments.json, comparison, context);
+}
+
+int fail(const std::exception& error, int code) {
+    std::cerr << "compareExtraction: " << error.what() << '\n';
+    return code;
+}
+
+}  // namespace
+}  // namespace adaptiso::benchmarks
+
+int main(int argc, char** argv) {
+    using namespace adaptiso::benchmarks;
+    CLI::App app("Compares this library's isosurfaces with vtkFlyingEdges3D's");
+    Arguments arguments;
+    declareOptions(app, arguments);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : kExitUsage;
+    }
+    try {
+        run(arguments);
+    } catch (const adaptiso::InternalError& error) {
+        return fail(error, kExitInternal);
+    } catch (const adaptiso::Error& error) {
+        return fail(error, kExitBadInput);
+    } catch (const std::exception& error) {
+        return fail(error, kExitInternal);
+    }
+    return 0;
+}
