@@ -21,15 +21,28 @@ namespace {
 constexpr std::uint32_t kUndefinedLength = 0xFFFFFFFF;
 constexpr std::uint64_t kPreambleBytes = 128;
 constexpr DicomTag kItem = 0xFFFEE000, kItemEnd = 0xFFFEE00D, kSequenceEnd = 0xFFFEE0DD;
+constexpr DicomTag kMediaStorageSopClass = 0x00020002;
 constexpr int kDeepestNesting = 32;
 
-constexpr std::array kWantedValues = {
-    tag::kTransferSyntax,   tag::kImageType,        tag::kSeriesInstanceUid,
-    tag::kImagePosition,    tag::kImageOrientation, tag::kSamplesPerPixel,
-    tag::kPhotometric,      tag::kNumberOfFrames,   tag::kRows,
-    tag::kColumns,          tag::kPixelSpacing,     tag::kBitsAllocated,
-    tag::kBitsStored,       tag::kHighBit,          tag::kPixelRepresentation,
-    tag::kRescaleIntercept, tag::kRescaleSlope};
+constexpr std::array kWantedValues = {kMediaStorageSopClass,
+                                      tag::kSopClass,
+                                      tag::kTransferSyntax,
+                                      tag::kImageType,
+                                      tag::kSeriesInstanceUid,
+                                      tag::kImagePosition,
+                                      tag::kImageOrientation,
+                                      tag::kSamplesPerPixel,
+                                      tag::kPhotometric,
+                                      tag::kNumberOfFrames,
+                                      tag::kRows,
+                                      tag::kColumns,
+                                      tag::kPixelSpacing,
+                                      tag::kBitsAllocated,
+                                      tag::kBitsStored,
+                                      tag::kHighBit,
+                                      tag::kPixelRepresentation,
+                                      tag::kRescaleIntercept,
+                                      tag::kRescaleSlope};
 
 constexpr std::array kWantedSequences = {tag::kModalityLutSequence,
                                          tag::kPlanePositionSequence,
@@ -67,6 +80,9 @@ public:
     DicomHeader walk() {
         findFirstElement();
         header_.dataset = walkDataset(fileBytes_, 0);
+        header_.mediaStorage =
+            std::string(header_.dataset.text(tag::kSopClass)
+                            .value_or(metaGroup_.text(kMediaStorageSopClass).value_or("")));
         return std::move(header_);
     }
 

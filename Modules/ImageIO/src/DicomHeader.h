@@ -16,6 +16,7 @@ using DicomTag = std::uint32_t;
 namespace tag {
 inline constexpr DicomTag kTransferSyntax = 0x00020010;
 inline constexpr DicomTag kImageType = 0x00080008;
+inline constexpr DicomTag kSopClass = 0x00080016;
 inline constexpr DicomTag kSeriesInstanceUid = 0x0020000E;
 inline constexpr DicomTag kImagePosition = 0x00200032;
 inline constexpr DicomTag kImageOrientation = 0x00200037;
@@ -67,6 +68,7 @@ struct DicomPixelData {
 struct DicomHeader {
     DicomDataset dataset;
     std::string transferSyntax;
+    std::string mediaStorage;  ///< SOP class, also from the file meta group; empty when absent
     bool isBigEndian = false;
     std::optional<DicomPixelData> pixelData;  ///< at top level: an icon's pixels do not count
 

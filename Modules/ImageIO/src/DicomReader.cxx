@@ -136,31 +136,64 @@ void requireSoundRle(const DicomFile& dicom, const DicomPixelFormat& format) {
     }
 }
 
+enum class Codec { None, Rle, Jpeg, Jpeg2000 };
+
+std::optional<Codec> codecOf(std::string_view transferSyntax) {
+    static const std::map<std::string_view, Codec> kCodecs = {
+        {"1.2.840.10008.1.2", Codec::None},    // implicit little endian
+        {"1.2.840.10008.1.2.1", Codec::None},  // explicit little endian
+        {"1.2.840.10008.1.2.2", Codec::None},  // explicit big endian
+        {"1.2.840.10008.1.2.5", Codec::Rle},
+        {"1.2.840.10008.1.2.4.50", Codec::Jpeg},      // baseline
+        {"1.2.840.10008.1.2.4.51", Codec::Jpeg},      // extended
+        {"1.2.840.10008.1.2.4.57", Codec::Jpeg},      // lossless
+        {"1.2.840.10008.1.2.4.70", Codec::Jpeg},      // lossless, first order
+        {"1.2.840.10008.1.2.4.80", Codec::Jpeg},      // JPEG-LS lossless
+        {"1.2.840.10008.1.2.4.81", Codec::Jpeg},      // JPEG-LS near lossless
+        {"1.2.840.10008.1.2.4.90", Codec::Jpeg2000},  // lossless
+        {"1.2.840.10008.1.2.4.91", Codec::Jpeg2000}};
+    const auto it = kCodecs.find(transferSyntax);
+    if (it == kCodecs.end()) return std::nullopt;
+    return it->second;
+}
+
+/// The codecs write to stderr when they are given something else.
+void requireCodestream(const DicomFile& dicom, Codec codec) {
+    using namespace std::string_view_literals;
+    const auto& fragments = dicom.header.pixelData->fragments;
+    char raw[2] = {0, 0};
+    if (!fragments.empty() && fragments.front().byteCount >= sizeof raw) {
+        ByteSource(dicom.path, fragments.front().offset, ByteSource::Encoding::Raw)
+            .read(raw, sizeof raw);
+    }
+    const std::string_view start(raw, sizeof raw);
+    const bool isSound = codec == Codec::Jpeg ? start == "\xff\xd8"sv
+                                              : start == "\xff\x4f"sv || start == "\0\0"sv;  // .jp2
+    if (!isSound) {
+        refuse(dicom.path, "its compressed pixel data are damaged and can't be decoded",
+               "get the file again");
+    }
+}
+
 void requirePixelData(const DicomFile& dicom, const DicomPixelFormat& format) {
-    static const std::map<std::string_view, bool> kIsEncapsulated = {
-        {"1.2.840.10008.1.2", false},     {"1.2.840.10008.1.2.1", false},
-        {"1.2.840.10008.1.2.2", false},   {"1.2.840.10008.1.2.5", true},      // RLE
-        {"1.2.840.10008.1.2.4.50", true}, {"1.2.840.10008.1.2.4.51", true},   // JPEG
-        {"1.2.840.10008.1.2.4.57", true}, {"1.2.840.10008.1.2.4.70", true},   // JPEG lossless
-        {"1.2.840.10008.1.2.4.80", true}, {"1.2.840.10008.1.2.4.81", true},   // JPEG-LS
-        {"1.2.840.10008.1.2.4.90", true}, {"1.2.840.10008.1.2.4.91", true}};  // JPEG 2000
     const DicomPixelData& pixels = *dicom.header.pixelData;
-    const auto it = kIsEncapsulated.find(dicom.header.transferSyntax);
-    if (it == kIsEncapsulated.end()) {
+    const auto codec = codecOf(dicom.header.transferSyntax);
+    if (!codec) {
         refuse(dicom.path, "unsupported transfer syntax (how its pixel data are compressed)",
                "save it uncompressed, e.g. with gdcmconv --raw");
     }
-    if (it->second != pixels.isEncapsulated) {
+    if ((*codec != Codec::None) != pixels.isEncapsulated) {
         refuse(dicom.path, "damaged: its pixel data are not as its transfer syntax says",
                "get the file again");
     }
-    if (!pixels.isEncapsulated && pixels.byteCount < format.byteCount()) {
+    if (*codec == Codec::None && pixels.byteCount < format.byteCount()) {
         refuse(dicom.path,
                fmt::format("truncated: its pixel data hold {} of {} bytes", pixels.byteCount,
                            format.byteCount()),
                "get the whole file");
     }
-    if (dicom.header.transferSyntax == "1.2.840.10008.1.2.5") requireSoundRle(dicom, format);
+    if (*codec == Codec::Rle) requireSoundRle(dicom, format);
+    if (*codec == Codec::Jpeg || *codec == Codec::Jpeg2000) requireCodestream(dicom, *codec);
 }
 
 // ---- where its planes lie
@@ -542,6 +575,26 @@ bool hasDicomName(const fs::path& file) {
     return ending == ".dcm" || ending == ".ima" || ending == ".dicom";
 }
 
+/// DICOMDIR, reports, presentation states, plans and the like: what may lie beside the slices.
+bool isOtherThanImage(const DicomHeader& header) {
+    constexpr std::string_view kStorage = "1.2.840.10008.5.1.4.1.1.";
+    std::string_view storage = header.mediaStorage;
+    if (storage == "1.2.840.10008.1.3.10") return true;  // DICOMDIR
+    if (!storage.starts_with(kStorage)) return false;
+    storage.remove_prefix(kStorage.size());
+    for (const std::string_view kind :
+         {"9.", "11.", "66", "67", "68.", "88.", "104.", "481.2", "481.3", "481.4", "481.5",
+          "481.6", "481.7", "481.8", "481.9"}) {
+        if (storage.starts_with(kind) && storage != "66.4") return true;  // 66.4: segmentation
+    }
+    return false;
+}
+
+/// A slice that lost its end, as interrupted copies do.
+bool isBlankStub(std::string_view head, std::size_t wholeHead) {
+    return head.size() < wholeHead && head.find_first_not_of('\0') == std::string_view::npos;
+}
+
 struct FolderListing {
     std::vector<fs::path> dicomFiles;  ///< by name
     std::size_t oddEntries = 0;        ///< pipes, devices, link loops
@@ -572,10 +625,12 @@ FolderListing listFolder(const fs::path& folder) {
         }
         requireRegularFile(entry);
         constexpr std::size_t kMagicEnd = 132;
-        if (looksLikeDicom(readHead(entry, kMagicEnd))) {
+        const std::string head = readHead(entry, kMagicEnd);
+        const bool isHidden = entry.filename().native().starts_with('.');
+        if (looksLikeDicom(head)) {
             listing.dicomFiles.push_back(entry);
-        } else if (hasDicomName(entry)) {
-            refuse(entry, "is named like a DICOM file but is none, a slice may be damaged",
+        } else if (hasDicomName(entry) || (!isHidden && isBlankStub(head, kMagicEnd))) {
+            refuse(entry, "is empty, or named like a DICOM file but none: a slice may be damaged",
                    "get it again or remove it");
         }
     }
@@ -597,7 +652,12 @@ ReadVolume readDicomFolder(const fs::path& folder, const ReadOptions& options) {
     std::vector<DicomFile> files;
     for (const fs::path& path : listing.dicomFiles) {
         DicomFile dicom{path, readDicomHeader(path)};
-        if (dicom.header.pixelData) files.push_back(std::move(dicom));
+        if (dicom.header.pixelData) {
+            files.push_back(std::move(dicom));
+        } else if (!isOtherThanImage(dicom.header)) {
+            refuse(path, "is a DICOM image without pixel data, a slice may be cut off",
+                   "get it again or remove it");
+        }
     }
     if (files.empty()) {
         refuse(folder,

@@ -12,7 +12,7 @@
 #include "Samples.h"
 
 // ITK 5.2.1 decodes NIfTI only where the sform is orthogonal and agrees with pixdim (else it takes
-// the qform, or throws), pads short files with zeros and knows no NIfTI-2. The format is a fixed
+// the qform, or throws) and pads short files with zeros. The format, NIfTI-2 included, is a fixed
 // header and plain samples, so it is read here, after nifti1.h and nifti2.h.
 namespace adaptiso::detail {
 namespace fs = std::filesystem;

@@ -331,7 +331,7 @@ void requireAsciiNumbers(const fs::path& file, ByteSource& source, std::int64_t 
         }
     }
     if (found < count) {
-        refuse(file, fmt::format("truncated: holds {} of {} numbers", found, count),
+        refuse(file, fmt::format("truncated: its data hold {} of {} numbers", found, count),
                "get the whole file");
     }
 }

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "adaptiso/Core/Geometry.h"
+
+namespace adaptiso::testing {
+
+enum class DicomCodec {
+    ImplicitLittleEndian,
+    ExplicitLittleEndian,
+    Rle,
+    JpegLossless,
+    JpegLsLossless,
+    Jpeg2000Lossless
+};
+
+/// A square CT slice of size * size uint16 samples, 0.5 mm pixels, written by GDCM.
+void writeWithGdcm(const std::filesystem::path& file, const std::vector<std::uint16_t>& samples,
+                   int size, const Vec3& position, const Vec3& alongRow, const Vec3& alongColumn,
+                   DicomCodec codec);
+
+}  // namespace adaptiso::testing

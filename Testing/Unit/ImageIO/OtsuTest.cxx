@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/ImageIO/Otsu.h"
+
+namespace adaptiso {
+namespace {
+
+template <class T>
+double otsuOf(std::vector<T> samples) {
+    const auto count = static_cast<std::int64_t>(samples.size());
+    return otsuThreshold(Volume::fromSamples(std::move(samples), {{count, 1, 1}, {}, {}}));
+}
+
+TEST(Otsu, LiesHalfwayBetweenTwoValues) {
+    EXPECT_EQ(otsuOf<std::uint8_t>({0, 0, 0, 100}), 50);
+    EXPECT_EQ(otsuOf<std::int16_t>({-1000, -1000, 40, 40}), -480);
+    EXPECT_EQ(otsuOf<float>({0, 0, 1, 1}), 0.5);
+    EXPECT_DOUBLE_EQ(otsuOf<double>({1e-9, 3e-9, 3e-9}), 2e-9);
+    EXPECT_EQ(otsuOf<std::uint16_t>({3, 4}), 3.5);
+    EXPECT_EQ(otsuOf<std::int64_t>({-1'000'000'000'000, 1'000'000'000'000}), 0);
+}
+
+TEST(Otsu, MaximisesTheVarianceBetweenClasses) {
+    // 10 x 0, 10 x 1, 10 x 8, 10 x 9: means of {0, 1} and {8, 9} are 0.5 and 8.5, between-class
+    // variance 1/4 * 8^2 = 16; splitting off 0 or 9 alone gives 3/16 * 6^2 = 6.75
+    std::vector<std::uint8_t> samples;
+    for (const int value : {0, 1, 8, 9}) samples.insert(samples.end(), 10, std::uint8_t(value));
+    EXPECT_EQ(otsuOf(samples), 4.5);
+}
+
+TEST(Otsu, FollowsTheClassesNotTheirSizes) {
+    // a rare bright mode around 200 over a broad dark one around 20
+    std::vector<std::uint8_t> samples;
+    for (int i = 0; i < 900; ++i) samples.push_back(static_cast<std::uint8_t>(10 + i % 21));
+    for (int i = 0; i < 100; ++i) samples.push_back(static_cast<std::uint8_t>(190 + i % 21));
+    EXPECT_EQ(otsuOf(samples), 110);  // halfway between 30 and 190
+}
+
+TEST(Otsu, IsTheSameForIntegersAndFloats) {
+    std::vector<std::uint8_t> bytes;
+    std::vector<float> floats;
+    for (int i = 0; i < 1000; ++i) {
+        const int value = i % 3 ? (i * 7) % 50 : 120 + (i * 11) % 60;
+        bytes.push_back(static_cast<std::uint8_t>(value));
+        floats.push_back(static_cast<float>(value));
+    }
+    EXPECT_EQ(otsuOf(bytes), otsuOf(floats));
+}
+
+TEST(Otsu, LeavesNanAndInfinityAside) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinity = std::numeric_limits<float>::infinity();
+    EXPECT_EQ(otsuOf<float>({nan, 0, infinity, 10, -infinity, 0, 10}), 5);
+}
+
+TEST(Otsu, RefusesVolumesWithNothingToSeparate) {
+    EXPECT_THROW(otsuOf<std::uint8_t>({7, 7, 7}), InvalidInput);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THROW(otsuOf<float>({nan, nan}), InvalidInput);
+    EXPECT_THROW(otsuOf<float>({nan, 2, 2}), InvalidInput);
+    const double largest = std::numeric_limits<double>::max();
+    EXPECT_THROW(otsuOf<double>({-largest, largest}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace adaptiso
