@@ -157,8 +157,9 @@ void declareOutput(CLI::App& app, MeshOptions& options) {
                                "FreeSurfer's surface RAS mm (default for its formats), or voxel "
                                "indices")
         ->group(kOutput);
-    app.add_flag("--check-crossings,!--no-check-crossings", options.checksCrossings,
-                 "Count the pairs of triangles that cross each other, for the reports (default)")
+    app.add_flag_callback(
+           "--no-check-crossings", [&options] { options.checksCrossings = false; },
+           "Do not count the pairs of triangles that cross each other for the reports")
         ->group(kOutput);
 }
 

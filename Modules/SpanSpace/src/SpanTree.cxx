@@ -3,30 +3,34 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
-#include <numeric>
-#include <tuple>
+#include <cstddef>
 
 namespace adaptiso::detail {
 namespace {
 
 constexpr std::int64_t kParallelBuild = 1 << 14;  // below, a task costs more than it saves
 
-template <class Low, class High>
-void sortLevel(std::uint32_t* begin, std::uint32_t* end, bool onMinimum, const Low& low,
-               const High& high) {
+template <class T>
+struct Node {
+    T low, high;
+    std::uint32_t block;
+};
+
+template <class T>
+void sortLevel(Node<T>* begin, Node<T>* end, bool onMinimum) {
     if (end - begin < 2) return;
-    std::uint32_t* middle = begin + (end - begin) / 2;
+    Node<T>* middle = begin + (end - begin) / 2;
     if (onMinimum) {
-        std::nth_element(begin, middle, end, [&](std::uint32_t a, std::uint32_t b) {
-            return std::tie(low[a], a) < std::tie(low[b], b);
+        std::nth_element(begin, middle, end, [](const Node<T>& a, const Node<T>& b) {
+            return a.low != b.low ? a.low < b.low : a.block < b.block;
         });
     } else {
-        std::nth_element(begin, middle, end, [&](std::uint32_t a, std::uint32_t b) {
-            return std::tie(high[a], a) < std::tie(high[b], b);
+        std::nth_element(begin, middle, end, [](const Node<T>& a, const Node<T>& b) {
+            return a.high != b.high ? a.high < b.high : a.block < b.block;
         });
     }
-    const auto left = [&] { sortLevel(begin, middle, !onMinimum, low, high); };
-    const auto right = [&] { sortLevel(middle + 1, end, !onMinimum, low, high); };
+    const auto left = [&] { sortLevel(begin, middle, !onMinimum); };
+    const auto right = [&] { sortLevel(middle + 1, end, !onMinimum); };
     if (end - begin > kParallelBuild) {
         tbb::parallel_invoke(left, right);
     } else {
@@ -38,14 +42,22 @@ void sortLevel(std::uint32_t* begin, std::uint32_t* end, bool onMinimum, const L
 }  // namespace
 
 template <class T>
-SpanTree<T>::SpanTree(BlockRanges<T> ranges) : block_(ranges.minimum.size()) {
-    std::iota(block_.begin(), block_.end(), 0u);
-    sortLevel(block_.data(), block_.data() + block_.size(), true, ranges.minimum, ranges.maximum);
-    minimum_.reserve(block_.size());
-    for (const std::uint32_t b : block_) minimum_.push_back(ranges.minimum[b]);
-    ranges.minimum = {};
-    maximum_.reserve(block_.size());
-    for (const std::uint32_t b : block_) maximum_.push_back(ranges.maximum[b]);
+SpanTree<T>::SpanTree(BlockRanges<T> ranges) {
+    const std::size_t count = ranges.minimum.size();
+    std::vector<Node<T>> nodes(count);
+    for (std::size_t b = 0; b < count; ++b) {
+        nodes[b] = {ranges.minimum[b], ranges.maximum[b], static_cast<std::uint32_t>(b)};
+    }
+    sortLevel(nodes.data(), nodes.data() + count, true);
+    // the arrays of the ranges become those of the tree
+    minimum_ = std::move(ranges.minimum);
+    maximum_ = std::move(ranges.maximum);
+    block_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        minimum_[i] = nodes[i].low;
+        maximum_[i] = nodes[i].high;
+        block_[i] = nodes[i].block;
+    }
 }
 
 /// The three walks of k-d search. `search` knows nothing yet; `searchMaxMin` runs where every
