@@ -81,9 +81,10 @@ void checkOutputs(const MeshOptions& options) {
 
 std::string rangeText(const MeshRun& run) {
     const ValueRange& range = run.input.range;
-    const std::string file = run.options.input.filename().string();
+    const std::string file =
+        run.options.input.filename().empty() ? "the volume" : run.options.input.filename().string();
     if (range.minimum > range.maximum) return file + " holds no numbers";
-    return file + " holds values from " + formatNumber(range.minimum) + " to " +
+    return "the range of " + file + " is " + formatNumber(range.minimum) + " to " +
            formatNumber(range.maximum);
 }
 

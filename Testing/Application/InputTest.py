@@ -56,10 +56,10 @@ class BadInput(ApplicationTest):
 
     def test_isovalue_outside_the_values_names_them(self):
         write_nifti(self.path("two.nii"), Image((2, 2, 2), "B", [10, 20, 20, 20, 20, 20, 20, 30]))
-        self.refused("no voxel reaches it; two.nii holds values from 10 to 30", "two.nii",
+        self.refused("no voxel reaches it; the range of two.nii is 10 to 30", "two.nii",
                      "--iso", "30.5")
-        self.refused("every voxel reaches it.*values from 10 to 30", "two.nii", "--iso", "10")
-        self.refused("every voxel reaches it.*values from 10 to 30", "two.nii", "--iso=-5")
+        self.refused("every voxel reaches it.*the range of two.nii is 10 to 30", "two.nii", "--iso", "10")
+        self.refused("every voxel reaches it.*the range of two.nii is 10 to 30", "two.nii", "--iso=-5")
         self.mesh("two.nii", "--iso", "30")
         self.mesh("two.nii", "--iso", "10.5")
 
