@@ -66,7 +66,7 @@ private:
 
     const LatticeSampler& sampler_;
     Index3 first_;
-    std::array<std::uint32_t, kSide * kSide> rows_;
+    std::array<std::uint32_t, std::size_t{kSide} * kSide> rows_;
 };
 
 }  // namespace adaptiso::detail

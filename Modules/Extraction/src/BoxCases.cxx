@@ -62,7 +62,7 @@ class Polygon {
 public:
     std::size_t size() const { return size_; }
     int operator[](std::size_t i) const { return edge_[i]; }
-    void push_back(int edge) { edge_[size_++] = static_cast<std::int8_t>(edge); }
+    void add(int edge) { edge_[size_++] = static_cast<std::int8_t>(edge); }
     const std::int8_t* begin() const { return edge_.data(); }
     const std::int8_t* end() const { return edge_.data() + size_; }
 
@@ -161,7 +161,7 @@ private:
 
     int costOfFacet(const std::array<int, kLargestFacet>& corner, int count) const {
         Polygon polygon;
-        for (int c = 0; c < count; ++c) polygon.push_back(loop_[corner[c]]);
+        for (int c = 0; c < count; ++c) polygon.add(loop_[corner[c]]);
         if (isFacet(polygon)) return kFacet;
         if (count > 3) return kFlat;
         return areaVector(polygon) == IntVec{0, 0, 0} ? kFlat : kOddTriangle;
@@ -170,7 +170,7 @@ private:
     void collect(int i, int j, std::vector<Polygon>& facets) {
         const Plan chosen = plan(i, j);
         Polygon facet;
-        for (int c = 0; c < chosen.corners; ++c) facet.push_back(loop_[chosen.corner[c]]);
+        for (int c = 0; c < chosen.corners; ++c) facet.add(loop_[chosen.corner[c]]);
         facets.push_back(facet);
         for (int c = 0; c + 1 < chosen.corners; ++c) {
             if (chosen.corner[c + 1] > chosen.corner[c] + 1) {
@@ -216,7 +216,7 @@ std::vector<Polygon> loopsOf(const BoxIsoLines& lines) {
         Polygon loop;
         for (int edge = start; !seen[edge]; edge = lines.to[edge]) {
             seen[edge] = true;
-            loop.push_back(edge);
+            loop.add(edge);
         }
         loops.push_back(loop);
     }
@@ -329,8 +329,8 @@ SquareIsoLines squareIsoLines(unsigned corners, bool joined) {
 }
 
 const BoxCases& BoxCases::instance() {
-    static const BoxCases cases;
-    return cases;
+    static const BoxCases kCases;
+    return kCases;
 }
 
 BoxCases::BoxCases() {

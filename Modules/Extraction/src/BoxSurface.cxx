@@ -65,7 +65,7 @@ public:
 
         const std::array<int, 3> cells = cellsInVolume<N>(surface_.active.grid(), first);
         BlockRecord<N, Id>& record = surface_.blocks[block];
-        std::array<std::uint8_t, N * N * N> sizeAt;
+        std::array<std::uint8_t, std::size_t{N} * N * N> sizeAt;
         record.tree.forEachLeaf([&](const Box& box) {
             if (box.x >= cells[0] || box.y >= cells[1] || box.z >= cells[2]) return;
             const unsigned corners = samples.corners(box);
@@ -102,7 +102,7 @@ private:
             int& low = axis == 0 ? box.x : axis == 1 ? box.y : box.z;
             if (low < 0) {
                 low += N;
-                block = neighbour_[2 * axis];
+                block = neighbour_[2 * axis + 0];
             } else if (low >= N) {
                 low -= N;
                 block = neighbour_[2 * axis + 1];

@@ -36,7 +36,7 @@ Extraction extractWithBlocks(const VolumeView& volume, ActiveBlocks active,
     // at most every lattice edge of the active blocks is a vertex, with few corners of loops at
     // each
     constexpr std::int64_t kMaximumCornersAtVertex = 16;
-    const std::int64_t vertices = 3 * N * N * N * active.count();
+    const std::int64_t vertices = std::int64_t{3} * N * N * N * active.count();
     if (vertices * kMaximumCornersAtVertex <= std::int64_t{0xFFFFFFFF}) {
         return extract<N, std::uint32_t>(volume, std::move(active), options);
     }

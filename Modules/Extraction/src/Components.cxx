@@ -102,7 +102,7 @@ public:
         // about two triangles a cell where they are spread evenly
         const double cells = static_cast<double>(mesh.triangles.size()) / 2;
         side_ = std::clamp<std::int64_t>(std::llround(std::sqrt(cells)), 1, kMaxSide);
-        cellSize_ = kRange / side_ + 1;
+        cellSize_ = kRange / side_ + 1;  // NOLINT(cppcoreguidelines-prefer-member-initializer)
         fillCells();
     }
 

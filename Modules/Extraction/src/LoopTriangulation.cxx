@@ -58,8 +58,8 @@ void triangulateLoop(std::span<const SpatialCorner> loop, std::vector<LocalTrian
         out.push_back({rest[(best + n - 1) % n], rest[best], rest[(best + 1) % n]});
         rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(best));
         ears.erase(ears.begin() + static_cast<std::ptrdiff_t>(best));
-        measure((best + n - 2) % (n - 1));
-        measure(best % (n - 1));
+        measure(best == 0 ? n - 2 : best - 1);
+        measure(best == n - 1 ? 0 : best);
     }
     out.push_back({rest[0], rest[1], rest[2]});
 }

@@ -33,9 +33,9 @@ std::vector<CrowdedEdge> findCrowdedEdges(const TriangleMesh& mesh) {
     const std::size_t vertices = mesh.points.size();
     std::vector<std::uint64_t> first(vertices + 1, 0);
     const auto forEachUpward = [&](const auto& f) {
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (const Triangle& t : mesh.triangles) {
             for (int c = 0; c < 3; ++c) {
-                const VertexId a = mesh.triangles[t][c], b = mesh.triangles[t][(c + 1) % 3];
+                const VertexId a = t[c], b = t[(c + 1) % 3];
                 if (a < b) f(a, b);
             }
         }

@@ -69,7 +69,8 @@ private:
         return (twice & ligns) == 0;
     }
 
-    std::array<std::array<std::array<std::uint32_t, kSide>, 2 * N>, 3> leave_{}, enter_{};
+    std::array<std::array<std::array<std::uint32_t, kSide>, std::size_t{2} * N>, 3> leave_{},
+        enter_{};
 };
 
 /// The simple cubic boxes of a block (thesis 4.2): an octree, of which only the divisions are kept.

@@ -192,7 +192,7 @@ private:
         const int corner = lowCorner(half.edge);
         std::int64_t offset = 0;
         for (int a = 0; a < 3; ++a) {
-            const int mid = a == edgeAxis(half.edge) ? 1 : 2 * (corner >> a & 1);
+            const std::int64_t mid = a == edgeAxis(half.edge) ? 1 : 2 * (corner >> a & 1);
             offset += n[a] * (2 * low[a] + box.size * mid);
         }
         return PlaneKey::make({n[0], n[1], n[2]}, ref.box->level(), offset);

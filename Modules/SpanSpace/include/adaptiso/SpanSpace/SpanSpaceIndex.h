@@ -34,6 +34,8 @@ public:
 
     SpanSpaceIndex(SpanSpaceIndex&&) noexcept;
     SpanSpaceIndex& operator=(SpanSpaceIndex&&) noexcept;
+    SpanSpaceIndex(const SpanSpaceIndex&) = delete;  // large: move it
+    SpanSpaceIndex& operator=(const SpanSpaceIndex&) = delete;
     ~SpanSpaceIndex();
 
     const BlockGrid& grid() const;
