@@ -145,14 +145,6 @@ TriangleMesh keepPieces(const TriangleMesh& mesh, const ComponentSelection& sele
 }
 
 /// Makes one surface and writes it under its temporary name.
-/// The volume whose frame is written. For tkRAS an image that is not stored as FreeSurfer stores
-/// volumes stands for the one that FreeSurfer makes of it: by its own axes tkRAS would mirror the
-/// head, and MNE and FreeSurfer know the subject by that volume.
-ImageGeometry frameVolume(CoordinateFrame frame, const ImageGeometry& image) {
-    return frame == CoordinateFrame::TkRas && !image.isMirrored() ? conformedGeometry(image)
-                                                                  : image;
-}
-
 SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index, double isovalue,
                            const IsovalueChoice& choice, MeshRun& run, ProgressLine& progress,
                            std::vector<AtomicOutput>& outputs) {

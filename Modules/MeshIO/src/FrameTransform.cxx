@@ -69,6 +69,11 @@ ImageGeometry conformedGeometry(const ImageGeometry& volume) {
     return conformed;
 }
 
+ImageGeometry frameVolume(CoordinateFrame frame, const ImageGeometry& image) {
+    return frame == CoordinateFrame::TkRas && !image.isMirrored() ? conformedGeometry(image)
+                                                                  : image;
+}
+
 AffineTransform lpsToFrame(CoordinateFrame frame, const std::optional<ImageGeometry>& volume) {
     switch (frame) {
         case CoordinateFrame::Lps:

@@ -92,6 +92,24 @@ void requireNeutralName(const std::string& name) {
     }
 }
 
+void requireOnePerPoint(const std::vector<PointArray>& arrays, const TriangleMesh& mesh,
+                        const MeshFormat& format, const std::string& file) {
+    if (!arrays.empty() && format.id != MeshFormatId::VtkXml) {
+        throw InvalidInput("writeMesh: " + file + ": " + std::string(format.name) +
+                           " files hold no values at points; write .vtp");
+    }
+    for (const PointArray& array : arrays) {
+        const std::size_t count =
+            std::visit([](const auto& values) { return values.size(); }, array.values);
+        if (count != mesh.points.size()) {
+            throw InvalidInput("writeMesh: " + file + ": the array " +
+                               meshio::printable(array.name) + " has " + std::to_string(count) +
+                               " values for " + std::to_string(mesh.points.size()) +
+                               " points, must be one each");
+        }
+    }
+}
+
 void requireWritable(const TriangleMesh& mesh, const MeshFormat& format,
                      const MeshWriteOptions& options, const std::string& file) {
     const std::string fault = findFault(mesh, kFloatMax);
@@ -107,6 +125,7 @@ void requireWritable(const TriangleMesh& mesh, const MeshFormat& format,
                            " files hold mm, not voxel indices; write RAS, LPS or tkRAS");
     }
     if (format.holdsVolumeGeometry) requireNeutralName(options.volumeName);
+    requireOnePerPoint(options.pointArrays, mesh, format, file);
 }
 
 /// Scales normals that are not of unit length; the others keep their very bits.

@@ -1,8 +1,13 @@
 #include "VtkEncode.h"
 
+#include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
 
 #include "adaptiso/MeshIO/VtkAdaptor.h"
 
@@ -16,10 +21,37 @@ void addField(vtkPolyData& data, const char* name, std::string_view value) {
     data.GetFieldData()->AddArray(field);
 }
 
+vtkSmartPointer<vtkDataArray> toVtkArray(const std::vector<double>& values) {
+    auto array = vtkSmartPointer<vtkDoubleArray>::New();
+    array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+    std::copy(values.begin(), values.end(), array->GetPointer(0));
+    return array;
+}
+
+vtkSmartPointer<vtkDataArray> toVtkArray(const std::vector<Color>& colors) {
+    auto array = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    array->SetNumberOfComponents(3);
+    array->SetNumberOfTuples(static_cast<vtkIdType>(colors.size()));
+    unsigned char* to = array->GetPointer(0);
+    for (const Color& color : colors) to = std::copy(color.begin(), color.end(), to);
+    return array;
+}
+
+void addPointArrays(vtkPolyData& data, const std::vector<PointArray>& arrays) {
+    for (const PointArray& array : arrays) {
+        const auto values =
+            std::visit([](const auto& each) { return toVtkArray(each); }, array.values);
+        values->SetName(array.name.c_str());
+        data.GetPointData()->AddArray(values);
+    }
+    if (!arrays.empty()) data.GetPointData()->SetActiveScalars(arrays.front().name.c_str());
+}
+
 }  // namespace
 
 vtkSmartPointer<vtkPolyData> toLabelledPolyData(const MeshRecord& record) {
     auto data = toVtkPolyData(record.mesh);
+    addPointArrays(*data, record.options.pointArrays);
     addField(*data, kFrameFieldName, toString(record.options.frame));
     addField(*data, kVersionFieldName, "1");
     return data;

@@ -155,6 +155,21 @@ TEST(VtkFiles, SayFrameAndVersion) {
                            "adaptiso surface, CoordinateFrame: RAS mm\nBINARY\n"));
 }
 
+TEST(VtkFiles, HoldValuesAtPoints) {
+    const std::size_t count = icosphere(1).points.size();
+    MeshWriteOptions options;
+    options.pointArrays = {{"Depth", std::vector<double>(count, 0.5)},
+                           {"Shade", std::vector<Color>(count, Color{1, 2, 3})}};
+    const std::string xml = written(icosphere(1), "a.vtp", options);
+    EXPECT_NE(xml.find("Scalars=\"Depth\""), std::string::npos);
+    EXPECT_NE(xml.find("type=\"UInt8\" Name=\"Shade\" NumberOfComponents=\"3\""),
+              std::string::npos);
+    // beside the mesh: what is read is what was written without them
+    const MeshFormat& format = findMeshFormat("a.vtp");
+    EXPECT_EQ(decodeMesh(xml, format, "a").mesh,
+              decodeMesh(written(icosphere(1), "b.vtp", {}), format, "b").mesh);
+}
+
 TEST(EveryFile, NamesNoUserHostFolderOrDate) {
     for (const MeshFormat& format : meshFormats()) {
         const std::string name = testing::exampleName(format);

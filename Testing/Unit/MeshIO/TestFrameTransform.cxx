@@ -154,4 +154,15 @@ TEST(FrameTransform, FromFrameUndoesToFrame) {
 }
 
 }  // namespace
+
+TEST(FrameVolume, IsTheConformedVolumeForTkRasOfImagesStoredOtherwise) {
+    ImageGeometry image;  // as most DICOM and NIfTI images: right-handed in LPS
+    image.size = {10, 20, 30};
+    EXPECT_EQ(frameVolume(CoordinateFrame::Ras, image), image);
+    EXPECT_EQ(frameVolume(CoordinateFrame::Voxel, image), image);
+    EXPECT_EQ(frameVolume(CoordinateFrame::TkRas, image), conformedGeometry(image));
+    const ImageGeometry conformed = conformedGeometry(image);  // as FreeSurfer stores them
+    EXPECT_EQ(frameVolume(CoordinateFrame::TkRas, conformed), conformed);
+}
+
 }  // namespace adaptiso

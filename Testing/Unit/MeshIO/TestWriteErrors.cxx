@@ -71,6 +71,25 @@ TEST(WriteMesh, BadMeshesAreRefusedBeforeAFileIsMade) {
     }
 }
 
+TEST(WriteMesh, PointArraysAreForVtkXmlAndHaveOneValueAPoint) {
+    MeshWriteOptions options;
+    options.pointArrays = {{"Depth", std::vector<double>(4)}};
+    for (const MeshFormat& format : meshFormats()) {
+        const auto path = temporaryFile(exampleName(format));
+        if (format.id == MeshFormatId::VtkXml) {
+            EXPECT_NO_THROW(writeMesh(tetrahedron(), path, options));
+            continue;
+        }
+        EXPECT_THROW(writeMesh(tetrahedron(), path, options), InvalidInput) << format.name;
+        EXPECT_FALSE(std::filesystem::exists(path)) << format.name;
+    }
+    options.pointArrays.push_back({"Shade", std::vector<Color>(3)});
+    const std::string message =
+        messageOf<InvalidInput>([&] { writeMesh(tetrahedron(), temporaryFile("a.vtp"), options); });
+    EXPECT_NE(message.find("Shade"), std::string::npos) << message;
+    EXPECT_NE(message.find("3 values for 4 points"), std::string::npos) << message;
+}
+
 TEST(WriteMesh, FramesOfAVolumeNeedTheVolume) {
     const auto path = temporaryFile("a.surf");
     EXPECT_THROW(writeMesh(tetrahedron(), path, {CoordinateFrame::TkRas, std::nullopt, ""}),

@@ -46,6 +46,11 @@ AffineTransform indexToTkRas(const ImageGeometry& volume);
 /// centre. Its tkRAS is scanner RAS less that centre (c_ras), whatever axes the volume has.
 ImageGeometry conformedGeometry(const ImageGeometry& volume);
 
+/// The volume by which programs write and read a frame of this image. It is the image, but for
+/// tkRAS of an image that is not stored as FreeSurfer stores volumes: by its own axes tkRAS would
+/// mirror the head, and MNE and FreeSurfer know the subject by the conformed volume.
+ImageGeometry frameVolume(CoordinateFrame frame, const ImageGeometry& image);
+
 /// Physical LPS mm -> `frame`.
 /// \param volume  needed for TkRas and Voxel, not looked at for the others
 /// \throws InvalidInput  no volume where one is needed, or as indexToTkRas()

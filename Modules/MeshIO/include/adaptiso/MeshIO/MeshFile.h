@@ -1,9 +1,13 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
 
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/TriangleMesh.h"
@@ -11,6 +15,15 @@
 #include "adaptiso/MeshIO/Formats.h"
 
 namespace adaptiso {
+
+/// An RGB colour.
+using Color = std::array<std::uint8_t, 3>;
+
+/// A number, or a colour, for every point of a mesh.
+struct PointArray {
+    std::string name;  ///< as ParaView and PyVista list it
+    std::variant<std::vector<double>, std::vector<Color>> values;
+};
 
 struct MeshWriteOptions {
     CoordinateFrame frame = CoordinateFrame::Ras;
@@ -20,6 +33,9 @@ struct MeshWriteOptions {
     /// FreeSurfer footer only: the volume's file name, without folder and without anything that
     /// names a patient. Empty: "unknown". Printable ASCII without space, '/', '\\', '='.
     std::string volumeName;
+    /// VTK XML only: written beside the mesh, the first as the active scalars. readMesh() leaves
+    /// them aside.
+    std::vector<PointArray> pointArrays{};
 };
 
 /// Writes a surface in the format that the file's name asks for (findMeshFormat()).
@@ -40,8 +56,9 @@ struct MeshWriteOptions {
 /// \param mesh  LPS mm
 /// \throws InvalidInput  unknown extension; frame without its volume, or that the format can't
 ///         hold; a mesh without triangles, with a triangle's index out of range, a coordinate
-///         that is not finite (or too large for float), normals that are not one per point, or
-///         more elements than the format can count
+///         that is not finite (or too large for float), normals that are not one per point,
+///         more elements than the format can count; point arrays that the format can't hold, or
+///         that are not one value per point
 /// \throws FileError     the file can't be written (no such folder, no permission, disk full)
 void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
                const MeshWriteOptions& options = {});

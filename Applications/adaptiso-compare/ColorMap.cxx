@@ -1,0 +1,36 @@
+#include "ColorMap.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace adaptiso {
+namespace {
+
+constexpr std::array<Color, 10> kViridis{{{68, 1, 84},
+                                          {72, 40, 120},
+                                          {62, 73, 137},
+                                          {49, 104, 142},
+                                          {38, 130, 142},
+                                          {31, 158, 137},
+                                          {53, 183, 121},
+                                          {110, 206, 88},
+                                          {181, 222, 43},
+                                          {253, 231, 37}}};
+
+}  // namespace
+
+Color viridis(double part) {
+    const double place = std::clamp(part, 0.0, 1.0) * (kViridis.size() - 1);
+    const std::size_t below =
+        std::min<std::size_t>(static_cast<std::size_t>(place), kViridis.size() - 2);
+    const double rest = place - static_cast<double>(below);
+    Color color;
+    for (std::size_t channel = 0; channel < color.size(); ++channel) {
+        const double from = kViridis[below][channel], to = kViridis[below + 1][channel];
+        color[channel] = static_cast<std::uint8_t>(std::lround(from + rest * (to - from)));
+    }
+    return color;
+}
+
+}  // namespace adaptiso

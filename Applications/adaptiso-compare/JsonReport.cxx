@@ -1,0 +1,168 @@
+#include "JsonReport.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "Common/CommonOptions.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json vector(const Vec3& v) {
+    return {number(v.x), number(v.y), number(v.z)};
+}
+
+template <class T>
+Json orNull(const std::optional<T>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
+std::string baseName(const std::filesystem::path& path) {
+    std::error_code error;
+    if (path.has_filename() && path != "." && path != "..") return path.filename().string();
+    return std::filesystem::canonical(path, error).filename().string();
+}
+
+std::string_view frameWord(CoordinateFrame frame) {
+    switch (frame) {
+        case CoordinateFrame::Ras:
+            return "ras";
+        case CoordinateFrame::Lps:
+            return "lps";
+        case CoordinateFrame::TkRas:
+            return "tkras";
+        case CoordinateFrame::Voxel:
+            return "voxel";
+    }
+    throw InternalError("jsonReport: unknown coordinate frame");
+}
+
+Json surfaceJson(const SurfaceSummary& surface) {
+    return {{"file", baseName(surface.file)},
+            {"format", surface.format->name},
+            {"coordinates", surface.frame ? Json(frameWord(*surface.frame)) : Json(nullptr)},
+            {"triangles", surface.triangles},
+            {"vertices", surface.vertices},
+            {"areaMm2", number(surface.areaMm2)},
+            {"volumeMm3", orNull(surface.volumeMm3)},
+            {"boundingBoxDiagonalMm", number(surface.diagonalMm)}};
+}
+
+Json volumeJson(const CompareRun& run) {
+    if (!run.volume) return nullptr;
+    return {{"file", baseName(run.options.volume)},
+            {"format", run.volume->format},
+            {"sizeVoxels", run.volume->geometry.size},
+            {"spacingMm", vector(run.volume->geometry.spacingMm())}};
+}
+
+Json optionsJson(const CompareOptions& options) {
+    return {{"samples", options.samples},
+            {"symmetric", options.isSymmetric},
+            {"threads", orNull(options.common.threads)}};
+}
+
+/// The lengths in another unit of `unitMm`.
+Json lengthsJson(const DistanceStatistics& distances, double unitMm) {
+    return {{"mean", number(distances.meanMm / unitMm)},
+            {"rms", number(distances.rmsMm / unitMm)},
+            {"p95", number(distances.p95Mm / unitMm)},
+            {"p99", number(distances.p99Mm / unitMm)},
+            {"max", number(distances.maxMm / unitMm)}};
+}
+
+Json distancesJson(const CompareRun& run, const DistanceStatistics& distances) {
+    if (distances.samples == 0) return nullptr;
+    return {{"samples", distances.samples},
+            {"meanMm", number(distances.meanMm)},
+            {"rmsMm", number(distances.rmsMm)},
+            {"p95Mm", number(distances.p95Mm)},
+            {"p99Mm", number(distances.p99Mm)},
+            {"maxMm", number(distances.maxMm)},
+            {"maxPointMm", vector(run.toFrame(distances.maxPointMm))},
+            {"meanNormalDeviationDeg", number(distances.meanNormalDeviationDeg)},
+            {"p95NormalDeviationDeg", number(distances.p95NormalDeviationDeg)},
+            {"inVoxels", run.voxelMm ? lengthsJson(distances, *run.voxelMm) : Json(nullptr)},
+            {"percentOfDiagonal", lengthsJson(distances, run.b.diagonalMm / 100)}};
+}
+
+/// A less B, and in per cent of B.
+Json differenceJson(const std::optional<double>& a, const std::optional<double>& b,
+                    const std::string& unit) {
+    const bool isKnown = a && b;
+    return {{unit, isKnown ? number(*a - *b) : Json(nullptr)},
+            {"percent", isKnown ? number((*a - *b) / *b * 100) : Json(nullptr)}};
+}
+
+Json overlapJson(const std::optional<OverlapSummary>& overlap) {
+    if (!overlap) return nullptr;
+    return {{"voxelsA", overlap->voxels.voxelsA},
+            {"voxelsB", overlap->voxels.voxelsB},
+            {"voxelsBoth", overlap->voxels.voxelsBoth},
+            {"dice", number(overlap->voxels.dice())},
+            {"meanBoundaryOffsetMm", number(overlap->meanBoundaryOffsetMm)}};
+}
+
+Json coloredJson(const CompareRun& run) {
+    if (!run.colored) return nullptr;
+    return {{"file", baseName(run.options.colored)},
+            {"maximumMm", number(run.colored->maximumMm)},
+            {"bytes", run.colored->bytes}};
+}
+
+Json checksJson(const std::vector<Check>& checks) {
+    Json list = Json::array();
+    for (const Check& check : checks) {
+        list.push_back({{"name", check.key},
+                        {"limitMm", number(check.limitMm)},
+                        {"valueMm", number(check.valueMm)},
+                        {"passed", check.hasPassed()}});
+    }
+    return list;
+}
+
+Json secondsJson(const StageTimer& timer) {
+    Json seconds = Json::object();
+    for (const auto& [stage, time] : timer.stages()) seconds[stage] = time;
+    seconds["total"] = timer.total();
+    return seconds;
+}
+
+}  // namespace
+
+std::string jsonReport(const CompareRun& run) {
+    const DistanceReport& distances = run.distances;
+    const Json report{{"schema", "adaptiso-compare/1"},
+                      {"program", {{"name", "adaptiso-compare"}, {"version", programVersion()}}},
+                      {"a", surfaceJson(run.a)},
+                      {"b", surfaceJson(run.b)},
+                      {"volume", volumeJson(run)},
+                      {"options", optionsJson(run.options)},
+                      {"coordinates", frameWord(run.frame)},
+                      {"voxelMm", orNull(run.voxelMm)},
+                      {"distances",
+                       {{"aToB", distancesJson(run, distances.aToB)},
+                        {"bToA", distancesJson(run, distances.bToA)},
+                        {"combined", distancesJson(run, distances.combined)}}},
+                      {"differences",
+                       {{"area", differenceJson(run.a.areaMm2, run.b.areaMm2, "mm2")},
+                        {"volume", differenceJson(run.a.volumeMm3, run.b.volumeMm3, "mm3")}}},
+                      {"overlap", overlapJson(run.overlap)},
+                      {"colored", coloredJson(run)},
+                      {"checks", checksJson(run.checks)},
+                      {"warnings", run.warnings},
+                      {"seconds", secondsJson(run.timer)},
+                      {"peakMemoryMb", peakMemoryMb()}};
+    // a file's name need not be UTF-8: what is not becomes U+FFFD
+    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace adaptiso

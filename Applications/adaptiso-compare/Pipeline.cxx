@@ -1,0 +1,275 @@
+#include "Pipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <utility>
+#include <vector>
+
+#include "ColorMap.h"
+#include "Common/AtomicOutput.h"
+#include "Common/ExitCodes.h"
+#include "Common/Numbers.h"
+#include "Common/Progress.h"
+#include "Common/RunApp.h"
+#include "CommonFrame.h"
+#include "CompareRun.h"
+#include "JsonReport.h"
+#include "TextReport.h"
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/MeshQuality/Topology.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The stages of a run, as progress, `seconds` of the report and README.md name them.
+constexpr const char* kRead = "read";
+constexpr const char* kDistance = "distance";
+constexpr const char* kOverlap = "overlap";
+constexpr const char* kWrite = "write";
+
+const MeshFormat& formatOf(const fs::path& path) {
+    try {
+        return findMeshFormat(path);
+    } catch (const InvalidInput& error) {
+        throw UsageError(error.what());
+    }
+}
+
+bool areSame(const fs::path& a, const fs::path& b) {
+    return fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b));
+}
+
+/// Everything about the files that can be told from their names.
+void checkNames(const CompareOptions& options) {
+    std::vector<fs::path> inputs{options.a, options.b};
+    for (const fs::path& mesh : inputs) formatOf(mesh);
+    if (!options.volume.empty()) inputs.push_back(options.volume);
+
+    std::vector<fs::path> outputs;
+    if (!options.colored.empty()) {
+        if (formatOf(options.colored).id != MeshFormatId::VtkXml) {
+            throw UsageError("--colored " + options.colored.string() + ": must be a .vtp file");
+        }
+        outputs.push_back(options.colored);
+    }
+    if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
+        outputs.push_back(options.common.json);
+        if (!options.colored.empty() && areSame(options.colored, options.common.json)) {
+            throw UsageError("--json " + options.common.json +
+                             ": is the name of the coloured surface too");
+        }
+    }
+    for (const fs::path& output : outputs) {
+        for (const fs::path& input : inputs) checkNotInput(output, input);
+        checkOutput(output);
+    }
+}
+
+NamedMesh readSurface(const fs::path& path) {
+    NamedMesh surface{path, readMesh(path)};
+    surface.file.mesh.normals = {};  // those of the triangles are compared
+    return surface;
+}
+
+/// \param frame  as the file has it
+SurfaceSummary summarize(const NamedMesh& surface, std::optional<CoordinateFrame> frame) {
+    const TriangleMesh& mesh = surface.file.mesh;
+    SurfaceSummary summary;
+    summary.file = surface.path;
+    summary.format = &formatOf(surface.path);
+    summary.frame = frame;
+    summary.triangles = std::ssize(mesh.triangles);
+    summary.vertices = std::ssize(mesh.points);
+    summary.areaMm2 = surfaceArea(mesh);
+    if (!(summary.areaMm2 > 0)) {
+        throw InvalidInput(surface.path.string() +
+                           ": its triangles have no area, so there is nothing to measure");
+    }
+    const TopologyReport topology = checkTopology(mesh, {.maxExamplesPerDefect = 0});
+    if (topology.isClosed() && topology.isOriented()) summary.volumeMm3 = enclosedVolume(mesh);
+    const BoundingBox box = boundingBox(mesh);
+    summary.diagonalMm = norm(box.maximum - box.minimum);
+    return summary;
+}
+
+/// Of a cube as large as a voxel.
+double meanVoxelSideMm(const ImageGeometry& geometry) {
+    return std::cbrt(geometry.voxelVolumeMm3());
+}
+
+void readImage(CompareRun& run) {
+    run.voxelMm = run.options.voxelMm;
+    if (run.options.volume.empty()) return;
+    ReadVolume read = readVolume(run.options.volume);
+    run.volume = VolumeSummary{read.format, read.volume.view().geometry()};
+    run.voxelMm = meanVoxelSideMm(run.volume->geometry);
+    for (const std::string& warning : read.warnings) {
+        run.warnings.push_back(run.options.volume.filename().string() + ": " + warning);
+    }
+}
+
+/// Reads all inputs; afterwards both meshes are in the frame that the program works in.
+CommonFrame readInputs(CompareRun& run, NamedMesh& a, NamedMesh& b) {
+    readImage(run);
+    a = readSurface(run.options.a);
+    b = readSurface(run.options.b);
+    const auto frameA = a.file.frame, frameB = b.file.frame;
+    std::optional<ImageGeometry> image;
+    if (run.volume) image = run.volume->geometry;
+    CommonFrame common = bringToOneFrame(a, b, image);
+    run.a = summarize(a, frameA);
+    run.b = summarize(b, frameB);
+    run.frame = common.frame;
+    run.toFrame = lpsToFrame(common.frame, common.volume);
+    run.warnings.insert(run.warnings.end(), common.warnings.begin(), common.warnings.end());
+    return common;
+}
+
+/// Dice, and the volume between the surfaces spread over their mean area.
+void measureOverlap(CompareRun& run, const TriangleMesh& a, const TriangleMesh& b) {
+    if (!run.volume) return;
+    if (!run.a.volumeMm3 || !run.b.volumeMm3) {
+        run.warnings.push_back("not both surfaces are closed; their overlap is not measured");
+        return;
+    }
+    const ImageGeometry& image = run.volume->geometry;
+    OverlapSummary overlap;
+    overlap.voxels = voxelOverlap(a, b, image);
+    const std::int64_t inOne = overlap.voxels.voxelsEither() - overlap.voxels.voxelsBoth;
+    overlap.meanBoundaryOffsetMm =
+        static_cast<double>(inOne) * image.voxelVolumeMm3() / ((run.a.areaMm2 + run.b.areaMm2) / 2);
+    if (overlap.voxels.voxelsEither() == 0) {
+        run.warnings.push_back("no voxel's centre lies inside either surface");
+    }
+    run.overlap = overlap;
+}
+
+/// Of every vertex of `from`, to the surface `to`.
+std::vector<double> vertexDistancesMm(const TriangleMesh& from, const TriangleMesh& to) {
+    constexpr std::int64_t kGrain = 4096;
+    const AabbTree tree(to);
+    std::vector<double> distances(from.points.size());
+    parallelForPieces(std::ssize(from.points), kGrain, [&](std::int64_t begin, std::int64_t end) {
+        std::int64_t hint = -1;
+        for (std::int64_t v = begin; v < end; ++v) {
+            const ClosestPoint nearest = tree.closestPoint(from.points[v], hint);
+            distances[v] = std::sqrt(nearest.squaredDistanceMm2);
+            hint = nearest.triangle;
+        }
+    });
+    return distances;
+}
+
+std::vector<Color> colorsOf(const std::vector<double>& values, double maximum) {
+    std::vector<Color> colors;
+    colors.reserve(values.size());
+    for (const double value : values) colors.push_back(viridis(maximum > 0 ? value / maximum : 0));
+    return colors;
+}
+
+/// Writes A under its temporary name, with the distances of its vertices to B.
+void writeColored(CompareRun& run, const TriangleMesh& a, const TriangleMesh& b,
+                  const CommonFrame& common, std::vector<AtomicOutput>& outputs) {
+    std::vector<double> distances = vertexDistancesMm(a, b);
+    ColoredSummary colored;
+    colored.maximumMm = *std::max_element(distances.begin(), distances.end());
+    std::vector<Color> colors = colorsOf(distances, colored.maximumMm);
+
+    MeshWriteOptions write;
+    write.frame = common.frame;
+    write.volume = common.volume;
+    write.pointArrays.push_back({"DistanceMm", std::move(distances)});
+    write.pointArrays.push_back({"DistanceColor", std::move(colors)});
+    AtomicOutput& output = outputs.emplace_back(run.options.colored);
+    output.write([&](const fs::path& path) { writeMesh(a, path, write); });
+    colored.bytes = fs::file_size(output.temporary());
+    run.colored = colored;
+}
+
+std::vector<Check> makeChecks(const CompareRun& run) {
+    const DistanceStatistics& distances = run.distances.combined;
+    std::vector<Check> checks;
+    if (const auto& limit = run.options.maxMeanMm) {
+        checks.push_back({"mean distance", "maxMean", *limit, distances.meanMm});
+    }
+    if (const auto& limit = run.options.maxHausdorffMm) {
+        checks.push_back({"maximum distance", "maxHausdorff", *limit, distances.maxMm});
+    }
+    return checks;
+}
+
+void printWarnings(const CompareRun& run) {
+    if (run.options.common.isQuiet) return;
+    for (const std::string& warning : run.warnings) {
+        std::cerr << "adaptiso-compare: warning: " << warning << '\n';
+    }
+}
+
+void report(const CompareRun& run, const std::string& json) {
+    if (run.options.common.wantsJsonOnStdout()) {
+        std::cout << json;
+    } else if (!run.options.common.isQuiet) {
+        printReport(std::cout, run);
+    }
+    if (!std::cout.flush()) throw FileError("standard output: can't be written");
+}
+
+/// Says on stderr which checks failed.
+int verdict(const CompareRun& run) {
+    int code = kExitOk;
+    for (const Check& check : run.checks) {
+        if (check.hasPassed()) continue;
+        std::cerr << "adaptiso-compare: check failed: " << check.name << ' '
+                  << formatNumber(check.valueMm) << " mm, at most " << formatNumber(check.limitMm)
+                  << " mm\n";
+        code = kExitCheckFailed;
+    }
+    return code;
+}
+
+}  // namespace
+
+int runCompare(const CompareOptions& options) {
+    const ThreadLimit threads(options.common);
+    ProgressLine progress(options.common.isQuiet);
+    CompareRun run(options);
+    checkNames(options);
+
+    progress.show(kRead);
+    NamedMesh surfaceA, surfaceB;
+    const CommonFrame common =
+        run.timer.time(kRead, [&] { return readInputs(run, surfaceA, surfaceB); });
+    const TriangleMesh &a = surfaceA.file.mesh, &b = surfaceB.file.mesh;
+
+    progress.show(kDistance);
+    run.distances = run.timer.time(kDistance, [&] {
+        return surfaceDistance(a, b, {options.samples, options.isSymmetric, progress.callback()});
+    });
+    run.checks = makeChecks(run);
+
+    progress.show(kOverlap);
+    run.timer.time(kOverlap, [&] { measureOverlap(run, a, b); });
+
+    progress.show(kWrite);
+    std::vector<AtomicOutput> outputs;
+    run.timer.time(kWrite, [&] {
+        if (!options.colored.empty()) writeColored(run, a, b, common, outputs);
+    });
+    const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
+    if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
+        outputs.emplace_back(options.common.json).writeText(json);
+    }
+    AtomicOutput::commit(outputs);
+    progress.clear();
+    printWarnings(run);
+    report(run, json);
+    return verdict(run);
+}
+
+}  // namespace adaptiso

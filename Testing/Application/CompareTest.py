@@ -1,0 +1,520 @@
+"""adaptiso-compare: numbers known on paper, frames, checks, reports and refusals."""
+
+import json
+import math
+import re
+import subprocess
+import unittest
+
+from support import (BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, USAGE, ApplicationTest, Image, ball,
+                     main, write_nifti)
+
+try:
+    import vtk
+except ImportError:  # Debian's python3-vtk9
+    vtk = None
+
+COMPARE = str(BIN / "adaptiso-compare")
+README = SOURCE / "Applications" / "adaptiso-compare" / "README.md"
+
+RAS, LPS, TKRAS, VOXEL = "RAS mm", "LPS mm", "tkRAS mm", "voxel indices"
+
+
+def sphere(radius, steps=48, centre=(0, 0, 0)):
+    """Closed, outward: `steps` meridians, half as many parallels, vertices on the sphere."""
+    rings = steps // 2
+    points = [(0, 0, 1)]
+    for ring in range(1, rings):
+        polar = math.pi * ring / rings
+        for step in range(steps):
+            azimuth = 2 * math.pi * step / steps
+            points.append((math.sin(polar) * math.cos(azimuth),
+                           math.sin(polar) * math.sin(azimuth), math.cos(polar)))
+    points.append((0, 0, -1))
+    last = len(points) - 1
+    triangles = []
+    for step in range(steps):
+        after = (step + 1) % steps
+        triangles.append((0, 1 + step, 1 + after))
+        triangles.append((last, last - steps + after, last - steps + step))
+        for ring in range(rings - 2):
+            upper, lower = 1 + ring * steps, 1 + (ring + 1) * steps
+            triangles.append((upper + step, lower + step, lower + after))
+            triangles.append((upper + step, lower + after, upper + after))
+    return [tuple(radius * x + c for x, c in zip(p, centre)) for p in points], triangles
+
+
+def plane(height, size=10):
+    """The square [0, size]^2 at z = height, facing up."""
+    return ([(0, 0, height), (size, 0, height), (size, size, height), (0, size, height)],
+            [(0, 1, 2), (0, 2, 3)])
+
+
+def cube(low, high):
+    """Closed, outward, between two corners."""
+    points = [tuple((high if n >> axis & 1 else low)[axis] for axis in range(3))
+              for n in range(8)]
+    return points, [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4),
+                    (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
+
+
+def write_off(path, mesh, frame=RAS):
+    points, triangles = mesh
+    marker = f"# CoordinateFrame: {frame}\n" if frame else ""
+    path.write_text(f"OFF\n{marker}{len(points)} {len(triangles)} 0\n" +
+                    "".join("%.17g %.17g %.17g\n" % tuple(p) for p in points) +
+                    "".join("3 %d %d %d\n" % t for t in triangles))
+
+
+def to_lps(mesh):
+    points, triangles = mesh
+    return [(-x, -y, z) for x, y, z in points], triangles
+
+
+class CompareTest(ApplicationTest):
+    def write(self, name, mesh, frame=RAS):
+        write_off(self.path(name), mesh, frame)
+
+    def run_compare(self, *arguments):
+        return subprocess.run([COMPARE, *map(str, arguments)], cwd=self.folder, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=300)
+
+    def compare(self, *arguments):
+        """The report of a run that must succeed, without a word on stderr but warnings."""
+        done = self.run_compare(*arguments, "--json", "-")
+        self.assertEqual(done.returncode, OK, done.stderr)
+        report = json.loads(done.stdout)
+        self.assertEqual(done.stderr, "".join(f"adaptiso-compare: warning: {warning}\n"
+                                              for warning in report["warnings"]))
+        return report
+
+    def refused(self, code, pattern, *arguments):
+        before = self.contents()
+        done = self.run_compare(*arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertRegex(done.stderr, pattern)
+        lines = done.stderr.splitlines()
+        self.assertEqual(len(lines), 2 if code == USAGE else 1, done.stderr)
+        self.assertTrue(lines[0].startswith("adaptiso-compare: "), lines[0])
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(self.contents(), before)
+
+
+class Truth(CompareTest):
+    def test_a_surface_with_itself(self):
+        self.write("a.off", sphere(10))
+        report = self.compare("a.off", "a.off", "--samples", "5000")
+        for direction in ("aToB", "bToA", "combined"):
+            distances = report["distances"][direction]
+            # samples are rounded off their triangle's plane by some 1e-15 of 10 mm
+            self.assertLess(distances["maxMm"], 1e-13)
+            # a sample on an edge may have the neighbour as its nearest: rounding decides
+            self.assertLess(distances["p95NormalDeviationDeg"], 1e-5)
+        for difference in report["differences"].values():
+            self.assertEqual(set(difference.values()), {0})
+
+    def test_shifted_planes(self):
+        self.write("a.off", plane(0))
+        self.write("b.off", plane(0.75))
+        report = self.compare("a.off", "b.off", "--voxel", "0.5", "--samples", "1000")
+        diagonal = math.sqrt(200)
+        self.assertAlmostEqual(report["b"]["boundingBoxDiagonalMm"], diagonal, 12)
+        for direction, samples in (("aToB", 1000), ("bToA", 1000), ("combined", 2000)):
+            distances = report["distances"][direction]
+            self.assertEqual(distances["samples"], samples)
+            for key in ("mean", "rms", "p95", "p99", "max"):  # all of them exactly the shift
+                self.assertAlmostEqual(distances[key + "Mm"], 0.75, 12)
+                self.assertAlmostEqual(distances["inVoxels"][key], 1.5, 12)
+                self.assertAlmostEqual(distances["percentOfDiagonal"][key], 75 / diagonal, 12)
+            self.assertEqual(distances["meanNormalDeviationDeg"], 0)
+        self.assertEqual(report["differences"]["area"], {"mm2": 0, "percent": 0})
+        self.assertEqual(report["differences"]["volume"], {"mm3": None, "percent": None})
+
+    def test_concentric_spheres(self):
+        self.write("a.off", sphere(12, 96))
+        self.write("b.off", sphere(10, 96))
+        report = self.compare("a.off", "b.off", "--samples", "20000")
+        # facets of pi/48 lie at most 1 - cos(pi/48) = 0.2 % within the sphere (twice that at the
+        # middle of a quad's diagonal)
+        sag = 12 * 2 * (1 - math.cos(math.pi / 48))
+        for direction in ("aToB", "bToA", "combined"):
+            distances = report["distances"][direction]
+            for key in ("meanMm", "rmsMm", "p95Mm", "p99Mm", "maxMm"):
+                self.assertAlmostEqual(distances[key], 2, delta=sag)
+            # two facets that overlap differ by at most their own angles
+            self.assertLess(distances["p95NormalDeviationDeg"], 2 * 180 / 48)
+        area, volume = report["differences"]["area"], report["differences"]["volume"]
+        self.assertAlmostEqual(area["percent"], 44, 9)  # the same polyhedron: 1.2^2, 1.2^3
+        self.assertAlmostEqual(volume["percent"], 72.8, 9)
+        self.assertAlmostEqual(volume["mm3"] / (4 / 3 * math.pi * 728), 1, delta=0.01)
+
+    def test_one_sided(self):
+        """A small plane above a large one: 0.75 one way, up to the far corner the other."""
+        self.write("a.off", plane(0.75, 5))
+        self.write("b.off", plane(0, 10))
+        report = self.compare("a.off", "b.off", "--one-sided", "--samples", "1000")
+        self.assertIsNone(report["distances"]["bToA"])
+        self.assertEqual(report["distances"]["combined"], report["distances"]["aToB"])
+        self.assertAlmostEqual(report["distances"]["combined"]["maxMm"], 0.75, 12)
+        report = self.compare("a.off", "b.off", "--samples", "1000")
+        self.assertAlmostEqual(report["distances"]["combined"]["maxMm"],
+                               math.sqrt(50 + 0.75 ** 2), 12)
+        self.assertEqual(report["distances"]["combined"]["maxPointMm"], [10, 10, 0])
+
+    @unittest.skipIf(vtk is None, "needs python3-vtk9")
+    def test_vertex_distances_are_those_of_vtk(self):
+        self.write("a.off", sphere(12, 24, (1, 2, 3)))
+        self.write("b.off", cube((-8, -8, -8), (9, 7, 8)))
+        self.compare("a.off", "b.off", "--colored", "out.vtp")
+        reader = vtk.vtkXMLPolyDataReader()
+        reader.SetFileName(str(self.path("out.vtp")))
+        reader.Update()
+        data = reader.GetOutput()
+        distances = data.GetPointData().GetScalars()
+        self.assertEqual(distances.GetName(), "DistanceMm")
+        points, triangles = cube((-8, -8, -8), (9, 7, 8))
+        surface = vtk.vtkPolyData()
+        corners, cells = vtk.vtkPoints(), vtk.vtkCellArray()
+        corners.SetDataTypeToDouble()
+        for p in points:
+            corners.InsertNextPoint(p)
+        for t in triangles:
+            cells.InsertNextCell(3, t)
+        surface.SetPoints(corners)
+        surface.SetPolys(cells)
+        locator = vtk.vtkCellLocator()
+        locator.SetDataSet(surface)
+        locator.BuildLocator()
+        cell, part, squared = vtk.reference(0), vtk.reference(0), vtk.reference(0.0)
+        self.assertEqual(data.GetNumberOfPoints(), len(sphere(12, 24)[0]))
+        for n in range(data.GetNumberOfPoints()):
+            locator.FindClosestPoint(data.GetPoint(n), [0, 0, 0], cell, part, squared)
+            # rounding of squares of some 100 mm2 is some 1e-14 mm2, its root 1e-7 mm at 0 mm
+            self.assertAlmostEqual(distances.GetValue(n), math.sqrt(squared.get()), delta=1e-6)
+
+
+class Colored(CompareTest):
+    def test_holds_the_surface_and_its_colours(self):
+        points, triangles = plane(0)
+        self.write("a.off", ([(x, y, x / 10) for x, y, _ in points], triangles))
+        self.write("b.off", plane(0, 20))
+        report = self.compare("a.off", "b.off", "--colored", "out.vtp")
+        self.assertAlmostEqual(report["colored"]["maximumMm"], 1, 12)
+        self.assertEqual(report["colored"]["bytes"], self.path("out.vtp").stat().st_size)
+        # it is a surface as any other: A
+        again = self.compare("out.vtp", "a.off")
+        self.assertEqual(again["a"]["coordinates"], "ras")
+        self.assertLess(again["distances"]["combined"]["maxMm"], 1e-12)
+        if vtk is None:
+            return
+        reader = vtk.vtkXMLPolyDataReader()
+        reader.SetFileName(str(self.path("out.vtp")))
+        reader.Update()
+        data = reader.GetOutput().GetPointData()
+        distances, colors = data.GetScalars(), data.GetArray("DistanceColor")
+        self.assertEqual([round(distances.GetValue(n), 12) for n in range(4)], [0, 1, 1, 0])
+        self.assertEqual(colors.GetDataTypeAsString(), "unsigned char")
+        dark, yellow = (68, 1, 84), (253, 231, 37)  # the ends of viridis
+        self.assertEqual([colors.GetTuple(n) for n in range(4)], [dark, yellow, yellow, dark])
+
+    def test_no_distance_is_dark_everywhere(self):
+        self.write("a.off", plane(0))
+        self.assertEqual(self.compare("a.off", "a.off", "--colored",
+                                      "out.vtp")["colored"]["maximumMm"], 0)
+
+
+class Frames(CompareTest):
+    def setUp(self):
+        super().setUp()
+        self.write("ras.off", sphere(10, 24, (3, 5, 7)))
+
+    def assert_same(self, *arguments, warnings=()):
+        report = self.compare(*arguments, "--samples", "2000")
+        self.assertLess(report["distances"]["combined"]["maxMm"], 1e-5)  # .surf is float: 1e-6
+        self.assertGreater(report["b"]["volumeMm3"], 0)
+        self.assertEqual(len(report["warnings"]), len(warnings), report["warnings"])
+        for warning, pattern in zip(report["warnings"], warnings):
+            self.assertRegex(warning, pattern)
+        return report
+
+    def test_ras_and_lps_meet(self):
+        self.write("lps.off", to_lps(sphere(10, 24, (3, 5, 7))), LPS)
+        report = self.assert_same("ras.off", "lps.off")
+        self.assertEqual((report["a"]["coordinates"], report["b"]["coordinates"],
+                          report["coordinates"]), ("ras", "lps", "ras"))
+
+    def test_unknown_is_taken_for_the_other_with_a_warning(self):
+        self.write("bare.off", sphere(10, 24, (3, 5, 7)), None)
+        self.assert_same("ras.off", "bare.off", warnings=["bare.off does not say .*RAS mm"])
+        self.assert_same("bare.off", "ras.off", warnings=["bare.off does not say .*RAS mm"])
+        report = self.assert_same("bare.off", "bare.off", warnings=["neither surface says"])
+        self.assertIsNone(report["a"]["coordinates"])
+
+    def test_quiet_says_no_warning(self):
+        self.write("bare.off", sphere(10, 24), None)
+        done = self.run_compare("bare.off", "bare.off", "--quiet")
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (OK, "", ""))
+
+    def test_tkras_without_a_volume_meets_its_like_only(self):
+        self.write("tk.off", sphere(10, 24), TKRAS)
+        report = self.assert_same("tk.off", "tk.off", warnings=["taken for surfaces of one volume"])
+        self.assertEqual(report["coordinates"], "tkras")
+        self.refused(BAD_INPUT, r"tk.off is in tkRAS mm and ras.off is in RAS mm.*--volume",
+                     "tk.off", "ras.off")
+
+    def test_tkras_is_reported_and_coloured_in_tkras(self):
+        self.write("tk.off", plane(0), TKRAS)
+        points, triangles = plane(0)
+        self.write("peak.off", ([points[0], points[1], (12, 10, 1), points[3]], triangles), TKRAS)
+        report = self.compare("peak.off", "tk.off", "--colored", "out.vtp")
+        self.assertEqual(report["distances"]["combined"]["maxPointMm"], [12, 10, 1])
+        self.assertEqual(self.compare("out.vtp", "tk.off")["a"]["coordinates"], "tkras")
+        self.assertLess(self.compare("out.vtp", "peak.off")["distances"]["combined"]["maxMm"],
+                        1e-12)
+
+    def test_voxel_indices_need_the_image(self):
+        self.write("voxel.off", sphere(10, 24), VOXEL)
+        self.refused(BAD_INPUT, "voxel.off is in voxel indices.*--volume", "voxel.off", "ras.off")
+        self.refused(BAD_INPUT, "voxel.off is in voxel indices.*--volume", "voxel.off", "voxel.off")
+
+    def test_every_frame_and_format_of_adaptiso_mesh(self):
+        """One surface, written in all frames, is one surface again; of an image off the
+        origin, its voxels 1 x 2 x 3 mm large."""
+        write_nifti(self.path("ball.nii"), ball(20, 6, (1, 2, 3), (-40, 5, 11)))
+        make = ("ball.nii", "--iso", "100", "--quiet")
+        self.mesh(*make, "-o", "ras.vtp")
+        for name in ("a.vtk", "a.ply", "a.stl", "a.obj", "a.off", "a.gii", "lh.pial"):
+            self.mesh(*make, "-o", name)
+            with self.subTest(name):
+                self.assert_same("ras.vtp", name)
+        self.mesh(*make, "-o", "a.tri")  # says no frame
+        self.assert_same("ras.vtp", "a.tri", warnings=["a.tri does not say"])
+        for frame in ("lps", "tkras", "voxel"):
+            self.mesh(*make, "--coordinates", frame, "-o", f"{frame}.vtp")
+            with self.subTest(frame):
+                self.assert_same("ras.vtp", f"{frame}.vtp", "--volume", "ball.nii")
+        self.assert_same("lh.pial", "tkras.vtp", warnings=["taken for surfaces of one volume"])
+        self.refused(BAD_INPUT, "--volume", "ras.vtp", "tkras.vtp")
+
+
+class Volumes(CompareTest):
+    """An image of 20 x 20 x 20 voxels of 1 x 1 x 2 mm; the first voxel's centre is 0, 0, 0."""
+
+    def setUp(self):
+        super().setUp()
+        write_nifti(self.path("image.nii"), Image((20, 20, 20), "B", bytes(8000), (1, 1, 2)))
+
+    def overlap(self, a, b):
+        self.write("a.off", a)
+        self.write("b.off", b)
+        return self.compare("a.off", "b.off", "--volume", "image.nii",
+                            "--samples", "1000")["overlap"]
+
+    def test_shifted_cubes(self):
+        # between centres: 6 x 6 x 3 voxels each, shifted by 2 along each axis in turn
+        for axis, both in ((0, 4 * 6 * 3), (1, 6 * 4 * 3), (2, 6 * 6 * 2)):
+            shift = [0.0] * 3
+            shift[axis] = 2
+            low, high = (3.5, 3.5, 5), (9.5, 9.5, 11)
+            overlap = self.overlap(cube(low, high), cube([x + s for x, s in zip(low, shift)],
+                                                         [x + s for x, s in zip(high, shift)]))
+            with self.subTest(axis):
+                self.assertEqual(overlap["voxelsA"], 108)
+                self.assertEqual(overlap["voxelsB"], 108)
+                self.assertEqual(overlap["voxelsBoth"], both)
+                self.assertAlmostEqual(overlap["dice"], both / 108, 12)
+                # voxels in one of both, 2 mm3 each, over 6 faces of 36 mm2
+                self.assertAlmostEqual(overlap["meanBoundaryOffsetMm"],
+                                       2 * (108 - both) * 2 / 216, 12)
+
+    def test_faces_edges_and_corners_on_voxel_centres(self):
+        """Rows through edges, corners and within faces: each cube has a half-open share of the
+        centres on its faces, so that cubes side by side share none and leave none out."""
+        for corner in ((9, 3, 4), (3, 9, 4), (3, 3, 10)):
+            overlap = self.overlap(cube((3, 3, 4), (9, 9, 10)),
+                                   cube(corner, [x + 6 for x in corner]))
+            with self.subTest(corner):
+                self.assertEqual((overlap["voxelsA"], overlap["voxelsB"], overlap["voxelsBoth"]),
+                                 (108, 108, 0))
+
+    def test_rows_through_the_vertices_of_a_sphere(self):
+        """Its poles, meridians and equator lie on rows; a row that leaks would add ten voxels."""
+        overlap = self.overlap(sphere(7, 48, (10, 10, 20)), cube((-9, -9, -9), (90, 90, 90)))
+        squares = [(x - 10) ** 2 + (y - 10) ** 2 + (2 * z - 20) ** 2
+                   for x in range(20) for y in range(20) for z in range(20)]
+        # facets are at most pi/24 wide and high: the circles around them have at most half that
+        # diagonal, so that they lie at least cos(pi/24/sqrt(2)) r = 6.97 mm out: 6.97^2 = 48.6
+        self.assertGreaterEqual(overlap["voxelsA"], sum(square <= 48 for square in squares))
+        self.assertLessEqual(overlap["voxelsA"], sum(square <= 49 for square in squares))
+        self.assertEqual(overlap["voxelsBoth"], overlap["voxelsA"])
+
+    def test_offset_of_concentric_spheres(self):
+        overlap = self.overlap(sphere(8, 96, (10, 10, 20)), sphere(6, 96, (10, 10, 20)))
+        exact = 4 / 3 * (8 ** 3 - 6 ** 3) / (2 * (8 ** 2 + 6 ** 2))  # 1.973
+        # voxels that the surface cuts err by chance: some 1 % of 1240 mm3
+        self.assertAlmostEqual(overlap["meanBoundaryOffsetMm"], exact, delta=0.06)
+        self.assertAlmostEqual(overlap["dice"], 2 * 6 ** 3 / (8 ** 3 + 6 ** 3), delta=0.02)
+
+    def test_the_grid_ends_where_the_image_does(self):
+        overlap = self.overlap(cube((-50, -50, -50), (50, 50, 50)),
+                               cube((4.5, -9, -9), (90, 90, 90)))
+        self.assertEqual((overlap["voxelsA"], overlap["voxelsB"], overlap["voxelsBoth"]),
+                         (8000, 6000, 6000))
+
+    def test_open_surfaces_have_no_overlap(self):
+        self.write("a.off", plane(0))
+        report = self.compare("a.off", "a.off", "--volume", "image.nii")
+        self.assertIsNone(report["overlap"])
+        self.assertRegex(report["warnings"][0], "not both surfaces are closed")
+
+    def test_voxel_is_a_cube_of_the_same_volume(self):
+        self.write("a.off", plane(0))
+        report = self.compare("a.off", "a.off", "--volume", "image.nii")
+        self.assertAlmostEqual(report["voxelMm"], 2 ** (1 / 3), 12)
+        self.assertEqual(report["volume"], {"file": "image.nii", "format": "NIfTI-1",
+                                            "sizeVoxels": [20, 20, 20], "spacingMm": [1, 1, 2]})
+
+
+class Checks(CompareTest):
+    def setUp(self):
+        super().setUp()
+        self.write("a.off", plane(0, 10))
+        self.write("b.off", plane(0.5, 10))
+
+    def test_passed(self):
+        report = self.compare("a.off", "b.off", "--max-mean", "0.5", "--max-hausdorff", "0.5")
+        self.assertEqual(report["checks"],
+                         [{"name": "maxMean", "limitMm": 0.5, "valueMm": 0.5, "passed": True},
+                          {"name": "maxHausdorff", "limitMm": 0.5, "valueMm": 0.5, "passed": True}])
+
+    def test_failed_says_so_and_still_writes(self):
+        done = self.run_compare("a.off", "b.off", "--max-mean", "0.4", "--max-hausdorff", "0.6",
+                                "--json", "report.json", "--colored", "out.vtp", "--quiet")
+        self.assertEqual((done.returncode, done.stdout), (CHECK_FAILED, ""))
+        self.assertEqual(done.stderr, "adaptiso-compare: check failed: mean distance 0.5 mm, "
+                                      "at most 0.4 mm\n")
+        self.assertEqual(self.names(), ["a.off", "b.off", "out.vtp", "report.json"])
+        checks = json.loads(self.path("report.json").read_text())["checks"]
+        self.assertEqual([check["passed"] for check in checks], [False, True])
+
+    def test_hausdorff_fails_alone(self):
+        done = self.run_compare("a.off", "b.off", "--max-mean", "1", "--max-hausdorff", "0.4")
+        self.assertEqual(done.returncode, CHECK_FAILED)
+        self.assertRegex(done.stderr, "^adaptiso-compare: check failed: maximum distance 0.5 mm")
+
+
+class Refusals(CompareTest):
+    def setUp(self):
+        super().setUp()
+        self.write("a.off", plane(0))
+
+    def test_wrong_usage(self):
+        for pattern, *arguments in (
+                ("B", "a.off"),
+                ("c.off", "a.off", "a.off", "c.off"),
+                ("frobnicate", "a.off", "a.off", "--frobnicate"),
+                ("--samples", "a.off", "a.off", "--samples", "0"),
+                ("--samples", "a.off", "a.off", "--samples", "1.5"),
+                ("--voxel 0: .*more than 0", "a.off", "a.off", "--voxel", "0"),
+                ("--max-mean nan: ", "a.off", "a.off", "--max-mean", "nan"),
+                ("--max-hausdorff -1: .*0 or more", "a.off", "a.off", "--max-hausdorff=-1"),
+                ("--voxel", "a.off", "a.off", "--voxel", "1", "--volume", "i.nii"),
+                ("--one-sided", "a.off", "a.off", "--one-sided", "--symmetric"),
+                ("a.xyz", "a.xyz", "a.off"),
+                (r"--colored out.ply: must be a .vtp", "a.off", "a.off", "--colored", "out.ply"),
+                ("--json", "a.off", "a.off", "--colored", "o.vtp", "--json", "./o.vtp")):
+            with self.subTest(arguments):
+                self.refused(USAGE, pattern, *arguments)
+
+    def test_bad_input(self):
+        self.path("broken.off").write_text("OFF\n3 1 0\n0 0 0\n")
+        self.write("flat.off", ([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)]))
+        self.path("a.vtp").write_text("in use")
+        for pattern, *arguments in (
+                ("missing.off: no such file", "missing.off", "a.off"),
+                ("broken.off", "a.off", "broken.off"),
+                ("flat.off: .*no area", "a.off", "flat.off"),
+                ("missing.nii", "a.off", "a.off", "--volume", "missing.nii"),
+                ("no/out.vtp", "a.off", "a.off", "--colored", "no/out.vtp"),
+                ("a.off", "a.off", "a.off", "--json", "a.off"),
+                ("a.vtp", "a.vtp", "a.off", "--colored", "a.vtp")):
+            with self.subTest(arguments):
+                self.refused(BAD_INPUT, pattern, *arguments)
+
+
+def documented_keys():
+    """The keys in the first column of README.md's table; a key that begins with a dot belongs to
+    each of the parents of the row that ends in a colon before it."""
+    section = README.read_text().split("## The report")[1]
+    keys, parents = set(), []
+    for cell, what in re.findall(r"^\| (`.*?`) \| (.*) \|$", section, re.MULTILINE):
+        names = re.findall(r"`([^`]+)`", cell)
+        if what.endswith(":"):
+            parents = names
+        for name in names:
+            if name.startswith("."):
+                keys |= {parent + name for parent in parents}
+            elif not what.endswith(":"):
+                keys.add(name)
+    return keys
+
+
+def keys_of(value, path=""):
+    """The paths of all leaves; lists of numbers and texts are leaves."""
+    if isinstance(value, dict):
+        return {leaf for key, inner in value.items()
+                for leaf in keys_of(inner, f"{path}.{key}" if path else key)}
+    if path == "checks":
+        return {leaf for check in value for leaf in keys_of(check, path)}
+    return {path}
+
+
+class Report(CompareTest):
+    def setUp(self):
+        super().setUp()
+        self.write("a.off", sphere(7, 32, (10, 10, 10)))
+        self.write("b.off", sphere(6.5, 24, (10, 10, 10)))
+        write_nifti(self.path("image.nii"), Image((20, 20, 20), "B", bytes(8000)))
+
+    def test_keys_are_the_documented_ones(self):
+        report = self.compare("a.off", "b.off", "--volume", "image.nii", "--colored", "out.vtp",
+                              "--max-mean", "9")
+        self.assertEqual(report["schema"], "adaptiso-compare/1")
+        self.assertEqual(keys_of(report), documented_keys())
+
+    def test_holds_names_without_folders(self):
+        self.path("folder").mkdir()
+        self.write("folder/a.off", sphere(7, 16))
+        report = self.compare("folder/a.off", "b.off", "--colored", "folder/out.vtp")
+        self.assertNotIn("folder", json.dumps(report))
+
+    def test_text_and_threads(self):
+        """The same numbers, texts and files, to the byte, whatever the number of threads."""
+        results = []
+        for threads in (1, 2):
+            report = self.compare("a.off", "b.off", "--volume", "image.nii", "--colored", "c.vtp",
+                                  "--samples", "20000", "--threads", threads)
+            for key in ("seconds", "peakMemoryMb"):
+                del report[key]
+            self.assertEqual(report["options"].pop("threads"), threads)
+            text = self.run_compare("a.off", "b.off", "--voxel", "0.5", "--threads", threads).stdout
+            lines = text.splitlines()[:-1]  # the last tells seconds
+            self.assertRegex(text, r"mean, mm +0\.\d{4} +0\.\d{4} +0\.\d{4}\n")
+            results.append((json.dumps(report), lines, self.path("c.vtp").read_bytes()))
+        self.assertEqual(results[0], results[1])
+
+
+class Readme(CompareTest):
+    def test_examples_run(self):
+        write_nifti(self.path("head.nii"), ball(24, 9))
+        examples = re.search(r"## Examples.*?```sh\n(.*?)```", README.read_text(), re.DOTALL)
+        done = subprocess.run(["bash", "-eu", "-o", "pipefail", "-c", examples.group(1)],
+                              cwd=self.folder, env={"PATH": f"{BIN}:/usr/bin:/bin"},
+                              capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(self.names(), ["adaptive.vtp", "difference.vtp", "head.nii", "lh.pial",
+                                        "reference.ply", "report.json"])
+
+
+if __name__ == "__main__":
+    main()
