@@ -204,11 +204,6 @@ private:
     std::vector<Region<Id>> regions_;  ///< and the end
 };
 
-/// Room for what split chords add, so that the mesh is not copied for a few of them.
-std::size_t withSpare(std::size_t count) {
-    return count + count / 256 + 16;
-}
-
 template <class Id>
 void placeVertices(const SurfaceLoops<Id>& loops, const LatticeSampler& sampler,
                    std::int64_t latticeOffset, TriangleMesh& mesh) {

@@ -37,6 +37,9 @@ public:
     bool hasChordOnFace() const { return hasChordOnFace_; }
 
     void fill(TriangleMesh& mesh, bool isMirrored) const {
+        mesh.points.reserve(withSpare(vertexCount_));
+        mesh.normals.reserve(withSpare(vertexCount_));
+        mesh.triangles.reserve(withSpare(triangleCount_));
         mesh.points.resize(vertexCount_);
         mesh.normals.resize(vertexCount_);
         mesh.triangles.resize(triangleCount_);

@@ -18,6 +18,12 @@ struct CrowdedEdge {
 /// \pre every edge of the surface has a triangle on either side, or one at an open border
 std::vector<CrowdedEdge> findCrowdedEdges(const TriangleMesh& mesh);
 
+/// Room for `count` elements and what splitChords adds to a mesh: chords to split are few, and
+/// without it the mesh would be copied for them.
+constexpr std::size_t withSpare(std::size_t count) {
+    return count + count / 256 + 16;
+}
+
 /// An edge between a and b, by the two triangles at it.
 struct ChordToSplit {
     VertexId a, b;
