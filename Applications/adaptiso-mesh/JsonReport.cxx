@@ -2,52 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "Common/CommonOptions.h"
-#include "adaptiso/Core/Errors.h"
+#include "Common/Json.h"
 
 namespace adaptiso {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// Components listed in full; a noisy image has thousands.
 constexpr std::size_t kMaxComponents = 100;
-
-Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json vector(const Vec3& v) {
-    return {number(v.x), number(v.y), number(v.z)};
-}
-
-template <class T>
-Json orNull(const std::optional<T>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
-
-std::string baseName(const std::filesystem::path& path) {
-    std::error_code error;
-    if (path.has_filename() && path != "." && path != "..") return path.filename().string();
-    return std::filesystem::canonical(path, error).filename().string();
-}
-
-std::string_view frameWord(CoordinateFrame frame) {
-    switch (frame) {
-        case CoordinateFrame::Ras:
-            return "ras";
-        case CoordinateFrame::Lps:
-            return "lps";
-        case CoordinateFrame::TkRas:
-            return "tkras";
-        case CoordinateFrame::Voxel:
-            return "voxel";
-    }
-    throw InternalError("jsonReport: unknown coordinate frame");
-}
 
 std::string_view borderWord(Border border) {
     return border == Border::Closed ? "closed" : "open";
