@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "Common/Resources.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Geometry.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -50,6 +51,14 @@ inline std::string_view frameWord(CoordinateFrame frame) {
             return "voxel";
     }
     throw InternalError("frameWord: unknown coordinate frame");
+}
+
+/// `seconds` of a report: every stage, and their total.
+inline Json secondsJson(const StageTimer& timer) {
+    Json seconds = Json::object();
+    for (const auto& [stage, time] : timer.stages()) seconds[stage] = time;
+    seconds["total"] = timer.total();
+    return seconds;
 }
 
 }  // namespace adaptiso

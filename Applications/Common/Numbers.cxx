@@ -3,6 +3,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 namespace adaptiso {
 
@@ -30,6 +32,16 @@ std::string formatCount(long long value) {
     const std::size_t firstDigit = value < 0 ? 1 : 0;
     for (std::size_t at = text.size(); at > firstDigit + 3;) text.insert(at -= 3, 1, ',');
     return text;
+}
+
+std::string formatRounded(double value) {
+    return formatCount(std::llround(value));
+}
+
+std::string formatFixed(double value, int digits) {
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(digits) << value;
+    return text.str();
 }
 
 }  // namespace adaptiso

@@ -17,4 +17,10 @@ std::string formatNumber(double value);
 /// `value` with its digits in groups of three: "1,234,567".
 std::string formatCount(long long value);
 
+/// `value` to the nearest whole number, in groups of three.
+std::string formatRounded(double value);
+
+/// `value` with `digits` decimals: "0.10".
+std::string formatFixed(double value, int digits);
+
 }  // namespace adaptiso

@@ -92,13 +92,6 @@ Json checksJson(const std::vector<Check>& checks) {
     return list;
 }
 
-Json secondsJson(const StageTimer& timer) {
-    Json seconds = Json::object();
-    for (const auto& [stage, time] : timer.stages()) seconds[stage] = time;
-    seconds["total"] = timer.total();
-    return seconds;
-}
-
 }  // namespace
 
 std::string jsonReport(const CompareRun& run) {

@@ -1,9 +1,7 @@
 #include "TextReport.h"
 
-#include <cmath>
 #include <iomanip>
 #include <ostream>
-#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -12,26 +10,16 @@
 namespace adaptiso {
 namespace {
 
-std::string fixedText(double value, int digits) {
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(digits) << value;
-    return text.str();
-}
-
-std::string rounded(double value) {
-    return formatCount(std::llround(value));
-}
-
 std::string signedPercent(double value, double of) {
     const double percent = (value - of) / of * 100;
-    return (percent > 0 ? "+" : "") + fixedText(percent, 3) + " %";
+    return (percent > 0 ? "+" : "") + formatFixed(percent, 3) + " %";
 }
 
 void printSurface(std::ostream& out, std::string_view name, const SurfaceSummary& surface) {
     out << name << "  " << surface.file.string() << ": " << formatCount(surface.triangles)
-        << " triangles, area " << rounded(surface.areaMm2) << " mm2, ";
+        << " triangles, area " << formatRounded(surface.areaMm2) << " mm2, ";
     if (surface.volumeMm3) {
-        out << "volume " << rounded(*surface.volumeMm3) << " mm3\n";
+        out << "volume " << formatRounded(*surface.volumeMm3) << " mm3\n";
     } else {
         out << "not closed\n";
     }
@@ -46,7 +34,7 @@ void printRow(std::ostream& out, std::string_view name, Length length, double un
     for (const DistanceStatistics* direction :
          {&distances.aToB, &distances.bToA, &distances.combined}) {
         if (direction->samples == 0) continue;
-        out << std::setw(12) << fixedText(direction->*length / unit, 4);
+        out << std::setw(12) << formatFixed(direction->*length / unit, 4);
         if (distances.bToA.samples == 0) break;  // the combined figures are those of A to B
     }
     out << '\n';
@@ -75,8 +63,8 @@ void printDistances(std::ostream& out, const CompareRun& run) {
              distances);
     printRow(out, "normals, 95 % within", &DistanceStatistics::p95NormalDeviationDeg, 1, distances);
     const Vec3 farthest = run.toFrame(distances.combined.maxPointMm);
-    out << "  farthest at " << fixedText(farthest.x, 2) << ", " << fixedText(farthest.y, 2) << ", "
-        << fixedText(farthest.z, 2) << " (" << toString(run.frame) << ")\n";
+    out << "  farthest at " << formatFixed(farthest.x, 2) << ", " << formatFixed(farthest.y, 2)
+        << ", " << formatFixed(farthest.z, 2) << " (" << toString(run.frame) << ")\n";
 }
 
 void printDifferences(std::ostream& out, const CompareRun& run) {
@@ -86,8 +74,8 @@ void printDifferences(std::ostream& out, const CompareRun& run) {
     }
     out << " against B\n";
     if (run.overlap) {
-        out << "  Dice " << fixedText(run.overlap->voxels.dice(), 5) << ", mean boundary offset "
-            << fixedText(run.overlap->meanBoundaryOffsetMm, 4) << " mm\n";
+        out << "  Dice " << formatFixed(run.overlap->voxels.dice(), 5) << ", mean boundary offset "
+            << formatFixed(run.overlap->meanBoundaryOffsetMm, 4) << " mm\n";
     }
 }
 
@@ -100,15 +88,15 @@ void printReport(std::ostream& out, const CompareRun& run) {
     printDifferences(out, run);
     if (run.colored) {
         out << run.options.colored.string() << ": A with its distances, viridis from 0 to "
-            << fixedText(run.colored->maximumMm, 4) << " mm\n";
+            << formatFixed(run.colored->maximumMm, 4) << " mm\n";
     }
-    out << fixedText(run.timer.total(), 2) << " s (";
+    out << formatFixed(run.timer.total(), 2) << " s (";
     std::string_view separator;
     for (const auto& [stage, seconds] : run.timer.stages()) {
-        out << separator << stage << ' ' << fixedText(seconds, 2);
+        out << separator << stage << ' ' << formatFixed(seconds, 2);
         separator = ", ";
     }
-    out << "), peak memory " << rounded(peakMemoryMb()) << " MB\n";
+    out << "), peak memory " << formatRounded(peakMemoryMb()) << " MB\n";
 }
 
 }  // namespace adaptiso

@@ -126,13 +126,6 @@ Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {
               {"bytes", surface.bytes}}}};
 }
 
-Json secondsJson(const StageTimer& timer) {
-    Json seconds = Json::object();
-    for (const auto& [stage, time] : timer.stages()) seconds[stage] = time;
-    seconds["total"] = timer.total();
-    return seconds;
-}
-
 }  // namespace
 
 std::string jsonReport(const MeshRun& run) {

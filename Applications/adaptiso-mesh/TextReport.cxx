@@ -1,9 +1,6 @@
 #include "TextReport.h"
 
-#include <cmath>
-#include <iomanip>
 #include <ostream>
-#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -11,16 +8,6 @@
 
 namespace adaptiso {
 namespace {
-
-std::string fixedText(double value, int digits) {
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(digits) << value;
-    return text.str();
-}
-
-std::string rounded(double value) {
-    return formatCount(std::llround(value));
-}
 
 /// "1 piece", "3 pieces".
 std::string counted(std::int64_t count, const std::string& what) {
@@ -37,12 +24,12 @@ void printSurface(std::ostream& out, const SurfaceSummary& surface) {
         << "; marching cubes makes " << formatCount(surface.statistics.marchingCubesTriangles)
         << '\n';
     if (surface.volumeMm3) {
-        out << "  closed, area " << rounded(surface.areaMm2) << " mm2, volume "
-            << rounded(*surface.volumeMm3) << " mm3\n";
+        out << "  closed, area " << formatRounded(surface.areaMm2) << " mm2, volume "
+            << formatRounded(*surface.volumeMm3) << " mm3\n";
     } else {
         out << "  open at the border of the image ("
             << counted(topology.count(TopologyDefect::BoundaryEdge), "edge") << "), area "
-            << rounded(surface.areaMm2) << " mm2\n";
+            << formatRounded(surface.areaMm2) << " mm2\n";
     }
     if (surface.crossingPairs) {
         out << "  " << counted(*surface.crossingPairs, "pair") << " of triangles cross\n";
@@ -53,13 +40,13 @@ void printSurface(std::ostream& out, const SurfaceSummary& surface) {
 
 void printReport(std::ostream& out, const MeshRun& run) {
     for (const SurfaceSummary& surface : run.surfaces) printSurface(out, surface);
-    out << fixedText(run.timer.total(), 2) << " s (";
+    out << formatFixed(run.timer.total(), 2) << " s (";
     std::string_view separator;
     for (const auto& [stage, seconds] : run.timer.stages()) {
-        out << separator << stage << ' ' << fixedText(seconds, 2);
+        out << separator << stage << ' ' << formatFixed(seconds, 2);
         separator = ", ";
     }
-    out << "), peak memory " << rounded(peakMemoryMb()) << " MB\n";
+    out << "), peak memory " << formatRounded(peakMemoryMb()) << " MB\n";
 }
 
 }  // namespace adaptiso

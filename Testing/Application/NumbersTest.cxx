@@ -42,4 +42,14 @@ TEST(FormatCount, GroupsThousands) {
 }
 
 }  // namespace
+TEST(FormatRounded, GivesTheNearestWholeNumberInGroups) {
+    EXPECT_EQ(formatRounded(1234567.5), "1,234,568");
+    EXPECT_EQ(formatRounded(-0.4), "0");
+}
+
+TEST(FormatFixed, KeepsTheDigitsAskedFor) {
+    EXPECT_EQ(formatFixed(0.1, 2), "0.10");
+    EXPECT_EQ(formatFixed(-1234.5678, 3), "-1234.568");
+}
+
 }  // namespace adaptiso
