@@ -36,7 +36,7 @@ std::string methodName(const Candidate& candidate) {
     if (!candidate.method) {
         return candidate.computeNormals ? "FlyingEdges" : "FlyingEdges, no normals";
     }
-    return *candidate.method == Method::MarchingCubes ? "mc" : "boxes";
+    return std::string(toString(*candidate.method));
 }
 
 std::string fixed(double value, int digits) {

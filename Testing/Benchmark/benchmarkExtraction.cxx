@@ -119,6 +119,7 @@ const bool kAreDeclared = [] {
         declare("index/" + name, buildsIndex, volume);
         declare("query/" + name, asksIndex, volume);
         declare("mc/" + name, extracts, volume, Method::MarchingCubes);
+        declare("dmc/" + name, extracts, volume, Method::DiscretizedMarchingCubes);
         declare("boxes/" + name, extracts, volume, Method::Boxes);
     }
     return true;

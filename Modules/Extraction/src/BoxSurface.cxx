@@ -317,7 +317,11 @@ private:
 };
 
 template <int N, class Id>
-void divideBlocks(BoxSurface<N, Id>& surface) {
+void divideBlocks(BoxSurface<N, Id>& surface, Division division) {
+    if (division == Division::Unit) {
+        for (auto& block : surface.blocks) block.tree = BoxTree<N>::ofUnitBoxes();
+        return;
+    }
     parallelForPieces(surface.active.count(), 64, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t b = begin; b < end; ++b) {
             const Index3 first = surface.active.grid().firstSample(surface.active.block(b));
@@ -485,21 +489,24 @@ HalfEdgeRef twinAcrossFace(const BoxSurface<N, Id>& surface, const HalfEdgeRef& 
 }
 
 template <int N, class Id>
-BoxSurface<N, Id> makeBoxSurface(const LatticeSampler& sampler, ActiveBlocks active) {
+BoxSurface<N, Id> makeBoxSurface(const LatticeSampler& sampler, ActiveBlocks active,
+                                 Division division) {
     const std::int64_t count = active.count();
     BoxSurface<N, Id> surface{sampler, std::move(active), {}, {}, 0, {}, 0, 0};
     surface.blocks.resize(count);
     surface.chunks.resize((count + surface.kChunkBlocks - 1) / surface.kChunkBlocks);
-    divideBlocks(surface);
+    divideBlocks(surface, division);
     fillBoxes(surface);
+    if (division == Division::Unit) surface.boxCounts = {surface.boxCounts.back()};
     numberVertices(surface);
     resolveVertices(surface);
     eraseMergedHalfEdges(surface);
     return surface;
 }
 
-#define ADAPTISO_INSTANTIATE(N, Id)                                                        \
-    template BoxSurface<N, Id> makeBoxSurface<N, Id>(const LatticeSampler&, ActiveBlocks); \
+#define ADAPTISO_INSTANTIATE(N, Id)                                                       \
+    template BoxSurface<N, Id> makeBoxSurface<N, Id>(const LatticeSampler&, ActiveBlocks, \
+                                                     Division);                           \
     template HalfEdgeRef twinAcrossFace<N, Id>(const BoxSurface<N, Id>&, const HalfEdgeRef&);
 ADAPTISO_INSTANTIATE(2, std::uint32_t)
 ADAPTISO_INSTANTIATE(4, std::uint32_t)

@@ -128,8 +128,12 @@ struct HalfEdgeRef {
 template <int N, class Id>
 HalfEdgeRef twinAcrossFace(const BoxSurface<N, Id>& surface, const HalfEdgeRef& ref);
 
-/// Builds it (thesis, chapters 4, 5.1, 5.2).
+/// What blocks are divided into: boxes as large as they are simple, or unit boxes.
+enum class Division { Simple, Unit };
+
+/// Builds it (thesis, chapters 4, 5.1, 5.2). The statistics of unit boxes tell of no other sizes.
 template <int N, class Id>
-BoxSurface<N, Id> makeBoxSurface(const LatticeSampler& sampler, ActiveBlocks active);
+BoxSurface<N, Id> makeBoxSurface(const LatticeSampler& sampler, ActiveBlocks active,
+                                 Division division);
 
 }  // namespace adaptiso::detail

@@ -14,17 +14,21 @@ Extraction extract(const VolumeView& volume, ActiveBlocks active,
     const auto report = [&](double fraction) {
         if (options.progress) options.progress("extract", fraction);
     };
+    const bool isDmc = options.method == Method::DiscretizedMarchingCubes;
     const auto sampler = LatticeSampler::make(volume, options.isovalue, grid.border);
     Extraction result;
     report(0);
-    BoxSurface<N, Id> surface = makeBoxSurface<N, Id>(*sampler, std::move(active));
+    BoxSurface<N, Id> surface = makeBoxSurface<N, Id>(*sampler, std::move(active),
+                                                      isDmc ? Division::Unit : Division::Simple);
     result.statistics.boxes = surface.boxCounts;
     result.statistics.boxesChangingTopology = surface.boxesChangingTopology;
     result.statistics.marchingCubesTriangles = surface.marchingCubesTriangles;
     report(0.5);
     SurfaceLoops<Id> loops = makeSurfaceLoops<N, Id>(std::move(surface));
     report(0.7);
-    result.mesh = fillLoops(std::move(loops), *sampler, volume.geometry(), grid.offset,
+    const VertexPlacement placement =
+        isDmc && !options.adjustVertices ? VertexPlacement::Midpoint : VertexPlacement::Crossing;
+    result.mesh = fillLoops(std::move(loops), *sampler, volume.geometry(), grid.offset, placement,
                             result.statistics.edgesSplit);
     report(1);
     return result;

@@ -15,6 +15,8 @@ std::string_view toString(Method method) {
     switch (method) {
         case Method::Boxes:
             return "boxes";
+        case Method::DiscretizedMarchingCubes:
+            return "dmc";
         case Method::MarchingCubes:
             return "mc";
     }
@@ -27,6 +29,10 @@ Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
         throw InvalidInput("extractSurface: the isovalue is not a finite number");
     }
     const Index3& size = volume.geometry().size;
+    if (options.adjustVertices && options.method != Method::DiscretizedMarchingCubes) {
+        throw InvalidInput("extractSurface: adjustVertices is set for the method " +
+                           std::string(toString(options.method)) + ", must be dmc");
+    }
     if (index.grid().volumeSize != size || index.pixelType() != volume.pixelType()) {
         throw InvalidInput("extractSurface: the index was built from another volume");
     }

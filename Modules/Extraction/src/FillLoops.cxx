@@ -206,7 +206,7 @@ private:
 
 template <class Id>
 void placeVertices(const SurfaceLoops<Id>& loops, const LatticeSampler& sampler,
-                   std::int64_t latticeOffset, TriangleMesh& mesh) {
+                   std::int64_t latticeOffset, VertexPlacement placement, TriangleMesh& mesh) {
     const std::int64_t count = static_cast<std::int64_t>(loops.vertices.size());
     mesh.points.reserve(withSpare(count));
     mesh.normals.reserve(withSpare(count));
@@ -214,8 +214,10 @@ void placeVertices(const SurfaceLoops<Id>& loops, const LatticeSampler& sampler,
     mesh.normals.resize(count);
     parallelForPieces(count, 4096, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t v = begin; v < end; ++v) {
-            const Crossing crossing =
-                sampler.crossing(loops.vertices[v].latticeEdge(latticeOffset));
+            const LatticeEdge edge = loops.vertices[v].latticeEdge(latticeOffset);
+            const Crossing crossing = placement == VertexPlacement::Midpoint
+                                          ? sampler.midpoint(edge)
+                                          : sampler.crossing(edge);
             mesh.points[v] = crossing.pointMm;
             mesh.normals[v] = toNormal(crossing.normal);
         }
@@ -298,9 +300,9 @@ std::vector<ChordToSplit> chordsToSplit(const LoopFiller<Id>& filler, const Tria
 template <class Id>
 TriangleMesh fillLoops(SurfaceLoops<Id> loops, const LatticeSampler& sampler,
                        const ImageGeometry& geometry, std::int64_t latticeOffset,
-                       std::int64_t& edgesSplit) {
+                       VertexPlacement placement, std::int64_t& edgesSplit) {
     TriangleMesh mesh;
-    placeVertices(loops, sampler, latticeOffset, mesh);
+    placeVertices(loops, sampler, latticeOffset, placement, mesh);
     {
         const LoopFiller<Id> filler(loops, mesh, geometry.isMirrored());
         fillAll(filler, mesh);
@@ -308,7 +310,9 @@ TriangleMesh fillLoops(SurfaceLoops<Id> loops, const LatticeSampler& sampler,
         edgesSplit = static_cast<std::int64_t>(chords.size());
         splitChords(mesh, chords);
     }
-    spreadFlatTriangles(mesh, loops.vertices, geometry, latticeOffset);
+    if (placement == VertexPlacement::Crossing) {
+        spreadFlatTriangles(mesh, loops.vertices, geometry, latticeOffset);
+    }
     if (geometry.isMirrored()) {
         for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
     }
@@ -317,8 +321,10 @@ TriangleMesh fillLoops(SurfaceLoops<Id> loops, const LatticeSampler& sampler,
 }
 
 template TriangleMesh fillLoops<std::uint32_t>(SurfaceLoops<std::uint32_t>, const LatticeSampler&,
-                                               const ImageGeometry&, std::int64_t, std::int64_t&);
+                                               const ImageGeometry&, std::int64_t, VertexPlacement,
+                                               std::int64_t&);
 template TriangleMesh fillLoops<std::uint64_t>(SurfaceLoops<std::uint64_t>, const LatticeSampler&,
-                                               const ImageGeometry&, std::int64_t, std::int64_t&);
+                                               const ImageGeometry&, std::int64_t, VertexPlacement,
+                                               std::int64_t&);
 
 }  // namespace adaptiso::detail

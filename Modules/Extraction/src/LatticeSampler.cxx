@@ -52,28 +52,47 @@ public:
     }
 
     Crossing crossing(const LatticeEdge& edge) const override {
-        const Index3& p = edge.sample;
-        Index3 q = p;
-        ++q[edge.axis];
-        Vec3 index{static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
-        Vec3 gradient;
-        if (closed_ && (!contains(p) || !contains(q))) {
-            index[edge.axis] += 0.5;
-            gradient[edge.axis] = contains(p) ? -1 : 1;
-        } else {
+        const Index3 &p = edge.sample, q = highEnd(edge);
+        double t = 0.5;  // towards a virtual sample, and with NaN at an end
+        if (!isVirtual(edge)) {
             const double below = static_cast<double>(clamped(p)),
                          above = static_cast<double>(clamped(q));
-            double t = (isovalue_ - below) / (above - below);
-            t = t == t ? std::clamp(t, kHair, 1 - kHair) : 0.5;  // NaN beside a sample
-            index[edge.axis] += t;
-            gradient = (1 - t) * gradientAt(p) + t * gradientAt(q);
+            const double exact = (isovalue_ - below) / (above - below);
+            if (!std::isnan(exact)) t = std::clamp(exact, kHair, 1 - kHair);
+        }
+        return crossingAt(edge, t);
+    }
+
+    Crossing midpoint(const LatticeEdge& edge) const override { return crossingAt(edge, 0.5); }
+
+private:
+    static Index3 highEnd(const LatticeEdge& edge) {
+        Index3 q = edge.sample;
+        ++q[edge.axis];
+        return q;
+    }
+
+    /// One end lies beyond a closed border.
+    bool isVirtual(const LatticeEdge& edge) const {
+        return closed_ && (!contains(edge.sample) || !contains(highEnd(edge)));
+    }
+
+    /// At part `t` of the edge.
+    Crossing crossingAt(const LatticeEdge& edge, double t) const {
+        const Index3& p = edge.sample;
+        Vec3 index{static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+        index[edge.axis] += t;
+        Vec3 gradient;
+        if (isVirtual(edge)) {
+            gradient[edge.axis] = contains(p) ? -1 : 1;
+        } else {
+            gradient = (1 - t) * gradientAt(p) + t * gradientAt(highEnd(edge));
         }
         const Vec3 normal = -normalized(gradientToPhysical_ * gradient);
         return {volume_.geometry.toPhysical(index),
                 std::isfinite(squaredNorm(normal)) ? normal : Vec3{}};
     }
 
-private:
     std::uint32_t wholeRow(const T* samples, int count) const {
         std::uint32_t row = 0;
         for (int x = 0; x < count; ++x) row |= static_cast<std::uint32_t>(inside_(samples[x])) << x;

@@ -51,6 +51,9 @@ public:
     /// border) at the two samples, interpolated, taken to physical space.
     /// \pre one end is inside, the other is not
     virtual Crossing crossing(const LatticeEdge& edge) const = 0;
+
+    /// As crossing(), but in the middle of the edge, whatever the samples.
+    virtual Crossing midpoint(const LatticeEdge& edge) const = 0;
 };
 
 }  // namespace adaptiso::detail

@@ -90,6 +90,12 @@ public:
         return offset + (box.x >> shift) + ((box.y >> shift) << l) + ((box.z >> shift) << 2 * l);
     }
 
+    static BoxTree ofUnitBoxes() {
+        BoxTree tree;
+        for (int node = 0; node < kNodes; ++node) tree.divided_.set(node);
+        return tree;
+    }
+
     bool isDivided(const Box& box) const { return box.size > 1 && divided_.test(node(box)); }
     void divide(const Box& box) { divided_.set(node(box)); }
 

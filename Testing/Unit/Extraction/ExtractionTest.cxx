@@ -24,7 +24,8 @@ TYPED_TEST(PixelTypes, GiveTheSameMeshForTheSameValues) {
     const auto view = bytes.volume.view().template as<std::uint8_t>();
     const std::vector<TypeParam> samples(view.samples, view.samples + view.geometry.voxelCount());
     const Volume volume = Volume::fromSamples(samples, view.geometry);
-    for (const Method method : {Method::Boxes, Method::MarchingCubes}) {
+    for (const Method method :
+         {Method::Boxes, Method::DiscretizedMarchingCubes, Method::MarchingCubes}) {
         EXPECT_EQ(extractFrom(volume, 60.5, method, 4, Border::Closed).mesh,
                   extractFrom(bytes.volume, 60.5, method, 4, Border::Closed).mesh);
     }

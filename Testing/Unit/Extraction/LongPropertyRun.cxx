@@ -4,16 +4,28 @@
 
 namespace adaptiso::testing {
 
-// the same properties as in BoxesMethodTest, over a hundred times as many volumes
-TEST(BoxesMethod, KeepsItsPromisesOnManyRandomVolumes) {
+// the same properties as in SurfaceMethodsTest, over a hundred times as many volumes
+namespace {
+
+class ManyVolumes : public ::testing::TestWithParam<MethodChoice> {};
+
+}  // namespace
+
+TEST_P(ManyVolumes, KeepTheMethodsPromises) {
     for (std::uint64_t seed = 1'000'000; seed < 1'100'000; ++seed) {
         const HardVolume hard = hardVolume(seed, 14);
         const int blockSize = 2 << seed % 4;
         for (const Border border : {Border::Closed, Border::Open}) {
-            ASSERT_TRUE(keepsItsPromises(hard, blockSize, border))
+            ASSERT_TRUE(keepsItsPromises(hard, GetParam(), blockSize, border))
                 << "seed " << seed << ", N = " << blockSize;
         }
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(, ManyVolumes,
+                         ::testing::Values(MethodChoice{Method::Boxes},
+                                           MethodChoice{Method::DiscretizedMarchingCubes},
+                                           MethodChoice{Method::DiscretizedMarchingCubes, true}),
+                         ::testing::PrintToStringParamName());
 
 }  // namespace adaptiso::testing

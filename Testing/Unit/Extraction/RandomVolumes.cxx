@@ -1,5 +1,8 @@
 #include "RandomVolumes.h"
 
+#include <ostream>
+#include <string_view>
+
 #include "Support/AnalyticVolumes.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
@@ -42,41 +45,70 @@ HardVolume hardVolume(std::uint64_t seed, int maximumSize) {
     return {Volume::fromSamples(std::move(samples), geometry), isovalue};
 }
 
-Extraction extractFrom(const VolumeView& volume, double isovalue, Method method, int blockSize,
-                       Border border) {
+HardVolume binaryVolume(
+    const Index3& size,
+    const std::function<bool(std::int64_t, std::int64_t, std::int64_t)>& isInside) {
+    ImageGeometry geometry;
+    geometry.size = size;
+    std::vector<std::uint8_t> samples;
+    for (std::int64_t z = 0; z < size[2]; ++z) {
+        for (std::int64_t y = 0; y < size[1]; ++y) {
+            for (std::int64_t x = 0; x < size[0]; ++x) {
+                samples.push_back(isInside(x, y, z) ? 100 : 0);
+            }
+        }
+    }
+    return {Volume::fromSamples(std::move(samples), geometry), 50};
+}
+
+std::ostream& operator<<(std::ostream& out, const MethodChoice& choice) {
+    return out << toString(choice.method) << (choice.adjustVertices ? "Adjusted" : "");
+}
+
+Extraction extractFrom(const VolumeView& volume, double isovalue, const MethodChoice& choice,
+                       int blockSize, Border border) {
     ExtractionOptions options;
     options.isovalue = isovalue;
-    options.method = method;
+    options.method = choice.method;
+    options.adjustVertices = choice.adjustVertices;
     return extractSurface(volume, SpanSpaceIndex::build(volume, {blockSize, border}), options);
 }
 
-::testing::AssertionResult keepsItsPromises(const HardVolume& hard, int blockSize, Border border) {
+::testing::AssertionResult keepsItsPromises(const HardVolume& hard, const MethodChoice& choice,
+                                            int blockSize, Border border) {
     const VolumeView& volume = hard.volume;
     SoundnessOptions soundness;
     if (border == Border::Open) soundness = openOnlyAtBorder(volume.geometry());
-    const Extraction boxes = extractFrom(volume, hard.isovalue, Method::Boxes, blockSize, border);
-    const Extraction cubes =
+    const Extraction ours = extractFrom(volume, hard.isovalue, choice, blockSize, border);
+    const Extraction full =
         extractFrom(volume, hard.isovalue, Method::MarchingCubes, blockSize, border);
+    const std::string_view name = toString(choice.method);
 
-    if (const auto sound = isSound(boxes.mesh, soundness); !sound) {
-        return ::testing::AssertionFailure() << "boxes: " << sound.message();
+    if (const auto sound = isSound(ours.mesh, soundness); !sound) {
+        return ::testing::AssertionFailure() << name << ": " << sound.message();
     }
-    if (const auto sound = isSound(cubes.mesh, soundness); !sound) {
+    if (const auto sound = isSound(full.mesh, soundness); !sound) {
         return ::testing::AssertionFailure() << "mc: " << sound.message();
     }
-    const TopologyReport ours = checkTopology(boxes.mesh), full = checkTopology(cubes.mesh);
-    const bool isSame = ours.components.size() == full.components.size() &&
-                        eulerCharacteristic(ours) == eulerCharacteristic(full);
-    if (!isSame && boxes.statistics.boxesChangingTopology == 0) {
-        return ::testing::AssertionFailure()
-               << "topology differs from mc and no box says why: " << ours.components.size()
-               << " components of Euler characteristic " << eulerCharacteristic(ours) << " against "
-               << full.components.size() << " of " << eulerCharacteristic(full);
+    const std::int64_t changed = ours.statistics.boxesChangingTopology;
+    if (choice.method == Method::DiscretizedMarchingCubes && changed != 0) {
+        return ::testing::AssertionFailure() << changed << " unit boxes change the topology";
     }
-    if (boxes.statistics.marchingCubesTriangles != cubes.statistics.marchingCubesTriangles) {
+    const TopologyReport oursTopology = checkTopology(ours.mesh),
+                         fullTopology = checkTopology(full.mesh);
+    const bool isSame = oursTopology.components.size() == fullTopology.components.size() &&
+                        eulerCharacteristic(oursTopology) == eulerCharacteristic(fullTopology);
+    if (!isSame && changed == 0) {
         return ::testing::AssertionFailure()
-               << "boxes count " << boxes.statistics.marchingCubesTriangles
-               << " triangles of marching cubes, mc " << cubes.statistics.marchingCubesTriangles;
+               << name << ": topology differs from mc and no box says why: "
+               << oursTopology.components.size() << " components of Euler characteristic "
+               << eulerCharacteristic(oursTopology) << " against " << fullTopology.components.size()
+               << " of " << eulerCharacteristic(fullTopology);
+    }
+    if (ours.statistics.marchingCubesTriangles != full.statistics.marchingCubesTriangles) {
+        return ::testing::AssertionFailure()
+               << name << " counts " << ours.statistics.marchingCubesTriangles
+               << " triangles of marching cubes, mc " << full.statistics.marchingCubesTriangles;
     }
     return ::testing::AssertionSuccess();
 }

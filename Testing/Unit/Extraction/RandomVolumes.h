@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <iosfwd>
 
 #include "Support/Soundness.h"
 #include "adaptiso/Core/Volume.h"
@@ -16,13 +18,31 @@ struct HardVolume {
 };
 HardVolume hardVolume(std::uint64_t seed, int maximumSize);
 
-/// Builds the index and extracts.
-Extraction extractFrom(const VolumeView& volume, double isovalue, Method method, int blockSize,
-                       Border border);
+/// A volume of zeros in which `isInside(x, y, z)` says where 100 stands; isovalue 50.
+HardVolume binaryVolume(
+    const Index3& size,
+    const std::function<bool(std::int64_t, std::int64_t, std::int64_t)>& isInside);
 
-/// Extracts by `boxes` and by `mc` and checks both: sound; the same components and the same Euler
-/// characteristic, unless the boxes' own census says that boxes changed the topology; the count of
-/// marching cubes' triangles that `boxes` gives is right.
-::testing::AssertionResult keepsItsPromises(const HardVolume& hard, int blockSize, Border border);
+/// A method and how it is asked for.
+struct MethodChoice {
+    Method method;
+    bool adjustVertices = false;
+
+    // NOLINTNEXTLINE(google-explicit-constructor): a method alone is the plain choice
+    MethodChoice(Method m, bool adjusts = false) : method(m), adjustVertices(adjusts) {}
+};
+
+/// "boxes", "dmc", "dmcAdjusted": for the names of tests.
+std::ostream& operator<<(std::ostream& out, const MethodChoice& choice);
+
+/// Builds the index and extracts.
+Extraction extractFrom(const VolumeView& volume, double isovalue, const MethodChoice& choice,
+                       int blockSize, Border border);
+
+/// Extracts by `choice` and by `mc` and checks both: sound; the same components and the same Euler
+/// characteristic, unless the method's own census says that boxes changed the topology (unit boxes
+/// never do); the count of marching cubes' triangles that the method gives is right.
+::testing::AssertionResult keepsItsPromises(const HardVolume& hard, const MethodChoice& choice,
+                                            int blockSize, Border border);
 
 }  // namespace adaptiso::testing

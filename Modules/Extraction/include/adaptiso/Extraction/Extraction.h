@@ -14,6 +14,7 @@ namespace adaptiso {
 /// How the surface is cut into triangles.
 enum class Method {
     Boxes,  ///< simple cubic boxes of many sizes, merged where they agree: the thesis's method
+    DiscretizedMarchingCubes,  ///< facets between edge midpoints, merged where they are coplanar
     MarchingCubes  ///< every cell at full resolution, faces decided alike from both sides
 };
 std::string_view toString(Method method);
@@ -21,6 +22,9 @@ std::string_view toString(Method method);
 struct ExtractionOptions {
     double isovalue = 0;  ///< inside means sample >= isovalue
     Method method = Method::Boxes;
+    /// Of discretized marching cubes: put the vertices at the crossings, as the other methods do,
+    /// instead of at the midpoints of their lattice edges.
+    bool adjustVertices = false;
     bool computeNormals = true;  ///< central differences of the volume, in physical space
     ProgressCallback progress;   ///< called as the work goes on; may be empty
 };
@@ -36,7 +40,7 @@ struct ExtractionStatistics {
     std::int64_t blocksTotal = 0;
     std::int64_t blocksActive = 0;  ///< touched by the isovalue
     std::int64_t indexNodesVisited = 0;
-    std::vector<BoxCount> boxes;  ///< largest size first
+    std::vector<BoxCount> boxes;  ///< largest size first; of dmc, unit boxes alone
     /// Boxes in which the surface of the full grid is not a set of discs, one for each loop on the
     /// box's faces: there the box's discs change its topology (a tunnel becomes two caps).
     std::int64_t boxesChangingTopology = 0;
@@ -56,8 +60,8 @@ struct Extraction {
 /// \return       a closed oriented 2-manifold without degenerate triangles or unused vertices;
 ///               with Border::Open it is open at the volume's border and nowhere else. Empty when
 ///               no sample, or (open border) no edge of the grid, reaches the isovalue.
-/// \pre  index.grid() and pixelType() fit the volume; isovalue is finite
-///       \throws InvalidInput otherwise
+/// \pre  index.grid() and pixelType() fit the volume; isovalue is finite; adjustVertices only with
+///       DiscretizedMarchingCubes    \throws InvalidInput otherwise
 /// The same input gives the same bytes, whatever the number of threads.
 Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
                           const ExtractionOptions& options);
