@@ -60,6 +60,11 @@ void checkCombinations(const MeshOptions& options) {
         throw UsageError(
             "--min-volume and --fill-cavities need closed surfaces, not --border open");
     }
+    if (options.adjustVertices && options.method != Method::DiscretizedMarchingCubes) {
+        throw UsageError(
+            "--adjust-vertices: is for --method dmc; the vertices of the other methods "
+            "lie on the crossings already");
+    }
 }
 
 /// An option that takes one of a few words, each standing for a value; `words` in the order of the
@@ -106,9 +111,17 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
         ->allow_extra_args(false)
         ->group(kSurface);
     addChoice<Method>(app, "--method", options.method,
-                      {{"boxes", Method::Boxes}, {"mc", Method::MarchingCubes}},
+                      {{"boxes", Method::Boxes},
+                       {"dmc", Method::DiscretizedMarchingCubes},
+                       {"mc", Method::MarchingCubes}},
                       "boxes: adaptive, few triangles where the surface is flat (default); "
+                      "dmc: discretized marching cubes, coplanar facets between edge midpoints "
+                      "merged; "
                       "mc: marching cubes, every voxel at full resolution")
+        ->group(kSurface);
+    app.add_flag("--adjust-vertices", options.adjustVertices,
+                 "Move the vertices of the method dmc from the midpoints to where the image "
+                 "reaches the isovalue")
         ->group(kSurface);
     addChoice<int>(app, "--block-size", options.index.blockSize,
                    {{"2", 2}, {"4", 4}, {"8", 8}, {"16", 16}},

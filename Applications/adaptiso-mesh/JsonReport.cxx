@@ -17,10 +17,6 @@ std::string_view borderWord(Border border) {
     return border == Border::Closed ? "closed" : "open";
 }
 
-std::string_view methodWord(Method method) {
-    return method == Method::Boxes ? "boxes" : "mc";
-}
-
 Json inputJson(const MeshRun& run) {
     const InputSummary& input = run.input;
     const ImageGeometry& geometry = input.geometry;
@@ -43,7 +39,8 @@ Json inputJson(const MeshRun& run) {
 }
 
 Json optionsJson(const MeshOptions& options) {
-    return {{"method", methodWord(options.method)},
+    return {{"method", toString(options.method)},
+            {"adjustVertices", options.adjustVertices},
             {"blockSize", options.index.blockSize},
             {"border", borderWord(options.index.border)},
             {"largest", options.selection.largestOnly},
@@ -101,7 +98,7 @@ Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {
     const TopologyReport& topology = surface.topology;
     return {{"isovalue", surface.isovalue},
             {"isovalueChosenBy", surface.isAutomatic ? "otsu" : "user"},
-            {"method", methodWord(run.options.method)},
+            {"method", toString(run.options.method)},
             {"blocks",
              {{"size", run.options.index.blockSize},
               {"total", statistics.blocksTotal},

@@ -160,6 +160,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         ExtractionOptions extract;
         extract.isovalue = isovalue;
         extract.method = options.method;
+        extract.adjustVertices = options.adjustVertices;
         extract.computeNormals = summary.format->holdsNormals;
         extract.progress = progress.callback();
         return extractSurface(volume, index, extract);

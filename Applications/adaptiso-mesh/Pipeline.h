@@ -27,6 +27,7 @@ struct MeshOptions {
     std::vector<IsovalueChoice> isovalues;
     std::filesystem::path output;  ///< empty: named after the input, in the current folder
     Method method = Method::Boxes;
+    bool adjustVertices = false;
     IndexOptions index;
     ComponentSelection selection;
     std::optional<CoordinateFrame> frame;  ///< none: the output format's own

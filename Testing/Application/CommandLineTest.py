@@ -59,6 +59,12 @@ class WrongUsage(ApplicationTest):
                 self.refused("closed surfaces", "ball.nii", "--iso", "100", "--border", "open",
                              *option)
 
+    def test_adjusted_vertices_of_another_method(self):
+        for method in ([], ["--method", "boxes"], ["--method", "mc"]):
+            with self.subTest(method):
+                self.refused("--adjust-vertices: .*dmc", "ball.nii", "--iso", "100",
+                             "--adjust-vertices", *method)
+
     def test_unknown_output_format_is_told_before_the_input_is_read(self):
         for name in ("out.xyz", "out", "out.nii", ".vtp"):
             with self.subTest(name):

@@ -111,16 +111,34 @@ class Numbers(ApplicationTest):
                 else:
                     self.assertLess(surface["triangles"], surface["marchingCubesTriangles"])
 
+    def test_discretized_marching_cubes_of_a_ball(self):
+        write_nifti(self.path("ball.nii"), ball(40, 16, spacing=(0.5, 0.5, 0.5)))
+        for adjust in ([], ["--adjust-vertices"]):
+            with self.subTest(adjust):
+                report = self.report("ball.nii", "--iso", "100", "--method", "dmc", *adjust)
+                surface = report["surfaces"][0]
+                self.assertEqual(report["options"]["adjustVertices"], bool(adjust))
+                self.assertEqual(surface["method"], "dmc")
+                self.assertEqual(surface["genus"], 0)
+                self.assertEqual(surface["componentCount"], 1)
+                self.assertEqual([box["size"] for box in surface["boxes"]], [1])
+                self.assertLess(surface["triangles"], surface["marchingCubesTriangles"] / 2)
+                # half a voxel from the sphere at most, of a radius of 16
+                self.assertAlmostEqual(surface["volumeMm3"] / (4 / 3 * math.pi * 8 ** 3), 1,
+                                       delta=3.1 * 0.5 / 16)
+
     def test_soundness(self):
         write_nifti(self.path("noise.nii"), noise(16))
-        for border in ("closed", "open"):
-            soundness = self.report("noise.nii", "--iso", "180", "--border",
-                                    border)["surfaces"][0]["soundness"]
-            self.assertEqual(soundness.pop("closed"), border == "closed")
-            self.assertEqual(soundness.pop("boundaryEdges") == 0, border == "closed")
-            # the method does not exclude them; noise has some
-            self.assertGreaterEqual(soundness.pop("crossingPairs"), 0)
-            self.assertEqual(set(soundness.values()), {0})
+        for method in ("boxes", "dmc"):
+            for border in ("closed", "open"):
+                with self.subTest(method=method, border=border):
+                    soundness = self.report("noise.nii", "--iso", "180", "--border", border,
+                                            "--method", method)["surfaces"][0]["soundness"]
+                    self.assertEqual(soundness.pop("closed"), border == "closed")
+                    self.assertEqual(soundness.pop("boundaryEdges") == 0, border == "closed")
+                    # the methods do not exclude them; noise has some
+                    self.assertGreaterEqual(soundness.pop("crossingPairs"), 0)
+                    self.assertEqual(set(soundness.values()), {0})
 
     def test_open_surfaces_have_no_volume(self):
         write_nifti(self.path("ball.nii"), ball(12, 8))  # cut by the border
