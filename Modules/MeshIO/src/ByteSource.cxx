@@ -93,7 +93,7 @@ double toReal(std::string_view word, std::string_view what) {
 }
 
 float toFloat(double value, std::string_view what) {
-    if (std::abs(value) > std::numeric_limits<float>::max()) {
+    if (std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max()) {
         damaged(std::string(what) + " is " + std::to_string(value) + ", too large for float");
     }
     return static_cast<float>(value);

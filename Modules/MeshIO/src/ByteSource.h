@@ -63,7 +63,8 @@ private:
 std::int64_t toInteger(std::string_view word, std::string_view what);
 double toReal(std::string_view word, std::string_view what);
 
-/// `value` as float; damage where float can't hold it (NaN passes: decodeMesh() refuses it).
+/// `value` as float; damage where float can't hold it (NaN and infinities pass: decodeMesh()
+/// refuses them).
 float toFloat(double value, std::string_view what);
 
 /// `text` with what a terminal can't show as '?', cut at 40 characters: for messages.

@@ -47,13 +47,23 @@ Codec codecOf(MeshFormatId id) {
     throw InternalError("codecOf: unknown mesh format");
 }
 
-/// What is wrong with `mesh`, or an empty text. Coordinates must be in [-limit, limit].
-std::string findFault(const TriangleMesh& mesh, double limit) {
-    if (mesh.triangles.empty()) return "it has no triangle";
+/// What is wrong with the normals of `mesh`, or an empty text.
+std::string findNormalsFault(const TriangleMesh& mesh) {
     if (!mesh.normals.empty() && mesh.normals.size() != mesh.points.size()) {
         return "it has " + std::to_string(mesh.normals.size()) + " normals for " +
                std::to_string(mesh.points.size()) + " points, must be one each or none";
     }
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+        if (!std::isfinite(squaredNorm(toVec3(mesh.normals[i])))) {
+            return "the normal of point " + std::to_string(i) + " is not finite";
+        }
+    }
+    return {};
+}
+
+/// What is wrong with `mesh`, or an empty text. Coordinates must be in [-limit, limit].
+std::string findFault(const TriangleMesh& mesh, double limit) {
+    if (mesh.triangles.empty()) return "it has no triangle";
     const auto points = static_cast<VertexId>(mesh.points.size());
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -64,11 +74,6 @@ std::string findFault(const TriangleMesh& mesh, double limit) {
             }
         }
     }
-    for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
-        if (!std::isfinite(squaredNorm(toVec3(mesh.normals[i])))) {
-            return "the normal of point " + std::to_string(i) + " is not finite";
-        }
-    }
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         for (const VertexId vertex : mesh.triangles[t]) {
             if (vertex < 0 || vertex >= points) {
@@ -77,7 +82,14 @@ std::string findFault(const TriangleMesh& mesh, double limit) {
             }
         }
     }
-    return {};
+    return findNormalsFault(mesh);
+}
+
+/// What even a mesh that may be broken must have.
+void requireSomething(TriangleMesh& mesh) {
+    if (mesh.triangles.empty()) meshio::damaged("it has no triangle");
+    if (mesh.points.empty()) meshio::damaged("it has no point");
+    if (!findNormalsFault(mesh).empty()) mesh.normals.clear();
 }
 
 constexpr double kFloatMax = std::numeric_limits<float>::max();
@@ -210,12 +222,17 @@ void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
     }
 }
 
-MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name) {
+MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name,
+                    const MeshReadOptions& options) {
     const std::string prefix = std::string(name) + ": ";
     try {
         MeshFile file = codecOf(format.id).decode(bytes);
-        const std::string fault = findFault(file.mesh, std::numeric_limits<double>::max());
-        if (!fault.empty()) meshio::damaged(fault);
+        if (options.keepsFaults) {
+            requireSomething(file.mesh);
+        } else {
+            const std::string fault = findFault(file.mesh, std::numeric_limits<double>::max());
+            if (!fault.empty()) meshio::damaged(fault);
+        }
         scaleToUnitLength(file.mesh.normals);
         return file;
     } catch (const FileError& error) {
@@ -225,9 +242,9 @@ MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::strin
     }
 }
 
-MeshFile readMesh(const std::filesystem::path& path) {
+MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& options) {
     const MeshFormat& format = findMeshFormat(path);
-    return decodeMesh(readBytes(path), format, path.string());
+    return decodeMesh(readBytes(path), format, path.string(), options);
 }
 
 }  // namespace adaptiso

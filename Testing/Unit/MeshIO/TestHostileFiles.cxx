@@ -278,6 +278,31 @@ TEST(HostileNumbers, ThatAreNotFiniteAreRefused) {
     }
 }
 
+TEST(KeptFaults, ComeThroughAsTheyAre) {
+    const auto kept = [](const std::string& bytes, const std::string& name) {
+        return decodeMesh(bytes, findMeshFormat(name), name, {.keepsFaults = true}).mesh;
+    };
+    const TriangleMesh mesh =
+        kept("OFF\n4 3 0\n0 0 nan\n1 0 -inf\n0 1 0\n7 7 7\n3 0 1 2\n3 0 0 1\n3 0 9 -1\n", "a.off");
+    EXPECT_TRUE(std::isnan(mesh.points[0].z));
+    EXPECT_TRUE(std::isinf(mesh.points[1].z));
+    EXPECT_EQ(mesh.points.size(), 4u);
+    EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 0, 1}, {0, 9, -1}}));
+
+    const std::string text =
+        "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex inf 0 0\nvertex 0 nan 0\n"
+        "endloop\nendfacet\nendsolid\n";
+    EXPECT_TRUE(std::isinf(kept(text, "a.stl").points[1].x));
+    EXPECT_THROW(decoded(text, "a.stl"), FileError);
+
+    EXPECT_TRUE(
+        kept("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn nan 0 1\nf 1//1 2//1 3//1\n", "a.obj").normals.empty());
+    // what is no mesh at all is refused just the same
+    EXPECT_THROW(kept("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "a.off"), FileError);
+    EXPECT_THROW(kept("OFF\n0 1 0\n3 0 1 2\n", "a.off"), FileError);
+    EXPECT_THROW(kept("OFF\n3 1 0\n0 0 0\n", "a.off"), FileError);
+}
+
 TEST(ReadMesh, OpensRegularFilesOnly) {
     EXPECT_NE(messageOf<FileError>([] { readMesh("/nowhere/a.stl"); }).find("no such file"),
               std::string::npos);

@@ -63,9 +63,17 @@ struct MeshWriteOptions {
 void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
                const MeshWriteOptions& options = {});
 
+struct MeshReadOptions {
+    /// Reads what is wrong with the mesh too, for those who look for it: coordinates that are not
+    /// finite, triangles that name points which aren't there. Normals that are not one a point, or
+    /// not finite, are then left out.
+    bool keepsFaults = false;
+};
+
 /// What a file holds, as stored: nothing is moved to another frame.
 struct MeshFile {
-    TriangleMesh mesh;                     ///< >= 1 triangle, indices in range, all finite
+    /// At least 1 triangle; indices in range and all finite unless options.keepsFaults.
+    TriangleMesh mesh;
     std::optional<CoordinateFrame> frame;  ///< if the file says so
     std::optional<ImageGeometry> volume;   ///< from a FreeSurfer surface's footer (frame TkRas)
 };
@@ -80,10 +88,11 @@ struct MeshFile {
 ///
 /// \throws InvalidInput  unknown extension
 /// \throws FileError     "<file>: what is wrong; what to do"
-MeshFile readMesh(const std::filesystem::path& path);
+MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
 /// The same from bytes in memory (pipes, archives, fuzzers).
 /// \throws FileError  "<name>: what is wrong; what to do"
-MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name);
+MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name,
+                    const MeshReadOptions& options = {});
 
 }  // namespace adaptiso
