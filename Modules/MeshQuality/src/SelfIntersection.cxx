@@ -1,10 +1,10 @@
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
+#include "ExactTriangle.h"
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
@@ -12,27 +12,6 @@
 
 namespace adaptiso {
 namespace {
-
-using Corners = std::array<Vec3, 3>;
-
-/// `p` seen along an axis.
-Point2 dropAxis(const Vec3& p, int axis) {
-    return {p[(axis + 1) % 3], p[(axis + 2) % 3]};
-}
-
-/// An axis along which the triangle is seen with area; -1 when its corners lie on a line.
-int axisWithArea(const Corners& t) {
-    for (int axis = 0; axis < 3; ++axis) {
-        if (orient2d(dropAxis(t[0], axis), dropAxis(t[1], axis), dropAxis(t[2], axis)) != 0) {
-            return axis;
-        }
-    }
-    return -1;
-}
-
-bool haveOneSign(int a, int b, int c) {
-    return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
-}
 
 bool areOnOneSide(int a, int b, int c) {
     return (a > 0 && b > 0 && c > 0) || (a < 0 && b < 0 && c < 0);
@@ -126,16 +105,6 @@ int alignSharedCorners(Corners& a, Corners& b) {
     return shared;
 }
 
-bool areFinite(const Corners& corners) {
-    return std::all_of(corners.begin(), corners.end(),
-                       [](const Vec3& p) { return std::isfinite(p.x + p.y + p.z); });
-}
-
-Corners cornersOf(const TriangleMesh& mesh, std::int64_t triangle) {
-    const auto& [a, b, c] = mesh.triangles[triangle];
-    return {mesh.points[a], mesh.points[b], mesh.points[c]};
-}
-
 }  // namespace
 
 bool trianglesCross(const Corners& a, const Corners& b) {
@@ -157,6 +126,10 @@ bool trianglesCross(const Corners& a, const Corners& b) {
     }
     // Only the few that seem to cross are asked whether they are triangles at all.
     return cross && axisWithArea(a) >= 0 && axisWithArea(b) >= 0;
+}
+
+bool trianglesMeet(const Corners& a, const Corners& b) {
+    return crossWithoutSharing(a, b) && axisWithArea(a) >= 0 && axisWithArea(b) >= 0;
 }
 
 SelfIntersections findSelfIntersections(const TriangleMesh& mesh,

@@ -296,29 +296,10 @@ void recordTriangleDefects(const TriangleMesh& mesh, DefectRecorder& recorder) {
     }
 }
 
-/// The smallest vertex number of the piece that each vertex belongs to.
-std::vector<VertexId> labelComponents(const TriangleMesh& mesh) {
-    std::vector<VertexId> parent(mesh.points.size());
-    std::iota(parent.begin(), parent.end(), VertexId{0});
-    const auto root = [&](VertexId v) {
-        while (parent[v] != v) v = parent[v] = parent[parent[v]];
-        return v;
-    };
-    for (const Triangle& t : mesh.triangles) {
-        if (!isConnecting(mesh, t)) continue;
-        for (int side = 0; side < 2; ++side) {
-            const VertexId a = root(t[side]), b = root(t[side + 1]);
-            parent[std::max(a, b)] = std::min(a, b);
-        }
-    }
-    for (VertexId& p : parent) p = parent[p];  // a parent is smaller, so it is a root by now
-    return parent;
-}
-
 std::vector<SurfaceComponent> measureComponents(const TriangleMesh& mesh,
                                                 const VertexTriangles& around,
                                                 const std::vector<VertexFacts>& facts) {
-    std::vector<VertexId> component = labelComponents(mesh);
+    std::vector<VertexId> component = findComponentRoots(mesh);
     std::vector<SurfaceComponent> components;
     for (std::size_t n = 0; n < facts.size(); ++n) {
         const auto v = static_cast<VertexId>(n);
@@ -375,6 +356,24 @@ std::string_view toString(TopologyDefect defect) {
             return "index out of range";
     }
     return "unknown";
+}
+
+std::vector<VertexId> findComponentRoots(const TriangleMesh& mesh) {
+    std::vector<VertexId> parent(mesh.points.size());
+    std::iota(parent.begin(), parent.end(), VertexId{0});
+    const auto root = [&](VertexId v) {
+        while (parent[v] != v) v = parent[v] = parent[parent[v]];
+        return v;
+    };
+    for (const Triangle& t : mesh.triangles) {
+        if (!isConnecting(mesh, t)) continue;
+        for (int side = 0; side < 2; ++side) {
+            const VertexId a = root(t[side]), b = root(t[side + 1]);
+            parent[std::max(a, b)] = std::min(a, b);
+        }
+    }
+    for (VertexId& p : parent) p = parent[p];  // a parent is smaller, so it is a root by now
+    return parent;
 }
 
 std::optional<std::int64_t> SurfaceComponent::genus() const {

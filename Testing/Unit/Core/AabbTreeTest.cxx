@@ -121,11 +121,40 @@ TEST(AabbTree, VisitsEveryTriangleWhoseBoxOverlapsOnce) {
     }
 }
 
+TEST(AabbTree, VisitsEveryTriangleWithinReachOnce) {
+    const TriangleMesh soup = randomSoup(500, 8);
+    const AabbTree tree(soup);
+    std::uint64_t state = 4;
+    for (int n = 0; n < 100; ++n) {
+        const Vec3 corner = randomPoint(-12, 12, state);
+        const BoundingBox box{corner, corner + randomPoint(0, 3, state)};
+        const double reach2 = n * 0.05;
+        std::vector<int> visits(500);
+        double shrinking = std::numeric_limits<double>::infinity(), nearest = shrinking;
+        tree.forEachNear(
+            box, [&] { return reach2; }, [&](std::int64_t t) { ++visits[t]; });
+        tree.forEachNear(
+            box, [&] { return shrinking; },
+            [&](std::int64_t t) {
+                shrinking = std::min(shrinking, squaredDistance(box, tree.triangleBox(t)));
+            });
+        for (std::int64_t t = 0; t < 500; ++t) {
+            const double distance2 = squaredDistance(box, tree.triangleBox(t));
+            nearest = std::min(nearest, distance2);
+            EXPECT_LE(visits[t], 1);
+            EXPECT_GE(visits[t], distance2 <= reach2 ? 1 : 0);
+        }
+        EXPECT_EQ(shrinking, nearest);
+    }
+}
+
 TEST(AabbTree, OfAnEmptyMeshFindsNothing) {
     const TriangleMesh empty;
     const AabbTree tree(empty);
     EXPECT_EQ(tree.closestPoint({0, 0, 0}).triangle, -1);
     tree.forEachOverlap({{-1, -1, -1}, {1, 1, 1}}, [](std::int64_t) { ADD_FAILURE(); });
+    tree.forEachNear(
+        {}, [] { return 1.0; }, [](std::int64_t) { ADD_FAILURE(); });
 }
 
 TEST(AabbTree, LeavesTrianglesWithNanOut) {

@@ -192,6 +192,22 @@ TEST(TrianglesCross, LineLikeTrianglesCrossNothing) {
     EXPECT_FALSE(trianglesCross({{{0.5, 0.5, -1}, {0.5, 0.5, 1}, {0.5, 0.5, 1}}}, base));
 }
 
+TEST(TrianglesMeet, AgreesWithWholeNumbersSharedCornersIncluded) {
+    for (const std::int64_t extent : {2, 3, 4, 5}) {
+        std::uint64_t state = static_cast<std::uint64_t>(extent) + 20;
+        for (int n = 0; n < 50000; ++n) {
+            const IntTriangle a = randomTriangle(extent, state);
+            const IntTriangle b = randomTriangle(extent, state);
+            const bool truth = normal(a) != IntVec{} && normal(b) != IntVec{} && meet(a, b);
+            ASSERT_EQ(trianglesMeet(toCorners(a), toCorners(b)), truth)
+                << "extent " << extent << ", pair " << n;
+        }
+    }
+    const Corners base{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}};
+    EXPECT_TRUE(trianglesMeet(base, {{{0, 0, 0}, {-1, 0, 1}, {0, -1, 1}}}));  // by a corner
+    EXPECT_TRUE(trianglesMeet(base, {{{0, 0, 0}, {2, 0, 0}, {0, 0, 2}}}));    // along an edge
+}
+
 // ---- Meshes ----------------------------------------------------------------------------------
 
 TEST(SelfIntersections, SoundShapesHaveNone) {

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
@@ -15,6 +19,9 @@ Vec3 closestPointOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
 
 /// Squared distance from a point to a box; 0 inside.
 double squaredDistance(const Vec3& p, const BoundingBox& box);
+
+/// Squared distance between two boxes; 0 when they overlap.
+double squaredDistance(const BoundingBox& a, const BoundingBox& b);
 
 /// They share a point; touching is enough.
 bool overlaps(const BoundingBox& a, const BoundingBox& b);
@@ -52,6 +59,17 @@ public:
     /// always the same.
     template <class Visit>
     void forEachOverlap(const BoundingBox& box, const Visit& visit) const;
+
+    /// Calls visit(triangle) for every triangle that may lie within a distance of `box`, nearer
+    /// ones first by and large: all triangles of the leaves whose boxes do. squaredReachMm2() says
+    /// the distance's square; it is asked at every box, so that it may shrink as the search goes
+    /// on.
+    template <class Reach, class Visit>
+    void forEachNear(const BoundingBox& box, const Reach& squaredReachMm2,
+                     const Visit& visit) const;
+
+    /// The triangles of the tree in the order of its leaves: near ones follow each other.
+    std::span<const std::int64_t> triangles() const { return order_; }
 
     /// Number of triangles in the tree.
     std::int64_t triangleCount() const { return static_cast<std::int64_t>(order_.size()); }
@@ -106,6 +124,46 @@ void AabbTree::forEachOverlap(const BoundingBox& box, const Visit& visit) const 
         const Subtree left = at.left(), right = at.right();
         if (overlaps(box, boxes_[right.node])) stack[depth++] = right;
         if (overlaps(box, boxes_[left.node])) stack[depth++] = left;
+    }
+}
+
+inline double squaredDistance(const BoundingBox& a, const BoundingBox& b) {
+    double sum = 0;
+    for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+        const double d =
+            std::max({a.minimum.*axis - b.maximum.*axis, 0.0, b.minimum.*axis - a.maximum.*axis});
+        sum += d * d;
+    }
+    return sum;
+}
+
+template <class Reach, class Visit>
+void AabbTree::forEachNear(const BoundingBox& box, const Reach& squaredReachMm2,
+                           const Visit& visit) const {
+    if (order_.empty()) return;
+    struct Candidate {
+        Subtree subtree;
+        double squaredDistanceMm2;
+    };
+    std::array<Candidate, std::tuple_size_v<Stack>> stack;
+    std::size_t depth = 0;
+    stack[depth++] = {root(), squaredDistance(box, boxes_[0])};
+    while (depth > 0) {
+        const Candidate at = stack[--depth];
+        if (at.squaredDistanceMm2 > squaredReachMm2()) continue;
+        if (at.subtree.isLeaf()) {
+            const std::int64_t end = leafEnd(at.subtree.firstLeaf);
+            for (std::int64_t n = leafBegin(at.subtree.firstLeaf); n < end; ++n) {
+                visit(order_[n]);
+            }
+            continue;
+        }
+        const Subtree left = at.subtree.left(), right = at.subtree.right();
+        Candidate nearer{left, squaredDistance(box, boxes_[left.node])};
+        Candidate farther{right, squaredDistance(box, boxes_[right.node])};
+        if (farther.squaredDistanceMm2 < nearer.squaredDistanceMm2) std::swap(nearer, farther);
+        stack[depth++] = farther;
+        stack[depth++] = nearer;
     }
 }
 

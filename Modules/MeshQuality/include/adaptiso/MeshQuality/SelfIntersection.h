@@ -19,6 +19,11 @@ namespace adaptiso {
 /// A triangle whose corners lie exactly on a line crosses nothing. \pre corners are finite
 bool trianglesCross(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
+/// Whether two triangles of different surfaces have a point in common, decided exactly: touching
+/// is enough, also at a corner or along an edge that both have. A triangle whose corners lie
+/// exactly on a line meets nothing. \pre corners are finite
+bool trianglesMeet(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
 struct SelfIntersectionOptions {
     std::int64_t maxPairs = 1000;  ///< pairs to name; all are counted
 };

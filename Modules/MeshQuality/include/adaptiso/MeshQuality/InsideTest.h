@@ -1,0 +1,38 @@
+#pragma once
+
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/TriangleMesh.h"
+
+namespace adaptiso {
+
+enum class Side { Outside, On, Inside };
+
+/// Answers whether points lie inside a surface, exactly where it has an inside.
+///
+/// A point is inside when a ray from it crosses the surface an odd number of times (the even-odd
+/// rule: which way round triangles are doesn't matter). Crossings are decided by orient2d and
+/// orient3d; rays that would pass an edge or a corner are moved by an infinitely small amount
+/// [Edelsbrunner1990, simulation of simplicity], so that each passes one triangle of the fan.
+///
+/// Where every edge lies in two triangles all rays agree, and one is cast. An open surface has no
+/// inside; then six rays are cast along the axes, and four must say so.
+/// Triangles with a corner that is not finite are not there.
+/// Cost: O(log T + triangles on the ray) a point. Points may be asked for in parallel.
+class InsideTest {
+public:
+    /// Keeps references to `mesh` and `tree` (of `mesh`), which must outlive the test.
+    InsideTest(const TriangleMesh& mesh, const AabbTree& tree);
+
+    /// On: on a triangle, to the bit. \pre p is finite
+    Side sideOf(const Vec3& p) const;
+
+    /// Every edge lies in exactly two triangles of finite corners: one ray tells.
+    bool isClosed() const { return isClosed_; }
+
+private:
+    const TriangleMesh* mesh_;
+    const AabbTree* tree_;
+    bool isClosed_;
+};
+
+}  // namespace adaptiso

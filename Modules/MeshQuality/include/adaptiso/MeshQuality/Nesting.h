@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/MeshQuality/TriangleDistance.h"
+
+namespace adaptiso {
+
+/// How two surfaces lie to each other.
+enum class NestingRelation {
+    Nested,    ///< the inner one lies strictly inside the outer one
+    Crossing,  ///< they cross or touch
+    Swapped,   ///< the outer one lies strictly inside the inner one
+    Apart,     ///< each lies outside the other
+    Mixed,     ///< they don't meet, but pieces of them lie on different sides
+    Unknown    ///< one has no triangle
+};
+/// "nested", "crossing", "swapped", "apart", "mixed", "unknown"
+std::string_view toString(NestingRelation relation);
+
+struct NestingOptions {
+    std::int64_t maxPairs = 1000;  ///< pairs to name; all are counted
+};
+
+struct NestingReport {
+    NestingRelation relation = NestingRelation::Unknown;
+    std::int64_t crossingPairs = 0;           ///< pairs of triangles with a point in common
+    std::vector<TrianglePair> pairs;          ///< the first of them, ascending: of inner, of outer
+    std::int64_t innerVertices = 0;           ///< of inner, used by a triangle
+    std::int64_t innerVerticesNotInside = 0;  ///< of those, not strictly inside outer
+    VertexId firstNotInside = -1;             ///< the first of those
+    double farthestOutMm = 0;                 ///< how far the farthest of those lies from outer
+    std::int64_t outerVertices = 0;
+    std::int64_t outerVerticesInside = 0;  ///< of outer, strictly inside inner
+    SurfaceGap gap;                        ///< A is inner, B outer; 0 mm when they meet
+
+    bool isStrictlyNested() const { return relation == NestingRelation::Nested; }
+};
+
+/// Whether `inner` lies strictly inside `outer`, and how far from it.
+///
+/// All of it is exact (trianglesMeet, InsideTest) but for distances, which are rounded. Inside is
+/// by the even-odd rule. Where the surfaces don't meet, vertices that hang together lie on one
+/// side, so one of them is asked; where one surface is open, each of the other's is asked, as
+/// InsideTest says. Meshes may be broken: triangles with a corner that is not finite are left out,
+/// triangles without area meet nothing. \pre triangles name points that are there, options.maxPairs
+/// >= 0 \throws InvalidInput otherwise Cost: O(T log T), in parallel; two AabbTrees of memory.
+NestingReport checkNesting(const TriangleMesh& inner, const TriangleMesh& outer,
+                           const NestingOptions& options = {});
+
+}  // namespace adaptiso

@@ -1,0 +1,212 @@
+#include "adaptiso/MeshQuality/Nesting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "ExactTriangle.h"
+#include "RequireIndices.h"
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/MeshQuality/InsideTest.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr std::int64_t kGrain = 4096;
+
+/// One of the two surfaces, ready to be asked.
+struct Surface {
+    explicit Surface(const TriangleMesh& m)
+        : mesh(m), tree(m), inside(m, tree), meetsOther(m.triangles.size()) {}
+
+    const TriangleMesh& mesh;
+    AabbTree tree;
+    InsideTest inside;
+    std::vector<std::uint8_t> meetsOther;  ///< by triangle
+};
+
+/// Pairs of triangles that meet, ascending.
+std::vector<TrianglePair> findMeetingPairs(const Surface& inner, const Surface& outer) {
+    const std::int64_t count = std::ssize(inner.mesh.triangles);
+    std::vector<std::vector<TrianglePair>> ofPiece((count + kGrain - 1) / kGrain);
+    parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+        std::vector<TrianglePair>& found = ofPiece[begin / kGrain];
+        for (std::int64_t n = begin; n < end; ++n) {
+            const Corners corners = cornersOf(inner.mesh, n);
+            if (!areFinite(corners)) continue;
+            outer.tree.forEachOverlap(inner.tree.triangleBox(n), [&](std::int64_t other) {
+                if (trianglesMeet(corners, cornersOf(outer.mesh, other))) {
+                    found.push_back({n, other});
+                }
+            });
+        }
+    });
+    std::vector<TrianglePair> pairs;
+    for (const auto& piece : ofPiece) pairs.insert(pairs.end(), piece.begin(), piece.end());
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+/// For every vertex, one that stands for it: the smallest of those that hang together with it by
+/// triangles that don't meet the other surface, and so lie on the same side of it. -1: not used by
+/// a triangle with finite corners.
+std::vector<VertexId> findSpokesmen(const Surface& surface, const Surface& other) {
+    const TriangleMesh& mesh = surface.mesh;
+    std::vector<VertexId> parent(mesh.points.size());
+    std::iota(parent.begin(), parent.end(), VertexId{0});
+    std::vector<bool> isUsed(mesh.points.size());
+    const auto root = [&](VertexId v) {
+        while (parent[v] != v) v = parent[v] = parent[parent[v]];
+        return v;
+    };
+    for (std::int64_t n = 0; n < std::ssize(mesh.triangles); ++n) {
+        const Corners corners = cornersOf(mesh, n);
+        if (!areFinite(corners)) continue;
+        const Triangle& t = mesh.triangles[n];
+        for (const VertexId v : t) isUsed[v] = true;
+        // a triangle without area meets nothing, wherever it lies
+        const bool joins = other.inside.isClosed() && surface.meetsOther[n] == 0;
+        if (!joins || axisWithArea(corners) < 0) continue;
+        for (int side = 0; side < 2; ++side) {
+            const VertexId a = root(t[side]), b = root(t[side + 1]);
+            parent[std::max(a, b)] = std::min(a, b);
+        }
+    }
+    for (std::size_t v = 0; v < parent.size(); ++v) {
+        parent[v] = isUsed[v] ? parent[parent[v]] : -1;  // a parent is smaller: a root by now
+    }
+    return parent;
+}
+
+/// The side of every vertex; of those not used, Outside.
+std::vector<Side> findSides(const Surface& surface, const Surface& other,
+                            const std::vector<VertexId>& spokesmen) {
+    const std::int64_t count = std::ssize(spokesmen);
+    std::vector<Side> sides(spokesmen.size(), Side::Outside);
+    parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+        for (VertexId v = begin; v < end; ++v) {
+            if (spokesmen[v] == v) sides[v] = other.inside.sideOf(surface.mesh.points[v]);
+        }
+    });
+    for (VertexId v = 0; v < count; ++v) {
+        if (spokesmen[v] >= 0) sides[v] = sides[spokesmen[v]];
+    }
+    return sides;
+}
+
+struct SideCounts {
+    std::int64_t used = 0, inside = 0;
+    VertexId firstNotInside = -1;
+};
+
+SideCounts countSides(const std::vector<VertexId>& spokesmen, const std::vector<Side>& sides) {
+    SideCounts counts;
+    for (std::size_t v = 0; v < sides.size(); ++v) {
+        if (spokesmen[v] < 0) continue;
+        ++counts.used;
+        if (sides[v] == Side::Inside) {
+            ++counts.inside;
+        } else if (counts.firstNotInside < 0) {
+            counts.firstNotInside = static_cast<VertexId>(v);
+        }
+    }
+    return counts;
+}
+
+/// How far the farthest vertex that is used and not inside lies from the other surface.
+double farthestOutMm(const Surface& surface, const Surface& other,
+                     const std::vector<VertexId>& spokesmen, const std::vector<Side>& sides) {
+    const std::int64_t count = std::ssize(sides);
+    std::vector<double> squared((count + kGrain - 1) / kGrain);
+    parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+        double& farthest = squared[begin / kGrain];
+        std::int64_t hint = -1;
+        for (VertexId v = begin; v < end; ++v) {
+            if (spokesmen[v] < 0 || sides[v] == Side::Inside) continue;
+            const ClosestPoint nearest = other.tree.closestPoint(surface.mesh.points[v], hint);
+            farthest = std::max(farthest, nearest.squaredDistanceMm2);
+            hint = nearest.triangle;
+        }
+    });
+    return squared.empty() ? 0 : std::sqrt(*std::max_element(squared.begin(), squared.end()));
+}
+
+NestingRelation relationOf(const NestingReport& report) {
+    if (report.innerVertices == 0 || report.outerVertices == 0) return NestingRelation::Unknown;
+    if (report.crossingPairs > 0) return NestingRelation::Crossing;
+    const bool noneIn = report.innerVerticesNotInside == report.innerVertices;
+    if (report.innerVerticesNotInside == 0 && report.outerVerticesInside == 0) {
+        return NestingRelation::Nested;
+    }
+    if (noneIn && report.outerVerticesInside == report.outerVertices) {
+        return NestingRelation::Swapped;
+    }
+    if (noneIn && report.outerVerticesInside == 0) return NestingRelation::Apart;
+    return NestingRelation::Mixed;
+}
+
+}  // namespace
+
+std::string_view toString(NestingRelation relation) {
+    switch (relation) {
+        case NestingRelation::Nested:
+            return "nested";
+        case NestingRelation::Crossing:
+            return "crossing";
+        case NestingRelation::Swapped:
+            return "swapped";
+        case NestingRelation::Apart:
+            return "apart";
+        case NestingRelation::Mixed:
+            return "mixed";
+        case NestingRelation::Unknown:
+            break;
+    }
+    return "unknown";
+}
+
+NestingReport checkNesting(const TriangleMesh& innerMesh, const TriangleMesh& outerMesh,
+                           const NestingOptions& options) {
+    if (options.maxPairs < 0) {
+        throw InvalidInput("checkNesting: maxPairs is " + std::to_string(options.maxPairs) +
+                           ", must be at least 0");
+    }
+    requireIndices(innerMesh, "checkNesting: inner");
+    requireIndices(outerMesh, "checkNesting: outer");
+    Surface inner(innerMesh), outer(outerMesh);
+    NestingReport report;
+    report.pairs = findMeetingPairs(inner, outer);
+    report.crossingPairs = std::ssize(report.pairs);
+    for (const auto& [a, b] : report.pairs) {
+        inner.meetsOther[a] = 1;
+        outer.meetsOther[b] = 1;
+    }
+
+    const std::vector<VertexId> innerSpokesmen = findSpokesmen(inner, outer);
+    const std::vector<Side> innerSides = findSides(inner, outer, innerSpokesmen);
+    const SideCounts ofInner = countSides(innerSpokesmen, innerSides);
+    report.innerVertices = ofInner.used;
+    report.innerVerticesNotInside = ofInner.used - ofInner.inside;
+    report.firstNotInside = ofInner.firstNotInside;
+    report.farthestOutMm = farthestOutMm(inner, outer, innerSpokesmen, innerSides);
+
+    const std::vector<VertexId> outerSpokesmen = findSpokesmen(outer, inner);
+    const SideCounts ofOuter = countSides(outerSpokesmen, findSides(outer, inner, outerSpokesmen));
+    report.outerVertices = ofOuter.used;
+    report.outerVerticesInside = ofOuter.inside;
+
+    report.relation = relationOf(report);
+    if (report.crossingPairs > 0) {
+        const auto& [a, b] = report.pairs.front();
+        report.gap = {triangleDistance(cornersOf(innerMesh, a), cornersOf(outerMesh, b)), a, b};
+    } else if (report.relation != NestingRelation::Unknown) {
+        report.gap = surfaceGap(innerMesh, inner.tree, outerMesh, outer.tree);
+    }
+    if (report.crossingPairs > options.maxPairs) report.pairs.resize(options.maxPairs);
+    return report;
+}
+
+}  // namespace adaptiso

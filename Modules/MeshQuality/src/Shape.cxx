@@ -1,0 +1,92 @@
+#include "adaptiso/MeshQuality/Shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "ExactTriangle.h"
+#include "RequireIndices.h"
+
+namespace adaptiso {
+namespace {
+
+/// Reorders `values`, which has at least one. The smallest value of rank `part`.
+double percentile(std::vector<double>& values, double part) {
+    const auto rank =
+        static_cast<std::ptrdiff_t>(std::ceil(part * static_cast<double>(values.size())));
+    const auto place = values.begin() + std::clamp<std::ptrdiff_t>(rank - 1, 0, values.size() - 1);
+    std::nth_element(values.begin(), place, values.end());
+    return *place;
+}
+
+/// Gathers values with the numbers of the triangles that they belong to.
+class SpreadMeter {
+public:
+    explicit SpreadMeter(std::size_t room) { values_.reserve(room); }
+
+    void add(double value, std::int64_t triangle) {
+        values_.push_back(value);
+        sum_ += value;
+        if (value < spread_.minimum || spread_.triangleOfMinimum < 0) {
+            spread_.minimum = value;
+            spread_.triangleOfMinimum = triangle;
+        }
+        if (value > spread_.maximum || spread_.triangleOfMaximum < 0) {
+            spread_.maximum = value;
+            spread_.triangleOfMaximum = triangle;
+        }
+    }
+
+    Spread spread() {
+        if (values_.empty()) return spread_;
+        spread_.mean = sum_ / static_cast<double>(values_.size());
+        spread_.p1 = percentile(values_, 0.01);
+        spread_.median = percentile(values_, 0.5);
+        spread_.p99 = percentile(values_, 0.99);
+        return spread_;
+    }
+
+private:
+    Spread spread_;
+    double sum_ = 0;
+    std::vector<double> values_;
+};
+
+/// The angle opposite the shortest side, degrees. \pre edges[n] is opposite corner n
+double minAngleDeg(const Corners& t, const std::array<double, 3>& edges, double area2) {
+    const auto n = std::min_element(edges.begin(), edges.end()) - edges.begin();
+    const Vec3 &apex = t[n], &p = t[(n + 1) % 3], &q = t[(n + 2) % 3];
+    return std::atan2(area2, dot(p - apex, q - apex)) * (180 / std::numbers::pi);
+}
+
+}  // namespace
+
+ShapeReport measureShape(const TriangleMesh& mesh) {
+    requireIndices(mesh, "measureShape");
+    const std::size_t room = mesh.triangles.size();
+    SpreadMeter angles(room), aspects(room), lengths(3 * room);
+    ShapeReport report;
+    for (std::int64_t n = 0; n < std::ssize(mesh.triangles); ++n) {
+        const auto& [a, b, c] = mesh.triangles[n];
+        const Corners t = cornersOf(mesh, n);
+        if (a == b || b == c || c == a || !areFinite(t)) continue;
+        ++report.triangles;
+        const std::array<double, 3> edges{norm(t[2] - t[1]), norm(t[0] - t[2]), norm(t[1] - t[0])};
+        const double area2 = norm(areaVector2(t[0], t[1], t[2]));
+        angles.add(minAngleDeg(t, edges, area2), n);
+        const double longest = *std::max_element(edges.begin(), edges.end());
+        aspects.add(area2 > 0 ? longest * (edges[0] + edges[1] + edges[2]) /
+                                    (2 * std::numbers::sqrt3 * area2)
+                              : std::numeric_limits<double>::infinity(),
+                    n);
+        for (const double edge : edges) lengths.add(edge, n);
+    }
+    report.minAngleDeg = angles.spread();
+    report.aspectRatio = aspects.spread();
+    report.edgeMm = lengths.spread();
+    return report;
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,167 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "Support/Meshes.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/MeshQuality/Duplicates.h"
+#include "adaptiso/MeshQuality/Shape.h"
+#include "adaptiso/MeshQuality/Size.h"
+#include "adaptiso/MeshQuality/SolidAngle.h"
+#include "adaptiso/MeshQuality/Winding.h"
+
+namespace adaptiso {
+namespace {
+
+using testing::cubeMesh;
+using testing::icosphere;
+using testing::merged;
+
+TriangleMesh oneTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+    return {{a, b, c}, {}, {{0, 1, 2}}};
+}
+
+TriangleMesh unwelded(const TriangleMesh& mesh) {
+    TriangleMesh soup;
+    for (const Triangle& t : mesh.triangles) {
+        const auto first = static_cast<VertexId>(soup.points.size());
+        for (const VertexId v : t) soup.points.push_back(mesh.points[v]);
+        soup.triangles.push_back({first, first + 1, first + 2});
+    }
+    return soup;
+}
+
+TEST(Duplicates, SoundMeshHasNone) {
+    const DuplicateReport report = findDuplicates(icosphere(2));
+    EXPECT_EQ(report.vertexCount, 0);
+    EXPECT_EQ(report.triangleCount, 0);
+}
+
+TEST(Duplicates, SoupRepeatsEveryCornerButTheFirst) {
+    const DuplicateReport report = findDuplicates(unwelded(cubeMesh()));
+    EXPECT_EQ(report.vertexCount, 36 - 8);
+    EXPECT_EQ(report.triangleCount, 0);
+    EXPECT_EQ(report.vertices.size(), 5u);  // the first few are named
+}
+
+TEST(Duplicates, TriangleIsFoundByPlaceWhicheverWayRound) {
+    TriangleMesh mesh = unwelded(merged({cubeMesh(), cubeMesh()}));
+    std::swap(mesh.triangles[20][0], mesh.triangles[20][1]);
+    const DuplicateReport report = findDuplicates(mesh, {.maxExamples = 100});
+    EXPECT_EQ(report.triangleCount, 12);
+    EXPECT_EQ(report.triangles,
+              (std::vector<std::int64_t>{12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23}));
+}
+
+TEST(Duplicates, ZeroHasOneSignAndNanNoPlace) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    TriangleMesh mesh;
+    mesh.points = {{0, 0, 0}, {-0.0, 0, -0.0}, {kNan, 0, 0}, {kNan, 0, 0}};
+    mesh.triangles = {{0, 2, 3}, {1, 3, 2}};
+    const DuplicateReport report = findDuplicates(mesh);
+    EXPECT_EQ(report.vertices, std::vector<VertexId>{1});
+    EXPECT_EQ(report.triangleCount, 0);
+    EXPECT_THROW(findDuplicates(testing::withIndexOutOfRange(cubeMesh())), InvalidInput);
+}
+
+TEST(Shape, RightTriangleOfThreeFourFive) {
+    // inscribed circle of radius 1, so the aspect ratio is 5 / (2 sqrt 3); tan of the smallest
+    // angle is 3/4
+    const ShapeReport report = measureShape(oneTriangle({0, 0, 7}, {4, 0, 7}, {0, 3, 7}));
+    EXPECT_EQ(report.triangles, 1);
+    EXPECT_DOUBLE_EQ(report.minAngleDeg.minimum, std::atan2(3, 4) * 180 / std::acos(-1));
+    EXPECT_DOUBLE_EQ(report.aspectRatio.maximum, 5 / (2 * std::sqrt(3)));
+    EXPECT_EQ(report.edgeMm.minimum, 3);
+    EXPECT_EQ(report.edgeMm.median, 4);
+    EXPECT_EQ(report.edgeMm.mean, 4);
+    EXPECT_EQ(report.edgeMm.maximum, 5);
+}
+
+TEST(Shape, EquilateralIsOneAndFlatInfinite) {
+    const double h = std::sqrt(0.75);
+    TriangleMesh mesh = oneTriangle({0, 0, 0}, {1, 0, 0}, {0.5, h, 0});
+    mesh.points.push_back({2, 0, 0});
+    mesh.triangles.push_back({0, 1, 3});
+    const ShapeReport report = measureShape(mesh);
+    EXPECT_NEAR(report.aspectRatio.minimum, 1, 1e-15);  // a few roundings
+    EXPECT_EQ(report.aspectRatio.maximum, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(report.aspectRatio.triangleOfMaximum, 1);
+    EXPECT_EQ(report.minAngleDeg.minimum, 0);
+    EXPECT_EQ(report.minAngleDeg.triangleOfMinimum, 1);
+    EXPECT_NEAR(report.minAngleDeg.maximum, 60, 1e-13);
+}
+
+TEST(Shape, LeavesOutWhatIsNoTriangle) {
+    EXPECT_EQ(measureShape(testing::withRepeatedIndex(cubeMesh())).triangles, 12);
+    EXPECT_EQ(measureShape(testing::withNanCoordinate(cubeMesh())).triangles,
+              12 - 3);  // the first corner is in three triangles
+    EXPECT_EQ(measureShape({}).triangles, 0);
+}
+
+TEST(Size, GuessesTheUnit) {
+    const SizeLimits head{50, 50, 500};
+    const auto judged = [&](double mm) { return judgeSize(cubeMesh({}, {mm, mm, 2 * mm}), head); };
+    EXPECT_EQ(judged(100).verdict, SizeVerdict::Plausible);
+    EXPECT_EQ(judged(100).guess, std::nullopt);
+    EXPECT_EQ(judged(0.1).verdict, SizeVerdict::TooSmall);
+    EXPECT_EQ(judged(0.1).guess, LengthUnit::Metres);
+    EXPECT_EQ(judged(10).guess, LengthUnit::Centimetres);
+    EXPECT_EQ(judged(1e5).verdict, SizeVerdict::TooLarge);
+    EXPECT_EQ(judged(1e5).guess, LengthUnit::Micrometres);
+    EXPECT_EQ(judged(1e-6).guess, std::nullopt);
+    EXPECT_EQ(judged(50).verdict, SizeVerdict::Plausible);    // limits are allowed
+    EXPECT_EQ(judged(49.9).verdict, SizeVerdict::TooSmall);   // of any side
+    EXPECT_EQ(judged(250.1).verdict, SizeVerdict::TooLarge);  // of the longest
+}
+
+TEST(Size, IsThatOfUsedFiniteVertices) {
+    EXPECT_EQ(judgeSize(testing::withUnusedVertex(cubeMesh()), {}).extentMm, (Vec3{1, 1, 1}));
+    EXPECT_EQ(judgeSize({}, {}).verdict, SizeVerdict::Unknown);
+}
+
+TEST(SolidAngle, IsTheWholeSphereFromInsideAndNothingFromOutside) {
+    const TriangleMesh cube = cubeMesh();
+    // twelve arctangents, each rounded to 1e-16 of 4 pi
+    EXPECT_NEAR(solidAngleShare(cube, {0.5, 0.5, 0.5}), 1, 1e-14);
+    EXPECT_NEAR(solidAngleShare(cube, {0.1, 0.7, 0.9}), 1, 1e-14);
+    EXPECT_NEAR(solidAngleShare(cube, {1.5, 0.5, 0.5}), 0, 1e-14);
+    TriangleMesh insideOut = cube;
+    flipOrientation(insideOut);
+    EXPECT_NEAR(solidAngleShare(insideOut, {0.5, 0.5, 0.5}), -1, 1e-14);
+}
+
+TEST(SolidAngle, FaceOfACubeIsASixthFromItsMiddle) {
+    const TriangleMesh face{
+        {{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}, {}, {{0, 1, 2}, {0, 2, 3}}};
+    EXPECT_NEAR(solidAngleShare(face, {}), 1.0 / 6, 1e-15);
+}
+
+TEST(SolidAngle, CriterionFailsOpenAndFlippedSurfaces) {
+    EXPECT_TRUE(solidAngleFromMean(icosphere(3)).isMet());
+    EXPECT_FALSE(solidAngleFromMean(testing::withHole(icosphere(3))).isMet());
+    EXPECT_FALSE(solidAngleFromMean(testing::withFlippedTriangle(icosphere(3))).isMet());
+    EXPECT_FALSE(solidAngleFromMean(testing::withNanCoordinate(icosphere(3))).isMet());
+    EXPECT_FALSE(solidAngleFromMean({}).isMet());
+}
+
+TEST(Winding, CavitiesAreTheOtherWayRound) {
+    const auto insideOut = [](const TriangleMesh& mesh) {
+        return findInsideOutPieces(mesh, checkTopology(mesh));
+    };
+    TriangleMesh wall = icosphere(2, {}, 5);
+    flipOrientation(wall);
+    const TriangleMesh ball = icosphere(2, {}, 10), core = icosphere(2, {}, 2),
+                       other = icosphere(2, {30, 0, 0}, 5);
+    using Pieces = std::vector<std::int64_t>;
+    EXPECT_EQ(insideOut(ball), Pieces{});
+    EXPECT_EQ(insideOut(wall), Pieces{0});
+    EXPECT_EQ(insideOut(merged({ball, wall, core, other})), Pieces{});
+    EXPECT_EQ(insideOut(merged({core, wall, ball})), Pieces{});
+    EXPECT_EQ(insideOut(merged({ball, core})), Pieces{1});
+    EXPECT_EQ(insideOut(merged({wall, other})), Pieces{0});
+    EXPECT_THROW(insideOut(testing::withHole(ball)), InvalidInput);
+}
+
+}  // namespace
+}  // namespace adaptiso
