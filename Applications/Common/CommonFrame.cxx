@@ -1,4 +1,6 @@
-#include "CommonFrame.h"
+#include "Common/CommonFrame.h"
+
+#include <algorithm>
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
@@ -6,12 +8,10 @@
 namespace adaptiso {
 namespace {
 
-bool needsVolume(const MeshFile& file) {
-    return file.frame == CoordinateFrame::TkRas || file.frame == CoordinateFrame::Voxel;
-}
-
-bool lacksVolume(const MeshFile& file) {
-    return needsVolume(file) && !file.volume;
+bool lacksVolume(const NamedMesh& mesh) {
+    const bool needsVolume =
+        mesh.file.frame == CoordinateFrame::TkRas || mesh.file.frame == CoordinateFrame::Voxel;
+    return needsVolume && !mesh.file.volume;
 }
 
 std::string nameOf(const NamedMesh& mesh) {
@@ -27,74 +27,78 @@ ImageGeometry standInVolume() {
     return conformedGeometry({{256, 256, 256}, {-128, -128, -128}, {}});
 }
 
-void takeFrameOf(const NamedMesh& known, NamedMesh& unknown, CommonFrame& common) {
-    unknown.file.frame = known.file.frame;
-    unknown.file.volume = known.file.volume;
-    common.warnings.push_back(nameOf(unknown) +
-                              " does not say its coordinate frame; taken for that of " +
-                              frameText(known));
+void assumeRas(std::span<NamedMesh> meshes, CommonFrame& common) {
+    for (NamedMesh& mesh : meshes) mesh.file.frame = CoordinateFrame::Ras;
+    const std::size_t count = meshes.size();
+    common.warnings.push_back(
+        count == 1 ? nameOf(meshes[0]) + " does not say its coordinate frame; taken for RAS mm"
+                   : std::string(count == 2 ? "neither surface says its coordinate frame; both"
+                                            : "no surface says its coordinate frame; all") +
+                         " are taken for RAS mm");
 }
 
-void assumeUnknownFrames(NamedMesh& a, NamedMesh& b, CommonFrame& common) {
-    if (a.file.frame && b.file.frame) return;
-    if (!a.file.frame && !b.file.frame) {
-        a.file.frame = b.file.frame = CoordinateFrame::Ras;
-        common.warnings.push_back(
-            "neither surface says its coordinate frame; both are taken for RAS mm");
-    } else if (!a.file.frame) {
-        takeFrameOf(b, a, common);
-    } else {
-        takeFrameOf(a, b, common);
+void assumeUnknownFrames(std::span<NamedMesh> meshes, CommonFrame& common) {
+    const auto known = std::find_if(meshes.begin(), meshes.end(),
+                                    [](const NamedMesh& m) { return m.file.frame.has_value(); });
+    if (known == meshes.end()) return assumeRas(meshes, common);
+    for (NamedMesh& mesh : meshes) {
+        if (mesh.file.frame) continue;
+        mesh.file.frame = known->file.frame;
+        mesh.file.volume = known->file.volume;
+        common.warnings.push_back(nameOf(mesh) +
+                                  " does not say its coordinate frame; taken for that of " +
+                                  frameText(*known));
     }
 }
 
-void takeImage(MeshFile& file, const ImageGeometry& image) {
-    if (!lacksVolume(file)) return;
-    file.volume = frameVolume(*file.frame, image);
-}
-
 void requireNoLooseVoxels(const NamedMesh& mesh) {
-    if (mesh.file.frame == CoordinateFrame::Voxel && !mesh.file.volume) {
+    if (mesh.file.frame == CoordinateFrame::Voxel && lacksVolume(mesh)) {
         throw InvalidInput(frameText(mesh) +
                            ", which says nothing of mm; give the image by --volume");
     }
 }
 
 /// tkRAS whose volume is not known.
-void placeLooseTkRas(NamedMesh& a, NamedMesh& b, CommonFrame& common) {
-    if (!lacksVolume(a.file) && !lacksVolume(b.file)) return;
-    if (a.file.frame != b.file.frame) {
-        throw InvalidInput(frameText(a) + " and " + frameText(b) +
+void placeLooseTkRas(std::span<NamedMesh> meshes, CommonFrame& common) {
+    const auto loose = std::find_if(meshes.begin(), meshes.end(), lacksVolume);
+    if (loose == meshes.end()) return;
+    const auto stranger = std::find_if(meshes.begin(), meshes.end(), [](const NamedMesh& m) {
+        return m.file.frame != CoordinateFrame::TkRas;
+    });
+    if (stranger != meshes.end()) {
+        const NamedMesh &first = *std::min(loose, stranger), &second = *std::max(loose, stranger);
+        throw InvalidInput(frameText(first) + " and " + frameText(second) +
                            ", and the files don't say how the two relate; give the image by "
                            "--volume");
     }
-    if (lacksVolume(a.file) && lacksVolume(b.file)) {
+    const auto placed = std::find_if_not(meshes.begin(), meshes.end(), lacksVolume);
+    const ImageGeometry volume = placed == meshes.end() ? standInVolume() : *placed->file.volume;
+    if (placed == meshes.end()) {
         common.frame = CoordinateFrame::TkRas;
-        common.volume = a.file.volume = b.file.volume = standInVolume();
-    } else if (lacksVolume(a.file)) {
-        a.file.volume = b.file.volume;
-    } else {
-        b.file.volume = a.file.volume;
+        common.volume = volume;
     }
-    common.warnings.push_back("both surfaces are in tkRAS mm; taken for surfaces of one volume");
-}
-
-void moveToLps(MeshFile& file) {
-    file.mesh = fromFrame(file.mesh, *file.frame, file.volume);
+    for (NamedMesh& mesh : meshes) {
+        if (!mesh.file.volume) mesh.file.volume = volume;
+    }
+    if (meshes.size() == 1) return;
+    common.warnings.push_back(std::string(meshes.size() == 2 ? "both" : "all") +
+                              " surfaces are in tkRAS mm; taken for surfaces of one volume");
 }
 
 }  // namespace
 
-CommonFrame bringToOneFrame(NamedMesh& a, NamedMesh& b, const std::optional<ImageGeometry>& image) {
+CommonFrame bringToOneFrame(std::span<NamedMesh> meshes,
+                            const std::optional<ImageGeometry>& image) {
     CommonFrame common;
-    assumeUnknownFrames(a, b, common);
-    for (NamedMesh* const mesh : {&a, &b}) {
-        if (image) takeImage(mesh->file, *image);
-        requireNoLooseVoxels(*mesh);
+    assumeUnknownFrames(meshes, common);
+    for (NamedMesh& mesh : meshes) {
+        if (image && lacksVolume(mesh)) mesh.file.volume = frameVolume(*mesh.file.frame, *image);
+        requireNoLooseVoxels(mesh);
     }
-    placeLooseTkRas(a, b, common);
-    moveToLps(a.file);
-    moveToLps(b.file);
+    placeLooseTkRas(meshes, common);
+    for (NamedMesh& mesh : meshes) {
+        mesh.file.mesh = fromFrame(mesh.file.mesh, *mesh.file.frame, mesh.file.volume);
+    }
     return common;
 }
 

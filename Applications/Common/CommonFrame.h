@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@
 
 namespace adaptiso {
 
-/// The frame in which two surfaces are compared.
+/// The frame that several surfaces have been brought to.
 struct CommonFrame {
     /// Ras; or TkRas where nothing says where its volume lies in the scanner.
     CoordinateFrame frame = CoordinateFrame::Ras;
@@ -24,17 +25,17 @@ struct NamedMesh {
     MeshFile file;
 };
 
-/// Brings two surfaces to one frame: afterwards both meshes are in LPS mm, or, when the common
-/// frame is TkRas, in the LPS of a stand-in volume, which differs by a rigid move.
+/// Brings surfaces to one frame: afterwards all meshes are in LPS mm, or, when the common frame is
+/// TkRas, in the LPS of a stand-in volume, which differs by a rigid move.
 ///
-/// A surface that does not say its frame is taken for one in the other's; if neither does, both
-/// are taken for RAS. Two surfaces in tkRAS that do not both say of which volume are taken for
-/// surfaces of the same one.
+/// A surface that does not say its frame is taken for one in that of the first that does; if none
+/// does, all are taken for RAS. Surfaces in tkRAS that do not all say of which volume are taken
+/// for surfaces of the same one.
 /// \param image  the volume that voxel indices, and tkRAS without a volume of its own, refer to.
 ///               tkRAS is then that of the image if it is stored as FreeSurfer stores images, else
 ///               of the one FreeSurfer makes of it (as adaptiso-mesh writes it).
 /// \throws InvalidInput  the frames differ and the files don't say how they relate, or voxel
 ///                       indices without an image
-CommonFrame bringToOneFrame(NamedMesh& a, NamedMesh& b, const std::optional<ImageGeometry>& image);
+CommonFrame bringToOneFrame(std::span<NamedMesh> meshes, const std::optional<ImageGeometry>& image);
 
 }  // namespace adaptiso

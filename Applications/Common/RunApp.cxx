@@ -13,11 +13,10 @@
 #include "Common/Numbers.h"
 #include "Common/Resources.h"
 
-namespace adaptiso::detail {
+namespace adaptiso {
 namespace {
 
-/// `text` as one line without control characters: a file's name or a header's text that got into a
-/// message can neither break the line nor talk to the terminal.
+/// `text` as one line without control characters.
 std::string oneLine(std::string_view text) {
     std::string line(text);
     for (char& c : line) {
@@ -26,6 +25,17 @@ std::string oneLine(std::string_view text) {
     while (!line.empty() && line.back() == ' ') line.pop_back();
     return line;
 }
+
+}  // namespace
+
+void printError(std::string_view programName, std::string_view message) {
+    std::cerr << programName << ": " << oneLine(message) << '\n';
+}
+
+}  // namespace adaptiso
+
+namespace adaptiso::detail {
+namespace {
 
 /// Help texts folded to 80 columns; CLI11 2.1 leaves that to the terminal.
 class FoldedHelp : public CLI::Formatter {
@@ -53,7 +63,7 @@ private:
 };
 
 int fail(const Program& program, std::string_view message, ExitCode code) {
-    std::cerr << program.name << ": " << oneLine(message) << '\n';
+    printError(program.name, message);
     return code;
 }
 

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "Common/ExitCodes.h"
 #include "adaptiso/Core/Errors.h"
@@ -21,6 +22,11 @@ struct Program {
     std::string description;  ///< first lines of --help
     std::string footer;       ///< last lines of --help: examples, exit codes
 };
+
+/// One line on stderr: "name: message". Line breaks and control characters in the message, which
+/// may hold a file's name or a header's text, become spaces: it can neither break the line nor talk
+/// to the terminal.
+void printError(std::string_view programName, std::string_view message);
 
 namespace detail {
 int runApp(int argc, const char* const* argv, const Program& program,

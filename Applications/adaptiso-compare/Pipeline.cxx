@@ -1,6 +1,7 @@
 #include "Pipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <utility>
@@ -8,11 +9,11 @@
 
 #include "ColorMap.h"
 #include "Common/AtomicOutput.h"
+#include "Common/CommonFrame.h"
 #include "Common/ExitCodes.h"
 #include "Common/Numbers.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
-#include "CommonFrame.h"
 #include "CompareRun.h"
 #include "JsonReport.h"
 #include "TextReport.h"
@@ -115,14 +116,15 @@ void readImage(CompareRun& run) {
 }
 
 /// Reads all inputs; afterwards both meshes are in the frame that the program works in.
-CommonFrame readInputs(CompareRun& run, NamedMesh& a, NamedMesh& b) {
+CommonFrame readInputs(CompareRun& run, std::array<NamedMesh, 2>& surfaces) {
     readImage(run);
+    auto& [a, b] = surfaces;
     a = readSurface(run.options.a);
     b = readSurface(run.options.b);
     const auto frameA = a.file.frame, frameB = b.file.frame;
     std::optional<ImageGeometry> image;
     if (run.volume) image = run.volume->geometry;
-    CommonFrame common = bringToOneFrame(a, b, image);
+    CommonFrame common = bringToOneFrame(surfaces, image);
     run.a = summarize(a, frameA);
     run.b = summarize(b, frameB);
     run.frame = common.frame;
@@ -242,10 +244,9 @@ int runCompare(const CompareOptions& options) {
     checkNames(options);
 
     progress.show(kRead);
-    NamedMesh surfaceA, surfaceB;
-    const CommonFrame common =
-        run.timer.time(kRead, [&] { return readInputs(run, surfaceA, surfaceB); });
-    const TriangleMesh &a = surfaceA.file.mesh, &b = surfaceB.file.mesh;
+    std::array<NamedMesh, 2> surfaces;
+    const CommonFrame common = run.timer.time(kRead, [&] { return readInputs(run, surfaces); });
+    const TriangleMesh &a = surfaces[0].file.mesh, &b = surfaces[1].file.mesh;
 
     progress.show(kDistance);
     run.distances = run.timer.time(kDistance, [&] {
