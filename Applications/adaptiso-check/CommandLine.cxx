@@ -1,0 +1,141 @@
+#include "CommandLine.h"
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "Common/Numbers.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr const char* kInput = "Input";
+constexpr const char* kRequired = "What is required (exit code 1 when it does not hold)";
+constexpr const char* kOutput = "Output";
+
+void addNumber(CLI::App& app, const std::string& name, std::optional<double>& target,
+               const std::string& unit, const std::string& description, const char* group) {
+    app.add_option_function<std::string>(
+           name,
+           [&target, name, unit](const std::string& text) {
+               target = parseFiniteNumber(text);
+               if (!target || *target < 0) {
+                   throw UsageError(name + " " + text + ": must be a number of " + unit +
+                                    ", 0 or more");
+               }
+           },
+           description)
+        ->type_name(unit == "mm" ? "MM" : "DEG")
+        ->group(group);
+}
+
+void declareInput(CLI::App& app, CheckOptions& options) {
+    app.add_option("FILE", options.files,
+                   "Triangle surfaces, in any format adaptiso-mesh writes, however broken")
+        ->type_name("")
+        ->required();
+    app.add_flag("--nested", options.isNested,
+                 "The files are the surfaces of one head, from inside to outside (INNER MIDDLE "
+                 "OUTER): check how they lie in each other too")
+        ->group(kInput);
+    app.add_option("--volume", options.volume,
+                   "The image that the surfaces were made from; gives a place to tkRAS and voxel "
+                   "coordinates")
+        ->type_name("IMG")
+        ->group(kInput);
+    app.add_option_function<std::string>(
+           "--iso",
+           [&options](const std::string& text) {
+               options.isovalue = parseFiniteNumber(text);
+               if (!options.isovalue) {
+                   throw UsageError("--iso " + text + ": must be a finite number");
+               }
+           },
+           "Measure how far the surfaces lie from the volume's isosurface at this value")
+        ->type_name("V")
+        ->group(kInput);
+}
+
+void declareRequirements(CLI::App& app, CheckOptions& options) {
+    static const std::map<std::string, Profile> kProfiles{
+        {"bem", Profile::Bem}, {"print", Profile::Print}, {"view", Profile::View}};
+    app.add_option_function<std::string>(
+           "--profile",
+           [&options](const std::string& text) { options.profile = kProfiles.at(text); },
+           "bem: a boundary of a head model (default with --nested); print: a solid (default); "
+           "view: to look at. See below")
+        ->type_name("bem|print|view")
+        ->check(CLI::IsMember(kProfiles).description(""))
+        ->group(kRequired);
+    addNumber(app, "--min-gap", options.minGapMm, "mm",
+              "With --nested: smallest gap between neighbours that passes, in any profile "
+              "(default: 0.5, in bem only)",
+              kRequired);
+    addNumber(app, "--min-angle", options.minAngleDeg, "degrees",
+              "Smallest angle of a triangle that passes, in any profile (default: 1, in bem only)",
+              kRequired);
+    addNumber(app, "--max-off", options.maxOffMm, "mm",
+              "With --iso: largest distance from the isosurface that passes (default: the mean "
+              "within half a voxel)",
+              kRequired);
+}
+
+void declareOutput(CLI::App& app, CheckOptions& options) {
+    constexpr std::int64_t kMaxPairs = 1'000'000'000;
+    app.add_option("--max-pairs", options.maxPairs,
+                   "List up to N pairs of triangles that cross in the report (default: 1000); all "
+                   "are counted")
+        ->type_name("N")
+        ->check(CLI::Range(std::int64_t{0}, kMaxPairs).description(""))
+        ->group(kOutput);
+}
+
+/// What one option alone can't tell.
+void checkCombinations(const CheckOptions& options) {
+    if (options.isNested && options.files.size() < 2) {
+        throw UsageError("--nested: needs at least two files, from inside to outside");
+    }
+    if (options.minGapMm && !options.isNested) throw UsageError("--min-gap: needs --nested");
+    if (options.isovalue && options.volume.empty()) throw UsageError("--iso: needs --volume");
+    if (options.maxOffMm && !options.isovalue) throw UsageError("--max-off: needs --iso");
+}
+
+constexpr const char* kFooter = R"(Required by the profiles:
+  bem, print, view  coordinates finite; indices in range; orientation consistent
+                    and outward; no duplicate triangle; where asked for: on the
+                    isosurface, strictly nested and nowhere crossing
+  bem, print        closed; edges and vertices manifold; no degenerate triangle;
+                    no self-intersection; a size plausible in mm
+  bem               one component; genus 0; no unused or duplicate vertex; no
+                    angle below 1 degree; MNE's solid angle; a gap of 0.5 mm
+What is not required is told all the same ("noted").
+
+Two triangles intersect when they have a point in common that is not a corner
+or edge which both share (touching is enough). Decided exactly.
+
+Examples:
+  adaptiso-check surface.stl
+  adaptiso-check --nested inner_skull.surf outer_skull.surf outer_skin.surf
+  adaptiso-check bone.ply --volume ct.nii.gz --iso 250 --json report.json
+  adaptiso-check --quiet *.vtp || echo 'not all of them are sound'
+
+Exit codes: 0 all that is required holds, 1 something does not, 2 wrong usage,
+3 bad input (or no memory or disk left), 4 internal error. A file that can't be
+read does not keep the others from being checked; the exit code is then 3.)";
+
+}  // namespace
+
+Program checkProgram() {
+    return {"adaptiso-check", "Says whether triangle surfaces are sound, and where they are not.",
+            kFooter};
+}
+
+void declareCheckOptions(CLI::App& app, CheckOptions& options) {
+    declareInput(app, options);
+    declareRequirements(app, options);
+    declareOutput(app, options);
+    declareCommonOptions(app, options.common);
+    app.callback([&options] { checkCombinations(options); });
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,278 @@
+#include "Pipeline.h"
+
+#include <algorithm>
+#include <iostream>
+#include <new>
+#include <span>
+#include <utility>
+
+#include "CheckRun.h"
+#include "Common/AtomicOutput.h"
+#include "Common/CommonFrame.h"
+#include "Common/ExitCodes.h"
+#include "Common/Progress.h"
+#include "Common/RunApp.h"
+#include "Isosurface.h"
+#include "JsonReport.h"
+#include "TextReport.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/MeshIO/MeshFile.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kProgram = "adaptiso-check";
+
+/// The stages of a run, as progress, `seconds` of the report and README.md name them.
+constexpr const char* kRead = "read";
+constexpr const char* kExtract = "extract";
+constexpr const char* kCheck = "check";
+constexpr const char* kNesting = "nesting";
+constexpr const char* kIsosurface = "isosurface";
+
+void checkJsonName(const CheckOptions& options) {
+    if (!options.common.wantsJson() || options.common.wantsJsonOnStdout()) return;
+    for (const fs::path& file : options.files) checkNotInput(options.common.json, file);
+    if (!options.volume.empty()) checkNotInput(options.common.json, options.volume);
+    checkOutput(options.common.json);
+}
+
+/// The whole run: what it works with, and what it finds.
+class Checker {
+public:
+    Checker(const CheckOptions& options, ProgressLine& progress)
+        : options_(options), progress_(progress), run_(options) {}
+
+    CheckRun check() && {
+        readImage();
+        for (const fs::path& file : options_.files) {
+            checkFile(file);
+            // surfaces that lie in each other are needed together, others one at a time
+            if (options_.isNested) continue;
+            measureDeviations();
+            meshes_.clear();
+        }
+        if (options_.isNested) {
+            checkNested();
+            measureDeviations();
+        }
+        return std::move(run_);
+    }
+
+private:
+    struct Loaded {
+        std::size_t number;  ///< of the file
+        NamedMesh mesh;
+    };
+
+    template <class Work>
+    void stage(const char* name, Work&& work) {
+        progress_.show(name);
+        run_.timer.time(name, std::forward<Work>(work));
+    }
+
+    void readImage() {
+        if (options_.volume.empty()) return;
+        std::optional<ReadVolume> read;
+        stage(kRead, [&] { read = readVolume(options_.volume); });
+        const VolumeView& view = read->volume.view();
+        run_.volume = VolumeSummary{read->format, view.geometry()};
+        image_ = view.geometry();
+        for (const std::string& warning : read->warnings) {
+            run_.warnings.push_back(options_.volume.filename().string() + ": " + warning);
+        }
+        if (!options_.isovalue) return;
+        stage(kExtract, [&] { isosurface_ = extractIsosurface(view, *options_.isovalue); });
+    }
+
+    /// Reads one file and asks the questions of one surface. Points stay as stored, so that what
+    /// touches in the file touches here; but voxel indices say nothing of mm and become RAS.
+    void checkFile(const fs::path& file) {
+        const std::size_t number = run_.surfaces.size();
+        run_.surfaces.emplace_back().file = file;
+        SurfaceRun& surface = run_.surfaces.back();
+        Loaded loaded{number, {file, {}}};
+        try {
+            stage(kRead, [&] { readSurface(loaded.mesh, surface); });
+        } catch (const Error& error) {
+            tellUnread(surface, error.what());
+            return;
+        } catch (const std::bad_alloc&) {
+            tellUnread(surface, file.string() + ": too large for this machine's memory");
+            return;
+        }
+        stage(kCheck, [&] {
+            surface.facts = measureSurface(
+                loaded.mesh.file.mesh, sizeLimitsOf(options_.profileInUse()), options_.maxPairs);
+            surface.checks = judgeSurface(surface.facts, options_);
+        });
+        meshes_.push_back(std::move(loaded));
+    }
+
+    void readSurface(NamedMesh& mesh, SurfaceRun& surface) {
+        mesh.file = readMesh(mesh.path, {.keepsFaults = true});
+        mesh.file.mesh.normals = {};  // not looked at
+        surface.format = &findMeshFormat(mesh.path);
+        surface.frame = mesh.file.frame;
+        if (mesh.file.frame == CoordinateFrame::Voxel) {
+            bringToOneFrame({&mesh, 1}, image_);
+            mesh.file.mesh = toFrame(mesh.file.mesh, CoordinateFrame::Ras);
+            mesh.file.frame = CoordinateFrame::Ras;
+            mesh.file.volume.reset();
+        }
+        surface.points = mesh.file.frame;
+    }
+
+    void tellUnread(SurfaceRun& surface, const std::string& message) {
+        surface.error = message;
+        progress_.clear();
+        printError(kProgram, message);
+    }
+
+    /// Surfaces of one frame are taken as stored.
+    bool areInOneFrame() const {
+        return std::all_of(meshes_.begin(), meshes_.end(), [&](const Loaded& loaded) {
+            return loaded.mesh.file.frame == meshes_.front().mesh.file.frame &&
+                   loaded.mesh.file.volume == meshes_.front().mesh.file.volume;
+        });
+    }
+
+    /// Moves all meshes to LPS, or that of a stand-in volume.
+    CommonFrame moveToOneFrame() {
+        std::vector<NamedMesh> meshes;
+        for (Loaded& loaded : meshes_) meshes.push_back(std::move(loaded.mesh));
+        CommonFrame common = bringToOneFrame(meshes, image_);
+        for (std::size_t n = 0; n < meshes.size(); ++n) {
+            meshes_[n].mesh = std::move(meshes[n]);
+            meshes_[n].mesh.file.frame = CoordinateFrame::Lps;
+            meshes_[n].mesh.file.volume.reset();
+        }
+        run_.warnings.insert(run_.warnings.end(), common.warnings.begin(), common.warnings.end());
+        return common;
+    }
+
+    void checkNested() {
+        if (meshes_.size() < 2) return;
+        stage(kNesting, [&] {
+            run_.nestingFrame = meshes_.front().mesh.file.frame;
+            if (!areInOneFrame()) {
+                const CommonFrame common = moveToOneFrame();
+                run_.nestingFrame = common.frame;
+                run_.toNestingFrame = lpsToFrame(common.frame, common.volume);
+            }
+            for (std::size_t n = 0; n + 1 < meshes_.size(); ++n) {
+                checkPair(meshes_[n], meshes_[n + 1]);
+            }
+        });
+    }
+
+    void checkPair(const Loaded& inner, const Loaded& outer) {
+        NestingRun& pair = run_.nesting.emplace_back();
+        pair.inner = inner.number;
+        pair.outer = outer.number;
+        pair.report = checkNesting(inner.mesh.file.mesh, outer.mesh.file.mesh,
+                                   {.maxPairs = options_.maxPairs});
+        pair.checks =
+            judgeNesting(pair.report, inner.mesh.path.filename().string(),
+                         outer.mesh.path.filename().string(), run_.toNestingFrame, options_);
+    }
+
+    void measureDeviations() {
+        if (!isosurface_ || meshes_.empty()) return;
+        stage(kIsosurface, [&] {
+            moveToOneFrame();
+            for (const Loaded& loaded : meshes_) {
+                SurfaceRun& surface = run_.surfaces[loaded.number];
+                surface.deviation = isosurfaceDeviation(loaded.mesh.file.mesh, *isosurface_);
+                if (surface.deviation) {
+                    surface.deviation->maxPointMm =
+                        lpsToFrame(CoordinateFrame::Ras, {})(surface.deviation->maxPointMm);
+                }
+                surface.checks.push_back(
+                    judgeDeviation(surface.deviation, isosurface_->voxelMm, options_));
+            }
+        });
+    }
+
+    const CheckOptions& options_;
+    ProgressLine& progress_;
+    CheckRun run_;
+    std::optional<ImageGeometry> image_;
+    std::optional<Isosurface> isosurface_;
+    std::vector<Loaded> meshes_;
+};
+
+void printWarnings(const CheckRun& run) {
+    if (run.options.common.isQuiet) return;
+    for (const std::string& warning : run.warnings) {
+        printError(kProgram, "warning: " + warning);
+    }
+}
+
+void tellFailed(const std::string& subject, const std::vector<Check>& checks) {
+    for (const Check& check : checks) {
+        if (!check.breaksProfile()) continue;
+        printError(kProgram, "check failed: " + subject + ": " + std::string(check.name) +
+                                 (check.finding.empty() ? "" : ": ") + check.finding);
+    }
+}
+
+/// Where no table is printed, what failed is told on stderr.
+void tellFailed(const CheckRun& run) {
+    for (const SurfaceRun& surface : run.surfaces) {
+        tellFailed(surface.file.string(), surface.checks);
+    }
+    for (const NestingRun& pair : run.nesting) {
+        tellFailed(run.surfaces[pair.inner].file.string() + " in " +
+                       run.surfaces[pair.outer].file.string(),
+                   pair.checks);
+    }
+}
+
+void report(const CheckRun& run, const std::string& json) {
+    if (run.options.common.wantsJsonOnStdout()) {
+        std::cout << json;
+    } else if (!run.options.common.isQuiet) {
+        printReport(std::cout, run);
+    }
+    if (!std::cout.flush()) throw FileError("standard output: can't be written");
+    if (run.options.common.isQuiet || run.options.common.wantsJsonOnStdout()) tellFailed(run);
+}
+
+}  // namespace
+
+bool CheckRun::hasUnreadable() const {
+    return std::any_of(surfaces.begin(), surfaces.end(),
+                       [](const SurfaceRun& surface) { return !surface.error.empty(); });
+}
+
+bool CheckRun::hasPassed() const {
+    return !hasUnreadable() &&
+           std::all_of(surfaces.begin(), surfaces.end(),
+                       [](const SurfaceRun& surface) { return allHold(surface.checks); }) &&
+           std::all_of(nesting.begin(), nesting.end(),
+                       [](const NestingRun& pair) { return allHold(pair.checks); });
+}
+
+int runCheck(const CheckOptions& options) {
+    const ThreadLimit threads(options.common);
+    ProgressLine progress(options.common.isQuiet);
+    checkJsonName(options);
+    const CheckRun run = Checker(options, progress).check();
+
+    const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
+    if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
+        std::vector<AtomicOutput> outputs;
+        outputs.emplace_back(options.common.json).writeText(json);
+        AtomicOutput::commit(outputs);
+    }
+    progress.clear();
+    printWarnings(run);
+    report(run, json);
+    if (run.hasUnreadable()) return kExitBadInput;
+    return run.hasPassed() ? kExitOk : kExitCheckFailed;
+}
+
+}  // namespace adaptiso
