@@ -14,6 +14,7 @@ namespace {
 constexpr const char* kInput = "Input";
 constexpr const char* kSurface = "Surface";
 constexpr const char* kOutput = "Output";
+constexpr const char* kIndex = "Index";
 constexpr const char* kPieces = "Pieces (of a closed surface)";
 
 std::string knownExtensions() {
@@ -134,6 +135,17 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
         ->group(kSurface);
 }
 
+void declareIndex(CLI::App& app, MeshOptions& options) {
+    addChoice<BlockSearchKind>(app, "--search", options.index.search,
+                               {{"kdtree", BlockSearchKind::KdTree},
+                                {"octree", BlockSearchKind::Octree},
+                                {"linear", BlockSearchKind::Linear}},
+                               "How the blocks that a surface touches are found: kd-tree over "
+                               "their minima and maxima (default), octree, or a look at every "
+                               "block. The surface is the same")
+        ->group(kIndex);
+}
+
 void declarePieces(CLI::App& app, MeshOptions& options) {
     app.add_flag("--fill-cavities", options.selection.fillCavities,
                  "Drop inner surfaces, and all that lies inside them")
@@ -199,6 +211,7 @@ Program meshProgram() {
 void declareMeshOptions(CLI::App& app, MeshOptions& options) {
     declareInput(app, options);
     declareSurface(app, options);
+    declareIndex(app, options);
     declarePieces(app, options);
     declareOutput(app, options);
     declareCommonOptions(app, options.common);

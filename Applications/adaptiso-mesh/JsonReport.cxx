@@ -43,10 +43,15 @@ Json optionsJson(const MeshOptions& options) {
             {"adjustVertices", options.adjustVertices},
             {"blockSize", options.index.blockSize},
             {"border", borderWord(options.index.border)},
+            {"search", toString(options.index.search)},
             {"largest", options.selection.largestOnly},
             {"minVolumeMm3", options.selection.minVolumeMm3},
             {"fillCavities", options.selection.fillCavities},
             {"threads", orNull(options.common.threads)}};
+}
+
+Json indexJson(const IndexSummary& index) {
+    return {{"search", toString(index.search)}, {"memoryBytes", index.memoryBytes}};
 }
 
 Json boxesJson(const std::vector<BoxCount>& boxes) {
@@ -134,6 +139,7 @@ std::string jsonReport(const MeshRun& run) {
                       {"program", {{"name", "adaptiso-mesh"}, {"version", programVersion()}}},
                       {"input", inputJson(run)},
                       {"options", optionsJson(run.options)},
+                      {"index", indexJson(run.index)},
                       {"surfaces", surfaces},
                       {"seconds", secondsJson(run.timer)},
                       {"peakMemoryMb", peakMemoryMb()}};

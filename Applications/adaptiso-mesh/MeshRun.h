@@ -24,6 +24,12 @@ struct InputSummary {
     std::vector<std::string> warnings;
 };
 
+/// What is known of the index over the blocks.
+struct IndexSummary {
+    BlockSearchKind search{};
+    std::size_t memoryBytes = 0;
+};
+
 /// What is known of one surface once it has been written.
 struct SurfaceSummary {
     double isovalue = 0;
@@ -43,6 +49,7 @@ struct SurfaceSummary {
 struct MeshRun {
     const MeshOptions& options;
     InputSummary input;
+    IndexSummary index;
     std::vector<SurfaceSummary> surfaces;
     StageTimer timer;
 };

@@ -224,7 +224,7 @@ void report(const MeshRun& run, const std::string& json) {
 int runMesh(const MeshOptions& options) {
     const ThreadLimit threads(options.common);
     ProgressLine progress(options.common.isQuiet);
-    MeshRun run{options, {}, {}, {}};
+    MeshRun run{options, {}, {}, {}, {}};
     checkOutputs(options);
 
     progress.show(kRead);
@@ -240,6 +240,7 @@ int runMesh(const MeshOptions& options) {
     progress.show(kIndex);
     const SpanSpaceIndex index =
         run.timer.time(kIndex, [&] { return SpanSpaceIndex::build(volume, options.index); });
+    run.index = {index.search(), index.memoryBytes()};
 
     std::vector<AtomicOutput> outputs;
     for (std::size_t n = 0; n < isovalues.size(); ++n) {

@@ -33,7 +33,7 @@ class WrongUsage(ApplicationTest):
         self.refused("--iso auto: given twice", "ball.nii", "--iso", "auto", "--iso", "auto")
 
     def test_unknown_words(self):
-        for option in ("--method", "--block-size", "--border", "--coordinates"):
+        for option in ("--method", "--block-size", "--border", "--search", "--coordinates"):
             with self.subTest(option):
                 self.refused(option, "ball.nii", "--iso", "100", option, "3")
 

@@ -16,6 +16,12 @@ constexpr T outsideValue() {
                                        : std::numeric_limits<T>::lowest();
 }
 
+template <class T>
+constexpr T highestValue() {
+    return std::is_floating_point_v<T> ? std::numeric_limits<T>::infinity()
+                                       : std::numeric_limits<T>::max();
+}
+
 /// Samples [begin, end) of the volume that blocks at position `block` along an axis cover.
 struct SampleSpan {
     std::int64_t begin, end;
@@ -56,7 +62,7 @@ BlockRanges<T> computeBlockRanges(const TypedVolumeView<T>& volume, const BlockG
             for (std::int64_t row = begin; row < end; ++row) {
                 const SampleSpan y = samplesOf(grid, 1, row % grid.blocks[1]);
                 const SampleSpan z = samplesOf(grid, 2, row / grid.blocks[1]);
-                std::fill(low.begin(), low.end(), std::numeric_limits<T>::max());
+                std::fill(low.begin(), low.end(), highestValue<T>());
                 std::fill(high.begin(), high.end(), outsideValue<T>());
                 for (std::int64_t k = z.begin; k < z.end; ++k) {
                     for (std::int64_t j = y.begin; j < y.end; ++j) {

@@ -1,8 +1,10 @@
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
-#include <algorithm>
 #include <variant>
 
+#include "LinearScan.h"
+#include "MinMaxOctree.h"
+#include "SpanSpaceIndexImpl.h"
 #include "SpanTree.h"
 #include "adaptiso/Core/Isovalue.h"
 
@@ -26,20 +28,34 @@ std::vector<std::uint32_t> blocksAtBorder(const BlockGrid& grid) {
     return found;
 }
 
+template <class T>
+std::unique_ptr<const detail::BlockSearch<T>> makeSearch(detail::BlockRanges<T> ranges,
+                                                         const BlockGrid& grid,
+                                                         BlockSearchKind kind) {
+    switch (kind) {
+        case BlockSearchKind::KdTree:
+            return std::make_unique<detail::SpanTree<T>>(std::move(ranges));
+        case BlockSearchKind::Octree:
+            return std::make_unique<detail::MinMaxOctree<T>>(std::move(ranges), grid);
+        case BlockSearchKind::Linear:
+            return std::make_unique<detail::LinearScan<T>>(std::move(ranges));
+    }
+    throw InternalError("SpanSpaceIndex: unknown kind of search");
+}
+
 }  // namespace
 
-class SpanSpaceIndex::Impl {
-public:
-    using AnyTree = std::variant<detail::SpanTree<std::uint8_t>, detail::SpanTree<std::int8_t>,
-                                 detail::SpanTree<std::uint16_t>, detail::SpanTree<std::int16_t>,
-                                 detail::SpanTree<std::uint32_t>, detail::SpanTree<std::int32_t>,
-                                 detail::SpanTree<std::uint64_t>, detail::SpanTree<std::int64_t>,
-                                 detail::SpanTree<float>, detail::SpanTree<double>>;
-
-    BlockGrid grid;
-    PixelType pixelType;
-    AnyTree tree;
-};
+std::string_view toString(BlockSearchKind kind) {
+    switch (kind) {
+        case BlockSearchKind::KdTree:
+            return "kdtree";
+        case BlockSearchKind::Octree:
+            return "octree";
+        case BlockSearchKind::Linear:
+            return "linear";
+    }
+    throw InternalError("toString: unknown kind of search");
+}
 
 SpanSpaceIndex::SpanSpaceIndex(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 SpanSpaceIndex::SpanSpaceIndex(SpanSpaceIndex&&) noexcept = default;
@@ -50,14 +66,18 @@ SpanSpaceIndex SpanSpaceIndex::build(const VolumeView& volume, const IndexOption
     const BlockGrid grid =
         BlockGrid::make(volume.geometry().size, options.blockSize, options.border);
     return dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
-        detail::SpanTree<T> tree(detail::computeBlockRanges(view, grid));
-        return SpanSpaceIndex(
-            std::make_unique<Impl>(Impl{grid, pixelTypeOf<T>(), Impl::AnyTree(std::move(tree))}));
+        return SpanSpaceIndex(std::make_unique<Impl>(
+            Impl{grid, pixelTypeOf<T>(), options.search,
+                 makeSearch<T>(detail::computeBlockRanges(view, grid), grid, options.search)}));
     });
 }
 
 const BlockGrid& SpanSpaceIndex::grid() const {
     return impl_->grid;
+}
+
+BlockSearchKind SpanSpaceIndex::search() const {
+    return impl_->kind;
 }
 
 PixelType SpanSpaceIndex::pixelType() const {
@@ -67,22 +87,21 @@ PixelType SpanSpaceIndex::pixelType() const {
 BlockQuery SpanSpaceIndex::blocksAt(double isovalue) const {
     BlockQuery query;
     std::visit(
-        [&]<class T>(const detail::SpanTree<T>& tree) {
+        [&]<class T>(const std::unique_ptr<const detail::BlockSearch<T>>& search) {
             const InsideTest<T> inside(isovalue);
             if (inside.kind == InsideTest<T>::Kind::None) return;
             if (inside.kind == InsideTest<T>::Kind::All) {
                 query.blocks = blocksAtBorder(impl_->grid);
                 return;
             }
-            query.nodesVisited = tree.search(inside.threshold, query.blocks);
+            query.nodesVisited = search->search(inside.threshold, query.blocks);
         },
-        impl_->tree);
-    std::sort(query.blocks.begin(), query.blocks.end());
+        impl_->search);
     return query;
 }
 
 std::size_t SpanSpaceIndex::memoryBytes() const {
-    return std::visit([](const auto& tree) { return tree.memoryBytes(); }, impl_->tree);
+    return std::visit([](const auto& search) { return search->memoryBytes(); }, impl_->search);
 }
 
 }  // namespace adaptiso

@@ -135,6 +135,7 @@ template <class T>
 std::int64_t SpanTree<T>::search(T threshold, std::vector<std::uint32_t>& found) const {
     Walk walk{*this, threshold, found};
     walk.search(0, size(), true);
+    sortBlocks(found, size());
     return walk.visited;
 }
 

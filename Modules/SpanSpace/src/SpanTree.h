@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "BlockRanges.h"
+#include "BlockSearch.h"
 
 namespace adaptiso::detail {
 
@@ -12,16 +13,20 @@ namespace adaptiso::detail {
 /// of a range is its middle element; levels split on the minimum and on the maximum in turn, ties
 /// broken by block number. Holds three arrays in tree order.
 template <class T>
-class SpanTree {
+class SpanTree final : public BlockSearch<T> {
 public:
     explicit SpanTree(BlockRanges<T> ranges);
 
-    /// Appends to `found` the blocks with minimum < threshold <= maximum, in tree order.
-    /// \return nodes looked at
-    std::int64_t search(T threshold, std::vector<std::uint32_t>& found) const;
+    std::int64_t search(T threshold, std::vector<std::uint32_t>& found) const override;
 
     std::int64_t size() const { return static_cast<std::int64_t>(block_.size()); }
-    std::size_t memoryBytes() const { return block_.size() * (2 * sizeof(T) + sizeof(block_[0])); }
+    std::size_t memoryBytes() const override {
+        return block_.size() * (2 * sizeof(T) + sizeof(block_[0]));
+    }
+    std::vector<std::span<const std::byte>> arrays() const override {
+        return {std::as_bytes(std::span(minimum_)), std::as_bytes(std::span(maximum_)),
+                std::as_bytes(std::span(block_))};
+    }
 
 private:
     struct Walk;

@@ -1,45 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
-#include "Support/AnalyticVolumes.h"
-#include "adaptiso/SpanSpace/SpanSpaceIndex.h"
+#include "BlocksByDefinition.h"
 
 namespace adaptiso::testing {
-namespace {
-
-/// The blocks with a sample inside and a sample outside, sample by sample.
-template <class T>
-std::vector<std::uint32_t> blocksByDefinition(const VolumeView& volume, const BlockGrid& grid,
-                                              double isovalue) {
-    const auto view = volume.as<T>();
-    std::vector<std::uint32_t> found;
-    for (std::uint32_t b = 0; b < grid.blockCount(); ++b) {
-        const Index3 first = grid.firstSample(b);
-        bool inside = false, outside = false;
-        for (int z = 0; z <= grid.blockSize; ++z) {
-            for (int y = 0; y <= grid.blockSize; ++y) {
-                for (int x = 0; x <= grid.blockSize; ++x) {
-                    const Index3 p{first[0] + x, first[1] + y, first[2] + z};
-                    bool isIn = true;
-                    for (int a = 0; a < 3; ++a) isIn &= p[a] >= 0 && p[a] < view.geometry.size[a];
-                    if (!isIn) {
-                        outside |= grid.border == Border::Closed;
-                        continue;
-                    }
-                    const bool reaches = static_cast<double>(view.at(p[0], p[1], p[2])) >= isovalue;
-                    (reaches ? inside : outside) = true;
-                }
-            }
-        }
-        if (inside && outside) found.push_back(b);
-    }
-    return found;
-}
-
-}  // namespace
-
 TEST(SpanSpaceIndex, FindsTheBlocksThatAScanFinds) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         std::uint64_t state = seed;

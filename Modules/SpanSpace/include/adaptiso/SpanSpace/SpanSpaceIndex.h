@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "adaptiso/Core/Volume.h"
@@ -9,24 +10,36 @@
 
 namespace adaptiso {
 
+/// How the blocks of an isovalue are found. All give the same blocks in the same order.
+enum class BlockSearchKind {
+    KdTree,  ///< kd-tree over span space [Livnat1996; thesis 4.1]
+    Octree,  ///< branch-on-need octree of minima and maxima [Wilhelms1992]
+    Linear   ///< a look at every block
+};
+
+/// "kdtree", "octree", "linear"
+std::string_view toString(BlockSearchKind kind);
+
 struct IndexOptions {
     int blockSize = 4;  ///< N: 2, 4, 8 or 16 cells a side
     Border border = Border::Closed;
+    BlockSearchKind search = BlockSearchKind::KdTree;
 };
 
 /// The blocks that an isovalue touches, and what it cost to find them.
 struct BlockQuery {
     std::vector<std::uint32_t> blocks;  ///< block numbers of the grid, ascending
-    std::int64_t nodesVisited = 0;      ///< tree nodes looked at
+    std::int64_t nodesVisited = 0;      ///< nodes of the index whose range was looked at
 };
 
-/// A kd-tree over span space [Livnat1996; thesis 4.1]: built once per volume, it answers for any
-/// isovalue which blocks hold a sample >= isovalue and a sample < isovalue.
+/// An index over span space, (minimum, maximum) of every block: built once per volume, it answers
+/// for any isovalue which blocks hold a sample >= isovalue and a sample < isovalue.
 ///
-/// Keeps (minimum, maximum) of every block in the volume's own pixel type; NaN counts as outside
-/// (below every isovalue), and so do the virtual samples around the volume of a closed grid.
-/// Cost: O(n log n) to build, O(sqrt(n) + k) to ask, n blocks, k of them in the answer. The same
-/// volume gives the same tree, whatever the number of threads.
+/// Keeps the ranges in the volume's own pixel type; NaN counts as outside (below every isovalue),
+/// and so do the virtual samples around the volume of a closed grid.
+/// Cost, n blocks, k of them in the answer: kd-tree O(n log n) to build, O(sqrt(n) + k) nodes to
+/// ask; octree O(n) and O(k log n); linear O(n) and O(n). The same volume
+/// gives the same index, whatever the number of threads.
 class SpanSpaceIndex {
 public:
     /// \throws InvalidInput when options.blockSize is not 2, 4, 8 or 16
@@ -39,12 +52,14 @@ public:
     ~SpanSpaceIndex();
 
     const BlockGrid& grid() const;
+    BlockSearchKind search() const;
     PixelType pixelType() const;
 
     /// The blocks with minimum < isovalue <= maximum.
     BlockQuery blocksAt(double isovalue) const;
 
-    /// Bytes that the tree holds.
+    /// Bytes that the index holds: for every node of the octree, and every block of the others, two
+    /// samples; for every block of the kd-tree four bytes more.
     std::size_t memoryBytes() const;
 
 private:
