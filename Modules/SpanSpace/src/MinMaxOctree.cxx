@@ -6,6 +6,25 @@
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {
+namespace {
+
+std::int64_t numberOf(const Index3& size, const Index3& node) {
+    return node[0] + size[0] * (node[1] + size[1] * node[2]);
+}
+
+/// Calls f(child) for the nodes of a level of `size` that lie below `node` of the next.
+template <class F>
+void forEachChild(const Index3& size, const Index3& node, const F& f) {
+    for (std::int64_t k = 2 * node[2]; k < std::min(2 * node[2] + 2, size[2]); ++k) {
+        for (std::int64_t j = 2 * node[1]; j < std::min(2 * node[1] + 2, size[1]); ++j) {
+            for (std::int64_t i = 2 * node[0]; i < std::min(2 * node[0] + 2, size[0]); ++i) {
+                f(Index3{i, j, k});
+            }
+        }
+    }
+}
+
+}  // namespace
 
 template <class T>
 MinMaxOctree<T>::MinMaxOctree(BlockRanges<T> ranges, const BlockGrid& grid) {
@@ -17,27 +36,23 @@ template <class T>
 typename MinMaxOctree<T>::Level MinMaxOctree<T>::above(const Level& below) {
     Level level;
     for (int axis = 0; axis < 3; ++axis) level.size[axis] = (below.size[axis] + 1) / 2;
-    const auto& [nx, ny, nz] = level.size;
-    level.ranges.minimum.resize(nx * ny * nz);
-    level.ranges.maximum.resize(nx * ny * nz);
-    const auto& [bx, by, bz] = below.size;
+    const Index3& n = level.size;
+    const std::vector<T>&minimum = below.ranges.minimum, &maximum = below.ranges.maximum;
+    level.ranges.minimum.resize(n[0] * n[1] * n[2]);
+    level.ranges.maximum.resize(n[0] * n[1] * n[2]);
 
-    parallelForPieces(ny * nz, 64, [&](std::int64_t begin, std::int64_t end) {
+    parallelForPieces(n[1] * n[2], 64, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t row = begin; row < end; ++row) {
-            const std::int64_t y = row % ny, z = row / ny;
-            for (std::int64_t x = 0; x < nx; ++x) {
-                const std::int64_t first = 2 * x + bx * (2 * y + by * 2 * z);
-                T low = below.ranges.minimum[first], high = below.ranges.maximum[first];
-                for (std::int64_t k = 2 * z; k < std::min(2 * z + 2, bz); ++k) {
-                    for (std::int64_t j = 2 * y; j < std::min(2 * y + 2, by); ++j) {
-                        for (std::int64_t i = 2 * x; i < std::min(2 * x + 2, bx); ++i) {
-                            low = std::min(low, below.ranges.minimum[i + bx * (j + by * k)]);
-                            high = std::max(high, below.ranges.maximum[i + bx * (j + by * k)]);
-                        }
-                    }
-                }
-                level.ranges.minimum[x + nx * row] = low;
-                level.ranges.maximum[x + nx * row] = high;
+            for (std::int64_t x = 0; x < n[0]; ++x) {
+                const Index3 node{x, row % n[1], row / n[1]};
+                const std::int64_t first = numberOf(below.size, {2 * x, 2 * node[1], 2 * node[2]});
+                T low = minimum[first], high = maximum[first];
+                forEachChild(below.size, node, [&](const Index3& child) {
+                    low = std::min(low, minimum[numberOf(below.size, child)]);
+                    high = std::max(high, maximum[numberOf(below.size, child)]);
+                });
+                level.ranges.minimum[x + n[0] * row] = low;
+                level.ranges.maximum[x + n[0] * row] = high;
             }
         }
     });
@@ -51,32 +66,26 @@ struct MinMaxOctree<T>::Walk {
     std::vector<std::uint32_t>& found;
     std::int64_t visited = 0;
 
-    void visit(std::size_t depth, std::int64_t x, std::int64_t y, std::int64_t z) {
+    void visit(std::size_t depth, const Index3& node) {
         const Level& level = levels[depth];
-        const std::int64_t node = x + level.size[0] * (y + level.size[1] * z);
+        const std::int64_t number = numberOf(level.size, node);
         ++visited;
-        if (level.ranges.minimum[node] >= threshold || level.ranges.maximum[node] < threshold) {
+        if (level.ranges.minimum[number] >= threshold || level.ranges.maximum[number] < threshold) {
             return;
         }
         if (depth == 0) {
-            found.push_back(static_cast<std::uint32_t>(node));
+            found.push_back(static_cast<std::uint32_t>(number));
             return;
         }
-        const Index3& children = levels[depth - 1].size;
-        for (std::int64_t k = 2 * z; k < std::min(2 * z + 2, children[2]); ++k) {
-            for (std::int64_t j = 2 * y; j < std::min(2 * y + 2, children[1]); ++j) {
-                for (std::int64_t i = 2 * x; i < std::min(2 * x + 2, children[0]); ++i) {
-                    visit(depth - 1, i, j, k);
-                }
-            }
-        }
+        forEachChild(levels[depth - 1].size, node,
+                     [&](const Index3& child) { visit(depth - 1, child); });
     }
 };
 
 template <class T>
 std::int64_t MinMaxOctree<T>::search(T threshold, std::vector<std::uint32_t>& found) const {
     Walk walk{levels_, threshold, found};
-    walk.visit(levels_.size() - 1, 0, 0, 0);
+    walk.visit(levels_.size() - 1, {0, 0, 0});
     sortBlocks(found, std::ssize(levels_.front().ranges.minimum));
     return walk.visited;
 }

@@ -2,10 +2,7 @@
 
 #include <variant>
 
-#include "LinearScan.h"
-#include "MinMaxOctree.h"
 #include "SpanSpaceIndexImpl.h"
-#include "SpanTree.h"
 #include "adaptiso/Core/Isovalue.h"
 
 namespace adaptiso {
@@ -26,21 +23,6 @@ std::vector<std::uint32_t> blocksAtBorder(const BlockGrid& grid) {
         }
     }
     return found;
-}
-
-template <class T>
-std::unique_ptr<const detail::BlockSearch<T>> makeSearch(detail::BlockRanges<T> ranges,
-                                                         const BlockGrid& grid,
-                                                         BlockSearchKind kind) {
-    switch (kind) {
-        case BlockSearchKind::KdTree:
-            return std::make_unique<detail::SpanTree<T>>(std::move(ranges));
-        case BlockSearchKind::Octree:
-            return std::make_unique<detail::MinMaxOctree<T>>(std::move(ranges), grid);
-        case BlockSearchKind::Linear:
-            return std::make_unique<detail::LinearScan<T>>(std::move(ranges));
-    }
-    throw InternalError("SpanSpaceIndex: unknown kind of search");
 }
 
 }  // namespace
@@ -66,9 +48,9 @@ SpanSpaceIndex SpanSpaceIndex::build(const VolumeView& volume, const IndexOption
     const BlockGrid grid =
         BlockGrid::make(volume.geometry().size, options.blockSize, options.border);
     return dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
-        return SpanSpaceIndex(std::make_unique<Impl>(
-            Impl{grid, pixelTypeOf<T>(), options.search,
-                 makeSearch<T>(detail::computeBlockRanges(view, grid), grid, options.search)}));
+        return SpanSpaceIndex(std::make_unique<Impl>(Impl{
+            grid, pixelTypeOf<T>(), options.search,
+            detail::makeSearch<T>(detail::computeBlockRanges(view, grid), grid, options.search)}));
     });
 }
 
@@ -78,6 +60,10 @@ const BlockGrid& SpanSpaceIndex::grid() const {
 
 BlockSearchKind SpanSpaceIndex::search() const {
     return impl_->kind;
+}
+
+IndexOptions SpanSpaceIndex::options() const {
+    return {impl_->grid.blockSize, impl_->grid.border, impl_->kind};
 }
 
 PixelType SpanSpaceIndex::pixelType() const {

@@ -5,9 +5,30 @@
 #include <variant>
 
 #include "BlockSearch.h"
+#include "LinearScan.h"
+#include "MinMaxOctree.h"
+#include "SpanTree.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
 namespace adaptiso {
+
+namespace detail {
+
+template <class T>
+std::unique_ptr<const BlockSearch<T>> makeSearch(BlockRanges<T> ranges, const BlockGrid& grid,
+                                                 BlockSearchKind kind) {
+    switch (kind) {
+        case BlockSearchKind::KdTree:
+            return std::make_unique<SpanTree<T>>(std::move(ranges));
+        case BlockSearchKind::Octree:
+            return std::make_unique<MinMaxOctree<T>>(std::move(ranges), grid);
+        case BlockSearchKind::Linear:
+            return std::make_unique<LinearScan<T>>(std::move(ranges));
+    }
+    throw InternalError("SpanSpaceIndex: unknown kind of search");
+}
+
+}  // namespace detail
 
 class SpanSpaceIndex::Impl {
 public:

@@ -3,7 +3,10 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+
+#include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -58,6 +61,86 @@ SpanTree<T>::SpanTree(BlockRanges<T> ranges) {
         maximum_[i] = nodes[i].high;
         block_[i] = nodes[i].block;
     }
+}
+
+/// Every node has the ranges of a block.
+template <class T>
+bool SpanTree<T>::holds(const BlockRanges<T>& ranges) const {
+    std::atomic<bool> isSame{true};
+    parallelForPieces(size(), 1 << 14, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i) {
+            const std::uint32_t b = block_[i];
+            if (b >= block_.size() || minimum_[i] != ranges.minimum[b] ||
+                maximum_[i] != ranges.maximum[b]) {
+                isSame = false;
+                return;
+            }
+        }
+    });
+    return isSame;
+}
+
+/// Every node stands on its side of each node above it, strictly: by minimum and block or by
+/// maximum and block. Then no two nodes are of one block (they would have to differ where their
+/// paths part), and since the median of a set is one element, the tree is the one and only.
+template <class T>
+struct SpanTree<T>::Order {
+    static constexpr std::int64_t kNone = -1;
+    /// The nodes above, by the coordinate they split, that all of a subtree lies between.
+    struct Between {
+        std::int64_t after = kNone, before = kNone;
+    };
+    const SpanTree& tree;
+
+    bool minimumLess(std::int64_t a, std::int64_t b) const {
+        const T low = tree.minimum_[a], other = tree.minimum_[b];
+        return low != other ? low < other : tree.block_[a] < tree.block_[b];
+    }
+    bool maximumLess(std::int64_t a, std::int64_t b) const {
+        const T high = tree.maximum_[a], other = tree.maximum_[b];
+        return high != other ? high < other : tree.block_[a] < tree.block_[b];
+    }
+
+    bool keeps(std::int64_t begin, std::int64_t end, bool onMinimum, Between minimum,
+               Between maximum) const {
+        if (begin >= end) return true;
+        const std::int64_t root = begin + (end - begin) / 2;
+        if ((minimum.after != kNone && !minimumLess(minimum.after, root)) ||
+            (minimum.before != kNone && !minimumLess(root, minimum.before)) ||
+            (maximum.after != kNone && !maximumLess(maximum.after, root)) ||
+            (maximum.before != kNone && !maximumLess(root, maximum.before))) {
+            return false;
+        }
+        Between leftMinimum = minimum, leftMaximum = maximum;
+        (onMinimum ? leftMinimum : leftMaximum).before = root;
+        (onMinimum ? minimum : maximum).after = root;
+        bool isLeftKept = false, isRightKept = false;
+        const auto left = [&] {
+            isLeftKept = keeps(begin, root, !onMinimum, leftMinimum, leftMaximum);
+        };
+        const auto right = [&] {
+            isRightKept = keeps(root + 1, end, !onMinimum, minimum, maximum);
+        };
+        if (end - begin > kParallelBuild) {
+            tbb::parallel_invoke(left, right);
+        } else {
+            left();
+            right();
+        }
+        return isLeftKept && isRightKept;
+    }
+};
+
+template <class T>
+std::unique_ptr<SpanTree<T>> SpanTree<T>::restored(BlockRanges<T> nodes,
+                                                   std::vector<std::uint32_t> block,
+                                                   const BlockRanges<T>& ranges) {
+    std::unique_ptr<SpanTree> tree(new SpanTree);
+    tree->minimum_ = std::move(nodes.minimum);
+    tree->maximum_ = std::move(nodes.maximum);
+    tree->block_ = std::move(block);
+    const bool isRight = tree->holds(ranges) && Order{*tree}.keeps(0, tree->size(), true, {}, {});
+    return isRight ? std::move(tree) : nullptr;
 }
 
 /// The three walks of k-d search. `search` knows nothing yet; `searchMaxMin` runs where every

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,12 @@ class SpanTree final : public BlockSearch<T> {
 public:
     explicit SpanTree(BlockRanges<T> ranges);
 
+    /// The tree of nodes that come from outside, in tree order; null unless it is the very tree
+    /// that the constructor makes of `ranges`. \pre as many of each as `ranges` has
+    static std::unique_ptr<SpanTree> restored(BlockRanges<T> nodes,
+                                              std::vector<std::uint32_t> block,
+                                              const BlockRanges<T>& ranges);
+
     std::int64_t search(T threshold, std::vector<std::uint32_t>& found) const override;
 
     std::int64_t size() const { return static_cast<std::int64_t>(block_.size()); }
@@ -30,6 +37,10 @@ public:
 
 private:
     struct Walk;
+    struct Order;
+    SpanTree() = default;
+    bool holds(const BlockRanges<T>& ranges) const;
+
     std::vector<T> minimum_;
     std::vector<T> maximum_;
     std::vector<std::uint32_t> block_;

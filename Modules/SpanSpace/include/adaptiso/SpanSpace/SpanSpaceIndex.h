@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -53,6 +56,7 @@ public:
 
     const BlockGrid& grid() const;
     BlockSearchKind search() const;
+    IndexOptions options() const;  ///< those it was built with
     PixelType pixelType() const;
 
     /// The blocks with minimum < isovalue <= maximum.
@@ -63,6 +67,9 @@ public:
     std::size_t memoryBytes() const;
 
 private:
+    friend std::vector<std::byte> encodeIndex(const SpanSpaceIndex&, const VolumeView&);
+    friend SpanSpaceIndex decodeIndex(std::span<const std::byte>, const VolumeView&,
+                                      const std::string&);
     class Impl;
     explicit SpanSpaceIndex(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
