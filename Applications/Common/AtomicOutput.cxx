@@ -189,9 +189,14 @@ void AtomicOutput::write(const std::function<void(const fs::path&)>& writer) {
 }
 
 void AtomicOutput::writeText(const std::string& text) {
+    writeBytes(std::as_bytes(std::span(text)));
+}
+
+void AtomicOutput::writeBytes(std::span<const std::byte> bytes) {
     write([&](const fs::path& path) {
         std::ofstream file(path, std::ios::binary | std::ios::trunc);
-        file.write(text.data(), static_cast<std::streamsize>(text.size()));
+        file.write(reinterpret_cast<const char*>(bytes.data()),
+                   static_cast<std::streamsize>(bytes.size()));
         file.close();
         if (!file) throw FileError(path.string() + ": can't be written: " + reason());
     });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -32,7 +33,8 @@ public:
     ///                    with the target's name in place of the temporary's.
     void write(const std::function<void(const std::filesystem::path&)>& writer);
 
-    /// The same for a text in memory. \throws FileError
+    /// The same for bytes or a text in memory. \throws FileError
+    void writeBytes(std::span<const std::byte> bytes);
     void writeText(const std::string& text);
 
     /// Renames all of `outputs`. Signals wait until that is done: none of the files or all of them.

@@ -56,8 +56,7 @@ double parseVolume(const std::string& text) {
 
 /// What one option alone can't tell.
 void checkCombinations(const MeshOptions& options) {
-    const bool needsVolumes = options.selection.fillCavities || options.selection.minVolumeMm3 > 0;
-    if (options.index.border == Border::Open && needsVolumes) {
+    if (options.index.border == Border::Open && options.needsClosedSurfaces()) {
         throw UsageError(
             "--min-volume and --fill-cavities need closed surfaces, not --border open");
     }
@@ -144,6 +143,17 @@ void declareIndex(CLI::App& app, MeshOptions& options) {
                                "their minima and maxima (default), octree, or a look at every "
                                "block. The surface is the same")
         ->group(kIndex);
+    CLI::Option* save =
+        app.add_option("--save-index", options.indexFiles.save,
+                       "Keep the index in a file, to be used again for the same image")
+            ->type_name("FILE")
+            ->group(kIndex);
+    app.add_option("--index", options.indexFiles.load,
+                   "Use the index that --save-index has kept, with its block size, border and "
+                   "search; an index of another image is refused")
+        ->type_name("FILE")
+        ->excludes(save)
+        ->group(kIndex);
 }
 
 void declarePieces(CLI::App& app, MeshOptions& options) {
@@ -215,7 +225,12 @@ void declareMeshOptions(CLI::App& app, MeshOptions& options) {
     declarePieces(app, options);
     declareOutput(app, options);
     declareCommonOptions(app, options.common);
-    app.callback([&options] { checkCombinations(options); });
+    app.callback([&app, &options] {
+        options.indexFiles.givesBlockSize = app.count("--block-size") > 0;
+        options.indexFiles.givesBorder = app.count("--border") > 0;
+        options.indexFiles.givesSearch = app.count("--search") > 0;
+        checkCombinations(options);
+    });
 }
 
 }  // namespace adaptiso

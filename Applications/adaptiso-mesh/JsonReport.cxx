@@ -51,7 +51,12 @@ Json optionsJson(const MeshOptions& options) {
 }
 
 Json indexJson(const IndexSummary& index) {
-    return {{"search", toString(index.search)}, {"memoryBytes", index.memoryBytes}};
+    const bool hasFile = !index.file.empty();
+    return {{"search", toString(index.search)},
+            {"memoryBytes", index.memoryBytes},
+            {"source", index.isLoaded ? "file" : "built"},
+            {"file", hasFile ? Json(baseName(index.file)) : Json(nullptr)},
+            {"fileBytes", hasFile ? Json(index.fileBytes) : Json(nullptr)}};
 }
 
 Json boxesJson(const std::vector<BoxCount>& boxes) {

@@ -27,7 +27,11 @@ struct InputSummary {
 /// What is known of the index over the blocks.
 struct IndexSummary {
     BlockSearchKind search{};
+    std::int64_t blocks = 0;
     std::size_t memoryBytes = 0;
+    std::filesystem::path file;    ///< it was read from or saved to; empty: neither
+    std::uintmax_t fileBytes = 0;  ///< of that file
+    bool isLoaded = false;
 };
 
 /// What is known of one surface once it has been written.

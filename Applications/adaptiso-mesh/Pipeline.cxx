@@ -9,6 +9,7 @@
 #include "Common/Numbers.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
+#include "IndexSource.h"
 #include "JsonReport.h"
 #include "MeshRun.h"
 #include "OutputNames.h"
@@ -18,6 +19,7 @@
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/SpanSpace/IndexFile.h"
 
 namespace adaptiso {
 namespace {
@@ -54,27 +56,34 @@ CoordinateFrame frameOf(const MeshOptions& options, const MeshFormat& format) {
     return frame;
 }
 
+/// Adds a file that an option names. \throws UsageError when it is one of `files` already
+void addOutput(std::vector<fs::path>& files, const std::string& option, const fs::path& file) {
+    const auto isSame = [&](const fs::path& other) {
+        return fs::weakly_canonical(fs::absolute(other)) ==
+               fs::weakly_canonical(fs::absolute(file));
+    };
+    if (std::any_of(files.begin(), files.end(), isSame)) {
+        throw UsageError(option + " " + file.string() + ": is the name of another output too");
+    }
+    files.push_back(file);
+}
+
 /// Everything about the outputs that can be told before the volume is read.
 void checkOutputs(const MeshOptions& options) {
-    const bool hasJsonFile = options.common.wantsJson() && !options.common.wantsJsonOnStdout();
-    const fs::path json = hasJsonFile ? options.common.json : "";
     std::vector<fs::path> files;
     for (const IsovalueChoice& choice : options.isovalues) {
         files.push_back(outputPath(options, isovalueText(choice)));
         frameOf(options, formatOf(files.back()));
     }
-    if (hasJsonFile) {
-        const auto isJson = [&](const fs::path& file) {
-            return fs::weakly_canonical(fs::absolute(file)) ==
-                   fs::weakly_canonical(fs::absolute(json));
-        };
-        if (std::any_of(files.begin(), files.end(), isJson)) {
-            throw UsageError("--json " + json.string() + ": is the name of the mesh too");
-        }
-        files.push_back(json);
+    if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
+        addOutput(files, "--json", options.common.json);
+    }
+    if (!options.indexFiles.save.empty()) {
+        addOutput(files, "--save-index", options.indexFiles.save);
     }
     for (const fs::path& file : files) {
         checkNotInput(file, options.input);
+        checkNotInput(file, options.indexFiles.load);
         checkOutput(file);
     }
 }
@@ -203,6 +212,23 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     return summary;
 }
 
+/// Writes the index under its temporary name, when it is to be kept, and says what it is.
+IndexSummary keepIndex(const SpanSpaceIndex& index, const VolumeView& volume,
+                       const IndexFiles& files, std::vector<AtomicOutput>& outputs) {
+    IndexSummary summary{
+        index.search(),     index.grid().blockCount(), index.memoryBytes(), files.load, 0,
+        !files.load.empty()};
+    if (!files.save.empty()) {
+        summary.file = files.save;
+        AtomicOutput& output = outputs.emplace_back(files.save);
+        output.writeBytes(encodeIndex(index, volume));
+        summary.fileBytes = fs::file_size(output.temporary());
+    } else if (summary.isLoaded) {
+        summary.fileBytes = fs::file_size(files.load);
+    }
+    return summary;
+}
+
 void printWarnings(const MeshRun& run) {
     if (run.options.common.isQuiet) return;
     for (const std::string& warning : run.input.warnings) {
@@ -221,11 +247,13 @@ void report(const MeshRun& run, const std::string& json) {
 
 }  // namespace
 
-int runMesh(const MeshOptions& options) {
+int runMesh(const MeshOptions& asked) {
+    MeshOptions options = asked;  // a loaded index brings options of its own
     const ThreadLimit threads(options.common);
     ProgressLine progress(options.common.isQuiet);
     MeshRun run{options, {}, {}, {}, {}};
     checkOutputs(options);
+    checkIndexFile(options);
 
     progress.show(kRead);
     const ReadVolume read =
@@ -239,14 +267,15 @@ int runMesh(const MeshOptions& options) {
 
     progress.show(kIndex);
     const SpanSpaceIndex index =
-        run.timer.time(kIndex, [&] { return SpanSpaceIndex::build(volume, options.index); });
-    run.index = {index.search(), index.memoryBytes()};
+        run.timer.time(kIndex, [&] { return prepareIndex(volume, options); });
 
     std::vector<AtomicOutput> outputs;
     for (std::size_t n = 0; n < isovalues.size(); ++n) {
         run.surfaces.push_back(
             makeSurface(volume, index, isovalues[n], options.isovalues[n], run, progress, outputs));
     }
+    run.index = run.timer.time(
+        kWrite, [&] { return keepIndex(index, volume, options.indexFiles, outputs); });
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
         outputs.emplace_back(options.common.json).writeText(json);

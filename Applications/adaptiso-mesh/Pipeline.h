@@ -20,6 +20,14 @@ struct IsovalueChoice {
     friend bool operator==(const IsovalueChoice&, const IsovalueChoice&) = default;
 };
 
+/// Where the index over the blocks is kept.
+struct IndexFiles {
+    std::filesystem::path load;  ///< empty: the index is built
+    std::filesystem::path save;  ///< empty: it is not kept
+    /// Given on the command line, so that an index that is loaded must agree.
+    bool givesBlockSize = false, givesBorder = false, givesSearch = false;
+};
+
 /// What adaptiso-mesh is asked to do.
 struct MeshOptions {
     std::filesystem::path input;
@@ -29,18 +37,25 @@ struct MeshOptions {
     Method method = Method::Boxes;
     bool adjustVertices = false;
     IndexOptions index;
+    IndexFiles indexFiles;
     ComponentSelection selection;
     std::optional<CoordinateFrame> frame;  ///< none: the output format's own
     bool checksCrossings = true;
     CommonOptions common;
+
+    /// Pieces are asked for that only closed surfaces have.
+    bool needsClosedSurfaces() const {
+        return selection.fillCavities || selection.minVolumeMm3 > 0;
+    }
 };
 
 /// Reads the volume, extracts and checks the surfaces, and writes all of them or none.
 /// \return an exit code
 /// \throws UsageError     the output's format is unknown or can't hold the frame
 /// \throws FileError      the input can't be read, the output can't be written
-/// \throws InvalidInput   an isovalue that cuts nothing, or nothing is left of a surface
+/// \throws InvalidInput   an isovalue that cuts nothing, nothing is left of a surface, or an index
+///                        that is not the volume's
 /// \throws InternalError  a surface is not sound
-int runMesh(const MeshOptions& options);
+int runMesh(const MeshOptions& asked);
 
 }  // namespace adaptiso

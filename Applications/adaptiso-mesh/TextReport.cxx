@@ -40,6 +40,10 @@ void printSurface(std::ostream& out, const SurfaceSummary& surface) {
 
 void printReport(std::ostream& out, const MeshRun& run) {
     for (const SurfaceSummary& surface : run.surfaces) printSurface(out, surface);
+    if (!run.index.file.empty() && !run.index.isLoaded) {
+        out << run.index.file.string() << ": index for --index (" << toString(run.index.search)
+            << "), " << formatCount(run.index.blocks) << " blocks\n";
+    }
     out << formatFixed(run.timer.total(), 2) << " s (";
     std::string_view separator;
     for (const auto& [stage, seconds] : run.timer.stages()) {

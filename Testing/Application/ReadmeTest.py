@@ -19,8 +19,8 @@ class Readme(ApplicationTest):
                               capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(self.names(), ["head-150.ply", "head-80.ply", "head-iso100.vtp",
-                                        "head.nii.gz", "head.stl", "head.vtp", "lh.pial",
-                                        "report.json"])
+                                        "head-iso120.vtp", "head.index", "head.nii.gz", "head.stl",
+                                        "head.vtp", "lh.pial", "report.json"])
         self.assertRegex(done.stdout, r'"triangles": \d+')
 
 

@@ -35,7 +35,8 @@ std::uint64_t mixed(std::uint64_t lane, std::uint64_t word) {
 std::uint64_t stripes(const std::byte*& at, const std::byte* end) {
     std::array<std::uint64_t, 4> lane{kPrime1 + kPrime2, kPrime2, 0, 0 - kPrime1};
     for (; end - at >= 32; at += 32) {
-        for (int n = 0; n < 4; ++n) lane[n] = mixed(lane[n], load<std::uint64_t>(at + 8 * n));
+        for (std::size_t n = 0; n < 4; ++n)
+            lane[n] = mixed(lane[n], load<std::uint64_t>(at + 8 * n));
     }
     std::uint64_t hash = std::rotl(lane[0], 1) + std::rotl(lane[1], 7) + std::rotl(lane[2], 12) +
                          std::rotl(lane[3], 18);
