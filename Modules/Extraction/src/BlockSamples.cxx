@@ -5,13 +5,14 @@
 namespace adaptiso::detail {
 
 template <int N>
-bool BlockSamples<N>::insideJoins(const std::array<int, 3>& corner, int normal, int size) const {
-    if (size == 1) return sampler_.insideJoins(sampleAt(corner), normal);
+bool BlockSamples<N>::insideJoins(const std::array<int, 3>& corner, int normal, int sizeU,
+                                  int sizeV) const {
+    if (sizeU == 1 && sizeV == 1) return sampler_.insideJoins(sampleAt(corner), normal);
 
     constexpr int kBottom = 0, kRight = 1, kTop = 2, kLeft = 3;
     const int u = axisAfter(normal, 1), v = axisAfter(normal, 2);
     std::array<int, 3> cell = corner;
-    cell[u] = crossingOn(corner, u, size);
+    cell[u] = crossingOn(corner, u, sizeU);
     int entry = kBottom;
     while (true) {
         unsigned square = 0;
@@ -29,7 +30,7 @@ bool BlockSamples<N>::insideJoins(const std::array<int, 3>& corner, int normal, 
             if (lines.lines[i].to == entry) exit = lines.lines[i].from;
         }
         if (exit == kLeft && cell[u]-- == corner[u]) break;
-        if (exit == kRight && ++cell[u] == corner[u] + size) break;
+        if (exit == kRight && ++cell[u] == corner[u] + sizeU) break;
         if (exit == kTop) ++cell[v];
         if (exit == kBottom) --cell[v];
         entry = (exit + 2) % 4;

@@ -47,10 +47,14 @@ public:
         return p[axis];
     }
 
-    /// Does the inside join across an ambiguous square at `corner`, at right angles to `normal`?
-    /// A unit square is decided by its values; a larger one by following the iso-line of its own
-    /// unit squares from the bottom side: both boxes at it see the same samples.
-    bool insideJoins(const std::array<int, 3>& corner, int normal, int size) const;
+    /// Does the inside join across an ambiguous rectangle at `corner`, at right angles to `normal`,
+    /// of sizeU x sizeV cells along the two axes that follow? A unit square is decided by its
+    /// values; a larger rectangle by following the iso-line of its own unit squares from the bottom
+    /// side: both boxes at it see the same samples.
+    bool insideJoins(const std::array<int, 3>& corner, int normal, int sizeU, int sizeV) const;
+    bool insideJoins(const std::array<int, 3>& corner, int normal, int size) const {
+        return insideJoins(corner, normal, size, size);
+    }
 
     /// The block's first sample in the volume.
     const Index3& firstSample() const { return first_; }

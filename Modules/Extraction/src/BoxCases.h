@@ -99,6 +99,9 @@ struct BoxCase {
     std::array<std::array<std::uint8_t, 3>, 10> triangle{};
     /// Half-edge that runs on a face and starts at one of its sides, or 255.
     std::array<std::array<std::uint8_t, 4>, 6> onFace{};
+
+    /// Triangles that fill all loops.
+    int loopTriangles() const { return crossedEdges - 2 * loopCount; }
 };
 
 /// All cases. `caseIndex` finds one: by the eight corners (bit c: corner c is inside) and, for

@@ -2,53 +2,18 @@
 
 #include <algorithm>
 
+#include "BoxCensus.h"
+#include "IsoLineLoops.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {
 namespace {
 
-/// A lattice edge within a block as one small number: low sample (0 .. N a side) and axis.
-template <int N>
-struct EdgeCode {
-    static constexpr int kSide = N + 1;
-    static constexpr int kCount = 4 * kSide * kSide * kSide;
-
-    static int encode(const std::array<int, 3>& p, int axis) {
-        return 4 * (p[0] + kSide * (p[1] + kSide * p[2])) + axis;
-    }
-    static std::array<int, 3> sample(int code) {
-        const int place = code / 4;
-        return {place % kSide, place / kSide % kSide, place / (kSide * kSide)};
-    }
-    static int axis(int code) { return code % 4; }
-};
-
-/// Cells of a block that lie in the volume, along each axis: all N, but at an open border.
-template <int N>
-std::array<int, 3> cellsInVolume(const BlockGrid& grid, const Index3& firstSample) {
-    std::array<int, 3> cells{N, N, N};
-    if (grid.border == Border::Open) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const std::int64_t left = grid.volumeSize[axis] - 1 - firstSample[axis];
-            cells[axis] = static_cast<int>(std::min<std::int64_t>(N, left));
-        }
-    }
-    return cells;
-}
-
-/// What the unit cells of a box add up to.
-struct CellCensus {
-    std::int64_t loops = 0;
-    std::int64_t corners = 0;  ///< vertices of all loops
-};
-
 /// Works out one block: its boxes, each one's case or loops, the vertices they use.
 template <int N, class Id>
 class BlockWorker {
 public:
-    explicit BlockWorker(BoxSurface<N, Id>& surface) : surface_(surface) {
-        next_.assign(EdgeCode<N>::kCount, -1);
-    }
+    explicit BlockWorker(BoxSurface<N, Id>& surface) : surface_(surface) {}
 
     std::vector<BoxRecord> boxes;
     std::vector<HalfEdge<Id>> halfEdges;
@@ -88,11 +53,7 @@ private:
                 neighbour_[2 * axis + side] = surface_.active.neighbour(block_, steps);
             }
         }
-        for (int high = 0; high < 8; ++high) {
-            owner_[high] =
-                high == 0 ? block_
-                          : surface_.active.neighbour(block_, {high & 1, high >> 1 & 1, high >> 2});
-        }
+        owners_ = VertexOwners(surface_.active, block_);
     }
 
     /// Is the box divided? It may lie one box beyond a face of the block.
@@ -134,26 +95,19 @@ private:
             loops = addIsoLineLoops(samples, box);
         } else {
             ++counts[level].unshared;
-            boxes.back().boxCase = caseOf(samples, box);
+            boxes.back().boxCase = caseOf(cases_, samples, box);
             const BoxCase& boxCase = cases_[boxes.back().boxCase];
             addFacets(samples, box, boxCase);
             loops = boxCase.loopCount;
         }
-        takeCensus(samples, box, loops);
-    }
-
-    std::uint16_t caseOf(const BlockSamples<N>& samples, const Box& box) const {
-        const unsigned corners = samples.corners(box);
-        unsigned joined = 0;
-        const unsigned ambiguous = cases_.ambiguousFaces(corners);
-        for (int face = 0; ambiguous >> face != 0; ++face) {
-            if ((ambiguous >> face & 1u) == 0) continue;
-            std::array<int, 3> corner{box.x, box.y, box.z};
-            if (face & 1) corner[face / 2] += box.size;
-            joined |= static_cast<unsigned>(samples.insideJoins(corner, face / 2, box.size))
-                      << face;
+        if (box.size == 1) {  // nothing is finer: unshared
+            marchingCubesTriangles += cases_[boxes.back().boxCase].loopTriangles();
+        } else {
+            const BoxCensus census = takeCensus(cases_, samples, {box.x, box.y, box.z},
+                                                {box.size, box.size, box.size}, loops);
+            marchingCubesTriangles += census.marchingCubesTriangles;
+            boxesChangingTopology += census.changesTopology;
         }
-        return cases_.caseIndex(corners, joined);
     }
 
     /// Facets of discretized marching cubes for an unshared box (thesis 5.2).
@@ -163,94 +117,54 @@ private:
         for (int h = 0; h < boxCase.halfEdgeCount; ++h) {
             const int edge = boxCase.halfEdge[h].edge;
             if (code[edge] < 0) {
-                const int corner = lowCorner(edge);
-                code[edge] =
-                    use(samples,
-                        {box.x + (corner & 1) * box.size, box.y + (corner >> 1 & 1) * box.size,
-                         box.z + (corner >> 2) * box.size},
-                        edgeAxis(edge), box.size);
+                const int corner = lowCorner(edge), axis = edgeAxis(edge);
+                std::array<int, 3> p{box.x + (corner & 1) * box.size,
+                                     box.y + (corner >> 1 & 1) * box.size,
+                                     box.z + (corner >> 2) * box.size};
+                p[axis] = samples.crossingOn(p, axis, box.size);
+                code[edge] = EdgeCode<N>::encode(p, axis);
+                use(code[edge]);
             }
             halfEdges.push_back({static_cast<Id>(code[edge])});
         }
     }
 
-    /// Marks the vertex on a stretch of a lign as used and returns its local code.
-    int use(const BlockSamples<N>& samples, std::array<int, 3> p, int axis, int length) {
-        p[axis] = samples.crossingOn(p, axis, length);
-        int high = 0;
-        std::array<int, 3> q = p;
-        for (int a = 0; a < 3; ++a) {
-            if (q[a] == N) {
-                q[a] = 0;
-                high |= 1 << a;
-            }
-        }
-        surface_.blocks[owner_[high]].vertices[axis].setShared(q[0] + N * (q[1] + N * q[2]));
-        return EdgeCode<N>::encode(p, axis);
+    /// Marks the vertex on the lattice edge `code` as used.
+    void use(int code) {
+        const VertexOwners::Place place = owners_.template find<N>(EdgeCode<N>::sample(code));
+        surface_.blocks[place.block].vertices[EdgeCode<N>::axis(code)].setShared(place.cell);
     }
 
     /// Iso-line loops of a shared box (thesis 5.1): every face is cut into squares by the boxes
     /// behind it, every square gives its iso-lines, the iso-lines chain into loops.
     int addIsoLineLoops(const BlockSamples<N>& samples, const Box& box) {
-        starts_.clear();
         for (int face = 0; face < kBoxFaces; ++face) processSquare(samples, box, face);
-        int loops = 0;
-        for (const int start : starts_) {
-            if (next_[start] < 0) continue;
-            ++loops;
-            int code = start;
-            do {
-                HalfEdge<Id> half{static_cast<Id>(code)};
-                if (isInFace(box, code)) half.markInFace();
-                halfEdges.push_back(half);
-                code = std::exchange(next_[code], -1);
-            } while (code != start);
-            halfEdges.back().markLast();
-        }
-        return loops;
+        return isoLines_.takeLoops([&](int code, bool isLast) {
+            use(code);
+            HalfEdge<Id> half{static_cast<Id>(code)};
+            if (isInFace(box, code)) half.markInFace();
+            if (isLast) half.markLast();
+            halfEdges.push_back(half);
+        });
     }
 
     /// The thesis's Pro_Squares: `square` is a box whose face is the square; starts as the box.
     void processSquare(const BlockSamples<N>& samples, const Box& square, int face) {
+        const int axis = face / 2;
         if (!isDivided(behind(square, face))) {
-            addIsoLines(samples, square, face);
+            std::array<int, 3> corner{square.x, square.y, square.z};
+            if (face & 1) corner[axis] += square.size;
+            isoLines_.add(samples, {corner, axis, square.size, square.size}, face);
             return;
         }
         const int half = square.size / 2;
-        const int axis = face / 2, u = axisAfter(axis, 1), v = axisAfter(axis, 2);
+        const int u = axisAfter(axis, 1), v = axisAfter(axis, 2);
         for (int quarter = 0; quarter < 4; ++quarter) {
             std::array<int, 3> p{square.x, square.y, square.z};
             if (face & 1) p[axis] += half;
             p[u] += (quarter & 1) * half;
             p[v] += (quarter >> 1) * half;
             processSquare(samples, {p[0], p[1], p[2], half}, face);
-        }
-    }
-
-    void addIsoLines(const BlockSamples<N>& samples, const Box& square, int face) {
-        const int axis = face / 2, u = axisAfter(axis, 1), v = axisAfter(axis, 2), s = square.size;
-        std::array<int, 3> corner{square.x, square.y, square.z};
-        if (face & 1) corner[axis] += s;
-        const auto at = [&](int a, int b) {
-            std::array<int, 3> p = corner;
-            p[u] += a * s;
-            p[v] += b * s;
-            return p;
-        };
-        unsigned corners = 0;
-        for (int c = 0; c < 4; ++c) {
-            corners |= static_cast<unsigned>(samples.inside(at(c & 1, c >> 1))) << c;
-        }
-        const bool joined = isAmbiguous(corners) && samples.insideJoins(corner, axis, s);
-        const SquareIsoLines lines = squareIsoLines(corners, joined);
-        for (int i = 0; i < lines.count; ++i) {
-            const auto vertexOn = [&](int side) {
-                return use(samples, at(side == 1, side == 2), side % 2 == 0 ? u : v, s);
-            };
-            int from = vertexOn(lines.lines[i].from), to = vertexOn(lines.lines[i].to);
-            if ((face & 1) == 0) std::swap(from, to);
-            next_[from] = to;
-            starts_.push_back(from);
         }
     }
 
@@ -264,56 +178,12 @@ private:
         return onBoundary == 1;
     }
 
-    /// Counts the triangles of the full grid in the box, and whether `loops` discs are the same
-    /// surface: its Euler characteristic V - E + F, of vertices on crossed lattice edges, iso-lines
-    /// on unit faces and a disc for each loop of a cell, must be the number of loops.
-    void takeCensus(const BlockSamples<N>& samples, const Box& box, int loops) {
-        CellCensus census;
-        for (int z = 0; z < box.size; ++z) {
-            for (int y = 0; y < box.size; ++y) {
-                for (int x = 0; x < box.size; ++x) {
-                    const Box cell{box.x + x, box.y + y, box.z + z, 1};
-                    const unsigned corners = samples.corners(cell);
-                    if (corners == 0 || corners == 255) continue;
-                    const BoxCase& boxCase = box.size == 1 && !boxes.back().isShared()
-                                                 ? cases_[boxes.back().boxCase]
-                                                 : cases_[caseOf(samples, cell)];
-                    census.loops += boxCase.loopCount;
-                    census.corners += boxCase.crossedEdges;
-                }
-            }
-        }
-        marchingCubesTriangles += census.corners - 2 * census.loops;
-        if (box.size == 1) return;
-
-        std::int64_t vertices = 0, onFaces = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const int u = axisAfter(axis, 1), v = axisAfter(axis, 2);
-            for (int b = 0; b <= box.size; ++b) {
-                for (int a = 0; a <= box.size; ++a) {
-                    std::array<int, 3> p{box.x, box.y, box.z}, q;
-                    p[u] += a;
-                    p[v] += b;
-                    q = p;
-                    q[axis] += box.size;
-                    if (samples.inside(p) == samples.inside(q)) continue;  // simple: one at most
-                    ++vertices;
-                    onFaces += a == 0 || b == 0 || a == box.size || b == box.size;
-                }
-            }
-        }
-        // loops go over inner iso-lines twice, over those on the box's faces (one a vertex) once
-        const std::int64_t edges = (census.corners + onFaces) / 2;
-        boxesChangingTopology += vertices - edges + census.loops != loops;
-    }
-
     BoxSurface<N, Id>& surface_;
     const BoxCases& cases_ = BoxCases::instance();
     std::int64_t block_ = 0;
     std::array<std::int64_t, kBoxFaces> neighbour_{};
-    std::array<std::int64_t, 8> owner_{};  ///< block that owns a vertex, by its sides at N
-    std::vector<int> next_;                ///< iso-line from a vertex to the next, by local code
-    std::vector<int> starts_;
+    VertexOwners owners_;
+    IsoLineLoops<N> isoLines_;
 };
 
 template <int N, class Id>
@@ -399,29 +269,19 @@ void resolveVertices(BoxSurface<N, Id>& surface) {
     constexpr int kChunk = BoxSurface<N, Id>::kChunkBlocks;
     parallelForPieces(surface.active.count(), kChunk, [&](std::int64_t begin, std::int64_t end) {
         std::int64_t ownersOf = ActiveBlocks::kNone;
-        std::array<std::int64_t, 8> owner{};
+        VertexOwners owners;
         forEachBox(
             surface, begin, end, [&](std::int64_t b, const BoxRecord&, auto* half, auto* last) {
                 if (b != ownersOf) {
-                    for (int high = 0; high < 8; ++high) {
-                        owner[high] = high == 0 ? b
-                                                : surface.active.neighbour(
-                                                      b, {high & 1, high >> 1 & 1, high >> 2});
-                    }
+                    owners = VertexOwners(surface.active, b);
                     ownersOf = b;
                 }
                 for (; half != last; ++half) {
                     const int code = static_cast<int>(half->vertex());
-                    std::array<int, 3> p = EdgeCode<N>::sample(code);
-                    int high = 0;
-                    for (int a = 0; a < 3; ++a) {
-                        if (p[a] == N) {
-                            p[a] = 0;
-                            high |= 1 << a;
-                        }
-                    }
-                    half->setVertex(surface.blocks[owner[high]].vertex(
-                        EdgeCode<N>::axis(code), p[0] + N * (p[1] + N * p[2])));
+                    const VertexOwners::Place place =
+                        owners.template find<N>(EdgeCode<N>::sample(code));
+                    half->setVertex(
+                        surface.blocks[place.block].vertex(EdgeCode<N>::axis(code), place.cell));
                 }
             });
     });

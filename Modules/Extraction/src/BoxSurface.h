@@ -8,6 +8,7 @@
 #include "ActiveBlocks.h"
 #include "Bits.h"
 #include "BlockSamples.h"
+#include "BlockVertices.h"
 #include "BoxCases.h"
 #include "LatticeSampler.h"
 #include "SimpleBoxes.h"
@@ -55,18 +56,9 @@ struct BoxRecord {
 
 /// What is kept of an active block.
 template <int N, class Id>
-struct BlockRecord {
+struct BlockRecord : BlockVertices<N, Id> {
     BoxTree<N> tree;
-    Bits<N * N * N> boxes;                      ///< low cells of the boxes that hold surface
-    std::array<Bits<N * N * N>, 3> vertices{};  ///< crossed lattice edges in use, by axis
-    Id firstVertex = 0;
-
-    /// Number of the vertex on the lattice edge from `cell` along `axis`.
-    Id vertex(int axis, int cell) const {
-        int before = 0;
-        for (int a = 0; a < axis; ++a) before += vertices[a].count();
-        return firstVertex + static_cast<Id>(before + vertices[axis].rank(cell));
-    }
+    Bits<N * N * N> boxes;  ///< low cells of the boxes that hold surface
 };
 
 /// Boxes and half-edges of kChunkBlocks active blocks.

@@ -188,9 +188,9 @@ private:
             SpatialCorner corner{mesh_.points[vertex], isMirrored_ ? -outward : outward, 0};
             for (int a = 0; a < 3; ++a) {
                 if (a == edge.axis()) continue;
-                const std::int64_t at = edge.position(a) - box.low(a);
+                const int at = box.above(a, edge.position(a));
                 if (at == 0) corner.faces |= static_cast<std::uint8_t>(1 << 2 * a);
-                if (at == box.size()) corner.faces |= static_cast<std::uint8_t>(2 << 2 * a);
+                if (at == box.size(a)) corner.faces |= static_cast<std::uint8_t>(2 << 2 * a);
             }
             scratch.spatialCorners.push_back(corner);
         }

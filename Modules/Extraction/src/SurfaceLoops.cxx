@@ -113,7 +113,7 @@ private:
 
     LoopKey boxKey(std::int64_t block, const BoxRecord& record) const {
         const Box box = surface_.boxOf(record);
-        return BoxKey::make(latticeLow(block, box), BoxTree<N>::kLevels - record.level());
+        return BoxKey::make(latticeLow(block, box), {box.size, box.size, box.size});
     }
 
     void takeFacets(std::int64_t block, const BoxRecord& box) {

@@ -35,19 +35,24 @@ struct PlaneKey {
     int level() const { return static_cast<int>(word >> 55 & 7); }
 };
 
-/// A box of the grid: lattice position and size of the box whose faces a loop runs on.
+/// The box whose faces a loop runs on: its low corner, as far as it tells where the loop's vertices
+/// lie against it, and its sides (at most 16 cells).
 struct BoxKey {
     std::uint64_t word = 0;
 
-    static LoopKey make(const Index3& low, int log2Size) {
-        return {static_cast<std::uint64_t>(low[0]) | static_cast<std::uint64_t>(low[1]) << 20 |
-                static_cast<std::uint64_t>(low[2]) << 40 |
-                static_cast<std::uint64_t>(log2Size) << 60};
+    static LoopKey make(const Index3& low, const std::array<int, 3>& size) {
+        std::uint64_t word = 0;
+        for (int a = 0; a < 3; ++a) {
+            word |= (static_cast<std::uint64_t>(low[a]) & 31) << 10 * a;
+            word |= static_cast<std::uint64_t>(size[a]) << (10 * a + 5);
+        }
+        return {word};
     }
-    std::int64_t low(int axis) const {
-        return static_cast<std::int64_t>(word >> 20 * axis & 0xFFFFF);
+    /// How far the lattice position `at` (within the box) lies above its low corner.
+    int above(int axis, std::int64_t at) const {
+        return static_cast<int>((static_cast<std::uint64_t>(at) - (word >> 10 * axis)) & 31);
     }
-    int size() const { return 1 << (word >> 60); }
+    int size(int axis) const { return static_cast<int>(word >> (10 * axis + 5) & 31); }
 };
 
 /// A lattice edge as one word: lattice position (20 bits an axis) and axis.
