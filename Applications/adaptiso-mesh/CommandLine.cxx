@@ -113,10 +113,12 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
     addChoice<Method>(app, "--method", options.method,
                       {{"boxes", Method::Boxes},
                        {"dmc", Method::DiscretizedMarchingCubes},
+                       {"asc", Method::SkeletonClimbing},
                        {"mc", Method::MarchingCubes}},
                       "boxes: adaptive, few triangles where the surface is flat (default); "
                       "dmc: discretized marching cubes, coplanar facets between edge midpoints "
                       "merged; "
+                      "asc: adaptive skeleton climbing, rectangular boxes, unmerged; "
                       "mc: marching cubes, every voxel at full resolution")
         ->group(kSurface);
     app.add_flag("--adjust-vertices", options.adjustVertices,
@@ -125,7 +127,7 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
         ->group(kSurface);
     addChoice<int>(app, "--block-size", options.index.blockSize,
                    {{"2", 2}, {"4", 4}, {"8", 8}, {"16", 16}},
-                   "Largest box of the method boxes, in voxels a side (default: 4)")
+                   "Largest box of the methods boxes and asc, in voxels a side (default: 4)")
         ->group(kSurface);
     addChoice<Border>(app, "--border", options.index.border,
                       {{"closed", Border::Closed}, {"open", Border::Open}},

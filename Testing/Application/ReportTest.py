@@ -91,7 +91,7 @@ class Numbers(ApplicationTest):
 
     def test_area_and_volume_of_a_ball(self):
         write_nifti(self.path("ball.nii"), ball(40, 16, spacing=(0.5, 0.5, 0.5)))
-        for method in ("boxes", "mc"):
+        for method in ("boxes", "asc", "mc"):
             with self.subTest(method):
                 surface = self.report("ball.nii", "--iso", "100", "--method",
                                       method)["surfaces"][0]

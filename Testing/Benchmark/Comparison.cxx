@@ -189,8 +189,8 @@ std::vector<Candidate> candidatesWith(Border border) {
             candidates.push_back({std::nullopt, 0, border, normals});
         }
     }
-    for (const Method method :
-         {Method::MarchingCubes, Method::DiscretizedMarchingCubes, Method::Boxes}) {
+    for (const Method method : {Method::MarchingCubes, Method::DiscretizedMarchingCubes,
+                                Method::SkeletonClimbing, Method::Boxes}) {
         for (const int blockSize : {2, 4, 8, 16}) {
             candidates.push_back({method, blockSize, border, true});
         }

@@ -120,6 +120,7 @@ const bool kAreDeclared = [] {
         declare("query/" + name, asksIndex, volume);
         declare("mc/" + name, extracts, volume, Method::MarchingCubes);
         declare("dmc/" + name, extracts, volume, Method::DiscretizedMarchingCubes);
+        declare("asc/" + name, extracts, volume, Method::SkeletonClimbing);
         declare("boxes/" + name, extracts, volume, Method::Boxes);
     }
     return true;

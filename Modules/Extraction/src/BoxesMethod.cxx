@@ -1,5 +1,6 @@
 #include "BoxesMethod.h"
 
+#include "AscSurface.h"
 #include "BoxSurface.h"
 #include "FillLoops.h"
 #include "SurfaceLoops.h"
@@ -18,13 +19,18 @@ Extraction extract(const VolumeView& volume, ActiveBlocks active,
     const auto sampler = LatticeSampler::make(volume, options.isovalue, grid.border);
     Extraction result;
     report(0);
-    BoxSurface<N, Id> surface = makeBoxSurface<N, Id>(*sampler, std::move(active),
-                                                      isDmc ? Division::Unit : Division::Simple);
-    result.statistics.boxes = surface.boxCounts;
-    result.statistics.boxesChangingTopology = surface.boxesChangingTopology;
-    result.statistics.marchingCubesTriangles = surface.marchingCubesTriangles;
-    report(0.5);
-    SurfaceLoops<Id> loops = makeSurfaceLoops<N, Id>(std::move(surface));
+    SurfaceLoops<Id> loops;
+    if (options.method == Method::SkeletonClimbing) {
+        loops = makeAscLoops<N, Id>(*sampler, active, result.statistics);
+    } else {
+        BoxSurface<N, Id> surface = makeBoxSurface<N, Id>(
+            *sampler, std::move(active), isDmc ? Division::Unit : Division::Simple);
+        result.statistics.boxes = surface.boxCounts;
+        result.statistics.boxesChangingTopology = surface.boxesChangingTopology;
+        result.statistics.marchingCubesTriangles = surface.marchingCubesTriangles;
+        report(0.5);
+        loops = makeSurfaceLoops<N, Id>(std::move(surface));
+    }
     report(0.7);
     const VertexPlacement placement =
         isDmc && !options.adjustVertices ? VertexPlacement::Midpoint : VertexPlacement::Crossing;

@@ -4,9 +4,11 @@
 
 namespace adaptiso::detail {
 
-/// The thesis's method: simple cubic boxes, iso-line loops where resolutions meet, merged facets
-/// of discretized marching cubes elsewhere. Discretized marching cubes [Montani1994] is the same
-/// with unit boxes, which are never shared. Arguments as in extractSurface.
+/// The methods that cover the surface with simple boxes. Boxes, the thesis's: cubic ones, iso-line
+/// loops where resolutions meet, merged facets of discretized marching cubes elsewhere.
+/// Discretized marching cubes [Montani1994] is the same with unit boxes, which are never shared.
+/// SkeletonClimbing [Poston1998]: rectangular ones, iso-line loops everywhere. Arguments as in
+/// extractSurface.
 Extraction extractBoxes(const VolumeView& volume, const SpanSpaceIndex& index,
                         const ExtractionOptions& options);
 

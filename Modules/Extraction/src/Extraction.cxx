@@ -17,6 +17,8 @@ std::string_view toString(Method method) {
             return "boxes";
         case Method::DiscretizedMarchingCubes:
             return "dmc";
+        case Method::SkeletonClimbing:
+            return "asc";
         case Method::MarchingCubes:
             return "mc";
     }

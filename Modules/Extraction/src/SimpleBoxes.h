@@ -46,6 +46,16 @@ public:
                simpleAlong(2, box.z, box.x, box.y, box.size);
     }
 
+    /// Bit l: lign (l, slice) varies more than once on the dike `node` of `axis`.
+    std::uint32_t varying(int axis, int node, int slice) const {
+        return leave_[axis][node][slice] & enter_[axis][node][slice];
+    }
+    /// Bit l: lign (l, slice) goes out (in) somewhere on the dike.
+    std::uint32_t leaving(int axis, int node, int slice) const { return leave_[axis][node][slice]; }
+    std::uint32_t entering(int axis, int node, int slice) const {
+        return enter_[axis][node][slice];
+    }
+
 private:
     static constexpr int kSide = N + 1;
 
@@ -64,7 +74,7 @@ private:
         const std::uint32_t ligns = ((2u << size) - 1) << firstLign;
         std::uint32_t twice = 0;
         for (int slice = firstSlice; slice <= firstSlice + size; ++slice) {
-            twice |= leave_[axis][node][slice] & enter_[axis][node][slice];
+            twice |= varying(axis, node, slice);
         }
         return (twice & ligns) == 0;
     }

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+
 #include "RandomVolumes.h"
 #include "Support/AnalyticVolumes.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
@@ -10,7 +13,11 @@ namespace adaptiso::testing {
 namespace {
 
 constexpr int kBlockSizes[] = {2, 4, 8, 16};
-constexpr Border kBorders[] = {Border::Closed, Border::Open};
+
+/// The methods that cover the surface with simple boxes of several sizes.
+class BoxMethods : public ::testing::TestWithParam<Method> {};
+INSTANTIATE_TEST_SUITE_P(, BoxMethods, ::testing::Values(Method::Boxes, Method::SkeletonClimbing),
+                         [](const auto& method) { return std::string(toString(method.param)); });
 
 }  // namespace
 
@@ -29,14 +36,31 @@ TEST(BoxesMethod, MergesAWallAlongAndAcrossBlocksToFewTriangles) {
     }
 }
 
-TEST(BoxesMethod, KeepsTopologyOfSphereShellAndTorus) {
+TEST(SkeletonClimbing, CutsAWallIntoADikeByDikeGrid) {
+    // 31 cells a side: blocks of N, the last one cut into dikes of N/2, ..., 2 and 1
+    constexpr std::pair<int, std::size_t> kDikesASide[] = {{2, 16}, {4, 9}, {8, 6}, {16, 5}};
+    for (std::int64_t at = 2; at < 12; ++at) {  // on a block's face, beside it, within a block
+        const HardVolume hard =
+            binaryVolume({32, 32, 16}, [&](auto, auto, auto z) { return z < at; });
+        for (const auto& [blockSize, dikes] : kDikesASide) {
+            const Extraction open =
+                extractFrom(hard.volume, 50, Method::SkeletonClimbing, blockSize, Border::Open);
+            expectSound(open.mesh, openOnlyAtBorder(hard.volume.view().geometry()));
+            EXPECT_NEAR(surfaceArea(open.mesh), 31.0 * 31.0, 1e-9);
+            EXPECT_EQ(open.mesh.triangles.size(), 2 * dikes * dikes)
+                << "N = " << blockSize << ", at " << at;
+        }
+    }
+}
+
+TEST_P(BoxMethods, KeepsTopologyOfSphereShellAndTorus) {
     const ImageGeometry geometry = centredGeometry({40, 40, 40});
     for (const Shape& shape :
          {sphere({0.3, -0.2, 0.1}, 14), shell({0, 0, 0}, 7, 15), torus({0, 0, 0}, 11, 5)}) {
         const AnalyticVolume truth = sampled<float>(shape, geometry);
         for (const int blockSize : kBlockSizes) {
             const Extraction result =
-                extractFrom(truth.volume, truth.isovalue, Method::Boxes, blockSize, Border::Closed);
+                extractFrom(truth.volume, truth.isovalue, GetParam(), blockSize, Border::Closed);
             expectSound(result.mesh);
             const TopologyReport topology = checkTopology(result.mesh);
             EXPECT_EQ(topology.components.size(), static_cast<std::size_t>(shape.components));
@@ -50,17 +74,17 @@ TEST(BoxesMethod, KeepsTopologyOfSphereShellAndTorus) {
     }
 }
 
-TEST(BoxesMethod, PutsEveryVertexOnTheSurface) {
+TEST_P(BoxMethods, PutsEveryVertexOnTheSurface) {
     // depth is exact and interpolated linearly: off the sphere only by its bend within an edge
     const AnalyticVolume truth = sampled<double>(sphere({}, 15), centredGeometry({36, 36, 36}));
     const Extraction result =
-        extractFrom(truth.volume, truth.isovalue, Method::Boxes, 4, Border::Closed);
+        extractFrom(truth.volume, truth.isovalue, GetParam(), 4, Border::Closed);
     for (const Vec3& p : result.mesh.points) {
         EXPECT_NEAR(norm(p), 15.0, 0.125 / 15 + 1e-3);  // h^2 / 8 r, and kHair
     }
 }
 
-TEST(BoxesMethod, GeometryOnlyMovesTheMesh) {
+TEST_P(BoxMethods, GeometryOnlyMovesTheMesh) {
     const ImageGeometry plain = centredGeometry({30, 28, 26});
     const AnalyticVolume truth = sampled<std::uint8_t>(torus({}, 8, 4), plain);
     const TriangleMesh reference =
@@ -82,14 +106,14 @@ TEST(BoxesMethod, GeometryOnlyMovesTheMesh) {
                     1e-6 * enclosedVolume(mesh));
         for (const int blockSize : kBlockSizes) {
             const TriangleMesh boxes =
-                extractFrom(moved, truth.isovalue, Method::Boxes, blockSize, Border::Closed).mesh;
+                extractFrom(moved, truth.isovalue, GetParam(), blockSize, Border::Closed).mesh;
             expectSound(boxes);
             EXPECT_GT(enclosedVolume(boxes), 0);
         }
     }
 }
 
-TEST(BoxesMethod, LiesAsCloseToMarchingCubesAsItsBoxesAreLarge) {
+TEST_P(BoxMethods, LiesAsCloseToMarchingCubesAsItsBoxesAreLarge) {
     // on a plane sheet there is no bend: any block size lies on the surface, to the last digit
     const ImageGeometry geometry = centredGeometry({24, 24, 24});
     const AnalyticVolume truth = sampled<double>(halfSpace({0.25, 0, 0}, {1, 0, 0}), geometry);
@@ -97,7 +121,7 @@ TEST(BoxesMethod, LiesAsCloseToMarchingCubesAsItsBoxesAreLarge) {
         extractFrom(truth.volume, truth.isovalue, Method::MarchingCubes, 4, Border::Open).mesh;
     for (const int blockSize : kBlockSizes) {
         const TriangleMesh mesh =
-            extractFrom(truth.volume, truth.isovalue, Method::Boxes, blockSize, Border::Open).mesh;
+            extractFrom(truth.volume, truth.isovalue, GetParam(), blockSize, Border::Open).mesh;
         EXPECT_LT(surfaceDistance(mesh, full).combined.maxMm, 1e-9);
         EXPECT_EQ(findSelfIntersections(mesh).pairCount, 0);
     }

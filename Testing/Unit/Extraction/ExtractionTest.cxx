@@ -24,8 +24,8 @@ TYPED_TEST(PixelTypes, GiveTheSameMeshForTheSameValues) {
     const auto view = bytes.volume.view().template as<std::uint8_t>();
     const std::vector<TypeParam> samples(view.samples, view.samples + view.geometry.voxelCount());
     const Volume volume = Volume::fromSamples(samples, view.geometry);
-    for (const Method method :
-         {Method::Boxes, Method::DiscretizedMarchingCubes, Method::MarchingCubes}) {
+    for (const Method method : {Method::Boxes, Method::DiscretizedMarchingCubes,
+                                Method::SkeletonClimbing, Method::MarchingCubes}) {
         EXPECT_EQ(extractFrom(volume, 60.5, method, 4, Border::Closed).mesh,
                   extractFrom(bytes.volume, 60.5, method, 4, Border::Closed).mesh);
     }
@@ -101,6 +101,22 @@ TEST(Extraction, CountsBlocksAndBoxes) {
     EXPECT_EQ(statistics.boxes[0].size, 4);
     EXPECT_EQ(statistics.boxes[2].size, 1);
     EXPECT_EQ(statistics.boxes[2].shared, 0);  // nothing is finer than a unit box
+}
+
+TEST(Extraction, CountsRectangularBoxesByTheirLongestSide) {
+    // a wall in one slab of open blocks of 4, the last of 3 cells: dikes of 4, 2 and 1 along x and
+    // y, boxes as high as the volume (4 cells)
+    ImageGeometry geometry;
+    geometry.size = {8, 8, 5};
+    std::vector<std::uint8_t> samples(8 * 8 * 5, 0);
+    std::fill_n(samples.begin(), 8 * 8 * 2, 100);
+    const Volume volume = Volume::fromSamples(std::move(samples), geometry);
+    const Extraction result = extractFrom(volume, 50, Method::SkeletonClimbing, 4, Border::Open);
+    ASSERT_EQ(result.statistics.boxes.size(), 4u);
+    EXPECT_EQ(result.statistics.boxes[0].size, 4);
+    EXPECT_EQ(result.statistics.boxes[0].unshared, 3 * 3);
+    for (const BoxCount& count : result.statistics.boxes) EXPECT_EQ(count.shared, 0);
+    EXPECT_EQ(result.statistics.marchingCubesTriangles, 2 * 7 * 7);
 }
 
 }  // namespace adaptiso::testing

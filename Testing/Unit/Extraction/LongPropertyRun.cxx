@@ -25,7 +25,8 @@ TEST_P(ManyVolumes, KeepTheMethodsPromises) {
 INSTANTIATE_TEST_SUITE_P(, ManyVolumes,
                          ::testing::Values(MethodChoice{Method::Boxes},
                                            MethodChoice{Method::DiscretizedMarchingCubes},
-                                           MethodChoice{Method::DiscretizedMarchingCubes, true}),
+                                           MethodChoice{Method::DiscretizedMarchingCubes, true},
+                                           MethodChoice{Method::SkeletonClimbing}),
                          ::testing::PrintToStringParamName());
 
 }  // namespace adaptiso::testing

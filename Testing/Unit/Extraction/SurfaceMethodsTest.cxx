@@ -196,6 +196,7 @@ INSTANTIATE_TEST_SUITE_P(, SurfaceMethods,
                          ::testing::Values(MethodChoice{Method::Boxes},
                                            MethodChoice{Method::DiscretizedMarchingCubes},
                                            MethodChoice{Method::DiscretizedMarchingCubes, true},
+                                           MethodChoice{Method::SkeletonClimbing},
                                            MethodChoice{Method::MarchingCubes}),
                          ::testing::PrintToStringParamName());
 

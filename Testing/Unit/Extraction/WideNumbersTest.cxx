@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "AscSurface.h"
 #include "BoxSurface.h"
 #include "FillLoops.h"
 #include "RandomVolumes.h"
@@ -10,18 +11,27 @@
 namespace adaptiso::detail {
 namespace {
 
-/// The method's steps with vertex and half-edge numbers of type Id.
 template <class Id>
-TriangleMesh meshWith(const testing::HardVolume& hard, Division division,
-                      VertexPlacement placement) {
+SurfaceLoops<Id> loopsOf(Method method, const LatticeSampler& sampler, ActiveBlocks active) {
+    if (method == Method::SkeletonClimbing) {
+        ExtractionStatistics statistics;
+        return makeAscLoops<4, Id>(sampler, active, statistics);
+    }
+    const Division division =
+        method == Method::DiscretizedMarchingCubes ? Division::Unit : Division::Simple;
+    return makeSurfaceLoops<4, Id>(makeBoxSurface<4, Id>(sampler, std::move(active), division));
+}
+
+/// A method's steps with vertex and half-edge numbers of type Id.
+template <class Id>
+TriangleMesh meshWith(const testing::HardVolume& hard, Method method, VertexPlacement placement) {
     const VolumeView& volume = hard.volume;
     const SpanSpaceIndex index = SpanSpaceIndex::build(volume, {4, Border::Closed});
     const BlockGrid grid = index.grid();
     const auto sampler = LatticeSampler::make(volume, hard.isovalue, grid.border);
     ActiveBlocks active(grid, index.blocksAt(hard.isovalue).blocks);
-    BoxSurface<4, Id> surface = makeBoxSurface<4, Id>(*sampler, std::move(active), division);
     std::int64_t edgesSplit = 0;
-    return fillLoops(makeSurfaceLoops<4, Id>(std::move(surface)), *sampler, volume.geometry(),
+    return fillLoops(loopsOf<Id>(method, *sampler, std::move(active)), *sampler, volume.geometry(),
                      grid.offset, placement, edgesSplit);
 }
 
@@ -31,12 +41,14 @@ TriangleMesh meshWith(const testing::HardVolume& hard, Division division,
 TEST(WideNumbers, GiveTheSameMeshWith64BitNumbers) {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         const testing::HardVolume hard = testing::hardVolume(seed, 14);
-        for (const auto& [division, placement] :
-             {std::pair{Division::Simple, VertexPlacement::Crossing},
-              std::pair{Division::Unit, VertexPlacement::Midpoint}}) {
-            const TriangleMesh wide = meshWith<std::uint64_t>(hard, division, placement);
+        for (const auto& [method, placement] :
+             {std::pair{Method::Boxes, VertexPlacement::Crossing},
+              std::pair{Method::DiscretizedMarchingCubes, VertexPlacement::Midpoint},
+              std::pair{Method::SkeletonClimbing, VertexPlacement::Crossing}}) {
+            const TriangleMesh wide = meshWith<std::uint64_t>(hard, method, placement);
             testing::expectSound(wide);
-            ASSERT_EQ(wide, meshWith<std::uint32_t>(hard, division, placement)) << "seed " << seed;
+            ASSERT_EQ(wide, meshWith<std::uint32_t>(hard, method, placement))
+                << toString(method) << ", seed " << seed;
         }
     }
 }

@@ -15,7 +15,8 @@ namespace adaptiso {
 enum class Method {
     Boxes,  ///< simple cubic boxes of many sizes, merged where they agree: the thesis's method
     DiscretizedMarchingCubes,  ///< facets between edge midpoints, merged where they are coplanar
-    MarchingCubes  ///< every cell at full resolution, faces decided alike from both sides
+    SkeletonClimbing,  ///< simple rectangular boxes: adaptive skeleton climbing [Poston1998]
+    MarchingCubes      ///< every cell at full resolution, faces decided alike from both sides
 };
 std::string_view toString(Method method);
 
@@ -31,9 +32,9 @@ struct ExtractionOptions {
 
 /// Simple boxes of one size that the surface passes through.
 struct BoxCount {
-    int size = 0;               ///< cells a side
-    std::int64_t shared = 0;    ///< a neighbour box is finer: iso-line loops
-    std::int64_t unshared = 0;  ///< facets of discretized marching cubes
+    int size = 0;             ///< cells a side; the longest side of a rectangular box
+    std::int64_t shared = 0;  ///< a neighbour box divides a face
+    std::int64_t unshared = 0;
 };
 
 struct ExtractionStatistics {
