@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <fstream>
 
+#include "DicomBytes.h"
+#include "DicomElements.h"
 #include "FileFault.h"
 #include "HeaderBytes.h"
-#include "HeaderText.h"
 #include "Readers.h"
 
 // DICOM PS3.5, chapter 7 (data elements, sequences) and annex A.4 (encapsulated pixel data).
@@ -21,43 +20,11 @@ namespace {
 constexpr std::uint32_t kUndefinedLength = 0xFFFFFFFF;
 constexpr std::uint64_t kPreambleBytes = 128;
 constexpr DicomTag kItem = 0xFFFEE000, kItemEnd = 0xFFFEE00D, kSequenceEnd = 0xFFFEE0DD;
-constexpr DicomTag kMediaStorageSopClass = 0x00020002;
 constexpr int kDeepestNesting = 32;
-
-constexpr std::array kWantedValues = {kMediaStorageSopClass,
-                                      tag::kSopClass,
-                                      tag::kTransferSyntax,
-                                      tag::kImageType,
-                                      tag::kSeriesInstanceUid,
-                                      tag::kImagePosition,
-                                      tag::kImageOrientation,
-                                      tag::kSamplesPerPixel,
-                                      tag::kPhotometric,
-                                      tag::kNumberOfFrames,
-                                      tag::kRows,
-                                      tag::kColumns,
-                                      tag::kPixelSpacing,
-                                      tag::kBitsAllocated,
-                                      tag::kBitsStored,
-                                      tag::kHighBit,
-                                      tag::kPixelRepresentation,
-                                      tag::kRescaleIntercept,
-                                      tag::kRescaleSlope};
-
-constexpr std::array kWantedSequences = {tag::kModalityLutSequence,
-                                         tag::kPlanePositionSequence,
-                                         tag::kPlaneOrientationSequence,
-                                         tag::kPixelMeasuresSequence,
-                                         tag::kPixelValueTransformationSequence,
-                                         tag::kSharedFunctionalGroups,
-                                         tag::kPerFrameFunctionalGroups};
-
-bool isWantedValue(DicomTag tag) {
-    return std::ranges::find(kWantedValues, tag) != kWantedValues.end();
-}
-bool isWantedSequence(DicomTag tag) {
-    return std::ranges::find(kWantedSequences, tag) != kWantedSequences.end();
-}
+constexpr std::string_view kImplicitLittleEndian = "1.2.840.10008.1.2";
+constexpr std::string_view kExplicitLittleEndian = "1.2.840.10008.1.2.1";
+constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
+constexpr std::string_view kBigEndian = "1.2.840.10008.1.2.2";
 
 struct Syntax {
     bool isExplicit = true;
@@ -72,28 +39,31 @@ struct Element {
 
 class Walker {
 public:
-    explicit Walker(const fs::path& file)
-        : file_(file), fileBytes_(requireRegularFile(file)), stream_(file, std::ios::binary) {
-        if (!stream_) refuse(file_, "can't be opened for reading", "check its permissions");
-    }
+    Walker(const fs::path& file, bool keepsDescription)
+        : file_(file), bytes_(file), keepsDescription_(keepsDescription) {}
 
     DicomHeader walk() {
         findFirstElement();
-        header_.dataset = walkDataset(fileBytes_, 0);
+        header_.dataset = walkDataset(kToTheEnd, 0);
         header_.mediaStorage =
             std::string(header_.dataset.text(tag::kSopClass)
-                            .value_or(metaGroup_.text(kMediaStorageSopClass).value_or("")));
+                            .value_or(metaGroup_.text(tag::kMediaStorageSopClass).value_or("")));
         return std::move(header_);
     }
 
 private:
+    /// Of the data set itself: its length changes where it turns out to be deflated.
+    static constexpr std::uint64_t kToTheEnd = ~std::uint64_t{0};
+
+    std::uint64_t limit(std::uint64_t end) const { return std::min(end, bytes_.size()); }
+
     [[noreturn]] void refuseDamaged(std::string_view what) const {
         refuse(file_, fmt::format("truncated or damaged DICOM file: {}", what),
                "get the whole file again");
     }
 
     void require(std::uint64_t byteCount, std::uint64_t end) const {
-        if (byteCount > end - position_) {
+        if (byteCount > limit(end) - position_) {
             refuseDamaged("an element's length reaches beyond its end");
         }
     }
@@ -102,8 +72,7 @@ private:
     std::array<char, N> take(std::uint64_t end) {
         require(N, end);
         std::array<char, N> bytes;
-        stream_.read(bytes.data(), N);
-        if (stream_.gcount() != static_cast<std::streamsize>(N)) refuseDamaged("can't be read");
+        bytes_.read(position_, bytes.data(), N);
         position_ += N;
         return bytes;
     }
@@ -112,21 +81,18 @@ private:
         const auto bytes = take<sizeof(T)>(end);
         return HeaderBytes({bytes.data(), bytes.size()}, order).at<T>(0);
     }
-    void seek(std::uint64_t position) {
-        position_ = position;
-        stream_.seekg(static_cast<std::streamoff>(position));
+    std::string peek(std::uint64_t byteCount) {
+        std::string bytes(byteCount, '\0');
+        bytes_.read(position_, bytes.data(), byteCount);
+        return bytes;
     }
 
     /// Sets syntax_: of the file meta group if there is one, else guessed from the first element.
     void findFirstElement() {
-        const bool hasPreamble = [&] {
-            if (fileBytes_ < kPreambleBytes + 4) return false;
-            seek(kPreambleBytes);
-            const auto magic = take<4>(fileBytes_);
-            return std::string_view(magic.data(), 4) == "DICM";
-        }();
-        if (!hasPreamble) seek(0);
-        if (fileBytes_ - position_ < 8) refuseDamaged("it ends before the first element");
+        position_ = kPreambleBytes;
+        const bool hasPreamble = bytes_.size() >= kPreambleBytes + 4 && peek(4) == "DICM";
+        position_ = hasPreamble ? kPreambleBytes + 4 : 0;
+        if (bytes_.size() - position_ < 8) refuseDamaged("it ends before the first element");
     }
 
     /// A file's meta group is explicit little endian; what follows is as its transfer syntax says.
@@ -136,34 +102,31 @@ private:
         if (header_.transferSyntax.empty()) {
             syntax_.isExplicit = firstElementIsExplicit();
             header_.transferSyntax =
-                syntax_.isExplicit ? "1.2.840.10008.1.2.1" : "1.2.840.10008.1.2";
-        } else {
-            syntax_.isExplicit = header_.transferSyntax != "1.2.840.10008.1.2";
-            if (header_.transferSyntax == "1.2.840.10008.1.2.2") {
-                syntax_.byteOrder = std::endian::big;
-                header_.isBigEndian = true;
-            }
-            if (header_.transferSyntax == "1.2.840.10008.1.2.1.99") {
-                refuse(file_, "unsupported transfer syntax (deflated)",
-                       "save it uncompressed, e.g. with gdcmconv --raw");
-            }
+                syntax_.isExplicit ? kExplicitLittleEndian : kImplicitLittleEndian;
+            return;
+        }
+        syntax_.isExplicit = header_.transferSyntax != kImplicitLittleEndian;
+        if (header_.transferSyntax == kBigEndian) {
+            syntax_.byteOrder = std::endian::big;
+            header_.isBigEndian = true;
+        }
+        if (header_.transferSyntax == kDeflated) {
+            header_.deflatedFrom = position_;
+            bytes_.inflateFrom(position_);
+            position_ = 0;
         }
     }
 
     bool firstElementIsExplicit() {
-        const std::uint64_t here = position_;
-        const auto bytes = take<8>(fileBytes_);
-        seek(here);
+        if (bytes_.size() - position_ < 8) return true;
+        const std::string bytes = peek(8);
         const auto isCapital = [](char c) { return c >= 'A' && c <= 'Z'; };
         return isCapital(bytes[4]) && isCapital(bytes[5]);
     }
 
     bool nextIsMetaGroup() {
-        if (fileBytes_ - position_ < 8) return false;
-        const std::uint64_t here = position_;
-        const auto group = takeNumber<std::uint16_t>(fileBytes_, std::endian::little);
-        seek(here);
-        return group == 2;
+        if (bytes_.size() - position_ < 8) return false;
+        return HeaderBytes(peek(2), std::endian::little).at<std::uint16_t>(0) == 2;
     }
 
     Element takeElement(std::uint64_t end) {
@@ -197,7 +160,7 @@ private:
             isMetaGroup_ = nextIsMetaGroup();
             if (!isMetaGroup_) enterDataset();
         }
-        while (position_ < end) {
+        while (position_ < limit(end)) {
             if (isMetaGroup_ && !nextIsMetaGroup()) enterDataset();
             if (depth == 0 && header_.pixelData && onlyZerosRemain()) break;
             const Element element = takeElement(end);
@@ -216,33 +179,64 @@ private:
             if (depth == 0) header_.pixelData = std::move(pixels);
             return;
         }
+        if (element.tag == tag::kFloatPixelData || element.tag == tag::kDoublePixelData) {
+            header_.hasFloatPixelData = true;
+        }
         const bool isUndefined = element.length == kUndefinedLength;
         if (!isUndefined) require(element.length, end);
+        if (element.tag == tag::kExtendedOffsetTable && depth == 0 && !isUndefined) {
+            extendedOffsets_ = takeOffsets<std::uint64_t>(element.length);
+        }
         if (element.vr == "SQ" || isUndefined ||
-            (element.vr.empty() && isWantedSequence(element.tag))) {
+            ((element.vr.empty() || element.vr == "UN") && isWantedDicomSequence(element.tag))) {
             const Syntax outer = syntax_;
             if (element.vr == "UN") syntax_ = {false, std::endian::little};  // PS3.5, 6.2.2
             auto items = walkSequence(isUndefined ? end : position_ + element.length, isUndefined,
                                       depth + 1);
             syntax_ = outer;
-            if (isWantedSequence(element.tag)) {
+            if (isWantedDicomSequence(element.tag)) {
                 dataset.sequences[element.tag] = std::move(items);
             }
             return;
         }
+        takeValue(element, dataset);
+        position_ += element.length;
+    }
+
+    void takeValue(const Element& element, DicomDataset& dataset) {
         constexpr std::uint32_t kLongestValue = 1024;
-        if (isWantedValue(element.tag) && element.length <= kLongestValue) {
-            std::string value(element.length, '\0');
-            stream_.read(value.data(), element.length);
-            dataset.values[element.tag] = std::move(value);
+        constexpr std::uint32_t kLongestCsa = 1 << 20;
+        const std::endian order = isMetaGroup_ ? std::endian::little : syntax_.byteOrder;
+        if (isSiemensCsa(element, dataset) && element.length <= kLongestCsa) {
+            header_.siemensCsa = peek(element.length);
         }
-        seek(position_ + element.length);
+        if (element.length > kLongestValue) return;
+        if (const auto kind = wantedDicomValue(element.tag)) {
+            dataset.values[element.tag] = dicomText(peek(element.length), *kind, order);
+        } else if (element.tag == tag::kSeriesDescription && keepsDescription_) {
+            header_.seriesDescription = peek(element.length);
+        } else if ((element.tag & 0xFF01FFFF) == tag::kOverlayBitPosition) {
+            const std::string bit = dicomText(peek(element.length), DicomValueKind::UInt16, order);
+            if (bit != "0") header_.hasOverlayInPixels = true;
+        } else if (isPrivateCreator(element.tag)) {
+            dataset.values[element.tag] = peek(element.length);
+        }
+    }
+
+    static bool isPrivateCreator(DicomTag tag) { return tag >= 0x00290010 && tag <= 0x002900FF; }
+
+    /// Element 10 of the block that the creator "SIEMENS CSA HEADER" has reserved, of a mosaic.
+    static bool isSiemensCsa(const Element& element, const DicomDataset& dataset) {
+        if (element.tag >> 16 != 0x0029 || (element.tag & 0xFF) != 0x10) return false;
+        const DicomTag creator = 0x00290000 | (element.tag >> 8 & 0xFF);
+        return dataset.text(creator).value_or("") == "SIEMENS CSA HEADER" &&
+               dataset.text(tag::kImageType).value_or("").find("MOSAIC") != std::string_view::npos;
     }
 
     std::vector<DicomDataset> walkSequence(std::uint64_t end, bool isUndefined, int depth) {
         if (depth > kDeepestNesting) refuseDamaged("its sequences are nested too deeply");
         std::vector<DicomDataset> items;
-        while (position_ < end) {
+        while (position_ < limit(end)) {
             const Element item = takeElement(end);
             if (item.tag == kSequenceEnd && isUndefined) return items;
             if (item.tag != kItem) refuseDamaged("a sequence holds something that is no item");
@@ -262,15 +256,19 @@ private:
     DicomPixelData takePixelData(const Element& element, std::uint64_t end) {
         DicomPixelData pixels;
         if (element.length != kUndefinedLength) {
-            if (element.length > end - position_) {
+            const std::uint64_t there = limit(end) - position_;
+            if (element.length > there) {
                 refuseDamaged(fmt::format("pixel data of {} bytes, of which {} are there",
-                                          element.length, end - position_));
+                                          element.length, there));
             }
+            pixels.isWords = element.vr == "OW";
+            pixels.offset = position_;
             pixels.byteCount = element.length;
-            seek(position_ + element.length);
+            position_ += element.length;
             return pixels;
         }
         pixels.isEncapsulated = true;
+        pixels.frameOffsets = std::move(extendedOffsets_);
         for (bool isOffsetTable = true;; isOffsetTable = false) {
             const Element item = takeElement(end);
             if (item.tag == kSequenceEnd) return pixels;
@@ -279,30 +277,38 @@ private:
             if (!isOffsetTable) {
                 pixels.fragments.push_back({position_, item.length});
                 pixels.byteCount += item.length;
+            } else if (pixels.frameOffsets.empty()) {
+                pixels.frameOffsets = takeOffsets<std::uint32_t>(item.length);
             }
-            seek(position_ + item.length);
+            position_ += item.length;
         }
+    }
+
+    template <class T>
+    std::vector<std::uint64_t> takeOffsets(std::uint32_t byteCount) {
+        const std::string table = peek(byteCount);
+        std::vector<std::uint64_t> offsets;
+        for (std::size_t at = 0; at + sizeof(T) <= table.size(); at += sizeof(T)) {
+            offsets.push_back(HeaderBytes(table, std::endian::little).at<T>(at));
+        }
+        return offsets;
     }
 
     /// Some writers pad files with zeros.
     bool onlyZerosRemain() {
-        const std::uint64_t here = position_;
         constexpr std::uint64_t kMostPadding = 1 << 16;
-        const std::uint64_t left = fileBytes_ - here;
-        if (left > kMostPadding) return false;
-        std::string rest(left, '\1');
-        stream_.read(rest.data(), static_cast<std::streamsize>(left));
-        seek(here);
-        return rest.find_first_not_of('\0') == std::string::npos;
+        const std::uint64_t left = bytes_.size() - position_;
+        return left <= kMostPadding && peek(left).find_first_not_of('\0') == std::string::npos;
     }
 
     fs::path file_;
-    std::uint64_t fileBytes_;
-    std::ifstream stream_;
+    DicomBytes bytes_;
+    bool keepsDescription_;
     std::uint64_t position_ = 0;
     Syntax syntax_;
     bool isMetaGroup_ = false;
     DicomDataset metaGroup_;
+    std::vector<std::uint64_t> extendedOffsets_;
     DicomHeader header_;
 };
 
@@ -315,54 +321,8 @@ bool looksLikeDicom(std::string_view head) {
            ((head[4] >= 'A' && head[4] <= 'Z') || (head[6] == 0 && head[7] == 0));
 }
 
-std::optional<std::string_view> DicomDataset::text(DicomTag tag) const {
-    const auto it = values.find(tag);
-    if (it == values.end()) return std::nullopt;
-    std::string_view value = it->second;
-    value = value.substr(0, value.find('\0'));
-    value = trimmed(value);
-    if (value.empty()) return std::nullopt;
-    return value;
-}
-
-std::vector<double> DicomDataset::numbers(const fs::path& file, DicomTag tag) const {
-    std::vector<double> found;
-    const auto whole = text(tag);
-    if (!whole) return found;
-    for (std::string_view rest = *whole;;) {
-        const std::size_t cut = rest.find('\\');
-        const auto value = parseNumber(rest.substr(0, cut));
-        if (!value || !std::isfinite(*value)) {
-            refuse(file,
-                   fmt::format("damaged DICOM header: {} is not a finite number",
-                               tag == tag::kPixelSpacing       ? "PixelSpacing"
-                               : tag == tag::kImagePosition    ? "ImagePositionPatient"
-                               : tag == tag::kImageOrientation ? "ImageOrientationPatient"
-                               : tag == tag::kRescaleSlope     ? "RescaleSlope"
-                               : tag == tag::kRescaleIntercept ? "RescaleIntercept"
-                                                               : "a value"),
-                   "get the file again");
-        }
-        found.push_back(*value);
-        if (cut == std::string_view::npos) return found;
-        rest.remove_prefix(cut + 1);
-    }
-}
-
-const DicomDataset* DicomDataset::item(DicomTag sequence) const {
-    const auto it = sequences.find(sequence);
-    return it == sequences.end() || it->second.empty() ? nullptr : &it->second.front();
-}
-
-std::optional<std::uint16_t> DicomHeader::unsignedShort(DicomTag tag) const {
-    const auto it = dataset.values.find(tag);
-    if (it == dataset.values.end() || it->second.size() != 2) return std::nullopt;
-    const std::endian order = isBigEndian ? std::endian::big : std::endian::little;
-    return HeaderBytes(it->second, order).at<std::uint16_t>(0);
-}
-
-DicomHeader readDicomHeader(const fs::path& file) {
-    return Walker(file).walk();
+DicomHeader readDicomHeader(const fs::path& file, bool keepsDescription) {
+    return Walker(file, keepsDescription).walk();
 }
 
 }  // namespace adaptiso::detail

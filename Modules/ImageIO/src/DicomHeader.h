@@ -14,14 +14,41 @@ namespace adaptiso::detail {
 using DicomTag = std::uint32_t;
 
 namespace tag {
+inline constexpr DicomTag kMediaStorageSopClass = 0x00020002;
 inline constexpr DicomTag kTransferSyntax = 0x00020010;
+inline constexpr DicomTag kDirectoryRecordSequence = 0x00041220;
+inline constexpr DicomTag kReferencedFileId = 0x00041500;
 inline constexpr DicomTag kImageType = 0x00080008;
 inline constexpr DicomTag kSopClass = 0x00080016;
+inline constexpr DicomTag kModality = 0x00080060;
+inline constexpr DicomTag kSeriesDescription = 0x0008103E;
+inline constexpr DicomTag kFrameType = 0x00089007;
+inline constexpr DicomTag kComplexImageComponent = 0x00089208;
+inline constexpr DicomTag kEchoTime = 0x00180081;
+inline constexpr DicomTag kEchoNumbers = 0x00180086;
+inline constexpr DicomTag kSpacingBetweenSlices = 0x00180088;
+inline constexpr DicomTag kTriggerTime = 0x00181060;
+inline constexpr DicomTag kGradientDirectionSequence = 0x00189076;
+inline constexpr DicomTag kEffectiveEchoTime = 0x00189082;
+inline constexpr DicomTag kDiffusionBValue = 0x00189087;
+inline constexpr DicomTag kGradientOrientation = 0x00189089;
+inline constexpr DicomTag kMrEchoSequence = 0x00189114;
+inline constexpr DicomTag kMrDiffusionSequence = 0x00189117;
+inline constexpr DicomTag kCardiacSequence = 0x00189118;
+inline constexpr DicomTag kMrFrameTypeSequence = 0x00189226;
+inline constexpr DicomTag kCtFrameTypeSequence = 0x00189329;
 inline constexpr DicomTag kSeriesInstanceUid = 0x0020000E;
+inline constexpr DicomTag kAcquisitionNumber = 0x00200012;
+inline constexpr DicomTag kInstanceNumber = 0x00200013;
 inline constexpr DicomTag kImagePosition = 0x00200032;
 inline constexpr DicomTag kImageOrientation = 0x00200037;
+inline constexpr DicomTag kTemporalPosition = 0x00200100;
+inline constexpr DicomTag kFrameContentSequence = 0x00209111;
 inline constexpr DicomTag kPlanePositionSequence = 0x00209113;
 inline constexpr DicomTag kPlaneOrientationSequence = 0x00209116;
+inline constexpr DicomTag kTemporalPositionIndex = 0x00209128;
+inline constexpr DicomTag kTriggerDelay = 0x00209153;
+inline constexpr DicomTag kDimensionIndexValues = 0x00209157;
 inline constexpr DicomTag kSamplesPerPixel = 0x00280002;
 inline constexpr DicomTag kPhotometric = 0x00280004;
 inline constexpr DicomTag kNumberOfFrames = 0x00280008;
@@ -39,30 +66,44 @@ inline constexpr DicomTag kPixelMeasuresSequence = 0x00289110;
 inline constexpr DicomTag kPixelValueTransformationSequence = 0x00289145;
 inline constexpr DicomTag kSharedFunctionalGroups = 0x52009229;
 inline constexpr DicomTag kPerFrameFunctionalGroups = 0x52009230;
+inline constexpr DicomTag kOverlayBitPosition = 0x60000102;  ///< and groups 6002, 6004, ...
+inline constexpr DicomTag kExtendedOffsetTable = 0x7FE00001;
+inline constexpr DicomTag kFloatPixelData = 0x7FE00008;
+inline constexpr DicomTag kDoublePixelData = 0x7FE00009;
 inline constexpr DicomTag kPixelData = 0x7FE00010;
 }  // namespace tag
 
 /// The elements of a data set that this module needs; names, ids and dates are never kept.
 struct DicomDataset {
+    /// Values of text as they stand in the file, binary numbers as decimal text ("1\2.5").
     std::map<DicomTag, std::string> values;
     std::map<DicomTag, std::vector<DicomDataset>> sequences;
 
     /// Text without padding; nothing when absent or empty.
     std::optional<std::string_view> text(DicomTag tag) const;
-    /// Numbers of a decimal string (DS), cut at backslashes. Empty when absent or empty.
+    /// Numbers, cut at backslashes. Empty when absent or empty.
     /// \throws FileError when one is no finite number
     std::vector<double> numbers(const std::filesystem::path& file, DicomTag tag) const;
+    /// The same; empty when one is no finite number.
+    std::vector<double> numbersIfAny(DicomTag tag) const;
+    std::optional<std::int64_t> integer(DicomTag tag) const;
     /// The first item of a sequence, or nullptr.
     const DicomDataset* item(DicomTag sequence) const;
 };
 
+/// Where the pixels are, in DicomBytes' positions.
 struct DicomPixelData {
     bool isEncapsulated = false;
+    bool isWords = false;      ///< value representation OW: big endian swaps pairs of bytes
+    std::uint64_t offset = 0;  ///< of native pixel data
     std::uint64_t byteCount = 0;
     struct Fragment {
         std::uint64_t offset, byteCount;
     };
     std::vector<Fragment> fragments;  ///< without the offset table
+    /// Where each frame's first fragment begins, counted in bytes from the first fragment's item;
+    /// empty when the file does not say.
+    std::vector<std::uint64_t> frameOffsets;
 };
 
 struct DicomHeader {
@@ -70,16 +111,20 @@ struct DicomHeader {
     std::string transferSyntax;
     std::string mediaStorage;  ///< SOP class, also from the file meta group; empty when absent
     bool isBigEndian = false;
-    std::optional<DicomPixelData> pixelData;  ///< at top level: an icon's pixels do not count
-
-    std::optional<std::uint16_t> unsignedShort(DicomTag tag) const;
+    std::optional<std::uint64_t> deflatedFrom;  ///< where the deflated data set begins
+    std::optional<DicomPixelData> pixelData;    ///< at top level: an icon's pixels do not count
+    bool hasFloatPixelData = false;
+    bool hasOverlayInPixels = false;  ///< the bits above HighBit hold an overlay
+    std::string siemensCsa;           ///< of a mosaic: the CSA image header, else empty
+    std::string seriesDescription;    ///< only when asked for
 };
 
 /// Walks through all elements of a DICOM file, with or without the 128-byte preamble, and checks
-/// that every length stays inside the file, so that GDCM (whose asserts end the process) is only
-/// given files that hold together.
+/// that every length stays inside the file. GDCM, whose asserts end the process, never sees a
+/// header.
 ///
+/// \param keepsDescription  also keep the series' description, which may identify the patient
 /// \throws FileError when the file is truncated or its structure is damaged
-DicomHeader readDicomHeader(const std::filesystem::path& file);
+DicomHeader readDicomHeader(const std::filesystem::path& file, bool keepsDescription = false);
 
 }  // namespace adaptiso::detail

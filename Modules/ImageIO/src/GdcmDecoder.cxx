@@ -1,8 +1,15 @@
 #include "GdcmDecoder.h"
 
-#include <fmt/core.h>
-#include <gdcmImageReader.h>
+#include <gdcmImageCodec.h>
+#include <gdcmJPEG2000Codec.h>
+#include <gdcmJPEGCodec.h>
+#include <gdcmJPEGLSCodec.h>
+#include <gdcmSequenceOfFragments.h>
 #include <gdcmTrace.h>
+#include <gdcmTransferSyntax.h>
+
+#include <cstring>
+#include <memory>
 
 #include "FileFault.h"
 
@@ -31,37 +38,65 @@ private:
     bool warning_, debug_, error_;
 };
 
-bool matches(const gdcm::Image& image, const DicomPixelFormat& format) {
-    const gdcm::PixelFormat pixels = image.GetPixelFormat();
-    const bool isSigned = pixels.GetPixelRepresentation() == 1;
-    const bool wantsSigned = format.stored == PixelType::Int8 ||
-                             format.stored == PixelType::Int16 || format.stored == PixelType::Int32;
-    const std::int64_t frames = image.GetNumberOfDimensions() == 3 ? image.GetDimension(2) : 1;
-    return image.GetDimension(0) == format.columns && image.GetDimension(1) == format.rows &&
-           frames == format.frames && pixels.GetSamplesPerPixel() == 1 &&
-           pixels.GetBitsAllocated() == 8 * bytesPerPixel(format.stored) &&
-           isSigned == wantsSigned && image.GetBufferLength() == format.byteCount();
+/// Compressed pixel data of one fragment: `stream`.
+gdcm::DataElement pixelDataOf(std::string_view stream) {
+    gdcm::Fragment fragment;
+    fragment.SetByteValue(stream.data(), static_cast<std::uint32_t>(stream.size()));
+    gdcm::SmartPointer<gdcm::SequenceOfFragments> fragments = new gdcm::SequenceOfFragments;
+    fragments->AddFragment(fragment);
+    gdcm::DataElement pixels(gdcm::Tag(0x7fe0, 0x0010));
+    pixels.SetVR(gdcm::VR::OB);
+    pixels.SetValue(*fragments);
+    return pixels;
+}
+
+gdcm::PixelFormat pixelFormatOf(const Codestream& codestream) {
+    const auto precision = static_cast<unsigned short>(codestream.precision);
+    return gdcm::PixelFormat(1, static_cast<unsigned short>(8 * codestream.wordBytes()), precision,
+                             static_cast<unsigned short>(precision - 1),
+                             static_cast<unsigned short>(codestream.isSigned ? 1 : 0));
+}
+
+/// The codec itself: gdcm::Image would try others when it fails, among them one that loops for ever
+/// over damaged JPEG (PVRG).
+std::unique_ptr<gdcm::ImageCodec> codecFor(const gdcm::TransferSyntax& syntax) {
+    if (gdcm::JPEGCodec().CanDecode(syntax)) return std::make_unique<gdcm::JPEGCodec>();
+    if (gdcm::JPEGLSCodec().CanDecode(syntax)) return std::make_unique<gdcm::JPEGLSCodec>();
+    if (gdcm::JPEG2000Codec().CanDecode(syntax)) return std::make_unique<gdcm::JPEG2000Codec>();
+    return nullptr;
+}
+
+/// \return false when it can't, or finds other sizes than the codestream's header says
+bool decode(std::string_view stream, const std::string& transferSyntax,
+            const Codestream& codestream, std::span<std::byte> samples) {
+    const auto codec =
+        codecFor(gdcm::TransferSyntax(gdcm::TransferSyntax::GetTSType(transferSyntax.c_str())));
+    if (!codec) return false;
+    const unsigned size[3] = {static_cast<unsigned>(codestream.columns),
+                              static_cast<unsigned>(codestream.rows), 1};
+    codec->SetNumberOfDimensions(2);
+    codec->SetDimensions(size);
+    codec->SetPlanarConfiguration(0);
+    codec->SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
+    codec->SetPixelFormat(pixelFormatOf(codestream));
+    gdcm::DataElement decoded;
+    if (!codec->Decode(pixelDataOf(stream), decoded)) return false;
+    const gdcm::ByteValue* bytes = decoded.GetByteValue();
+    // GDCM pads to an even number of bytes
+    if (!bytes || (bytes->GetLength() + 1U) / 2 != (samples.size() + 1) / 2) return false;
+    std::memcpy(samples.data(), bytes->GetPointer(), samples.size());
+    return true;
 }
 
 }  // namespace
 
-void decodeWithGdcm(const std::filesystem::path& file, const DicomPixelFormat& format,
-                    std::vector<std::byte>& samples) {
+void decodeWithGdcm(const std::filesystem::path& file, std::string_view stream,
+                    const std::string& transferSyntax, const Codestream& codestream,
+                    std::span<std::byte> samples) {
     const SilentGdcm silence;
-    gdcm::ImageReader reader;
-    reader.SetFileName(file.c_str());
     bool isDecoded = false;
     try {
-        if (reader.Read()) {
-            if (!matches(reader.GetImage(), format)) {
-                refuse(file, "its pixel data have another size than its header says",
-                       "get the file again");
-            }
-            samples.resize(format.byteCount());
-            isDecoded = reader.GetImage().GetBuffer(reinterpret_cast<char*>(samples.data()));
-        }
-    } catch (const Error&) {
-        throw;
+        isDecoded = decode(stream, transferSyntax, codestream, samples);
     } catch (const std::exception&) {
         isDecoded = false;
     }

@@ -3,28 +3,28 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <vector>
-
-#include "adaptiso/Core/Volume.h"
+#include <span>
+#include <string>
+#include <string_view>
 
 namespace adaptiso::detail {
 
-/// What a DICOM file's header says of its pixels.
-struct DicomPixelFormat {
-    std::int64_t columns = 0, rows = 0, frames = 1;
-    PixelType stored = PixelType::UInt16;
-    int bitsStored = 16;
+/// What a codestream's own header says.
+struct Codestream {
+    std::int64_t columns = 0, rows = 0;
+    int components = 0, precision = 0;
+    bool isSigned = false;
 
-    std::uint64_t byteCount() const {
-        return static_cast<std::uint64_t>(columns * rows * frames) * bytesPerPixel(stored);
-    }
-    friend bool operator==(const DicomPixelFormat&, const DicomPixelFormat&) = default;
+    std::size_t wordBytes() const { return precision <= 8 ? 1 : 2; }
 };
 
-/// Has GDCM decode a file's stored samples (before rescale), frame after frame.
+/// Has GDCM decode one frame's JPEG, JPEG-LS or JPEG 2000 codestream. GDCM sees the codestream
+/// alone, no DICOM header.
 ///
-/// \throws FileError when GDCM can't, or finds other sizes than the header walked here
-void decodeWithGdcm(const std::filesystem::path& file, const DicomPixelFormat& format,
-                    std::vector<std::byte>& samples);
+/// \param samples  columns * rows words of wordBytes(), this machine's byte order
+/// \throws FileError when GDCM can't
+void decodeWithGdcm(const std::filesystem::path& file, std::string_view stream,
+                    const std::string& transferSyntax, const Codestream& codestream,
+                    std::span<std::byte> samples);
 
 }  // namespace adaptiso::detail

@@ -18,7 +18,7 @@ public:
     /// \pre offset + sizeof(T) <= size()
     template <class T>
     T at(std::size_t offset) const {
-        char raw[sizeof(T)];
+        char raw[sizeof(T)] = {};
         bytes_.copy(raw, sizeof(T), offset);
         if (swap_) std::reverse(raw, raw + sizeof(T));
         T value;

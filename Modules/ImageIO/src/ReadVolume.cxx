@@ -47,7 +47,7 @@ ReadVolume readVolume(const fs::path& input, const ReadOptions& options) {
     if (ending == "nii" || ending == "hdr" || ending == "img") return detail::readNifti(input);
     if (ending == "mgh" || ending == "mgz") return detail::readMgh(input);
     if (ending == "mha" || ending == "mhd") return detail::readMetaImage(input);
-    if (detail::looksLikeDicom(head)) return detail::readDicomFile(input);
+    if (detail::looksLikeDicom(head)) return detail::readDicomFile(input, options);
     detail::refuse(input, "not a format that is read here",
                    "give NIfTI, NRRD, MetaImage, MGH, or DICOM");
 }

@@ -12,7 +12,7 @@ ReadVolume readNifti(const std::filesystem::path& file);
 ReadVolume readNrrd(const std::filesystem::path& file);
 ReadVolume readMetaImage(const std::filesystem::path& file);
 ReadVolume readMgh(const std::filesystem::path& file);
-ReadVolume readDicomFile(const std::filesystem::path& file);
+ReadVolume readDicomFile(const std::filesystem::path& file, const ReadOptions& options);
 ReadVolume readDicomFolder(const std::filesystem::path& folder, const ReadOptions& options);
 
 /// What the first bytes of a file (inflated, at most 548) say.

@@ -74,9 +74,13 @@ std::string zlibbed(std::string_view bytes) {
     return deflated(bytes, MAX_WBITS);
 }
 
-std::string refusalOf(const fs::path& input) {
+std::string rawDeflated(std::string_view bytes) {
+    return deflated(bytes, -MAX_WBITS);
+}
+
+std::string refusalOf(const fs::path& input, const ReadOptions& options) {
     try {
-        readVolume(input);
+        readVolume(input, options);
     } catch (const FileError& error) {
         return error.what();
     }
@@ -84,8 +88,8 @@ std::string refusalOf(const fs::path& input) {
     return {};
 }
 
-void expectRefusal(const fs::path& input, std::string_view fault) {
-    const std::string message = refusalOf(input);
+void expectRefusal(const fs::path& input, std::string_view fault, const ReadOptions& options) {
+    const std::string message = refusalOf(input, options);
     EXPECT_TRUE(message.starts_with(input.native())) << message;
     EXPECT_NE(message.find(fault), std::string::npos) << message << "\nwanted: " << fault;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;

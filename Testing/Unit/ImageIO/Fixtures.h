@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
 
 /// Files made byte by byte, so that the truth does not come from the libraries under test.
 namespace adaptiso::testing {
@@ -34,6 +35,8 @@ private:
 std::filesystem::path writeFile(const std::filesystem::path& file, std::string_view bytes);
 std::string gzipped(std::string_view bytes);
 std::string zlibbed(std::string_view bytes);
+/// Without a frame (RFC 1951), as DICOM deflates.
+std::string rawDeflated(std::string_view bytes);
 
 /// `value`'s bytes in the given order.
 template <class T>
@@ -73,10 +76,11 @@ std::vector<T> samplesIn(const VolumeView& volume) {
 }
 
 /// readVolume()'s FileError for `input`; fails the test when it reads.
-std::string refusalOf(const std::filesystem::path& input);
+std::string refusalOf(const std::filesystem::path& input, const ReadOptions& options = {});
 
 /// Expects a refusal of one line that begins with the input's path and holds `fault`.
-void expectRefusal(const std::filesystem::path& input, std::string_view fault);
+void expectRefusal(const std::filesystem::path& input, std::string_view fault,
+                   const ReadOptions& options = {});
 
 void expectNear(const Vec3& actual, const Vec3& expected, double toleranceMm);
 

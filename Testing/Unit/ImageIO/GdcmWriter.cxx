@@ -4,6 +4,7 @@
 #include <gdcmImageChangeTransferSyntax.h>
 #include <gdcmImageWriter.h>
 #include <gdcmMediaStorage.h>
+#include <gdcmSequenceOfFragments.h>
 #include <gdcmTrace.h>
 #include <gtest/gtest.h>
 
@@ -29,6 +30,37 @@ gdcm::TransferSyntax syntaxOf(DicomCodec codec) {
 }
 
 }  // namespace
+
+const char* uidOf(DicomCodec codec) {
+    return gdcm::TransferSyntax::GetTSString(syntaxOf(codec));
+}
+
+std::string encodeWithGdcm(const std::vector<std::uint16_t>& samples, int columns, int rows,
+                           int bits, bool isSigned, DicomCodec codec) {
+    gdcm::Trace::WarningOff();
+    gdcm::SmartPointer<gdcm::Image> image = new gdcm::Image;
+    image->SetNumberOfDimensions(2);
+    image->SetDimension(0, static_cast<unsigned>(columns));
+    image->SetDimension(1, static_cast<unsigned>(rows));
+    const auto stored = static_cast<unsigned short>(bits);
+    image->SetPixelFormat(
+        gdcm::PixelFormat(1, 16, stored, static_cast<unsigned short>(bits - 1), isSigned ? 1 : 0));
+    image->SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
+    image->SetTransferSyntax(gdcm::TransferSyntax::ExplicitVRLittleEndian);
+    gdcm::DataElement pixels(gdcm::Tag(0x7fe0, 0x0010));
+    pixels.SetByteValue(reinterpret_cast<const char*>(samples.data()),
+                        static_cast<std::uint32_t>(samples.size() * sizeof(std::uint16_t)));
+    image->SetDataElement(pixels);
+    gdcm::ImageChangeTransferSyntax change;
+    change.SetTransferSyntax(syntaxOf(codec));
+    change.SetInput(*image);
+    EXPECT_TRUE(change.Change());
+    const auto* fragments = change.GetOutput().GetDataElement().GetSequenceOfFragments();
+    EXPECT_EQ(fragments->GetNumberOfFragments(), 1U);
+    std::string stream(fragments->ComputeByteLength(), '\0');
+    EXPECT_TRUE(fragments->GetBuffer(stream.data(), stream.size()));
+    return stream;
+}
 
 void writeWithGdcm(const std::filesystem::path& file, const std::vector<std::uint16_t>& samples,
                    int size, const Vec3& position, const Vec3& alongRow, const Vec3& alongColumn,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "adaptiso/Core/Geometry.h"
@@ -16,6 +17,14 @@ enum class DicomCodec {
     JpegLsLossless,
     Jpeg2000Lossless
 };
+
+/// One frame's codestream as GDCM compresses it.
+/// \param samples  rows * columns words of `bits` (of 16), all of them a codec's own width
+std::string encodeWithGdcm(const std::vector<std::uint16_t>& samples, int columns, int rows,
+                           int bits, bool isSigned, DicomCodec codec);
+
+/// The transfer syntax UID.
+const char* uidOf(DicomCodec codec);
 
 /// A square CT slice of size * size uint16 samples, 0.5 mm pixels, written by GDCM.
 void writeWithGdcm(const std::filesystem::path& file, const std::vector<std::uint16_t>& samples,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,8 +12,16 @@ namespace adaptiso {
 
 struct ReadOptions {
     /// Which of a DICOM folder's image groups to read: its number (from 1) in the list that a
-    /// refusal prints, or its SeriesInstanceUID. Unset: the folder must hold one group.
-    std::optional<std::string> series;
+    /// refusal prints and listSeries() returns, or its SeriesInstanceUID. Unset: the folder must
+    /// hold one volume; localizers and other stray images are left aside with a warning.
+    std::optional<std::string> series{};
+
+    /// Which volume of a 4-D image to read, counted from 0. Unset: the image must hold one.
+    std::optional<std::int64_t> volumeIndex{};
+
+    /// DICOM slices that lie unevenly are blended linearly, each from its two neighbours, onto even
+    /// steps of their usual distance; the samples become float. Unset: they are refused.
+    bool resampleSlices = false;
 };
 
 /// A scan as read: the samples in the file's own pixel type, where they lie, and what a user
@@ -24,8 +33,9 @@ struct ReadVolume {
 };
 
 /// Reads one scalar 3-D image: NIfTI (.nii, .nii.gz, .hdr/.img; versions 1 and 2), NRRD (.nrrd,
-/// .nhdr), MetaImage (.mha, .mhd), MGH (.mgh, .mgz), a multi-frame DICOM file, or a folder that
-/// holds the slices of one DICOM series. What a file is follows from its content, not its name.
+/// .nhdr), MetaImage (.mha, .mhd), MGH (.mgh, .mgz), a multi-frame or mosaic DICOM file, a
+/// DICOMDIR, or a folder that holds the slices of a DICOM series, in subfolders too. What a file is
+/// follows from its content, not its name.
 ///
 /// The geometry comes from the format's own header fields, never from a reader's guess:
 ///   NIfTI      sform if its code > 0, else qform, else the voxel size alone with a warning (as
@@ -33,19 +43,20 @@ struct ReadVolume {
 ///   NRRD       space LPS, RAS or LAS; without a space, spacings alone with a warning
 ///   MetaImage  Offset, TransformMatrix (its rows are the axes), ElementSpacing; LPS
 ///   MGH        Mdc and c_ras; RAS -> LPS
-///   DICOM      slices sorted along the normal; the step from slice to slice is kept as it is, so
-///              gantry tilt stays in the geometry as shear, with a warning
+///   DICOM      slices, frames (each with its own position) and mosaic tiles sorted along the
+///              normal; the step from slice to slice is kept as it is, so gantry tilt stays in the
+///              geometry as shear, with a warning
 ///
 /// Samples keep their type. Scaled ones (NIfTI scl_slope, DICOM rescale) become float32, or
 /// float64 where float32 could not hold the stored integers; a DICOM rescale by whole numbers with
-/// slope 1 stays an integer type. A 4-D file must hold one volume.
+/// slope 1 stays an integer type. MONOCHROME1 is not inverted.
 ///
-/// \param input  a regular file, a link to one, or a folder (not searched below its top level).
+/// \param input  a regular file, a link to one, or a folder.
 /// \throws FileError  one line "<file>: <fault>; <remedy>", without patient data, when the input
 ///         is missing, no regular file, of no known format, truncated or damaged, holds no
 ///         orientation or a singular one, an unknown space, colour, vector or complex samples,
-///         several volumes or series, a single slice, uneven or missing slices, or names data
-///         outside its own folder. Nothing is padded and nothing is guessed.
+///         several volumes or series, a single slice, uneven, missing or repeated slices, or names
+///         data outside its own folder. Nothing is padded and nothing is guessed.
 /// \pre  not called from two threads at once for DICOM (GDCM's message switches are global).
 /// Cost: one copy of the samples in memory, plus one DICOM file's or, for NRRD and MetaImage, one
 ///       transient copy inside ITK; one extra pass over compressed NRRD and MetaImage data.

@@ -1,0 +1,97 @@
+#include "DicomBytes.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "FileFault.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr std::size_t kWindowBytes = std::size_t{1} << 16;
+
+}  // namespace
+
+DicomBytes::DicomBytes(std::filesystem::path file)
+    : file_(std::move(file)), size_(requireRegularFile(file_)) {
+    stream_.rdbuf()->pubsetbuf(nullptr, 0);  // the window is the buffer
+    stream_.open(file_, std::ios::binary);
+    if (!stream_) refuse(file_, "can't be opened for reading", "check its permissions");
+}
+
+void DicomBytes::read(std::uint64_t position, void* out, std::size_t byteCount) {
+    if (position > size_ || byteCount > size_ - position) {
+        refuse(file_, "truncated: it ends before its data do", "get the whole file again");
+    }
+    if (byteCount == 0) return;
+    const bool isWithin =
+        position >= windowStart_ && position + byteCount <= windowStart_ + window_.size();
+    if (!isWithin && byteCount > kWindowBytes) {
+        stream_.clear();
+        stream_.seekg(static_cast<std::streamoff>(position));
+        stream_.read(static_cast<char*>(out), static_cast<std::streamsize>(byteCount));
+        if (stream_.gcount() != static_cast<std::streamsize>(byteCount)) {
+            refuse(file_, "can't be read", "check the disk");
+        }
+        return;
+    }
+    if (!isWithin) moveWindow(position);
+    if (windowStart_ + window_.size() < position + byteCount) {
+        refuse(file_, "can't be read", "check the disk");
+    }
+    std::copy_n(window_.data() + (position - windowStart_), byteCount, static_cast<char*>(out));
+}
+
+void DicomBytes::moveWindow(std::uint64_t position) {
+    window_.resize(std::min<std::uint64_t>(kWindowBytes, size_ - position));
+    windowStart_ = position;
+    stream_.clear();
+    stream_.seekg(static_cast<std::streamoff>(position));
+    stream_.read(window_.data(), static_cast<std::streamsize>(window_.size()));
+    window_.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, stream_.gcount())));
+}
+
+void DicomBytes::inflateFrom(std::uint64_t from) {
+    constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 31;
+    struct End {
+        void operator()(z_stream* stream) const {
+            inflateEnd(stream);
+            delete stream;
+        }
+    };
+    std::unique_ptr<z_stream, End> zlib(new z_stream{});
+    if (inflateInit2(zlib.get(), -MAX_WBITS) != Z_OK) throw std::bad_alloc();
+
+    std::string inflated, in(kWindowBytes, '\0'), out(kWindowBytes * 4, '\0');
+    int state = Z_OK;
+    while (state == Z_OK) {
+        if (zlib->avail_in == 0) {
+            const std::uint64_t count = std::min<std::uint64_t>(in.size(), size_ - from);
+            if (count == 0) break;
+            read(from, in.data(), count);
+            from += count;
+            zlib->next_in = reinterpret_cast<Bytef*>(in.data());
+            zlib->avail_in = static_cast<uInt>(count);
+        }
+        zlib->next_out = reinterpret_cast<Bytef*>(out.data());
+        zlib->avail_out = static_cast<uInt>(out.size());
+        state = inflate(zlib.get(), Z_NO_FLUSH);
+        inflated.append(out, 0, out.size() - zlib->avail_out);
+        if (inflated.size() > kMostBytes) {
+            refuse(file_, "its deflated data set inflates to more than 2 GiB",
+                   "save it uncompressed, e.g. with gdcmconv --raw");
+        }
+    }
+    if (state != Z_STREAM_END) {
+        refuse(file_, "truncated or damaged DICOM file: its deflated data set can't be inflated",
+               "get the whole file again");
+    }
+    size_ = inflated.size();
+    window_ = std::move(inflated);
+    windowStart_ = 0;
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace adaptiso::detail {
+
+/// The bytes of a DICOM file at any position, read through a window that moves along: a header is
+/// thousands of small reads. For the deflated transfer syntax, the bytes that it inflates to.
+class DicomBytes {
+public:
+    /// \throws FileError unless `file` is a readable regular file
+    explicit DicomBytes(std::filesystem::path file);
+
+    std::uint64_t size() const { return size_; }
+
+    /// \throws FileError when they are not all there
+    void read(std::uint64_t position, void* out, std::size_t byteCount);
+
+    /// From now on position 0 is the first byte that the file inflates to from `from` on (RFC 1951,
+    /// without zlib's frame; PS3.5, A.5). All of it is held in memory.
+    /// \throws FileError when the data are damaged, or inflate to more than 2 GiB
+    void inflateFrom(std::uint64_t from);
+
+private:
+    void moveWindow(std::uint64_t position);
+
+    std::filesystem::path file_;
+    std::ifstream stream_;
+    std::uint64_t size_ = 0;
+    std::string window_;
+    std::uint64_t windowStart_ = 0;
+};
+
+}  // namespace adaptiso::detail

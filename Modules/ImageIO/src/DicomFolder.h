@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "DicomFile.h"
+#include "adaptiso/ImageIO/ListSeries.h"
+
+namespace adaptiso::detail {
+
+/// The images that an input holds.
+struct DicomInput {
+    std::vector<DicomFile> files;       ///< with pixel data, by path
+    std::size_t otherFiles = 0;         ///< DICOM, but no images: reports, plans, DICOMDIR
+    std::vector<std::string> warnings;  ///< entries that were left out, without names
+    std::vector<DicomFault> damaged;    ///< when damaged files are to be listed
+};
+
+/// \return a FileError's message without the file's name that it begins with
+std::string withoutName(const std::string& message, const std::filesystem::path& file);
+
+/// What to do about a file that is damaged.
+enum class DamagedFiles { Refuse, List };
+
+/// Walks through all of a folder, subfolders too. Links to files are followed, links to folders and
+/// hidden folders are not. Files that are no DICOM are left alone, unless they are named like it.
+/// \param keepsDescription  also keep the series' descriptions, which may identify the patient
+/// \throws FileError  a folder can't be listed, a link points nowhere, and for DamagedFiles::Refuse
+///         a damaged file (a slice could be missing without a word)
+DicomInput readDicomHeaders(const std::filesystem::path& folder, DamagedFiles damaged,
+                            bool keepsDescription);
+
+/// The same for one file: of a DICOMDIR the files it names, in its own folder or below.
+DicomInput readDicomFileHeaders(const std::filesystem::path& file, DamagedFiles damaged,
+                                bool keepsDescription);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "DicomBytes.h"
+#include "DicomCodecs.h"
+#include "DicomFile.h"
+#include "adaptiso/Core/Volume.h"
+
+namespace adaptiso::detail {
+
+/// \throws FileError unless the file holds scalar grey pixels of 8, 16 or 32 bits
+DicomPixelFormat dicomPixelFormat(const DicomFile& dicom);
+
+/// The stored samples of one file (before rescale), frame by frame.
+///
+/// Native and RLE pixels are read here; JPEG, JPEG-LS and JPEG 2000 are decoded by GDCM, which is
+/// given one frame's codestream at a time, after a look at the codestream's own header.
+class DicomFrames {
+public:
+    /// \throws FileError for an unknown transfer syntax, too few pixel data, or frames that can't
+    ///         be told apart
+    DicomFrames(const DicomFile& dicom, const DicomPixelFormat& format);
+
+    /// Fills `samples` with frameBytes() bytes in this machine's byte order, without what lies
+    /// above HighBit (an overlay) and below BitsStored.
+    /// \throws FileError when the frame can't be decoded
+    void read(std::int64_t frame, std::vector<std::byte>& samples);
+
+    /// A frame read so far had bits above HighBit that are neither the sign nor an overlay.
+    bool hasStrayBits() const { return hasStrayBits_; }
+
+private:
+    void openNative();
+    void openEncapsulated();
+    std::vector<std::size_t> firstFragments();
+    bool beginsCodestream(const DicomPixelData::Fragment& fragment);
+    std::string codestreamOf(std::int64_t frame);
+
+    const DicomFile& dicom_;
+    DicomPixelFormat format_;
+    DicomCodec codec_ = DicomCodec::None;
+    DicomBytes bytes_;
+    bool isInflated_ = false, hasStrayBits_ = false;
+    std::vector<std::size_t> frameBegins_;  ///< each frame's first fragment, and one past the last
+};
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "DicomFile.h"
+#include "adaptiso/Core/Geometry.h"
+
+namespace adaptiso::detail {
+
+/// What tells the volumes of one series apart where several images lie at one place.
+enum class DicomLabel { Echo, TimePoint, CardiacPhase, Diffusion, Acquisition };
+inline constexpr std::size_t kDicomLabels = 5;
+
+/// Where one slice lies, as its header says; what is missing stays empty. A file is one plane, an
+/// enhanced multi-frame file a plane for each frame, a Siemens mosaic one for each tile.
+struct DicomPlane {
+    std::size_t file = 0;
+    std::int64_t frame = 0;
+    std::int64_t firstColumn = 0, firstRow = 0;  ///< of a mosaic's tile within the frame
+    std::optional<Vec3> position;                ///< centre of the first voxel, LPS mm
+    std::optional<Vec3> alongRow, alongColumn;   ///< unit vectors
+    std::optional<double> columnStepMm, rowStepMm;
+    double slope = 1, intercept = 0;
+
+    std::string imageType;  ///< ImageType or FrameType, with the complex component (phase, ...)
+    std::array<std::vector<double>, kDicomLabels> labels;
+    std::vector<double> order;  ///< instance number, frame
+};
+
+/// All planes of a file, of one size.
+struct DicomFilePlanes {
+    std::int64_t columns = 0, rows = 0;
+    bool isMosaic = false;
+    std::vector<DicomPlane> planes;
+};
+
+/// \throws FileError when the header contradicts itself, when frames have no place of their own, or
+///         values go through a lookup table
+DicomFilePlanes dicomPlanes(const DicomFile& dicom, const DicomPixelFormat& format);
+
+bool isSiemensMosaic(const DicomHeader& header);
+
+/// Cuts `whole`, the plane of a mosaic as its header has it, into the tiles' planes.
+/// \throws FileError when the header does not say how many tiles there are and how they stack
+DicomFilePlanes mosaicPlanes(const DicomFile& dicom, const DicomPixelFormat& format,
+                             const DicomPlane& whole);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,163 @@
+#include "DicomStack.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "FileFault.h"
+
+namespace adaptiso::detail {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kLargestMisplacementMm = 0.05;  // readVolume's promise on physical coordinates
+
+/// The lower one of an even number.
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + (std::ssize(values) - 1) / 2;
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+std::vector<double> stepsBetween(const std::vector<double>& along) {
+    std::vector<double> steps;
+    for (std::size_t n = 1; n < along.size(); ++n) steps.push_back(along[n] - along[n - 1]);
+    return steps;
+}
+
+/// "4 mm between slices 3 and 4 where 2 mm is usual": the step that is furthest from the usual one.
+std::string describeGap(const std::vector<double>& along) {
+    const std::vector<double> steps = stepsBetween(along);
+    const double usual = median(steps);
+    const auto isOdd = [&](double step) { return std::abs(step - usual) > kLargestMisplacementMm; };
+    const auto odd = std::ranges::count_if(steps, isOdd);
+    const auto worst =
+        std::ranges::max_element(steps, {}, [&](double step) { return std::abs(step - usual); });
+    const auto before = worst - steps.begin() + 1;
+    const double missing = std::round(*worst / usual) - 1;
+    const bool isMissing =
+        missing >= 1 && std::abs(*worst - (missing + 1) * usual) < 2 * kLargestMisplacementMm;
+    return fmt::format(
+        "uneven slice spacing: {} mm between slices {} and {} where {} mm is usual{}{}",
+        number(*worst), before, before + 1, number(usual),
+        isMissing
+            ? fmt::format(" ({} missing there)", missing > 1 ? fmt::format("{} slices are", missing)
+                                                             : std::string("a slice is"))
+            : std::string(),
+        odd > 1 ? fmt::format(", and {} more such steps", odd - 1) : std::string());
+}
+
+/// Even steps along the line, from the first plane to the last.
+struct EvenSteps {
+    std::int64_t count = 0;
+    double stepMm = 0;
+};
+
+EvenSteps evenSteps(const fs::path& input, const std::vector<double>& along) {
+    const double length = along.back() - along.front();
+    const double intervals = std::max(1.0, std::round(length / median(stepsBetween(along))));
+    constexpr double kMostMade = 8;  // slices for each one that is there: else it is not a series
+    if (intervals > kMostMade * static_cast<double>(along.size())) {
+        refuse(input, describeGap(along) + ": too far apart to be resampled",
+               "give one series of slices");
+    }
+    return {static_cast<std::int64_t>(intervals) + 1, length / intervals};
+}
+
+std::vector<SliceBlend> blendsOf(const std::vector<double>& along, const EvenSteps& even) {
+    std::vector<SliceBlend> blends;
+    std::size_t before = 0;
+    for (std::int64_t k = 0; k < even.count; ++k) {
+        const double at = along.front() + static_cast<double>(k) * even.stepMm;
+        while (before + 2 < along.size() && along[before + 1] <= at) ++before;
+        const double weight = (at - along[before]) / (along[before + 1] - along[before]);
+        blends.push_back({before, std::clamp(weight, 0.0, 1.0)});
+    }
+    return blends;
+}
+
+std::string tiltWarning(double tiltRad) {
+    return fmt::format(
+        "the slices are tilted by {:.2f} degrees against their stack (gantry tilt): "
+        "kept as shear",
+        tiltRad * 180 / std::numbers::pi);
+}
+
+}  // namespace
+
+void requirePlacedPlanes(const std::vector<DicomFile>& files, const DicomGroup& group) {
+    for (const DicomPlane& plane : group.planes) {
+        const char* fault =
+            !plane.position                           ? "has no ImagePositionPatient (position)"
+            : !plane.alongRow || !plane.alongColumn   ? "has no usable ImageOrientationPatient"
+            : !plane.columnStepMm || !plane.rowStepMm ? "has no usable PixelSpacing"
+            : !(*plane.columnStepMm > 0 && *plane.rowStepMm > 0) ? "has a PixelSpacing of 0 or less"
+            : std::abs(dot(*plane.alongRow, *plane.alongColumn)) > 1e-3
+                ? "has an ImageOrientationPatient whose rows and columns are not perpendicular"
+                : nullptr;
+        if (fault) {
+            refuse(files[plane.file].path,
+                   fmt::format("the DICOM image {}: where it lies is unknown", fault),
+                   "export the series again with its geometry");
+        }
+    }
+}
+
+DicomStack stackDicomPlanes(const fs::path& input, const DicomGroup& group,
+                            std::vector<DicomPlane> planes, bool resamplesSlices) {
+    const DicomPlane first = planes.front();
+    const Vec3 normal = normalized(cross(*first.alongRow, *first.alongColumn));
+    std::ranges::stable_sort(planes, {},
+                             [&](const DicomPlane& plane) { return dot(*plane.position, normal); });
+
+    const Vec3 origin = *planes.front().position;
+    const double steps = static_cast<double>(planes.size() - 1);
+    const Vec3 span = *planes.back().position - origin;
+    const Vec3 line = normalized(span);
+    std::vector<double> along;  // the line
+    bool isEven = true;
+    for (std::size_t n = 0; n < planes.size(); ++n) {
+        const Vec3 from = *planes[n].position - origin;
+        along.push_back(dot(from, line));
+        const double beside = norm(from - along.back() * line);
+        if (beside > kLargestMisplacementMm) {
+            refuse(input,
+                   fmt::format("slice {} lies {} mm beside the line through the other slices' "
+                               "positions",
+                               n + 1, number(beside)),
+                   "give one evenly stacked series");
+        }
+        const Vec3 off = from - static_cast<double>(n) / steps * span;
+        if (norm(off) > kLargestMisplacementMm) isEven = false;
+    }
+    if (!isEven && !resamplesSlices) {
+        refuse(input, describeGap(along),
+               "give the complete series, or let the slices be resampled (--resample-slices)");
+    }
+
+    DicomStack stack;
+    EvenSteps even{std::ssize(planes), norm(span) / steps};
+    if (!isEven) {
+        even = evenSteps(input, along);
+        stack.blends = blendsOf(along, even);
+        stack.warnings.push_back(fmt::format("{}: {} slices resampled to {}, {} mm apart",
+                                             describeGap(along), planes.size(), even.count,
+                                             number(even.stepMm)));
+    }
+    const double tilt = std::acos(std::min(1.0, dot(line, normal)));
+    if (std::sin(tilt) * norm(span) > kLargestMisplacementMm) {
+        stack.warnings.push_back(tiltWarning(tilt));
+    }
+    stack.geometry = {
+        {group.columns, group.rows, even.count},
+        origin,
+        {{{*first.columnStepMm * *first.alongRow, *first.rowStepMm * *first.alongColumn,
+           (isEven ? 1 / steps : even.stepMm / norm(span)) * span}}}};
+    stack.planes = std::move(planes);
+    return stack;
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "DicomFile.h"
+#include "DicomGroups.h"
+#include "adaptiso/Core/ImageGeometry.h"
+
+namespace adaptiso::detail {
+
+/// A slice made of two neighbours: (1 - weight) * slice `before` + weight * slice `before` + 1.
+struct SliceBlend {
+    std::size_t before = 0;
+    double weight = 0;
+};
+
+/// One volume's planes in their order along the normal, and where they lie together.
+struct DicomStack {
+    std::vector<DicomPlane> planes;
+    ImageGeometry geometry;
+    /// How each of the geometry's slices is made where the planes are uneven; else empty, and the
+    /// planes are the slices.
+    std::vector<SliceBlend> blends;
+    std::vector<std::string> warnings;
+};
+
+/// \throws FileError unless all planes of the group have a position, an orientation and a spacing
+void requirePlacedPlanes(const std::vector<DicomFile>& files, const DicomGroup& group);
+
+/// Sorts a volume's planes and checks that they lie evenly on a line, within 0.05 mm. The step from
+/// one to the next is kept as it is: tilt becomes shear.
+///
+/// \param planes          two or more, no two at one place
+/// \param resamplesSlices  uneven planes are blended linearly onto even steps of their usual
+///                        distance along the line through their positions
+/// \throws FileError when planes lie beside the line, or unevenly and are not to be resampled
+DicomStack stackDicomPlanes(const std::filesystem::path& input, const DicomGroup& group,
+                            std::vector<DicomPlane> planes, bool resamplesSlices);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,270 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "DicomBuilder.h"
+#include "Fixtures.h"
+#include "adaptiso/ImageIO/ListSeries.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
+
+namespace adaptiso::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+DicomBuilder slice(int k) {
+    return fieldSlice(tellTale, {1, 2, 3.0 + 2 * k});
+}
+
+void writeVolume(const fs::path& folder, int slices, const std::string& uid = "1.2.3.4") {
+    fs::create_directories(folder);
+    for (int k = 0; k < slices; ++k) {
+        writeFile(folder / ("s" + std::to_string((k * 3) % 7)),
+                  slice(k).text(0x0020000E, "UI", uid).file());
+    }
+}
+
+/// One coronal image of another series.
+DicomBuilder scout(const char* imageType) {
+    DicomBuilder image = fieldSlice(tellTale, {0, 0, 0}, {1, 0, 0}, {0, 0, -1});
+    image.text(0x0020000E, "UI", "9.9.1").text(0x00080008, "CS", imageType);
+    return image;
+}
+
+std::int64_t slicesOf(const ReadVolume& read) {
+    return read.volume.view().geometry().size[2];
+}
+
+bool mentions(const std::vector<std::string>& lines, std::string_view text) {
+    return std::ranges::any_of(
+        lines, [&](const std::string& line) { return line.find(text) != std::string::npos; });
+}
+
+TEST(DicomFolders, AreSearchedInTheirSubfolders) {
+    const TempFolder folder;
+    for (int k = 0; k < 6; ++k) {
+        const fs::path part = folder / (k % 2 ? "a/deep/er" : "b");
+        fs::create_directories(part);
+        writeFile(part / std::to_string(k), slice(k).file());
+    }
+    const ReadVolume read = readVolume(folder.path());
+    EXPECT_EQ(slicesOf(read), 6);
+    EXPECT_TRUE(read.warnings.empty());
+    expectField(read.volume, tellTale);
+}
+
+TEST(DicomFolders, LinksToFoldersAndHiddenOnesAreNotEntered) {
+    const TempFolder folder;
+    writeVolume(folder / "in", 3);
+    writeVolume(folder / "in/.git", 3);                               // the same again
+    fs::create_directory_symlink("..", folder / "in/up");             // a loop
+    writeFile(folder / "in/._s0.dcm", std::string("\0\5\x16\7", 4));  // macOS leaves such beside
+    const ReadVolume read = readVolume(folder / "in");
+    EXPECT_EQ(slicesOf(read), 3);
+    EXPECT_TRUE(mentions(read.warnings, "links to folders"));
+}
+
+TEST(DicomFolders, OneDamagedFileBelowIsRefused) {
+    const TempFolder folder;
+    writeVolume(folder / "in", 3);
+    fs::create_directory(folder / "in/more");
+    const std::string whole = slice(4).file();
+    const fs::path cut = writeFile(folder / "in/more/x", whole.substr(0, whole.size() - 1));
+    const std::string message = refusalOf(folder / "in");
+    EXPECT_TRUE(message.starts_with(cut.native())) << message;
+    EXPECT_NE(message.find("truncated"), std::string::npos) << message;
+}
+
+TEST(DicomStrays, LocalizersAreLeftAsideAndNamed) {
+    for (const char* type : {"ORIGINAL\\PRIMARY\\LOCALIZER", "DERIVED\\PRIMARY\\OTHER"}) {
+        const TempFolder folder;
+        writeVolume(folder.path(), 4);
+        writeFile(folder / "0scout", scout(type).file());
+        const ReadVolume read = readVolume(folder.path());
+        expectField(read.volume, tellTale);
+        EXPECT_EQ(slicesOf(read), 4);
+        EXPECT_TRUE(mentions(read.warnings, "left aside: 1 slice of 4 x 3 voxels, coronal"));
+        EXPECT_EQ(mentions(read.warnings, "localizer"), std::string(type).ends_with("LOCALIZER"));
+        EXPECT_FALSE(mentions(read.warnings, "9.9.1") || mentions(read.warnings, "0scout"));
+    }
+}
+
+TEST(DicomStrays, AScoutWithinTheSeriesIsLeftAside) {
+    const TempFolder folder;
+    writeVolume(folder.path(), 5);
+    writeFile(folder / "x",
+              scout("ORIGINAL\\PRIMARY\\LOCALIZER").text(0x0020000E, "UI", "1.2.3.4").file());
+    EXPECT_EQ(slicesOf(readVolume(folder.path())), 5);
+}
+
+TEST(DicomStrays, ASurveyInThreeDirectionsIsLeftAside) {
+    const TempFolder folder;
+    writeVolume(folder.path(), 6);
+    const std::vector<std::pair<Vec3, Vec3>> directions{
+        {{1, 0, 0}, {0, 1, 0}}, {{1, 0, 0}, {0, 0, -1}}, {{0, 1, 0}, {0, 0, -1}}};
+    for (std::size_t d = 0; d < 3; ++d) {
+        const Vec3 normal = cross(directions[d].first, directions[d].second);
+        for (int k = 0; k < 5; ++k) {
+            DicomBuilder image =
+                fieldSlice(tellTale, 10.0 * k * normal, directions[d].first, directions[d].second);
+            image.text(0x0020000E, "UI", "5.5");
+            writeFile(folder / ("survey" + std::to_string(5 * d + k)), image.file());
+        }
+    }
+    const ReadVolume read = readVolume(folder.path());
+    EXPECT_EQ(slicesOf(read), 6);
+    EXPECT_EQ(read.warnings.size(), 3U);
+    EXPECT_TRUE(mentions(read.warnings, "5 slices of 4 x 3 voxels, sagittal"));
+}
+
+TEST(DicomStrays, ColourImagesOfOtherSeriesAreLeftAside) {
+    const TempFolder folder;
+    writeVolume(folder.path(), 3);
+    DicomBuilder image = scout("DERIVED\\SECONDARY");
+    image.text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.7").text(0x00280004, "CS", "RGB");
+    image.us(0x00280002, 3).without(0x00200032).without(0x00200037);
+    writeFile(folder / "shot", image.file());
+    const ReadVolume read = readVolume(folder.path());
+    EXPECT_EQ(slicesOf(read), 3);
+    EXPECT_TRUE(mentions(read.warnings, "screenshot or colour"));
+}
+
+TEST(DicomStrays, NothingOfTheSameSeriesIsLeftAside) {
+    const auto refused = [](DicomBuilder last, std::string_view fault) {
+        const TempFolder folder;
+        writeVolume(folder.path(), 4);
+        writeFile(folder / "last", last.file());  // without it, four even slices
+        const std::string message = refusalOf(folder.path());
+        EXPECT_NE(message.find(fault), std::string::npos) << message;
+    };
+    refused(slice(4).us(0x00280010, 2).us(0x00280011, 2), "differ in series, size");
+    refused(slice(4).text(0x00280030, "DS", "0.75\\0.6"), "differ in series, size");
+    refused(slice(4).text(0x00200037, "DS", "0.9998\\0.02\\0\\-0.02\\0.9998\\0"), "differ in");
+    refused(slice(4).us(0x00280100, 12), "pixel bits");
+    refused(slice(4).text(0x00280004, "CS", "PALETTE COLOR"), "colour");
+    refused(slice(4).without(0x00200037), "unknown orientation");
+    refused(slice(4).without(0x00200032), "no ImagePositionPatient");
+}
+
+TEST(DicomStrays, TwoVolumesAreForTheUserToChoose) {
+    const TempFolder folder;
+    writeVolume(folder / "a", 3);
+    writeVolume(folder / "b", 4, "7.7");
+    const std::string message = refusalOf(folder.path());
+    EXPECT_NE(message.find("--series"), std::string::npos) << message;
+    EXPECT_EQ(slicesOf(readVolume(folder.path(), {.series = "2"})), 4);
+    EXPECT_EQ(slicesOf(readVolume(folder.path(), {.series = "1.2.3.4"})), 3);
+}
+
+// ---- DICOMDIR
+
+std::string directoryOf(const std::vector<std::string>& names) {
+    std::vector<DicomBuilder> records(1);  // a record without a file: the patient's
+    records[0].text(0x00041430, "CS", "PATIENT").text(0x00100010, "PN", "Secret^Patient");
+    for (const std::string& name : names) {
+        records.emplace_back().text(0x00041430, "CS", "IMAGE").text(0x00041500, "CS", name);
+    }
+    DicomBuilder directory;
+    directory.text(0x00080016, "UI", "1.2.840.10008.1.3.10").sequence(0x00041220, records);
+    return directory.file();
+}
+
+TEST(DicomDirectory, NamesTheSlicesThatAreRead) {
+    const TempFolder folder;
+    std::vector<std::string> names;
+    fs::create_directories(folder / "images/low");
+    for (int k = 0; k < 4; ++k) {
+        names.push_back("IMAGES\\LOW\\I" + std::to_string(k));
+        // media copied by other systems come out in small letters
+        writeFile(folder / ("images/low/i" + std::to_string(k)), slice(k).file());
+    }
+    writeFile(folder / "images/low/other", slice(9).file());  // not named
+    const ReadVolume read = readVolume(writeFile(folder / "DICOMDIR", directoryOf(names)));
+    EXPECT_EQ(slicesOf(read), 4);
+    expectField(read.volume, tellTale);
+}
+
+TEST(DicomDirectory, BesideTheSlicesDoesNotDisturb) {
+    const TempFolder folder;
+    writeVolume(folder / "I", 3);
+    writeFile(folder / "DICOMDIR", directoryOf({"I\\S0"}));
+    EXPECT_EQ(slicesOf(readVolume(folder.path())), 3);
+}
+
+TEST(DicomDirectory, MayNotLeaveItsFolderNorNameWhatIsMissing) {
+    const TempFolder folder;
+    writeVolume(folder / "I", 3);
+    fs::create_directory(folder / "sub");
+    const fs::path directory = folder / "sub/DICOMDIR";
+    for (const char* name : {"..\\I\\S0", "I/S0", "\\I", "."}) {
+        expectRefusal(writeFile(directory, directoryOf({name})), "outside its own folder");
+    }
+    expectRefusal(writeFile(directory, directoryOf({"GONE"})), "not there (GONE)");
+    expectRefusal(writeFile(directory, directoryOf({})), "no DICOM file found in this DICOMDIR");
+}
+
+// ---- listSeries
+
+TEST(ListSeries, SaysWhatAFolderHolds) {
+    const TempFolder folder;
+    writeVolume(folder / "a", 3);
+    for (const int k : {0, 1, 3}) {
+        writeFile(folder / ("b" + std::to_string(k)),
+                  slice(k).text(0x0020000E, "UI", "7.7").text(0x00080060, "CS", "MR").file());
+    }
+    writeFile(folder / "c", scout("ORIGINAL\\PRIMARY\\LOCALIZER").file());
+    writeFile(folder / "d.dcm", "no DICOM");
+    const DicomListing listing = listSeries(folder.path());
+    ASSERT_EQ(listing.series.size(), 3U);
+    const DicomSeries& first = listing.series[0];
+    EXPECT_EQ(first.number, 1);
+    EXPECT_EQ(first.uid, "1.2.3.4");
+    EXPECT_EQ(first.description, "Secret^Description");
+    EXPECT_EQ(first.modality, "CT");
+    EXPECT_EQ(first.orientation, "axial");
+    EXPECT_EQ(first.columns, 4);
+    EXPECT_EQ(first.rows, 3);
+    EXPECT_EQ(first.slices, 3);
+    EXPECT_EQ(first.volumes, 1);
+    EXPECT_EQ(first.spacingMm, (Vec3{0.5, 0.75, 2}));
+    EXPECT_TRUE(first.isReadable()) << first.fault;
+    EXPECT_EQ(listing.series[1].modality, "MR");
+    EXPECT_TRUE(listing.series[1].fault.starts_with("uneven slice spacing: 4 mm between slices 2"))
+        << listing.series[1].fault;
+    EXPECT_TRUE(listing.series[2].isLocalizer);
+    EXPECT_FALSE(listing.series[2].isReadable());
+    ASSERT_EQ(listing.damaged.size(), 1U);
+    EXPECT_EQ(listing.damaged[0].file, folder / "d.dcm");
+    EXPECT_EQ(listing.damaged[0].fault.find("d.dcm"), std::string::npos);
+}
+
+TEST(ListSeries, FaultsHoldNoFileNames) {
+    const TempFolder folder;
+    fs::create_directories(folder / "in");
+    for (int k = 0; k < 3; ++k) {
+        DicomBuilder image = slice(k);
+        if (k == 1) image.without(0x00200032);
+        writeFile(folder / ("in/PHI" + std::to_string(k)), image.file());
+        writeFile(folder / ("in/PHIrgb" + std::to_string(k)),
+                  slice(k).text(0x0020000E, "UI", "8").text(0x00280004, "CS", "RGB").file());
+    }
+    writeFile(folder / "in/PHIcopy", slice(0).text(0x0020000E, "UI", "7").file());
+    writeFile(folder / "in/PHIcopy2", slice(0).text(0x0020000E, "UI", "7").file());
+    writeFile(folder / "in/PHIcopy3", slice(1).text(0x0020000E, "UI", "7").file());
+    const DicomListing listing = listSeries(folder / "in");
+    ASSERT_EQ(listing.series.size(), 3U);
+    for (const DicomSeries& series : listing.series) {
+        EXPECT_FALSE(series.isReadable());
+        EXPECT_EQ(series.fault.find("PHI"), std::string::npos) << series.fault;
+    }
+}
+
+TEST(ListSeries, RefusesWhatIsNoDicom) {
+    const TempFolder folder;
+    EXPECT_THROW(listSeries(folder.path()), FileError);
+    EXPECT_THROW(listSeries(writeFile(folder / "x.nii", NiftiFile().bytes())), FileError);
+    EXPECT_THROW(listSeries(folder / "missing"), FileError);
+}
+
+}  // namespace
+}  // namespace adaptiso::testing
