@@ -56,6 +56,9 @@ double parseVolume(const std::string& text) {
 
 /// What one option alone can't tell.
 void checkCombinations(const MeshOptions& options) {
+    if (options.isovalues.empty() && !options.image.listsSeries) {
+        throw UsageError("--iso is required");
+    }
     if (options.index.border == Border::Open && options.needsClosedSurfaces()) {
         throw UsageError(
             "--min-volume and --fill-cavities need closed surfaces, not --border open");
@@ -86,16 +89,13 @@ CLI::Option* addChoice(CLI::App& app, const std::string& name, Target& target,
 }
 
 void declareInput(CLI::App& app, MeshOptions& options) {
-    app.add_option("INPUT", options.input,
-                   "A 3-D image: NIfTI, NRRD, MetaImage, MGH, a DICOM file, or a folder that "
-                   "holds the slices of one DICOM series")
+    app.add_option(
+           "INPUT", options.input,
+           "A 3-D image: NIfTI, NRRD, MetaImage, MGH, a DICOM file or DICOMDIR, or a folder "
+           "that holds the slices of a DICOM series")
         ->type_name("")
         ->required();
-    app.add_option("--series", options.series,
-                   "Which series of a DICOM folder with several: its number in the list that "
-                   "reading the folder without this option prints, or its UID")
-        ->type_name("N|UID")
-        ->group(kInput);
+    declareImageOptions(app, options.image, kInput);
 }
 
 void declareSurface(CLI::App& app, MeshOptions& options) {
@@ -107,7 +107,6 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
            "The isovalue: inside is where the image is >= V; auto lets Otsu's method choose. "
            "Give it several times for several surfaces")
         ->type_name("V|auto")
-        ->required()
         ->allow_extra_args(false)
         ->group(kSurface);
     addChoice<Method>(app, "--method", options.method,
@@ -206,6 +205,8 @@ constexpr const char* kFooter = R"(Examples:
   adaptiso-mesh head.nrrd --iso auto --largest --fill-cavities -o head.stl
   adaptiso-mesh ct/ --iso -300 --iso 250 -o 'ct-{iso}.ply' --json report.json
       one DICOM series, skin and bone, from one reading
+  adaptiso-mesh study/ --list-series
+      what a DICOM folder holds
   adaptiso-mesh T1.mgz --iso 90 -o lh.pial
       a FreeSurfer surface in tkRAS
 

@@ -248,6 +248,9 @@ void report(const MeshRun& run, const std::string& json) {
 }  // namespace
 
 int runMesh(const MeshOptions& asked) {
+    if (asked.image.listsSeries) {
+        return runSeriesList(asked.input, asked.image, asked.common, "adaptiso-mesh");
+    }
     MeshOptions options = asked;  // a loaded index brings options of its own
     const ThreadLimit threads(options.common);
     ProgressLine progress(options.common.isQuiet);
@@ -257,7 +260,7 @@ int runMesh(const MeshOptions& asked) {
 
     progress.show(kRead);
     const ReadVolume read =
-        run.timer.time(kRead, [&] { return readVolume(options.input, {options.series}); });
+        run.timer.time(kRead, [&] { return readVolume(options.input, options.image.read); });
     const VolumeView& volume = read.volume.view();
     run.input = run.timer.time(kRead, [&] { return summarize(read); });
     progress.clear();

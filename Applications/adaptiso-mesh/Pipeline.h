@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "Common/CommonOptions.h"
+#include "Common/ImageOptions.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -31,7 +32,7 @@ struct IndexFiles {
 /// What adaptiso-mesh is asked to do.
 struct MeshOptions {
     std::filesystem::path input;
-    std::optional<std::string> series;  ///< which of a DICOM folder's series
+    ImageOptions image;
     std::vector<IsovalueChoice> isovalues;
     std::filesystem::path output;  ///< empty: named after the input, in the current folder
     Method method = Method::Boxes;
@@ -49,7 +50,8 @@ struct MeshOptions {
     }
 };
 
-/// Reads the volume, extracts and checks the surfaces, and writes all of them or none.
+/// Reads the volume, extracts and checks the surfaces, and writes all of them or none; or lists the
+/// input's series.
 /// \return an exit code
 /// \throws UsageError     the output's format is unknown or can't hold the frame
 /// \throws FileError      the input can't be read, the output can't be written

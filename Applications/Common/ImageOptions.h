@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+
+#include "Common/CommonOptions.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
+
+namespace adaptiso {
+
+/// What every program that reads an image takes.
+struct ImageOptions {
+    ReadOptions read;
+    bool listsSeries = false;  ///< list what a DICOM input holds, and do nothing else
+    bool showsPhi = false;     ///< the list holds what may identify the patient
+};
+
+/// Adds --series, --volume-index and --resample-slices.
+void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& group);
+
+/// Adds the same, --list-series and --show-phi.
+void declareImageOptions(CLI::App& app, ImageOptions& options, const std::string& group);
+
+/// Lists the series of `input` on stdout: as text, or as JSON on stdout or in a file, as `common`
+/// says. UIDs, descriptions and files' names are shown only with --show-phi.
+/// \param program  the calling program's name, for the JSON
+/// \return kExitOk, also when some of the series can't be read
+/// \throws FileError      the input is no DICOM, or holds no image
+int runSeriesList(const std::filesystem::path& input, const ImageOptions& options,
+                  const CommonOptions& common, const std::string& program);
+
+}  // namespace adaptiso

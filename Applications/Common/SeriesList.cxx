@@ -1,0 +1,118 @@
+#include <iostream>
+#include <sstream>
+
+#include "Common/AtomicOutput.h"
+#include "Common/ExitCodes.h"
+#include "Common/ImageOptions.h"
+#include "Common/Json.h"
+#include "adaptiso/ImageIO/ListSeries.h"
+
+namespace adaptiso {
+namespace {
+
+std::string counted(std::int64_t count, const std::string& thing) {
+    return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
+std::string spacingText(const Vec3& mm) {
+    const auto text = [](double value) {
+        std::ostringstream digits;
+        digits << value;  // six of them
+        return value > 0 ? digits.str() : "?";
+    };
+    return text(mm.x) + " x " + text(mm.y) + " x " + text(mm.z) + " mm";
+}
+
+void printSeries(std::ostream& out, const DicomSeries& series, bool showsPhi) {
+    out << "  " << series.number << ": " << (series.modality.empty() ? "?" : series.modality)
+        << ", ";
+    if (series.volumes > 1) out << counted(series.volumes, "volume") << " of ";
+    out << counted(series.slices, "slice") << " of " << series.columns << " x " << series.rows
+        << " voxels, " << spacingText(series.spacingMm) << ", " << series.orientation
+        << (series.isLocalizer ? ", localizer" : "") << '\n';
+    if (showsPhi) {
+        out << "     UID " << series.uid << ", description '" << series.description << "'\n";
+    }
+    if (!series.isReadable()) out << "     can't be read: " << series.fault << '\n';
+    for (const std::string& warning : series.warnings) out << "     " << warning << '\n';
+}
+
+void printList(std::ostream& out, const std::string& name, const DicomListing& listing,
+               bool showsPhi) {
+    out << name << " holds " << listing.series.size() << " series\n";
+    for (const DicomSeries& series : listing.series) printSeries(out, series, showsPhi);
+    if (listing.otherFiles > 0) {
+        out << "  " << counted(static_cast<std::int64_t>(listing.otherFiles), "DICOM file")
+            << " without an image\n";
+    }
+    for (const std::string& warning : listing.warnings) out << "  " << warning << '\n';
+    for (const DicomFault& damaged : listing.damaged) {
+        out << "  damaged file" << (showsPhi ? " " + damaged.file.string() : std::string()) << ": "
+            << damaged.fault << '\n';
+    }
+}
+
+Json seriesJson(const DicomSeries& series, bool showsPhi) {
+    const auto mm = [](double value) { return value > 0 ? Json(value) : Json(nullptr); };
+    Json json{
+        {"number", series.number},
+        {"modality", series.modality},
+        {"sizeVoxels", {series.columns, series.rows, series.slices}},
+        {"volumes", series.volumes},
+        {"spacingMm", {mm(series.spacingMm.x), mm(series.spacingMm.y), mm(series.spacingMm.z)}},
+        {"orientation", series.orientation},
+        {"localizer", series.isLocalizer},
+        {"readable", series.isReadable()},
+        {"fault", series.isReadable() ? Json(nullptr) : Json(series.fault)},
+        {"warnings", series.warnings}};
+    if (showsPhi) {
+        json["uid"] = series.uid;
+        json["description"] = series.description;
+    }
+    return json;
+}
+
+std::string listJson(const std::string& program, const std::string& name,
+                     const DicomListing& listing, bool showsPhi) {
+    Json series = Json::array(), damaged = Json::array();
+    for (const DicomSeries& one : listing.series) series.push_back(seriesJson(one, showsPhi));
+    for (const DicomFault& one : listing.damaged) {
+        Json json{{"fault", one.fault}};
+        if (showsPhi) json["file"] = one.file.string();
+        damaged.push_back(json);
+    }
+    const Json report{{"schema", "adaptiso-series/1"},
+                      {"program", {{"name", program}, {"version", programVersion()}}},
+                      {"input", {{"file", name}}},
+                      {"series", series},
+                      {"filesWithoutImage", listing.otherFiles},
+                      {"damagedFiles", damaged},
+                      {"warnings", listing.warnings}};
+    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+int runSeriesList(const std::filesystem::path& input, const ImageOptions& options,
+                  const CommonOptions& common, const std::string& program) {
+    const DicomListing listing = listSeries(input);
+    const std::string name = baseName(input);
+    const std::string json =
+        common.wantsJson() ? listJson(program, name, listing, options.showsPhi) : "";
+    if (common.wantsJsonOnStdout()) {
+        std::cout << json;
+    } else if (!common.isQuiet) {
+        printList(std::cout, name, listing, options.showsPhi);
+    }
+    if (common.wantsJson() && !common.wantsJsonOnStdout()) {
+        checkNotInput(common.json, input);
+        checkOutput(common.json);
+        std::vector<AtomicOutput> outputs;
+        outputs.emplace_back(common.json).writeText(json);
+        AtomicOutput::commit(outputs);
+    }
+    if (!std::cout.flush()) throw FileError("standard output: can't be written");
+    return kExitOk;
+}
+
+}  // namespace adaptiso
