@@ -1,0 +1,165 @@
+#include "RemeshTarget.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "adaptiso/Core/Parallel.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr std::int64_t kGrain = 4096;
+constexpr int kNormalSmoothings = 4;  // takes the stairs out of the normals of a binary volume
+
+/// Weights of a, b, c that give p. \pre p lies on the triangle, as near as rounding lets it
+std::array<double, 3> barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 n = areaVector2(a, b, c);
+    const double n2 = squaredNorm(n);
+    if (!(n2 > 0)) return {1, 0, 0};
+    const double u = std::clamp(dot(areaVector2(p, b, c), n) / n2, 0.0, 1.0);
+    const double v = std::clamp(dot(areaVector2(a, p, c), n) / n2, 0.0, 1.0 - u);
+    return {u, v, 1 - u - v};
+}
+
+/// Two unit vectors across n. \pre n has length 1
+std::array<Vec3, 2> tangents(const Vec3& n) {
+    const Vec3 axis = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 u = normalized(cross(axis, n));
+    return {u, cross(n, u)};
+}
+
+using Row = std::array<double, 7>;
+
+/// Solves the 6 x 6 system whose rows hold the right side last. \return false: singular
+bool solve(std::array<Row, 6>& m) {
+    for (int column = 0; column < 6; ++column) {
+        int pivot = column;
+        for (int row = column + 1; row < 6; ++row) {
+            if (std::abs(m[row][column]) > std::abs(m[pivot][column])) pivot = row;
+        }
+        // The unknowns are scaled to be of one size, so this is a relative bound.
+        if (!(std::abs(m[pivot][column]) > 1e-9)) return false;
+        std::swap(m[column], m[pivot]);
+        for (int row = 0; row < 6; ++row) {
+            if (row == column) continue;
+            const double factor = m[row][column] / m[column][column];
+            for (int k = column; k < 7; ++k) m[row][k] -= factor * m[column][k];
+        }
+    }
+    for (int row = 0; row < 6; ++row) m[row][6] /= m[row][row];
+    return true;
+}
+
+}  // namespace
+
+RemeshTarget::RemeshTarget(const TriangleMesh& surface)
+    : surface_(surface),
+      tree_(surface),
+      first_(surface.points.size() + 1),
+      around_(3 * surface.triangles.size()),
+      areaMm2_(surface.points.size()),
+      normals_(surface.points.size()) {
+    for (const Triangle& t : surface.triangles) {
+        for (const VertexId v : t) ++first_[v + 1];
+    }
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    std::vector<std::int64_t> end(first_.begin(), first_.end() - 1);
+    for (std::int64_t t = 0; t < std::ssize(surface.triangles); ++t) {
+        const auto& [a, b, c] = surface.triangles[t];
+        const Vec3 area2 = areaVector2(surface.points[a], surface.points[b], surface.points[c]);
+        for (const VertexId v : surface.triangles[t]) {
+            around_[end[v]++] = t;
+            areaMm2_[v] += norm(area2) / 6;
+            normals_[v] += area2;
+        }
+    }
+    const std::int64_t count = std::ssize(normals_);
+    for (int round = 0; round < kNormalSmoothings; ++round) {
+        std::vector<Vec3> smooth(normals_.size());
+        parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t stop) {
+            for (VertexId v = begin; v < stop; ++v) {
+                Vec3 sum;
+                for (const std::int64_t t : trianglesAround(v)) {
+                    for (const VertexId w : surface_.triangles[t]) sum += normals_[w];
+                }
+                smooth[v] = sum;
+            }
+        });
+        normals_ = std::move(smooth);
+    }
+    for (Vec3& n : normals_) n = normalized(n);
+}
+
+Landing RemeshTarget::project(const Vec3& p, std::int64_t hint) const {
+    const ClosestPoint closest = tree_.closestPoint(p, hint);
+    const auto& [a, b, c] = surface_.triangles[closest.triangle];
+    const auto w =
+        barycentric(closest.pointMm, surface_.points[a], surface_.points[b], surface_.points[c]);
+    return {closest.pointMm, closest.triangle,
+            normalized(w[0] * normals_[a] + w[1] * normals_[b] + w[2] * normals_[c]),
+            w[0] * sizeAt(a) + w[1] * sizeAt(b) + w[2] * sizeAt(c)};
+}
+
+Landing RemeshTarget::atVertex(VertexId v) const {
+    return {surface_.points[v], around_[first_[v]], normals_[v], sizeAt(v)};
+}
+
+std::vector<VertexId> RemeshTarget::facingWithin(const Landing& at, double radiusMm) const {
+    const auto isNear = [&](VertexId w) {
+        return squaredNorm(surface_.points[w] - at.pointMm) < radiusMm * radiusMm &&
+               dot(normals_[w], at.normal) > 0;
+    };
+    std::vector<VertexId> found;  // flooded from the landing; sorted, it is a set
+    std::vector<VertexId> front(surface_.triangles[at.triangle].begin(),
+                                surface_.triangles[at.triangle].end());
+    while (!front.empty()) {
+        std::sort(front.begin(), front.end());
+        front.erase(std::unique(front.begin(), front.end()), front.end());
+        std::erase_if(front, [&](VertexId w) {
+            return !isNear(w) || std::binary_search(found.begin(), found.end(), w);
+        });
+        const auto middle = found.insert(found.end(), front.begin(), front.end());
+        std::inplace_merge(found.begin(), middle, found.end());
+        std::vector<VertexId> next;
+        for (const VertexId w : front) {
+            for (const std::int64_t t : trianglesAround(w)) {
+                next.insert(next.end(), surface_.triangles[t].begin(), surface_.triangles[t].end());
+            }
+        }
+        front = std::move(next);
+    }
+    return found;
+}
+
+LocalFit RemeshTarget::fit(const Landing& at, double radiusMm) const {
+    const auto [u, v] = tangents(at.normal);
+    const std::vector<VertexId> found = facingWithin(at, radiusMm);
+    std::array<Row, 6> normalEquations{};
+    double weights = 0;
+    for (const VertexId w : found) {
+        const Vec3 d = (1 / radiusMm) * (surface_.points[w] - at.pointMm);
+        const double fade = 1 - squaredNorm(d);
+        const double weight = areaMm2_[w] * fade * fade;
+        const double x = dot(d, u), y = dot(d, v);
+        const std::array<double, 6> basis{1, x, y, x * x, x * y, y * y};
+        for (int row = 0; row < 6; ++row) {
+            for (int k = 0; k < 6; ++k) normalEquations[row][k] += weight * basis[row] * basis[k];
+            normalEquations[row][6] += weight * basis[row] * dot(d, at.normal);
+        }
+        weights += weight;
+    }
+    constexpr std::size_t kEnoughPoints = 12;  // twice the unknowns
+    if (found.size() < kEnoughPoints || !(weights > 0)) return {};
+    for (Row& row : normalEquations) {
+        for (double& value : row) value /= weights;
+    }
+    if (!solve(normalEquations)) return {};
+    const double xx = 2 * normalEquations[3][6], xy = normalEquations[4][6],
+                 yy = 2 * normalEquations[5][6];
+    const double mean = (xx + yy) / 2, spread = std::hypot((xx - yy) / 2, xy);
+    return {radiusMm * normalEquations[0][6], (std::abs(mean) + spread) / radiusMm, true};
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,88 @@
+#include "SizeField.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <queue>
+#include <utility>
+
+#include "adaptiso/Core/Parallel.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr double kBendPerEdge = 0.5;  // radians: a circle gets 12 edges
+constexpr double kGrowth = 0.2;       // neighbouring edges differ by less than a fourth
+
+double meanEdgeMm(const TriangleMesh& mesh) {
+    double sum = 0;
+    for (const Triangle& t : mesh.triangles) {
+        for (int side = 0; side < 3; ++side) {
+            sum += norm(mesh.points[t[side]] - mesh.points[t[(side + 1) % 3]]);
+        }
+    }
+    return sum / static_cast<double>(3 * mesh.triangles.size());
+}
+
+}  // namespace
+
+std::vector<double> spreadSizes(const RemeshTarget& target, const std::vector<SizeSeed>& seeds) {
+    const TriangleMesh& surface = target.surface();
+    std::vector<double> sizes(surface.points.size(), std::numeric_limits<double>::infinity());
+    using Entry = std::pair<double, VertexId>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    const auto offer = [&](VertexId v, double sizeMm) {
+        if (sizeMm >= sizes[v]) return;
+        sizes[v] = sizeMm;
+        queue.emplace(sizeMm, v);
+    };
+    for (const SizeSeed& seed : seeds) offer(seed.vertex, seed.sizeMm);
+    while (!queue.empty()) {
+        const auto [size, v] = queue.top();
+        queue.pop();
+        if (size > sizes[v]) continue;
+        for (const std::int64_t t : target.trianglesAround(v)) {
+            for (const VertexId w : surface.triangles[t]) {
+                offer(w, size + kGrowth * norm(surface.points[w] - surface.points[v]));
+            }
+        }
+    }
+    return sizes;
+}
+
+std::vector<double> adaptiveSizes(const RemeshTarget& target, Remesher& remesher,
+                                  const EdgeLengthRange& range,
+                                  const std::vector<const TriangleMesh*>& neighbours) {
+    // Two looks a shortest edge are enough; the growth bound fills in between.
+    const double looksMm = range.minimumMm / 2;
+    const double looks =
+        surfaceArea(target.surface()) / (std::numbers::sqrt3 / 2 * looksMm * looksMm);
+    constexpr double kMinLooks = 1000;
+    remesher.coarsen(static_cast<std::int64_t>(
+        std::max(kMinLooks, std::min(looks, static_cast<double>(target.surface().points.size())))));
+    std::vector<SizeSeed> seeds;
+    for (VertexId v = 0; v < remesher.mesh().vertexSlots(); ++v) {
+        if (remesher.mesh().isVertexAlive(v)) seeds.push_back({v, range.maximumMm});
+    }
+    std::vector<AabbTree> trees;
+    trees.reserve(neighbours.size());
+    for (const TriangleMesh* neighbour : neighbours) trees.emplace_back(*neighbour);
+    const double radiusMm = std::max(range.minimumMm, 3 * meanEdgeMm(target.surface()));
+    constexpr std::int64_t kGrain = 64;
+    parallelForPieces(std::ssize(seeds), kGrain, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) {
+            const Landing at = target.atVertex(seeds[n].vertex);
+            const LocalFit fit = target.fit(at, radiusMm);
+            // where nothing can be fitted the surface bends sharply
+            double size = fit.isValid ? kBendPerEdge / fit.curvaturePerMm : range.minimumMm;
+            for (const AabbTree& tree : trees) {
+                size = std::min(size, std::sqrt(tree.closestPoint(at.pointMm).squaredDistanceMm2));
+            }
+            seeds[n].sizeMm = std::clamp(size, range.minimumMm, range.maximumMm);
+        }
+    });
+    return spreadSizes(target, seeds);
+}
+
+}  // namespace adaptiso
