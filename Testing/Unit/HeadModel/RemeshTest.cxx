@@ -284,7 +284,8 @@ TEST(RemeshForBem, RemeshesTheSkinOfAScan) {
     const std::filesystem::path scan = "/usr/share/mricron/templates/ch2.nii.gz";
     if (!std::filesystem::exists(scan)) GTEST_SKIP() << "needs Debian's mricron-data";
     const ReadVolume read = readVolume(scan);
-    // Bright enough for tissue, smoothed over 13 mm and 9 mm: skin and what lies under it as one solid.
+    // Bright enough for tissue, smoothed over 13 mm and 9 mm: skin and what lies under it as one
+    // solid.
     const ImageGeometry& geometry = read.volume.view().geometry();
     std::vector<float> isTissue;
     dispatchPixelType(read.volume.view(), [&](const auto& view) {
