@@ -68,6 +68,13 @@ void checkCombinations(const MeshOptions& options) {
             "--adjust-vertices: is for --method dmc; the vertices of the other methods "
             "lie on the crossings already");
     }
+    if (options.index.border == Border::Open && options.method == Method::Adaptive) {
+        throw UsageError("--method adaptive closes surfaces at the border: not for --border open");
+    }
+    if (!(options.adaptive == AdaptiveOptions{}) && options.method != Method::Adaptive) {
+        throw UsageError(
+            "--max-error, --triangles, --reduction and --min-angle are for --method adaptive");
+    }
 }
 
 /// An option that takes one of a few words, each standing for a value; `words` in the order of the
@@ -111,14 +118,41 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
         ->group(kSurface);
     addChoice<Method>(app, "--method", options.method,
                       {{"boxes", Method::Boxes},
+                       {"adaptive", Method::Adaptive},
                        {"dmc", Method::DiscretizedMarchingCubes},
                        {"asc", Method::SkeletonClimbing},
                        {"mc", Method::MarchingCubes}},
                       "boxes: adaptive, few triangles where the surface is flat (default); "
+                      "adaptive: few triangles within a stated distance of the surface, none "
+                      "crossing another; "
                       "dmc: discretized marching cubes, coplanar facets between edge midpoints "
                       "merged; "
                       "asc: adaptive skeleton climbing, rectangular boxes, unmerged; "
                       "mc: marching cubes, every voxel at full resolution")
+        ->group(kSurface);
+    app.add_option(
+           "--max-error", options.adaptive.maxErrorMm,
+           "Method adaptive: no point of the surface of mc is farther than MM from the mesh, "
+           "nor the other way round (default, unless a count is given: a quarter of the "
+           "voxel)")
+        ->type_name("MM")
+        ->check(CLI::PositiveNumber)
+        ->group(kSurface);
+    app.add_option("--triangles", options.adaptive.maxTriangles,
+                   "Method adaptive: as near to the surface as N triangles can be")
+        ->type_name("N")
+        ->check(CLI::NonNegativeNumber)
+        ->group(kSurface);
+    app.add_option("--reduction", options.adaptive.reduction,
+                   "Method adaptive: the share F of mc's triangles to drop, 0 to 1")
+        ->type_name("F")
+        ->check(CLI::Range(0.0, 1.0))
+        ->group(kSurface);
+    app.add_option("--min-angle", options.adaptive.minAngleDeg,
+                   "Method adaptive: make no angle below DEG, 0 to 40, at the price of more "
+                   "triangles (default: 0)")
+        ->type_name("DEG")
+        ->check(CLI::Range(0.0, 40.0))
         ->group(kSurface);
     app.add_flag("--adjust-vertices", options.adjustVertices,
                  "Move the vertices of the method dmc from the midpoints to where the image "

@@ -41,6 +41,10 @@ Json inputJson(const MeshRun& run) {
 Json optionsJson(const MeshOptions& options) {
     return {{"method", toString(options.method)},
             {"adjustVertices", options.adjustVertices},
+            {"maxErrorMm", orNull(options.adaptive.maxErrorMm)},
+            {"maxTriangles", orNull(options.adaptive.maxTriangles)},
+            {"reduction", orNull(options.adaptive.reduction)},
+            {"minAngleDeg", options.adaptive.minAngleDeg},
             {"blockSize", options.index.blockSize},
             {"border", borderWord(options.index.border)},
             {"search", toString(options.index.search)},
@@ -117,6 +121,7 @@ Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {
             {"boxes", boxesJson(statistics.boxes)},
             {"boxesChangingTopology", statistics.boxesChangingTopology},
             {"edgesSplit", statistics.edgesSplit},
+            {"errorBoundMm", orNull(statistics.errorBoundMm)},
             {"triangles", topology.triangles},
             {"vertices", topology.vertices},
             {"marchingCubesTriangles", statistics.marchingCubesTriangles},

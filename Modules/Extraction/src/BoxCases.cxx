@@ -273,8 +273,10 @@ BoxCase makeCase(unsigned corners, unsigned joined) {
     for (auto& face : box.onFace) face.fill(255);
     const BoxIsoLines lines = isoLinesOf(corners, joined);
     for (const Polygon& loop : loopsOf(lines)) {
-        ++box.loopCount;
-        box.crossedEdges = static_cast<std::uint8_t>(box.crossedEdges + loop.size());
+        box.loopLength[box.loopCount++] = static_cast<std::uint8_t>(loop.size());
+        for (const std::int8_t edge : loop) {
+            box.loopEdge[box.crossedEdges++] = static_cast<std::uint8_t>(edge);
+        }
         LoopCutter cutter(loop);
         const std::vector<Polygon> facets = cutter.cut();
         for (const Polygon& facet : facets) addTriangles(box, facet);

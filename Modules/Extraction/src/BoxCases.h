@@ -91,6 +91,9 @@ struct BoxCase {
     std::uint8_t facetCount = 0;
     std::uint8_t loopCount = 0;     ///< closed loops of iso-lines on the faces
     std::uint8_t crossedEdges = 0;  ///< all loops' vertices
+    std::array<std::uint8_t, 4> loopLength{};
+    std::array<std::uint8_t, kBoxEdges>
+        loopEdge{};  ///< box edges of all loops, one after the other
     std::array<CaseHalfEdge, 32> halfEdge{};
     std::uint8_t triangleCount = 0;
     bool hasChordOnFace = false;  ///< of its triangles, see LoopCutter

@@ -8,11 +8,14 @@
 #include "MarchingCubes.h"
 #include "SurfaceLoops.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptive/AdaptiveMethod.h"
 
 namespace adaptiso {
 
 std::string_view toString(Method method) {
     switch (method) {
+        case Method::Adaptive:
+            return "adaptive";
         case Method::Boxes:
             return "boxes";
         case Method::DiscretizedMarchingCubes:
@@ -43,6 +46,7 @@ Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
                            std::to_string(detail::EdgeKey::kMaximumExtent) +
                            " samples along an axis");
     }
+    if (options.method == Method::Adaptive) return detail::extractAdaptive(volume, index, options);
     Extraction result = options.method == Method::MarchingCubes
                             ? detail::extractMarchingCubes(volume, index, options)
                             : detail::extractBoxes(volume, index, options);

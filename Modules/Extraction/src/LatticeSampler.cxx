@@ -51,19 +51,41 @@ public:
         return inside_(clamped(corner)) ? main >= other : other >= main;
     }
 
+    double crossingAlong(const LatticeEdge& edge) const override {
+        if (isVirtual(edge)) return 0.5;
+        const double below = static_cast<double>(clamped(edge.sample)),
+                     above = static_cast<double>(clamped(highEnd(edge)));
+        const double t = (isovalue_ - below) / (above - below);
+        return std::isnan(t) ? 0.5 : std::clamp(t, kHair, 1 - kHair);  // NaN at an end
+    }
+
     Crossing crossing(const LatticeEdge& edge) const override {
-        const Index3 &p = edge.sample, q = highEnd(edge);
-        double t = 0.5;  // towards a virtual sample, and with NaN at an end
-        if (!isVirtual(edge)) {
-            const double below = static_cast<double>(clamped(p)),
-                         above = static_cast<double>(clamped(q));
-            const double exact = (isovalue_ - below) / (above - below);
-            if (!std::isnan(exact)) t = std::clamp(exact, kHair, 1 - kHair);
-        }
-        return crossingAt(edge, t);
+        return crossingAt(edge, crossingAlong(edge));
     }
 
     Crossing midpoint(const LatticeEdge& edge) const override { return crossingAt(edge, 0.5); }
+
+    Vec3 normalAt(const Vec3& index) const override {
+        Index3 low;
+        Vec3 part;
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = static_cast<std::int64_t>(std::floor(index[axis]));
+            part[axis] = index[axis] - static_cast<double>(low[axis]);
+        }
+        Vec3 gradient;
+        for (int corner = 0; corner < 8; ++corner) {
+            Index3 p = low;
+            double weight = 1;
+            for (int axis = 0; axis < 3; ++axis) {
+                const int high = corner >> axis & 1;
+                p[axis] += high;
+                weight *= high == 1 ? part[axis] : 1 - part[axis];
+            }
+            if (closed_ && !contains(p)) return {};
+            gradient += weight * gradientAt(p);
+        }
+        return outward(gradient);
+    }
 
 private:
     static Index3 highEnd(const LatticeEdge& edge) {
@@ -88,9 +110,13 @@ private:
         } else {
             gradient = (1 - t) * gradientAt(p) + t * gradientAt(highEnd(edge));
         }
+        return {volume_.geometry.toPhysical(index), outward(gradient)};
+    }
+
+    /// The unit normal that belongs to a gradient per index step.
+    Vec3 outward(const Vec3& gradient) const {
         const Vec3 normal = -normalized(gradientToPhysical_ * gradient);
-        return {volume_.geometry.toPhysical(index),
-                std::isfinite(squaredNorm(normal)) ? normal : Vec3{}};
+        return std::isfinite(squaredNorm(normal)) ? normal : Vec3{};
     }
 
     std::uint32_t wholeRow(const T* samples, int count) const {
@@ -108,6 +134,10 @@ private:
             row |= static_cast<std::uint32_t>(inside_(value)) << x;
         }
         return row;
+    }
+
+    bool isVirtual(const Index3& p, const Index3& q) const {
+        return closed_ && (!contains(p) || !contains(q));
     }
 
     bool contains(const Index3& p) const {

@@ -46,14 +46,23 @@ public:
     /// \param normal  axis at right angles to the square
     virtual bool insideJoins(const Index3& corner, int normal) const = 0;
 
-    /// Where the surface crosses an edge, by linear interpolation, kHair or more from its ends;
-    /// half-way towards a virtual sample. Normal from central differences (one-sided at the
-    /// border) at the two samples, interpolated, taken to physical space.
+    /// Where along an edge (0 to 1) the surface crosses it, by linear interpolation, kHair or more
+    /// from its ends; half-way towards a virtual sample.
+    /// \pre one end is inside, the other is not
+    virtual double crossingAlong(const LatticeEdge& edge) const = 0;
+
+    /// The same crossing in physical space, and the normal there: from central differences
+    /// (one-sided at the border) at the two samples, interpolated, taken to physical space.
     /// \pre one end is inside, the other is not
     virtual Crossing crossing(const LatticeEdge& edge) const = 0;
 
     /// As crossing(), but in the middle of the edge, whatever the samples.
     virtual Crossing midpoint(const LatticeEdge& edge) const = 0;
+
+    /// The outward unit normal (physical space) at a continuous index: central differences at the
+    /// eight samples around it, interpolated. Zero where there is no gradient, and beyond a closed
+    /// border.
+    virtual Vec3 normalAt(const Vec3& index) const = 0;
 };
 
 }  // namespace adaptiso::detail

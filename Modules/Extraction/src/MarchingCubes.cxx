@@ -1,12 +1,13 @@
 #include "MarchingCubes.h"
 
 #include <algorithm>
-#include <atomic>
+#include <span>
 
 #include "ActiveBlocks.h"
 #include "Bits.h"
 #include "BlockSamples.h"
 #include "BoxCases.h"
+#include "CellTriangles.h"
 #include "LatticeSampler.h"
 #include "MeshRepair.h"
 #include "adaptiso/Core/Parallel.h"
@@ -30,21 +31,21 @@ public:
             block.firstVertex = vertexCount_;
             triangleCount_ += triangles;
             for (const auto& bits : block.vertices) vertexCount_ += bits.count();
+            vertexCount_ += block.middles;
+            middleCount_ += block.middles;
         }
     }
 
-    /// A cell has a triangle's edge across one of its faces; its neighbour there may have it too.
-    bool hasChordOnFace() const { return hasChordOnFace_; }
+    /// Triangles, were no loop filled from its middle: that takes two more.
+    std::int64_t tableTriangles() const { return triangleCount_ - 2 * middleCount_; }
 
-    void fill(TriangleMesh& mesh, bool isMirrored) const {
-        mesh.points.reserve(withSpare(vertexCount_));
-        mesh.normals.reserve(withSpare(vertexCount_));
-        mesh.triangles.reserve(withSpare(triangleCount_));
+    void fill(TriangleMesh& mesh, const ImageGeometry& geometry) const {
+        const bool isMirrored = geometry.isMirrored();
         mesh.points.resize(vertexCount_);
         mesh.normals.resize(vertexCount_);
         mesh.triangles.resize(triangleCount_);
         parallelForPieces(active_.count(), kPiece, [&](std::int64_t begin, std::int64_t end) {
-            for (std::int64_t b = begin; b < end; ++b) fillBlock(b, mesh, isMirrored);
+            for (std::int64_t b = begin; b < end; ++b) fillBlock(b, mesh, isMirrored, geometry);
         });
     }
 
@@ -55,6 +56,7 @@ private:
         std::array<Bits<N * N * N>, 3> vertices{};  ///< crossed lattice edges, by axis
         std::int64_t firstVertex = 0;
         std::int64_t firstTriangle = 0;  ///< while counting, the number of triangles
+        std::int64_t middles = 0;        ///< vertices in the middle of loops; after the others
     };
 
     static int cellOf(int x, int y, int z) { return x + N * (y + N * z); }
@@ -97,7 +99,7 @@ private:
                         joined |= static_cast<unsigned>(samples.insideJoins(corner, face / 2, 1))
                                   << face;
                     }
-                    f(cell, cases_[cases_.caseIndex(corners, joined)]);
+                    f(cell, cases_[cases_.caseIndex(corners, joined)], ambiguous != 0);
                 }
             }
         }
@@ -119,13 +121,30 @@ private:
                 }
             }
         }
-        forEachCell(samples, extent, [&](const Box&, const BoxCase& boxCase) {
+        forEachCell(samples, extent, [&](const Box& cell, const BoxCase& boxCase, bool mayCross) {
+            if (mayCross) {
+                const CellCrossings crossings = crossingsOf(samples, cell, boxCase);
+                if (needsFans(boxCase, crossings)) {
+                    forEachFan(
+                        boxCase, crossings, [&](int, int, int) { ++block.firstTriangle; },
+                        [&](std::span<const std::uint8_t> loop, const Vec3&) {
+                            block.firstTriangle += static_cast<std::int64_t>(loop.size());
+                            ++block.middles;
+                        });
+                    return;
+                }
+            }
             block.firstTriangle += boxCase.triangleCount;
-            if (boxCase.hasChordOnFace) hasChordOnFace_.store(true, std::memory_order_relaxed);
         });
     }
 
-    void fillBlock(std::int64_t b, TriangleMesh& mesh, bool isMirrored) const {
+    CellCrossings crossingsOf(const BlockSamples<N>& samples, const Box& cell,
+                              const BoxCase& boxCase) const {
+        return crossingsOfCell(sampler_, samples.sampleAt({cell.x, cell.y, cell.z}), boxCase);
+    }
+
+    void fillBlock(std::int64_t b, TriangleMesh& mesh, bool isMirrored,
+                   const ImageGeometry& geometry) const {
         const Block& block = blocks_[b];
         const Index3 first = firstSample(b);
         std::int64_t v = block.firstVertex;
@@ -162,50 +181,57 @@ private:
         };
         const BlockSamples<N> samples(sampler_, first);
         std::int64_t t = block.firstTriangle;
-        forEachCell(samples, extentOf(first), [&](const Box& cell, const BoxCase& boxCase) {
-            std::array<VertexId, kBoxEdges> vertex;
-            vertex.fill(-1);
-            const auto at = [&](int edge) {
-                if (vertex[edge] < 0) vertex[edge] = vertexOn(cell, edge);
-                return vertex[edge];
-            };
-            for (int i = 0; i < boxCase.triangleCount; ++i) {
-                const auto& [e, f, g] = boxCase.triangle[i];
-                mesh.triangles[t++] =
-                    isMirrored ? Triangle{at(e), at(g), at(f)} : Triangle{at(e), at(f), at(g)};
-            }
-        });
+        forEachCell(
+            samples, extentOf(first), [&](const Box& cell, const BoxCase& boxCase, bool mayCross) {
+                std::array<VertexId, kBoxEdges> vertex;
+                vertex.fill(-1);
+                const auto at = [&](int edge) {
+                    if (vertex[edge] < 0) vertex[edge] = vertexOn(cell, edge);
+                    return vertex[edge];
+                };
+                const auto add = [&](VertexId p, VertexId q, VertexId r) {
+                    mesh.triangles[t++] = isMirrored ? Triangle{p, r, q} : Triangle{p, q, r};
+                };
+                const auto addAt = [&](int e, int f, int g) { add(at(e), at(f), at(g)); };
+                if (mayCross) {
+                    const CellCrossings crossings = crossingsOf(samples, cell, boxCase);
+                    if (needsFans(boxCase, crossings)) {
+                        forEachFan(boxCase, crossings, addAt,
+                                   [&](std::span<const std::uint8_t> loop, const Vec3& middle) {
+                                       mesh.points[v] = geometry.toPhysical(middle);
+                                       mesh.normals[v] = toNormal(sampler_.normalAt(middle));
+                                       for (std::size_t i = 0; i < loop.size(); ++i) {
+                                           add(v, at(loop[i]), at(loop[(i + 1) % loop.size()]));
+                                       }
+                                       ++v;
+                                   });
+                        return;
+                    }
+                }
+                for (int i = 0; i < boxCase.triangleCount; ++i) {
+                    const auto& [e, f, g] = boxCase.triangle[i];
+                    addAt(e, f, g);
+                }
+            });
     }
 
     const LatticeSampler& sampler_;
     const ActiveBlocks& active_;
     const BoxCases& cases_ = BoxCases::instance();
     std::vector<Block> blocks_;
-    std::atomic<bool> hasChordOnFace_ = false;
     std::int64_t vertexCount_ = 0;
     std::int64_t triangleCount_ = 0;
+    std::int64_t middleCount_ = 0;
 };
 
-/// Where two cells have put an edge across their common face, one of the two is halved.
-std::int64_t splitDoubledChords(TriangleMesh& mesh) {
-    std::vector<ChordToSplit> chords;
-    for (const CrowdedEdge& edge : findCrowdedEdges(mesh)) {
-        // a cell's triangles stand together: the first two are one cell's, the next two the other's
-        chords.push_back({edge.a, edge.b, edge.triangles[0], edge.triangles[1]});
-    }
-    splitChords(mesh, chords);
-    return static_cast<std::int64_t>(chords.size());
-}
-
 template <int N>
-Extraction march(const LatticeSampler& sampler, const ActiveBlocks& active, bool isMirrored) {
+Extraction march(const LatticeSampler& sampler, const ActiveBlocks& active,
+                 const ImageGeometry& geometry) {
     Extraction result;
     MarchingCubes<N> method(sampler, active);
     method.countAll();
-    method.fill(result.mesh, isMirrored);
-    result.statistics.marchingCubesTriangles =
-        static_cast<std::int64_t>(result.mesh.triangles.size());
-    if (method.hasChordOnFace()) result.statistics.edgesSplit = splitDoubledChords(result.mesh);
+    method.fill(result.mesh, geometry);
+    result.statistics.marchingCubesTriangles = method.tableTriangles();
     return result;
 }
 
@@ -217,21 +243,21 @@ Extraction extractMarchingCubes(const VolumeView& volume, const SpanSpaceIndex& 
     const BlockGrid& grid = index.grid();
     const ActiveBlocks active(grid, std::move(query.blocks));
     const auto sampler = LatticeSampler::make(volume, options.isovalue, grid.border);
-    const bool isMirrored = volume.geometry().isMirrored();
+    const ImageGeometry& geometry = volume.geometry();
     if (options.progress) options.progress("extract", 0);
     Extraction result;
     switch (grid.blockSize) {
         case 2:
-            result = march<2>(*sampler, active, isMirrored);
+            result = march<2>(*sampler, active, geometry);
             break;
         case 4:
-            result = march<4>(*sampler, active, isMirrored);
+            result = march<4>(*sampler, active, geometry);
             break;
         case 8:
-            result = march<8>(*sampler, active, isMirrored);
+            result = march<8>(*sampler, active, geometry);
             break;
         default:
-            result = march<16>(*sampler, active, isMirrored);
+            result = march<16>(*sampler, active, geometry);
             break;
     }
     completeNormals(result.mesh);

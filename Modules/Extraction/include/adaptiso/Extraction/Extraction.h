@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -13,12 +14,31 @@ namespace adaptiso {
 
 /// How the surface is cut into triangles.
 enum class Method {
-    Boxes,  ///< simple cubic boxes of many sizes, merged where they agree: the thesis's method
+    Adaptive,  ///< few triangles within a stated distance of the surface of MarchingCubes;
+               ///< Border::Closed only
+    Boxes,     ///< simple cubic boxes of many sizes, merged where they agree: the thesis's method
     DiscretizedMarchingCubes,  ///< facets between edge midpoints, merged where they are coplanar
     SkeletonClimbing,  ///< simple rectangular boxes: adaptive skeleton climbing [Poston1998]
     MarchingCubes      ///< every cell at full resolution, faces decided alike from both sides
 };
 std::string_view toString(Method method);
+
+/// What Method::Adaptive aims at. With neither bound nor count the bound is
+/// kDefaultMaxErrorVoxels; with both, triangles are dropped until either stops it.
+struct AdaptiveOptions {
+    static constexpr double kDefaultMaxErrorVoxels = 0.25;  ///< of the narrowest sample distance
+
+    /// Two-sided: no point of the surface of MarchingCubes is farther from the mesh, no point of
+    /// the mesh farther from that surface, mm. \pre > 0
+    std::optional<double> maxErrorMm;
+    std::optional<std::int64_t> maxTriangles;  ///< as accurate as can be at this count. \pre >= 0
+    /// Share of the triangles of MarchingCubes to drop, 0 to 1: a count by another name.
+    std::optional<double> reduction;
+    /// Angles below this are not made, at the price of more triangles. \pre 0 to 40
+    double minAngleDeg = 0;
+
+    friend bool operator==(const AdaptiveOptions&, const AdaptiveOptions&) = default;
+};
 
 struct ExtractionOptions {
     double isovalue = 0;  ///< inside means sample >= isovalue
@@ -26,6 +46,7 @@ struct ExtractionOptions {
     /// Of discretized marching cubes: put the vertices at the crossings, as the other methods do,
     /// instead of at the midpoints of their lattice edges.
     bool adjustVertices = false;
+    AdaptiveOptions adaptive;
     bool computeNormals = true;  ///< central differences of the volume, in physical space
     ProgressCallback progress;   ///< called as the work goes on; may be empty
 };
@@ -45,7 +66,12 @@ struct ExtractionStatistics {
     /// Boxes in which the surface of the full grid is not a set of discs, one for each loop on the
     /// box's faces: there the box's discs change its topology (a tunnel becomes two caps).
     std::int64_t boxesChangingTopology = 0;
-    std::int64_t marchingCubesTriangles = 0;  ///< what MarchingCubes makes of the same surface
+    /// What MarchingCubes makes of the same surface, without the two triangles that it adds for
+    /// each loop that it fills from the middle.
+    std::int64_t marchingCubesTriangles = 0;
+    /// Of Method::Adaptive: the proved bound of the distance to the surface of MarchingCubes, both
+    /// ways, mm.
+    std::optional<double> errorBoundMm;
     std::int64_t edgesSplit = 0;  ///< edges halved because two of them joined the same two vertices
 };
 

@@ -1,0 +1,303 @@
+#include "AdaptiveMethod.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "../MeshRepair.h"
+#include "CrossingProof.h"
+#include "ErrorBound.h"
+#include "SimplifiedSurface.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso::detail {
+namespace {
+
+/// How many triangles are wanted: a number, or a share of those of the full surface to drop.
+struct WantedCount {
+    std::optional<std::int64_t> triangles;
+    std::optional<double> reduction;
+
+    bool isGiven() const { return triangles || reduction; }
+    std::int64_t of(std::int64_t fineTriangles) const {
+        std::int64_t count = triangles.value_or(fineTriangles);
+        if (reduction) {
+            const double kept = (1 - *reduction) * static_cast<double>(fineTriangles);
+            count = std::min(count, static_cast<std::int64_t>(kept));
+        }
+        return count;
+    }
+};
+
+/// One run of the simplification with fixed limits.
+class Simplification {
+public:
+    Simplification(const LatticeSampler& sampler, const Bricks& bricks, const MetricFrame& frame,
+                   const TightPlaces& tight, const PatchLimits& limits)
+        : sampler_(sampler), bricks_(bricks), frame_(frame), tight_(tight), limits_(limits) {
+        const double voxel = frame.voxelMm();
+        costUnit_ = voxel * voxel * voxel * voxel;
+    }
+
+    /// As few triangles as the limits allow.
+    SimplifiedSurface toLimits() {
+        limits_.maxCost = kFirstCost * costUnit_;
+        SimplifiedSurface surface =
+            simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
+        for (double cost = 3 * kFirstCost; cost < kLastCost; cost *= 6) {
+            limits_.maxCost = cost * costUnit_;
+            simplifyPatches(surface, nextCut(), frame_, {limits_});
+        }
+        limits_.maxCost = std::numeric_limits<double>::max();
+        for (int idle = 0; idle < 2;) {
+            const std::int64_t before = surface.triangleCount();
+            simplifyPatches(surface, nextCut(), frame_, {limits_});
+            idle = static_cast<double>(surface.triangleCount()) >=
+                           kWorthwhile * static_cast<double>(before)
+                       ? idle + 1
+                       : 0;
+        }
+        fit(surface);
+        return surface;
+    }
+
+    /// The wanted number of triangles, or as few as the limits allow.
+    SimplifiedSurface toCount(const WantedCount& wanted) {
+        CollapseCosts costs;
+        double cost = kFirstCost;
+        limits_.maxCost = cost * costUnit_;
+        SimplifiedSurface surface =
+            simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, &costs);
+        const std::int64_t target = wanted.of(surface.fineTriangles);
+        if (surface.triangleCount() < target) {
+            limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
+            surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
+        }
+        for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
+            const std::int64_t before = surface.triangleCount();
+            cost *= before > 2 * target ? 4 : 2;
+            if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
+            roundTowards(surface, target, cost);
+            if (cost > kLastCost) idle = surface.triangleCount() == before ? idle + 1 : 0;
+        }
+        fit(surface);
+        return surface;
+    }
+
+private:
+    /// Cost limits, in voxels to the fourth: of the bricks' round, and above which there is none.
+    static constexpr double kFirstCost = 1e-3, kLastCost = 10;
+    /// A round that leaves more than this part of the triangles was hardly worth it.
+    static constexpr double kWorthwhile = 0.99;
+
+    /// Cuts in turn, so that what straddles one cut lies within the next.
+    PatchCut nextCut() {
+        ++rounds_;
+        return {Brick::kSide, rounds_ % 2 == 1 ? Brick::kSide / 2 : 0};
+    }
+
+    /// A round up to a cost; undone and done again with a lower one where it leads below the
+    /// target.
+    void roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
+        const PatchCut cut = nextCut();
+        const std::int64_t wanted = (surface.triangleCount() - target + 1) / 2;
+        const auto points = surface.points;
+        const auto quadrics = surface.quadrics;
+        const auto triangles = surface.triangles;
+        const auto stands = surface.sampleTriangle;
+        CollapseCosts costs;
+        limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
+        simplifyPatches(surface, cut, frame_, {limits_}, &costs);
+        if (surface.triangleCount() >= target) return;
+        surface.points = points;
+        surface.quadrics = quadrics;
+        surface.triangles = triangles;
+        surface.sampleTriangle = stands;
+        limits_.maxCost = costLimitFor(costs, wanted);
+        simplifyPatches(surface, cut, frame_, {limits_});
+        // what is left are collapses of one cost
+        if (surface.triangleCount() > target) {
+            limits_.maxCost = cost * costUnit_;
+            PatchWork rest{limits_};
+            rest.mostCollapses = (surface.triangleCount() - target + 1) / 2;
+            simplifyPatches(surface, cut, frame_, rest);
+        }
+    }
+
+    void fit(SimplifiedSurface& surface) {
+        PatchWork work{limits_};
+        work.collapses = false;
+        work.fits = true;
+        for (int i = 0; i < 2; ++i) {
+            simplifyPatches(surface, nextCut(), frame_, work);
+        }
+    }
+
+    const LatticeSampler& sampler_;
+    const Bricks& bricks_;
+    const MetricFrame& frame_;
+    const TightPlaces& tight_;
+    PatchLimits limits_;
+    double costUnit_;
+    int rounds_ = 0;
+};
+
+TriangleMesh toMesh(const SimplifiedSurface& surface, const ImageGeometry& geometry,
+                    const MetricFrame& frame, const LatticeSampler& sampler) {
+    TriangleMesh mesh;
+    mesh.points.reserve(surface.points.size());
+    mesh.normals.reserve(surface.points.size());
+    for (const Vec3& p : surface.points) {
+        const Vec3 index = frame.toIndex(p);
+        mesh.points.push_back(geometry.toPhysical(index));
+        mesh.normals.push_back(toNormal(sampler.normalAt(index)));
+    }
+    mesh.triangles.reserve(surface.triangles.size());
+    const bool isMirrored = geometry.isMirrored();
+    for (const auto& t : surface.triangles) {
+        const auto id = [&](int c) { return static_cast<VertexId>(t[c]); };
+        mesh.triangles.push_back(isMirrored ? adaptiso::Triangle{id(0), id(2), id(1)}
+                                            : adaptiso::Triangle{id(0), id(1), id(2)});
+    }
+    completeNormals(mesh);
+    return mesh;
+}
+
+/// Runs the simplification until what it promises is proved.
+class AdaptiveMethod {
+public:
+    AdaptiveMethod(const VolumeView& volume, const LatticeSampler& sampler, const Bricks& bricks,
+                   const ExtractionOptions& options)
+        : geometry_(volume.geometry()),
+          sampler_(sampler),
+          bricks_(bricks),
+          options_(options),
+          frame_(geometry_),
+          wanted_{options.adaptive.maxTriangles, options.adaptive.reduction},
+          boundMm_(options.adaptive.maxErrorMm) {
+        shape_.leastAngleDeg = options.adaptive.minAngleDeg;
+        if (!boundMm_ && !wanted_.isGiven()) {
+            boundMm_ = AdaptiveOptions::kDefaultMaxErrorVoxels * frame_.narrowestMm();
+        }
+    }
+
+    Extraction run() {
+        Extraction result;
+        bool provesAll = false;
+        for (int run = 0; run < kMostRuns; ++run) {
+            report(run, 0);
+            const SimplifiedSurface surface = simplify(provesAll);
+            report(run, 0.6);
+            const ErrorBound error =
+                boundError(surface, sampler_, bricks_, frame_,
+                           boundMm_.value_or(std::numeric_limits<double>::max()));
+            report(run, 1);
+            if (boundMm_ && error.largest() > *boundMm_) {
+                std::vector<Vec3> places;
+                for (const Vec3& p : error.beyondLimit) places.push_back(frame_.toIndex(p));
+                tight_.add(places);
+                continue;
+            }
+            result.mesh = toMesh(surface, geometry_, frame_, sampler_);
+            if (countUnprovedPairs(result.mesh) > 0) {
+                if (provesAll) break;
+                provesAll = true;
+                continue;
+            }
+            if (!options_.computeNormals) result.mesh.normals = {};
+            result.statistics.errorBoundMm = error.largest();
+            result.statistics.marchingCubesTriangles = surface.tableTriangles;
+            return result;
+        }
+        throw InternalError(
+            "extractSurface: the adaptive method could not prove its mesh sound and "
+            "within the bound; nothing is returned");
+    }
+
+private:
+    static constexpr int kMostRuns = 24;
+    /// Up to this distance (of the least one between planes of samples) single sheets are certain
+    /// not to meet others: see isSingleSheet.
+    static constexpr double kSheetVoxels = 0.5;
+    /// First allowed distance of samples, as a part of the bound: points between samples may lie
+    /// somewhat farther.
+    static constexpr double kPartOfBound = 0.9;
+
+    void report(int run, double fraction) const {
+        // later runs mend what the first could not prove: they come on top
+        if (options_.progress) options_.progress(run == 0 ? "extract" : "refine", fraction);
+    }
+
+    SimplifiedSurface simplify(bool provesAll) const {
+        const double sheetMm = kSheetVoxels * frame_.narrowestMm();
+        PatchLimits limits;
+        limits.shape = shape_;
+        limits.maxDistanceMm = kPartOfBound * boundMm_.value_or(sheetMm);
+        const Index3& size = geometry_.size;
+        const double extentMm =
+            norm(frame_.fromIndex({static_cast<double>(size[0]), static_cast<double>(size[1]),
+                                   static_cast<double>(size[2])}));
+        for (;; limits.maxDistanceMm *= 2) {
+            limits.provesAll = provesAll || limits.maxDistanceMm > sheetMm;
+            Simplification simplification(sampler_, bricks_, frame_, tight_, limits);
+            if (!wanted_.isGiven()) return simplification.toLimits();
+            SimplifiedSurface surface = simplification.toCount(wanted_);
+            const bool isThere = surface.triangleCount() <= wanted_.of(surface.fineTriangles) + 1;
+            // without a bound the count goes before closeness
+            if (isThere || boundMm_ || limits.maxDistanceMm > extentMm) return surface;
+        }
+    }
+
+    const ImageGeometry& geometry_;
+    const LatticeSampler& sampler_;
+    const Bricks& bricks_;
+    const ExtractionOptions& options_;
+    MetricFrame frame_;
+    WantedCount wanted_;
+    std::optional<double> boundMm_;
+    StarLimits shape_;
+    TightPlaces tight_;
+};
+
+void check(const AdaptiveOptions& options) {
+    const auto refuse = [](const std::string& what) {
+        throw InvalidInput("extractSurface: " + what);
+    };
+    if (options.maxErrorMm && !(*options.maxErrorMm > 0 && std::isfinite(*options.maxErrorMm))) {
+        refuse("maxErrorMm must be a finite number above 0");
+    }
+    if (options.maxTriangles && *options.maxTriangles < 0) refuse("maxTriangles is below 0");
+    if (options.reduction && !(*options.reduction >= 0 && *options.reduction <= 1)) {
+        refuse("reduction must lie between 0 and 1");
+    }
+    if (!(options.minAngleDeg >= 0 && options.minAngleDeg <= 40)) {
+        refuse("minAngleDeg must lie between 0 and 40");
+    }
+}
+
+}  // namespace
+
+Extraction extractAdaptive(const VolumeView& volume, const SpanSpaceIndex& index,
+                           const ExtractionOptions& options) {
+    check(options.adaptive);
+    if (index.grid().border == Border::Open) {
+        throw InvalidInput(
+            "extractSurface: the method adaptive closes surfaces at the volume's border; the "
+            "index has an open one");
+    }
+    const BlockQuery query = index.blocksAt(options.isovalue);
+    const auto sampler = LatticeSampler::make(volume, options.isovalue, index.grid().border);
+    const Bricks bricks(index.grid(), query.blocks);
+    Extraction result;
+    if (bricks.count() > 0) {
+        result = AdaptiveMethod(volume, *sampler, bricks, options).run();
+    } else {
+        result.statistics.errorBoundMm = 0;
+    }
+    result.statistics.blocksTotal = index.grid().blockCount();
+    result.statistics.blocksActive = static_cast<std::int64_t>(query.blocks.size());
+    result.statistics.indexNodesVisited = query.nodesVisited;
+    return result;
+}
+
+}  // namespace adaptiso::detail

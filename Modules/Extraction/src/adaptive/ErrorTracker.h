@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ChangedStar.h"
+
+namespace adaptiso::detail {
+
+/// Which triangle of a patch stands for each sample of the full-resolution surface, and how far
+/// off it is: the samples of the triangles that a change takes away are handed to the new ones.
+class ErrorTracker {
+public:
+    static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+    /// \param sampleSpacingMm  about the distance between neighbouring samples
+    ErrorTracker(Patch& patch, double sampleSpacingMm);
+
+    /// Finds for every sample of the star's triangles the near one of the changed triangles.
+    /// \return false when a sample would be farther than maxDistanceMm from it
+    bool assign(const ChangedStar& changed, double maxDistanceMm);
+
+    /// Of the last assign(): the sum of squared distances, mm2.
+    double sumOfSquares() const { return sumOfSquares_; }
+    /// Of the last assign(): some sample has other parts of the surface near it.
+    bool isCrowded() const { return isCrowded_; }
+
+    /// Makes the last assign() true.
+    void commit(const ChangedStar& changed);
+
+    /// The samples of a triangle, as a list.
+    std::uint32_t first(std::uint32_t triangle) const { return firstSample_[triangle]; }
+    std::uint32_t next(std::uint32_t sample) const { return nextSample_[sample]; }
+
+private:
+    struct Move {
+        std::uint32_t sample;
+        int wedge;
+    };
+    template <class F>
+    bool forEachTriangle(const Star& star, const F& f) const;
+    Move nearest(const ChangedStar& changed, std::uint32_t sample, int start,
+                 double& squaredDistance) const;
+
+    double heightAt(const Vec3& p) const;
+    bool ridgesAreNear(const ChangedStar& changed, double maxDistanceMm) const;
+
+    Patch& patch_;
+    double sampleSpacingMm_;
+    std::vector<std::uint32_t> firstSample_, nextSample_;
+    std::vector<std::uint8_t> triangleIsCrowded_;
+    std::vector<Move> moves_;
+    double sumOfSquares_ = 0;
+    bool isCrowded_ = false;
+};
+
+}  // namespace adaptiso::detail

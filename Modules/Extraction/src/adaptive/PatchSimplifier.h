@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <queue>
+#include <vector>
+
+#include "CrossingGuard.h"
+#include "ErrorTracker.h"
+#include "MetricFrame.h"
+#include "Patch.h"
+#include "PatchTopology.h"
+
+namespace adaptiso::detail {
+
+struct PatchLimits {
+    double maxCost = 0;        ///< of a collapse, mm2 x mm2
+    double maxDistanceMm = 0;  ///< of a sample from the triangle that stands for it
+    StarLimits shape;
+    bool provesAll = false;  ///< also stars that can cross nothing by what is known of them
+};
+
+/// Simplifies a patch in place by quadric edge collapses, cheapest first [Garland1997].
+class PatchSimplifier {
+public:
+    PatchSimplifier(Patch& patch, const MetricFrame& frame, const PatchLimits& limits);
+
+    /// Collapses edges until none is left within the limits, at most `most` of them.
+    /// \param costs  gets the cost of each, in order; may be null
+    void collapseEdges(std::int64_t most, std::vector<double>* costs);
+
+    /// Moves vertices to where their triangles lie closest to the samples that they stand for
+    /// (least squares, held by the vertex's quadric).
+    void fitVertices();
+
+private:
+    struct Candidate {
+        double cost;
+        std::uint32_t halfEdge, a, b;
+        std::uint32_t changes;  ///< of both ends when it was proposed; stale when there are more
+    };
+    struct IsLater {
+        bool operator()(const Candidate& x, const Candidate& y) const {
+            if (x.cost != y.cost) return x.cost > y.cost;
+            return x.a != y.a ? x.a > y.a : x.b > y.b;
+        }
+    };
+
+    QuadricMinimum bestPlace(std::uint32_t a, std::uint32_t b) const;
+    void propose(std::uint32_t halfEdge);
+    bool isStale(const Candidate& candidate) const;
+    bool accepts(const Vec3& p);
+    bool isInBox(const Vec3& p) const;
+    Vec3 fittedPlace(std::uint32_t v) const;
+
+    Patch& patch_;
+    const MetricFrame& frame_;
+    PatchLimits limits_;
+    PatchTopology topology_;
+    ErrorTracker errors_;
+    CrossingGuard guard_;
+    std::vector<std::uint32_t> changes_;  ///< of each vertex
+    std::priority_queue<Candidate, std::vector<Candidate>, IsLater> queue_;
+    ChangedStar changed_;
+};
+
+}  // namespace adaptiso::detail

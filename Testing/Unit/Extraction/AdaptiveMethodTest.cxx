@@ -1,0 +1,198 @@
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+
+#include "RandomVolumes.h"
+#include "Support/AnalyticVolumes.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
+#include "adaptive/PieceBound.h"
+#include "adaptive/SheetTest.h"
+
+namespace adaptiso::testing {
+namespace {
+
+Extraction extractWith(const VolumeView& volume, double isovalue, const AdaptiveOptions& adaptive,
+                       Border border = Border::Closed) {
+    ExtractionOptions options;
+    options.isovalue = isovalue;
+    options.method = Method::Adaptive;
+    options.adaptive = adaptive;
+    return extractSurface(volume, SpanSpaceIndex::build(volume, {4, border}), options);
+}
+
+/// A ball in a grid of `side` samples, a distance-like ramp around its surface.
+Volume ball(std::int64_t side, double radius, const Mat3& indexToPhysical) {
+    ImageGeometry geometry;
+    geometry.size = {side, side, side};
+    geometry.indexToPhysical = indexToPhysical;
+    const double middle = 0.5 * static_cast<double>(side - 1);
+    std::vector<float> samples;
+    for (std::int64_t i = 0; i < geometry.voxelCount(); ++i) {
+        const Vec3 d{static_cast<double>(i % side) - middle,
+                     static_cast<double>(i / side % side) - middle,
+                     static_cast<double>(i / (side * side)) - middle};
+        samples.push_back(static_cast<float>(radius - norm(indexToPhysical * d)));
+    }
+    return Volume::fromSamples(std::move(samples), geometry);
+}
+
+void expectWithin(const TriangleMesh& mesh, const TriangleMesh& full, double boundMm) {
+    DistanceOptions options;
+    options.samples = 20000;
+    const DistanceReport distance = surfaceDistance(mesh, full, options);
+    // coordinates are rounded to float on the way: 1e-5 voxel is ample
+    EXPECT_LE(distance.combined.maxMm, boundMm + 1e-5);
+}
+
+}  // namespace
+
+TEST(AdaptiveMethod, KeepsItsBoundAndCrossesNothingOnRandomVolumes) {
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        const HardVolume hard = hardVolume(seed, 14);
+        AdaptiveOptions adaptive;
+        adaptive.maxErrorMm = 0.05 * std::pow(2.0, static_cast<double>(seed % 5));
+        const Extraction ours = extractWith(hard.volume, hard.isovalue, adaptive);
+        if (ours.mesh.triangles.empty()) continue;
+        const Extraction full =
+            extractFrom(hard.volume, hard.isovalue, Method::MarchingCubes, 4, Border::Closed);
+        ASSERT_LE(*ours.statistics.errorBoundMm, *adaptive.maxErrorMm) << seed;
+        ASSERT_EQ(findSelfIntersections(ours.mesh).pairCount, 0) << seed;
+        ASSERT_EQ(findSelfIntersections(full.mesh).pairCount, 0) << "mc " << seed;
+        expectWithin(ours.mesh, full.mesh, *ours.statistics.errorBoundMm);
+    }
+}
+
+TEST(AdaptiveMethod, KeepsItsPromisesOnRandomVolumes) {
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        const int blockSize = 2 << seed % 4;
+        ASSERT_TRUE(
+            keepsItsPromises(hardVolume(seed, 12), Method::Adaptive, blockSize, Border::Closed))
+            << "seed " << seed;
+    }
+}
+
+TEST(AdaptiveMethod, GivesTheSameBytesWhateverTheThreads) {
+    const Volume volume = ball(100, 40, Mat3{});  // eight bricks
+    AdaptiveOptions adaptive;
+    adaptive.maxTriangles = 5000;
+    const Extraction many = extractWith(volume, 0, adaptive);
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_EQ(many.mesh, extractWith(volume, 0, adaptive).mesh);
+}
+
+TEST(AdaptiveMethod, IsWithinItsBoundOnABallInAShearedMirroredGrid) {
+    const Mat3 steps{{{{-0.8, 0.1, 0}, {0.2, 1.1, 0.1}, {0.1, -0.2, 1.6}}}};
+    const Volume volume = ball(40, 11, steps);
+    for (const double bound : {0.02, 0.1, 0.4}) {
+        AdaptiveOptions adaptive;
+        adaptive.maxErrorMm = bound;
+        const Extraction ours = extractWith(volume, 0, adaptive);
+        const Extraction full = extractFrom(volume, 0, Method::MarchingCubes, 4, Border::Closed);
+        EXPECT_TRUE(isSound(ours.mesh));
+        EXPECT_LE(*ours.statistics.errorBoundMm, bound);
+        expectWithin(ours.mesh, full.mesh, *ours.statistics.errorBoundMm);
+        EXPECT_LT(ours.mesh.triangles.size(), full.mesh.triangles.size());
+        // a shell of twice the bound around the sphere's own area
+        const double area = 4 * M_PI * 11 * 11;
+        EXPECT_NEAR(enclosedVolume(ours.mesh), area * 11 / 3, area * (bound + 0.05));
+    }
+}
+
+TEST(AdaptiveMethod, MakesTheCountThatIsAskedFor) {
+    const Volume volume = ball(48, 18, Mat3{});
+    const auto full = extractFrom(volume, 0, Method::MarchingCubes, 4, Border::Closed);
+    const auto all = static_cast<std::int64_t>(full.mesh.triangles.size());
+    for (const std::int64_t count : {all / 2, all / 10, all / 40}) {
+        AdaptiveOptions adaptive;
+        adaptive.maxTriangles = count;
+        const Extraction ours = extractWith(volume, 0, adaptive);
+        const auto triangles = static_cast<std::int64_t>(ours.mesh.triangles.size());
+        EXPECT_LE(triangles, count + 1);
+        EXPECT_GE(triangles, count - 1);
+        EXPECT_TRUE(isSound(ours.mesh));
+        expectWithin(ours.mesh, full.mesh, *ours.statistics.errorBoundMm);
+    }
+    AdaptiveOptions adaptive;
+    adaptive.reduction = 0.75;
+    const Extraction ours = extractWith(volume, 0, adaptive);
+    EXPECT_NEAR(static_cast<double>(ours.mesh.triangles.size()), 0.25 * static_cast<double>(all),
+                2);
+}
+
+TEST(AdaptiveMethod, NeedsTwelveTrianglesForAFlatBox) {
+    // a box between samples: its surface is bevelled by half a voxel, so a bound of half a voxel
+    // leaves the corners alone
+    const HardVolume box = binaryVolume({24, 20, 16}, [](auto x, auto y, auto z) {
+        return x > 3 && x < 20 && y > 3 && y < 16 && z > 3 && z < 12;
+    });
+    AdaptiveOptions adaptive;
+    adaptive.maxErrorMm = 0.5;
+    const Extraction ours = extractWith(box.volume, box.isovalue, adaptive);
+    EXPECT_LE(ours.mesh.triangles.size(), 24u);
+    EXPECT_TRUE(isSound(ours.mesh));
+}
+
+TEST(AdaptiveMethod, MakesNoSharperAngleThanAsked) {
+    const Volume volume = ball(40, 14, Mat3{});
+    AdaptiveOptions adaptive;
+    adaptive.maxErrorMm = 0.1;
+    adaptive.minAngleDeg = 20;
+    const Extraction ours = extractWith(volume, 0, adaptive);
+    double sharpest = 180;
+    for (const Triangle& t : ours.mesh.triangles) {
+        for (int c = 0; c < 3; ++c) {
+            const Vec3& p = ours.mesh.points[t[c]];
+            const Vec3 u = ours.mesh.points[t[(c + 1) % 3]] - p,
+                       v = ours.mesh.points[t[(c + 2) % 3]] - p;
+            sharpest = std::min(sharpest, std::atan2(norm(cross(u, v)), dot(u, v)) * 180 / M_PI);
+        }
+    }
+    EXPECT_GE(sharpest, 10);  // slivers of marching cubes that nothing could mend may stay
+    EXPECT_TRUE(isSound(ours.mesh));
+}
+
+TEST(AdaptiveMethod, RefusesLimitsThatMeanNothing) {
+    const Volume volume = ball(8, 3, Mat3{});
+    for (AdaptiveOptions bad :
+         {AdaptiveOptions{.maxErrorMm = 0.0, .maxTriangles = {}, .reduction = {}},
+          AdaptiveOptions{.maxErrorMm = {}, .maxTriangles = -1, .reduction = {}},
+          AdaptiveOptions{.maxErrorMm = {}, .maxTriangles = {}, .reduction = 1.5}}) {
+        EXPECT_THROW(extractWith(volume, 0, bad), InvalidInput);
+    }
+}
+
+TEST(SheetTest, KnowsOneSheetFromTwo) {
+    const auto window = [](const auto& isInside) {
+        std::uint64_t bits = 0;
+        for (int i = 0; i < 64; ++i) {
+            if (isInside(i % 4, i / 4 % 4, i / 16)) bits |= std::uint64_t{1} << i;
+        }
+        return bits;
+    };
+    EXPECT_TRUE(detail::isSingleSheet(window([](int, int, int z) { return z < 2; })));
+    EXPECT_TRUE(detail::isSingleSheet(window([](int x, int, int z) { return x + z < 3; })));
+    EXPECT_TRUE(
+        detail::isSingleSheet(window([](int x, int y, int z) { return x < 2 && y < 2 && z < 2; })));
+    EXPECT_FALSE(detail::isSingleSheet(window([](int, int, int z) { return z == 1; })));
+    EXPECT_FALSE(detail::isSingleSheet(window([](int x, int, int z) { return z == 1 && x < 2; })));
+    EXPECT_FALSE(detail::isSingleSheet(window([](int x, int y, int) { return x == y; })));
+    EXPECT_FALSE(detail::isSingleSheet(0));
+}
+
+TEST(PieceBound, IsTheDistanceOfAPieceAcrossARidge) {
+    // a roof of two triangles with its ridge along x at height 1, and a piece under the ridge
+    detail::PieceBound bound(0.0);
+    bound.nearby() = {{Vec3{-10, -5, 0}, Vec3{10, -5, 0}, Vec3{0, 0, 1}},
+                      {Vec3{-10, 5, 0}, Vec3{0, 0, 1}, Vec3{10, 5, 0}}};
+    const detail::Corners piece{Vec3{0, -0.5, 0.7}, Vec3{0.2, 0.5, 0.7}, Vec3{-0.2, 0.5, 0.7}};
+    bound.include(piece);
+    // farthest at y = 0, where the roof is highest: under it by 0.3, times the slope's cosine
+    const double exact = 0.3 * 5 / std::sqrt(26.0);
+    EXPECT_GE(bound.boundMm(), 0.98 * exact);
+    EXPECT_LE(bound.boundMm(), 1.05 * exact);
+}
+
+}  // namespace adaptiso::testing
