@@ -10,6 +10,10 @@
 
 namespace adaptiso {
 
+namespace detail {
+struct Registration;
+}
+
 /// A file that appears under its name only when it is whole.
 ///
 /// It is written to a temporary name in the same folder (".adaptiso-<process>-<n>.part<extension>",
@@ -42,11 +46,10 @@ public:
     static void commit(std::span<AtomicOutput> outputs);
 
 private:
-    struct Registration;
     std::filesystem::path target_;
     std::filesystem::path final_;  ///< target_, with a symbolic link resolved
     std::filesystem::path temporary_;
-    std::unique_ptr<Registration> registration_;
+    std::unique_ptr<detail::Registration> registration_;
 };
 
 /// Throws when `target` can't become a regular file: its folder is missing or may not be written,

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+
+namespace adaptiso::detail {
+
+/// A temporary file or folder that a signal's handler may have to remove. Records are only ever
+/// added to the list, newest first, and one's path is set before it is, so that the handler may
+/// walk the list at any moment; the files of a folder come before the folder.
+struct Temporary {
+    const std::string path;
+    const bool isFolder;
+    std::atomic<bool> exists{true};
+    Temporary* next = nullptr;
+};
+
+/// Puts `path` on the list. \return its record, which is kept as long as a signal may come
+Temporary& rememberTemporary(const std::filesystem::path& path, bool isFolder);
+
+/// Removes the file, or the empty folder, when it goes, unless it does not exist any more.
+struct Registration {
+    explicit Registration(Temporary& temporary) : temporary_(temporary) {}
+    ~Registration();
+    Registration(const Registration&) = delete;
+    Registration& operator=(const Registration&) = delete;
+
+    Temporary& temporary_;
+};
+
+/// While one lives, a signal waits: what is done meanwhile is done whole. They may be nested.
+class SignalsWait {
+public:
+    SignalsWait();
+    ~SignalsWait();
+    SignalsWait(const SignalsWait&) = delete;
+    SignalsWait& operator=(const SignalsWait&) = delete;
+};
+
+/// The name that a temporary beside `final` gets: ".adaptiso-<process>-<n>.part<extension>", a new
+/// one at every call.
+std::filesystem::path newTemporaryName(const std::filesystem::path& final);
+
+std::filesystem::path folderOf(const std::filesystem::path& path);
+
+/// Text of errno.
+std::string reason();
+
+/// Forces what was written to `path` to disk.
+/// \throws FileError  naming `target`
+void syncToDisk(const std::filesystem::path& path, const std::filesystem::path& target);
+
+/// So that a new name outlives a power failure. Not every file system can; the file is whole.
+void syncFolder(const std::filesystem::path& folder);
+
+/// `message` with every mention of `temporary` as `target`.
+std::string withTargetsName(std::string message, const std::filesystem::path& temporary,
+                            const std::filesystem::path& target);
+
+}  // namespace adaptiso::detail
