@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+
+#include "adaptiso/HeadModel/HeadBoundaries.h"
+
+namespace adaptiso {
+
+/// What the compartments of a head model conduct, in S/m. The defaults are MNE's (0.3, 0.006, 0.3
+/// in mne.make_bem_model; skull to brain 1 : 50). Published ratios lie between 1 : 15 and 1 : 80;
+/// 0.33, 0.0041, 0.33 (1 : 80) is the classic choice [Rush1969].
+struct ConductivityModel {
+    double brain = 0.3;  ///< all within the inner skull, CSF included
+    double skull = 0.006;
+    double scalp = 0.3;
+
+    /// Of the compartment that a surface bounds from outside.
+    double within(HeadSurface surface) const;
+};
+
+/// \throws InvalidInput  a conductivity that is not finite, 0 or less, or above 10 S/m (sea water
+///                       has 5; S/cm or mS/m were meant)
+void checkConductivities(const ConductivityModel& model);
+
+}  // namespace adaptiso

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adaptiso/Core/Progress.h"
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/HeadModel/FractionField.h"
+
+namespace adaptiso {
+
+/// The boundaries of a three-layer head model, from inside out.
+enum class HeadSurface { InnerSkull, OuterSkull, OuterSkin };
+inline constexpr int kHeadSurfaceCount = 3;
+
+/// "inner_skull", "outer_skull", "outer_skin": the names that MNE's files have.
+std::string_view toString(HeadSurface surface);
+
+struct BoundaryOptions {
+    bool innerSkullOnly = false;  ///< MEG: one surface
+
+    /// Side of the working grid's voxels, mm; 0: the image's own voxels if they are cubes of 0.7
+    /// to 1.5 mm, else 1 mm.
+    double stepMm = 0;
+    /// Gaussian (standard deviation, mm) that every boundary is smoothed with at the end: more
+    /// than the voxel stairs, less than the edges of a BEM mesh. A sphere of radius R moves
+    /// inwards by smoothingMm^2 / R: 0.03 mm at 80 mm.
+    double smoothingMm = 1.5;
+    /// Closing (radius, mm) of the skin and of the brain: gaps, sulci, canals narrower than twice
+    /// this are filled.
+    double closingMm = 10;
+    double minSkullMm = 2;   ///< least thickness of the skull; thinner places are pushed outwards
+    double minScalpMm = 2;   ///< the same for the scalp
+    double maxSkullMm = 20;  ///< bone farther from the inner skull (face, neck) counts as scalp
+
+    double csfMm = 2;      ///< T1: from a brain mask out to the inner skull
+    double skullMm = 6;    ///< T1: thickness where the image does not show the skull
+    double skullHu = 300;  ///< CT: isovalue of bone
+    double skinHu = -300;  ///< CT: isovalue of skin
+    ProgressCallback progress{};
+};
+
+/// The solids that the surfaces of a head model bound: each one component without cavity or
+/// handle (a ball), each inside the next with at least the gaps asked for (to about a voxel; the
+/// mesh steps that follow see to the rest).
+struct HeadBoundaries {
+    std::vector<FractionField> solids;  ///< inner skull, or all three by HeadSurface
+    std::vector<std::string> notes;     ///< what was guessed or changed, one line each
+};
+
+/// From a T1-weighted image, alone or with a brain mask (brain > 0.5 of the mask's range or, of a
+/// skull-stripped image, brain where it is not zero).
+///
+/// Outer skin: the largest piece above a threshold between air and tissue, closed, with every
+/// cavity filled, also those that open at the image's border (airways at the neck).
+/// Inner skull: the brain mask closed and grown by csfMm. Without a mask the brain is found by
+/// thresholds around the level of the head's middle, opened until it comes loose from the scalp;
+/// a note says so.
+/// Outer skull: along rays from the inner skull, where the T1's dark skull band ends at the
+/// scalp; thickness smoothed over the surface, and skullMm where no band is seen. Kept inside the
+/// scalp.
+///
+/// \param brainMask  on any grid in the same space
+/// \throws InvalidInput  no head, or no brain, is found; the mask is empty or outside the image
+HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<VolumeView>& brainMask,
+                                const BoundaryOptions& options = {});
+
+/// Which labels of a segmentation belong to what. Each list is a tissue of its own: the inner
+/// skull encloses `brain`, the outer skull brain and `skull`, the skin all of them.
+struct TissueLabels {
+    std::vector<std::int64_t> brain;  ///< brain and CSF
+    std::vector<std::int64_t> skull;
+    std::vector<std::int64_t> scalp;
+    /// Labels not named above that are not 0 count as brain (FreeSurfer's aseg).
+    bool othersAreBrain = false;
+};
+
+/// "charm", "headreco" (SimNIBS) or "aseg" (FreeSurfer's aseg and SAMSEG's, whose skull is 165 and
+/// whose scalp is 258 and 259). \throws InvalidInput  another name
+TissueLabels tissuePreset(std::string_view name);
+
+/// From a label map. Labels become parts of voxels by smoothing and interpolating each boundary's
+/// own indicator, so that surfaces are not stairs.
+/// \throws InvalidInput  a tissue has no label in the image; labels listed for two tissues
+HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels& tissues,
+                                    const BoundaryOptions& options = {});
+
+/// From tissue probabilities in SPM's order: c1 grey, c2 white, c3 CSF, c4 skull, c5 scalp (c6 air
+/// is not needed). All on one grid; values are parts of a voxel (0 to 1; integers are scaled by
+/// the largest value of all maps).
+/// \throws InvalidInput  fewer than five maps (three for innerSkullOnly), grids that differ
+HeadBoundaries boundariesFromProbabilities(std::span<const VolumeView> maps,
+                                           const BoundaryOptions& options = {});
+
+/// From a CT in Hounsfield units: skin at skinHu, bone at skullHu; the inner skull is the cavity
+/// of the bone that a ball of 18 mm radius cannot leave.
+/// \throws InvalidInput  no head, no bone, or no cavity in it
+HeadBoundaries boundariesFromCt(const VolumeView& ct, const BoundaryOptions& options = {});
+
+/// From three surfaces (or the inner skull alone) that need mending: each is made a solid again by
+/// majority of its winding along three axes, so that holes, crossings and stray pieces go.
+/// \param surfaces  1 or 3, LPS mm, inside out
+/// \throws InvalidInput  another number; a surface without volume
+HeadBoundaries boundariesFromSurfaces(std::span<const TriangleMesh> surfaces,
+                                      const BoundaryOptions& options = {});
+
+}  // namespace adaptiso

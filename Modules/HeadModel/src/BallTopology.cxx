@@ -1,0 +1,324 @@
+#include "BallTopology.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdlib>
+#include <optional>
+#include <queue>
+#include <utility>
+
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/HeadModel/FractionField.h"
+
+namespace adaptiso::headmodel {
+namespace {
+
+/// How far on either side of 0.5 a voxel is put whose side was changed: far enough for the
+/// surface to keep clear of the voxel's centre, near enough to move it little.
+constexpr float kNudge = 0.02f;
+
+/// By which of the eight voxels around a lattice corner are inside (bit dx + 2 dy + 4 dz).
+struct CornerCase {
+    std::int8_t euler = 0;  ///< of the cells that begin at the corner: it, 3 edges, 3 squares, cube
+    bool isCritical = false;
+};
+
+bool isDiagonal(unsigned around, unsigned a, unsigned b, unsigned c, unsigned d) {
+    const auto in = [&](unsigned bit) { return (around >> bit & 1) != 0; };
+    return in(a) == in(d) && in(b) == in(c) && in(a) != in(b);
+}
+
+CornerCase cornerCase(unsigned around) {
+    CornerCase result;
+    const auto any = [&](unsigned mask) { return (around & mask) != 0 ? 1 : 0; };
+    constexpr unsigned kHighX = 0xaa, kHighY = 0xcc, kHighZ = 0xf0;
+    result.euler = static_cast<std::int8_t>(any(0xff) - any(kHighX) - any(kHighY) - any(kHighZ) +
+                                            any(kHighX & kHighY) + any(kHighY & kHighZ) +
+                                            any(kHighX & kHighZ) - any(kHighX & kHighY & kHighZ));
+    for (unsigned n = 0; n < 8; ++n) {
+        const unsigned pair = 1u << n | 1u << (7 - n);
+        if (around == pair || around == (0xffu ^ pair)) result.isCritical = true;
+    }
+    for (unsigned low : {0u, 4u})
+        result.isCritical |= isDiagonal(around, low, low + 1, low + 2, low + 3);
+    for (unsigned low : {0u, 2u})
+        result.isCritical |= isDiagonal(around, low, low + 1, low + 4, low + 5);
+    for (unsigned low : {0u, 1u})
+        result.isCritical |= isDiagonal(around, low, low + 2, low + 4, low + 6);
+    return result;
+}
+
+const std::array<CornerCase, 256>& cornerCases() {
+    static const auto kTable = [] {
+        std::array<CornerCase, 256> cases;
+        for (unsigned around = 0; around < 256; ++around) cases[around] = cornerCase(around);
+        return cases;
+    }();
+    return kTable;
+}
+
+/// The 27 voxels around one as bits: (dx + 1) + 3 (dy + 1) + 9 (dz + 1).
+using Around = std::uint32_t;
+constexpr int kMiddle = 13;
+
+/// For each of the 27 which others touch it, by 26 or by 6 neighbours.
+struct Adjacency {
+    std::array<Around, 27> by26{}, by6{};
+    Around faces = 0;       ///< the six beside the middle
+    Around faceOrEdge = 0;  ///< the 18 of the middle
+
+    Adjacency() {
+        for (int a = 0; a < 27; ++a) {
+            for (int b = 0; b < 27; ++b) {
+                const int dx = std::abs(a % 3 - b % 3), dy = std::abs(a / 3 % 3 - b / 3 % 3);
+                const int dz = std::abs(a / 9 - b / 9);
+                if (a == b || std::max({dx, dy, dz}) > 1) continue;
+                by26[a] |= 1u << b;
+                if (dx + dy + dz == 1) by6[a] |= 1u << b;
+                if (a != kMiddle) continue;
+                if (dx + dy + dz == 1) faces |= 1u << b;
+                if (dx + dy + dz <= 2) faceOrEdge |= 1u << b;
+            }
+        }
+    }
+};
+const Adjacency kAdjacency;
+
+Around reachable(Around start, Around set, const std::array<Around, 27>& adjacent) {
+    Around reached = start, front = start;
+    while (front != 0) {
+        Around next = 0;
+        for (Around left = front; left != 0; left &= left - 1) {
+            next |= adjacent[std::countr_zero(left)];
+        }
+        front = next & set & ~reached;
+        reached |= front;
+    }
+    return reached;
+}
+
+/// Adding or removing the middle keeps the topology (26 neighbours inside, 6 outside): the inside
+/// around it is one piece, and so is the outside that it faces.
+bool isSimple(Around inside) {
+    const Around middle = 1u << kMiddle, all = (1u << 27) - 1;
+    const Around in = inside & ~middle;
+    if (in == 0) return false;
+    if (reachable(in & (~in + 1), in, kAdjacency.by26) != in) return false;
+    const Around out = ~inside & all & ~middle & kAdjacency.faceOrEdge;
+    const Around facing = out & kAdjacency.faces;
+    if (facing == 0) return false;
+    return (facing & ~reachable(facing & (~facing + 1), out, kAdjacency.by6)) == 0;
+}
+
+/// With the middle inside, one of the eight cubes of eight voxels at it is critical.
+bool makesCriticalPlace(Around inside) {
+    inside |= 1u << kMiddle;
+    for (int corner = 0; corner < 8; ++corner) {
+        const int first = (corner & 1) + 3 * (corner >> 1 & 1) + 9 * (corner >> 2 & 1);
+        unsigned around = 0;
+        for (int n = 0; n < 8; ++n) {
+            const int at = first + (n & 1) + 3 * (n >> 1 & 1) + 9 * (n >> 2 & 1);
+            around |= (inside >> at & 1) << n;
+        }
+        if (cornerCases()[around].isCritical) return true;
+    }
+    return false;
+}
+
+/// Voxels at the edge of a solid that changes, and whose turn it is.
+class Front {
+public:
+    /// Keeps a reference to `solid`, which is empty at the grid's border.
+    Front(const Mask& solid, const Index3& size) : solid_(solid), isQueued_(solid.size(), 0) {
+        for (int n = 0; n < 27; ++n) {
+            offsets_[n] = (n % 3 - 1) + size[0] * ((n / 3 % 3 - 1) + size[1] * (n / 9 - 1));
+        }
+    }
+
+    /// Which of the 27 voxels are inside. \pre not at the grid's border
+    Around around(std::int64_t voxel) const {
+        Around inside = 0;
+        for (int n = 0; n < 27; ++n) inside |= Around{solid_[voxel + offsets_[n]]} << n;
+        return inside;
+    }
+
+    /// Queues the voxels around one that may change.
+    template <class May>
+    void offerAround(std::int64_t voxel, const std::vector<float>& priority, const May& mayChange) {
+        for (const std::int64_t offset : offsets_) offer(voxel + offset, priority, mayChange);
+    }
+
+    /// Queues all voxels that may change and have one of the other side beside them.
+    template <class May>
+    void offerBeside(const Mask& solid, const std::vector<float>& priority, const May& mayChange) {
+        for (std::int64_t voxel = 0; voxel < std::ssize(solid); ++voxel) {
+            if (!mayChange(voxel)) continue;
+            const Around inside = around(voxel);
+            const Around other = solid[voxel] != 0 ? ~inside : inside;
+            if ((other & kAdjacency.by26[kMiddle]) != 0) offer(voxel, priority, mayChange);
+        }
+    }
+
+    /// The one with the highest priority; the first of several.
+    std::optional<std::int64_t> next() {
+        if (queue_.empty()) return std::nullopt;
+        const std::int64_t voxel = queue_.top().voxel;
+        queue_.pop();
+        isQueued_[voxel] = 0;
+        return voxel;
+    }
+
+private:
+    struct Candidate {
+        float priority;
+        std::int64_t voxel;
+        bool operator<(const Candidate& other) const {
+            return priority != other.priority ? priority < other.priority : voxel > other.voxel;
+        }
+    };
+
+    template <class May>
+    void offer(std::int64_t voxel, const std::vector<float>& priority, const May& mayChange) {
+        if (isQueued_[voxel] != 0 || !mayChange(voxel)) return;
+        isQueued_[voxel] = 1;
+        queue_.push({priority[voxel], voxel});
+    }
+
+    const Mask& solid_;
+    Mask isQueued_;
+    std::array<std::int64_t, 27> offsets_{};
+    std::priority_queue<Candidate> queue_;
+};
+
+/// In voxels. What is farther inside or outside is not looked at one by one.
+constexpr std::array<double, 4> kBands{2, 4, 8, 16};
+
+/// The smallest erosion that is a ball; at worst the deepest voxel.
+Mask ballWithin(const std::vector<float>& depth, const Index3& size) {
+    for (const double band : kBands) {
+        Mask core = above(depth, band);
+        if (isBall(core, size)) return core;
+    }
+    Mask core(depth.size(), 0);
+    core[std::max_element(depth.begin(), depth.end()) - depth.begin()] = 1;
+    return core;
+}
+
+/// The smallest dilation that is a ball; at worst the whole grid but for its border.
+Mask ballAround(const std::vector<float>& depth, const Index3& size) {
+    Mask all(depth.size(), 0);
+    for (std::int64_t k = 1; k + 1 < size[2]; ++k) {
+        for (std::int64_t j = 1; j + 1 < size[1]; ++j) {
+            const std::int64_t row = size[0] * (j + size[1] * k);
+            std::fill_n(all.begin() + row + 1, std::max<std::int64_t>(size[0] - 2, 0), 1);
+        }
+    }
+    for (const double band : kBands) {
+        Mask hull = above(depth, -band);
+        for (std::size_t n = 0; n < hull.size(); ++n) hull[n] &= all[n];
+        if (isBall(hull, size)) return hull;
+    }
+    return all;
+}
+
+std::int64_t differences(const Mask& a, const Mask& b) {
+    std::int64_t count = 0;
+    for (std::size_t n = 0; n < a.size(); ++n) count += a[n] != b[n] ? 1 : 0;
+    return count;
+}
+
+void takeSides(std::vector<float>& part, const Mask& mask) {
+    constexpr auto kHalf = static_cast<float>(kFractionIsovalue);
+    for (std::size_t n = 0; n < mask.size(); ++n) {
+        if ((part[n] >= kHalf) == (mask[n] != 0)) continue;
+        part[n] = mask[n] != 0 ? kHalf + kNudge : kHalf - kNudge;
+    }
+}
+
+}  // namespace
+
+MaskTopology maskTopology(const Mask& mask, const Index3& size) {
+    MaskTopology topology;
+    const auto& cases = cornerCases();
+    const std::int64_t row = size[0], slice = size[0] * size[1];
+    for (std::int64_t k = 0; k + 1 < size[2]; ++k) {
+        for (std::int64_t j = 0; j + 1 < size[1]; ++j) {
+            const std::uint8_t* const at = mask.data() + k * slice + j * row;
+            const auto column = [&](std::int64_t i) {
+                return static_cast<unsigned>(at[i] | at[i + row] << 2 | at[i + slice] << 4 |
+                                             at[i + slice + row] << 6);
+            };
+            unsigned low = column(0);
+            for (std::int64_t i = 0; i + 1 < size[0]; ++i) {
+                const unsigned high = column(i + 1);
+                const CornerCase& found = cases[low | high << 1];
+                topology.eulerCharacteristic += found.euler;
+                topology.criticalPlaces += found.isCritical ? 1 : 0;
+                low = high;
+            }
+        }
+    }
+    return topology;
+}
+
+bool isBall(const Mask& mask, const Index3& size) {
+    const MaskTopology topology = maskTopology(mask, size);
+    if (topology.eulerCharacteristic != 1 || topology.criticalPlaces != 0) return false;
+    return largestComponent(mask, size) == mask && filled(mask, size) == mask;
+}
+
+Mask grownBall(const Mask& allowed, const std::vector<float>& priority, Mask core,
+               const Index3& size) {
+    Front front(core, size);
+    const auto mayJoin = [&](std::int64_t voxel) {
+        return allowed[voxel] != 0 && core[voxel] == 0;
+    };
+    front.offerBeside(core, priority, mayJoin);
+    while (const std::optional<std::int64_t> voxel = front.next()) {
+        const Around inside = front.around(*voxel);
+        if (!isSimple(inside) || makesCriticalPlace(inside)) continue;
+        core[*voxel] = 1;
+        front.offerAround(*voxel, priority, mayJoin);
+    }
+    return core;
+}
+
+Mask carvedBall(const Mask& kept, const std::vector<float>& priority, Mask hull,
+                const Index3& size) {
+    Front front(hull, size);
+    std::vector<float> lowFirst(priority.size());
+    for (std::size_t n = 0; n < priority.size(); ++n) lowFirst[n] = -priority[n];
+    const auto mayLeave = [&](std::int64_t voxel) { return kept[voxel] == 0 && hull[voxel] != 0; };
+    front.offerBeside(hull, lowFirst, mayLeave);
+    constexpr Around kAll = (1u << 27) - 1;
+    while (const std::optional<std::int64_t> voxel = front.next()) {
+        const Around inside = front.around(*voxel);
+        // critical places look the same with inside and outside exchanged
+        if (!isSimple(inside) || makesCriticalPlace(~inside & kAll)) continue;
+        hull[*voxel] = 0;
+        front.offerAround(*voxel, lowFirst, mayLeave);
+    }
+    return hull;
+}
+
+std::int64_t makeBall(std::vector<float>& part, const Index3& size) {
+    const Mask inside = above(part, kFractionIsovalue);
+    if (voxelsIn(inside) == 0) throw InvalidInput("makeBall: the solid is empty");
+    const Mask whole = filled(largestComponent(inside, size), size);
+    takeSides(part, whole);
+    const MaskTopology topology = maskTopology(whole, size);
+    if (topology.eulerCharacteristic == 1 && topology.criticalPlaces == 0) return 0;
+
+    ImageGeometry unitGrid;
+    unitGrid.size = size;
+    const std::vector<float> depth = depthMm(whole, unitGrid);
+    const Mask cut = grownBall(whole, part, ballWithin(depth, size), size);
+    const Mask wrapped = carvedBall(whole, part, ballAround(depth, size), size);
+    const std::int64_t cutVoxels = differences(cut, whole);
+    const std::int64_t wrappedVoxels = differences(wrapped, whole);
+    takeSides(part, cutVoxels < wrappedVoxels ? cut : wrapped);
+    return std::min(cutVoxels, wrappedVoxels);
+}
+
+}  // namespace adaptiso::headmodel

@@ -1,0 +1,26 @@
+#include "adaptiso/HeadModel/ConductivityModel.h"
+
+#include <cmath>
+#include <string>
+
+#include "FinishBoundaries.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+
+double ConductivityModel::within(HeadSurface surface) const {
+    return surface == HeadSurface::InnerSkull   ? brain
+           : surface == HeadSurface::OuterSkull ? skull
+                                                : scalp;
+}
+
+void checkConductivities(const ConductivityModel& model) {
+    constexpr double kMost = 10;
+    for (const double value : {model.brain, model.skull, model.scalp}) {
+        if (std::isfinite(value) && value > 0 && value <= kMost) continue;
+        throw InvalidInput("checkConductivities: " + headmodel::shortNumber(value) +
+                           " S/m, must be above 0 and at most 10");
+    }
+}
+
+}  // namespace adaptiso

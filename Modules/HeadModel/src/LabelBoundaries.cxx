@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "FinishBoundaries.h"
+#include "WorkingGrid.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+
+using namespace headmodel;
+
+namespace {
+
+/// Closing of the inner and outer skull of a segmentation: cracks between tissues, thin canals.
+constexpr double kSeamMm = 3;
+
+/// Whether a sample of a label map is one of a list (or, with `others`, of none of the rest).
+bool holds(const std::vector<std::int64_t>& list, double sample) {
+    return std::any_of(list.begin(), list.end(),
+                       [&](std::int64_t label) { return sample == static_cast<double>(label); });
+}
+
+/// One raw solid: the part of every voxel that lies in it, its holes closed.
+std::vector<float> solidOf(const FloatImage& indicator, const ImageGeometry& grid,
+                           const std::vector<std::uint8_t>& faces, double closingMm) {
+    std::vector<float> part = resampled(indicator, grid, 0);
+    const Mask raw = largestComponent(above(part, kFractionIsovalue), grid.size);
+    const Mask solid = filledAtBorder(closed(raw, grid, closingMm), faces, grid.size);
+    const std::vector<float> reach = depthMm(raw, grid);
+    for (std::size_t n = 0; n < part.size(); ++n) {
+        if (solid[n] != 0 && raw[n] == 0) part[n] = 1;
+        // what was not taken: other pieces, and parts of voxels beside them
+        if (solid[n] == 0 && reach[n] < -1.5 * stepMm(grid)) part[n] = 0;
+        if (raw[n] != 0 && reach[n] > 1.5 * stepMm(grid)) part[n] = 1;
+    }
+    return part;
+}
+
+/// Interpolated slices of thick voxels need more smoothing than their grid has.
+double sigmaFor(const ImageGeometry& image, const BoundaryOptions& options) {
+    const Vec3 spacing = image.spacingMm();
+    return std::max(options.smoothingMm, 0.6 * std::max({spacing.x, spacing.y, spacing.z}));
+}
+
+HeadBoundaries boundariesFrom(const std::vector<FloatImage>& enclosed, BoundaryOptions options) {
+    const ImageGeometry& image = enclosed.front().geometry;
+    Index3 first, last;
+    if (!boundingIndices(enclosed.back(), kFractionIsovalue, first, last)) {
+        throw InvalidInput("HeadModel: the head is empty");
+    }
+    RawBoundaries raw;
+    raw.grid = workingGrid(image, first, last, options.stepMm, marginMm(options));
+    const std::vector<std::uint8_t> faces = imageFaces(image, raw.grid);
+    for (std::size_t n = 0; n < enclosed.size(); ++n) {
+        tell(options, "boundaries", static_cast<double>(n) / kHeadSurfaceCount);
+        const bool isSkin = n == 2;
+        raw.parts.push_back(
+            solidOf(enclosed[n], raw.grid, faces,
+                    isSkin ? options.closingMm : std::min(kSeamMm, options.closingMm)));
+    }
+    if (raw.parts.size() == kHeadSurfaceCount) limitOuterSkull(raw, options);
+    options.smoothingMm = sigmaFor(image, options);
+    return finished(std::move(raw), options);
+}
+
+void requireDistinct(const TissueLabels& tissues) {
+    std::set<std::int64_t> seen;
+    for (const auto* list : {&tissues.brain, &tissues.skull, &tissues.scalp}) {
+        for (const std::int64_t label : *list) {
+            if (!seen.insert(label).second) {
+                throw InvalidInput("boundariesFromLabels: label " + std::to_string(label) +
+                                   " is named twice");
+            }
+        }
+    }
+}
+
+void requireSome(const FloatImage& more, const FloatImage* less, const char* tissue) {
+    for (std::size_t n = 0; n < more.values.size(); ++n) {
+        if (more.values[n] > (less != nullptr ? less->values[n] : 0.0f)) return;
+    }
+    throw InvalidInput(
+        std::string("boundariesFromLabels: the image holds no label of the tissue ") + tissue);
+}
+
+}  // namespace
+
+TissueLabels tissuePreset(std::string_view name) {
+    // SimNIBS 4 charm: 1 white, 2 grey, 3 CSF, 4 bone, 5 scalp, 6 eyes, 7 compact and 8 spongy
+    // bone, 9 blood, 10 muscle
+    if (name == "charm") return {{1, 2, 3, 9}, {4, 7, 8}, {5, 6, 10}};
+    // SimNIBS 3 headreco: the first six alone
+    if (name == "headreco") return {{1, 2, 3}, {4}, {5, 6}};
+    // FreeSurfer's colour table: 165 Skull, 258 Head-ExtraCerebral, 259 Eye-Fluid
+    if (name == "aseg") return {{}, {165}, {258, 259}, true};
+    throw InvalidInput("tissuePreset: '" + std::string(name) +
+                       "' is none of charm, headreco, aseg");
+}
+
+HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels& tissues,
+                                    const BoundaryOptions& options) {
+    checkOptions(options);
+    requireDistinct(tissues);
+    const auto isBrain = [&](double sample) {
+        if (holds(tissues.brain, sample)) return true;
+        return tissues.othersAreBrain && sample != 0 && !std::isnan(sample) &&
+               !holds(tissues.skull, sample) && !holds(tissues.scalp, sample);
+    };
+    const auto isInSkull = [&](double sample) {
+        return isBrain(sample) || holds(tissues.skull, sample);
+    };
+    std::vector<FloatImage> enclosed{indicator(labels, isBrain)};
+    requireSome(enclosed[0], nullptr, "brain");
+    if (!options.innerSkullOnly) {
+        enclosed.push_back(indicator(labels, isInSkull));
+        requireSome(enclosed[1], &enclosed[0], "skull");
+        enclosed.push_back(indicator(labels, [&](double sample) {
+            return isInSkull(sample) || holds(tissues.scalp, sample);
+        }));
+        requireSome(enclosed[2], &enclosed[1], "scalp");
+    }
+    return boundariesFrom(enclosed, options);
+}
+
+HeadBoundaries boundariesFromProbabilities(std::span<const VolumeView> maps,
+                                           const BoundaryOptions& options) {
+    checkOptions(options);
+    constexpr std::size_t kBrainMaps = 3, kMaps = 5;
+    const std::size_t needed = options.innerSkullOnly ? kBrainMaps : kMaps;
+    if (maps.size() < needed) {
+        throw InvalidInput("boundariesFromProbabilities: there are " + std::to_string(maps.size()) +
+                           " maps, must be " + std::to_string(needed) +
+                           " or more (c1 grey, c2 white, c3 CSF, c4 "
+                           "skull, c5 scalp)");
+    }
+    double full = 1;
+    for (std::size_t n = 0; n < needed; ++n) {
+        if (maps[n].geometry() != maps[0].geometry()) {
+            throw InvalidInput("boundariesFromProbabilities: map " + std::to_string(n + 1) +
+                               " is on another grid than the first");
+        }
+        full = std::max(full, valueRange(maps[n]).maximum);
+    }
+    std::vector<FloatImage> enclosed;
+    FloatImage sum = toFloat(maps[0], 0);
+    for (std::size_t n = 0; n < needed; ++n) {
+        if (n > 0) {
+            const FloatImage more = toFloat(maps[n], 0);
+            for (std::size_t v = 0; v < sum.values.size(); ++v) sum.values[v] += more.values[v];
+        }
+        if (n + 1 < kBrainMaps) continue;
+        FloatImage scaled = sum;
+        for (float& value : scaled.values) {
+            value = std::clamp(value / static_cast<float>(full), 0.0f, 1.0f);
+        }
+        enclosed.push_back(std::move(scaled));
+    }
+    return boundariesFrom(enclosed, options);
+}
+
+}  // namespace adaptiso

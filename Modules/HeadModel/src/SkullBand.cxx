@@ -1,0 +1,213 @@
+#include "SkullBand.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "adaptiso/Core/Parallel.h"
+
+namespace adaptiso::headmodel {
+namespace {
+
+constexpr double kRayStepMm = 0.5;
+constexpr double kMostScalpMm = 15;
+constexpr double kSpreadMm = 6;
+constexpr double kOutlierMm = 3;
+/// Weight of "as thick as usual" beside a surface that is seen everywhere, which has about 0.07:
+/// a layer of one voxel (h = 1 mm) under a Gaussian of kSpreadMm.
+constexpr float kPriorWeight = 0.001f;
+
+struct Ray {
+    std::int64_t voxel;     ///< where it starts: a voxel inside with a neighbour outside
+    Vec3 start, direction;  ///< in voxels; unit length
+};
+
+struct Grid {
+    const Index3& size;
+    std::int64_t offset(int axis) const {
+        return axis == 0 ? 1 : axis == 1 ? size[0] : size[0] * size[1];
+    }
+};
+
+double sampleAt(const std::vector<float>& values, const Index3& size, const Vec3& at) {
+    std::int64_t base = 0, stride = 1;
+    std::array<double, 3> weight;
+    for (int a = 0; a < 3; ++a) {
+        const double p = std::clamp(at[a], 0.0, static_cast<double>(size[a]) - 1.001);
+        const auto low = static_cast<std::int64_t>(p);
+        weight[a] = p - static_cast<double>(low);
+        base += low * stride;
+        stride *= size[a];
+    }
+    double sum = 0;
+    for (int n = 0; n < 8; ++n) {
+        double w = 1;
+        std::int64_t voxel = base;
+        for (int a = 0; a < 3; ++a) {
+            const bool isHigh = (n >> a & 1) != 0;
+            w *= isHigh ? weight[a] : 1 - weight[a];
+            if (isHigh) voxel += Grid{size}.offset(a);
+        }
+        sum += w * values[voxel];
+    }
+    return sum;
+}
+
+/// A ray for every voxel that the surface of `part` passes, from the surface along its normal.
+std::vector<Ray> raysFrom(const std::vector<float>& part, const Index3& size) {
+    constexpr auto kHalf = static_cast<float>(kFractionIsovalue);
+    const Grid grid{size};
+    std::vector<Ray> rays;
+    for (std::int64_t k = 1; k + 1 < size[2]; ++k) {
+        for (std::int64_t j = 1; j + 1 < size[1]; ++j) {
+            for (std::int64_t i = 1; i + 1 < size[0]; ++i) {
+                const std::int64_t n = i + size[0] * (j + size[1] * k);
+                if (part[n] < kHalf) continue;
+                Vec3 slope;
+                bool isLast = false;
+                for (int a = 0; a < 3; ++a) {
+                    const float low = part[n - grid.offset(a)], high = part[n + grid.offset(a)];
+                    slope[a] = (high - low) / 2.0;
+                    isLast = isLast || low < kHalf || high < kHalf;
+                }
+                const double steepness = norm(slope);
+                if (!isLast || steepness < 1e-3) continue;
+                const Vec3 outward = (-1 / steepness) * slope;
+                const double depth = std::min((part[n] - kHalf) / steepness, 1.0);
+                rays.push_back(
+                    {n,
+                     Vec3{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)} +
+                         depth * outward,
+                     outward});
+            }
+        }
+    }
+    return rays;
+}
+
+struct Search {
+    const std::vector<float>& t1;
+    const std::vector<float>& skinDepth;
+    const Index3& size;
+    double step;
+    const HeadLevels& levels;
+    const BoundaryOptions& options;
+
+    struct Answer {
+        bool reachesSkin = false;
+        std::optional<double> thicknessMm;
+    };
+
+    Answer along(const Ray& ray) const {
+        std::vector<double> profile;
+        Answer answer;
+        const double farMm = options.maxSkullMm + kMostScalpMm;
+        for (double mm = 0; mm <= farMm && !answer.reachesSkin; mm += kRayStepMm) {
+            const Vec3 at = ray.start + (mm / step) * ray.direction;
+            answer.reachesSkin = sampleAt(skinDepth, size, at) <= 0;
+            profile.push_back(sampleAt(t1, size, at));
+        }
+        if (answer.reachesSkin) answer.thicknessMm = thickness(profile);
+        return answer;
+    }
+
+    std::optional<double> thickness(const std::vector<double>& profile) const {
+        const auto count = static_cast<int>(profile.size());
+        // the scalp: brighter than half of the brain, somewhere in front of the skin
+        const double bright = levels.air + 0.5 * (levels.tissue - levels.air);
+        const auto most = static_cast<int>((options.maxSkullMm + kMostScalpMm) / kRayStepMm);
+        const auto least = std::max(0, count - static_cast<int>(kMostScalpMm / kRayStepMm));
+        int scalp = -1;
+        double peak = bright;
+        for (int n = std::min(count, most) - 1; n >= least; --n) {
+            if (profile[n] > peak) {
+                peak = profile[n];
+                scalp = n;
+            } else if (scalp >= 0 &&
+                       profile[n] < levels.air + 0.35 * (levels.tissue - levels.air)) {
+                break;  // in the bone: what is bright beyond is not scalp
+            }
+        }
+        if (scalp < 0) return std::nullopt;
+        // the bone: the darkest within the outer table's reach, before the image is bright again
+        const double scalpLevel = std::min(peak, levels.tissue);
+        int dark = scalp;
+        for (int n = scalp; n >= 0; --n) {
+            if (profile[n] < profile[dark]) dark = n;
+            const bool isBone = profile[dark] < levels.air + 0.4 * (levels.tissue - levels.air);
+            if (isBone && profile[n] > profile[dark] + 0.3 * (scalpLevel - profile[dark])) break;
+        }
+        const double contrast = scalpLevel - profile[dark];
+        if (contrast < 0.5 * (levels.tissue - levels.air)) return std::nullopt;
+        const double level = profile[dark] + contrast / 2;
+        int edge = dark;
+        while (edge < scalp && profile[edge] < level) ++edge;
+        const double before = profile[edge - 1], after = profile[edge];
+        const double mm = kRayStepMm * (edge - 1 + (level - before) / (after - before));
+        if (mm < options.minSkullMm || mm > options.maxSkullMm) return std::nullopt;
+        return mm;
+    }
+};
+
+/// Thickness everywhere near the surface, from what the rays say.
+std::vector<float> spread(const std::vector<Ray>& rays, const std::vector<Search::Answer>& answers,
+                          const ImageGeometry& grid, double usualMm,
+                          const std::vector<float>* former) {
+    std::vector<float> weight(static_cast<std::size_t>(grid.voxelCount()), 0), sum = weight;
+    for (std::size_t n = 0; n < rays.size(); ++n) {
+        const std::int64_t voxel = rays[n].voxel;
+        if (!answers[n].thicknessMm) continue;
+        const auto mm = static_cast<float>(*answers[n].thicknessMm);
+        if (former != nullptr && std::abs((*former)[voxel] - mm) > kOutlierMm) continue;
+        weight[voxel] = 1;
+        sum[voxel] = mm;
+    }
+    weight = smoothed(weight, grid, kSpreadMm);
+    sum = smoothed(sum, grid, kSpreadMm);
+    const auto usual = static_cast<float>(usualMm);
+    for (std::size_t n = 0; n < sum.size(); ++n) {
+        // a recursive filter's tails swing by a little around zero
+        const float w = std::max(weight[n], 0.0f);
+        sum[n] = (std::max(sum[n], 0.0f) + kPriorWeight * usual) / (w + kPriorWeight);
+    }
+    return sum;
+}
+
+}  // namespace
+
+SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
+                        const std::vector<float>& innerSkull, const std::vector<float>& skin,
+                        const HeadLevels& levels, const BoundaryOptions& options) {
+    const double step = stepMm(grid);
+    const std::vector<float> skinDepth = depthMm(above(skin, kFractionIsovalue), grid);
+    const std::vector<Ray> rays = raysFrom(innerSkull, grid.size);
+    const Search search{t1, skinDepth, grid.size, step, levels, options};
+    std::vector<Search::Answer> answers(rays.size());
+    parallelForPieces(std::ssize(rays), 1024, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) answers[n] = search.along(rays[n]);
+    });
+
+    SkullBand band;
+    std::vector<double> seen;
+    std::int64_t towardsScalp = 0;
+    for (const Search::Answer& answer : answers) {
+        towardsScalp += answer.reachesSkin ? 1 : 0;
+        if (answer.thicknessMm) seen.push_back(*answer.thicknessMm);
+    }
+    if (!seen.empty()) {
+        std::nth_element(seen.begin(), seen.begin() + std::ssize(seen) / 2, seen.end());
+        band.medianThicknessMm = seen[seen.size() / 2];
+        band.seenFraction = static_cast<double>(seen.size()) / static_cast<double>(towardsScalp);
+    }
+    const std::vector<float> first = spread(rays, answers, grid, options.skullMm, nullptr);
+    const std::vector<float> thickness = spread(rays, answers, grid, options.skullMm, &first);
+
+    const std::vector<float> inner = depthMm(above(innerSkull, kFractionIsovalue), grid);
+    band.outerSkull.resize(thickness.size());
+    for (std::size_t n = 0; n < thickness.size(); ++n) {
+        band.outerSkull[n] = partAtDepth(inner[n] + thickness[n], step);
+    }
+    return band;
+}
+
+}  // namespace adaptiso::headmodel

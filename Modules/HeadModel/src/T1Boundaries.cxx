@@ -1,0 +1,252 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "FinishBoundaries.h"
+#include "SkullBand.h"
+#include "WorkingGrid.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+
+using namespace headmodel;
+
+namespace {
+
+/// The head on its working grid.
+struct Head {
+    ImageGeometry grid;
+    std::vector<float> t1;
+    std::vector<std::uint8_t> faces;
+    HeadLevels levels;
+    double skinLevel = 0;
+    Mask mask;  ///< closed and filled
+};
+
+double medianWhere(const std::vector<float>& values, const Mask& mask) {
+    std::vector<float> chosen;
+    for (std::size_t n = 0; n < values.size(); ++n) {
+        if (mask[n] != 0) chosen.push_back(values[n]);
+    }
+    if (chosen.empty()) return 0;
+    std::nth_element(chosen.begin(), chosen.begin() + std::ssize(chosen) / 2, chosen.end());
+    return chosen[chosen.size() / 2];
+}
+
+/// The threshold between two classes that a fixed point of means gives [Ridler1978].
+double twoClassThreshold(const std::vector<float>& values) {
+    double threshold =
+        std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+    for (int round = 0; round < 100; ++round) {
+        double sums[2] = {0, 0};
+        std::int64_t counts[2] = {0, 0};
+        for (const float value : values) {
+            const int side = value >= threshold ? 1 : 0;
+            sums[side] += value;
+            ++counts[side];
+        }
+        if (counts[0] == 0 || counts[1] == 0) break;
+        const double next =
+            (sums[0] / static_cast<double>(counts[0]) + sums[1] / static_cast<double>(counts[1])) /
+            2;
+        if (std::abs(next - threshold) <= 1e-6 * std::abs(next)) break;
+        threshold = next;
+    }
+    return threshold;
+}
+
+Mask ballAround(std::int64_t voxel, const ImageGeometry& grid, double radiusMm) {
+    Mask seed(static_cast<std::size_t>(grid.voxelCount()), 0);
+    seed[voxel] = 1;
+    return dilated(seed, grid, radiusMm);
+}
+
+std::int64_t deepestVoxel(const std::vector<float>& depth) {
+    return std::max_element(depth.begin(), depth.end()) - depth.begin();
+}
+
+Mask headMask(const Head& head, double level, double closingMm) {
+    // the scalp may hang together with nothing within it, but it is all around
+    const Mask raw = widestComponent(above(head.t1, level), head.grid.size);
+    return filledAtBorder(closed(raw, head.grid, closingMm), head.faces, head.grid.size);
+}
+
+/// The skin's isovalue: above the air's noise, and low, since skin is darker than what lies below.
+double skinLevelOf(const Head& head, const Mask& rough, const HeadLevels& levels) {
+    double sum = 0, squares = 0, count = 0;
+    const Mask around = dilated(rough, head.grid, 5);
+    for (std::size_t n = 0; n < head.t1.size(); ++n) {
+        if (around[n] != 0 || head.faces[n] == 0) continue;
+        sum += head.t1[n];
+        squares += head.t1[n] * head.t1[n];
+        ++count;
+    }
+    const double mean = count > 0 ? sum / count : levels.air;
+    const double sigma = count > 0 ? std::sqrt(std::max(squares / count - mean * mean, 0.0)) : 0;
+    return std::max(mean + 4 * sigma, mean + 0.25 * (levels.tissue - mean));
+}
+
+Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
+    FloatImage image = toFloat(t1, 0);
+    const auto [air, brightest] = std::minmax_element(image.values.begin(), image.values.end());
+    if (!(*air < *brightest)) {
+        throw InvalidInput("boundariesFromT1: all samples are equal; there is no head");
+    }
+    const double rough = twoClassThreshold(image.values);
+    Index3 first, last;
+    boundingIndices(image, rough, first, last);
+    // a bright ghost in the air may widen the box: that costs time, no more
+    constexpr std::int64_t kSoftVoxels = 10;  // skin below the rough threshold
+    for (int a = 0; a < 3; ++a) {
+        first[a] = std::max<std::int64_t>(first[a] - kSoftVoxels, 0);
+        last[a] = std::min<std::int64_t>(last[a] + kSoftVoxels, image.geometry.size[a] - 1);
+    }
+    Head head;
+    head.grid = workingGrid(image.geometry, first, last, options.stepMm, marginMm(options));
+    head.t1 = resampled(image, head.grid, *air);
+    head.faces = imageFaces(image.geometry, head.grid);
+
+    const Mask roughMask = headMask(head, rough, options.closingMm);
+    const std::vector<float> depth = depthMm(roughMask, head.grid);
+    const std::int64_t middle = deepestVoxel(depth);
+    if (!(depth[middle] >= 40)) {
+        throw InvalidInput("boundariesFromT1: the largest object is " +
+                           shortNumber(2 * std::max(depth[middle], 0.0f)) +
+                           " mm thick; a head is 80 mm or more (a mask? wrong units?)");
+    }
+    head.levels.air = *air;
+    head.levels.tissue = medianWhere(head.t1, ballAround(middle, head.grid, 35));
+    head.skinLevel = skinLevelOf(head, roughMask, head.levels);
+    head.mask = headMask(head, head.skinLevel, options.closingMm);
+    return head;
+}
+
+/// What a brain can be: not the wrong size, not at the skin.
+bool isPlausibleBrain(const Mask& brain, const Head& head, const std::vector<float>& belowSkinMm) {
+    constexpr double kNearestMm = 8;  // scalp and skull are thicker together
+    const double cm3 = static_cast<double>(voxelsIn(brain)) * std::pow(stepMm(head.grid), 3) / 1000;
+    if (cm3 < 500 || cm3 > 2500) return false;
+    std::int64_t near = 0;
+    for (std::size_t n = 0; n < brain.size(); ++n) {
+        if (brain[n] != 0 && belowSkinMm[n] < kNearestMm) ++near;
+    }
+    return near <= voxelsIn(brain) / 1000;
+}
+
+/// Without what hangs on by less than 16 mm: vessels, nerves, muscle below the skull's base.
+Mask withoutTongues(const Mask& brain, const Head& head) {
+    constexpr double kSulcusMm = 6, kTongueMm = 8, kRoundingMm = 2;
+    const Mask bulk = opened(closed(brain, head.grid, kSulcusMm), head.grid, kTongueMm);
+    Mask result = dilated(largestComponent(bulk, head.grid.size), head.grid, kRoundingMm);
+    for (std::size_t n = 0; n < brain.size(); ++n) result[n] &= brain[n];
+    return result;
+}
+
+/// The brain by thresholds and morphology.
+Mask guessedBrain(const Head& head) {
+    const std::vector<float> depth = depthMm(head.mask, head.grid);
+    const double span = head.levels.tissue - head.levels.air;
+    Mask tissue(head.t1.size());
+    for (std::size_t n = 0; n < tissue.size(); ++n) {
+        const double level = (head.t1[n] - head.levels.air) / span;
+        tissue[n] = level > 0.55 && level < 1.45 && depth[n] > 4 ? 1 : 0;
+    }
+    const Mask middle = ballAround(deepestVoxel(depth), head.grid, 20);
+    Mask headAndBeyond = head.mask;  // the image's border is no skin
+    for (std::size_t n = 0; n < headAndBeyond.size(); ++n) {
+        if (head.faces[n] == 0) headAndBeyond[n] = 1;
+    }
+    const std::vector<float> belowSkin = depthMm(headAndBeyond, head.grid);
+    constexpr double kFirstMm = 2, kStepMm = 0.5;
+    for (int n = 0; n <= 12; ++n) {
+        const double radius = kFirstMm + n * kStepMm;
+        const Mask core = componentsWith(middle, eroded(tissue, head.grid, radius), head.grid.size);
+        Mask brain = dilated(core, head.grid, radius + 1);
+        for (std::size_t v = 0; v < brain.size(); ++v) brain[v] &= tissue[v];
+        brain = filled(largestComponent(brain, head.grid.size), head.grid.size);
+        if (isPlausibleBrain(brain, head, belowSkin)) return withoutTongues(brain, head);
+    }
+    throw InvalidInput("boundariesFromT1: no brain comes loose by thresholds; give one by a mask");
+}
+
+/// The brain mask of the caller on the head's grid.
+std::vector<float> brainPart(const VolumeView& brainMask, const Head& head) {
+    const ValueRange range = valueRange(brainMask);
+    if (!(range.maximum > 0)) throw InvalidInput("boundariesFromT1: the brain mask is empty");
+    // a skull-stripped image is a mask where it is not zero; a mask of parts is cut at one half
+    const bool isImage = range.maximum > 1 && !std::isnan(range.minimum) && [&] {
+        const FloatImage values = toFloat(brainMask, 0);
+        return std::any_of(values.values.begin(), values.values.end(),
+                           [&](float v) { return v > 0 && v < range.maximum; });
+    }();
+    const double least = isImage ? 0 : range.maximum / 2;
+    FloatImage parts = indicator(brainMask, [&](double value) { return value > least; });
+    if (!isImage && range.maximum <= 1) parts = toFloat(brainMask, 0);
+    std::vector<float> part = resampled(parts, head.grid, 0);
+    if (voxelsIn(above(part, kFractionIsovalue)) == 0) {
+        throw InvalidInput("boundariesFromT1: the brain mask lies outside the head's image");
+    }
+    return part;
+}
+
+/// The inner skull: the brain, closed and grown by the CSF around it, kept below the scalp.
+std::vector<float> innerSkullPart(const Mask& brain, const Head& head,
+                                  const BoundaryOptions& options) {
+    const double step = stepMm(head.grid);
+    const Mask whole = filledAtBorder(
+        closed(largestComponent(brain, head.grid.size), head.grid, options.closingMm), head.faces,
+        head.grid.size);
+    const std::vector<float> depth = depthMm(whole, head.grid);
+    const std::vector<float> below = depthMm(head.mask, head.grid);
+    std::vector<float> part(depth.size());
+    for (std::size_t n = 0; n < part.size(); ++n) {
+        const float grown = partAtDepth(depth[n] + options.csfMm, step);
+        const double room = below[n] - options.minSkullMm - options.minScalpMm;
+        part[n] = std::max(partAtDepth(depth[n], step), std::min(grown, partAtDepth(room, step)));
+    }
+    return part;
+}
+
+}  // namespace
+
+HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<VolumeView>& brainMask,
+                                const BoundaryOptions& options) {
+    checkOptions(options);
+    if (!(options.skullMm >= options.minSkullMm && options.skullMm <= options.maxSkullMm)) {
+        throw InvalidInput("boundariesFromT1: skullMm is " + shortNumber(options.skullMm) +
+                           " mm, must be minSkullMm to maxSkullMm");
+    }
+    tell(options, "head", 0);
+    const Head head = findHead(t1, options);
+    RawBoundaries raw;
+    raw.grid = head.grid;
+    raw.notes.push_back("skin at " + shortNumber(head.skinLevel) + ", brain tissue at " +
+                        shortNumber(head.levels.tissue));
+    tell(options, "brain", 0);
+    const Mask brain =
+        brainMask ? above(brainPart(*brainMask, head), kFractionIsovalue) : guessedBrain(head);
+    const double cm3 = static_cast<double>(voxelsIn(brain)) * std::pow(stepMm(head.grid), 3) / 1000;
+    raw.notes.push_back(
+        (brainMask ? "brain mask: " : "brain guessed by thresholds, give a mask if it is wrong: ") +
+        shortNumber(cm3) + " cm3");
+    raw.parts.push_back(innerSkullPart(brain, head, options));
+    if (!options.innerSkullOnly) {
+        tell(options, "skull", 0);
+        const std::vector<float> skin =
+            partByLevel(head.mask, head.t1, head.skinLevel, head.levels.air, head.faces, head.grid);
+        SkullBand band = findSkullBand(head.t1, head.grid,
+                                       smoothed(raw.parts[0], head.grid, options.smoothingMm), skin,
+                                       head.levels, options);
+        raw.notes.push_back("skull band seen on " + shortNumber(100 * band.seenFraction) +
+                            " % of the rays to the scalp, median thickness " +
+                            shortNumber(band.medianThicknessMm) + " mm; elsewhere " +
+                            shortNumber(options.skullMm) + " mm");
+        raw.parts.push_back(std::move(band.outerSkull));
+        raw.parts.push_back(skin);
+        limitOuterSkull(raw, options);
+    }
+    return finished(std::move(raw), options);
+}
+
+}  // namespace adaptiso
