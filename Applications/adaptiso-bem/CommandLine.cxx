@@ -1,0 +1,329 @@
+#include "CommandLine.h"
+
+#include <algorithm>
+#include <charconv>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "Common/ImageOptions.h"
+#include "Common/Numbers.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr const char* kInput = "Input (one of --t1, --labels, --probabilities, --ct, --surfaces)";
+constexpr const char* kHead = "Head";
+constexpr const char* kMesh = "Surfaces";
+constexpr const char* kOutput = "Output";
+
+std::vector<std::string> parts(const std::string& text, char separator) {
+    std::vector<std::string> result;
+    std::size_t begin = 0;
+    for (std::size_t end = 0; end != std::string::npos; begin = end + 1) {
+        end = text.find(separator, begin);
+        result.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
+    }
+    return result;
+}
+
+/// Numbers joined by a separator. \throws UsageError  naming option and rule
+std::vector<double> numbers(const std::string& option, const std::string& text, char separator,
+                            std::size_t least, std::size_t most, const std::string& rule) {
+    std::vector<double> values;
+    for (const std::string& part : parts(text, separator)) {
+        const std::optional<double> value = parseFiniteNumber(part);
+        if (!value) throw UsageError(option + " " + text + ": must be " + rule);
+        values.push_back(*value);
+    }
+    if (values.size() < least || values.size() > most) {
+        throw UsageError(option + " " + text + ": must be " + rule);
+    }
+    return values;
+}
+
+/// "brain=1,2,3"
+void addTissue(TissueLabels& tissues, const std::string& text) {
+    const auto refuse = [&] {
+        throw UsageError("--tissue " + text +
+                         ": must be brain, skull or scalp, '=', and labels with commas between "
+                         "them: brain=1,2,3");
+    };
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    std::vector<std::int64_t>* const list = name == "brain"   ? &tissues.brain
+                                            : name == "skull" ? &tissues.skull
+                                            : name == "scalp" ? &tissues.scalp
+                                                              : nullptr;
+    if (equals == std::string::npos || list == nullptr) return refuse();
+    for (const std::string& part : parts(text.substr(equals + 1), ',')) {
+        std::int64_t label = 0;
+        const char* const last = part.data() + part.size();
+        const auto [end, error] = std::from_chars(part.data(), last, label);
+        if (error != std::errc{} || end != last) return refuse();
+        list->push_back(label);
+    }
+}
+
+void addLength(CLI::App& app, const std::string& name, double& target,
+               const std::string& description, const char* group) {
+    app.add_option_function<std::string>(
+           name,
+           [&target, name](const std::string& text) {
+               target = numbers(name, text, ',', 1, 1, "a number of mm, 0 or more")[0];
+               if (target < 0) throw UsageError(name + " " + text + ": must be 0 mm or more");
+           },
+           description)
+        ->type_name("MM")
+        ->group(group);
+}
+
+void addNumber(CLI::App& app, const std::string& name, double& target, const char* unit,
+               const std::string& description, const char* group) {
+    app.add_option_function<std::string>(
+           name,
+           [&target, name](const std::string& text) {
+               target = numbers(name, text, ',', 1, 1, "a finite number")[0];
+           },
+           description)
+        ->type_name(unit)
+        ->group(group);
+}
+
+void declareInput(CLI::App& app, BemOptions& options) {
+    app.add_option("--t1", options.t1, "A T1-weighted MRI of the whole head")
+        ->type_name("IMG")
+        ->group(kInput);
+    app.add_option("--brain-mask", options.brainMask,
+                   "With --t1: the brain, from any brain extraction (a mask, or the T1 with the "
+                   "skull removed); without it the brain is guessed")
+        ->type_name("IMG")
+        ->group(kInput);
+    app.add_option("--labels", options.labels, "A segmentation; --tissue or --preset says of what")
+        ->type_name("IMG")
+        ->group(kInput);
+    app.add_option_function<std::vector<std::string>>(
+           "--tissue",
+           [&options](const std::vector<std::string>& texts) {
+               for (const std::string& text : texts) addTissue(options.tissues, text);
+           },
+           "Labels of a tissue: brain=1,2,3 (CSF included), skull=4, scalp=5; one --tissue each")
+        ->type_name("NAME=LABELS")
+        ->allow_extra_args(false)
+        ->group(kInput);
+    app.add_option_function<std::string>(
+           "--preset",
+           [&options](const std::string& name) { options.tissues = tissuePreset(name); },
+           "The labels of SimNIBS's charm or headreco, or of FreeSurfer's aseg")
+        ->type_name("charm|headreco|aseg")
+        ->check(CLI::IsMember({"charm", "headreco", "aseg"}).description(""))
+        ->group(kInput);
+    app.add_option("--probabilities", options.probabilities,
+                   "Tissue maps in SPM's order: c1 c2 c3 c4 c5 [c6]")
+        ->type_name("IMG...")
+        ->group(kInput);
+    app.add_option("--ct", options.ct, "A CT of the whole head, in Hounsfield units")
+        ->type_name("IMG")
+        ->group(kInput);
+    app.add_option("--surfaces", options.surfaces,
+                   "Ready surfaces, inside out: INNER OUTER SKIN (or INNER alone with --meg); "
+                   "checked, mended where need be, and kept as they are where not")
+        ->type_name("MESH...")
+        ->group(kInput);
+    app.add_option("--volume", options.volume,
+                   "With --surfaces: the image they belong to, for tkRAS and voxel coordinates")
+        ->type_name("IMG")
+        ->group(kInput);
+    declareReadOptions(app, options.read, kInput);
+}
+
+void declareHead(CLI::App& app, BemOptions& options) {
+    BoundaryOptions& head = options.boundaries;
+    app.add_flag("--meg", head.innerSkullOnly, "The inner skull alone")->group(kHead);
+    app.add_option_function<std::string>(
+           "--min-gap",
+           [&head](const std::string& text) {
+               const std::vector<double> gaps =
+                   numbers("--min-gap", text, ',', 1, 2, "one or two numbers of mm: SKULL,SCALP");
+               head.minSkullMm = gaps.front();
+               head.minScalpMm = gaps.back();
+               if (!(head.minSkullMm > 0) || !(head.minScalpMm > 0)) {
+                   throw UsageError("--min-gap " + text + ": must be more than 0 mm");
+               }
+           },
+           "Least thickness of skull and scalp, guaranteed (default: 2,2)")
+        ->type_name("MM[,MM]")
+        ->group(kHead);
+    addLength(app, "--csf", head.csfMm, "T1: from the brain mask to the inner skull (default: 2)",
+              kHead);
+    addLength(app, "--skull", head.skullMm,
+              "T1: thickness of the skull where the image does not show it (default: 6)", kHead);
+    addLength(app, "--max-skull", head.maxSkullMm,
+              "Bone farther than this from the inner skull (face, neck) counts as scalp (default: "
+              "20)",
+              kHead);
+    addNumber(app, "--skull-hu", head.skullHu, "HU", "CT: isovalue of bone (default: 300)", kHead);
+    addNumber(app, "--skin-hu", head.skinHu, "HU", "CT: isovalue of skin (default: -300)", kHead);
+    addLength(app, "--closing", head.closingMm,
+              "Gaps and canals narrower than twice this are closed (default: 10)", kHead);
+    addLength(app, "--smoothing", head.smoothingMm,
+              "Standard deviation of the Gaussian that boundaries are smoothed with (default: 1.5)",
+              kHead);
+    addLength(app, "--voxel", head.stepMm,
+              "Side of the voxels that the head is worked on (default: the image's own if they are "
+              "cubes of 0.7 to 1.5 mm, else 1)",
+              kHead);
+}
+
+void declareSurfaces(CLI::App& app, BemOptions& options) {
+    constexpr std::int64_t kMostVertices = 200'000;
+    app.add_option("--vertices", options.vertices,
+                   "Vertices of each surface, evenly spread: 642, 1281, 2562 or any number "
+                   "(default: 2562)")
+        ->type_name("N")
+        ->check(CLI::Range(std::int64_t{42}, kMostVertices).description(""))
+        ->group(kMesh);
+    app.add_option_function<std::string>(
+           "--edge-length",
+           [&options](const std::string& text) {
+               const std::vector<double> range =
+                   numbers("--edge-length", text, ':', 2, 2, "two lengths in mm: MIN:MAX");
+               if (!(range[0] > 0) || !(range[0] <= range[1])) {
+                   throw UsageError("--edge-length " + text + ": must be 0 < MIN <= MAX");
+               }
+               options.edgeLengthMm = EdgeLengthRange{range[0], range[1]};
+           },
+           "Adaptive: edges of MIN mm where a surface bends or another is near, up to MAX mm; with "
+           "--vertices lengths are scaled to reach that number")
+        ->type_name("MIN:MAX")
+        ->group(kMesh);
+    app.add_option_function<std::string>(
+           "--conductivity",
+           [&options](const std::string& text) {
+               const std::vector<double> values = numbers(
+                   "--conductivity", text, ',', 3, 3, "three numbers: BRAIN,SKULL,SCALP in S/m");
+               options.conductivities = {values[0], values[1], values[2]};
+               try {
+                   checkConductivities(options.conductivities);
+               } catch (const InvalidInput& error) {
+                   throw UsageError("--conductivity " + text + ": " + error.what());
+               }
+           },
+           "Conductivities in S/m (default: 0.3,0.006,0.3)")
+        ->type_name("BRAIN,SKULL,SCALP")
+        ->group(kMesh);
+}
+
+void declareOutput(CLI::App& app, BemOptions& options) {
+    app.add_option("-o,--output", options.output,
+                   "The folder to make; it holds the whole model or, when none can be guaranteed, "
+                   "report.json alone")
+        ->type_name("DIR")
+        ->group(kOutput);
+    app.add_flag("--force", options.mayReplace,
+                 "Replace a folder that this program made, and the subject's surfaces")
+        ->group(kOutput);
+    app.add_option("--subjects-dir", options.subjectsDir,
+                   "FreeSurfer's SUBJECTS_DIR: put the .surf files into SUBJECT/bem as well")
+        ->type_name("DIR")
+        ->group(kOutput);
+    app.add_option("--subject", options.subject, "The subject's folder in --subjects-dir")
+        ->type_name("NAME")
+        ->group(kOutput);
+    app.add_option_function<std::string>(
+           "--units",
+           [&options](const std::string& unit) {
+               options.unit = unit == "m" ? OpenMeegUnit::Metres : OpenMeegUnit::Millimetres;
+           },
+           "Unit of OpenMEEG's .tri files: mm (default) or m (potentials in volts)")
+        ->type_name("mm|m")
+        ->check(CLI::IsMember({"mm", "m"}).description(""))
+        ->group(kOutput);
+    app.add_option_function<std::string>(
+           "--coordinates",
+           [&options](const std::string& frame) {
+               options.frame = frame == "lps"     ? CoordinateFrame::Lps
+                               : frame == "tkras" ? CoordinateFrame::TkRas
+                                                  : CoordinateFrame::Ras;
+           },
+           "Frame of all files but FreeSurfer's, which are in tkRAS: scanner RAS (default), "
+           "scanner LPS, or tkRAS")
+        ->type_name("ras|lps|tkras")
+        ->check(CLI::IsMember({"ras", "lps", "tkras"}).description(""))
+        ->group(kOutput);
+    app.add_flag("--gifti", options.writesGifti, "Write .gii files too")->group(kOutput);
+    app.add_flag("--vtp", options.writesVtp, "Write .vtp files too")->group(kOutput);
+    app.add_flag("--dry-run", options.isDryRun,
+                 "Do and check everything, write nothing but --json's report")
+        ->group(kOutput);
+}
+
+/// What one option alone can't tell.
+void checkCombinations(const BemOptions& options) {
+    const int sources =
+        static_cast<int>(!options.t1.empty()) + static_cast<int>(!options.labels.empty()) +
+        static_cast<int>(!options.probabilities.empty()) + static_cast<int>(!options.ct.empty()) +
+        static_cast<int>(!options.surfaces.empty());
+    const auto require = [](bool isGood, const std::string& message) {
+        if (!isGood) throw UsageError(message);
+    };
+    require(sources == 1,
+            "one of --t1, --labels, --probabilities, --ct, --surfaces must be given, and one only");
+    require(options.brainMask.empty() || !options.t1.empty(), "--brain-mask needs --t1");
+    require(options.volume.empty() || !options.surfaces.empty(), "--volume needs --surfaces");
+    const bool namesTissues = !options.tissues.brain.empty() || options.tissues.othersAreBrain;
+    require(options.labels.empty() || namesTissues,
+            "--labels needs --preset, or --tissue brain=..., skull=... and scalp=...");
+    require(options.labels.empty() || options.boundaries.innerSkullOnly ||
+                (!options.tissues.skull.empty() && !options.tissues.scalp.empty()),
+            "--labels needs --tissue skull=... and scalp=... as well (or --meg)");
+    require(!options.labels.empty() ||
+                (!namesTissues && options.tissues.skull.empty() && options.tissues.scalp.empty()),
+            "--tissue and --preset need --labels");
+    require(options.surfaces.empty() || options.surfaces.size() == options.surfaceCount(),
+            "--surfaces needs " + std::to_string(options.surfaceCount()) + " files, inside out");
+    const BoundaryOptions& head = options.boundaries;
+    require(head.maxSkullMm > head.minSkullMm, "--max-skull must be more than --min-gap");
+    require(
+        options.t1.empty() || (head.skullMm >= head.minSkullMm && head.skullMm <= head.maxSkullMm),
+        "--skull must lie between --min-gap and --max-skull");
+    require(options.isDryRun || !options.output.empty(), "-o DIR is needed (or --dry-run)");
+    require(options.subject.empty() == options.subjectsDir.empty(),
+            "--subjects-dir and --subject need each other");
+    require(options.subject.find('/') == std::string::npos && options.subject != ".." &&
+                options.subject != ".",
+            "--subject " + options.subject + ": must be the name of a folder");
+}
+
+constexpr const char* kFooter = R"(Examples:
+  adaptiso-bem --t1 T1.nii.gz --brain-mask brain.nii.gz -o model
+      FreeSurfer and OpenMEEG files, README.md and report.json in the folder model
+  adaptiso-bem --t1 T1.mgz --subjects-dir subjects --subject anna -o model
+  adaptiso-bem --labels final_tissues.nii.gz --preset charm --vertices 642 -o model
+  adaptiso-bem --probabilities c1.nii c2.nii c3.nii c4.nii c5.nii -o model
+  adaptiso-bem --ct ct.nii.gz --meg -o model
+  adaptiso-bem --surfaces inner.stl outer.stl skin.stl --min-gap 3,2 -o model
+
+Exit codes: 0 done, 1 no model could be guaranteed (the folder holds report.json
+alone), 2 wrong usage, 3 bad input (or no memory or disk left), 4 internal
+error. When it is above 1, nothing was written.)";
+
+}  // namespace
+
+Program bemProgram() {
+    return {"adaptiso-bem",
+            "Makes the nested surfaces of a boundary element head model (EEG: inner skull, outer "
+            "skull,\nouter skin; MEG: inner skull) for MNE, FreeSurfer and OpenMEEG.",
+            kFooter};
+}
+
+void declareBemOptions(CLI::App& app, BemOptions& options) {
+    declareInput(app, options);
+    declareHead(app, options);
+    declareSurfaces(app, options);
+    declareOutput(app, options);
+    declareCommonOptions(app, options.common);
+    app.callback([&options] { checkCombinations(options); });
+}
+
+}  // namespace adaptiso

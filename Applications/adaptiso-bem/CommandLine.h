@@ -1,0 +1,17 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "Common/RunApp.h"
+#include "Pipeline.h"
+
+namespace adaptiso {
+
+/// Name, description and closing help text of adaptiso-bem.
+Program bemProgram();
+
+/// Adds adaptiso-bem's options to `app`. Parsing throws a CLI::ParseError or a UsageError for
+/// values, and for combinations of options, that make no sense.
+void declareBemOptions(CLI::App& app, BemOptions& options);
+
+}  // namespace adaptiso

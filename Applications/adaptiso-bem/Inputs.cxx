@@ -1,0 +1,123 @@
+#include "Inputs.h"
+
+#include <utility>
+
+#include "Common/CommonFrame.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/MeshFile.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+ReadVolume readImage(const fs::path& path, const std::string& role, BemRun& run,
+                     const ReadOptions& options = {}) {
+    ReadVolume read = readVolume(path, options);
+    run.inputs.push_back({path, role, read.format});
+    for (const std::string& warning : read.warnings) {
+        run.warnings.push_back(path.filename().string() + ": " + warning);
+    }
+    return read;
+}
+
+/// As readImage(), and the surfaces' frame is this image's.
+ReadVolume readMainImage(const fs::path& path, const std::string& role, BemRun& run) {
+    ReadVolume read = readImage(path, role, run, run.options.read);
+    run.image = read.volume.view().geometry();
+    return read;
+}
+
+template <class Make>
+HeadBoundaries timed(BemRun& run, const Make& make) {
+    return run.timer.time("boundaries", make);
+}
+
+HeadBoundaries fromT1(BemRun& run, const BoundaryOptions& boundaries) {
+    const BemOptions& options = run.options;
+    const ReadVolume t1 =
+        run.timer.time("read", [&] { return readMainImage(options.t1, "t1", run); });
+    if (options.brainMask.empty()) {
+        return timed(run, [&] { return boundariesFromT1(t1.volume, std::nullopt, boundaries); });
+    }
+    const ReadVolume mask =
+        run.timer.time("read", [&] { return readImage(options.brainMask, "brain mask", run); });
+    return timed(run, [&] { return boundariesFromT1(t1.volume, mask.volume.view(), boundaries); });
+}
+
+HeadBoundaries fromProbabilities(BemRun& run, const BoundaryOptions& boundaries) {
+    std::vector<ReadVolume> maps;
+    run.timer.time("read", [&] {
+        for (const fs::path& path : run.options.probabilities) {
+            maps.push_back(readMainImage(path, "probabilities", run));
+        }
+    });
+    std::vector<VolumeView> views;
+    for (const ReadVolume& map : maps) views.push_back(map.volume.view());
+    return timed(run, [&] { return boundariesFromProbabilities(views, boundaries); });
+}
+
+}  // namespace
+
+HeadBoundaries boundariesFromImages(BemRun& run, ProgressLine& progress) {
+    const BemOptions& options = run.options;
+    BoundaryOptions boundaries = options.boundaries;
+    boundaries.progress = progress.callback();
+    progress.show("read");
+    HeadBoundaries result;
+    if (run.source == "t1") {
+        result = fromT1(run, boundaries);
+    } else if (run.source == "labels") {
+        const ReadVolume labels =
+            run.timer.time("read", [&] { return readMainImage(options.labels, "labels", run); });
+        result = timed(
+            run, [&] { return boundariesFromLabels(labels.volume, options.tissues, boundaries); });
+    } else if (run.source == "probabilities") {
+        result = fromProbabilities(run, boundaries);
+    } else {
+        const ReadVolume ct =
+            run.timer.time("read", [&] { return readMainImage(options.ct, "ct", run); });
+        result = timed(run, [&] { return boundariesFromCt(ct.volume, boundaries); });
+    }
+    run.notes = result.notes;
+    return result;
+}
+
+std::vector<TriangleMesh> readSurfaces(BemRun& run) {
+    const BemOptions& options = run.options;
+    if (!options.volume.empty()) readMainImage(options.volume, "volume", run);
+    std::vector<NamedMesh> files;
+    for (const fs::path& path : options.surfaces) {
+        files.push_back({path, readMesh(path)});
+        run.inputs.push_back({path, "surface", std::string(findMeshFormat(path).name)});
+        const MeshFile& file = files.back().file;
+        if (file.frame == CoordinateFrame::TkRas && !run.tkRasVolume) run.tkRasVolume = file.volume;
+    }
+    const CommonFrame common = bringToOneFrame(files, run.image);
+    if (common.frame == CoordinateFrame::TkRas) run.tkRasVolume = common.volume;
+    run.warnings.insert(run.warnings.end(), common.warnings.begin(), common.warnings.end());
+    std::vector<TriangleMesh> surfaces;
+    for (NamedMesh& named : files) {
+        surfaces.push_back(std::move(named.file.mesh));
+        surfaces.back().normals = {};
+    }
+    return surfaces;
+}
+
+void chooseTkRas(BemRun& run) {
+    const BemOptions& options = run.options;
+    if (!options.subject.empty()) {
+        const fs::path orig = options.subjectsDir / options.subject / "mri" / "orig.mgz";
+        std::error_code error;
+        if (fs::is_regular_file(orig, error)) {
+            run.tkRasVolume = readVolume(orig).volume.view().geometry();
+            run.tkRasName = "orig.mgz";
+            return;
+        }
+        run.warnings.push_back("the subject has no mri/orig.mgz; tkRAS is that of the input");
+    }
+    if (run.image) run.tkRasVolume = frameVolume(CoordinateFrame::TkRas, *run.image);
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,63 @@
+#include "ModelReadme.h"
+
+#include "Common/CommonOptions.h"
+#include "Common/Numbers.h"
+
+namespace adaptiso {
+namespace {
+
+std::string frameText(const BemRun& run) {
+    switch (run.options.frame) {
+        case CoordinateFrame::Lps:
+            return "scanner LPS";
+        case CoordinateFrame::TkRas:
+            return "FreeSurfer's surface RAS (tkRAS)";
+        default:
+            return "scanner RAS";
+    }
+}
+
+std::string conductivityTuple(const BemRun& run) {
+    const ConductivityModel& c = run.options.conductivities;
+    if (run.options.boundaries.innerSkullOnly) return "(" + formatNumber(c.brain) + ",)";
+    return "(" + formatNumber(c.brain) + ", " + formatNumber(c.skull) + ", " +
+           formatNumber(c.scalp) + ")";
+}
+
+}  // namespace
+
+std::string modelReadme(const BemRun& run) {
+    const bool isMetres = run.options.unit == OpenMeegUnit::Metres;
+    const bool isOne = run.options.boundaries.innerSkullOnly;
+    const std::string unit = isMetres ? "metres" : "millimetres";
+    std::string text = "# Boundary element head model\nMade by adaptiso-bem " + programVersion() +
+                       ". " +
+                       (isOne ? "One surface (inner skull), for MEG."
+                              : "Three surfaces: inner skull, outer skull, outer skin.") +
+                       " Each is closed, of genus 0, outward" +
+                       (isOne ? ".\n" : ", and lies strictly inside the next.\n");
+    text += "\n| files | for | frame and unit |\n|---|---|---|\n";
+    text += std::string("| `*.surf` | FreeSurfer, MNE | ") +
+            (run.tkRasVolume ? "surface RAS (tkRAS) of the image; the footer leads to scanner RAS"
+                             : "scanner RAS (of a volume around the scanner's origin)") +
+            "; millimetres |\n";
+    text += "| `model.geom`, `model.cond`, `*.tri` | OpenMEEG | " + frameText(run) + "; " + unit +
+            (isMetres ? " (potentials in volts)" : "") + " |\n";
+    if (run.options.writesGifti || run.options.writesVtp) {
+        text += "| `*.gii`, `*.vtp` | viewers | " + frameText(run) + "; millimetres |\n";
+    }
+    text += "| `report.json` | what was made, measured and checked | scanner LPS; millimetres |\n";
+
+    text +=
+        "\nMNE-Python, with the `.surf` files in `SUBJECTS_DIR/SUBJECT/bem` (or a copy of this "
+        "folder under that name):\n```python\nimport mne\nmodel = mne.make_bem_model('SUBJECT', "
+        "ico=None, conductivity=" +
+        conductivityTuple(run) +
+        ", subjects_dir='SUBJECTS_DIR')\nbem = mne.make_bem_solution(model)\n```\n";
+    text +=
+        "\nOpenMEEG, in this folder:\n```sh\nom_check_geom -g model.geom\nom_assemble -HM "
+        "model.geom model.cond model.hm\nom_minverser model.hm model.hm_inv\n```\n";
+    return text;
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,69 @@
+#include "TextReport.h"
+
+#include <algorithm>
+#include <ostream>
+#include <string_view>
+
+#include "Common/Numbers.h"
+
+namespace adaptiso {
+namespace {
+
+std::string rasText(const Vec3& lps) {
+    return "(" + formatFixed(-lps.x, 1) + ", " + formatFixed(-lps.y, 1) + ", " +
+           formatFixed(lps.z, 1) + ") mm RAS";
+}
+
+void printSurface(std::ostream& out, std::size_t n, const BemSurface& surface) {
+    out << toString(static_cast<HeadSurface>(n)) << ": " << formatCount(surface.topology.vertices)
+        << " vertices, " << formatCount(surface.topology.triangles) << " triangles, edges "
+        << formatFixed(surface.shape.edgeMm.minimum, 1) << " to "
+        << formatFixed(surface.shape.edgeMm.maximum, 1) << " mm, angles from "
+        << formatFixed(surface.shape.minAngleDeg.minimum, 0) << " deg, volume "
+        << formatRounded(surface.volumeMm3 / 1000) << " cm3\n";
+}
+
+}  // namespace
+
+std::string failureText(const BemRun& run) {
+    std::string text = run.findings.front().what + " at " + rasText(run.findings.front().pointMm);
+    if (run.findings.size() > 1) {
+        text += " (and " + formatCount(std::ssize(run.findings) - 1) + " more)";
+    }
+    return text;
+}
+
+void printReport(std::ostream& out, const BemRun& run) {
+    for (std::size_t n = 0; n < run.surfaces.size() && !run.checks.empty(); ++n) {
+        printSurface(out, n, run.surfaces[n]);
+    }
+    for (std::size_t n = 0; n < run.gaps.size(); ++n) {
+        out << toString(static_cast<HeadSurface>(n)) << " to "
+            << toString(static_cast<HeadSurface>(n + 1)) << ": at least "
+            << formatFixed(run.gaps[n].mm, 2) << " mm, at " << rasText(run.gaps[n].innerPointMm)
+            << '\n';
+    }
+    for (const std::string& note : run.notes) out << "  " << note << '\n';
+    const auto passed = std::count_if(run.checks.begin(), run.checks.end(),
+                                      [](const BemCheck& check) { return check.isPassed; });
+    if (!run.checks.empty()) {
+        out << formatCount(passed) << " of " << formatCount(std::ssize(run.checks))
+            << " checks passed\n";
+    }
+    if (run.options.isDryRun) {
+        out << "nothing written (--dry-run)\n";
+    } else {
+        out << run.options.output.string() << (run.hasModel() ? ": the model" : ": the report only")
+            << '\n';
+        for (const auto& path : run.subjectFiles) out << path.string() << '\n';
+    }
+    out << formatFixed(run.timer.total(), 1) << " s (";
+    std::string_view separator;
+    for (const auto& [stage, seconds] : run.timer.stages()) {
+        out << separator << stage << ' ' << formatFixed(seconds, 1);
+        separator = ", ";
+    }
+    out << "), peak memory " << formatRounded(peakMemoryMb()) << " MB\n";
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,262 @@
+"""What MNE-Python and nibabel make of adaptiso-bem's models. Needs Debian's python3-mne and
+python3-nibabel; exits 77 (skipped) without them.
+"""
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+from support import BIN, SOURCE, ApplicationTest
+
+try:
+    import mne
+    import nibabel
+    import numpy as np
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+
+sys.path.insert(0, str(SOURCE / "Testing" / "Benchmark"))
+import solveSpheres  # noqa: E402  (the analytic potentials and MNE's)
+
+BEM = str(BIN / "adaptiso-bem")
+TEMPLATES = Path("/usr/share/mricron/templates")
+NAMES = ("inner_skull", "outer_skull", "outer_skin")
+CENTRE = np.array([3.3, -7.1, 5.7])  # scanner RAS, off the voxels' lattice
+RADII = (80, 86, 92)
+
+mne.set_log_level("error")
+
+
+def save(path, data, affine):
+    nibabel.save(nibabel.Nifti1Image(data, affine), path)
+
+
+def lattice(size, affine):
+    index = np.stack(np.meshgrid(*map(np.arange, size), indexing="ij"), axis=-1)
+    return index @ affine[:3, :3].T + affine[:3, 3]
+
+
+def part_of_ball(points, radius, steps=5):
+    """The part of every 1 mm voxel inside the sphere, by counting points within."""
+    distance = np.linalg.norm(points - CENTRE, axis=-1)
+    part = (distance <= radius).astype(float)
+    near = np.abs(distance - radius) < 1
+    offsets = (np.arange(steps) + 0.5) / steps - 0.5
+    count = np.zeros(near.sum())
+    for offset in np.stack(np.meshgrid(offsets, offsets, offsets), axis=-1).reshape(-1, 3):
+        count += np.linalg.norm(points[near] + offset - CENTRE, axis=-1) <= radius
+    part[near] = count / steps ** 3
+    return part
+
+
+def scanner_points(path):
+    """Points in scanner RAS by the footer, as nibabel reads it, and triangles."""
+    points, triangles, info = nibabel.freesurfer.read_geometry(path, read_metadata=True)
+    header = nibabel.freesurfer.MGHImage(np.zeros(info["volume"], np.uint8), np.eye(4)).header
+    header["delta"] = info["voxelsize"]
+    header["Mdc"] = np.array([info["xras"], info["yras"], info["zras"]])
+    header["Pxyz_c"] = info["cras"]
+    move = header.get_vox2ras() @ np.linalg.inv(header.get_vox2ras_tkr())
+    return points @ move[:3, :3].T + move[:3, 3], triangles
+
+
+class ClientTest(ApplicationTest):
+    def bem(self, *arguments):
+        done = subprocess.run([BEM, *map(str, arguments)], cwd=self.folder, text=True,
+                              capture_output=True, timeout=600)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def accepted(self, folder="model", solve=True):
+        """The .surf files the way a user's go; MNE raises where it does not accept."""
+        subject = self.path("subjects") / folder
+        subject.mkdir(parents=True)
+        (subject / "bem").symlink_to(self.path(folder))
+        layers = len(list(self.path(folder).glob("*.surf")))
+        conductivity = (0.3, 0.006, 0.3) if layers == 3 else (0.3,)
+        model = mne.make_bem_model(folder, ico=None, conductivity=conductivity,
+                                   subjects_dir=self.path("subjects"))
+        self.assertEqual(len(model), layers)
+        if solve:
+            mne.make_bem_solution(model)
+        return model
+
+
+class Spheres(ClientTest):
+    SIZE = (200, 200, 200)
+    AFFINE = np.diag([1.0, 1, 1, 1])
+    AFFINE[:3, 3] = -99.5
+
+    def potentials(self, folder):
+        """RDM and MAG at 0.9 of the inner radius, the sphere's centre moved to the origin."""
+        bem = self.path("centred") / folder / "bem"
+        bem.mkdir(parents=True)
+        for name in NAMES:
+            points, triangles = scanner_points(self.path(folder) / f"{name}.surf")
+            mne.write_surface(bem / f"{name}.surf", points - CENTRE, triangles)
+        solution = mne.make_bem_solution(mne.make_bem_model(
+            folder, ico=None, conductivity=solveSpheres.CONDUCTIVITIES,
+            subjects_dir=self.path("centred")))
+        random = np.random.RandomState(0)
+        axes, moments = (v / np.linalg.norm(v, axis=1, keepdims=True)
+                         for v in (random.randn(200, 3), random.randn(200, 3)))
+        places = 0.9 * solveSpheres.RADII[0] * axes
+        electrodes = solveSpheres.spread_over_sphere(solveSpheres.ELECTRODES)
+        found = solveSpheres.bem_potentials(places, moments, electrodes, solution)
+        truth = solveSpheres.analytic(places, moments, electrodes)
+        found -= found.mean(axis=1, keepdims=True)
+        truth -= truth.mean(axis=1, keepdims=True)
+        sizes = [np.linalg.norm(v, axis=1, keepdims=True) for v in (found, truth)]
+        rdm = np.linalg.norm(found / sizes[0] - truth / sizes[1], axis=1).mean()
+        return rdm, (sizes[0] / sizes[1]).mean()
+
+    def assert_good(self, folder, largest_mm):
+        for name, radius in zip(NAMES, RADII):
+            points, _ = scanner_points(self.path(folder) / f"{name}.surf")
+            off = np.linalg.norm(points - CENTRE, axis=1) - radius
+            self.assertLess(np.abs(off).max(), largest_mm)
+            # the Gaussian takes 1.5^2 / R = 0.03 mm
+            self.assertLess(abs(off.mean() + 2.25 / radius), 0.02)
+        rdm, mag = self.potentials(folder)
+        print(f"{folder}: RDM {rdm:.4f} MAG {mag:.4f}")
+        # an icosphere of 642 vertices reaches 0.049 and 0.911
+        self.assertLessEqual(rdm, 0.050)
+        self.assertGreaterEqual(mag, 0.905)
+
+    def test_binary(self):
+        distance = np.linalg.norm(lattice(self.SIZE, self.AFFINE) - CENTRE, axis=-1)
+        labels = sum((distance <= radius).astype(np.uint8) for radius in RADII)
+        save(self.path("seg.nii.gz"), labels, self.AFFINE)
+        self.bem("--labels", "seg.nii.gz", "--tissue", "brain=3", "--tissue", "skull=2", "--tissue",
+                 "scalp=1", "--vertices", 642, "-o", "binary")
+        self.accepted("binary")
+        self.assert_good("binary", 0.4)  # flat caps of a binary sphere lie up to half a voxel off
+
+    def test_partial_volume(self):
+        points = lattice(self.SIZE, self.AFFINE)
+        inner, outer, skin = (part_of_ball(points, radius) for radius in RADII)
+        for n, part in enumerate((0.4 * inner, 0.4 * inner, 0.2 * inner, outer - inner,
+                                  skin - outer)):
+            save(self.path(f"c{n + 1}.nii.gz"), part.astype(np.float32), self.AFFINE)
+        self.bem("--probabilities", *(f"c{n}.nii.gz" for n in range(1, 6)), "--vertices", 642, "-o",
+                 "partial")
+        self.accepted("partial")
+        self.assert_good("partial", 0.1)
+
+
+class Frames(ClientTest):
+    def test_nibabel_gets_scanner_coordinates_of_every_geometry(self):
+        turn = np.linalg.qr(np.array([[2.0, 1, 0.3], [-1, 2, 0.5], [0.1, -0.7, 2]]))[0]
+        if np.linalg.det(turn) < 0:
+            turn[:, 0] *= -1
+        for name, spacing, mirrored in (("oblique", (2, 2, 2), False), ("mirrored", (2, 2, 2), True),
+                                        ("thick", (1.5, 1.5, 4), False)):
+            with self.subTest(name):
+                affine = np.eye(4)
+                affine[:3, :3] = turn @ np.diag(spacing)
+                if mirrored:
+                    affine[:3, 0] *= -1
+                size = np.array([round(230 / s) for s in spacing])
+                affine[:3, 3] = CENTRE - affine[:3, :3] @ (size / 2)
+                distance = np.linalg.norm(lattice(size, affine) - CENTRE, axis=-1)
+                save(self.path(f"{name}.nii"),
+                     sum((distance <= r).astype(np.uint8) for r in RADII), affine)
+                self.bem("--labels", f"{name}.nii", "--tissue", "brain=3", "--tissue", "skull=2",
+                         "--tissue", "scalp=1", "--vertices", 300, "--voxel", 2, "-o", name)
+                for surface, radius in zip(NAMES, RADII):
+                    points, triangles = scanner_points(self.path(name) / f"{surface}.surf")
+                    off = np.linalg.norm(points - CENTRE, axis=1) - radius
+                    self.assertLess(np.abs(off).max(), max(spacing) / 2)  # half a voxel
+                    self.assertLess(np.linalg.norm(points.mean(axis=0) - CENTRE), 1)
+                self.accepted(name)
+
+    def test_subject_of_freesurfer(self):
+        # orig.mgz of 2 mm voxels in FreeSurfer's order, its centre off the scanner's origin
+        affine = np.array([[-2.0, 0, 0, 110], [0, 0, 2, -115], [0, -2, 0, 120], [0, 0, 0, 1]])
+        size = (110, 110, 110)
+        distance = np.linalg.norm(lattice(size, affine) - CENTRE, axis=-1)
+        labels = sum((distance <= r).astype(np.uint8) for r in RADII)
+        (self.path("subjects") / "anna" / "mri").mkdir(parents=True)
+        (self.path("subjects") / "anna" / "bem").mkdir()
+        orig = nibabel.freesurfer.MGHImage(labels, affine)
+        nibabel.save(orig, self.path("subjects/anna/mri/orig.mgz"))
+        save(self.path("seg.nii"), labels, affine)
+        self.bem("--labels", "seg.nii", "--tissue", "brain=3", "--tissue", "skull=2", "--tissue",
+                 "scalp=1", "--vertices", 300, "--voxel", 2, "-o", "model", "--subjects-dir",
+                 "subjects", "--subject", "anna")
+        mne.make_bem_solution(mne.make_bem_model("anna", ico=None,
+                                                 subjects_dir=self.path("subjects")))
+        points, _ = mne.read_surface(self.path("subjects/anna/bem/outer_skin.surf"))
+        to_tkras = orig.header.get_vox2ras_tkr() @ np.linalg.inv(affine)
+        middle = to_tkras[:3, :3] @ CENTRE + to_tkras[:3, 3]
+        self.assertLess(np.abs(np.linalg.norm(points - middle, axis=1) - 92).max(), 1)  # half a voxel
+
+    def test_gifti(self):
+        affine = np.diag([4.0, 4, 4, 1])
+        affine[:3, 3] = -110
+        distance = np.linalg.norm(lattice((56, 56, 56), affine) - CENTRE, axis=-1)
+        save(self.path("seg.nii"), (distance <= 80).astype(np.uint8), affine)
+        self.bem("--labels", "seg.nii", "--tissue", "brain=1", "--meg", "--gifti", "--vertices", 162,
+                 "--voxel", 3, "-o", "model")
+        points = nibabel.load(self.path("model/inner_skull.gii")).agg_data("pointset")
+        self.assertLess(np.abs(np.linalg.norm(points - CENTRE, axis=1) - 80).max(), 2)
+        self.accepted()
+
+
+@unittest.skipUnless((TEMPLATES / "ch2.nii.gz").exists(), "needs Debian's mricron-data")
+class RealHead(ClientTest):
+    def test_with_a_brain_mask(self):
+        self.bem("--t1", TEMPLATES / "ch2.nii.gz", "--brain-mask", TEMPLATES / "ch2bet.nii.gz",
+                 "--vertices", 642, "-o", "model")
+        self.accepted()
+        self.assert_head("model")
+
+    def test_alone_at_full_size(self):
+        self.bem("--t1", TEMPLATES / "ch2.nii.gz", "-o", "model")
+        model = self.accepted(solve=False)  # 7,686 equations take MNE a minute
+        self.assertEqual([surface["np"] for surface in model], [2562] * 3)
+        self.assert_head("model")
+
+    def assert_head(self, folder):
+        """Most of the brain, by ch2bet, lies in the inner skull; the skull is 3 to 12 mm thick at
+        the vertex and the sides."""
+        brain = nibabel.load(TEMPLATES / "ch2bet.nii.gz")
+        voxels = np.argwhere(np.asarray(brain.dataobj) > 60)[::97]  # tissue, not its blurred rim
+        points = voxels @ brain.affine[:3, :3].T + brain.affine[:3, 3]
+        surfaces = {name: scanner_points(self.path(folder) / f"{name}.surf") for name in NAMES}
+        inner, triangles = surfaces["inner_skull"]
+        inside = np.array([winding(p, inner, triangles) > 0.5 for p in points])
+        self.assertGreater(inside.mean(), 0.99)
+        for direction in ((0, 0, 1), (1, 0, 0.3), (-1, 0, 0.3), (0, -1, 0.3), (0, 1, 0.3)):
+            reach = [exit_distance(np.array([0, -17, 20.0]), np.array(direction), *surfaces[name])
+                     for name in NAMES]
+            self.assertGreater(reach[1] - reach[0], 2)
+            self.assertLess(reach[1] - reach[0], 14)
+            self.assertGreater(reach[2] - reach[1], 2)
+            self.assertLess(reach[2] - reach[1], 25)
+
+
+def winding(point, vertices, triangles):
+    a, b, c = (vertices[triangles[:, n]] - point for n in range(3))
+    la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
+    determinant = np.einsum("ij,ij->i", a, np.cross(b, c))
+    below = (la * lb * lc + np.einsum("ij,ij->i", a, b) * lc + np.einsum("ij,ij->i", b, c) * la +
+             np.einsum("ij,ij->i", c, a) * lb)
+    return np.arctan2(determinant, below).sum() / (2 * np.pi)
+
+
+def exit_distance(start, direction, vertices, triangles):
+    """Along a ray from inside, to the farthest crossing."""
+    direction = direction / np.linalg.norm(direction)
+    a, b, c = (vertices[triangles[:, n]] for n in range(3))
+    normal = np.cross(b - a, c - a)
+    t = np.einsum("ij,ij->i", a - start, normal) / (normal @ direction)
+    hit = start + t[:, None] * direction
+    inside = np.ones(len(t), bool)
+    for p, q in ((a, b), (b, c), (c, a)):
+        inside &= np.einsum("ij,ij->i", np.cross(q - p, hit - p), normal) >= 0
+    return t[inside & (t > 0)].max()
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,424 @@
+"""adaptiso-bem as users call it: inputs, outputs, promises, failures."""
+
+import json
+import math
+import os
+import re
+import subprocess
+
+from support import (BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, USAGE, ApplicationTest, Image, main,
+                     write_nifti)
+
+BEM = str(BIN / "adaptiso-bem")
+README = SOURCE / "Applications" / "adaptiso-bem" / "README.md"
+NAMES = ("inner_skull", "outer_skull", "outer_skin")
+RADII = (60, 66, 72)
+STEP = 4
+# voxels of 4 mm, so that Python makes them quickly; the working grid is 3 mm
+QUICK = ("--voxel", "3", "--vertices", "162", "--closing", "4")
+
+
+def head(centre=(0, 0, 0), radii=RADII, n=44, origin=None, values=(1, 2, 3)):
+    """uint8 labels of three spheres; `centre` in RAS mm."""
+    origin = origin or (-STEP * (n - 1) / 2,) * 3
+    samples = bytearray()
+    squares = [r * r for r in radii]
+    for k in range(n):
+        for j in range(n):
+            for i in range(n):
+                d = sum((o + STEP * v - c) ** 2 for o, v, c in zip(origin, (i, j, k), centre))
+                samples.append(next((v for s, v in zip(squares, values) if d <= s), 0))
+    return Image((n, n, n), "B", bytes(samples), (STEP,) * 3, origin)
+
+
+LABELS = head()
+
+
+def read_tri(path):
+    """Points and triangles of an OpenMEEG .tri."""
+    words = path.read_text().split()
+    count = int(words[1])
+    values = list(map(float, words[2:2 + 6 * count]))
+    points = [tuple(values[6 * n:6 * n + 3]) for n in range(count)]
+    at = 2 + 6 * count
+    corners = list(map(int, words[at + 4:]))
+    return points, [tuple(corners[n:n + 3]) for n in range(0, len(corners), 3)]
+
+
+def volume(points, triangles):
+    return sum(a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
+               a[2] * (b[0] * c[1] - b[1] * c[0])
+               for a, b, c in ((points[i], points[j], points[k]) for i, j, k in triangles)) / 6
+
+
+def write_off(path, points, triangles):
+    lines = ["OFF", f"{len(points)} {len(triangles)} 0"]
+    lines += [f"{x} {y} {z}" for x, y, z in points]
+    lines += [f"3 {a} {b} {c}" for a, b, c in triangles]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def globe(radius, rings=12, steps=24, centre=(0, 0, 0)):
+    """A closed outward sphere of triangles."""
+    points = [(0, 0, -radius)]
+    for ring in range(1, rings):
+        t = math.pi * ring / rings - math.pi / 2
+        for step in range(steps):
+            p = 2 * math.pi * step / steps
+            points.append((radius * math.cos(t) * math.cos(p), radius * math.cos(t) * math.sin(p),
+                           radius * math.sin(t)))
+    points.append((0, 0, radius))
+    def at(ring, step): return 1 + (ring - 1) * steps + step % steps
+    triangles = []
+    for step in range(steps):
+        triangles.append((0, at(1, step + 1), at(1, step)))
+        triangles.append((len(points) - 1, at(rings - 1, step), at(rings - 1, step + 1)))
+        for ring in range(1, rings - 1):
+            a, b = at(ring, step), at(ring, step + 1)
+            c, d = at(ring + 1, step), at(ring + 1, step + 1)
+            triangles += [(a, b, d), (a, d, c)]
+    return [tuple(v + o for v, o in zip(p, centre)) for p in points], triangles
+
+
+class BemTest(ApplicationTest):
+    program = BEM
+
+    def run_bem(self, *arguments, **options):
+        return subprocess.run([BEM, *map(str, arguments)], cwd=self.folder, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=300,
+                              **options)
+
+    def bem(self, *arguments, **options):
+        done = self.run_bem(*arguments, **options)
+        self.assertEqual(done.returncode, OK, done.stderr)
+        return done
+
+    def fails(self, code, pattern, *arguments):
+        before = self.contents()
+        done = self.run_bem(*arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertRegex(done.stderr, pattern)
+        self.assertEqual(len(done.stderr.splitlines()), 2 if code == USAGE else 1, done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(self.contents(), before)
+        self.assertFalse([p for p in self.names() if p.startswith(".adaptiso")])
+
+    def report(self, folder="model"):
+        return json.loads((self.folder / folder / "report.json").read_text())
+
+    def labels(self, name="seg.nii", image=LABELS):
+        write_nifti(self.path(name), image)
+        return ("--labels", name, "--tissue", "brain=1", "--tissue", "skull=2", "--tissue",
+                "scalp=3", *QUICK)
+
+
+class Model(BemTest):
+    def test_folder_holds_the_model(self):
+        self.bem(*self.labels(), "-o", "model", "--gifti", "--vtp")
+        expected = [f"{name}.{kind}" for name in NAMES for kind in ("surf", "tri", "gii", "vtp")]
+        self.assertEqual(sorted(os.listdir(self.path("model"))),
+                         sorted(expected + ["model.geom", "model.cond", "report.json", "README.md"]))
+        report = self.report()
+        self.assertTrue(report["model"])
+        self.assertTrue(all(check["passed"] for check in report["checks"]))
+        self.assertEqual([s["vertices"] for s in report["surfaces"]], [162] * 3)
+        sizes = {p.name: p.stat().st_size for p in self.path("model").iterdir()}
+        for file in report["output"]["files"]:
+            self.assertEqual(file["bytes"], sizes[file["file"]])
+
+    def test_surfaces_are_the_spheres(self):
+        self.bem(*self.labels(), "-o", "model")
+        for name, radius, surface in zip(NAMES, RADII, self.report()["surfaces"]):
+            points, triangles = read_tri(self.path("model") / f"{name}.tri")
+            self.assertEqual((len(points), len(triangles)), (162, 320))
+            distances = [math.dist(p, (0, 0, 0)) for p in points]
+            # binary voxels of 4 mm: half of one
+            self.assertLess(max(abs(d - radius) for d in distances), 2)
+            self.assertLess(abs(sum(distances) / 162 - radius), 0.7)
+            # 320 chords of 19 mm take 2.4 % off the volume of a sphere of 66 mm
+            self.assertAlmostEqual(volume(points, triangles) / (4 / 3 * math.pi * radius ** 3), 0.97,
+                                   delta=0.04)
+            self.assertAlmostEqual(volume(points, triangles) / surface["volumeMm3"], 1, 6)
+
+    def test_frames_and_units(self):
+        centre = (12, -8, 20)
+        arguments = self.labels(image=head(centre=centre))
+        expected = {("ras", "mm"): centre, ("lps", "mm"): (-12, 8, 20),
+                    # tkRAS of the conformed volume: RAS less the middle of the image at (2, 2, 2)
+                    ("tkras", "m"): (0.010, -0.010, 0.018)}
+        for (frame, unit), middle in expected.items():
+            self.bem(*arguments, "-o", "model", "--force", "--coordinates", frame, "--units", unit)
+            points, triangles = read_tri(self.path("model") / "outer_skin.tri")
+            scale = 0.001 if unit == "m" else 1
+            for axis in range(3):
+                mean = sum(p[axis] for p in points) / len(points)
+                self.assertAlmostEqual(mean / scale, middle[axis] / scale, delta=0.7)
+            self.assertGreater(volume(points, triangles), 0)
+            text = (self.path("model") / "README.md").read_text()
+            self.assertIn("metres (potentials in volts)" if unit == "m" else "millimetres", text)
+
+    def test_conductivities_are_in_cond_and_readme(self):
+        self.bem(*self.labels(), "-o", "model", "--conductivity", "0.33,0.0041,0.43")
+        self.assertEqual((self.path("model") / "model.cond").read_text(),
+                         "# Properties Description 1.0 (Conductivities)\n\nBrain 0.33\n"
+                         "Skull 0.0041\nSkin 0.43\nAir 0\n")
+        self.assertIn("conductivity=(0.33, 0.0041, 0.43)",
+                      (self.path("model") / "README.md").read_text())
+
+    def test_one_surface_for_meg(self):
+        arguments = self.labels()
+        self.bem(*arguments[:4], *QUICK, "--meg", "-o", "model")
+        self.assertEqual(sorted(os.listdir(self.path("model"))),
+                         ["README.md", "inner_skull.surf", "inner_skull.tri", "model.cond",
+                          "model.geom", "report.json"])
+        self.assertIn("Domains 2", (self.path("model") / "model.geom").read_text())
+
+    def test_adaptive_edges(self):
+        arguments = self.labels()[:-4]
+        self.bem(*arguments, "--edge-length", "8:20", "-o", "model")
+        for surface in self.report()["surfaces"]:
+            self.assertLess(surface["edgeMm"]["mean"], 20)
+            self.assertGreater(surface["edgeMm"]["mean"], 8 * 0.7)
+
+    def test_gap_is_kept_where_the_labels_touch(self):
+        arguments = self.labels(image=head(radii=(60, 61, 62)), name="thin.nii")
+        self.bem(*arguments, "--min-gap", "4,3", "-o", "model")
+        gaps = [gap["mm"] for gap in self.report()["gaps"]]
+        self.assertGreaterEqual(gaps[0], 4 - 1e-9)
+        self.assertGreaterEqual(gaps[1], 3 - 1e-9)
+
+    def test_same_bytes_for_every_number_of_threads(self):
+        arguments = self.labels()
+        for threads in (1, 2, 5):
+            self.bem(*arguments, "-o", f"m{threads}", "--threads", threads)
+        for name in NAMES:
+            one = (self.path("m1") / f"{name}.surf").read_bytes()
+            for threads in (2, 5):
+                self.assertEqual(one, (self.path(f"m{threads}") / f"{name}.surf").read_bytes())
+
+    def test_files_hold_no_trace_of_input_user_or_folder(self):
+        self.bem(*self.labels("Mustermann.nii"), "-o", "model", "--gifti", "--vtp")
+        for path in self.path("model").iterdir():
+            data = path.read_bytes()
+            if path.name != "report.json":  # holds the name as given, without folders
+                self.assertNotIn(b"Mustermann", data, path.name)
+            self.assertNotIn(self.folder.name.encode(), data, path.name)
+
+
+class Presets(BemTest):
+    def test_presets_are_label_lists(self):
+        for preset, values in (("charm", (3, 7, 5)), ("headreco", (1, 4, 5)), ("aseg", (17, 165, 0))):
+            image = head(values=values)
+            if preset == "aseg":
+                image.kind = "h"  # 258 does not fit a byte
+                image.samples = [v or 0 for v in image.samples]
+                outer = head(values=(0, 0, 1)).samples
+                image.samples = [258 if o else v for v, o in zip(image.samples, outer)]
+            write_nifti(self.path(f"{preset}.nii"), image)
+            self.bem("--labels", f"{preset}.nii", "--preset", preset, *QUICK, "-o", preset)
+            self.assertEqual(len(self.report(preset)["surfaces"]), 3)
+
+    def test_probabilities_and_ct(self):
+        names = []
+        for n, values in enumerate(((100, 0, 0), (100, 0, 0), (55, 0, 0), (0, 255, 0), (0, 0, 255))):
+            names.append(f"c{n + 1}.nii")
+            write_nifti(self.path(names[-1]), head(values=values))
+        self.bem("--probabilities", *names, *QUICK, "-o", "model")
+        self.assertEqual(self.report()["input"]["source"], "probabilities")
+
+        ct = head(values=(1, 2, 1))
+        ct.kind, ct.samples = "h", [(-1000, 40, 1000)[v] for v in ct.samples]
+        write_nifti(self.path("ct.nii"), ct)
+        self.bem("--ct", "ct.nii", *QUICK, "-o", "ct")
+        for name, radius in zip(NAMES, RADII):
+            points, _ = read_tri(self.path("ct") / f"{name}.tri")
+            # half a voxel of 4 mm
+            self.assertLess(max(abs(math.dist(p, (0, 0, 0)) - radius) for p in points), 2.5)
+
+
+class Surfaces(BemTest):
+    def write(self, *meshes):
+        names = []
+        for n, (points, triangles) in enumerate(meshes):
+            names.append(f"s{n}.off")
+            write_off(self.path(names[-1]), points, triangles)
+        return names
+
+    def test_good_ones_stay_to_the_bit(self):
+        names = self.write(*(globe(r) for r in RADII))
+        self.bem("--surfaces", *names, "-o", "model")
+        for name, radius in zip(NAMES, RADII):
+            points, triangles = read_tri(self.path("model") / f"{name}.tri")
+            expected, corners = globe(radius)
+            self.assertEqual(triangles, corners)
+            for p, q in zip(points, expected):
+                self.assertLess(math.dist(p, q), 1e-6)  # nine digits
+
+    def test_inside_out_ones_are_turned(self):
+        points, triangles = globe(60)
+        names = self.write((points, [(a, c, b) for a, b, c in triangles]), globe(66), globe(72))
+        self.bem("--surfaces", *names, "-o", "model")
+        self.assertGreater(volume(*read_tri(self.path("model") / "inner_skull.tri")), 0)
+        self.assertRegex(" ".join(self.report()["notes"]), "inside out")
+
+    def test_crossing_ones_are_pushed_apart(self):
+        names = self.write(globe(60, centre=(4, 0, 0)), globe(62), globe(72))
+        self.bem("--surfaces", *names, "-o", "model")
+        report = self.report()
+        self.assertGreaterEqual(report["gaps"][0]["mm"], 2 - 1e-9)
+        self.assertEqual(report["surfaces"][0]["nesting"]["movedVertices"], 0)
+        self.assertGreater(report["surfaces"][1]["nesting"]["movedVertices"], 0)
+
+    def test_broken_ones_are_made_anew(self):
+        points, triangles = globe(60)
+        names = self.write((points, triangles[5:]), globe(66), globe(72))
+        self.bem("--surfaces", *names, "-o", "model", *QUICK)
+        report = self.report()
+        self.assertRegex(" ".join(report["notes"]), "made anew")
+        self.assertTrue(all(check["passed"] for check in report["checks"]))
+
+    def test_what_cannot_be_guaranteed_gives_the_report_alone_and_says_where(self):
+        # the outer skull lies far from the inner one
+        names = self.write(globe(60), globe(66, centre=(300, 0, 0)), globe(72))
+        done = self.run_bem("--surfaces", *names, "-o", "model", "--json", "-")
+        self.assertEqual(done.returncode, CHECK_FAILED, done.stderr)
+        self.assertRegex(done.stderr.splitlines()[-1],
+                         r"no model: .* at \(-?[\d.]+, -?[\d.]+, -?[\d.]+\) mm RAS")
+        self.assertEqual(os.listdir(self.path("model")), ["report.json"])
+        report = json.loads(done.stdout)
+        self.assertEqual(report["model"], False)
+        self.assertGreater(len(report["findings"]), 0)
+
+    def test_metres_are_refused(self):
+        names = self.write(*(globe(r / 1000) for r in RADII))
+        done = self.run_bem("--surfaces", *names, "-o", "model")
+        self.assertEqual(done.returncode, CHECK_FAILED)
+        self.assertNotIn("inner_skull.surf", os.listdir(self.path("model")))
+
+
+class Output(BemTest):
+    def test_dry_run_writes_nothing_but_json(self):
+        done = self.bem(*self.labels(), "--dry-run", "--json", "r.json")
+        self.assertEqual(self.names(), ["r.json", "seg.nii"])
+        self.assertIn("nothing written", done.stdout)
+        self.assertEqual(json.loads(self.path("r.json").read_text())["model"], False)
+
+    def test_nothing_is_replaced_unless_asked_for(self):
+        arguments = self.labels()
+        self.path("model").mkdir()
+        self.bem(*arguments, "-o", "model")  # an empty folder is filled
+        self.fails(BAD_INPUT, "exists and is not empty", *arguments, "-o", "model")
+        first = (self.path("model") / "inner_skull.tri").read_bytes()
+        more = ["300" if a == "162" else a for a in arguments]
+        self.bem(*more, "-o", "model", "--force", "--gifti")
+        self.assertNotEqual(first, (self.path("model") / "inner_skull.tri").read_bytes())
+        self.bem(*arguments, "-o", "model/", "--force")
+        self.assertFalse((self.path("model") / "inner_skull.gii").exists())
+        (self.path("model") / "thesis.tex").write_text("precious")
+        self.fails(BAD_INPUT, "holds thesis.tex", *arguments, "-o", "model", "--force")
+
+    def test_folder_that_cannot_be(self):
+        arguments = self.labels()
+        self.path("file").write_text("x")
+        self.path("link").symlink_to("elsewhere")
+        self.fails(BAD_INPUT, "there is no folder nowhere", *arguments, "-o", "nowhere/model")
+        self.fails(BAD_INPUT, "exists and is no folder", *arguments, "-o", "file")
+        self.fails(BAD_INPUT, "exists and is no folder", *arguments, "-o", "link", "--force")
+        self.fails(BAD_INPUT, "holds an input", *arguments, "-o", ".", "--force")
+
+    def test_subject_gets_its_surfaces(self):
+        arguments = self.labels()
+        where = ("--subjects-dir", "subjects", "--subject", "anna")
+        self.fails(BAD_INPUT, "no such subject", *arguments, "-o", "model", *where)
+        self.path("subjects/anna/bem").mkdir(parents=True)
+        self.bem(*arguments, "-o", "model", *where)
+        for name in NAMES:
+            self.assertEqual((self.path("subjects/anna/bem") / f"{name}.surf").read_bytes(),
+                             (self.path("model") / f"{name}.surf").read_bytes())
+        self.fails(BAD_INPUT, "--force replaces it", *arguments, "-o", "new", *where)
+        self.bem(*arguments, "-o", "model", "--force", *where)
+        inner = self.path("subjects/anna/bem/inner_skull.surf")
+        inner.unlink()
+        inner.symlink_to("watershed")
+        self.fails(BAD_INPUT, "is a link", *arguments, "-o", "new", "--force", *where)
+
+    def test_interrupted_run_leaves_nothing(self):
+        arguments = self.labels()
+        run = subprocess.Popen([BEM, *arguments, "-o", "model"], cwd=self.folder,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            run.wait(timeout=0.3)
+        except subprocess.TimeoutExpired:
+            run.terminate()
+            self.assertEqual(run.wait(timeout=60), -15)
+            self.assertEqual(self.names(), ["seg.nii"])
+
+    def test_quiet_prints_nothing(self):
+        done = self.bem(*self.labels(), "-o", "model", "--quiet")
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+
+
+class BadInput(BemTest):
+    def test_usage(self):
+        write_nifti(self.path("a.nii"), Image((2, 2, 2), "B", bytes(8)))
+        cases = {
+            "one of --t1, --labels": ("-o", "m"),
+            "and one only": ("--t1", "a.nii", "--ct", "a.nii", "-o", "m"),
+            "--brain-mask needs --t1": ("--ct", "a.nii", "--brain-mask", "a.nii", "-o", "m"),
+            "--labels needs --preset": ("--labels", "a.nii", "-o", "m"),
+            "skull=... and scalp=": ("--labels", "a.nii", "--tissue", "brain=1", "-o", "m"),
+            "must be brain, skull or scalp": ("--labels", "a.nii", "--tissue", "eyes=1", "-o", "m"),
+            "labels with commas": ("--labels", "a.nii", "--tissue", "brain=1,x", "-o", "m"),
+            "need --labels": ("--t1", "a.nii", "--preset", "charm", "-o", "m"),
+            "--surfaces needs 3 files": ("--surfaces", "a.stl", "-o", "m"),
+            "--surfaces needs 1 files": ("--surfaces", "a.stl", "b.stl", "--meg", "-o", "m"),
+            "-o DIR is needed": ("--t1", "a.nii"),
+            "need each other": ("--t1", "a.nii", "-o", "m", "--subject", "x"),
+            "name of a folder": ("--t1", "a.nii", "-o", "m", "--subjects-dir", "s", "--subject",
+                                 "../x"),
+            "0 < MIN <= MAX": ("--t1", "a.nii", "-o", "m", "--edge-length", "9:3"),
+            "MIN:MAX": ("--t1", "a.nii", "-o", "m", "--edge-length", "9"),
+            "more than 0 mm": ("--t1", "a.nii", "-o", "m", "--min-gap", "0"),
+            "one or two numbers": ("--t1", "a.nii", "-o", "m", "--min-gap", "1,2,3"),
+            "above 0 and at most 10": ("--t1", "a.nii", "-o", "m", "--conductivity", "0.3,0,0.3"),
+            "--max-skull must be more": ("--t1", "a.nii", "-o", "m", "--max-skull", "1"),
+            "--skull must lie between": ("--t1", "a.nii", "-o", "m", "--skull", "30"),
+            "0 mm or more": ("--t1", "a.nii", "-o", "m", "--csf", "-1"),
+            "--vertices": ("--t1", "a.nii", "-o", "m", "--vertices", "3"),
+        }
+        for pattern, arguments in cases.items():
+            with self.subTest(pattern):
+                self.fails(USAGE, re.escape(pattern), *arguments)
+
+    def test_images_without_a_head(self):
+        write_nifti(self.path("flat.nii"), Image((20, 20, 20), "B", bytes(8000)))
+        self.fails(BAD_INPUT, "there is no head", "--t1", "flat.nii", "-o", "m")
+        self.fails(BAD_INPUT, "no label of the tissue brain", "--labels", "flat.nii", "--preset",
+                   "charm", "-o", "m")
+        self.fails(BAD_INPUT, "nothing in the head is above", "--ct", "flat.nii", "-o", "m")
+        self.fails(BAD_INPUT, "there are 1 maps", "--probabilities", "flat.nii", "-o", "m")
+        self.fails(BAD_INPUT, r"missing\.nii", "--t1", "missing.nii", "-o", "m")
+        self.fails(BAD_INPUT, r"missing\.stl", "--surfaces", "missing.stl", "--meg", "-o", "m")
+
+
+class Report(BemTest):
+    def test_keys_are_the_documented_ones(self):
+        self.bem(*self.labels(), "-o", "model")
+        section = README.read_text().split("## The report")[1]
+        documented = set()
+        for row in re.findall(r"^\| (`.*?`) \|", section, re.MULTILINE):
+            documented.update(re.findall(r"`([^`]+)`", row))
+
+        def keys(value, path=""):
+            if isinstance(value, dict):
+                return {leaf for key, inner in value.items()
+                        for leaf in keys(inner, f"{path}.{key}" if path else key)}
+            if isinstance(value, list) and value and isinstance(value[0], dict):
+                return {leaf for item in value for leaf in keys(item, path)}
+            return {path}
+
+        self.assertEqual(keys(self.report()), documented)
+
+
+if __name__ == "__main__":
+    main()
