@@ -1,27 +1,47 @@
 #include "ByteSource.h"
 
+#include <fcntl.h>
 #include <fmt/core.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <limits>
 
 #include "FileFault.h"
+#include "MappedFile.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::detail {
 
+void ByteSource::CloseFile::operator()(const int* descriptor) const {
+    ::close(*descriptor);
+    delete descriptor;
+}
+
 ByteSource::ByteSource(std::filesystem::path file, std::uint64_t offset, Encoding encoding)
-    : file_(std::move(file)) {
-    const std::uint64_t fileBytes = requireRegularFile(file_);
-    if (offset > fileBytes) {
+    : file_(std::move(file)), position_(offset) {
+    requireRegularFile(file_);
+    // not blocked by a pipe that has taken the file's place since
+    const int descriptor = ::open(file_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (descriptor < 0) {
+        refuse(file_, std::string("can't be opened: ") + std::strerror(errno),
+               "check its permissions");
+    }
+    descriptor_.reset(new int(descriptor));
+    struct stat status {};
+    if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
+        refuse(file_, "is not a regular file", "give an image file or a DICOM folder");
+    }
+    end_ = static_cast<std::uint64_t>(status.st_size);
+    if (position_ > end_) {
         refuse(file_,
-               fmt::format("truncated: its data would begin at byte {} of {}", offset, fileBytes),
+               fmt::format("truncated: its data would begin at byte {} of {}", position_, end_),
                "get the whole file");
     }
-    rawBytes_ = fileBytes - offset;
-    stream_.open(file_, std::ios::binary);
-    stream_.seekg(static_cast<std::streamoff>(offset));
-    if (!stream_) refuse(file_, "can't be opened for reading", "check its permissions");
+    rawBytes_ = end_ - position_;
 
     if (encoding == Encoding::Deflate) {
         inflater_.reset(new z_stream{});
@@ -42,9 +62,23 @@ ByteSource ByteSource::openPlainOrGzip(const std::filesystem::path& file) {
 }
 
 void ByteSource::requireRoomFor(std::uint64_t byteCount) const {
+    if (!inflater_) {
+        if (byteCount > bytesLeft()) refuseTruncated(byteCount - bytesLeft());
+        return;
+    }
     constexpr std::uint64_t kDeflateLimit = 1032;  // no deflate stream expands further
-    const std::uint64_t most = inflater_ ? rawBytes_ * kDeflateLimit : rawBytes_;
+    const std::uint64_t most = rawBytes_ * kDeflateLimit;
     if (byteCount > most) refuseTruncated(byteCount - most);
+    // close to that limit there is next to nothing in the data: a mask with one voxel in a million
+    // set stays below it
+    constexpr std::uint64_t kBombBytes = std::uint64_t{1} << 30, kBombExpansion = 1000;
+    if (byteCount > kBombBytes && byteCount / kBombExpansion > rawBytes_) {
+        refuse(file_,
+               fmt::format("its {} compressed bytes expand to a size of {}, as only a "
+                           "decompression bomb or an empty image does",
+                           rawBytes_, byteCount),
+               "decompress it first if it is meant to be so");
+    }
 }
 
 std::size_t ByteSource::readSome(void* out, std::size_t byteCount) {
@@ -57,6 +91,11 @@ void ByteSource::read(void* out, std::uint64_t byteCount) {
 }
 
 void ByteSource::skip(std::uint64_t byteCount) {
+    if (!inflater_) {
+        if (byteCount > bytesLeft()) refuseTruncated(byteCount - bytesLeft());
+        position_ += byteCount;
+        return;
+    }
     std::vector<char> scratch(std::min<std::uint64_t>(byteCount, std::uint64_t{1} << 20));
     while (byteCount > 0) {
         const std::size_t piece = std::min<std::uint64_t>(byteCount, scratch.size());
@@ -67,8 +106,29 @@ void ByteSource::skip(std::uint64_t byteCount) {
 }
 
 void ByteSource::skipLine() {
-    char c = 0;
-    while (c != '\n') read(&c, 1);
+    char piece[256];
+    for (;;) {
+        const std::uint64_t begin = position_;
+        const std::size_t got = readRaw(piece, sizeof piece);
+        if (got == 0) refuseTruncated(1);
+        const auto* const line = static_cast<const char*>(std::memchr(piece, '\n', got));
+        if (line == nullptr) continue;
+        position_ = begin + static_cast<std::uint64_t>(line - piece) + 1;
+        return;
+    }
+}
+
+void ByteSource::skipToLast(std::uint64_t byteCount) {
+    if (byteCount > bytesLeft()) refuseTruncated(byteCount - bytesLeft());
+    position_ = end_ - byteCount;
+}
+
+std::shared_ptr<const void> ByteSource::map(std::uint64_t byteCount, std::size_t alignment) {
+    if (inflater_ || position_ % alignment != 0) return {};
+    if (byteCount > bytesLeft()) refuseTruncated(byteCount - bytesLeft());
+    std::shared_ptr<const void> bytes = mapFile(file_, *descriptor_, position_, byteCount);
+    if (bytes) position_ += byteCount;
+    return bytes;
 }
 
 void ByteSource::finish() {
@@ -80,8 +140,20 @@ void ByteSource::finish() {
 }
 
 std::size_t ByteSource::readRaw(void* out, std::size_t byteCount) {
-    stream_.read(static_cast<char*>(out), static_cast<std::streamsize>(byteCount));
-    return static_cast<std::size_t>(stream_.gcount());
+    std::size_t done = 0;
+    while (done < byteCount) {
+        const ssize_t got = ::pread(*descriptor_, static_cast<char*>(out) + done, byteCount - done,
+                                    static_cast<off_t>(position_));
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) {
+            refuse(file_, std::string("can't be read: ") + std::strerror(errno),
+                   "check the disk it is on");
+        }
+        if (got == 0) break;
+        done += static_cast<std::size_t>(got);
+        position_ += static_cast<std::uint64_t>(got);
+    }
+    return done;
 }
 
 std::size_t ByteSource::readInflated(void* out, std::size_t byteCount) {

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <vector>
 
@@ -22,7 +21,11 @@ public:
     /// Raw, or Deflate where the file begins with gzip's magic.
     static ByteSource openPlainOrGzip(const std::filesystem::path& file);
 
-    /// \throws FileError when `byteCount` bytes can't possibly follow (cheap; before allocating)
+    /// Of the next byte in the file. \pre Raw
+    std::uint64_t position() const { return position_; }
+
+    /// \throws FileError when `byteCount` bytes can't possibly follow, or when compressed data are
+    ///         so small for them that they are a decompression bomb (cheap; before allocating)
     void requireRoomFor(std::uint64_t byteCount) const;
 
     /// Reads up to `byteCount` bytes; fewer only at the end.
@@ -32,6 +35,14 @@ public:
     void skip(std::uint64_t byteCount);
     /// Past the next '\n'.
     void skipLine();
+    /// To where `byteCount` bytes are left. \pre Raw
+    void skipToLast(std::uint64_t byteCount);
+
+    /// The next `byteCount` bytes mapped into memory for reading, in place of read(); empty where
+    /// the data are compressed, do not lie at a multiple of `alignment`, or the file is on a disk
+    /// that can go away (network). See ReadOptions::mapFiles.
+    /// \throws FileError when the data end early
+    std::shared_ptr<const void> map(std::uint64_t byteCount, std::size_t alignment);
 
     /// Checks the checksum of compressed data by inflating what is left (at most 64 MiB of it).
     void finish();
@@ -43,7 +54,11 @@ private:
             delete stream;
         }
     };
+    struct CloseFile {
+        void operator()(const int* descriptor) const;
+    };
 
+    std::uint64_t bytesLeft() const { return position_ < end_ ? end_ - position_ : 0; }
     std::size_t readRaw(void* out, std::size_t byteCount);
     std::size_t readInflated(void* out, std::size_t byteCount);
     bool refillInput();
@@ -51,8 +66,10 @@ private:
     [[noreturn]] void refuseTruncated(std::uint64_t missing) const;
 
     std::filesystem::path file_;
-    std::ifstream stream_;
-    std::uint64_t rawBytes_ = 0;  ///< from the offset to the end of the file
+    std::unique_ptr<const int, CloseFile> descriptor_;
+    std::uint64_t position_ = 0;  ///< of the next raw byte in the file
+    std::uint64_t end_ = 0;       ///< the file's size
+    std::uint64_t rawBytes_ = 0;  ///< from the offset given to the end of the file
     std::unique_ptr<z_stream, InflateEnd> inflater_;
     std::vector<unsigned char> input_;
     bool inflateDone_ = false;

@@ -8,6 +8,7 @@
 #include "DicomGroups.h"
 #include "DicomStack.h"
 #include "DicomVolumes.h"
+#include "Fence.h"
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "Readers.h"
@@ -76,6 +77,13 @@ DicomStack stackOf(const fs::path& input, const std::vector<DicomFile>& files,
                             options.resampleSlices);
 }
 
+/// JPEG, JPEG-LS or JPEG 2000 in any of the stack's files: the rest is decoded here.
+bool needsGdcm(const std::vector<DicomFile>& files, const DicomStack& stack) {
+    return std::ranges::any_of(stack.planes, [&](const DicomPlane& plane) {
+        return files[plane.file].header.transferSyntax.starts_with("1.2.840.10008.1.2.4.");
+    });
+}
+
 ReadVolume readImages(const fs::path& input, DicomInput images, const ReadOptions& options) {
     std::vector<std::string> warnings = std::move(images.warnings);
     const std::vector<DicomGroup> groups = groupDicomPlanes(images.files);
@@ -83,8 +91,13 @@ ReadVolume readImages(const fs::path& input, DicomInput images, const ReadOption
     const DicomStack stack = stackOf(input, images.files, group, options);
     requireUsableGeometry(input, stack.geometry);
     warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());
-    Volume volume = decodeDicomStack(input, images.files, stack, warnings);
-    return {std::move(volume), "DICOM", std::move(warnings)};
+    const auto decode = [&] {
+        std::vector<std::string> all = warnings;
+        Volume volume = decodeDicomStack(input, images.files, stack, all);
+        return ReadVolume{std::move(volume), "DICOM", std::move(all)};
+    };
+    const bool isFenced = options.fence && needsGdcm(images.files, stack);
+    return isFenced ? readBehindFence(input, fenceLimitsFor(input), decode) : decode();
 }
 
 // ---- the list

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <memory>
 
+#include "Fence.h"
 #include "FileFault.h"
 
 namespace adaptiso::detail {
@@ -93,6 +94,7 @@ bool decode(std::string_view stream, const std::string& transferSyntax,
 void decodeWithGdcm(const std::filesystem::path& file, std::string_view stream,
                     const std::string& transferSyntax, const Codestream& codestream,
                     std::span<std::byte> samples) {
+    blameBehindFence(file);
     const SilentGdcm silence;
     bool isDecoded = false;
     try {

@@ -1,13 +1,10 @@
 #include "HeaderText.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 
 #include "ByteSource.h"
-#include "FileFault.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -62,29 +59,6 @@ std::string readHead(const fs::path& file, std::size_t most) {
     std::string head(most, '\0');
     head.resize(ByteSource(file, 0, ByteSource::Encoding::Raw).readSome(head.data(), most));
     return head;
-}
-
-fs::path requireDataFile(const fs::path& headerFile, std::string_view name) {
-    const fs::path relative(name);
-    const bool leaves =
-        relative.is_absolute() || std::any_of(relative.begin(), relative.end(),
-                                              [](const fs::path& part) { return part == ".."; });
-    if (leaves) {
-        refuse(headerFile,
-               fmt::format("names a data file outside its own folder ('{}')", printable(name)),
-               "put the data file beside the header and name it there");
-    }
-    if (name.empty() || name.find('%') != std::string_view::npos) {
-        refuse(headerFile, fmt::format("its data file '{}' is no plain file name", printable(name)),
-               "join the slices into one data file");
-    }
-    fs::path data = headerFile.parent_path() / relative;
-    requireRegularFile(data);
-    std::error_code error;
-    if (fs::equivalent(data, headerFile, error)) {
-        refuse(headerFile, "names itself as its data file", "repair the header");
-    }
-    return data;
 }
 
 }  // namespace adaptiso::detail

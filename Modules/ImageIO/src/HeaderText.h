@@ -23,10 +23,4 @@ std::optional<std::int64_t> parseInteger(std::string_view text);
 /// The first bytes of a file, at most `most` of them.
 std::string readHead(const std::filesystem::path& file, std::size_t most);
 
-/// The file that a header names as its data: in the header's folder or below it.
-/// \throws FileError when the name is absolute, leaves the folder, is a pattern or a list, or the
-///         header itself, or no regular file
-std::filesystem::path requireDataFile(const std::filesystem::path& headerFile,
-                                      std::string_view name);
-
 }  // namespace adaptiso::detail

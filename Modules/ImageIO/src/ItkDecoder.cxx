@@ -1,9 +1,9 @@
 #include "ItkDecoder.h"
 
-#include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
 #include <itkObject.h>
 
+#include "Fence.h"
 #include "FileFault.h"
 
 namespace adaptiso::detail {
@@ -24,11 +24,6 @@ public:
 private:
     bool wasOn_;
 };
-
-Io::Pointer makeIo(ItkFormat format) {
-    if (format == ItkFormat::Nrrd) return itk::NrrdImageIO::New().GetPointer();
-    return itk::MetaImageIO::New().GetPointer();
-}
 
 bool isFloating(PixelType type) {
     return type == PixelType::Float32 || type == PixelType::Float64;
@@ -52,12 +47,13 @@ bool isSameType(Io& io, PixelType type) {
 
 }  // namespace
 
-Volume decodeWithItk(ItkFormat format, const std::filesystem::path& file, PixelType type,
-                     const ImageGeometry& geometry) {
+Volume decodeNrrdWithItk(const std::filesystem::path& file, PixelType type,
+                         const ImageGeometry& geometry) {
+    blameBehindFence(file);
     const SilentItk silence;
     const std::uint64_t byteCount = requireImageBytes(file, geometry.size, type);
     try {
-        const Io::Pointer io = makeIo(format);
+        const auto io = itk::NrrdImageIO::New();
         io->SetFileName(file.native());
         io->ReadImageInformation();
         itk::ImageIORegion whole(io->GetNumberOfDimensions());

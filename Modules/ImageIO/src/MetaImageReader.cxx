@@ -6,14 +6,15 @@
 #include <optional>
 #include <string>
 
+#include "DataFile.h"
 #include "FileFault.h"
 #include "HeaderText.h"
-#include "ItkDecoder.h"
 #include "Readers.h"
+#include "Samples.h"
 
-// The header is read here before ITK sees the file: MetaIO opens whatever file a header names,
-// leaves memory uninitialised where data are short, and crashes on odd NDims. ITK decodes the
-// samples. Keys: itk.org/Wiki/ITK/MetaIO/Documentation.
+// MetaIO opens whatever file a header names, leaves memory uninitialised where data are short,
+// crashes on odd NDims and copies the samples. The format is a text header and plain or zlib
+// samples, so it is read here. Keys: itk.org/Wiki/ITK/MetaIO/Documentation.
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
 
@@ -123,9 +124,10 @@ std::optional<std::vector<double>> parseNumbers(const fs::path& file, const Meta
 struct Extents {
     std::size_t dimensions = 3;
     Index3 size{};
+    std::int64_t volumeCount = 1;
 };
 
-/// 3 dimensions, or 4 with a single volume.
+/// 3 dimensions, or 4, the last of which counts volumes.
 Extents parseExtents(const fs::path& file, const MetaHeader& header) {
     const auto dimensions = parseInteger(header.require(file, "NDims"));
     if (!dimensions || *dimensions < 1 || *dimensions > 10) {
@@ -135,7 +137,7 @@ Extents parseExtents(const fs::path& file, const MetaHeader& header) {
         refuse(file, fmt::format("has {} dimensions, must have 3", *dimensions),
                "extract one volume first");
     }
-    Extents extents{static_cast<std::size_t>(*dimensions), {}};
+    Extents extents{static_cast<std::size_t>(*dimensions)};
     const auto sizes = words(header.require(file, "DimSize"));
     if (sizes.size() != extents.dimensions) {
         refuse(file,
@@ -152,9 +154,12 @@ Extents parseExtents(const fs::path& file, const MetaHeader& header) {
         }
         if (axis < 3) {
             extents.size[axis] = *extent;
-        } else if (*extent != 1) {
-            refuse(file, fmt::format("is 4-D: it holds {} volumes", *extent),
-                   "extract one volume first");
+        } else {
+            if (*extent < 1) {
+                refuse(file, "its MetaImage header is damaged: DimSize holds a number below 1",
+                       "repair the header");
+            }
+            extents.volumeCount = *extent;
         }
     }
     return extents;
@@ -206,7 +211,23 @@ ImageGeometry geometryOf(const fs::path& file, const MetaHeader& header, const E
     return geometry;
 }
 
-void requireAllData(const fs::path& file, const MetaHeader& header, std::uint64_t byteCount) {
+/// -1: the samples are the last bytes of the file; 0: they follow the header, if there is one.
+std::int64_t parseHeaderSize(const fs::path& file, const MetaHeader& header, bool isCompressed,
+                             std::uint64_t least) {
+    const auto text = header.find({"HeaderSize"});
+    if (!text) return 0;
+    const auto size = parseInteger(*text);
+    if (!size || *size < -1 || (isCompressed && *size != 0) ||
+        (*size > 0 && static_cast<std::uint64_t>(*size) < least)) {
+        refuse(file,
+               fmt::format("its MetaImage header is damaged: HeaderSize '{}'", printable(*text)),
+               "repair the header");
+    }
+    return *size;
+}
+
+/// At the first sample of the file that holds them.
+ByteSource openData(const fs::path& file, const MetaHeader& header, std::uint64_t byteCount) {
     const std::string_view name = header.require(file, "ElementDataFile");
     const bool isLocal = lowerCase(name) == "local";
     if (name.starts_with("LIST") || words(name).size() > 1) {
@@ -218,27 +239,14 @@ void requireAllData(const fs::path& file, const MetaHeader& header, std::uint64_
     }
     const fs::path dataFile = isLocal ? file : requireDataFile(file, name);
     const bool isCompressed = parseFlag(file, header, {"CompressedData"});
-    parseFlag(file, header, {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"});
-
-    std::uint64_t begin = isLocal ? header.byteCount : 0;
-    if (const auto text = header.find({"HeaderSize"})) {
-        const auto skip = parseInteger(*text);
-        const std::uint64_t fileBytes = requireRegularFile(dataFile);
-        if (!skip || *skip < -1 || (isCompressed && *skip != 0) ||
-            (isLocal && *skip > 0 && static_cast<std::uint64_t>(*skip) < begin)) {
-            refuse(
-                file,
-                fmt::format("its MetaImage header is damaged: HeaderSize '{}'", printable(*text)),
-                "repair the header");
-        }
-        if (*skip > 0) begin = static_cast<std::uint64_t>(*skip);
-        if (*skip == -1 && fileBytes >= byteCount) begin = std::max(begin, fileBytes - byteCount);
-    }
-    ByteSource source(dataFile, begin,
-                      isCompressed ? ByteSource::Encoding::Deflate : ByteSource::Encoding::Raw);
-    source.requireRoomFor(byteCount);
-    source.skip(byteCount);
-    source.finish();
+    const std::uint64_t begin = isLocal ? header.byteCount : 0;
+    const std::int64_t headerSize =
+        parseHeaderSize(file, header, isCompressed, isLocal ? begin : 0);
+    const auto encoding = isCompressed ? ByteSource::Encoding::Deflate : ByteSource::Encoding::Raw;
+    ByteSource source(dataFile, headerSize > 0 ? static_cast<std::uint64_t>(headerSize) : begin,
+                      encoding);
+    if (headerSize == -1) source.skipToLast(byteCount);
+    return source;
 }
 
 }  // namespace
@@ -253,18 +261,24 @@ bool looksLikeMetaImage(std::string_view head) {
     return false;
 }
 
-ReadVolume readMetaImage(const fs::path& file) {
+ReadVolume readMetaImage(const fs::path& file, const ReadOptions& options) {
     const MetaHeader header = parseHeader(file);
     const Extents extents = parseExtents(file, header);
     requireScalar(file, header);
-    const PixelType type = parseType(file, header.require(file, "ElementType"));
-    const std::uint64_t byteCount = requireImageBytes(file, extents.size, type);
+    SampleLayout layout{parseType(file, header.require(file, "ElementType"))};
+    layout.volumeCount = extents.volumeCount;
+    layout.volumeIndex = chooseVolume(file, extents.volumeCount, options);
+    const bool isBigEndian =
+        parseFlag(file, header, {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"});
+    layout.byteOrder = isBigEndian ? std::endian::big : std::endian::little;
+    const std::uint64_t volumeBytes = requireImageBytes(file, extents.size, layout.stored);
     std::vector<std::string> warnings;
     const ImageGeometry geometry = geometryOf(file, header, extents, warnings);
     requireUsableGeometry(file, geometry);
-    requireAllData(file, header, byteCount);
-    return {decodeWithItk(ItkFormat::MetaImage, file, type, geometry), "MetaImage",
-            std::move(warnings)};
+    ByteSource source = openData(
+        file, header,
+        requireProduct(file, volumeBytes, static_cast<std::uint64_t>(extents.volumeCount)));
+    return {readSamples(file, source, layout, geometry, options), "MetaImage", std::move(warnings)};
 }
 
 }  // namespace adaptiso::detail

@@ -61,7 +61,7 @@ ImageGeometry geometryOf(const HeaderBytes& bytes, const Index3& size,
 
 }  // namespace
 
-ReadVolume readMgh(const fs::path& file) {
+ReadVolume readMgh(const fs::path& file, const ReadOptions& options) {
     std::array<char, kHeaderBytes> buffer{};
     ByteSource source = ByteSource::openPlainOrGzip(file);
     if (source.readSome(buffer.data(), kHeaderBytes) < kHeaderBytes) {
@@ -74,14 +74,18 @@ ReadVolume readMgh(const fs::path& file) {
     const Index3 size{bytes.at<std::int32_t>(4), bytes.at<std::int32_t>(8),
                       bytes.at<std::int32_t>(12)};
     const auto frames = bytes.at<std::int32_t>(16);
-    if (frames != 1) {
-        refuse(file, fmt::format("is 4-D: it holds {} volumes", frames),
-               "extract one volume first");
+    if (frames < 1) {
+        refuse(
+            file,
+            fmt::format("its header is damaged: {} volumes (nframes), must be at least 1", frames),
+            "repair the header");
     }
-    const SampleLayout layout{pixelTypeOfCode(file, bytes.at<std::int32_t>(20)), std::endian::big};
+    SampleLayout layout{pixelTypeOfCode(file, bytes.at<std::int32_t>(20)), std::endian::big};
+    layout.volumeCount = frames;
+    layout.volumeIndex = chooseVolume(file, frames, options);
     std::vector<std::string> warnings;
     const ImageGeometry geometry = geometryOf(bytes, size, warnings);
-    return {readSamples(file, source, layout, geometry), "MGH", std::move(warnings)};
+    return {readSamples(file, source, layout, geometry, options), "MGH", std::move(warnings)};
 }
 
 }  // namespace adaptiso::detail

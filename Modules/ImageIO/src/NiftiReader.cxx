@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "DataFile.h"
 #include "FileFault.h"
 #include "HeaderBytes.h"
 #include "Readers.h"
@@ -157,13 +158,18 @@ PixelType pixelTypeOfCode(const fs::path& file, const NiftiHeader& h) {
            "convert it to a scalar integer or float type");
 }
 
-Index3 requireOneVolume(const fs::path& file, const NiftiHeader& h) {
+struct Extents {
+    Index3 size{1, 1, 1};
+    std::int64_t volumeCount = 1;
+};
+
+Extents extentsOf(const fs::path& file, const NiftiHeader& h) {
     const std::int64_t dimensions = h.dim[0];
     if (dimensions < 1 || dimensions > 7) {
         refuse(file, fmt::format("its header is damaged: dim[0] is {}, must be 1 to 7", dimensions),
                "repair the header");
     }
-    Index3 size{1, 1, 1};
+    Extents extents;
     for (std::size_t i = 1; i <= static_cast<std::size_t>(dimensions); ++i) {
         if (h.dim[i] < 1) {
             refuse(file,
@@ -172,16 +178,15 @@ Index3 requireOneVolume(const fs::path& file, const NiftiHeader& h) {
                    "repair the header");
         }
         if (i <= 3) {
-            size[i - 1] = h.dim[i];
+            extents.size[i - 1] = h.dim[i];
+        } else if (i == 4) {
+            extents.volumeCount = h.dim[i];
         } else if (h.dim[i] > 1) {
-            refuse(file,
-                   i == 4
-                       ? fmt::format("is 4-D: it holds {} volumes", h.dim[i])
-                       : fmt::format("holds vectors of {} components (dimension {})", h.dim[i], i),
+            refuse(file, fmt::format("holds vectors of {} components (dimension {})", h.dim[i], i),
                    "extract one volume first");
         }
     }
-    return size;
+    return extents;
 }
 
 double millimetresPerUnit(const fs::path& file, int units) {
@@ -317,7 +322,10 @@ fs::path partner(const fs::path& file, std::initializer_list<const char*> ending
         fs::path candidate = stem;
         candidate += ending;
         std::error_code error;
-        if (fs::exists(candidate, error)) return candidate;
+        if (!fs::exists(candidate, error)) continue;
+        requireRegularFile(candidate);
+        requireOwnFolder(file, candidate);
+        return candidate;
     }
     refuse(file,
            fmt::format("the other half of the .hdr/.img pair ({}) is missing",
@@ -365,15 +373,17 @@ bool looksLikeNifti(std::string_view head) {
     return hasMagic("n+1") || hasMagic("ni1") || hasMagic("n+2") || hasMagic("ni2");
 }
 
-ReadVolume readNifti(const fs::path& input) {
+ReadVolume readNifti(const fs::path& input, const ReadOptions& options) {
     const fs::path headerFile =
         isImgName(input) ? partner(input, {".hdr", ".HDR", ".hdr.gz"}) : input;
     const NiftiHeader header = readHeader(headerFile);
-    const Index3 size = requireOneVolume(headerFile, header);
-    const SampleLayout layout = layoutOf(headerFile, header);
-    requireImageBytes(headerFile, size, layout.stored);
+    const Extents extents = extentsOf(headerFile, header);
+    SampleLayout layout = layoutOf(headerFile, header);
+    layout.volumeCount = extents.volumeCount;
+    layout.volumeIndex = chooseVolume(headerFile, extents.volumeCount, options);
+    requireImageBytes(headerFile, extents.size, layout.stored);
     std::vector<std::string> warnings;
-    const ImageGeometry geometry = geometryOf(headerFile, header, size, warnings);
+    const ImageGeometry geometry = geometryOf(headerFile, header, extents.size, warnings);
 
     const fs::path dataFile =
         header.hasDataInside ? headerFile : partner(headerFile, {".img", ".IMG", ".img.gz"});
@@ -381,7 +391,7 @@ ReadVolume readNifti(const fs::path& input) {
     const std::uint64_t offset = requireDataOffset(headerFile, header);
     source.requireRoomFor(offset);
     source.skip(offset);
-    return {readSamples(dataFile, source, layout, geometry),
+    return {readSamples(dataFile, source, layout, geometry, options),
             header.version == 1 ? "NIfTI-1" : "NIfTI-2", std::move(warnings)};
 }
 

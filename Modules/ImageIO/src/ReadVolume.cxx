@@ -1,11 +1,17 @@
 #include "adaptiso/ImageIO/ReadVolume.h"
 
-#include <array>
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <type_traits>
 
 #include "ByteSource.h"
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "Readers.h"
+#include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso {
 namespace fs = std::filesystem;
@@ -29,27 +35,72 @@ std::string formatEnding(const fs::path& file) {
     return ending.empty() ? ending : ending.substr(1);
 }
 
-}  // namespace
+/// Voxels that `isOdd`.
+template <class T, class Predicate>
+std::int64_t countVoxels(const TypedVolumeView<T>& view, Predicate isOdd) {
+    std::atomic<std::int64_t> count{0};
+    parallelForPieces(view.geometry.voxelCount(), std::int64_t{1} << 20,
+                      [&](std::int64_t begin, std::int64_t end) {
+                          count += std::count_if(view.samples + begin, view.samples + end, isOdd);
+                      });
+    return count;
+}
 
-ReadVolume readVolume(const fs::path& input, const ReadOptions& options) {
+/// What isovalues, which are doubles, can't be compared with as the user may think.
+void warnOfOddSamples(ReadVolume& read) {
+    dispatchPixelType(read.volume, [&]<class T>(const TypedVolumeView<T>& view) {
+        if constexpr (std::is_floating_point_v<T>) {
+            const auto count = countVoxels(view, [](T value) { return !std::isfinite(value); });
+            // where no voxel is a number there is no isovalue either, and the caller says so
+            if (count > 0 && count < view.geometry.voxelCount()) {
+                read.warnings.push_back(
+                    fmt::format("{} of its voxels hold no finite number (NaN or infinity); NaN "
+                                "counts as outside",
+                                count));
+            }
+        } else if constexpr (sizeof(T) == 8) {
+            const auto count = countVoxels(view, [](T value) {
+                constexpr T kExact = T{1} << 53;
+                return value > kExact || (std::is_signed_v<T> && value < T{0} - kExact);
+            });
+            if (count > 0) {
+                read.warnings.push_back(
+                    fmt::format("{} of its voxels hold integers beyond 2^53, which isovalues can't "
+                                "tell apart",
+                                count));
+            }
+        }
+    });
+}
+
+ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
     std::error_code error;
     if (fs::is_directory(input, error)) return detail::readDicomFolder(input, options);
     detail::requireRegularFile(input);
 
     const std::string head = detail::readHead(input, kHeadBytes);
     if (head.empty()) detail::refuse(input, "is an empty file", "get the file again");
-    if (detail::looksLikeNrrd(head)) return detail::readNrrd(input);
-    if (detail::looksLikeMetaImage(head)) return detail::readMetaImage(input);
-    if (detail::looksLikeNifti(inflatedHead(input))) return detail::readNifti(input);
+    if (detail::looksLikeNrrd(head)) return detail::readNrrd(input, options);
+    if (detail::looksLikeMetaImage(head)) return detail::readMetaImage(input, options);
+    if (detail::looksLikeNifti(inflatedHead(input))) return detail::readNifti(input, options);
 
     // content that only its name explains, or a damaged file whose reader says best what is wrong
     const std::string ending = formatEnding(input);
-    if (ending == "nii" || ending == "hdr" || ending == "img") return detail::readNifti(input);
-    if (ending == "mgh" || ending == "mgz") return detail::readMgh(input);
-    if (ending == "mha" || ending == "mhd") return detail::readMetaImage(input);
+    if (ending == "nii" || ending == "hdr" || ending == "img")
+        return detail::readNifti(input, options);
+    if (ending == "mgh" || ending == "mgz") return detail::readMgh(input, options);
+    if (ending == "mha" || ending == "mhd") return detail::readMetaImage(input, options);
     if (detail::looksLikeDicom(head)) return detail::readDicomFile(input, options);
     detail::refuse(input, "not a format that is read here",
                    "give NIfTI, NRRD, MetaImage, MGH, or DICOM");
+}
+
+}  // namespace
+
+ReadVolume readVolume(const fs::path& input, const ReadOptions& options) {
+    ReadVolume read = readAnyFormat(input, options);
+    warnOfOddSamples(read);
+    return read;
 }
 
 }  // namespace adaptiso

@@ -8,10 +8,10 @@
 /// One reader a format, one .cxx a reader; all keep readVolume's contract.
 namespace adaptiso::detail {
 
-ReadVolume readNifti(const std::filesystem::path& file);
-ReadVolume readNrrd(const std::filesystem::path& file);
-ReadVolume readMetaImage(const std::filesystem::path& file);
-ReadVolume readMgh(const std::filesystem::path& file);
+ReadVolume readNifti(const std::filesystem::path& file, const ReadOptions& options);
+ReadVolume readNrrd(const std::filesystem::path& file, const ReadOptions& options);
+ReadVolume readMetaImage(const std::filesystem::path& file, const ReadOptions& options);
+ReadVolume readMgh(const std::filesystem::path& file, const ReadOptions& options);
 ReadVolume readDicomFile(const std::filesystem::path& file, const ReadOptions& options);
 ReadVolume readDicomFolder(const std::filesystem::path& folder, const ReadOptions& options);
 

@@ -5,35 +5,82 @@
 #include <cmath>
 #include <new>
 
+#include "Fence.h"
 #include "FileFault.h"
 
 namespace adaptiso::detail {
 namespace {
 
-/// Reads in pieces and scales on the way, so that the stored samples are never all in memory.
+constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 60;  // bytes
+
+/// Reads in pieces, picks and scales on the way, so that what is stored is never all in memory.
 template <class Out, class Stored>
-void readScaled(ByteSource& source, const SampleLayout& layout, std::int64_t count, Out* out) {
-    std::vector<Stored> piece(std::size_t{1} << 17);
+void readConverted(ByteSource& source, const SampleLayout& layout, std::int64_t count, Out* out) {
+    const std::int64_t stride = layout.isInterleaved ? layout.volumeCount : 1;
+    const std::int64_t first = layout.isInterleaved ? layout.volumeIndex : 0;
+    constexpr std::int64_t kPieceSamples = 1 << 17;
+    const std::int64_t pieceVoxels = std::max<std::int64_t>(1, kPieceSamples / stride);
+    std::vector<Stored> piece(static_cast<std::size_t>(std::min(pieceVoxels, count) * stride));
     for (std::int64_t done = 0; done < count;) {
-        const auto n = std::min<std::int64_t>(count - done, std::ssize(piece));
-        const auto byteCount = static_cast<std::uint64_t>(n) * sizeof(Stored);
+        const auto n = std::min(count - done, pieceVoxels);
+        const auto byteCount = static_cast<std::uint64_t>(n * stride) * sizeof(Stored);
         source.read(piece.data(), byteCount);
         if (layout.byteOrder != std::endian::native) {
             swapBytes(reinterpret_cast<std::byte*>(piece.data()), byteCount, sizeof(Stored));
         }
         for (std::int64_t i = 0; i < n; ++i) {
-            out[done + i] =
-                static_cast<Out>(layout.slope * static_cast<double>(piece[i]) + layout.intercept);
+            const Stored stored = piece[static_cast<std::size_t>(i * stride + first)];
+            out[done + i] = layout.isScaled
+                                ? static_cast<Out>(layout.slope * static_cast<double>(stored) +
+                                                   layout.intercept)
+                                : static_cast<Out>(stored);
         }
         done += n;
     }
 }
 
+void readInto(std::byte* samples, PixelType type, ByteSource& source, const SampleLayout& layout,
+              std::int64_t count) {
+    if (!layout.isScaled && !layout.isInterleaved) {
+        const std::uint64_t byteCount = static_cast<std::uint64_t>(count) * bytesPerPixel(type);
+        source.read(samples, byteCount);
+        if (layout.byteOrder != std::endian::native) {
+            swapBytes(samples, byteCount, bytesPerPixel(type));
+        }
+        return;
+    }
+    withPixelType(layout.stored, [&]<class Stored>(Stored) {
+        if (!layout.isScaled) {
+            readConverted<Stored, Stored>(source, layout, count,
+                                          reinterpret_cast<Stored*>(samples));
+        } else if (type == PixelType::Float32) {
+            readConverted<float, Stored>(source, layout, count, reinterpret_cast<float*>(samples));
+        } else {
+            readConverted<double, Stored>(source, layout, count,
+                                          reinterpret_cast<double*>(samples));
+        }
+    });
+}
+
+bool liesAsUsed(const SampleLayout& layout) {
+    return !layout.isScaled && !layout.isInterleaved &&
+           (layout.byteOrder == std::endian::native || bytesPerPixel(layout.stored) == 1);
+}
+
 }  // namespace
+
+std::uint64_t requireProduct(const std::filesystem::path& file, std::uint64_t a, std::uint64_t b) {
+    if (a > 0 && b > kLargestFile / a) {
+        refuse(file,
+               "its header asks for more memory than any machine has (its size and number of "
+               "volumes)",
+               "the file is damaged");
+    }
+    return a * b;
+}
 
 std::uint64_t requireImageBytes(const std::filesystem::path& file, const Index3& size,
                                 PixelType type) {
-    constexpr std::uint64_t kLargest = std::uint64_t{1} << 60;
     std::uint64_t bytes = bytesPerPixel(type);
     for (const std::int64_t extent : size) {
         if (extent < 1) {
@@ -42,7 +89,7 @@ std::uint64_t requireImageBytes(const std::filesystem::path& file, const Index3&
                                size[2]),
                    "sizes must be at least 1");
         }
-        if (static_cast<std::uint64_t>(extent) > kLargest / bytes) {
+        if (static_cast<std::uint64_t>(extent) > kLargestFile / bytes) {
             refuse(file,
                    fmt::format("its header asks for more memory than any machine has (image "
                                "size {} x {} x {})",
@@ -63,12 +110,17 @@ std::uint64_t requireImageBytes(const std::filesystem::path& file, const Index3&
 }
 
 SampleBuffer allocateSamples(const std::filesystem::path& file, std::uint64_t byteCount) {
-    try {
-        return SampleBuffer(new std::byte[byteCount]);
-    } catch (const std::bad_alloc&) {
+    SampleBuffer samples;
+    if (isBehindFence()) {
+        samples = allocateSharedBytes(byteCount);
+    } else {
+        samples.reset(new (std::nothrow) std::byte[byteCount]);
+    }
+    if (!samples) {
         refuse(file, fmt::format("needs {} bytes of memory, more than there is", byteCount),
                "use a machine with more memory or crop the image");
     }
+    return samples;
 }
 
 void requireUsableGeometry(const std::filesystem::path& file, const ImageGeometry& geometry) {
@@ -103,32 +155,41 @@ void swapBytes(std::byte* samples, std::uint64_t byteCount, std::size_t bytesPer
     }
 }
 
-Volume readSamples(const std::filesystem::path& file, ByteSource& source,
-                   const SampleLayout& layout, const ImageGeometry& geometry) {
-    const std::uint64_t storedBytes = requireImageBytes(file, geometry.size, layout.stored);
-    requireUsableGeometry(file, geometry);
-    source.requireRoomFor(storedBytes);
+std::int64_t chooseVolume(const std::filesystem::path& file, std::int64_t volumeCount,
+                          const ReadOptions& options) {
+    if (!options.volumeIndex) {
+        if (volumeCount == 1) return 0;
+        refuse(file, fmt::format("is 4-D: it holds {} volumes", volumeCount),
+               fmt::format("choose one, 0 to {} (--volume-index)", volumeCount - 1));
+    }
+    if (*options.volumeIndex < 0 || *options.volumeIndex >= volumeCount) {
+        refuse(file,
+               fmt::format("there is no volume {}: it holds {}", *options.volumeIndex, volumeCount),
+               fmt::format("choose one, 0 to {} (--volume-index)", volumeCount - 1));
+    }
+    return *options.volumeIndex;
+}
 
+Volume readSamples(const std::filesystem::path& file, ByteSource& source,
+                   const SampleLayout& layout, const ImageGeometry& geometry,
+                   const ReadOptions& options) {
+    const std::uint64_t volumeBytes = requireImageBytes(file, geometry.size, layout.stored);
+    requireUsableGeometry(file, geometry);
+    const auto volumes = static_cast<std::uint64_t>(layout.volumeCount);
+    source.requireRoomFor(requireProduct(file, volumes, volumeBytes));
+    const auto volumesBefore = static_cast<std::uint64_t>(layout.volumeIndex);
+    if (!layout.isInterleaved) source.skip(volumesBefore * volumeBytes);
+
+    if (options.mapFiles && liesAsUsed(layout)) {
+        const auto samples = source.map(volumeBytes, bytesPerPixel(layout.stored));
+        if (samples) return Volume(VolumeView(samples.get(), layout.stored, geometry), samples);
+    }
     const PixelType type = layout.isScaled ? floatTypeFor(layout.stored) : layout.stored;
     const std::int64_t count = geometry.voxelCount();
     SampleBuffer samples =
         allocateSamples(file, static_cast<std::uint64_t>(count) * bytesPerPixel(type));
-    if (!layout.isScaled) {
-        source.read(samples.get(), storedBytes);
-        if (layout.byteOrder != std::endian::native) {
-            swapBytes(samples.get(), storedBytes, bytesPerPixel(layout.stored));
-        }
-    } else {
-        withPixelType(layout.stored, [&]<class Stored>(Stored) {
-            if (type == PixelType::Float32) {
-                readScaled<float, Stored>(source, layout, count,
-                                          reinterpret_cast<float*>(samples.get()));
-            } else {
-                readScaled<double, Stored>(source, layout, count,
-                                           reinterpret_cast<double*>(samples.get()));
-            }
-        });
-    }
+    readInto(samples.get(), type, source, layout, count);
+    if (!layout.isInterleaved) source.skip((volumes - 1 - volumesBefore) * volumeBytes);
     source.finish();
     return makeVolume(std::move(samples), type, geometry);
 }

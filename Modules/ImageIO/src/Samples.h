@@ -11,6 +11,7 @@
 
 #include "ByteSource.h"
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso::detail {
 
@@ -56,6 +57,10 @@ inline PixelType floatTypeFor(PixelType stored) {
 std::uint64_t requireImageBytes(const std::filesystem::path& file, const Index3& size,
                                 PixelType type);
 
+/// a * b. \throws FileError when that is more than any file holds
+std::uint64_t requireProduct(const std::filesystem::path& file, std::uint64_t a, std::uint64_t b);
+
+/// Behind a fence it is memory that the parent process sees too.
 /// \throws FileError when memory is short
 SampleBuffer allocateSamples(const std::filesystem::path& file, std::uint64_t byteCount);
 
@@ -73,11 +78,22 @@ struct SampleLayout {
     bool isScaled = false;  ///< value = slope * stored + intercept
     double slope = 1;
     double intercept = 0;
+    std::int64_t volumeCount = 1;  ///< of one size, one after the other
+    std::int64_t volumeIndex = 0;  ///< the one to read
+    bool isInterleaved = false;    ///< or all volumes' samples of a voxel side by side
 };
 
-/// Reads exactly the geometry's voxels, checks the checksum of compressed data and wraps them up.
+/// The volume to read of a file that holds `volumeCount`.
+/// \throws FileError when there are several and none is asked for, or one that is not there
+std::int64_t chooseVolume(const std::filesystem::path& file, std::int64_t volumeCount,
+                          const ReadOptions& options);
+
+/// Reads exactly the geometry's voxels, checks that the file holds the other volumes too and the
+/// checksum of compressed data, and wraps the samples up. Maps them instead where the options and
+/// the layout allow it.
 Volume readSamples(const std::filesystem::path& file, ByteSource& source,
-                   const SampleLayout& layout, const ImageGeometry& geometry);
+                   const SampleLayout& layout, const ImageGeometry& geometry,
+                   const ReadOptions& options);
 
 /// A volume that owns `samples`.
 Volume makeVolume(SampleBuffer samples, PixelType type, const ImageGeometry& geometry);

@@ -91,7 +91,9 @@ TYPED_TEST(NiftiPixels, KeepTypeAndEverySampleInBothByteOrders) {
         ASSERT_EQ(result.volume.view().pixelType(), pixelTypeOf<TypeParam>());
         EXPECT_EQ(samplesIn<TypeParam>(result.volume), samples);
         EXPECT_EQ(result.format, "NIfTI-1");
-        EXPECT_TRUE(result.warnings.empty());
+        // the samples hold the smallest and largest values of their type
+        const bool isBeyondDoubles = std::is_integral_v<TypeParam> && sizeof(TypeParam) == 8;
+        EXPECT_EQ(result.warnings.size(), isBeyondDoubles ? 1U : 0U);
     }
 }
 

@@ -22,6 +22,17 @@ struct ReadOptions {
     /// DICOM slices that lie unevenly are blended linearly, each from its two neighbours, onto even
     /// steps of their usual distance; the samples become float. Unset: they are refused.
     bool resampleSlices = false;
+
+    /// Run ITK's and GDCM's decoders in a child process with limits on time and memory, so that
+    /// their abort, crash, hang or hunger becomes a FileError. Without it they run in this process,
+    /// for callers that must not fork, or that debug a decoder.
+    bool fence = true;
+
+    /// Map large uncompressed files into memory in place of reading them, where their samples can
+    /// be used as they lie, the disk is local, and a lease on the file holds writers back. Reading
+    /// then costs neither time nor memory of its own. Off, because a disk that fails under a mapped
+    /// file raises SIGBUS: only a program can answer that (MappedInput.h), not a library.
+    bool mapFiles = false;
 };
 
 /// A scan as read: the samples in the file's own pixel type, where they lie, and what a user
@@ -49,7 +60,13 @@ struct ReadVolume {
 ///
 /// Samples keep their type. Scaled ones (NIfTI scl_slope, DICOM rescale) become float32, or
 /// float64 where float32 could not hold the stored integers; a DICOM rescale by whole numbers with
-/// slope 1 stays an integer type. MONOCHROME1 is not inverted.
+/// slope 1 stays an integer type. MONOCHROME1 is not inverted. Of a 4-D file one volume is read;
+/// the others must be there too. Warnings count voxels that are not finite, and integers beyond
+/// 2^53.
+///
+/// A header's data file lies in or below the header's folder; a link to it may lead to there, to
+/// the folder of the file that the header's name links to, or into .git/annex/objects of a folder
+/// above.
 ///
 /// \param input  a regular file, a link to one, or a folder.
 /// \throws FileError  one line "<file>: <fault>; <remedy>", without patient data, when the input
@@ -58,8 +75,10 @@ struct ReadVolume {
 ///         several volumes or series, a single slice, uneven, missing or repeated slices, or names
 ///         data outside its own folder. Nothing is padded and nothing is guessed.
 /// \pre  not called from two threads at once for DICOM (GDCM's message switches are global).
-/// Cost: one copy of the samples in memory, plus one DICOM file's or, for NRRD and MetaImage, one
-///       transient copy inside ITK; one extra pass over compressed NRRD and MetaImage data.
+/// \throws FileError  as well when ITK's or GDCM's decoder crashes or takes more than it may: 15 s
+///         and 1 s for each MB of input, 1 GiB and 64 bytes for each byte (ReadOptions::fence)
+/// \post no process or file of this call's is left
+/// Cost: one copy of the samples, or none (ReadOptions::mapFiles), and one DICOM file's; one pass.
 ReadVolume readVolume(const std::filesystem::path& input, const ReadOptions& options = {});
 
 }  // namespace adaptiso

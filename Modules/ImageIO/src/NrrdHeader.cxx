@@ -1,0 +1,340 @@
+#include "NrrdHeader.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "FileFault.h"
+#include "HeaderText.h"
+
+namespace adaptiso::detail {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
+
+[[noreturn]] void refuseDamaged(const fs::path& file, std::string_view what) {
+    refuse(file, fmt::format("its NRRD header is damaged: {}", what), "repair the header");
+}
+
+std::string canonicalName(std::string_view name) {
+    std::string canonical = lowerCase(trimmed(name));
+    std::erase(canonical, ' ');
+    return canonical == "centerings" ? "centers" : canonical;
+}
+
+/// What turns a point of the named space into LPS.
+Mat3 spaceToLps(const fs::path& file, std::string_view name) {
+    const std::string space = lowerCase(name);
+    if (space == "left-posterior-superior" || space == "lps") return Mat3::diagonal(1, 1, 1);
+    if (space == "right-anterior-superior" || space == "ras") return Mat3::diagonal(-1, -1, 1);
+    if (space == "left-anterior-superior" || space == "las") return Mat3::diagonal(1, -1, 1);
+    refuse(file,
+           fmt::format("its space '{}' does not say where left and right are", printable(name)),
+           "use left-posterior-superior, right-anterior-superior or left-anterior-superior");
+}
+
+double millimetresPerUnit(const fs::path& file, std::string_view unitsText) {
+    std::string units = lowerCase(unitsText);
+    std::erase(units, '"');
+    double scale = 0;
+    for (const std::string_view unit : words(units)) {
+        const double one = unit == "mm" || unit == "millimeter" || unit == "millimeters" ? 1
+                           : unit == "m" || unit == "meter" || unit == "meters"          ? 1000
+                           : unit == "cm"                                                ? 10
+                           : unit == "um" || unit == "micron" || unit == "microns"       ? 0.001
+                                                                                         : 0;
+        if (one == 0 || (scale != 0 && one != scale)) {
+            refuse(file, fmt::format("unknown or mixed space units {}", printable(unitsText)),
+                   "use mm");
+        }
+        scale = one;
+    }
+    return scale == 0 ? 1 : scale;
+}
+
+/// "(1,0,0) none (0,1,0) ..."; nothing stands for none.
+std::vector<std::optional<Vec3>> parseVectors(const fs::path& file, std::string_view field,
+                                              std::string_view text) {
+    std::vector<std::optional<Vec3>> vectors;
+    for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+        constexpr std::string_view kNone = "none";
+        if (lowerCase(text.substr(0, kNone.size())) == kNone) {
+            vectors.emplace_back();
+            text.remove_prefix(kNone.size());
+            continue;
+        }
+        const std::size_t close = text.find(')');
+        Vec3 vector;
+        bool isGood = text.front() == '(' && close != std::string_view::npos;
+        std::string_view inside = isGood ? text.substr(1, close - 1) : std::string_view{};
+        for (int row = 0; isGood && row < 3; ++row) {
+            const std::size_t comma = inside.find(',');
+            isGood = (comma == std::string_view::npos) == (row == 2);
+            const auto value = parseNumber(inside.substr(0, comma));
+            isGood = isGood && value && std::isfinite(*value);
+            if (isGood) vector[row] = *value;
+            inside = comma == std::string_view::npos ? "" : inside.substr(comma + 1);
+        }
+        if (!isGood) {
+            refuseDamaged(file,
+                          fmt::format("{} are not vectors of three numbers for each axis", field));
+        }
+        vectors.emplace_back(vector);
+        text.remove_prefix(close + 1);
+    }
+    return vectors;
+}
+
+bool isSpatialKind(std::string_view kind) {
+    return kind == "domain" || kind == "space" || kind == "???" || kind == "none";
+}
+
+/// The kinds of axes, lower case; as many as there are axes, "???" where the header does not say.
+std::vector<std::string> kindsOf(const NrrdHeader& header, std::size_t axisCount) {
+    std::vector<std::string> kinds;
+    for (const std::string_view kind : words(header.find("kinds").value_or(""))) {
+        kinds.push_back(lowerCase(kind));
+    }
+    kinds.resize(axisCount, "???");
+    return kinds;
+}
+
+/// Of four axes, the one that is no direction in space.
+std::size_t findVolumeAxis(const fs::path& file, const NrrdHeader& header,
+                           const std::vector<std::string>& kinds) {
+    std::vector<std::size_t> candidates;
+    if (const auto text = header.find("spacedirections")) {
+        const auto directions = parseVectors(file, "space directions", *text);
+        for (std::size_t axis = 0; axis < directions.size() && axis < 4; ++axis) {
+            if (!directions[axis]) candidates.push_back(axis);
+        }
+    } else {
+        for (std::size_t axis = 0; axis < 4; ++axis) {
+            if (!isSpatialKind(kinds[axis])) candidates.push_back(axis);
+        }
+    }
+    if (candidates.size() != 1 || candidates[0] == 1 || candidates[0] == 2) {
+        refuse(file,
+               "has 4 dimensions, of which not exactly one, the first or last, is no direction in "
+               "space",
+               "extract one scalar volume first");
+    }
+    const std::string& kind = kinds[candidates[0]];
+    if (kind != "list" && kind != "time" && !isSpatialKind(kind)) {
+        refuse(file,
+               fmt::format("its samples have components: an axis of its 4 dimensions is a '{}'",
+                           printable(kind)),
+               "extract one scalar volume first");
+    }
+    return candidates[0];
+}
+
+Vec3 parseSpacings(const fs::path& file, const NrrdHeader& header, const NrrdAxes& axes) {
+    const auto text = header.find("spacings");
+    if (!text) return {1, 1, 1};
+    const auto spacings = words(*text);
+    if (spacings.size() != axes.count()) {
+        refuseDamaged(file, fmt::format("{} spacings for {} axes", spacings.size(), axes.count()));
+    }
+    Vec3 found;
+    for (std::size_t axis = 0, spatial = 0; axis < spacings.size(); ++axis) {
+        if (axis == axes.volumeAxis) continue;
+        const auto spacing = parseNumber(spacings[axis]);
+        if (!spacing || !(*spacing > 0)) {
+            refuse(file,
+                   fmt::format("voxel spacing '{}' must be a number above zero",
+                               printable(spacings[axis])),
+                   "repair the header");
+        }
+        found[static_cast<int>(spatial++)] = *spacing;
+    }
+    return found;
+}
+
+ImageGeometry spacedGeometry(const fs::path& file, const NrrdHeader& header, const NrrdAxes& axes,
+                             std::vector<std::string>& warnings) {
+    const Vec3 spacing = parseSpacings(file, header, axes);
+    warnings.push_back(
+        fmt::format("no space field: orientation and position are unknown; {} "
+                    "used along left, posterior, superior",
+                    header.find("spacings") ? "the spacings alone were" : "a spacing of 1 mm was"));
+    return {axes.size, {}, Mat3::diagonal(spacing.x, spacing.y, spacing.z)};
+}
+
+}  // namespace
+
+std::string_view NrrdHeader::require(const fs::path& file, std::string_view name) const {
+    if (const auto value = find(name)) return *value;
+    refuse(file, fmt::format("its NRRD header misses the field '{}'", name), "repair the header");
+}
+
+NrrdHeader readNrrdHeader(const fs::path& file) {
+    const std::string text = readHead(file, kLongestHeader);
+    NrrdHeader header;
+    bool isFirst = true;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string_view line = trimmed(std::string_view(text).substr(begin, end - begin));
+        begin = std::min(end + 1, text.size());
+        header.byteCount = begin;
+        if (line.empty()) return header;
+        const bool isMagicOrComment = isFirst || line.starts_with('#');
+        isFirst = false;
+        if (isMagicOrComment || line.find(":=") != std::string_view::npos) continue;
+        const std::size_t colon = line.find(": ");
+        const bool hasColon = colon != std::string_view::npos || line.ends_with(':');
+        if (!hasColon) {
+            refuse(file,
+                   "its NRRD header is damaged or not ended by an empty line (a line is no "
+                   "'field: value')",
+                   "repair the header");
+        }
+        const auto name = canonicalName(line.substr(0, std::min(colon, line.size() - 1)));
+        const auto value = colon == std::string_view::npos ? "" : trimmed(line.substr(colon + 2));
+        if (!header.fields.emplace(name, value).second) {
+            refuse(file, fmt::format("its NRRD header has the field '{}' twice", printable(name)),
+                   "repair the header");
+        }
+    }
+    if (text.size() == kLongestHeader) {
+        refuse(file, "its NRRD header is longer than 1 MiB", "remove key/value pairs from it");
+    }
+    return header;
+}
+
+PixelType pixelTypeOf(const fs::path& file, const NrrdHeader& header) {
+    const std::string_view text = header.require(file, "type");
+    static const std::map<std::string_view, PixelType> kTypes = {
+        {"signed char", PixelType::Int8},
+        {"int8", PixelType::Int8},
+        {"int8_t", PixelType::Int8},
+        {"uchar", PixelType::UInt8},
+        {"unsigned char", PixelType::UInt8},
+        {"uint8", PixelType::UInt8},
+        {"uint8_t", PixelType::UInt8},
+        {"short", PixelType::Int16},
+        {"short int", PixelType::Int16},
+        {"signed short", PixelType::Int16},
+        {"signed short int", PixelType::Int16},
+        {"int16", PixelType::Int16},
+        {"int16_t", PixelType::Int16},
+        {"ushort", PixelType::UInt16},
+        {"unsigned short", PixelType::UInt16},
+        {"unsigned short int", PixelType::UInt16},
+        {"uint16", PixelType::UInt16},
+        {"uint16_t", PixelType::UInt16},
+        {"int", PixelType::Int32},
+        {"signed int", PixelType::Int32},
+        {"int32", PixelType::Int32},
+        {"int32_t", PixelType::Int32},
+        {"uint", PixelType::UInt32},
+        {"unsigned int", PixelType::UInt32},
+        {"uint32", PixelType::UInt32},
+        {"uint32_t", PixelType::UInt32},
+        {"longlong", PixelType::Int64},
+        {"long long", PixelType::Int64},
+        {"long long int", PixelType::Int64},
+        {"signed long long", PixelType::Int64},
+        {"signed long long int", PixelType::Int64},
+        {"int64", PixelType::Int64},
+        {"int64_t", PixelType::Int64},
+        {"ulonglong", PixelType::UInt64},
+        {"unsigned long long", PixelType::UInt64},
+        {"unsigned long long int", PixelType::UInt64},
+        {"uint64", PixelType::UInt64},
+        {"uint64_t", PixelType::UInt64},
+        {"float", PixelType::Float32},
+        {"double", PixelType::Float64}};
+    const auto it = kTypes.find(lowerCase(text));
+    if (it == kTypes.end()) {
+        refuse(file, fmt::format("unsupported NRRD type '{}'", printable(text)),
+               "convert it to a scalar integer or float type");
+    }
+    return it->second;
+}
+
+NrrdAxes axesOf(const fs::path& file, const NrrdHeader& header) {
+    const auto dimension = parseInteger(header.require(file, "dimension"));
+    if (!dimension || *dimension < 1 || *dimension > 16) {
+        refuseDamaged(file, "dimension must be 1 to 16");
+    }
+    const auto sizes = words(header.require(file, "sizes"));
+    if (std::ssize(sizes) != *dimension) {
+        refuseDamaged(file, fmt::format("dimension {} but {} sizes", *dimension, sizes.size()));
+    }
+    if (*dimension != 3 && *dimension != 4) {
+        refuse(file, fmt::format("has {} dimensions, must have 3", *dimension),
+               "extract one scalar volume first");
+    }
+    const std::vector<std::string> kinds = kindsOf(header, sizes.size());
+    NrrdAxes axes;
+    if (*dimension == 4) axes.volumeAxis = findVolumeAxis(file, header, kinds);
+    for (std::size_t axis = 0, spatial = 0; axis < sizes.size(); ++axis) {
+        const auto extent = parseInteger(sizes[axis]);
+        if (!extent) {
+            refuseDamaged(file,
+                          fmt::format("size '{}' is no whole number", printable(sizes[axis])));
+        }
+        if (axis == axes.volumeAxis) {
+            if (*extent < 1) refuseDamaged(file, "a size is below 1");
+            axes.volumeCount = *extent;
+            continue;
+        }
+        if (!isSpatialKind(kinds[axis])) {
+            refuse(file,
+                   fmt::format("an axis is a '{}', not a direction in space (components or "
+                               "a list of images)",
+                               printable(kinds[axis])),
+                   "extract one scalar volume first");
+        }
+        axes.size[spatial++] = *extent;
+    }
+    return axes;
+}
+
+ImageGeometry geometryOf(const fs::path& file, const NrrdHeader& header, const NrrdAxes& axes,
+                         std::vector<std::string>& warnings) {
+    const auto space = header.find("space");
+    if (!space) {
+        if (header.find("spacedirections") || header.find("spacedimension")) {
+            refuse(file,
+                   "it has space directions but no named space, so left and right are "
+                   "unknown",
+                   "add a 'space' field such as left-posterior-superior");
+        }
+        return spacedGeometry(file, header, axes, warnings);
+    }
+    const Mat3 toLps = spaceToLps(file, *space);
+    const double scale = millimetresPerUnit(file, header.find("spaceunits").value_or(""));
+    if (scale != 1) warnings.emplace_back("space units were turned into mm");
+
+    const auto directions =
+        parseVectors(file, "space directions", header.require(file, "spacedirections"));
+    if (directions.size() != axes.count()) {
+        refuseDamaged(
+            file, fmt::format("{} space directions for {} axes", directions.size(), axes.count()));
+    }
+    ImageGeometry geometry{axes.size, {}, {}};
+    for (std::size_t axis = 0, spatial = 0; axis < directions.size(); ++axis) {
+        if (axis == axes.volumeAxis) continue;
+        if (!directions[axis]) {
+            refuseDamaged(file, "space directions miss an axis, so its direction is unknown");
+        }
+        geometry.indexToPhysical.column[spatial++] = scale * (toLps * *directions[axis]);
+    }
+    const auto text = header.find("spaceorigin");
+    if (!text) {
+        warnings.emplace_back("no space origin: the first voxel was put at 0, 0, 0");
+        return geometry;
+    }
+    const auto origin = parseVectors(file, "space origin", *text);
+    if (origin.size() != 1 || !origin.front()) {
+        refuseDamaged(file, "space origin is not one vector");
+    }
+    geometry.originMm = scale * (toLps * *origin.front());
+    return geometry;
+}
+
+}  // namespace adaptiso::detail

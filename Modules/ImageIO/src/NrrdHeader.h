@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adaptiso/Core/Volume.h"
+
+/// A NRRD file's text header, after teem.sourceforge.net/nrrd/format.html.
+namespace adaptiso::detail {
+
+struct NrrdHeader {
+    std::map<std::string, std::string, std::less<>> fields;  ///< names without blanks, lower case
+    std::uint64_t byteCount = 0;                             ///< up to and with the blank line
+
+    std::optional<std::string_view> find(std::string_view name) const {
+        const auto it = fields.find(name);
+        if (it == fields.end()) return std::nullopt;
+        return it->second;
+    }
+    /// \throws FileError when it is not there
+    std::string_view require(const std::filesystem::path& file, std::string_view name) const;
+};
+
+/// The three axes in space, and an axis of volumes where there is one.
+struct NrrdAxes {
+    Index3 size{};
+    std::int64_t volumeCount = 1;
+    std::optional<std::size_t> volumeAxis;  ///< 0 (side by side) or 3 (one after the other)
+
+    std::size_t count() const { return volumeAxis ? 4 : 3; }
+};
+
+/// All of the following throw FileError where the header is damaged, or says something that is
+/// not read here: colour, components, spaces that do not name left and right.
+NrrdHeader readNrrdHeader(const std::filesystem::path& file);
+PixelType pixelTypeOf(const std::filesystem::path& file, const NrrdHeader& header);
+NrrdAxes axesOf(const std::filesystem::path& file, const NrrdHeader& header);
+ImageGeometry geometryOf(const std::filesystem::path& file, const NrrdHeader& header,
+                         const NrrdAxes& axes, std::vector<std::string>& warnings);
+
+}  // namespace adaptiso::detail
