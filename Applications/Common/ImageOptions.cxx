@@ -6,6 +6,7 @@
 namespace adaptiso {
 
 void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& group) {
+    options.mapFiles = true;  // runApp() answers a disk that fails
     app.add_option("--series", options.series,
                    "Which series of a DICOM input with several: its number in the list that "
                    "--list-series prints, or its UID")

@@ -16,7 +16,7 @@ struct ImageOptions {
     bool showsPhi = false;     ///< the list holds what may identify the patient
 };
 
-/// Adds --series, --volume-index and --resample-slices.
+/// Adds --series, --volume-index and --resample-slices. Large images are mapped.
 void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& group);
 
 /// Adds the same, --list-series and --show-phi.

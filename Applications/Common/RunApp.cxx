@@ -12,6 +12,7 @@
 #include "Common/AtomicOutput.h"
 #include "Common/Numbers.h"
 #include "Common/Resources.h"
+#include "adaptiso/ImageIO/MappedInput.h"
 
 namespace adaptiso {
 namespace {
@@ -102,6 +103,7 @@ int runParsed(const Program& program, const std::function<int()>& run) {
 int runApp(int argc, const char* const* argv, const Program& program,
            const std::function<void(CLI::App&)>& declare, const std::function<int()>& run) {
     removeOutputsOnSignals();
+    endWhenAMappedFileFails(program.name.c_str(), mappedFileAt);
     CLI::App app(program.description, program.name);
     app.formatter(std::make_shared<FoldedHelp>());
     app.footer(program.footer);

@@ -40,7 +40,8 @@ int runApp(int argc, const char* const* argv, const Program& program,
 /// little memory: 3, since a smaller input or a larger machine mends it. All else: 4.
 ///
 /// Signals that end the program (Ctrl-C among them) first remove temporary files (AtomicOutput);
-/// reaching the limit of a file's size is an error of writing (3), not a signal.
+/// reaching the limit of a file's size is an error of writing (3), not a signal, and so is (as an
+/// error of reading) a disk that fails under a mapped image.
 ///
 /// \param declare  adds the program's options to the parser, bound to the Options given
 /// \param run      does the work and returns the exit code

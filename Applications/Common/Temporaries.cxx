@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "Common/AtomicOutput.h"
+#include "Common/ExitCodes.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -23,12 +24,8 @@ static_assert(std::atomic<Temporary*>::is_always_lock_free &&
                   std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
               "a signal's handler may use only atomics without locks");
 
-/// Async-signal-safe: unlink, rmdir, sigaction, raise and lock-free atomics only.
-void removeTemporariesAndEnd(int signal) {
-    if (signalsWait.load() > 0) {
-        postponedSignal.store(signal);
-        return;
-    }
+/// Async-signal-safe: unlink and rmdir only.
+void removeTemporaries() {
     for (const Temporary* t = temporaries.load(); t != nullptr; t = t->next) {
         if (!t->exists.load()) continue;
         if (t->isFolder) {
@@ -37,10 +34,48 @@ void removeTemporariesAndEnd(int signal) {
             unlink(t->path.c_str());
         }
     }
+}
+
+/// Async-signal-safe. \pre its handler was installed with SA_NODEFER
+void endBySignal(int signal) {
     struct sigaction byDefault {};
     byDefault.sa_handler = SIG_DFL;
     sigaction(signal, &byDefault, nullptr);
-    raise(signal);  // the handler was installed with SA_NODEFER: this ends the program here
+    raise(signal);
+}
+
+/// Async-signal-safe: the above and lock-free atomics only.
+void removeTemporariesAndEnd(int signal) {
+    if (signalsWait.load() > 0) {
+        postponedSignal.store(signal);
+        return;
+    }
+    removeTemporaries();
+    endBySignal(signal);
+}
+
+const char* programName = "";
+const char* (*mappedFileAt)(const void*) noexcept = nullptr;
+
+/// Control characters of a file's name do not reach the terminal. Async-signal-safe.
+void writeToStderr(const char* text) {
+    for (; *text != '\0'; ++text) {
+        const char c = static_cast<unsigned char>(*text) < 0x20 || *text == 0x7f ? ' ' : *text;
+        (void)!write(STDERR_FILENO, &c, 1);
+    }
+}
+
+/// Async-signal-safe. It never returns: the access that failed would only fail again.
+void endForMappedFile(int signal, siginfo_t* info, void*) {
+    removeTemporaries();
+    const char* const file = mappedFileAt(info->si_addr);
+    if (file == nullptr) endBySignal(signal);  // a bug
+    writeToStderr(programName);
+    writeToStderr(": ");
+    writeToStderr(file);
+    writeToStderr(": can't be read any more; its disk failed, or another program has changed it");
+    (void)!write(STDERR_FILENO, "\n", 1);
+    _exit(kExitBadInput);
 }
 
 }  // namespace
@@ -126,6 +161,16 @@ void removeOutputsOnSignals() {
         sigaction(signal, &action, nullptr);
     }
     std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void endWhenAMappedFileFails(const char* program,
+                             const char* (*fileAt)(const void* address) noexcept) {
+    detail::programName = program;
+    detail::mappedFileAt = fileAt;
+    struct sigaction action {};
+    action.sa_sigaction = detail::endForMappedFile;
+    action.sa_flags = SA_SIGINFO | SA_NODEFER;
+    sigaction(SIGBUS, &action, nullptr);
 }
 
 }  // namespace adaptiso

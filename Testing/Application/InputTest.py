@@ -1,6 +1,8 @@
 """Inputs: formats, and what is refused as bad (exit code 3)."""
 
+import math
 import re
+import struct
 
 from support import (BAD_INPUT, ApplicationTest, Image, ball, main, write_metaimage, write_nifti,
                      write_nrrd)
@@ -31,6 +33,84 @@ class GoodInput(ApplicationTest):
         isovalue = re.search(r"isovalue ([\d.]+) \(chosen by Otsu", done.stdout).group(1)
         self.assertTrue(50 < float(isovalue) < 200, isovalue)
         self.assertEqual(self.names(), [f"two-iso{isovalue}.vtp", "two.nii"])
+
+
+def write_with_affine(path, image, rows):
+    """A NIfTI file whose sform is `rows` (3 x 4, RAS)."""
+    write_nifti(path, image)
+    content = bytearray(path.read_bytes())
+    for axis, row in enumerate(rows):
+        struct.pack_into("<4f", content, 280 + 16 * axis, *row)
+    path.write_bytes(bytes(content))
+
+
+def read_obj(path):
+    """Points, normals and triangles (from 0) of an OBJ file."""
+    lines = [line.split() for line in path.read_text().splitlines()]
+    def numbers(kind): return [tuple(map(float, line[1:])) for line in lines if line[:1] == [kind]]
+    faces = [tuple(int(corner.split("/")[0]) - 1 for corner in line[1:])
+             for line in lines if line[:1] == ["f"]]
+    return numbers("v"), numbers("vn"), faces
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def unit(a):
+    return tuple(x / math.sqrt(dot(a, a)) for x in a)
+
+
+class ShearedInput(ApplicationTest):
+    """An affine map takes the surface in voxels to that in space, to the last vertex and normal."""
+
+    STRAIGHT = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
+    # columns are the steps along i, j and k; gantry tilt is the second row's last but one
+    SHEARED = ((1.5, 0.25, 0, -10), (0, 2, 0.75, 20), (0.5, 0, 1.25, 30))
+
+    def transformed(self, name, rows, method):
+        write_with_affine(self.path("x.nii"), ball(16, 5), rows)
+        report = self.report("x.nii", "--iso", "100", "--method", method, "-o", name)
+        return report["surfaces"][0], read_obj(self.path(name))
+
+    def test_points_normals_winding_and_volume(self):
+        mirrored = tuple((-row[0],) + row[1:] for row in self.SHEARED)
+        for method in ("mc", "boxes"):
+            straight, (points, normals, faces) = self.transformed("a.obj", self.STRAIGHT, method)
+            for rows in (self.SHEARED, mirrored):
+                with self.subTest(method=method, rows=rows):
+                    a, b, c = (tuple(row[axis] for row in rows) for axis in range(3))
+                    determinant = dot(a, cross(b, c))
+                    inverse_transpose = tuple(  # its columns; sign and length do not matter here
+                        tuple(x / determinant for x in cross(*pair))
+                        for pair in ((b, c), (c, a), (a, b)))
+                    report, (moved, moved_normals, moved_faces) = self.transformed(
+                        "b.obj", rows, method)
+                    self.assertEqual(len(moved), len(points))
+                    for point, other in zip(points, moved):
+                        for row, coordinate in zip(rows, other):
+                            # nine digits of numbers below 100, from a float32 header
+                            self.assertAlmostEqual(dot(row[:3], point) + row[3], coordinate,
+                                                   delta=2e-5)
+                    for normal, other in zip(normals, moved_normals):
+                        expected = unit(tuple(sum(column[axis] * n for column, n in
+                                                  zip(inverse_transpose, normal))
+                                              for axis in range(3)))
+                        self.assertGreater(dot(expected, unit(other)), 1 - 1e-5)  # float normals
+                    # an affine map multiplies volumes by its determinant
+                    self.assertAlmostEqual(report["volumeMm3"],
+                                           abs(determinant) * straight["volumeMm3"],
+                                           delta=1e-4 * report["volumeMm3"])
+                    self.assertGreater(report["volumeMm3"], 0)
+                    if method == "mc":  # the same triangles, turned round in a mirrored image
+                        def canonical(face): return min(face[n:] + face[:n] for n in range(3))
+                        turned = [face[::-1] if determinant < 0 else face for face in faces]
+                        self.assertEqual(sorted(map(canonical, turned)),
+                                         sorted(map(canonical, moved_faces)))
 
 
 class BadInput(ApplicationTest):
