@@ -30,6 +30,17 @@ void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& 
         ->group(group);
 }
 
+CLI::Option* declareVolume(CLI::App& app, std::filesystem::path& volume, ReadOptions& options,
+                           const std::string& description, const std::string& group) {
+    CLI::Option* const option =
+        app.add_option("--volume", volume, description)->type_name("IMG")->group(group);
+    declareReadOptions(app, options, group);
+    for (const char* const name : {"--series", "--volume-index", "--resample-slices"}) {
+        app.get_option(name)->needs(option);
+    }
+    return option;
+}
+
 void declareImageOptions(CLI::App& app, ImageOptions& options, const std::string& group) {
     declareReadOptions(app, options.read, group);
     CLI::Option* const list =

@@ -19,7 +19,12 @@ struct ImageOptions {
 /// Adds --series, --volume-index and --resample-slices. Large images are mapped.
 void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& group);
 
-/// Adds the same, --list-series and --show-phi.
+/// Adds --volume, an image beside a program's surfaces, and the same options, which then need it.
+/// \return --volume
+CLI::Option* declareVolume(CLI::App& app, std::filesystem::path& volume, ReadOptions& options,
+                           const std::string& description, const std::string& group);
+
+/// Adds --series, --volume-index, --resample-slices, --list-series and --show-phi.
 void declareImageOptions(CLI::App& app, ImageOptions& options, const std::string& group);
 
 /// Lists the series of `input` on stdout: as text, or as JSON on stdout or in a file, as `common`

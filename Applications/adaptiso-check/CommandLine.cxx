@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "Common/ImageOptions.h"
 #include "Common/Numbers.h"
 
 namespace adaptiso {
@@ -38,11 +39,10 @@ void declareInput(CLI::App& app, CheckOptions& options) {
                  "The files are the surfaces of one head, from inside to outside (INNER MIDDLE "
                  "OUTER): check how they lie in each other too")
         ->group(kInput);
-    app.add_option("--volume", options.volume,
-                   "The image that the surfaces were made from; gives a place to tkRAS and voxel "
-                   "coordinates")
-        ->type_name("IMG")
-        ->group(kInput);
+    declareVolume(app, options.volume, options.read,
+                  "The image that the surfaces were made from; gives a place to tkRAS and voxel "
+                  "coordinates",
+                  kInput);
     app.add_option_function<std::string>(
            "--iso",
            [&options](const std::string& text) {

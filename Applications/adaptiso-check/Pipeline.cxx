@@ -15,7 +15,6 @@
 #include "Isosurface.h"
 #include "JsonReport.h"
 #include "TextReport.h"
-#include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso {
@@ -76,7 +75,7 @@ private:
     void readImage() {
         if (options_.volume.empty()) return;
         std::optional<ReadVolume> read;
-        stage(kRead, [&] { read = readVolume(options_.volume); });
+        stage(kRead, [&] { read = readVolume(options_.volume, options_.read); });
         const VolumeView& view = read->volume.view();
         run_.volume = VolumeSummary{read->format, view.geometry()};
         image_ = view.geometry();

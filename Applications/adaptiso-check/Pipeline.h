@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "Common/CommonOptions.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso {
 
@@ -22,6 +23,7 @@ struct CheckOptions {
     bool isNested = false;                     ///< they lie in each other, the innermost first
     std::optional<Profile> profile;            ///< none: Bem when nested, else Print
     std::filesystem::path volume;              ///< empty: none
+    ReadOptions read;                          ///< of volume
     std::optional<double> isovalue;            ///< only together with volume
     std::optional<double> minGapMm;            ///< none: kDefaultMinGapMm, required of Bem only
     std::optional<double> minAngleDeg;         ///< none: kDefaultMinAngleDeg, required of Bem only

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "Common/ImageOptions.h"
 #include "Common/Numbers.h"
 
 namespace adaptiso {
@@ -56,12 +57,11 @@ void declareDistances(CLI::App& app, CompareOptions& options) {
         ->group(kDistances);
     addLength(app, "--voxel", options.voxelMm, false,
               "Give distances in voxels of this size as well", kDistances);
-    app.add_option("--volume", options.volume,
-                   "The image that the surfaces were made from: gives distances in its voxels, "
-                   "the overlap (Dice) on its grid, and a place to tkRAS and voxel coordinates")
-        ->type_name("IMG")
-        ->excludes("--voxel")
-        ->group(kDistances);
+    declareVolume(app, options.volume, options.read,
+                  "The image that the surfaces were made from: gives distances in its voxels, "
+                  "the overlap (Dice) on its grid, and a place to tkRAS and voxel coordinates",
+                  kDistances)
+        ->excludes("--voxel");
 }
 
 void declareChecks(CLI::App& app, CompareOptions& options) {

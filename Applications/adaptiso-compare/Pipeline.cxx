@@ -19,7 +19,6 @@
 #include "TextReport.h"
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
@@ -107,7 +106,7 @@ double meanVoxelSideMm(const ImageGeometry& geometry) {
 void readImage(CompareRun& run) {
     run.voxelMm = run.options.voxelMm;
     if (run.options.volume.empty()) return;
-    ReadVolume read = readVolume(run.options.volume);
+    ReadVolume read = readVolume(run.options.volume, run.options.read);
     run.volume = VolumeSummary{read.format, read.volume.view().geometry()};
     run.voxelMm = meanVoxelSideMm(run.volume->geometry);
     for (const std::string& warning : read.warnings) {

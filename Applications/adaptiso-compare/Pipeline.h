@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "Common/CommonOptions.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso {
 
@@ -16,6 +17,7 @@ struct CompareOptions {
     bool isSymmetric = true;               ///< B to A too
     std::optional<double> voxelMm;         ///< > 0; not together with volume
     std::filesystem::path volume;          ///< empty: none
+    ReadOptions read;                      ///< of volume
     std::filesystem::path colored;         ///< empty: none
     std::optional<double> maxMeanMm;       ///< >= 0
     std::optional<double> maxHausdorffMm;  ///< >= 0

@@ -10,7 +10,7 @@ import sys
 import unittest
 
 from support import (BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, USAGE, ApplicationTest, Image, ball,
-                     main, write_nifti)
+                     main, write_4d_nifti, write_nifti)
 
 sys.path.insert(0, str(SOURCE / "Testing" / "Support"))
 from headDefects import (DEFECTS, NAN, add_repeated_index, flipped, good, icosphere, moved,
@@ -265,6 +265,18 @@ class Truth(CheckTest):
             report = self.check("b.vtp", "--volume", "ball.nii", "--iso", "100",
                                 "--max-off", limit)
             self.assertEqual(report["surfaces"][0]["failed"], failed)
+
+    def test_isosurface_of_one_of_several_volumes(self):
+        dark = ball(24, 8, (2, 2, 2))
+        dark.samples = [0] * len(dark.samples)
+        write_4d_nifti(self.path("4d.nii"), [dark, ball(24, 8, (2, 2, 2))])
+        self.mesh("4d.nii", "--volume-index", "1", "--iso", "100", "--method", "mc", "--quiet",
+                  "-o", "a.vtp")
+        self.assertTrue(self.check("a.vtp", "--volume", "4d.nii", "--volume-index", "1", "--iso",
+                                   "100")["passed"])
+        self.refused(BAD_INPUT, "100", "a.vtp", "--volume", "4d.nii", "--volume-index", "0",
+                     "--iso", "100")
+        self.refused(USAGE, "--series.*--volume", "a.vtp", "--series", "1")
 
 
 class Profiles(CheckTest):

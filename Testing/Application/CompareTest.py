@@ -7,7 +7,7 @@ import subprocess
 import unittest
 
 from support import (BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, USAGE, ApplicationTest, Image, ball,
-                     main, write_nifti)
+                     main, write_4d_nifti, write_nifti)
 
 try:
     import vtk
@@ -367,6 +367,15 @@ class Volumes(CompareTest):
         self.assertIsNone(report["overlap"])
         self.assertRegex(report["warnings"][0], "not both surfaces are closed")
 
+    def test_of_a_4d_image_one_is_chosen(self):
+        self.write("a.off", cube((3.5, 3.5, 5), (9.5, 9.5, 11)))
+        still = Image((20, 20, 20), "B", bytes(8000))
+        write_4d_nifti(self.path("4d.nii"), [still, still])
+        self.refused(BAD_INPUT, "4d.nii.*2 volumes.*--volume-index", "a.off", "a.off", "--volume",
+                     "4d.nii")
+        report = self.compare("a.off", "a.off", "--volume", "4d.nii", "--volume-index", "1")
+        self.assertEqual(report["overlap"]["dice"], 1)
+
     def test_voxel_is_a_cube_of_the_same_volume(self):
         self.write("a.off", plane(0))
         report = self.compare("a.off", "a.off", "--volume", "image.nii")
@@ -419,6 +428,7 @@ class Refusals(CompareTest):
                 ("--max-mean nan: ", "a.off", "a.off", "--max-mean", "nan"),
                 ("--max-hausdorff -1: .*0 or more", "a.off", "a.off", "--max-hausdorff=-1"),
                 ("--voxel", "a.off", "a.off", "--voxel", "1", "--volume", "i.nii"),
+                ("--volume-index.*--volume", "a.off", "a.off", "--volume-index", "0"),
                 ("--one-sided", "a.off", "a.off", "--one-sided", "--symmetric"),
                 ("a.xyz", "a.xyz", "a.off"),
                 (r"--colored out.ply: must be a .vtp", "a.off", "a.off", "--colored", "out.ply"),

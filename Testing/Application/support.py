@@ -79,6 +79,15 @@ def write_nifti(path, image):
     Path(path).write_bytes(bytes(header) + image.packed())
 
 
+def write_4d_nifti(path, images):
+    """A NIfTI-1 file of several images of one geometry."""
+    write_nifti(path, images[0])
+    content = bytearray(Path(path).read_bytes())
+    struct.pack_into("<h", content, 40, 4)
+    struct.pack_into("<h", content, 48, len(images))
+    Path(path).write_bytes(bytes(content) + b"".join(image.packed() for image in images[1:]))
+
+
 def write_metaimage(path, image):
     kind = {"B": "MET_UCHAR", "h": "MET_SHORT", "f": "MET_FLOAT"}[image.kind]
     def text(values): return " ".join(str(v) for v in values)
