@@ -75,6 +75,11 @@ void checkCombinations(const MeshOptions& options) {
         throw UsageError(
             "--max-error, --triangles, --reduction and --min-angle are for --method adaptive");
     }
+    if (options.mergeWithinBlocks && options.method != Method::DiscretizedMarchingCubes) {
+        throw UsageError(
+            "--merge-within-blocks: is for --method dmc; boxes merges as far as it "
+            "can, the other methods do not merge facets");
+    }
 }
 
 /// An option that takes one of a few words, each standing for a value; `words` in the order of the
@@ -157,6 +162,9 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
     app.add_flag("--adjust-vertices", options.adjustVertices,
                  "Move the vertices of the method dmc from the midpoints to where the image "
                  "reaches the isovalue")
+        ->group(kSurface);
+    app.add_flag("--merge-within-blocks", options.mergeWithinBlocks,
+                 "Merge facets of the method dmc within blocks of --block-size voxels only")
         ->group(kSurface);
     addChoice<int>(app, "--block-size", options.index.blockSize,
                    {{"2", 2}, {"4", 4}, {"8", 8}, {"16", 16}},

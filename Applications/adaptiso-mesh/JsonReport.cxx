@@ -41,6 +41,7 @@ Json inputJson(const MeshRun& run) {
 Json optionsJson(const MeshOptions& options) {
     return {{"method", toString(options.method)},
             {"adjustVertices", options.adjustVertices},
+            {"mergeWithinBlocks", options.mergeWithinBlocks},
             {"maxErrorMm", orNull(options.adaptive.maxErrorMm)},
             {"maxTriangles", orNull(options.adaptive.maxTriangles)},
             {"reduction", orNull(options.adaptive.reduction)},

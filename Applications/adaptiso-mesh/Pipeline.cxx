@@ -170,6 +170,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         extract.isovalue = isovalue;
         extract.method = options.method;
         extract.adjustVertices = options.adjustVertices;
+        extract.mergeWithinBlocks = options.mergeWithinBlocks;
         extract.adaptive = options.adaptive;
         extract.computeNormals = summary.format->holdsNormals;
         extract.progress = progress.callback();

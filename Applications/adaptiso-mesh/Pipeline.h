@@ -37,6 +37,7 @@ struct MeshOptions {
     std::filesystem::path output;  ///< empty: named after the input, in the current folder
     Method method = Method::Boxes;
     bool adjustVertices = false;
+    bool mergeWithinBlocks = false;
     AdaptiveOptions adaptive;
     IndexOptions index;
     IndexFiles indexFiles;

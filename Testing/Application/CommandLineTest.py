@@ -65,6 +65,12 @@ class WrongUsage(ApplicationTest):
                 self.refused("--adjust-vertices: .*dmc", "ball.nii", "--iso", "100",
                              "--adjust-vertices", *method)
 
+    def test_merging_within_blocks_of_another_method(self):
+        for method in ([], ["--method", "boxes"], ["--method", "asc"], ["--method", "mc"]):
+            with self.subTest(method):
+                self.refused("--merge-within-blocks: .*dmc", "ball.nii", "--iso", "100",
+                             "--merge-within-blocks", *method)
+
     def test_unknown_output_format_is_told_before_the_input_is_read(self):
         for name in ("out.xyz", "out", "out.nii", ".vtp"):
             with self.subTest(name):

@@ -113,11 +113,15 @@ class Numbers(ApplicationTest):
 
     def test_discretized_marching_cubes_of_a_ball(self):
         write_nifti(self.path("ball.nii"), ball(40, 16, spacing=(0.5, 0.5, 0.5)))
-        for adjust in ([], ["--adjust-vertices"]):
+        triangles = {}
+        for adjust in ([], ["--adjust-vertices"], ["--merge-within-blocks"]):
             with self.subTest(adjust):
                 report = self.report("ball.nii", "--iso", "100", "--method", "dmc", *adjust)
                 surface = report["surfaces"][0]
-                self.assertEqual(report["options"]["adjustVertices"], bool(adjust))
+                self.assertEqual(report["options"]["adjustVertices"], "--adjust-vertices" in adjust)
+                self.assertEqual(report["options"]["mergeWithinBlocks"],
+                                 "--merge-within-blocks" in adjust)
+                triangles[" ".join(adjust)] = surface["triangles"]
                 self.assertEqual(surface["method"], "dmc")
                 self.assertEqual(surface["genus"], 0)
                 self.assertEqual(surface["componentCount"], 1)
@@ -126,6 +130,7 @@ class Numbers(ApplicationTest):
                 # half a voxel from the sphere at most, of a radius of 16
                 self.assertAlmostEqual(surface["volumeMm3"] / (4 / 3 * math.pi * 8 ** 3), 1,
                                        delta=3.1 * 0.5 / 16)
+        self.assertGreater(triangles["--merge-within-blocks"], triangles[""])
 
     def test_soundness(self):
         write_nifti(self.path("noise.nii"), noise(16))

@@ -289,7 +289,7 @@ void resolveVertices(BoxSurface<N, Id>& surface) {
 
 /// Merging (thesis 5.2): facets of the same incidence and resolution that meet on a face are one.
 template <int N, class Id>
-void eraseMergedHalfEdges(BoxSurface<N, Id>& surface) {
+void eraseMergedHalfEdges(BoxSurface<N, Id>& surface, MergeReach reach) {
     constexpr int kChunk = BoxSurface<N, Id>::kChunkBlocks;
     const BoxCases& cases = BoxCases::instance();
     parallelForPieces(surface.active.count(), kChunk, [&](std::int64_t begin, std::int64_t end) {
@@ -303,6 +303,7 @@ void eraseMergedHalfEdges(BoxSurface<N, Id>& surface) {
                     if (record.face == kInsideBox || incidence == kNoIncidence) continue;
                     const HalfEdgeRef twin = twinAcrossFace(surface, {b, &box, h});
                     if (twin.box == nullptr) continue;
+                    if (reach == MergeReach::Block && twin.block != b) continue;
                     const BoxCase& other = cases[twin.box->boxCase];
                     if (other.facet[other.halfEdge[twin.half].facet].incidence == incidence) {
                         half[h].erase();
@@ -350,7 +351,7 @@ HalfEdgeRef twinAcrossFace(const BoxSurface<N, Id>& surface, const HalfEdgeRef& 
 
 template <int N, class Id>
 BoxSurface<N, Id> makeBoxSurface(const LatticeSampler& sampler, ActiveBlocks active,
-                                 Division division) {
+                                 Division division, MergeReach reach) {
     const std::int64_t count = active.count();
     BoxSurface<N, Id> surface{sampler, std::move(active), {}, {}, 0, {}, 0, 0};
     surface.blocks.resize(count);
@@ -360,13 +361,13 @@ BoxSurface<N, Id> makeBoxSurface(const LatticeSampler& sampler, ActiveBlocks act
     if (division == Division::Unit) surface.boxCounts = {surface.boxCounts.back()};
     numberVertices(surface);
     resolveVertices(surface);
-    eraseMergedHalfEdges(surface);
+    eraseMergedHalfEdges(surface, reach);
     return surface;
 }
 
 #define ADAPTISO_INSTANTIATE(N, Id)                                                       \
     template BoxSurface<N, Id> makeBoxSurface<N, Id>(const LatticeSampler&, ActiveBlocks, \
-                                                     Division);                           \
+                                                     Division, MergeReach);               \
     template HalfEdgeRef twinAcrossFace<N, Id>(const BoxSurface<N, Id>&, const HalfEdgeRef&);
 ADAPTISO_INSTANTIATE(2, std::uint32_t)
 ADAPTISO_INSTANTIATE(4, std::uint32_t)

@@ -123,9 +123,12 @@ HalfEdgeRef twinAcrossFace(const BoxSurface<N, Id>& surface, const HalfEdgeRef& 
 /// What blocks are divided into: boxes as large as they are simple, or unit boxes.
 enum class Division { Simple, Unit };
 
+/// How far facets merge: as far as they agree, or not beyond the faces of their block.
+enum class MergeReach { Surface, Block };
+
 /// Builds it (thesis, chapters 4, 5.1, 5.2). The statistics of unit boxes tell of no other sizes.
 template <int N, class Id>
 BoxSurface<N, Id> makeBoxSurface(const LatticeSampler& sampler, ActiveBlocks active,
-                                 Division division);
+                                 Division division, MergeReach reach = MergeReach::Surface);
 
 }  // namespace adaptiso::detail

@@ -24,7 +24,8 @@ Extraction extract(const VolumeView& volume, ActiveBlocks active,
         loops = makeAscLoops<N, Id>(*sampler, active, result.statistics);
     } else {
         BoxSurface<N, Id> surface = makeBoxSurface<N, Id>(
-            *sampler, std::move(active), isDmc ? Division::Unit : Division::Simple);
+            *sampler, std::move(active), isDmc ? Division::Unit : Division::Simple,
+            options.mergeWithinBlocks ? MergeReach::Block : MergeReach::Surface);
         result.statistics.boxes = surface.boxCounts;
         result.statistics.boxesChangingTopology = surface.boxesChangingTopology;
         result.statistics.marchingCubesTriangles = surface.marchingCubesTriangles;

@@ -28,16 +28,26 @@ std::string_view toString(Method method) {
     return "unknown";
 }
 
+namespace {
+
+/// \throws InvalidInput when `isSet`, an option of discretized marching cubes, meets another method
+void requireDmc(bool isSet, const char* option, Method method) {
+    if (isSet && method != Method::DiscretizedMarchingCubes) {
+        throw InvalidInput(std::string("extractSurface: ") + option + " is set for the method " +
+                           std::string(toString(method)) + ", must be dmc");
+    }
+}
+
+}  // namespace
+
 Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
                           const ExtractionOptions& options) {
     if (!std::isfinite(options.isovalue)) {
         throw InvalidInput("extractSurface: the isovalue is not a finite number");
     }
     const Index3& size = volume.geometry().size;
-    if (options.adjustVertices && options.method != Method::DiscretizedMarchingCubes) {
-        throw InvalidInput("extractSurface: adjustVertices is set for the method " +
-                           std::string(toString(options.method)) + ", must be dmc");
-    }
+    requireDmc(options.adjustVertices, "adjustVertices", options.method);
+    requireDmc(options.mergeWithinBlocks, "mergeWithinBlocks", options.method);
     if (index.grid().volumeSize != size || index.pixelType() != volume.pixelType()) {
         throw InvalidInput("extractSurface: the index was built from another volume");
     }

@@ -314,11 +314,44 @@ TEST(DiscretizedMarchingCubes, CountsUnitBoxesAlone) {
     EXPECT_EQ(statistics.boxesChangingTopology, 0);
 }
 
-TEST(DiscretizedMarchingCubes, AloneCanHaveItsVerticesAdjusted) {
+TEST(DiscretizedMarchingCubes, MergedWithinBlocksCutsAPlaneIntoTwoTrianglesABlock) {
+    const HardVolume hard = binaryVolume({20, 14, 9}, [](auto, auto, auto z) { return z < 5; });
+    for (const int blockSize : kBlockSizes) {
+        const TriangleMesh mesh =
+            extractFrom(hard.volume, 50, {kDmc, false, true}, blockSize, Border::Open).mesh;
+        expectSound(mesh, openOnlyAtBorder(hard.volume.view().geometry()));
+        const auto size = static_cast<std::size_t>(blockSize);
+        const std::size_t columns = (19 + size - 1) / size, rows = (13 + size - 1) / size;  // cells
+        EXPECT_EQ(mesh.triangles.size(), 2 * columns * rows) << "N = " << blockSize;
+        EXPECT_EQ(mesh.points.size(), (columns + 1) * (rows + 1)) << "N = " << blockSize;
+    }
+}
+
+TEST(DiscretizedMarchingCubes, MergedWithinBlocksIsTheSameSurfaceInMoreTriangles) {
+    const AnalyticVolume truth = sampled<double>(torus({}, 11, 5), centredGeometry({40, 40, 20}));
+    const TriangleMesh plain =
+        extractFrom(truth.volume, truth.isovalue, kDmc, 4, Border::Closed).mesh;
+    std::size_t finer = 0;
+    for (const int blockSize : {16, 8, 4, 2}) {
+        const TriangleMesh mesh = extractFrom(truth.volume, truth.isovalue, {kDmc, false, true},
+                                              blockSize, Border::Closed)
+                                      .mesh;
+        expectSound(mesh);
+        EXPECT_GT(mesh.triangles.size(), std::max(plain.triangles.size(), finer));
+        finer = mesh.triangles.size();
+        EXPECT_NEAR(enclosedVolume(mesh), enclosedVolume(plain), 1e-9 * enclosedVolume(plain));
+        EXPECT_NEAR(surfaceArea(mesh), surfaceArea(plain), 1e-9 * surfaceArea(plain));
+    }
+}
+
+TEST(DiscretizedMarchingCubes, AloneHasVerticesToAdjustAndBlocksToMergeWithin) {
     const HardVolume hard = hardVolume(5, 6);
-    for (const Method method : {Method::Boxes, Method::MarchingCubes}) {
+    for (const Method method : {Method::Boxes, Method::SkeletonClimbing, Method::MarchingCubes}) {
         EXPECT_THROW(extractFrom(hard.volume, hard.isovalue, {method, true}, 4, Border::Closed),
                      InvalidInput);
+        EXPECT_THROW(
+            extractFrom(hard.volume, hard.isovalue, {method, false, true}, 4, Border::Closed),
+            InvalidInput);
     }
 }
 

@@ -22,11 +22,13 @@ TEST_P(ManyVolumes, KeepTheMethodsPromises) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, ManyVolumes,
-                         ::testing::Values(MethodChoice{Method::Boxes},
-                                           MethodChoice{Method::DiscretizedMarchingCubes},
-                                           MethodChoice{Method::DiscretizedMarchingCubes, true},
-                                           MethodChoice{Method::SkeletonClimbing}),
-                         ::testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(
+    , ManyVolumes,
+    ::testing::Values(MethodChoice{Method::Boxes}, MethodChoice{Method::DiscretizedMarchingCubes},
+                      MethodChoice{Method::DiscretizedMarchingCubes, true},
+                      MethodChoice{Method::DiscretizedMarchingCubes, false, true},
+                      MethodChoice{Method::DiscretizedMarchingCubes, true, true},
+                      MethodChoice{Method::SkeletonClimbing}),
+    ::testing::PrintToStringParamName());
 
 }  // namespace adaptiso::testing

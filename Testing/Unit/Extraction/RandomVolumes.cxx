@@ -62,7 +62,8 @@ HardVolume binaryVolume(
 }
 
 std::ostream& operator<<(std::ostream& out, const MethodChoice& choice) {
-    return out << toString(choice.method) << (choice.adjustVertices ? "Adjusted" : "");
+    return out << toString(choice.method) << (choice.adjustVertices ? "Adjusted" : "")
+               << (choice.mergeWithinBlocks ? "WithinBlocks" : "");
 }
 
 Extraction extractFrom(const VolumeView& volume, double isovalue, const MethodChoice& choice,
@@ -71,6 +72,7 @@ Extraction extractFrom(const VolumeView& volume, double isovalue, const MethodCh
     options.isovalue = isovalue;
     options.method = choice.method;
     options.adjustVertices = choice.adjustVertices;
+    options.mergeWithinBlocks = choice.mergeWithinBlocks;
     return extractSurface(volume, SpanSpaceIndex::build(volume, {blockSize, border}), options);
 }
 

@@ -27,12 +27,14 @@ HardVolume binaryVolume(
 struct MethodChoice {
     Method method;
     bool adjustVertices = false;
+    bool mergeWithinBlocks = false;
 
     // NOLINTNEXTLINE(google-explicit-constructor): a method alone is the plain choice
-    MethodChoice(Method m, bool adjusts = false) : method(m), adjustVertices(adjusts) {}
+    MethodChoice(Method m, bool adjusts = false, bool mergesWithinBlocks = false)
+        : method(m), adjustVertices(adjusts), mergeWithinBlocks(mergesWithinBlocks) {}
 };
 
-/// "boxes", "dmc", "dmcAdjusted": for the names of tests.
+/// "boxes", "dmc", "dmcAdjusted", "dmcWithinBlocks": for the names of tests.
 std::ostream& operator<<(std::ostream& out, const MethodChoice& choice);
 
 /// Builds the index and extracts.

@@ -192,12 +192,13 @@ TEST_P(SurfaceMethods, TakesNotANumberAndInfinityAsSamples) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, SurfaceMethods,
-                         ::testing::Values(MethodChoice{Method::Boxes},
-                                           MethodChoice{Method::DiscretizedMarchingCubes},
-                                           MethodChoice{Method::DiscretizedMarchingCubes, true},
-                                           MethodChoice{Method::SkeletonClimbing},
-                                           MethodChoice{Method::MarchingCubes}),
-                         ::testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(
+    , SurfaceMethods,
+    ::testing::Values(MethodChoice{Method::Boxes}, MethodChoice{Method::DiscretizedMarchingCubes},
+                      MethodChoice{Method::DiscretizedMarchingCubes, true},
+                      MethodChoice{Method::DiscretizedMarchingCubes, false, true},
+                      MethodChoice{Method::DiscretizedMarchingCubes, true, true},
+                      MethodChoice{Method::SkeletonClimbing}, MethodChoice{Method::MarchingCubes}),
+    ::testing::PrintToStringParamName());
 
 }  // namespace adaptiso::testing

@@ -46,6 +46,9 @@ struct ExtractionOptions {
     /// Of discretized marching cubes: put the vertices at the crossings, as the other methods do,
     /// instead of at the midpoints of their lattice edges.
     bool adjustVertices = false;
+    /// Of discretized marching cubes: merge facets with those of the same block of the index alone.
+    /// More triangles, the same surface; with blocks of 8 cells the thesis's counts.
+    bool mergeWithinBlocks = false;
     AdaptiveOptions adaptive;
     bool computeNormals = true;  ///< central differences of the volume, in physical space
     ProgressCallback progress;   ///< called as the work goes on; may be empty
@@ -87,8 +90,8 @@ struct Extraction {
 /// \return       a closed oriented 2-manifold without degenerate triangles or unused vertices;
 ///               with Border::Open it is open at the volume's border and nowhere else. Empty when
 ///               no sample, or (open border) no edge of the grid, reaches the isovalue.
-/// \pre  index.grid() and pixelType() fit the volume; isovalue is finite; adjustVertices only with
-///       DiscretizedMarchingCubes    \throws InvalidInput otherwise
+/// \pre  index.grid() and pixelType() fit the volume; isovalue is finite; adjustVertices and
+///       mergeWithinBlocks only with DiscretizedMarchingCubes    \throws InvalidInput otherwise
 /// The same input gives the same bytes, whatever the number of threads.
 Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
                           const ExtractionOptions& options);
