@@ -12,7 +12,7 @@ namespace adaptiso {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'A', 'D', 'A', 'P', 'T', 'I', 'D', 'X'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHeaderBytes = 48;
 constexpr std::size_t kChecksumBytes = sizeof(std::uint64_t);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <tuple>
 
 #include "adaptiso/Core/Parallel.h"
 
@@ -12,6 +13,16 @@ namespace adaptiso::detail {
 namespace {
 
 constexpr std::int64_t kParallelBuild = 1 << 14;  // below, a task costs more than it saves
+
+template <class Left, class Right>
+void inParallelIfLarge(std::int64_t size, const Left& left, const Right& right) {
+    if (size > kParallelBuild) {
+        tbb::parallel_invoke(left, right);
+    } else {
+        left();
+        right();
+    }
+}
 
 template <class T>
 struct Node {
@@ -25,21 +36,16 @@ void sortLevel(Node<T>* begin, Node<T>* end, bool onMinimum) {
     Node<T>* middle = begin + (end - begin) / 2;
     if (onMinimum) {
         std::nth_element(begin, middle, end, [](const Node<T>& a, const Node<T>& b) {
-            return a.low != b.low ? a.low < b.low : a.block < b.block;
+            return std::tie(a.low, a.high, a.block) < std::tie(b.low, b.high, b.block);
         });
     } else {
         std::nth_element(begin, middle, end, [](const Node<T>& a, const Node<T>& b) {
-            return a.high != b.high ? a.high < b.high : a.block < b.block;
+            return std::tie(a.high, a.low, a.block) < std::tie(b.high, b.low, b.block);
         });
     }
     const auto left = [&] { sortLevel(begin, middle, !onMinimum); };
     const auto right = [&] { sortLevel(middle + 1, end, !onMinimum); };
-    if (end - begin > kParallelBuild) {
-        tbb::parallel_invoke(left, right);
-    } else {
-        left();
-        right();
-    }
+    inParallelIfLarge(end - begin, left, right);
 }
 
 }  // namespace
@@ -61,6 +67,31 @@ SpanTree<T>::SpanTree(BlockRanges<T> ranges) {
         maximum_[i] = nodes[i].high;
         block_[i] = nodes[i].block;
     }
+    findExtremes();
+}
+
+template <class T>
+void SpanTree<T>::findExtremes() {
+    leastMinimum_ = minimum_;
+    greatestMaximum_ = maximum_;
+    findExtremes(0, size());
+}
+
+template <class T>
+void SpanTree<T>::findExtremes(std::int64_t begin, std::int64_t end) {
+    if (end - begin < 2) return;
+    const std::int64_t root = begin + (end - begin) / 2;
+    const auto left = [&] { findExtremes(begin, root); };
+    const auto right = [&] { findExtremes(root + 1, end); };
+    inParallelIfLarge(end - begin, left, right);
+    const auto takeIn = [&](std::int64_t first, std::int64_t last) {
+        if (first >= last) return;
+        const std::int64_t child = first + (last - first) / 2;
+        leastMinimum_[root] = std::min(leastMinimum_[root], leastMinimum_[child]);
+        greatestMaximum_[root] = std::max(greatestMaximum_[root], greatestMaximum_[child]);
+    };
+    takeIn(begin, root);
+    takeIn(root + 1, end);
 }
 
 /// Every node has the ranges of a block.
@@ -80,9 +111,10 @@ bool SpanTree<T>::holds(const BlockRanges<T>& ranges) const {
     return isSame;
 }
 
-/// Every node stands on its side of each node above it, strictly: by minimum and block or by
-/// maximum and block. Then no two nodes are of one block (they would have to differ where their
-/// paths part), and since the median of a set is one element, the tree is the one and only.
+/// Every node stands on its side of each node above it, strictly: by minimum, maximum and block or
+/// by maximum, minimum and block. Then no two nodes are of one block (they would have to differ
+/// where their paths part), and since the median of a set is one element, the tree is the one and
+/// only.
 template <class T>
 struct SpanTree<T>::Order {
     static constexpr std::int64_t kNone = -1;
@@ -93,12 +125,12 @@ struct SpanTree<T>::Order {
     const SpanTree& tree;
 
     bool minimumLess(std::int64_t a, std::int64_t b) const {
-        const T low = tree.minimum_[a], other = tree.minimum_[b];
-        return low != other ? low < other : tree.block_[a] < tree.block_[b];
+        return std::tie(tree.minimum_[a], tree.maximum_[a], tree.block_[a]) <
+               std::tie(tree.minimum_[b], tree.maximum_[b], tree.block_[b]);
     }
     bool maximumLess(std::int64_t a, std::int64_t b) const {
-        const T high = tree.maximum_[a], other = tree.maximum_[b];
-        return high != other ? high < other : tree.block_[a] < tree.block_[b];
+        return std::tie(tree.maximum_[a], tree.minimum_[a], tree.block_[a]) <
+               std::tie(tree.maximum_[b], tree.minimum_[b], tree.block_[b]);
     }
 
     bool keeps(std::int64_t begin, std::int64_t end, bool onMinimum, Between minimum,
@@ -121,12 +153,7 @@ struct SpanTree<T>::Order {
         const auto right = [&] {
             isRightKept = keeps(root + 1, end, !onMinimum, minimum, maximum);
         };
-        if (end - begin > kParallelBuild) {
-            tbb::parallel_invoke(left, right);
-        } else {
-            left();
-            right();
-        }
+        inParallelIfLarge(end - begin, left, right);
         return isLeftKept && isRightKept;
     }
 };
@@ -140,12 +167,15 @@ std::unique_ptr<SpanTree<T>> SpanTree<T>::restored(BlockRanges<T> nodes,
     tree->maximum_ = std::move(nodes.maximum);
     tree->block_ = std::move(block);
     const bool isRight = tree->holds(ranges) && Order{*tree}.keeps(0, tree->size(), true, {}, {});
-    return isRight ? std::move(tree) : nullptr;
+    if (!isRight) return nullptr;
+    tree->findExtremes();
+    return tree;
 }
 
 /// The three walks of k-d search. `search` knows nothing yet; `searchMaxMin` runs where every
 /// minimum is known to lie below the threshold, `searchMinMax` where every maximum is known to
-/// reach it: both drop the test already decided [Livnat1996, section 4.1].
+/// reach it: both drop the test already decided [Livnat1996, section 4.1]. Each turns back at a
+/// node whose subtree holds nothing on the threshold's side of a test still to be made.
 template <class T>
 struct SpanTree<T>::Walk {
     const SpanTree& tree;
@@ -155,6 +185,10 @@ struct SpanTree<T>::Walk {
 
     bool minimumBelow(std::int64_t node) const { return tree.minimum_[node] < threshold; }
     bool maximumReaches(std::int64_t node) const { return tree.maximum_[node] >= threshold; }
+    bool noMinimumBelow(std::int64_t node) const { return tree.leastMinimum_[node] >= threshold; }
+    bool noMaximumReaches(std::int64_t node) const {
+        return tree.greatestMaximum_[node] < threshold;
+    }
     void take(std::int64_t node) { found.push_back(tree.block_[node]); }
 
     void takeAll(std::int64_t begin, std::int64_t end) {
@@ -166,6 +200,7 @@ struct SpanTree<T>::Walk {
         if (begin >= end) return;
         const std::int64_t root = begin + (end - begin) / 2;
         ++visited;
+        if (noMinimumBelow(root) || noMaximumReaches(root)) return;
         if (onMinimum) {
             if (!minimumBelow(root)) return search(begin, root, false);
             if (maximumReaches(root)) take(root);
@@ -184,6 +219,7 @@ struct SpanTree<T>::Walk {
         if (begin >= end) return;
         const std::int64_t root = begin + (end - begin) / 2;
         ++visited;
+        if (noMaximumReaches(root)) return;
         const bool reaches = maximumReaches(root);
         if (reaches) take(root);
         if (!onMinimum) {
@@ -201,6 +237,7 @@ struct SpanTree<T>::Walk {
         if (begin >= end) return;
         const std::int64_t root = begin + (end - begin) / 2;
         ++visited;
+        if (noMinimumBelow(root)) return;
         const bool below = minimumBelow(root);
         if (below) take(root);
         if (onMinimum) {

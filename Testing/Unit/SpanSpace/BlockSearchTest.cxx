@@ -141,6 +141,33 @@ TEST(KdTree, VisitsWithinItsGrantOnSolids) {
     }
 }
 
+TEST(KdTree, VisitsWithinItsGrantWhereFewBlocksAnswer) {
+    // a head, as the index sees it: dark ground, tissue of many values, one bright voxel. Above the
+    // tissue eight blocks answer; a walk that knows nothing of the subtrees would look at 2.5
+    // sqrt(n) nodes along the ground and the brightest tissue
+    const ImageGeometry geometry = centredGeometry({96, 96, 96});
+    std::vector<std::uint8_t> samples(96 * 96 * 96, 0);
+    std::uint64_t state = 5;
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+        const Vec3 p{n % 96 - 47.5, n / 96 % 96 - 47.5, n / 9216 - 47.5};
+        if (dot(p, p) < 40 * 40) samples[n] = static_cast<std::uint8_t>(nextRandom(state) % 120);
+    }
+    samples[48 * (1 + 96 + 9216)] = 200;  // a corner of blocks of every size
+    const Volume volume = Volume::fromSamples(std::move(samples), geometry);
+    for (const int blockSize : {2, 4}) {
+        for (const Border border : kBorders) {
+            const SpanSpaceIndex index =
+                indexOf(volume, BlockSearchKind::KdTree, blockSize, border);
+            EXPECT_EQ(index.blocksAt(150).blocks.size(), 8u);
+            for (int isovalue = 1; isovalue < 256; ++isovalue) {
+                const BlockQuery query = index.blocksAt(isovalue);
+                EXPECT_LE(static_cast<double>(query.nodesVisited), grantedVisits(index, query))
+                    << isovalue << " at block size " << blockSize;
+            }
+        }
+    }
+}
+
 TEST(KdTree, VisitsFewNodesInVainWhateverTheVolume) {
     // A specialised walk goes both ways on every other level only, so of m nodes it looks at no
     // more than 1 + 2 + 2 + 4 + 4 + ... <= 3 sqrt(2 m) in vain. `search` starts one on each of its

@@ -121,7 +121,7 @@ TEST(IndexFile, HoldsWhatItsLayoutSays) {
     const SpanSpaceIndex index = SpanSpaceIndex::build(volume, {2, Border::Open});
     const Bytes bytes = encodeIndex(index, volume);
     ASSERT_EQ(bytes.size(), 48u + 7 * 8 + 8);
-    const unsigned char start[24] = {'A', 'D', 'A', 'P', 'T', 'I', 'D', 'X', 1, 0, 0, 0,
+    const unsigned char start[24] = {'A', 'D', 'A', 'P', 'T', 'I', 'D', 'X', 2, 0, 0, 0,
                                      0,   1,   3,   2,   14,  0,   0,   0,   0, 0, 0, 0};
     EXPECT_EQ(std::memcmp(bytes.data(), start, sizeof start), 0);
 }
@@ -158,8 +158,8 @@ TEST(IndexFile, TellsWhatIsWrong) {
     EXPECT_TRUE(isRefused(Bytes(kept.bytes.begin(), kept.bytes.begin() + 20), kept.volume,
                           "the index is cut off"));
     Bytes newer = kept.bytes;
-    put(newer, 8, std::uint32_t{2});
-    EXPECT_TRUE(isRefused(newer, kept.volume, "format version 2; this program reads version 1"));
+    put(newer, 8, std::uint32_t{3});
+    EXPECT_TRUE(isRefused(newer, kept.volume, "format version 3; this program reads version 2"));
     Bytes damaged = kept.bytes;
     damaged[60] ^= std::byte{4};
     EXPECT_TRUE(isRefused(damaged, kept.volume, "its checksum is wrong"));

@@ -63,10 +63,10 @@ TEST(SpanSpaceIndex, VisitsFewNodesBesidesTheAnswer) {
     }
 }
 
-TEST(SpanSpaceIndex, HoldsTwoSamplesAndANumberForEachBlock) {
+TEST(SpanSpaceIndex, HoldsFourSamplesAndANumberForEachBlock) {
     const Volume volume = randomVolume<std::uint8_t>({33, 33, 33}, 200, 1);
     const SpanSpaceIndex index = SpanSpaceIndex::build(volume, {4, Border::Open});
-    EXPECT_EQ(index.memoryBytes(), static_cast<std::size_t>(index.grid().blockCount()) * 6);
+    EXPECT_EQ(index.memoryBytes(), static_cast<std::size_t>(index.grid().blockCount()) * 8);
 }
 
 }  // namespace adaptiso::testing

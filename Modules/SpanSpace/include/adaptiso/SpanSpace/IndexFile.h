@@ -16,7 +16,7 @@ namespace adaptiso {
 /// | byte | what |
 /// |---|---|
 /// | 0 | "ADAPTIDX" |
-/// | 8 | format version, uint32: 1 |
+/// | 8 | format version, uint32: 2 |
 /// | 12 | search, uint8: 0 kd-tree, 1 octree, 2 linear |
 /// | 13 | border, uint8: 0 closed, 1 open |
 /// | 14 | pixel type, uint8: 0 ... 9 for uint8, int8, uint16, int16, ... float32, float64 |

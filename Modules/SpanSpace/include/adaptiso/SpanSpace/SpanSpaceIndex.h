@@ -62,8 +62,8 @@ public:
     /// The blocks with minimum < isovalue <= maximum.
     BlockQuery blocksAt(double isovalue) const;
 
-    /// Bytes that the index holds: for every node of the octree, and every block of the others, two
-    /// samples; for every block of the kd-tree four bytes more.
+    /// Bytes that the index holds: two samples for every node of the octree and every block of the
+    /// linear scan; four samples and four bytes for every block of the kd-tree.
     std::size_t memoryBytes() const;
 
 private:
