@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "BlockSamples.h"
@@ -29,6 +30,41 @@ struct BoxCensus {
     bool changesTopology = false;  ///< a disc for each loop on its faces is not the same surface
 };
 
+/// The crossed lattice edges of a simple box, each lign through it being crossed once at most.
+struct CrossedEdges {
+    int count = 0;
+    int onFaces = 0;  ///< of them, those on the box's faces
+};
+
+template <int N>
+CrossedEdges crossedEdges(const BlockSamples<N>& samples, const std::array<int, 3>& low,
+                          const std::array<int, 3>& size) {
+    const int highX = low[0] + size[0], highY = low[1] + size[1], highZ = low[2] + size[2];
+    const std::uint32_t ends = 1u << low[0] | 1u << highX;
+    const std::uint32_t within = (2u << highX) - (1u << low[0]);
+    CrossedEdges crossed;
+    // ligns along y or z: bit x of `changes`, all of them on the faces where `isOuter`
+    const auto add = [&](std::uint32_t changes, bool isOuter) {
+        changes &= within;
+        crossed.count += std::popcount(changes);
+        crossed.onFaces += std::popcount(isOuter ? changes : changes & ends);
+    };
+    for (int z = low[2]; z <= highZ; ++z) {
+        const bool isOuterZ = z == low[2] || z == highZ;
+        add(samples.row(low[1], z) ^ samples.row(highY, z), isOuterZ);
+        for (int y = low[1]; y <= highY; ++y) {  // along x
+            const std::uint32_t row = samples.row(y, z);
+            const int change = static_cast<int>((row >> low[0] ^ row >> highX) & 1u);
+            crossed.count += change;
+            if (isOuterZ || y == low[1] || y == highY) crossed.onFaces += change;
+        }
+    }
+    for (int y = low[1]; y <= highY; ++y) {
+        add(samples.row(y, low[2]) ^ samples.row(y, highZ), y == low[1] || y == highY);
+    }
+    return crossed;
+}
+
 /// Counts the triangles of the full grid in the box, and whether `loops` discs are the same
 /// surface: its Euler characteristic V - E + F, of vertices on crossed lattice edges, iso-lines
 /// on unit faces and a disc for each loop of a cell, must be the number of loops.
@@ -36,37 +72,25 @@ template <int N>
 BoxCensus takeCensus(const BoxCases& cases, const BlockSamples<N>& samples,
                      const std::array<int, 3>& low, const std::array<int, 3>& size, int loops) {
     std::int64_t cellLoops = 0, cellCorners = 0;
-    for (int z = 0; z < size[2]; ++z) {
-        for (int y = 0; y < size[1]; ++y) {
-            for (int x = 0; x < size[0]; ++x) {
-                const Box cell{low[0] + x, low[1] + y, low[2] + z, 1};
-                const unsigned corners = samples.corners(cell);
-                if (corners == 0 || corners == 255) continue;
+    const std::uint32_t within = ((1u << size[0]) - 1) << low[0];
+    for (int z = low[2]; z < low[2] + size[2]; ++z) {
+        for (int y = low[1]; y < low[1] + size[1]; ++y) {
+            const std::uint32_t a = samples.row(y, z), b = samples.row(y + 1, z);
+            const std::uint32_t c = samples.row(y, z + 1), d = samples.row(y + 1, z + 1);
+            const std::uint32_t any = a | b | c | d, all = a & b & c & d;
+            std::uint32_t mixed = (any | any >> 1) & ~(all & all >> 1) & within;
+            for (; mixed != 0; mixed &= mixed - 1) {  // bit x: the surface passes the cell
+                const Box cell{std::countr_zero(mixed), y, z, 1};
                 const BoxCase& boxCase = cases[caseOf(cases, samples, cell)];
                 cellLoops += boxCase.loopCount;
                 cellCorners += boxCase.crossedEdges;
             }
         }
     }
-    std::int64_t vertices = 0, onFaces = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const int u = axisAfter(axis, 1), v = axisAfter(axis, 2);
-        for (int b = 0; b <= size[v]; ++b) {
-            for (int a = 0; a <= size[u]; ++a) {
-                std::array<int, 3> p = low, q;
-                p[u] += a;
-                p[v] += b;
-                q = p;
-                q[axis] += size[axis];
-                if (samples.inside(p) == samples.inside(q)) continue;  // simple: one at most
-                ++vertices;
-                onFaces += a == 0 || b == 0 || a == size[u] || b == size[v];
-            }
-        }
-    }
+    const CrossedEdges vertices = crossedEdges(samples, low, size);
     // loops go over inner iso-lines twice, over those on the box's faces (one a vertex) once
-    const std::int64_t edges = (cellCorners + onFaces) / 2;
-    return {cellCorners - 2 * cellLoops, vertices - edges + cellLoops != loops};
+    const std::int64_t edges = (cellCorners + vertices.onFaces) / 2;
+    return {cellCorners - 2 * cellLoops, vertices.count - edges + cellLoops != loops};
 }
 
 }  // namespace adaptiso::detail
