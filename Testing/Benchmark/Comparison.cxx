@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -57,6 +58,8 @@ Extraction extract(const Input& input, const Candidate& candidate, const SpanSpa
     options.isovalue = input.options.isovalue;
     options.method = candidate.method.value();
     options.computeNormals = candidate.computeNormals;
+    options.mergeWithinBlocks = candidate.mergeWithinBlocks;
+    options.adjustVertices = candidate.adjustVertices;
     return extractSurface(input.volume, index, options);
 }
 
@@ -91,26 +94,35 @@ std::int64_t measurePeak(const Input& input, const Candidate& candidate) {
 }
 
 Costs measureCosts(const Input& input, const Candidate& candidate) {
-    const Candidate reference;  // vtkFlyingEdges3D with normals
-    timeOnce(input, reference);
-    timeOnce(input, candidate);
+    const Candidate flyingEdges;  // with normals
+    const Candidate mc{Method::MarchingCubes, 4, candidate.border, true};
+    const Candidate asc{Method::SkeletonClimbing, 4, candidate.border, true};
+    for (const Candidate& each : {flyingEdges, mc, asc, candidate}) timeOnce(input, each);
     std::vector<double> index;
     std::vector<double> extraction;
     std::vector<double> extractRatio;
     std::vector<double> totalRatio;
+    std::vector<double> mcRatio;
+    std::vector<double> ascRatio;
     for (int repeat = 0; repeat < input.options.repeats; ++repeat) {
-        const double theirs = timeOnce(input, reference).extract;
+        const double theirs = timeOnce(input, flyingEdges).extract;
+        const double mcSeconds = timeOnce(input, mc).extract;
+        const double ascSeconds = timeOnce(input, asc).extract;
         const Seconds ours = timeOnce(input, candidate);
         index.push_back(ours.index);
         extraction.push_back(ours.extract);
         extractRatio.push_back(ours.extract / theirs);
         totalRatio.push_back((ours.index + ours.extract) / theirs);
+        mcRatio.push_back(ours.extract / mcSeconds);
+        ascRatio.push_back(ours.extract / ascSeconds);
     }
     Costs costs;
     if (candidate.method) costs.indexSeconds = median(index);
     costs.extractSeconds = median(extraction);
     costs.extractToFlyingEdges = median(extractRatio);
     costs.totalToFlyingEdges = median(totalRatio);
+    costs.extractToMc = median(mcRatio);
+    costs.extractToAsc = median(ascRatio);
     costs.peakHeapBytes = measurePeak(input, candidate);
     return costs;
 }
@@ -118,7 +130,7 @@ Costs measureCosts(const Input& input, const Candidate& candidate) {
 /// A mesh and what its making said of it.
 struct Surface {
     TriangleMesh mesh;
-    std::optional<std::int64_t> boxesChangingTopology;
+    std::optional<ExtractionStatistics> statistics;
     std::int64_t meshBytes = 0;
 };
 
@@ -141,8 +153,7 @@ Surface makeSurface(const Input& input, const Candidate& candidate) {
     const std::size_t bytes = mesh.points.size() * sizeof(Vec3) +
                               mesh.normals.size() * sizeof(Normal) +
                               mesh.triangles.size() * sizeof(Triangle);
-    return {std::move(result.mesh), result.statistics.boxesChangingTopology,
-            static_cast<std::int64_t>(bytes)};
+    return {std::move(result.mesh), std::move(result.statistics), static_cast<std::int64_t>(bytes)};
 }
 
 /// In voxels along every axis, so that distances are too.
@@ -168,7 +179,7 @@ MeshFacts measureFacts(const Surface& surface, const TriangleMesh& mcInVoxels,
     facts.inconsistentEdges = topology.count(TopologyDefect::InconsistentEdge);
     facts.degenerateTriangles = topology.count(TopologyDefect::DegenerateTriangle);
     facts.crossingPairs = findSelfIntersections(surface.mesh).pairCount;
-    facts.boxesChangingTopology = surface.boxesChangingTopology;
+    facts.statistics = surface.statistics;
     facts.meshBytes = surface.meshBytes;
     return facts;
 }
@@ -182,7 +193,28 @@ TriangleMesh marchingCubesInVoxels(const Input& input, Border border) {
     return inVoxels(surface.mesh, input.volume.geometry());
 }
 
-std::vector<Candidate> candidatesWith(Border border) {
+/// What discretized marching cubes moves a crossing by: mean over the lattice edges that
+/// `mcInVoxels` has vertices on, from the vertex to the middle of its edge.
+double midpointsMeanVoxels(const TriangleMesh& mcInVoxels) {
+    constexpr double kHalfAHair = 5e-4;  // crossings keep 1e-3 from lattice points
+    double sum = 0;
+    std::int64_t count = 0;
+    for (const Vec3& point : mcInVoxels.points) {
+        int axes = 0;
+        double along = 0;
+        for (const double x : {point.x, point.y, point.z}) {
+            if (std::abs(x - std::round(x)) < kHalfAHair) continue;
+            ++axes;
+            along = x - std::floor(x);
+        }
+        if (axes != 1) continue;  // the middle of a cell's loop, on no edge
+        sum += std::abs(along - 0.5);
+        ++count;
+    }
+    return sum / static_cast<double>(count);
+}
+
+std::vector<Candidate> candidatesWith(Border border, const std::vector<int>& blockSizes) {
     std::vector<Candidate> candidates;
     if (border == Border::Open) {
         for (const bool normals : {true, false}) {
@@ -191,8 +223,15 @@ std::vector<Candidate> candidatesWith(Border border) {
     }
     for (const Method method : {Method::MarchingCubes, Method::DiscretizedMarchingCubes,
                                 Method::SkeletonClimbing, Method::Boxes}) {
-        for (const int blockSize : {2, 4, 8, 16}) {
+        for (const int blockSize : blockSizes) {
             candidates.push_back({method, blockSize, border, true});
+        }
+        if (method != Method::DiscretizedMarchingCubes) continue;
+        for (const int blockSize : blockSizes) {
+            candidates.push_back({method, blockSize, border, true, true, false});
+        }
+        for (const int blockSize : blockSizes) {
+            candidates.push_back({method, blockSize, border, true, false, true});
         }
     }
     return candidates;
@@ -217,10 +256,13 @@ Comparison compareExtractions(const VolumeView& volume, const ComparisonOptions&
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(vtk.threads));
     const Input input{volume, asVtkImage(volume), options};
-    Comparison comparison{vtk.backend, vtk.threads, {}};
-    for (const Border border : {Border::Open, Border::Closed}) {
+    Comparison comparison{vtk.backend, vtk.threads, 0, {}};
+    for (const Border border : options.borders) {
         const TriangleMesh mcInVoxels = marchingCubesInVoxels(input, border);
-        for (const Candidate& candidate : candidatesWith(border)) {
+        if (comparison.rows.empty()) {
+            comparison.midpointsMeanVoxels = midpointsMeanVoxels(mcInVoxels);
+        }
+        for (const Candidate& candidate : candidatesWith(border, options.blockSizes)) {
             comparison.rows.push_back(measure(input, candidate, mcInVoxels));
         }
     }

@@ -14,6 +14,8 @@ struct ComparisonOptions {
     double isovalue = 0;
     int repeats = 5;  ///< timed runs of each, after one that is not timed
     int threads = 2;  ///< of both sides
+    std::vector<int> blockSizes{2, 4, 8, 16};
+    std::vector<Border> borders{Border::Open, Border::Closed};
 };
 
 /// One way to make triangles of a volume. No method: vtkFlyingEdges3D.
@@ -22,6 +24,8 @@ struct Candidate {
     int blockSize = 4;
     Border border = Border::Open;
     bool computeNormals = true;
+    bool mergeWithinBlocks = false;  ///< of discretized marching cubes
+    bool adjustVertices = false;     ///< of discretized marching cubes
 };
 
 /// What a surface is worth.
@@ -35,7 +39,7 @@ struct MeshFacts {
     std::int64_t inconsistentEdges = 0;
     std::int64_t degenerateTriangles = 0;
     std::int64_t crossingPairs = 0;
-    std::optional<std::int64_t> boxesChangingTopology;  ///< none for vtkFlyingEdges3D
+    std::optional<ExtractionStatistics> statistics;  ///< none for vtkFlyingEdges3D
     std::int64_t meshBytes = 0;  ///< points, normals and triangles as the method keeps them
 };
 
@@ -43,9 +47,12 @@ struct MeshFacts {
 struct Costs {
     std::optional<double> indexSeconds;  ///< none for vtkFlyingEdges3D, which has no index
     double extractSeconds = 0;
-    /// Medians of the ratios to the run of vtkFlyingEdges3D with normals just before.
+    /// Medians of the ratios to the runs of vtkFlyingEdges3D with normals, and of this library's mc
+    /// and asc at N = 4, just before.
     double extractToFlyingEdges = 0;
-    double totalToFlyingEdges = 0;           ///< with the index
+    double totalToFlyingEdges = 0;  ///< with the index
+    double extractToMc = 0;
+    double extractToAsc = 0;
     std::int64_t peakHeapBytes = 0;          ///< of index and extraction, beyond the volume
     std::optional<std::int64_t> boundBytes;  ///< 2 x mesh + 10 % of the volume; ours alone
 };
@@ -59,11 +66,14 @@ struct ComparisonRow {
 struct Comparison {
     std::string vtkBackend;  ///< of VTK's parallel loops
     int threads = 0;         ///< that both sides used: one where VTK's backend is Sequential
+    /// Mean over the crossed lattice edges, of the first border, from the crossing to the middle of
+    /// its edge: how far dmc's vertices are off, along their edges.
+    double midpointsMeanVoxels = 0;
     std::vector<ComparisonRow> rows;
 };
 
-/// Runs vtkFlyingEdges3D and this library's methods in turn (every run of ours between two of
-/// theirs, so that what else the machine does meets both), then measures the surfaces.
+/// Runs vtkFlyingEdges3D, mc, asc and each of this library's methods in turn, so that what else the
+/// machine does meets all, then measures the surfaces.
 /// \throws InvalidInput when no surface is there at the isovalue
 Comparison compareExtractions(const VolumeView& volume, const ComparisonOptions& options);
 

@@ -36,7 +36,9 @@ std::string methodName(const Candidate& candidate) {
     if (!candidate.method) {
         return candidate.computeNormals ? "FlyingEdges" : "FlyingEdges, no normals";
     }
-    return std::string(toString(*candidate.method));
+    return std::string(toString(*candidate.method)) +
+           (candidate.mergeWithinBlocks ? ", within blocks" : "") +
+           (candidate.adjustVertices ? ", adjusted" : "");
 }
 
 std::string fixed(double value, int digits) {
@@ -82,11 +84,13 @@ std::vector<std::string> cells(const ComparisonRow& row) {
             count(facts.inconsistentEdges),
             count(facts.degenerateTriangles),
             count(facts.crossingPairs),
-            orDash(facts.boxesChangingTopology, count),
+            orDash(facts.statistics, [&](const auto& s) { return count(s.boxesChangingTopology); }),
             orDash(costs.indexSeconds, seconds),
             seconds(costs.extractSeconds),
             fixed(costs.extractToFlyingEdges, 2),
             fixed(costs.totalToFlyingEdges, 2),
+            fixed(costs.extractToMc, 2),
+            fixed(costs.extractToAsc, 2),
             peakCell(costs),
             megabytes(facts.meshBytes),
             orDash(costs.boundBytes, megabytes)};
@@ -96,7 +100,8 @@ const std::vector<std::string> kHeader{
     "method",       "block",          "border",         "triangles",    "ratio to mc",
     "mean (voxel)", "max (voxel)",    "boundary edges", "non-manifold", "inconsistent",
     "degenerate",   "crossing pairs", "topology boxes", "index s",      "extract s",
-    "x FE",         "x FE, +index",   "peak MB",        "mesh MB",      "bound MB"};
+    "x FE",         "x FE, +index",   "x mc",           "x asc",        "peak MB",
+    "mesh MB",      "bound MB"};
 
 void writeLine(std::ostream& out, const std::vector<std::string>& texts) {
     for (const std::string& text : texts) out << "| " << text << ' ';
@@ -131,8 +136,14 @@ nlohmann::ordered_json toJson(const ComparisonRow& row) {
     const Candidate& candidate = row.candidate;
     const MeshFacts& facts = row.facts;
     const Costs& costs = row.costs;
-    return {{"method", candidate.method ? methodName(candidate) : "FlyingEdges"},
+    const auto statistic = [&](std::int64_t ExtractionStatistics::*member) {
+        return facts.statistics ? nlohmann::ordered_json((*facts.statistics).*member)
+                                : nlohmann::ordered_json();
+    };
+    return {{"method", candidate.method ? toString(*candidate.method) : "FlyingEdges"},
             {"computesNormals", candidate.computeNormals},
+            {"mergeWithinBlocks", candidate.mergeWithinBlocks},
+            {"adjustVertices", candidate.adjustVertices},
             {"blockSize", candidate.method ? nlohmann::ordered_json(candidate.blockSize)
                                            : nlohmann::ordered_json()},
             {"border", toString(candidate.border)},
@@ -145,11 +156,16 @@ nlohmann::ordered_json toJson(const ComparisonRow& row) {
             {"inconsistentEdges", facts.inconsistentEdges},
             {"degenerateTriangles", facts.degenerateTriangles},
             {"crossingPairs", facts.crossingPairs},
-            {"boxesChangingTopology", orNull(facts.boxesChangingTopology)},
+            {"boxesChangingTopology", statistic(&ExtractionStatistics::boxesChangingTopology)},
+            {"blocksTotal", statistic(&ExtractionStatistics::blocksTotal)},
+            {"blocksActive", statistic(&ExtractionStatistics::blocksActive)},
+            {"indexNodesVisited", statistic(&ExtractionStatistics::indexNodesVisited)},
             {"indexSeconds", orNull(costs.indexSeconds)},
             {"extractSeconds", costs.extractSeconds},
             {"extractToFlyingEdges", costs.extractToFlyingEdges},
             {"totalToFlyingEdges", costs.totalToFlyingEdges},
+            {"extractToMc", costs.extractToMc},
+            {"extractToAsc", costs.extractToAsc},
             {"peakHeapBytes", costs.peakHeapBytes},
             {"meshBytes", facts.meshBytes},
             {"boundBytes", orNull(costs.boundBytes)}};
@@ -161,6 +177,7 @@ void writeMarkdown(std::ostream& out, const Comparison& comparison,
                    const ComparisonContext& context) {
     out << "## " << fileName(context.input) << " at " << shortest(context.options.isovalue)
         << "\n\n"
+        << (context.crop.empty() ? "" : "Samples " + context.crop + ". ")
         << sizeText(context.geometry) << ", " << adaptiso::toString(context.pixelType) << ". "
         << threadText(comparison) << ", VTK " << vtkVersionText() << " on " << comparison.vtkBackend
         << ". Medians of " << context.options.repeats << ".\n\n";
@@ -177,6 +194,8 @@ void writeJson(std::ostream& out, const Comparison& comparison, const Comparison
         {"input", fileName(context.input)},
         {"commit", context.commit.empty() ? nlohmann::ordered_json()
                                           : nlohmann::ordered_json(context.commit)},
+        {"crop",
+         context.crop.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(context.crop)},
         {"processor", processorName()},
         {"processors", std::thread::hardware_concurrency()},
         {"compiler", __VERSION__},
@@ -187,6 +206,7 @@ void writeJson(std::ostream& out, const Comparison& comparison, const Comparison
         {"isovalue", context.options.isovalue},
         {"pixelType", adaptiso::toString(context.pixelType)},
         {"size", context.geometry.size},
+        {"midpointsMeanVoxels", comparison.midpointsMeanVoxels},
         {"spacingMm", {spacingMm.x, spacingMm.y, spacingMm.z}},
         {"rows", rows}};
     out << report.dump(2) << '\n';

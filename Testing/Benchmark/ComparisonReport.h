@@ -11,6 +11,7 @@ namespace adaptiso::benchmarks {
 struct ComparisonContext {
     std::string input;   ///< the volume's file
     std::string commit;  ///< of this library; empty: not told
+    std::string crop;    ///< i0:i1,j0:j1,k0:k1 of the file's samples; empty: all
     ComparisonOptions options;
     PixelType pixelType;
     ImageGeometry geometry;

@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <string>
 
 #include "Comparison.h"
 #include "ComparisonReport.h"
+#include "Crop.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
@@ -23,6 +25,7 @@ struct Arguments {
     std::string volume;
     std::string json;
     std::string commit;
+    std::string crop;
     ComparisonOptions options;
 };
 
@@ -41,6 +44,17 @@ void declareOptions(CLI::App& app, Arguments& arguments) {
         ->check(CLI::Range(1, 1024));
     app.add_option("--commit", arguments.commit, "What the JSON says was measured")
         ->type_name("TEXT");
+    app.add_option("--crop", arguments.crop, "Of the scan, samples i0 to i1, ... alone")
+        ->type_name("i0:i1,j0:j1,k0:k1");
+    app.add_option("--block-sizes", arguments.options.blockSizes, "Default 2,4,8,16")
+        ->type_name("N,...")
+        ->delimiter(',')
+        ->check(CLI::IsMember({2, 4, 8, 16}));
+    app.add_option("--borders", arguments.options.borders, "Default open,closed")
+        ->type_name("B,...")
+        ->delimiter(',')
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, Border>{{"open", Border::Open}, {"closed", Border::Closed}}));
 }
 
 void writeJsonFile(const std::string& path, const Comparison& comparison,
@@ -53,10 +67,12 @@ void writeJsonFile(const std::string& path, const Comparison& comparison,
 
 void run(const Arguments& arguments) {
     const ReadVolume input = readVolume(arguments.volume);
-    const VolumeView& volume = input.volume;
+    const Volume part =
+        arguments.crop.empty() ? input.volume : cropped(input.volume, parseCrop(arguments.crop));
+    const VolumeView& volume = part;
     const Comparison comparison = compareExtractions(volume, arguments.options);
-    const ComparisonContext context{arguments.volume, arguments.commit, arguments.options,
-                                    volume.pixelType(), volume.geometry()};
+    const ComparisonContext context{arguments.volume,  arguments.commit,   arguments.crop,
+                                    arguments.options, volume.pixelType(), volume.geometry()};
     writeMarkdown(std::cout, comparison, context);
     if (!arguments.json.empty()) writeJsonFile(arguments.json, comparison, context);
 }

@@ -2,9 +2,12 @@
 # Compares this library with vtkFlyingEdges3D on scans and writes Markdown and JSON.
 # Debian 12, as root or with sudo. Give the machine nothing else to do meanwhile.
 #
-#   Testing/Benchmark/run.sh [-o FOLDER] [-r REPEATS] [-t THREADS] [VOLUME:ISOVALUE...]
+#   Testing/Benchmark/run.sh [-T] [-o FOLDER] [-r REPEATS] [-t THREADS] [VOLUME:ISOVALUE[@CROP]...]
 #
 # FOLDER: out/benchmark when not given. It gets comparison.md and a JSON file for each volume.
+# CROP: i0:i1,j0:j1,k0:k1, the samples to take, of each axis the first and the last.
+# -T: the thesis's tables: open border and N = 2, 4, 8 alone; FOLDER gets thesis.md, thesis.json and
+# two plots as well.
 # Without volumes: the thesis's, where they are beside the checkout, and two heads of mricron-data.
 set -euo pipefail
 
@@ -19,8 +22,11 @@ usage() {
 out=$top/out/benchmark
 repeats=5
 threads=2
-while getopts o:r:t: option; do
+thesis=
+what=()
+while getopts To:r:t: option; do
     case $option in
+    T) thesis=yes what=(--borders open --block-sizes "2,4,8") ;;
     o) out=$OPTARG ;;
     r) repeats=$OPTARG ;;
     t) threads=$OPTARG ;;
@@ -35,13 +41,21 @@ if [ ${#inputs[@]} -eq 0 ]; then
         file=$top/../shared/data/$name.nii.gz
         if [ -e "$file" ]; then inputs+=("$file:50"); fi
     done
-    inputs+=(/usr/share/mricron/templates/ch2bet.nii.gz:100
-             /usr/share/mricron/templates/ch2.nii.gz:100)
+    heads=/usr/share/mricron/templates
+    if [ "$thesis" ]; then  # as large as the thesis's cortex
+        for isovalue in 90 100; do
+            inputs+=("$heads/ch2bet.nii.gz:$isovalue@12:168,13:201,1:156")
+        done
+    else
+        inputs+=("$heads/ch2bet.nii.gz:100")
+    fi
+    inputs+=("$heads/ch2.nii.gz:100")
 fi
+cropForm='^(.+)@([0-9]+:[0-9]+,[0-9]+:[0-9]+,[0-9]+:[0-9]+)$'
 for input in "${inputs[@]}"; do
     case $input in
     *?:?*) ;;
-    *) echo "run.sh: $input: must be VOLUME:ISOVALUE" >&2; usage ;;
+    *) echo "run.sh: $input: must be VOLUME:ISOVALUE[@CROP]" >&2; usage ;;
     esac
 done
 
@@ -65,14 +79,23 @@ commit=$(git -C "$top" describe --always --dirty 2>/dev/null || echo unknown)
         head -n 1). Columns: Testing/Benchmark/README.md."
 } >"$out/comparison.md"
 
+written=()
 for input in "${inputs[@]}"; do
+    crop=()
+    if [[ $input =~ $cropForm ]]; then
+        input=${BASH_REMATCH[1]}
+        crop=(--crop "${BASH_REMATCH[2]}")
+    fi
     volume=${input%:*}
     isovalue=${input##*:}
     name=$(basename "$volume")
-    echo "== $name at $isovalue"
+    json=$out/${name%%.*}-$isovalue${crop:+-cropped}.json
+    echo "== $name at $isovalue ${crop[*]}"
     echo >>"$out/comparison.md"
     "$top/build/benchmark/Testing/Benchmark/compareExtraction" "$volume" --iso "$isovalue" \
         --repeats "$repeats" --threads "$threads" --commit "$commit" \
-        --json "$out/${name%%.*}-$isovalue.json" | tee -a "$out/comparison.md"
+        "${what[@]}" "${crop[@]}" --json "$json" | tee -a "$out/comparison.md"
+    written+=("$json")
 done
+if [ "$thesis" ]; then "$here/thesisTables.py" -o "$out" "${written[@]}"; fi
 echo "== wrote $out/comparison.md"
