@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "ColorMap.h"
 #include "Common/AtomicOutput.h"
 #include "Common/CommonFrame.h"
 #include "Common/ExitCodes.h"
@@ -21,6 +20,7 @@
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/Report/ColorMap.h"
 
 namespace adaptiso {
 namespace {

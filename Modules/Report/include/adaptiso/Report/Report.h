@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Core/Volume.h"
+#include "adaptiso/Report/ColorMap.h"
+
+namespace adaptiso {
+
+/// What a report says first.
+enum class ReportVerdict {
+    Passed,  ///< all that was required holds
+    Failed,  ///< something that was required does not
+    Done     ///< nothing was to be judged
+};
+
+enum class ReportOutcome {
+    Passed,
+    Failed,    ///< and it was required
+    Noted,     ///< failed, but it was not required
+    Undecided  ///< the question makes no sense here
+};
+
+/// A line of "what was read", "how": a name and its value.
+using ReportFact = std::pair<std::string, std::string>;
+
+struct ReportCheck {
+    std::string subject;  ///< "inner_skull.stl"
+    std::string name;     ///< "no self-intersection"
+    ReportOutcome outcome = ReportOutcome::Passed;
+    std::string finding;  ///< may be empty
+};
+
+struct ReportTable {
+    std::string title;
+    std::vector<std::string> columns;  ///< the first names the row
+    std::vector<std::vector<std::string>> rows;
+};
+
+/// A place to look at.
+struct ReportSpot {
+    std::string what;       ///< "hole of 12 edges in outer_skull.stl"
+    Vec3 pointMm;           ///< LPS
+    bool isFailure = true;  ///< else worth a look, like the smallest gap of a sound model
+    int rank = 0;           ///< 0: the worst of its kind; the first to be shown
+};
+
+struct ReportSurface {
+    std::string name;
+    TriangleMesh mesh;  ///< LPS mm; may be broken in any way
+    /// A length for every vertex, to be shown in colour; empty: none.
+    std::vector<double> valuesMm{};
+};
+
+/// The image that the surfaces belong to. The samples must live as long as the report.
+struct ReportVolume {
+    std::string name;  ///< the file's, without folder
+    VolumeView view;
+};
+
+/// How a quantity is spread.
+struct ReportHistogram {
+    std::string title;  ///< "Distance from a.stl to b.stl"
+    std::string unit;   ///< "mm"
+    std::vector<double> values;
+};
+
+/// Everything that a page tells and shows. Texts are plain (they are escaped where needed) and hold
+/// neither folders nor anything that names a patient: that is for the caller to see to.
+struct Report {
+    std::string program, version;
+    std::string date;   ///< reportDate()
+    std::string title;  ///< "Check of 3 surfaces"
+    ReportVerdict verdict = ReportVerdict::Done;
+    std::string headline;                  ///< "2 of 21 checks that are required failed"
+    std::string frame = "scanner RAS mm";  ///< of the points told: LPS with x and y turned round
+    std::vector<ReportFact> inputs, options;
+    std::vector<ReportCheck> checks;
+    std::vector<ReportSpot> spots;
+    std::vector<ReportTable> tables;
+    std::vector<std::string> notes;  ///< warnings, and what is not shown
+    std::vector<ReportSurface> surfaces;
+    std::optional<ReportVolume> volume;
+    std::vector<ReportHistogram> histograms;  ///< besides those of the triangles' size and angle
+    std::vector<std::pair<std::string, double>> stageSeconds;
+};
+
+/// Now, in UTC: "2026-11-21 09:20 UTC"; the time that SOURCE_DATE_EPOCH says, where it is set.
+std::string reportDate();
+
+}  // namespace adaptiso

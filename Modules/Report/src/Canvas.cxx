@@ -1,0 +1,144 @@
+#include "Canvas.h"
+
+#include <cairo/cairo.h>
+
+#include <cstdint>
+#include <numbers>
+
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+namespace {
+
+void require(cairo_status_t status) {
+    if (status != CAIRO_STATUS_SUCCESS) {
+        throw InternalError(std::string("Canvas: Cairo says ") + cairo_status_to_string(status));
+    }
+}
+
+cairo_status_t append(void* target, const unsigned char* bytes, unsigned int count) {
+    static_cast<std::string*>(target)->append(reinterpret_cast<const char*>(bytes), count);
+    return CAIRO_STATUS_SUCCESS;
+}
+
+/// Paints `colorAt(n)`, n from 0 row by row.
+template <class ColorAt>
+void paint(cairo_t* context, int left, int top, int width, int height, const ColorAt& colorAt) {
+    const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface(
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height), cairo_surface_destroy);
+    require(cairo_surface_status(surface.get()));
+    unsigned char* data = cairo_image_surface_get_data(surface.get());
+    const int stride = cairo_image_surface_get_stride(surface.get());
+    for (int y = 0; y < height; ++y) {
+        auto* row = reinterpret_cast<std::uint32_t*>(data + std::ptrdiff_t{y} * stride);
+        for (int x = 0; x < width; ++x) {
+            const ReportColor c = colorAt(static_cast<std::size_t>(y) * width + x);
+            row[x] = std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | c[2];
+        }
+    }
+    cairo_surface_mark_dirty(surface.get());
+    cairo_set_source_surface(context, surface.get(), left, top);
+    cairo_paint(context);
+}
+
+}  // namespace
+
+Canvas::Canvas(int width, int height, ReportColor ground)
+    : width_(width),
+      height_(height),
+      surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height),
+               cairo_surface_destroy) {
+    require(cairo_surface_status(surface_.get()));
+    context_.reset(cairo_create(surface_.get()), cairo_destroy);
+    require(cairo_status(context_.get()));
+    rectangle({0, 0}, width, height, ground);
+}
+
+void Canvas::image(int left, int top, int width, int height,
+                   const std::vector<std::uint8_t>& grey) {
+    paint(context_.get(), left, top, width, height, [&](std::size_t n) {
+        return ReportColor{grey[n], grey[n], grey[n]};
+    });
+}
+
+void Canvas::image(int left, int top, int width, int height,
+                   const std::vector<ReportColor>& colors) {
+    paint(context_.get(), left, top, width, height, [&](std::size_t n) { return colors[n]; });
+}
+
+void Canvas::setColor(ReportColor color) {
+    cairo_set_source_rgb(context_.get(), color[0] / 255.0, color[1] / 255.0, color[2] / 255.0);
+}
+
+void Canvas::segments(const std::vector<std::pair<Pixel, Pixel>>& lines, ReportColor color,
+                      double lineWidth) {
+    setColor(color);
+    cairo_set_line_width(context_.get(), lineWidth);
+    cairo_set_line_cap(context_.get(), CAIRO_LINE_CAP_ROUND);
+    // a path of many pieces is slow to stroke: its parts are kept short
+    constexpr std::size_t kPerStroke = 200;
+    for (std::size_t n = 0; n < lines.size(); ++n) {
+        cairo_move_to(context_.get(), lines[n].first.x, lines[n].first.y);
+        cairo_line_to(context_.get(), lines[n].second.x, lines[n].second.y);
+        if (n % kPerStroke == kPerStroke - 1) cairo_stroke(context_.get());
+    }
+    cairo_stroke(context_.get());
+}
+
+void Canvas::ring(Pixel middle, double radius, ReportColor color, double lineWidth) {
+    setColor(color);
+    cairo_set_line_width(context_.get(), lineWidth);
+    cairo_new_path(context_.get());
+    cairo_arc(context_.get(), middle.x, middle.y, radius, 0, 2 * std::numbers::pi);
+    cairo_stroke(context_.get());
+}
+
+void Canvas::rectangle(Pixel corner, double width, double height, ReportColor color) {
+    setColor(color);
+    cairo_rectangle(context_.get(), corner.x, corner.y, width, height);
+    cairo_fill(context_.get());
+}
+
+void Canvas::setFont(double size, bool isBold) {
+    cairo_select_font_face(context_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+                           isBold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(context_.get(), size);
+}
+
+double Canvas::textWidth(const std::string& text, double size) {
+    setFont(size, false);
+    cairo_text_extents_t extents;
+    cairo_text_extents(context_.get(), text.c_str(), &extents);
+    return extents.x_advance;
+}
+
+void Canvas::text(Pixel base, const std::string& text, double size, ReportColor color,
+                  Anchor anchor, bool isBold) {
+    setFont(size, isBold);
+    cairo_text_extents_t extents;
+    cairo_text_extents(context_.get(), text.c_str(), &extents);
+    const double part = anchor == Anchor::Left ? 0 : anchor == Anchor::Middle ? 0.5 : 1;
+    setColor(color);
+    cairo_move_to(context_.get(), base.x - part * extents.x_advance, base.y);
+    cairo_show_text(context_.get(), text.c_str());
+    cairo_new_path(context_.get());
+}
+
+void Canvas::clip(Pixel corner, double width, double height) {
+    cairo_save(context_.get());
+    cairo_rectangle(context_.get(), corner.x, corner.y, width, height);
+    cairo_clip(context_.get());
+}
+
+void Canvas::restore() {
+    cairo_restore(context_.get());
+}
+
+std::string Canvas::png() const {
+    require(cairo_status(context_.get()));
+    std::string bytes;
+    require(cairo_surface_write_to_png_stream(surface_.get(), append, &bytes));
+    return bytes;
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,168 @@
+#include "adaptiso/Report/Page.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "PageFiles.h"
+#include "PageParts.h"
+#include "Payload.h"
+#include "Scene.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Values = std::map<std::string_view, std::string>;
+
+/// `pattern` with every {{NAME}} replaced by its value; values are taken as they are.
+/// \throws InternalError  a name that has no value
+std::string fill(std::string_view pattern, const Values& values) {
+    std::string text;
+    for (std::size_t at = 0; at < pattern.size();) {
+        const std::size_t open = pattern.find("{{", at);
+        text += pattern.substr(at, open - at);
+        if (open == std::string_view::npos) break;
+        const std::size_t close = pattern.find("}}", open);
+        const auto value = values.find(pattern.substr(open + 2, close - open - 2));
+        if (close == std::string_view::npos || value == values.end()) {
+            throw InternalError("htmlPage: a name in the page's pattern has no value");
+        }
+        text += value->second;
+        at = close + 2;
+    }
+    return text;
+}
+
+struct VerdictWords {
+    const char *style, *sign, *word;
+};
+
+VerdictWords wordsOf(ReportVerdict verdict) {
+    switch (verdict) {
+        case ReportVerdict::Passed:
+            return {"passed", "✔", "PASSED"};
+        case ReportVerdict::Failed:
+            return {"failed", "✘", "FAILED"};
+        case ReportVerdict::Done:
+            return {"done", "●", "DONE"};
+    }
+    throw InternalError("wordsOf: unknown verdict");
+}
+
+/// Text in a script element that is data: nothing in it can end the element.
+std::string dataElement(const std::string& id, const std::string& type, const std::string& text) {
+    return "<script id=\"" + id + "\" type=\"" + type + "\">" + text + "</script>\n";
+}
+
+std::string jsonText(const Json& json) {
+    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) {
+        text.replace(at, 1, "\\u003c");
+    }
+    return text;
+}
+
+Json pointJson(const Vec3& p) {
+    return {p.x, p.y, p.z};
+}
+
+/// The scene as the viewer gets it: no more triangles than it can show with ease.
+Scene forViewer(const Scene& scene, const PageOptions& options, std::vector<std::string>& notes) {
+    std::int64_t triangles = 0;
+    for (const SceneSurface& surface : scene.surfaces) {
+        triangles += std::ssize(surface.mesh.triangles);
+    }
+    if (triangles <= options.maxTriangles) return scene;
+    Scene result = scene;
+    for (SceneSurface& surface : result.surfaces) {
+        const double share =
+            static_cast<double>(surface.mesh.triangles.size()) / static_cast<double>(triangles);
+        surface = coarser(
+            surface, static_cast<std::int64_t>(share * static_cast<double>(options.maxTriangles)));
+    }
+    notes.push_back(
+        "The viewer shows the surfaces coarser than they are, to stay quick and small; "
+        "pictures and numbers are of the surfaces themselves.");
+    return result;
+}
+
+std::string viewerData(const Report& report, const Scene& scene, const PageOptions& options,
+                       std::vector<std::string>& notes) {
+    const Scene shown = forViewer(scene, options, notes);
+    Json surfaces = Json::array(), spots = Json::array();
+    std::string elements;
+    for (std::size_t n = 0; n < shown.surfaces.size(); ++n) {
+        const SceneSurface& surface = shown.surfaces[n];
+        // those around the first are seen through
+        surfaces.push_back(
+            {{"name", surface.name}, {"color", surface.color}, {"opacity", n == 0 ? 1.0 : 0.35}});
+        elements +=
+            dataElement("surface-" + std::to_string(n), "text/plain", base64(gzip(mz3Of(surface))));
+    }
+    for (const SceneSpot& spot : shown.spots) spots.push_back(pointJson(spot.pointMm));
+    const Vec3 middle = 0.5 * (scene.box.minimum + scene.box.maximum);
+    const Json data{
+        {"surfaces", surfaces},
+        {"spots", spots},
+        {"start", pointJson(shown.spots.empty() ? middle : shown.spots.front().pointMm)},
+        {"hasImage", report.volume.has_value()}};
+    const std::string image =
+        report.volume ? niftiOf(report.volume->view, options.maxVoxels) : blankNifti(scene.box);
+    return dataElement("data", "application/json", jsonText(data)) +
+           dataElement("volume", "text/plain", base64(gzip(image))) + elements;
+}
+
+std::string viewerScripts() {
+    return "<script>\n" + std::string(embedded::niivueJs()) + "\n</script>\n<script>\n" +
+           std::string(embedded::viewerJs()) + "</script>\n";
+}
+
+}  // namespace
+
+bool hasViewer() {
+    return !embedded::niivueJs().empty();
+}
+
+std::string htmlPage(const Report& report, const std::vector<Picture>& pictures,
+                     const PageOptions& options) {
+    const Scene scene = makeScene(report);
+    std::vector<std::string> notes = report.notes;
+    bool showsViewer = false;
+    for (const SceneSurface& surface : scene.surfaces) {
+        showsViewer = showsViewer || !surface.mesh.triangles.empty();
+    }
+    if (showsViewer && !hasViewer()) {
+        notes.push_back(
+            "This program was built without the interactive viewer (niivue); the "
+            "pictures show the same surfaces.");
+        showsViewer = false;
+    }
+    const std::string scripts =
+        showsViewer ? viewerData(report, scene, options, notes) + viewerScripts() : "";
+    const VerdictWords words = wordsOf(report.verdict);
+    const std::string licenses = "<details><summary>Licences of the viewer</summary><pre>" +
+                                 escaped(std::string(embedded::licenses())) + "</pre></details>";
+    return fill(embedded::pageHtml(),
+                {{"GENERATOR", escaped(report.program + " " + report.version)},
+                 {"VERDICT_CLASS", words.style},
+                 {"VERDICT_SIGN", words.sign},
+                 {"VERDICT_WORD", words.word},
+                 {"TITLE", escaped(report.title)},
+                 {"HEADLINE", escaped(report.headline)},
+                 {"DATE", escaped(report.date)},
+                 {"FRAME", escaped(report.frame)},
+                 {"STYLE", std::string(embedded::styleCss())},
+                 {"FACTS", factsHtml(report)},
+                 {"VIEWER", showsViewer ? std::string(embedded::viewerHtml()) : ""},
+                 {"SPOTS", spotsHtml(scene, showsViewer)},
+                 {"CHECKS", checksHtml(report)},
+                 {"TABLES", tablesHtml(report)},
+                 {"PICTURES", picturesHtml(pictures)},
+                 {"NOTES", notesHtml(notes)},
+                 {"LICENSES", showsViewer ? licenses : ""},
+                 {"SCRIPTS", scripts}});
+}
+
+}  // namespace adaptiso

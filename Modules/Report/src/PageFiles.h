@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string_view>
+
+/// The files of page/, and niivue's script, as they were when the library was built.
+namespace adaptiso::embedded {
+
+std::string_view pageHtml();
+std::string_view viewerHtml();
+std::string_view styleCss();
+std::string_view viewerJs();
+std::string_view niivueJs();  ///< empty when niivue could not be had
+std::string_view licenses();
+
+}  // namespace adaptiso::embedded

@@ -1,0 +1,27 @@
+#include "adaptiso/Report/Pictures.h"
+
+#include "Charts.h"
+#include "Scene.h"
+#include "SlicePictures.h"
+#include "SurfacePictures.h"
+
+namespace adaptiso {
+
+std::vector<Picture> drawPictures(const Report& report) {
+    std::vector<Picture> pictures;
+    const auto add = [&](std::optional<Picture> picture) {
+        if (picture) pictures.push_back(std::move(*picture));
+    };
+    const Scene scene = makeScene(report);
+    if (!scene.isEmpty()) {
+        add(spotPicture(report, scene));
+        for (const int axis : {2, 1, 0}) add(contourPicture(report, scene, axis));
+        for (std::size_t n = 0; n < scene.surfaces.size(); ++n) add(sixSidesPicture(scene, n));
+    }
+    for (std::size_t n = 0; n < report.histograms.size(); ++n) add(histogramPicture(report, n));
+    add(trianglePicture(scene));
+    add(timesPicture(report));
+    return pictures;
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,107 @@
+#include "Scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace adaptiso {
+namespace {
+
+bool isFinite(const Vec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+/// Points keep their numbers; triangles that can't be drawn go.
+TriangleMesh drawable(const TriangleMesh& mesh) {
+    TriangleMesh result;
+    result.points.reserve(mesh.points.size());
+    for (const Vec3& p : mesh.points) result.points.push_back(lpsToRas(p));
+    const auto count = static_cast<VertexId>(mesh.points.size());
+    std::copy_if(mesh.triangles.begin(), mesh.triangles.end(), std::back_inserter(result.triangles),
+                 [&](const Triangle& t) {
+                     return std::all_of(t.begin(), t.end(), [&](VertexId v) {
+                         return v >= 0 && v < count && isFinite(mesh.points[v]);
+                     });
+                 });
+    return result;
+}
+
+void extend(BoundingBox& box, const Vec3& p) {
+    for (int axis = 0; axis < 3; ++axis) {
+        box.minimum[axis] = std::min(box.minimum[axis], p[axis]);
+        box.maximum[axis] = std::max(box.maximum[axis], p[axis]);
+    }
+}
+
+void extendByImage(BoundingBox& box, const ImageGeometry& image) {
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 index{corner & 1 ? static_cast<double>(image.size[0] - 1) : 0.0,
+                         corner & 2 ? static_cast<double>(image.size[1] - 1) : 0.0,
+                         corner & 4 ? static_cast<double>(image.size[2] - 1) : 0.0};
+        extend(box, lpsToRas(image.toPhysical(index)));
+    }
+}
+
+BoundingBox boxOf(const Scene& scene, const Report& report) {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    BoundingBox box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+    for (const SceneSurface& surface : scene.surfaces) {
+        for (const Triangle& t : surface.mesh.triangles) {
+            for (const VertexId v : t) extend(box, surface.mesh.points[v]);
+        }
+    }
+    if (box.minimum.x > box.maximum.x && report.volume) {
+        extendByImage(box, report.volume->view.geometry());
+    }
+    return box.minimum.x > box.maximum.x ? BoundingBox{{-1, -1, -1}, {1, 1, 1}} : box;
+}
+
+Vec3 between(const Vec3& a, const Vec3& b, int axis, double atMm) {
+    const double part = (atMm - a[axis]) / (b[axis] - a[axis]);
+    Vec3 p = a + part * (b - a);
+    p[axis] = atMm;
+    return p;
+}
+
+}  // namespace
+
+Scene makeScene(const Report& report) {
+    Scene scene;
+    for (const ReportSurface& given : report.surfaces) {
+        SceneSurface surface;
+        surface.name = given.name;
+        surface.color = surfaceColor(scene.surfaces.size());
+        surface.mesh = drawable(given.mesh);
+        surface.triangles = std::ssize(given.mesh.triangles);
+        if (given.valuesMm.size() == given.mesh.points.size()) surface.valuesMm = given.valuesMm;
+        for (const double value : surface.valuesMm) {
+            if (value > surface.largestValueMm) surface.largestValueMm = value;
+        }
+        scene.surfaces.push_back(std::move(surface));
+    }
+    for (const ReportSpot& spot : report.spots) {
+        if (isFinite(spot.pointMm)) {
+            scene.spots.push_back({spot.what, lpsToRas(spot.pointMm), spot.isFailure});
+        }
+    }
+    scene.box = boxOf(scene, report);
+    return scene;
+}
+
+std::vector<Segment> cutByPlane(const TriangleMesh& mesh, int axis, double atMm) {
+    std::vector<Segment> segments;
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 corners[3]{mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
+        Segment segment;
+        std::size_t found = 0;
+        for (int n = 0; n < 3; ++n) {
+            const Vec3 &a = corners[n], &b = corners[(n + 1) % 3];
+            if ((a[axis] >= atMm) == (b[axis] >= atMm)) continue;
+            segment[found++] = between(a, b, axis, atMm);
+        }
+        if (found == 2) segments.push_back(segment);
+    }
+    return segments;
+}
+
+}  // namespace adaptiso

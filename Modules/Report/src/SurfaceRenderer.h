@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "Canvas.h"
+#include "Scene.h"
+
+namespace adaptiso {
+
+/// A side from which a surface is looked at, without perspective; RAS.
+struct View {
+    const char* name;                  ///< "from the front"
+    Vec3 toViewer;                     ///< unit
+    Vec3 up;                           ///< unit
+    const char *leftSide, *rightSide;  ///< what lies there in the picture: "R", "L"
+
+    Vec3 right() const { return cross(up, toViewer); }
+};
+
+/// Front, back, left, right, top, bottom.
+const std::array<View, 6>& sixViews();
+
+/// What a view shows, `size` pixels a side.
+struct Rendering {
+    int size = 0;
+    Vec3 middle;  ///< of the picture
+    double mmPerPixel = 1;
+    std::vector<ReportColor> colors;
+    std::vector<double> depthMm;  ///< of the nearest surface, towards the viewer; -inf: none
+
+    Pixel toPixel(const Vec3& p, const View& view) const;
+    /// Nothing lies more than `toleranceMm` before `p`, and something not much behind it.
+    bool isSeen(const Vec3& p, const View& view, double toleranceMm) const;
+};
+
+/// Draws the surface with a depth buffer; light comes from the viewer's upper left. Triangles seen
+/// from their back are red. Edges are drawn where triangles are large enough to tell them apart.
+/// \param box  what fills the picture, whatever the view
+Rendering render(const SceneSurface& surface, const BoundingBox& box, const View& view, int size);
+
+}  // namespace adaptiso

@@ -1,0 +1,104 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "PageParts.h"
+#include "Support/Meshes.h"
+#include "adaptiso/Report/Page.h"
+
+namespace adaptiso {
+namespace {
+
+Report example() {
+    Report report;
+    report.program = "adaptiso-check";
+    report.version = "1.2.3";
+    report.date = "2026-11-21 09:20 UTC";
+    report.title = "Check of a.stl";
+    report.verdict = ReportVerdict::Failed;
+    report.headline = "1 check failed.";
+    report.inputs = {{"Surface", "a.stl"}};
+    report.checks = {{"a.stl", "closed", ReportOutcome::Failed, "a hole"},
+                     {"a.stl", "genus 0", ReportOutcome::Passed, ""}};
+    report.surfaces.push_back({"a.stl", testing::icosphere(2, {}, 10)});
+    report.spots.push_back({"hole", {1, 2, 3}});
+    return report;
+}
+
+bool holds(const std::string& page, const std::string& text) {
+    return page.find(text) != std::string::npos;
+}
+
+TEST(Page, TellsTheVerdictInWords) {
+    Report report = example();
+    EXPECT_TRUE(holds(htmlPage(report, {}), "FAILED: Check of a.stl"));
+    report.verdict = ReportVerdict::Passed;
+    EXPECT_TRUE(holds(htmlPage(report, {}), "PASSED: Check of a.stl"));
+    report.verdict = ReportVerdict::Done;
+    EXPECT_TRUE(holds(htmlPage(report, {}), "DONE: Check of a.stl"));
+}
+
+TEST(Page, HoldsWhatItWasGiven) {
+    const std::string page = htmlPage(example(), {{"p.png", "A title", "An alt", "PNG", 3, 4}});
+    for (const char* text :
+         {"adaptiso-check 1.2.3", "2026-11-21 09:20 UTC", "1 check failed.", "a hole",
+          "(-1.0, -2.0, 3.0)", "alt=\"An alt\"", "A title", "data:image/png;base64,UE5H"}) {
+        EXPECT_TRUE(holds(page, text)) << text;
+    }
+}
+
+TEST(Page, ForbidsToLoadAnything) {
+    EXPECT_TRUE(holds(htmlPage(example(), {}), "default-src 'none'"));
+}
+
+TEST(Page, TextsAreTextsWhateverTheyHold) {
+    Report report = example();
+    const std::string evil = "</script><script>alert('\"1\"')</script>{{TITLE}}&\x01\xff";
+    report.title = report.headline = report.surfaces[0].name = evil;
+    report.inputs = report.options = {{evil, evil}};
+    report.checks[0].finding = report.spots[0].what = evil;
+    report.tables = {{evil, {evil}, {{evil}}}};
+    report.notes = {evil};
+    const std::string page = htmlPage(report, {{"p.png", evil, evil, "", 1, 1}});
+    EXPECT_FALSE(holds(page, "<script>alert"));
+    EXPECT_FALSE(holds(page, "\"1\")"));
+    EXPECT_TRUE(holds(page, "{{TITLE}}"));  // as it was given, not filled in
+}
+
+TEST(Page, EscapesWhatHtmlTakesForItself) {
+    EXPECT_EQ(escaped("a<b>&\"c\"'"), "a&lt;b&gt;&amp;&quot;c&quot;&#39;");
+    EXPECT_EQ(escaped("\xff"), "\uFFFD");
+    EXPECT_EQ(escaped("Zürich µm"), "Zürich µm");
+}
+
+TEST(Page, SpotsMoveTheViewerWhereThereIsOne) {
+    EXPECT_EQ(holds(htmlPage(example(), {}), "data-spot=\"0\""), hasViewer());
+    EXPECT_EQ(holds(htmlPage(example(), {}), "id=\"surface-0\""), hasViewer());
+    EXPECT_EQ(holds(htmlPage(example(), {}), "without the interactive viewer"), !hasViewer());
+}
+
+TEST(Page, NothingToSeeNeedsNoViewer) {
+    Report report = example();
+    report.surfaces.clear();
+    EXPECT_FALSE(holds(htmlPage(report, {}), "data-spot"));
+    EXPECT_FALSE(holds(htmlPage(report, {}), "id=\"viewer\""));
+}
+
+TEST(Page, ViewerGetsNoMoreThanItCanShow) {
+    if (!hasViewer()) GTEST_SKIP() << "built without niivue";
+    PageOptions options;
+    options.maxTriangles = 100;
+    EXPECT_TRUE(holds(htmlPage(example(), {}, options), "coarser than they are"));
+    EXPECT_FALSE(holds(htmlPage(example(), {}), "coarser than they are"));
+}
+
+TEST(ReportDate, IsThatOfSourceDateEpoch) {
+    setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
+    EXPECT_EQ(reportDate(), "2023-11-14 22:13 UTC");
+    setenv("SOURCE_DATE_EPOCH", "no number", 1);
+    EXPECT_NE(reportDate(), "2023-11-14 22:13 UTC");
+    unsetenv("SOURCE_DATE_EPOCH");
+}
+
+}  // namespace
+}  // namespace adaptiso
