@@ -88,6 +88,7 @@ void declareOutput(CLI::App& app, CheckOptions& options) {
         ->type_name("N")
         ->check(CLI::Range(std::int64_t{0}, kMaxPairs).description(""))
         ->group(kOutput);
+    declareReportOptions(app, options.report, kOutput);
 }
 
 /// What one option alone can't tell.
@@ -117,6 +118,7 @@ Examples:
   adaptiso-check surface.stl
   adaptiso-check --nested inner_skull.surf outer_skull.surf outer_skin.surf
   adaptiso-check bone.ply --volume ct.nii.gz --iso 250 --json report.json
+  adaptiso-check --nested *.surf --volume T1.mgz --report check.html
   adaptiso-check --quiet *.vtp || echo 'not all of them are sound'
 
 Exit codes: 0 all that is required holds, 1 something does not, 2 wrong usage,

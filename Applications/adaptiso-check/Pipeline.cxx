@@ -14,6 +14,7 @@
 #include "Common/RunApp.h"
 #include "Isosurface.h"
 #include "JsonReport.h"
+#include "ReportPage.h"
 #include "TextReport.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
@@ -31,10 +32,14 @@ constexpr const char* kCheck = "check";
 constexpr const char* kNesting = "nesting";
 constexpr const char* kIsosurface = "isosurface";
 
-void checkJsonName(const CheckOptions& options) {
+constexpr const char* kReport = "report";
+
+void checkOutputs(const CheckOptions& options) {
+    std::vector<fs::path> inputs = options.files;
+    if (!options.volume.empty()) inputs.push_back(options.volume);
+    checkReportOutputs(options.report, inputs);
     if (!options.common.wantsJson() || options.common.wantsJsonOnStdout()) return;
-    for (const fs::path& file : options.files) checkNotInput(options.common.json, file);
-    if (!options.volume.empty()) checkNotInput(options.common.json, options.volume);
+    for (const fs::path& input : inputs) checkNotInput(options.common.json, input);
     checkOutput(options.common.json);
 }
 
@@ -44,21 +49,26 @@ public:
     Checker(const CheckOptions& options, ProgressLine& progress)
         : options_(options), progress_(progress), run_(options) {}
 
-    CheckRun check() && {
+    CheckRun check() {
         readImage();
         for (const fs::path& file : options_.files) {
             checkFile(file);
             // surfaces that lie in each other are needed together, others one at a time
             if (options_.isNested) continue;
             measureDeviations();
+            keepForReport();
             meshes_.clear();
         }
         if (options_.isNested) {
             checkNested();
             measureDeviations();
+            keepForReport();
         }
         return std::move(run_);
     }
+
+    /// What the report shows; nothing unless one is wanted. After check().
+    ShownSurfaces& shown() { return shown_; }
 
 private:
     struct Loaded {
@@ -79,6 +89,7 @@ private:
         const VolumeView& view = read->volume.view();
         run_.volume = VolumeSummary{read->format, view.geometry()};
         image_ = view.geometry();
+        if (options_.report.isWanted()) shown_.image = *read;
         for (const std::string& warning : read->warnings) {
             run_.warnings.push_back(options_.volume.filename().string() + ": " + warning);
         }
@@ -195,9 +206,23 @@ private:
         });
     }
 
+    /// Copies of the meshes, in one frame; as checked where theirs says nothing of the image.
+    void keepForReport() {
+        if (!options_.report.isWanted()) return;
+        std::vector<NamedMesh> meshes;
+        for (const Loaded& loaded : meshes_) meshes.push_back(loaded.mesh);
+        const CommonFrame common = bringToOneFrame(meshes, image_);
+        shown_.frame = common.frame;
+        shown_.notes.insert(shown_.notes.end(), common.warnings.begin(), common.warnings.end());
+        for (std::size_t n = 0; n < meshes.size(); ++n) {
+            shown_.surfaces.push_back({meshes_[n].number, std::move(meshes[n].file.mesh)});
+        }
+    }
+
     const CheckOptions& options_;
     ProgressLine& progress_;
     CheckRun run_;
+    ShownSurfaces shown_;
     std::optional<ImageGeometry> image_;
     std::optional<Isosurface> isosurface_;
     std::vector<Loaded> meshes_;
@@ -258,15 +283,22 @@ bool CheckRun::hasPassed() const {
 int runCheck(const CheckOptions& options) {
     const ThreadLimit threads(options.common);
     ProgressLine progress(options.common.isQuiet);
-    checkJsonName(options);
-    const CheckRun run = Checker(options, progress).check();
+    checkOutputs(options);
+    Checker checker(options, progress);
+    CheckRun run = checker.check();
 
+    const PictureFolder pictures(options.report.pictures);
+    std::vector<AtomicOutput> outputs;
+    if (options.report.isWanted()) {
+        progress.show(kReport);
+        Report page = makeReport(run, checker.shown());
+        run.timer.time(kReport, [&] { writeReport(page, kProgram, options.report, outputs); });
+    }
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
-        std::vector<AtomicOutput> outputs;
         outputs.emplace_back(options.common.json).writeText(json);
-        AtomicOutput::commit(outputs);
     }
+    AtomicOutput::commit(outputs);
     progress.clear();
     printWarnings(run);
     report(run, json);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "Common/CommonOptions.h"
+#include "Common/ReportOutput.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso {
@@ -29,6 +30,7 @@ struct CheckOptions {
     std::optional<double> minAngleDeg;         ///< none: kDefaultMinAngleDeg, required of Bem only
     std::optional<double> maxOffMm;            ///< none: half a voxel on the mean
     std::int64_t maxPairs = 1000;              ///< of triangles that cross, to list
+    ReportOptions report;
     CommonOptions common;
 
     static constexpr double kDefaultMinGapMm = 0.5;   // thinner than any bone of the skull

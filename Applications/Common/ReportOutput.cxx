@@ -1,0 +1,76 @@
+#include "Common/ReportOutput.h"
+
+#include "Common/CommonOptions.h"
+#include "Common/Numbers.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Report/Page.h"
+#include "adaptiso/Report/Pictures.h"
+
+namespace adaptiso {
+
+namespace fs = std::filesystem;
+
+void declareReportOptions(CLI::App& app, ReportOptions& options, const std::string& group) {
+    app.add_option("--report", options.page,
+                   "Write a page to look at: the verdict, numbers, pictures and a viewer, in one "
+                   "HTML file that needs no network")
+        ->type_name("OUT.html")
+        ->group(group);
+    app.add_option("--pictures", options.pictures,
+                   "Write the report's pictures alone, as PNG files, into the folder DIR")
+        ->type_name("DIR")
+        ->group(group);
+}
+
+void checkReportOutputs(const ReportOptions& options, std::span<const fs::path> inputs) {
+    if (!options.page.empty()) {
+        for (const fs::path& input : inputs) checkNotInput(options.page, input);
+        checkOutput(options.page);
+    }
+    if (options.pictures.empty()) return;
+    std::error_code error;
+    if (fs::exists(options.pictures, error) && !fs::is_directory(options.pictures, error)) {
+        throw FileError(options.pictures.string() + ": is not a folder");
+    }
+    if (!fs::exists(options.pictures, error)) checkOutput(options.pictures);  // its folder is there
+}
+
+PictureFolder::PictureFolder(const fs::path& folder) : folder_(folder) {
+    if (folder.empty()) return;
+    std::error_code error;
+    isMine_ = fs::create_directory(folder, error);
+    if (error) throw FileError(folder.string() + ": can't be made: " + error.message());
+}
+
+PictureFolder::~PictureFolder() {
+    std::error_code error;
+    if (isMine_) fs::remove(folder_, error);  // refuses a folder that holds something
+}
+
+void writeReport(Report& report, const std::string& program, const ReportOptions& options,
+                 std::vector<AtomicOutput>& outputs) {
+    report.program = program;
+    report.version = programVersion();
+    report.date = reportDate();
+    const std::vector<Picture> pictures = drawPictures(report);
+    if (!options.pictures.empty()) {
+        for (const Picture& picture : pictures) {
+            outputs.emplace_back(options.pictures / picture.name).writeText(picture.png);
+        }
+    }
+    if (!options.page.empty()) {
+        outputs.emplace_back(options.page).writeText(htmlPage(report, pictures));
+    }
+}
+
+std::vector<ReportFact> imageFacts(const std::string& name, const std::string& format,
+                                   const ImageGeometry& geometry) {
+    const Vec3 spacing = geometry.spacingMm();
+    const auto mm = [](double value) { return formatNumber(std::stod(formatFixed(value, 4))); };
+    return {{"Image", name + " (" + format + ")"},
+            {"Voxels", std::to_string(geometry.size[0]) + " × " + std::to_string(geometry.size[1]) +
+                           " × " + std::to_string(geometry.size[2])},
+            {"Voxel size", mm(spacing.x) + " × " + mm(spacing.y) + " × " + mm(spacing.z) + " mm"}};
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,323 @@
+"""Report pages: what they hold, and what people see of them in a browser."""
+
+import html.parser
+import math
+import os
+import re
+import subprocess
+import unittest
+from pathlib import Path
+
+import browser
+from support import BAD_INPUT, BIN, CHECK_FAILED, OK, ApplicationTest, ball, write_nifti
+
+CHECK = str(BIN / "adaptiso-check")
+EXPECTED = Path(__file__).parent / "expected"
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+class Page(html.parser.HTMLParser):
+    """The elements of a page, and the text that is seen."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.elements, self.seen, self.hidden = [], [], 0
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.elements.append((tag, dict(attributes)))
+        self.hidden += tag in ("script", "style")
+
+    def handle_endtag(self, tag):
+        self.hidden -= tag in ("script", "style")
+
+    def handle_data(self, data):
+        if not self.hidden:
+            self.seen.append(data)
+
+    def all(self, tag):
+        return [attributes for name, attributes in self.elements if name == tag]
+
+    def text(self):
+        return " ".join(" ".join(self.seen).split())
+
+
+def read_off(path):
+    lines = Path(path).read_text().split("\n")
+    numbers = [line for line in lines if line and line[0] in "-0123456789"]
+    vertices, triangles = map(int, numbers[0].split()[:2])
+    points = [tuple(map(float, line.split())) for line in numbers[1:1 + vertices]]
+    faces = [tuple(map(int, line.split()[1:4]))
+             for line in numbers[1 + vertices:1 + vertices + triangles]]
+    return points, faces
+
+
+def write_off(path, points, faces):
+    Path(path).write_text("".join(
+        [f"OFF\n{len(points)} {len(faces)} 0\n"]
+        + ["%.9g %.9g %.9g\n" % p for p in points] + ["3 %d %d %d\n" % f for f in faces]))
+
+
+class ReportTest(ApplicationTest):
+    """A ball in an image of 24^3 voxels that lies off the origin, and the same with a hole."""
+
+    def setUp(self):
+        super().setUp()
+        write_nifti(self.path("ball.nii"), ball(24, 8, origin=(-10, 20, 30)))
+        self.mesh("ball.nii", "--iso", "100", "--method", "mc", "--quiet", "-o", "sound.off")
+
+    def check(self, *arguments, code=OK, **options):
+        done = subprocess.run([CHECK, *map(str, arguments)], cwd=self.folder, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=300,
+                              **options)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def page(self, *arguments, code=OK, **options):
+        self.check(*arguments, "--report", "page.html", "--quiet", code=code, **options)
+        return Page(self.path("page.html").read_text())
+
+    def make_hole(self):
+        """Takes the triangles round the rightmost vertex away. The middle of the hole, RAS mm."""
+        points, faces = read_off(self.path("sound.off"))
+        right = max(range(len(points)), key=lambda v: points[v][0])
+        rim = [[v for v in face if v != right] for face in faces if right in face]
+        write_off(self.path("open.off"), points, [face for face in faces if right not in face])
+        total = sum(math.dist(points[a], points[b]) for a, b in rim)
+        return [sum(math.dist(points[a], points[b]) * (points[a][axis] + points[b][axis]) / 2
+                    for a, b in rim) / total for axis in range(3)]
+
+
+class Contents(ReportTest):
+    def test_a_sound_surface_passes(self):
+        page = self.page("sound.off", "--volume", "ball.nii", "--iso", "100")
+        self.assertIn("✔ PASSED", page.text())
+        self.assertIn("Isovalue 100", page.text())
+        self.assertIn("24 × 24 × 24", page.text())
+        self.assertNotIn("FAILED", page.text())
+
+    def test_a_hole_fails_and_is_told(self):
+        middle = self.make_hole()
+        page = self.page("open.off", code=CHECK_FAILED)
+        self.assertIn("✘ FAILED", page.text())
+        point = "(" + ", ".join(f"{v:.1f}" for v in middle) + ")"
+        self.assertRegex(page.text(), r"hole of \d+ edges, [\d.]+ mm round, in open\.off\s+"
+                         + re.escape(point))
+
+    def test_pictures_have_alt_texts_and_are_in_the_page(self):
+        images = self.page("sound.off", "--volume", "ball.nii").all("img")
+        self.assertGreaterEqual(len(images), 6)
+        for image in images:
+            self.assertTrue(image["alt"])
+            self.assertTrue(image["src"].startswith("data:image/png;base64,"))
+
+    def test_nothing_is_loaded_from_elsewhere(self):
+        page = self.page("sound.off")
+        for tag, attributes in page.elements:
+            self.assertNotIn(tag, ("link", "iframe", "object", "embed", "base"))
+            for name in ("src", "href", "action", "srcset"):
+                value = attributes.get(name, "#")
+                self.assertTrue(value.startswith(("#", "data:")), value[:80])
+        policies = [meta["content"] for meta in page.all("meta")
+                    if meta.get("http-equiv") == "Content-Security-Policy"]
+        self.assertEqual(len(policies), 1)
+        self.assertIn("default-src 'none'", policies[0])
+
+    def test_folders_are_not_told(self):
+        self.path("Jane^Doe").mkdir()
+        os.rename(self.path("sound.off"), self.path("Jane^Doe/sound.off"))
+        os.rename(self.path("ball.nii"), self.path("Jane^Doe/ball.nii"))
+        self.page("Jane^Doe/sound.off", "--volume", "Jane^Doe/ball.nii", "--iso", "100")
+        self.assertNotIn("Jane", self.path("page.html").read_text())
+        self.page("Jane^Doe/no.off", "Jane^Doe/sound.off", code=BAD_INPUT)
+        self.assertNotIn("Jane", self.path("page.html").read_text())
+
+    def test_a_header_that_names_the_patient_is_not_told(self):
+        data = bytearray(self.path("ball.nii").read_bytes())
+        data[148:156] = b"Jane Doe"  # NIfTI's descrip
+        self.path("ball.nii").write_bytes(data)
+        self.page("sound.off", "--volume", "ball.nii")
+        self.assertNotIn("Jane", self.path("page.html").read_text())
+
+    def test_names_are_text_whatever_they_hold(self):
+        name = "<img src=x onerror=alert(1)>&'.off"
+        os.rename(self.path("sound.off"), self.path(name))
+        page = self.page(name)
+        self.assertIn(name, page.text())
+        self.assertEqual([i for i in page.all("img") if "onerror" in i], [])
+
+    def test_unreadable_files_are_told(self):
+        self.path("bad.off").write_text("OFF\n3 1 0\n")
+        page = self.page("sound.off", "bad.off", code=BAD_INPUT)
+        self.assertIn("✘ FAILED", page.text())
+        self.assertIn("1 of 2 files could not be read", page.text())
+        page = self.page("bad.off", code=BAD_INPUT)
+        self.assertIn("✘ FAILED", page.text())
+
+    def test_same_input_same_bytes_but_for_the_times(self):
+        environment = {**os.environ, "SOURCE_DATE_EPOCH": "1700000000"}
+        texts = []
+        for threads in (1, 2):
+            self.page("sound.off", "--volume", "ball.nii", "--threads", threads, env=environment)
+            text = self.path("page.html").read_text()
+            self.assertIn("2023-11-14 22:13 UTC", text)
+            texts.append(re.sub(r"<figure>(?:(?!</figure>).)*Time by stage</figcaption>", "", text))
+        self.assertEqual(*texts)
+
+
+class Files(ReportTest):
+    def test_pictures_alone(self):
+        self.check("sound.off", "--volume", "ball.nii", "--pictures", "pictures", "--quiet")
+        names = sorted(p.name for p in self.path("pictures").iterdir())
+        self.assertEqual(names, ["contours-axial.png", "contours-coronal.png",
+                                 "contours-sagittal.png", "spots.png", "surface-1.png", "times.png",
+                                 "triangles.png"])
+        for name in names:
+            self.assertTrue((self.path("pictures") / name).read_bytes().startswith(PNG))
+        self.assertFalse(self.path("page.html").exists())
+
+    def test_broken_surfaces_get_pictures_too(self):
+        self.path("broken.off").write_text(
+            "OFF\n4 3 0\nnan 0 0\n1 0 0\n0 1 0\n0 0 1\n3 1 2 3\n3 0 1 2\n3 1 2 99\n")
+        page = self.page("broken.off", code=CHECK_FAILED)
+        self.assertIn("broken.off from six sides", page.text())
+
+    def test_an_input_is_never_overwritten(self):
+        before = self.contents()
+        done = self.check("sound.off", "--report", "sound.off", code=BAD_INPUT)
+        self.assertRegex(done.stderr, "sound.off")
+        self.check("sound.off", "--report", "missing/page.html", code=BAD_INPUT)
+        self.check("sound.off", "--pictures", "ball.nii", code=BAD_INPUT)
+        self.check("sound.off", "--pictures", "missing/pictures", code=BAD_INPUT)
+        self.assertEqual(self.contents(), before)
+
+    def test_no_display_is_needed(self):
+        bare = {key: value for key, value in os.environ.items()
+                if key not in ("DISPLAY", "WAYLAND_DISPLAY", "HOME")}
+        self.page("sound.off", env=bare)
+
+
+class InTheBrowser(ReportTest):
+    """What a person sees, in headless Chromium."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = browser.Browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+
+    def show(self, *arguments, code=OK):
+        self.browser.requests(), self.browser.console()  # those of the test before
+        self.page(*arguments, code=code)
+        if "without the interactive viewer" in self.path("page.html").read_text():
+            self.skipTest("built without niivue")
+        self.assertEqual(self.browser.open(self.path("page.html")), "ready",
+                         self.browser.console())
+
+    def show_hole(self):
+        middle = self.make_hole()
+        self.show("open.off", "--volume", "ball.nii", code=CHECK_FAILED)
+        return middle
+
+    def assert_near(self, point, other, delta):
+        for a, b in zip(point, other):
+            self.assertAlmostEqual(a, b, delta=delta)
+
+    def test_loads_without_errors_and_asks_for_nothing(self):
+        self.show("sound.off", "--volume", "ball.nii")
+        self.assertEqual(self.browser.console(), [])
+        self.assertEqual(self.browser.requests(), [self.path("page.html").as_uri()])
+
+    def test_a_surface_without_an_image(self):
+        self.show("sound.off")
+        self.assertEqual(self.browser.console(), [])
+        self.assertGreater(self.outline_pixels(), 100)
+
+    def outline_pixels(self):
+        return self.browser.run("""
+            const layer = document.getElementById("outlines");
+            const { data } = layer.getContext("2d").getImageData(0, 0, layer.width, layer.height);
+            let shown = 0;
+            for (let n = 3; n < data.length; n += 4) shown += data[n] > 0;
+            return shown;""")
+
+    def test_the_canvas_is_not_blank(self):
+        self.show("sound.off", "--volume", "ball.nii")
+        grey = self.browser.grey(self.browser.screenshot(".screen"), 40, 40)
+        bright = sum(g > 60 for g in grey)
+        self.assertGreater(bright, 200)   # an eighth: the ball fills a part of each of four views
+        self.assertLess(bright, 1400)     # black around it
+
+    def test_a_click_on_a_place_moves_the_crosshair_there(self):
+        middle = self.show_hole()
+        self.browser.run("adaptisoViewer.moveTo([0, 30, 40])")
+        # a crosshair is kept in parts of the image as floats
+        self.assert_near(self.browser.crosshair(), [0, 30, 40], 1e-3)
+        button = next(b for b in self.browser.find("button[data-spot]") if "hole" in b.text)
+        button.click()
+        self.assert_near(self.browser.crosshair(), middle, 0.01)  # the page has it in floats
+        self.assertEqual(button.get_attribute("aria-current"), "true")
+        told = self.browser.find("#position")[0].text
+        self.assertEqual(told, ", ".join(f"{v:.1f}" for v in self.browser.crosshair()) + " mm")
+
+    def test_keys_move_the_crosshair(self):
+        self.show("sound.off", "--volume", "ball.nii")
+        start = self.browser.crosshair()
+        self.browser.find("#gl")[0].send_keys("\ue014\ue013\ue00e")  # right, up, page up
+        self.assert_near(self.browser.crosshair(), [v + 1 for v in start], 1e-3)
+
+    def test_outlines_lie_where_the_surface_is_cut(self):
+        self.show("sound.off", "--volume", "ball.nii")
+        self.browser.run("adaptisoViewer.moveTo([1.5, 31.5, 41.5])")  # the middle of the ball
+        for axis in range(3):
+            points = self.browser.run(
+                "return adaptisoViewer.cutOf(adaptisoViewer.surfaces[0], arguments[0], 41.5)"
+                if axis == 2 else
+                "return adaptisoViewer.cutOf(adaptisoViewer.surfaces[0], arguments[0],"
+                " [1.5, 31.5][arguments[0]])", axis)
+            self.assertGreater(len(points), 100)
+            for n in range(0, len(points), 3):
+                # samples are rounded to a tenth of a voxel
+                self.assertAlmostEqual(math.dist(points[n:n + 3], (1.5, 31.5, 41.5)), 8, delta=0.15)
+
+    def test_a_hidden_surface_has_no_outline(self):
+        self.show("sound.off", "--volume", "ball.nii")
+        self.assertGreater(self.outline_pixels(), 100)
+        self.browser.find("#surfaces input[type=checkbox]")[0].click()
+        self.assertEqual(self.outline_pixels(), 0)
+
+    def test_cutting_away_changes_the_picture(self):
+        self.show("sound.off", "--volume", "ball.nii")
+        self.browser.run("adaptisoViewer.moveTo([1.5, 31.5, 41.5]);"
+                         "adaptisoViewer.nv.setRenderAzimuthElevation(0, 90)")
+        before = self.browser.screenshot(".screen")
+        self.browser.run("const cut = document.getElementById('cut'); cut.value = '2+';"
+                         "cut.dispatchEvent(new Event('change'))")
+        after = self.browser.screenshot(".screen")
+        before, after = (self.browser.grey(png, 40, 40) for png in (before, after))
+        changed = [n for n, (a, b) in enumerate(zip(before, after)) if abs(a - b) > 15]
+        # from above the inside shows, in the fourth of the views alone
+        self.assertGreater(len(changed), 20)
+        for n in changed:
+            self.assertGreaterEqual(n // 40, 19)
+            self.assertGreaterEqual(n % 40, 19)
+
+    def test_looks_as_it_did(self):
+        """Loosely: fonts and drivers differ. ADAPTISO_KEEP_SCREENSHOT=1 makes a new one."""
+        self.show_hole()
+        png = self.browser.screenshot(".screen")
+        expected = EXPECTED / "report-viewer.png"
+        if os.environ.get("ADAPTISO_KEEP_SCREENSHOT"):
+            expected.write_bytes(png)
+        grey, known = (self.browser.grey(p, 48, 48) for p in (png, expected.read_bytes()))
+        differences = sorted(abs(a - b) for a, b in zip(grey, known))
+        # of 255; a view that is missing or turned changes a tenth of the parts by 100 and more
+        self.assertLess(sum(differences) / len(differences), 4)
+        self.assertLess(differences[int(0.98 * len(differences))], 60)
+
+
+if __name__ == "__main__":
+    browser.require()
+    unittest.main(verbosity=2)

@@ -1,0 +1,106 @@
+"""Headless Chromium, as the tests of report pages use it."""
+
+import base64
+import json
+import shutil
+import sys
+import tempfile
+import time
+
+SKIPPED = 77
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.options import Options
+    from selenium.webdriver.chrome.service import Service
+except ImportError:
+    webdriver = None
+
+CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
+
+
+def require():
+    """Ends the test program as skipped where there is no browser to drive."""
+    if webdriver is None or not CHROMIUM or not DRIVER:
+        print("skipped: needs chromium, chromium-driver and python3-selenium")
+        sys.exit(SKIPPED)
+
+
+class Browser:
+    """One window on one page. WebGL is drawn by the processor, so that it works anywhere."""
+
+    def __init__(self, width=1280, height=1700):
+        self.profile = tempfile.mkdtemp(prefix="adaptiso-chromium-")
+        options = Options()
+        for argument in ("--headless=new", "--no-sandbox", "--no-first-run", "--disable-quic",
+                         "--disable-background-networking", "--disable-component-update",
+                         "--disable-sync", "--use-angle=swiftshader",
+                         "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
+                         "--hide-scrollbars", "--force-device-scale-factor=1",
+                         f"--user-data-dir={self.profile}", f"--window-size={width},{height}"):
+            options.add_argument(argument)
+        options.binary_location = CHROMIUM
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        self.driver = webdriver.Chrome(options=options, service=Service(DRIVER))
+        self.driver.set_script_timeout(60)
+        self.driver.set_page_load_timeout(240)
+
+    def close(self):
+        self.driver.quit()
+        shutil.rmtree(self.profile, ignore_errors=True)
+
+    def open(self, path):
+        """Opens a file from disk and waits for its viewer: "ready", "missing", or None."""
+        self.driver.get(path.as_uri())
+        end = time.monotonic() + 240
+        while time.monotonic() < end:
+            state = self.run("return document.body.dataset.viewer || null")
+            if state or not self.find("#viewer"):
+                return state
+            time.sleep(0.2)
+        raise TimeoutError("the viewer is neither ready nor missing after 240 s")
+
+    def run(self, script, *arguments):
+        return self.driver.execute_script(script, *arguments)
+
+    def find(self, selector):
+        return self.driver.find_elements("css selector", selector)
+
+    def crosshair(self):
+        return self.run("return adaptisoViewer.crosshair()")
+
+    def console(self):
+        """What was written to the console since the last time."""
+        return [entry["message"] for entry in self.driver.get_log("browser")]
+
+    def requests(self):
+        """Addresses that the page asked for, but for what it holds itself."""
+        messages = [json.loads(entry["message"])["message"]
+                    for entry in self.driver.get_log("performance")]
+        asked = [m["params"]["request"]["url"] for m in messages
+                 if m["method"] == "Network.requestWillBeSent"]
+        return [url for url in asked if not url.startswith(("data:", "blob:"))]
+
+    def screenshot(self, selector):
+        """PNG bytes of the element, as it is seen."""
+        self.run("document.querySelector(arguments[0]).scrollIntoView()", selector)
+        return base64.b64decode(self.find(selector)[0].screenshot_as_base64)
+
+    def grey(self, png, columns, rows):
+        """Means (0 to 255) of columns x rows equal parts of a picture, row by row."""
+        self.driver.get("about:blank")
+        return self.driver.execute_async_script("""
+            const [url, columns, rows, done] = arguments, image = new Image();
+            image.onload = () => {
+                const canvas = Object.assign(document.createElement("canvas"),
+                                             { width: columns, height: rows });
+                const context = canvas.getContext("2d");
+                context.imageSmoothingQuality = "high";
+                context.drawImage(image, 0, 0, columns, rows);
+                const { data } = context.getImageData(0, 0, columns, rows), grey = [];
+                for (let n = 0; n < data.length; n += 4)
+                    grey.push((data[n] + data[n + 1] + data[n + 2]) / 3);
+                done(grey);
+            };
+            image.src = url;""", "data:image/png;base64," + base64.b64encode(png).decode(),
+            columns, rows)
