@@ -64,6 +64,7 @@ struct BemRun {
     std::vector<std::pair<std::string, std::uintmax_t>> files;  ///< of the folder
     std::vector<std::filesystem::path> subjectFiles;
     StageTimer timer{};
+    std::optional<ReadVolume> shownImage{};  ///< for the report; none unless one is wanted
 
     bool hasModel() const { return findings.empty(); }
 };

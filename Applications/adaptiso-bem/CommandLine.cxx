@@ -254,8 +254,9 @@ void declareOutput(CLI::App& app, BemOptions& options) {
     app.add_flag("--gifti", options.writesGifti, "Write .gii files too")->group(kOutput);
     app.add_flag("--vtp", options.writesVtp, "Write .vtp files too")->group(kOutput);
     app.add_flag("--dry-run", options.isDryRun,
-                 "Do and check everything, write nothing but --json's report")
+                 "Do and check everything, write nothing but the reports asked for by name")
         ->group(kOutput);
+    declareReportOptions(app, options.report, kOutput);
 }
 
 /// What one option alone can't tell.
@@ -301,7 +302,7 @@ constexpr const char* kFooter = R"(Examples:
   adaptiso-bem --t1 T1.mgz --subjects-dir subjects --subject anna -o model
   adaptiso-bem --labels final_tissues.nii.gz --preset charm --vertices 642 -o model
   adaptiso-bem --probabilities c1.nii c2.nii c3.nii c4.nii c5.nii -o model
-  adaptiso-bem --ct ct.nii.gz --meg -o model
+  adaptiso-bem --ct ct.nii.gz --meg -o model --report model.html
   adaptiso-bem --surfaces inner.stl outer.stl skin.stl --min-gap 3,2 -o model
 
 Exit codes: 0 done, 1 no model could be guaranteed (the folder holds report.json

@@ -26,6 +26,7 @@ ReadVolume readImage(const fs::path& path, const std::string& role, BemRun& run,
 ReadVolume readMainImage(const fs::path& path, const std::string& role, BemRun& run) {
     ReadVolume read = readImage(path, role, run, run.options.read);
     run.image = read.volume.view().geometry();
+    if (run.options.report.isWanted() && !run.shownImage) run.shownImage = read;
     return read;
 }
 

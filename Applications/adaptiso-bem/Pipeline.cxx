@@ -13,6 +13,7 @@
 #include "Inputs.h"
 #include "JsonReport.h"
 #include "ModelFiles.h"
+#include "ReportPage.h"
 #include "SurfaceSteps.h"
 #include "TextReport.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
@@ -74,6 +75,8 @@ void checkSubject(const BemOptions& options) {
 /// Everything about the outputs that can be told before an input is read.
 void checkOutputs(const BemOptions& options) {
     std::vector<fs::path> files = subjectPaths(options);
+    const std::vector<fs::path> inputs = inputsOf(options);
+    checkReportOutputs(options.report, inputs);
     if (hasJsonFile(options)) {
         checkOutput(options.common.json);
         files.push_back(options.common.json);
@@ -82,7 +85,7 @@ void checkOutputs(const BemOptions& options) {
         std::error_code error;
         return fs::weakly_canonical(fs::absolute(path), error);
     };
-    for (const fs::path& input : inputsOf(options)) {
+    for (const fs::path& input : inputs) {
         for (const fs::path& file : files) checkNotInput(file, input);
         // replacing the folder would take an input in it away
         if (!options.isDryRun && canonical(input).parent_path() == canonical(options.output)) {
@@ -152,8 +155,11 @@ void report(const BemRun& run, const std::string& json) {
 }
 
 /// Writes the folder (the report alone when there is no model) and all else, or nothing.
-std::string write(const std::vector<TriangleMesh>& surfaces, BemRun& run) {
+/// \param shown  what the report shows
+std::string write(const std::vector<TriangleMesh>& surfaces, const std::vector<TriangleMesh>& shown,
+                  BemRun& run) {
     const BemOptions& options = run.options;
+    const PictureFolder pictures(options.report.pictures);
     std::vector<AtomicOutput> outputs;
     std::string json;
     std::optional<AtomicFolder> folder;
@@ -166,6 +172,11 @@ std::string write(const std::vector<TriangleMesh>& surfaces, BemRun& run) {
             }
         }
     });
+    if (options.report.isWanted()) {
+        Report page = makeReport(run, shown);
+        run.timer.time("report",
+                       [&] { writeReport(page, "adaptiso-bem", options.report, outputs); });
+    }
     json = jsonReport(run);
     if (folder) folder->writeText("report.json", json);
     if (hasJsonFile(options)) outputs.emplace_back(options.common.json).writeText(json);
@@ -185,15 +196,15 @@ int runBem(const BemOptions& options) {
     BemRun run{options, {}, {}, {}, sourceOf(options), {}, {}, {}, {}, {}, {}, {}, {}, {}};
     checkOutputs(options);
 
-    std::vector<TriangleMesh> surfaces = firstSurfaces(run, progress);
+    const std::vector<TriangleMesh> dense = firstSurfaces(run, progress);
     chooseTkRas(run);
     progress.clear();
     printWarnings(run);
-    surfaces = remeshAndNest(surfaces, run, progress);
+    const std::vector<TriangleMesh> surfaces = remeshAndNest(dense, run, progress);
     if (run.hasModel()) checkModel(surfaces, run, progress);
 
     progress.show("write");
-    const std::string json = write(surfaces, run);
+    const std::string json = write(surfaces, surfaces.empty() ? dense : surfaces, run);
     progress.clear();
     report(run, json);
     if (run.hasModel()) return kExitOk;

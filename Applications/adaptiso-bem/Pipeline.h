@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "Common/CommonOptions.h"
+#include "Common/ReportOutput.h"
 #include "adaptiso/HeadModel/ConductivityModel.h"
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
@@ -45,6 +46,7 @@ struct BemOptions {
     std::filesystem::path subjectsDir;
     std::string subject;
     bool isDryRun = false;
+    ReportOptions report;
     CommonOptions common;
 
     std::size_t surfaceCount() const {

@@ -7,17 +7,14 @@
 
 #include "Common/Json.h"
 #include "Common/Numbers.h"
+#include "Common/SpotClusters.h"
 #include "adaptiso/MeshQuality/Holes.h"
 #include "adaptiso/MeshQuality/TriangleDistance.h"
 
 namespace adaptiso {
 namespace {
 
-constexpr std::size_t kMostOfAKind = 12;
 constexpr std::size_t kMostMembers = 1000;
-
-/// Defects nearer than this part of the surface's diagonal are one spot.
-constexpr double kNear = 0.06;
 
 const Check* failed(const std::vector<Check>& checks, std::string_view key) {
     const auto found = std::find_if(checks.begin(), checks.end(),
@@ -25,68 +22,16 @@ const Check* failed(const std::vector<Check>& checks, std::string_view key) {
     return found != checks.end() && found->hasFailed() ? &*found : nullptr;
 }
 
-bool isFinite(const Vec3& p) {
-    return std::isfinite(squaredNorm(p));
-}
-
-double diagonalOf(const TriangleMesh& mesh) {
-    TriangleMesh finite;
-    std::copy_if(mesh.points.begin(), mesh.points.end(), std::back_inserter(finite.points),
-                 isFinite);
-    if (finite.points.empty()) return 0;
-    const BoundingBox box = boundingBox(finite);
-    return norm(box.maximum - box.minimum);
-}
-
-Vec3 middleOf(const TriangleMesh& mesh, std::int64_t triangle) {
-    const auto& [a, b, c] = mesh.triangles[triangle];
-    return (1.0 / 3) * (mesh.points[a] + mesh.points[b] + mesh.points[c]);
-}
-
 std::array<Vec3, 3> cornersOf(const TriangleMesh& mesh, std::int64_t triangle) {
     const auto& [a, b, c] = mesh.triangles[triangle];
     return {mesh.points[a], mesh.points[b], mesh.points[c]};
 }
 
-/// Points that are near each other become one, at the first of them, with their number.
-class Clusters {
-public:
-    explicit Clusters(double nearMm) : nearMm_(nearMm) {}
-
-    void add(const Vec3& p) {
-        if (!isFinite(p)) return;
-        for (auto& [middle, count] : clusters_) {
-            if (norm(middle - p) > nearMm_) continue;
-            ++count;
-            return;
-        }
-        clusters_.push_back({p, 1});
-    }
-
-    /// \param what  "crossing triangles in a.stl"
-    void tell(const std::string& what, bool isFailure, std::vector<ReportSpot>& spots) {
-        std::stable_sort(clusters_.begin(), clusters_.end(),
-                         [](const auto& a, const auto& b) { return a.second > b.second; });
-        for (std::size_t n = 0; n < std::min(clusters_.size(), kMostOfAKind); ++n) {
-            const auto& [middle, count] = clusters_[n];
-            spots.push_back({count > 1 ? what + " (" + formatCount(count) + " here)" : what, middle,
-                             isFailure, static_cast<int>(n)});
-        }
-    }
-
-private:
-    double nearMm_;
-    std::vector<std::pair<Vec3, std::int64_t>> clusters_;
-};
-
 /// The spots of one surface.
 class SurfaceSpots {
 public:
     SurfaceSpots(const SurfaceRun& surface, const TriangleMesh& mesh)
-        : surface_(surface),
-          mesh_(mesh),
-          in_(" in " + baseName(surface.file)),
-          nearMm_(kNear * diagonalOf(mesh)) {}
+        : surface_(surface), mesh_(mesh), in_(" in " + baseName(surface.file)) {}
 
     std::vector<ReportSpot> find() && {
         addCrossings();
@@ -110,7 +55,7 @@ private:
     void addCrossings() {
         const Check* check = failed(surface_.checks, "noSelfIntersections");
         if (!check) return;
-        Clusters clusters(nearMm_);
+        SpotClusters clusters(mesh_);
         const auto& pairs = surface_.facts.intersections.pairs;
         for (std::size_t n = 0; n < std::min(pairs.size(), kMostMembers); ++n) {
             clusters.add(middleOf(mesh_, pairs[n][0]));
@@ -122,7 +67,7 @@ private:
         const Check* check = failed(surface_.checks, "closed");
         if (!check || surface_.facts.isSoup()) return;
         const std::vector<Hole> holes = findHoles(mesh_);
-        for (std::size_t n = 0; n < std::min(holes.size(), kMostOfAKind); ++n) {
+        for (std::size_t n = 0; n < std::min(holes.size(), kMostSpotsOfAKind); ++n) {
             spots_.push_back({"hole of " + formatCount(holes[n].edges) + " edges, " +
                                   formatFixed(holes[n].lengthMm, 1) + " mm round," + in_,
                               holes[n].middleMm, check->isRequired, static_cast<int>(n)});
@@ -132,7 +77,7 @@ private:
     void addExamples(std::string_view key, TopologyDefect defect, const std::string& what) {
         const Check* check = failed(surface_.checks, key);
         if (!check) return;
-        Clusters clusters(nearMm_);
+        SpotClusters clusters(mesh_);
         for (const TopologyExample& example : surface_.facts.topology.examples) {
             if (example.defect == defect) clusters.add(placeOf(example));
         }
@@ -152,7 +97,7 @@ private:
 
     void addDuplicates() {
         if (const Check* check = failed(surface_.checks, "noDuplicateTriangles")) {
-            Clusters clusters(nearMm_);
+            SpotClusters clusters(mesh_);
             for (const std::int64_t t : surface_.facts.duplicates.triangles) {
                 clusters.add(middleOf(mesh_, t));
             }
@@ -160,7 +105,7 @@ private:
         }
         const Check* check = failed(surface_.checks, "noDuplicateVertices");
         if (!check || surface_.facts.isSoup()) return;
-        Clusters clusters(nearMm_);
+        SpotClusters clusters(mesh_);
         for (const VertexId v : surface_.facts.duplicates.vertices) clusters.add(mesh_.points[v]);
         clusters.tell("vertex that is there twice" + in_, check->isRequired, spots_);
     }
@@ -170,7 +115,7 @@ private:
         std::vector<SurfaceComponent> pieces = surface_.facts.topology.components;
         if (const Check* check = failed(surface_.checks, "outward")) {
             const std::vector<std::int64_t>& wrong = *surface_.facts.insideOut;
-            for (std::size_t n = 0; n < std::min(wrong.size(), kMostOfAKind); ++n) {
+            for (std::size_t n = 0; n < std::min(wrong.size(), kMostSpotsOfAKind); ++n) {
                 const SurfaceComponent& piece = pieces[static_cast<std::size_t>(wrong[n])];
                 spots_.push_back({"piece of " + formatCount(piece.triangles) +
                                       " triangles that is inside out" + in_,
@@ -182,7 +127,7 @@ private:
         if (!check || surface_.facts.isSoup()) return;
         std::stable_sort(pieces.begin(), pieces.end(),
                          [](const auto& a, const auto& b) { return a.triangles > b.triangles; });
-        for (std::size_t n = 1; n < std::min(pieces.size(), kMostOfAKind); ++n) {
+        for (std::size_t n = 1; n < std::min(pieces.size(), kMostSpotsOfAKind); ++n) {
             spots_.push_back(
                 {"loose piece of " + formatCount(pieces[n].triangles) + " triangles" + in_,
                  mesh_.points[pieces[n].firstVertex], check->isRequired, static_cast<int>(n) - 1});
@@ -210,7 +155,6 @@ private:
     const SurfaceRun& surface_;
     const TriangleMesh& mesh_;
     std::string in_;
-    double nearMm_;
     std::vector<ReportSpot> spots_;
 };
 
@@ -227,7 +171,7 @@ std::vector<ReportSpot> spotsOf(const NestingRun& pair, const std::string& inner
     const NestingReport& report = pair.report;
     const std::string names = innerName + " and " + outerName;
     if (const Check* check = failed(pair.checks, "noCrossing")) {
-        Clusters clusters(kNear * diagonalOf(inner));
+        SpotClusters clusters(inner);
         for (std::size_t n = 0; n < std::min(report.pairs.size(), kMostMembers); ++n) {
             clusters.add(middleOf(inner, report.pairs[n][0]));
         }

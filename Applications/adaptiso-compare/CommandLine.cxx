@@ -77,6 +77,7 @@ void declareOutput(CLI::App& app, CompareOptions& options) {
                    "0 to the largest)")
         ->type_name("OUT.vtp")
         ->group(kOutput);
+    declareReportOptions(app, options.report, kOutput);
 }
 
 constexpr const char* kFooter = R"(Examples:

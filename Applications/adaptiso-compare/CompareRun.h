@@ -10,6 +10,7 @@
 #include "Overlap.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Volume.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
@@ -73,6 +74,7 @@ struct CompareRun {
     std::vector<Check> checks;
     std::vector<std::string> warnings;
     StageTimer timer;
+    std::optional<Volume> image;  ///< for the page; none unless one is wanted
 };
 
 }  // namespace adaptiso

@@ -15,6 +15,7 @@
 #include "Common/RunApp.h"
 #include "CompareRun.h"
 #include "JsonReport.h"
+#include "ReportPage.h"
 #include "TextReport.h"
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Parallel.h"
@@ -32,6 +33,7 @@ constexpr const char* kRead = "read";
 constexpr const char* kDistance = "distance";
 constexpr const char* kOverlap = "overlap";
 constexpr const char* kWrite = "write";
+constexpr const char* kReport = "report";
 
 const MeshFormat& formatOf(const fs::path& path) {
     try {
@@ -50,6 +52,7 @@ void checkNames(const CompareOptions& options) {
     std::vector<fs::path> inputs{options.a, options.b};
     for (const fs::path& mesh : inputs) formatOf(mesh);
     if (!options.volume.empty()) inputs.push_back(options.volume);
+    checkReportOutputs(options.report, inputs);
 
     std::vector<fs::path> outputs;
     if (!options.colored.empty()) {
@@ -109,6 +112,7 @@ void readImage(CompareRun& run) {
     ReadVolume read = readVolume(run.options.volume, run.options.read);
     run.volume = VolumeSummary{read.format, read.volume.view().geometry()};
     run.voxelMm = meanVoxelSideMm(run.volume->geometry);
+    if (run.options.report.isWanted()) run.image = read.volume;
     for (const std::string& warning : read.warnings) {
         run.warnings.push_back(run.options.volume.filename().string() + ": " + warning);
     }
@@ -193,6 +197,18 @@ void writeColored(CompareRun& run, const TriangleMesh& a, const TriangleMesh& b,
     run.colored = colored;
 }
 
+/// Writes the page and the pictures under their temporary names.
+void makePage(CompareRun& run, TriangleMesh a, TriangleMesh b, std::vector<AtomicOutput>& outputs) {
+    ShownSurfaces shown;
+    shown.aToBMm = vertexDistancesMm(a, b);
+    if (run.options.isSymmetric) shown.bToAMm = vertexDistancesMm(b, a);
+    shown.a = std::move(a);
+    shown.b = std::move(b);
+    Report page = makeReport(run, shown);
+    run.timer.time(kReport,
+                   [&] { writeReport(page, "adaptiso-compare", run.options.report, outputs); });
+}
+
 std::vector<Check> makeChecks(const CompareRun& run) {
     const DistanceStatistics& distances = run.distances.combined;
     std::vector<Check> checks;
@@ -261,6 +277,11 @@ int runCompare(const CompareOptions& options) {
     run.timer.time(kWrite, [&] {
         if (!options.colored.empty()) writeColored(run, a, b, common, outputs);
     });
+    const PictureFolder pictures(options.report.pictures);
+    if (options.report.isWanted()) {
+        progress.show(kReport);
+        makePage(run, std::move(surfaces[0].file.mesh), std::move(surfaces[1].file.mesh), outputs);
+    }
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
         outputs.emplace_back(options.common.json).writeText(json);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "Common/CommonOptions.h"
+#include "Common/ReportOutput.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso {
@@ -21,6 +22,7 @@ struct CompareOptions {
     std::filesystem::path colored;         ///< empty: none
     std::optional<double> maxMeanMm;       ///< >= 0
     std::optional<double> maxHausdorffMm;  ///< >= 0
+    ReportOptions report;
     CommonOptions common;
 };
 

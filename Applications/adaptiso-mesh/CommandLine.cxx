@@ -239,6 +239,7 @@ void declareOutput(CLI::App& app, MeshOptions& options) {
            "--no-check-crossings", [&options] { options.checksCrossings = false; },
            "Do not count the pairs of triangles that cross each other for the reports")
         ->group(kOutput);
+    declareReportOptions(app, options.report, kOutput);
 }
 
 constexpr const char* kFooter = R"(Examples:

@@ -8,9 +8,11 @@
 
 #include "Common/Resources.h"
 #include "Pipeline.h"
+#include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/MeshIO/Formats.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso {
@@ -49,6 +51,12 @@ struct SurfaceSummary {
     std::uintmax_t bytes = 0;
 };
 
+/// A surface to show.
+struct ShownSurface {
+    TriangleMesh mesh;                    ///< LPS mm, as written
+    std::vector<TrianglePair> crossings;  ///< the first
+};
+
 /// One run of the program, for the reports.
 struct MeshRun {
     const MeshOptions& options;
@@ -56,6 +64,7 @@ struct MeshRun {
     IndexSummary index;
     std::vector<SurfaceSummary> surfaces;
     StageTimer timer;
+    std::vector<ShownSurface> shown{};  ///< for the page; empty unless one is wanted
 };
 
 }  // namespace adaptiso

@@ -13,6 +13,7 @@
 #include "JsonReport.h"
 #include "MeshRun.h"
 #include "OutputNames.h"
+#include "ReportPage.h"
 #include "TextReport.h"
 #include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -34,6 +35,10 @@ constexpr const char* kPieces = "pieces";
 constexpr const char* kCheck = "check";
 constexpr const char* kCrossings = "crossings";
 constexpr const char* kWrite = "write";
+constexpr const char* kReport = "report";
+
+/// Pairs of triangles that cross, to be shown on the page; all are counted.
+constexpr std::int64_t kMaxShownPairs = 1000;
 
 std::string isovalueText(const IsovalueChoice& choice) {
     return choice.isAutomatic() ? "auto" : formatNumber(*choice.value);
@@ -81,6 +86,8 @@ void checkOutputs(const MeshOptions& options) {
     if (!options.indexFiles.save.empty()) {
         addOutput(files, "--save-index", options.indexFiles.save);
     }
+    if (!options.report.page.empty()) addOutput(files, "--report", options.report.page);
+    checkReportOutputs(options.report, {});
     for (const fs::path& file : files) {
         checkNotInput(file, options.input);
         checkNotInput(file, options.indexFiles.load);
@@ -196,10 +203,15 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         if (summary.topology.isClosed()) summary.volumeMm3 = enclosedVolume(mesh);
     });
 
+    const bool isShown = options.report.isWanted();
+    ShownSurface shown;
     if (options.checksCrossings) {
         progress.show(kCrossings);
-        summary.crossingPairs = run.timer.time(
-            kCrossings, [&] { return findSelfIntersections(mesh, {.maxPairs = 0}).pairCount; });
+        SelfIntersections crossings = run.timer.time(kCrossings, [&] {
+            return findSelfIntersections(mesh, {.maxPairs = isShown ? kMaxShownPairs : 0});
+        });
+        summary.crossingPairs = crossings.pairCount;
+        shown.crossings = std::move(crossings.pairs);
     }
 
     progress.show(kWrite);
@@ -211,6 +223,10 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         output.write([&](const fs::path& path) { writeMesh(mesh, path, write); });
         summary.bytes = fs::file_size(output.temporary());
     });
+    if (isShown) {
+        shown.mesh = std::move(mesh);
+        run.shown.push_back(std::move(shown));
+    }
     return summary;
 }
 
@@ -281,6 +297,13 @@ int runMesh(const MeshOptions& asked) {
     }
     run.index = run.timer.time(
         kWrite, [&] { return keepIndex(index, volume, options.indexFiles, outputs); });
+    const PictureFolder pictures(options.report.pictures);
+    if (options.report.isWanted()) {
+        progress.show(kReport);
+        Report page = makeReport(run, volume);
+        run.timer.time(kReport,
+                       [&] { writeReport(page, "adaptiso-mesh", options.report, outputs); });
+    }
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
         outputs.emplace_back(options.common.json).writeText(json);

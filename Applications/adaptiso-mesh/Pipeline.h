@@ -7,6 +7,7 @@
 
 #include "Common/CommonOptions.h"
 #include "Common/ImageOptions.h"
+#include "Common/ReportOutput.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -44,6 +45,7 @@ struct MeshOptions {
     ComponentSelection selection;
     std::optional<CoordinateFrame> frame;  ///< none: the output format's own
     bool checksCrossings = true;
+    ReportOptions report;
     CommonOptions common;
 
     /// Pieces are asked for that only closed surfaces have.

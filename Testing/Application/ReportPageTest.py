@@ -5,11 +5,15 @@ import math
 import os
 import re
 import subprocess
+import sys
 import unittest
 from pathlib import Path
 
 import browser
-from support import BAD_INPUT, BIN, CHECK_FAILED, OK, ApplicationTest, ball, write_nifti
+from support import BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, ApplicationTest, ball, write_nifti
+
+sys.path.insert(0, str(SOURCE / "Testing" / "Support"))
+from headDefects import icosphere, write_off  # noqa: E402
 
 CHECK = str(BIN / "adaptiso-check")
 EXPECTED = Path(__file__).parent / "expected"
@@ -52,12 +56,6 @@ def read_off(path):
     return points, faces
 
 
-def write_off(path, points, faces):
-    Path(path).write_text("".join(
-        [f"OFF\n{len(points)} {len(faces)} 0\n"]
-        + ["%.9g %.9g %.9g\n" % p for p in points] + ["3 %d %d %d\n" % f for f in faces]))
-
-
 class ReportTest(ApplicationTest):
     """A ball in an image of 24^3 voxels that lies off the origin, and the same with a hole."""
 
@@ -82,7 +80,8 @@ class ReportTest(ApplicationTest):
         points, faces = read_off(self.path("sound.off"))
         right = max(range(len(points)), key=lambda v: points[v][0])
         rim = [[v for v in face if v != right] for face in faces if right in face]
-        write_off(self.path("open.off"), points, [face for face in faces if right not in face])
+        write_off(self.path("open.off"),
+                  (points, [face for face in faces if right not in face]))
         total = sum(math.dist(points[a], points[b]) for a, b in rim)
         return [sum(math.dist(points[a], points[b]) * (points[a][axis] + points[b][axis]) / 2
                     for a, b in rim) / total for axis in range(3)]
@@ -195,6 +194,82 @@ class Files(ReportTest):
         bare = {key: value for key, value in os.environ.items()
                 if key not in ("DISPLAY", "WAYLAND_DISPLAY", "HOME")}
         self.page("sound.off", env=bare)
+
+
+class EveryProgram(ReportTest):
+    """Each makes a page that says what it is about."""
+
+    def run_program(self, name, *arguments, code=OK):
+        done = subprocess.run([str(BIN / name), *map(str, arguments), "--quiet", "--report",
+                               "page.html", "--pictures", "pictures"], cwd=self.folder, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=300)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return Page(self.path("page.html").read_text())
+
+    def pictures(self):
+        return {p.name for p in self.path("pictures").iterdir()}
+
+    def test_mesh(self):
+        page = self.run_program("adaptiso-mesh", "ball.nii", "--iso", "100", "--iso", "150",
+                                "--method", "mc", "-o", "{iso}.ply")
+        self.assertIn("● DONE", page.text())
+        self.assertIn("2 surfaces of ball.nii", page.text())
+        self.assertRegex(page.text(), r"Isovalue 100\s+Isovalue 150\s+Method mc")
+        self.assertIn("no triangle crosses another", page.text())
+        self.assertLessEqual({"surface-1.png", "surface-2.png", "contours-axial.png"},
+                             self.pictures())
+
+    def test_mesh_writes_nothing_when_it_fails(self):
+        before = self.contents()
+        self.assert_fails(BAD_INPUT, "no voxel reaches it", "ball.nii", "--iso", "1000",
+                          "--report", "page.html", "--pictures", "pictures")
+        self.assertEqual(self.contents(), before)
+        self.assertFalse(self.path("pictures").exists())
+
+    def test_mesh_does_not_change_the_surface(self):
+        for name, more in (("a.ply", []), ("b.ply", ["--report", "page.html"])):
+            self.mesh("ball.nii", "--iso", "100", "-o", name, *more)
+        self.assertEqual(self.path("a.ply").read_bytes(), self.path("b.ply").read_bytes())
+
+    def test_compare(self):
+        self.mesh("ball.nii", "--iso", "120", "--method", "mc", "-o", "smaller.off")
+        page = self.run_program("adaptiso-compare", "smaller.off", "sound.off", "--volume",
+                                "ball.nii", "--max-mean", "1", code=CHECK_FAILED)
+        self.assertIn("✘ FAILED", page.text())
+        # 20 less than at the surface, 10 a voxel: two voxels, rounded to a tenth at each end
+        distance = float(re.search(r"([\d.]+) mm on the mean", page.text()).group(1))
+        self.assertAlmostEqual(distance, 2, delta=0.1)
+        self.assertLessEqual({"histogram-1.png", "histogram-2.png", "surface-1.png"},
+                             self.pictures())
+        self.assertTrue(any("colours tell the distance" in i["alt"] for i in page.all("img")))
+        page = self.run_program("adaptiso-compare", "smaller.off", "sound.off")
+        self.assertIn("● DONE", page.text())
+
+    def write_spheres(self, *radii):
+        names = []
+        for radius in radii:
+            names.append(f"r{radius}.off")
+            write_off(self.path(names[-1]), icosphere(radius))
+        return names
+
+    def test_bem(self):
+        names = self.write_spheres(60, 66, 74)
+        page = self.run_program("adaptiso-bem", "--surfaces", *names, "-o", "model")
+        self.assertIn("✔ PASSED", page.text())
+        for name in ("inner_skull", "outer_skull", "outer_skin", "smallest gap"):
+            self.assertIn(name, page.text())
+        self.assertTrue(self.path("model/inner_skull.surf").exists())
+        self.assertLessEqual({"surface-3.png", "spots.png"}, self.pictures())
+
+    def test_bem_shows_why_there_is_no_model(self):
+        names = self.write_spheres(20, 22, 24)  # no head is so small
+        page = self.run_program("adaptiso-bem", "--surfaces", *names, "-o", "model",
+                                "--min-gap", "0.5", code=CHECK_FAILED)
+        self.assertIn("✘ FAILED", page.text())
+        self.assertIn("No model could be guaranteed", page.text())
+        self.assertIn("✘ fails:", page.text())
+        self.assertIn("surface-1.png", self.pictures())
+        self.assertEqual([p.name for p in self.path("model").iterdir()], ["report.json"])
 
 
 class InTheBrowser(ReportTest):

@@ -67,6 +67,7 @@ Vec3 between(const Vec3& a, const Vec3& b, int axis, double atMm) {
 
 Scene makeScene(const Report& report) {
     Scene scene;
+    double largest = 0;  // NaN never is
     for (const ReportSurface& given : report.surfaces) {
         SceneSurface surface;
         surface.name = given.name;
@@ -74,11 +75,10 @@ Scene makeScene(const Report& report) {
         surface.mesh = drawable(given.mesh);
         surface.triangles = std::ssize(given.mesh.triangles);
         if (given.valuesMm.size() == given.mesh.points.size()) surface.valuesMm = given.valuesMm;
-        for (const double value : surface.valuesMm) {
-            if (value > surface.largestValueMm) surface.largestValueMm = value;
-        }
+        for (const double value : surface.valuesMm) largest = std::max(largest, value);
         scene.surfaces.push_back(std::move(surface));
     }
+    for (SceneSurface& surface : scene.surfaces) surface.largestValueMm = largest;
     for (const ReportSpot& spot : report.spots) {
         if (isFinite(spot.pointMm)) {
             scene.spots.push_back({spot.what, lpsToRas(spot.pointMm), spot.isFailure});

@@ -15,8 +15,8 @@ struct SceneSurface {
     ReportColor color{};
     TriangleMesh mesh;
     std::vector<double> valuesMm;  ///< of the vertices, or empty
-    double largestValueMm = 0;
-    std::int64_t triangles = 0;  ///< of the surface as given
+    double largestValueMm = 0;     ///< of all surfaces: one scale of colours
+    std::int64_t triangles = 0;    ///< of the surface as given
 };
 
 struct SceneSpot {

@@ -55,6 +55,7 @@ struct ReportSurface {
     std::string name;
     TriangleMesh mesh;  ///< LPS mm; may be broken in any way
     /// A length for every vertex, to be shown in colour; empty: none.
+    /// All surfaces share one scale.
     std::vector<double> valuesMm{};
 };
 

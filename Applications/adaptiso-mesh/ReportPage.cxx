@@ -1,0 +1,137 @@
+#include "ReportPage.h"
+
+#include <algorithm>
+
+#include "Common/Json.h"
+#include "Common/Numbers.h"
+#include "Common/ReportOutput.h"
+#include "Common/SpotClusters.h"
+
+namespace adaptiso {
+namespace {
+
+std::string nameOf(const SurfaceSummary& surface) {
+    return surface.file.filename().string();
+}
+
+void tellVerdict(const MeshRun& run, Report& report) {
+    const std::size_t count = run.surfaces.size();
+    report.title = count == 1
+                       ? "Surface of " + baseName(run.options.input)
+                       : std::to_string(count) + " surfaces of " + baseName(run.options.input);
+    std::int64_t crossings = 0;
+    bool areClosed = true;
+    for (const SurfaceSummary& surface : run.surfaces) {
+        crossings += surface.crossingPairs.value_or(0);
+        areClosed = areClosed && surface.topology.isClosed();
+    }
+    report.headline = std::string(count == 1 ? "Written: manifold" : "All written: manifold") +
+                      (areClosed ? ", closed" : ", open at the image's border") +
+                      " and facing outward";
+    report.headline += !run.options.checksCrossings ? "; crossings were not looked for."
+                       : crossings == 0
+                           ? "; no triangle crosses another."
+                           : "; " + formatCount(crossings) + (crossings == 1 ? " pair" : " pairs") +
+                                 " of triangles cross each other, see below.";
+}
+
+void tellInputs(const MeshRun& run, Report& report) {
+    const InputSummary& input = run.input;
+    report.inputs = imageFacts(baseName(run.options.input), input.format, input.geometry);
+    report.inputs.push_back({"Samples", std::string(toString(input.pixelType)) + ", " +
+                                            formatNumber(input.range.minimum) + " to " +
+                                            formatNumber(input.range.maximum)});
+}
+
+void tellOptions(const MeshRun& run, Report& report) {
+    const MeshOptions& options = run.options;
+    for (const SurfaceSummary& surface : run.surfaces) {
+        report.options.push_back(
+            {"Isovalue", formatNumber(surface.isovalue) +
+                             (surface.isAutomatic ? " (chosen by Otsu's method)" : "")});
+    }
+    report.options.push_back({"Method", std::string(toString(options.method))});
+    if (options.adaptive.maxErrorMm) {
+        report.options.push_back(
+            {"Largest error", formatNumber(*options.adaptive.maxErrorMm) + " mm"});
+    }
+    report.options.push_back(
+        {"At the image's border", options.index.border == Border::Closed ? "closed" : "open"});
+    const ComponentSelection& selection = options.selection;
+    std::string pieces = selection.largestOnly ? "the largest only" : "all";
+    if (selection.minVolumeMm3 > 0) {
+        pieces += ", of " + formatNumber(selection.minVolumeMm3) + " mm³ or more";
+    }
+    if (selection.fillCavities) pieces += ", cavities filled";
+    report.options.push_back({"Pieces kept", pieces});
+}
+
+void tellChecks(const SurfaceSummary& surface, Report& report) {
+    const TopologyReport& topology = surface.topology;
+    const auto add = [&](const std::string& name, bool holds, const std::string& finding) {
+        report.checks.push_back(
+            {nameOf(surface), name, holds ? ReportOutcome::Passed : ReportOutcome::Noted, finding});
+    };
+    // no surface is written that is not manifold, oriented and without degenerate triangles
+    add("manifold and oriented", topology.isManifold() && topology.isOriented(), "");
+    add("closed", topology.isClosed(),
+        topology.isClosed() ? ""
+                            : formatCount(topology.count(TopologyDefect::BoundaryEdge)) +
+                                  " edges at the image's border");
+    if (!surface.crossingPairs) return;
+    add("no self-intersection", *surface.crossingPairs == 0,
+        *surface.crossingPairs == 0
+            ? ""
+            : formatCount(*surface.crossingPairs) +
+                  (*surface.crossingPairs == 1 ? " pair" : " pairs") + " of triangles cross");
+}
+
+ReportTable surfaceTable(const MeshRun& run) {
+    ReportTable table{
+        "Surfaces",
+        {"File", "Isovalue", "Format, frame", "Triangles", "Marching cubes has", "Vertices",
+         "Pieces", "Genus", "Area, mm²", "Volume, mm³", "Error at most, mm"},
+        {}};
+    for (const SurfaceSummary& surface : run.surfaces) {
+        const auto genus = surface.topology.genus();
+        const auto& bound = surface.statistics.errorBoundMm;
+        table.rows.push_back(
+            {nameOf(surface), formatNumber(surface.isovalue),
+             std::string(surface.format->name) + ", " + std::string(toString(surface.frame)),
+             formatCount(surface.topology.triangles),
+             formatCount(surface.statistics.marchingCubesTriangles),
+             formatCount(surface.topology.vertices),
+             formatCount(std::ssize(surface.topology.components)),
+             genus ? formatCount(*genus) : "–", formatRounded(surface.areaMm2),
+             surface.volumeMm3 ? formatRounded(*surface.volumeMm3) : "–",
+             bound ? formatFixed(*bound, 3) : "–"});
+    }
+    return table;
+}
+
+}  // namespace
+
+Report makeReport(MeshRun& run, const VolumeView& volume) {
+    Report report;
+    tellVerdict(run, report);
+    tellInputs(run, report);
+    tellOptions(run, report);
+    for (std::size_t n = 0; n < run.surfaces.size(); ++n) {
+        const SurfaceSummary& surface = run.surfaces[n];
+        ShownSurface& shown = run.shown[n];
+        tellChecks(surface, report);
+        SpotClusters clusters(shown.mesh);
+        for (const TrianglePair& pair : shown.crossings) {
+            clusters.add(middleOf(shown.mesh, pair[0]));
+        }
+        clusters.tell("crossing triangles in " + nameOf(surface), false, report.spots);
+        report.surfaces.push_back({nameOf(surface), std::move(shown.mesh)});
+    }
+    report.tables.push_back(surfaceTable(run));
+    report.notes = run.input.warnings;
+    report.volume = ReportVolume{baseName(run.options.input), volume};
+    report.stageSeconds = run.timer.stages();
+    return report;
+}
+
+}  // namespace adaptiso
