@@ -48,9 +48,9 @@ void tellInputs(const BemRun& run, Report& report) {
 void tellOptions(const BemRun& run, Report& report) {
     const BemOptions& options = run.options;
     const BoundaryOptions& head = options.boundaries;
-    std::string triangles = "as the surfaces came, or about 2,562 vertices a surface";
-    if (options.vertices)
-        triangles = "about " + formatCount(*options.vertices) + " vertices a surface";
+    std::string triangles = run.source == "surfaces" ? "as the surfaces came, where they could stay"
+                                                     : "2,562 vertices a surface (default)";
+    if (options.vertices) triangles = formatCount(*options.vertices) + " vertices a surface";
     if (options.edgeLengthMm) {
         triangles = "edges of " + formatNumber(options.edgeLengthMm->minimumMm) + " to " +
                     formatNumber(options.edgeLengthMm->maximumMm) + " mm";

@@ -30,7 +30,8 @@ class Readme(ApplicationTest):
                               cwd=self.folder, env={**os.environ, "PATH": f"{BIN}:/usr/bin:/bin"},
                               capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertEqual(self.names(), ["checked", "meg", "model", "report.json", "seg.nii.gz"])
+        self.assertEqual(self.names(), ["checked", "meg", "model", "page.html", "report.json",
+                                        "seg.nii.gz"])
         self.assertTrue((self.path("meg") / "inner_skull.gii").exists())
         self.assertRegex(done.stdout, r'"model": true')
 

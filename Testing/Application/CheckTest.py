@@ -504,7 +504,8 @@ class Readme(CheckTest):
                               cwd=self.folder, env={"PATH": f"{BIN}:/usr/bin:/bin"},
                               capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
-        self.assertEqual(self.names(), ["head.nii", "head.stl", "inner.ply", "report.json"])
+        self.assertEqual(self.names(), ["check.html", "head.nii", "head.stl", "inner.ply",
+                                        "report.json"])
 
 
 if __name__ == "__main__":

@@ -522,7 +522,8 @@ class Readme(CompareTest):
                               cwd=self.folder, env={"PATH": f"{BIN}:/usr/bin:/bin"},
                               capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertEqual(self.names(), ["adaptive.vtp", "difference.vtp", "head.nii", "lh.pial",
+        self.assertEqual(self.names(), ["adaptive.vtp", "difference.html", "difference.vtp",
+                                        "head.nii", "lh.pial",
                                         "reference.ply", "report.json"])
 
 

@@ -79,7 +79,8 @@ class Browser:
                     for entry in self.driver.get_log("performance")]
         asked = [m["params"]["request"]["url"] for m in messages
                  if m["method"] == "Network.requestWillBeSent"]
-        return [url for url in asked if not url.startswith(("data:", "blob:"))]
+        # Chromium's own first page is made of chrome: addresses
+        return [url for url in asked if not url.startswith(("data:", "blob:", "chrome:"))]
 
     def screenshot(self, selector):
         """PNG bytes of the element, as it is seen."""

@@ -114,7 +114,9 @@ std::string escaped(const std::string& text) {
 }
 
 std::string factsHtml(const Report& report) {
-    return factList("What was read", report.inputs) + factList("How", report.options);
+    std::vector<ReportFact> how = report.options;
+    how.push_back({"Made by", report.program + " " + report.version + ", " + report.date});
+    return factList("What was read", report.inputs) + factList("How", how);
 }
 
 std::string spotsHtml(const Scene& scene, bool hasViewer) {
