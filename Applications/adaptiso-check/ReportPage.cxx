@@ -180,6 +180,12 @@ Report makeReport(const CheckRun& run, ShownSurfaces& shown) {
     if (!run.nesting.empty()) report.tables.push_back(nestingTable(run));
     tellSpots(run, shown, report);
     report.notes = run.warnings;
+    for (const SurfaceRun& surface : run.surfaces) {
+        if (!surface.points || surface.points == CoordinateFrame::Ras) continue;
+        report.notes.push_back(
+            "Points in the table of checks are as the files have them, those of " +
+            baseName(surface.file) + " in " + std::string(toString(*surface.points)) + ".");
+    }
     for (const std::string& note : shown.notes) {
         if (std::find(report.notes.begin(), report.notes.end(), note) == report.notes.end()) {
             report.notes.push_back(note);

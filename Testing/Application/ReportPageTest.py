@@ -103,6 +103,11 @@ class Contents(ReportTest):
         self.assertRegex(page.text(), r"hole of \d+ edges, [\d.]+ mm round, in open\.off\s+"
                          + re.escape(point))
 
+    def test_points_of_another_frame_are_said_to_be(self):
+        self.mesh("ball.nii", "--iso", "100", "--quiet", "-o", "lps.off", "--coordinates", "lps")
+        self.assertIn("those of lps.off in LPS mm", self.page("lps.off").text())
+        self.assertNotIn("Points in the table", self.page("sound.off").text())
+
     def test_pictures_have_alt_texts_and_are_in_the_page(self):
         images = self.page("sound.off", "--volume", "ball.nii").all("img")
         self.assertGreaterEqual(len(images), 6)
