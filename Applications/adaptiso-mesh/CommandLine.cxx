@@ -68,12 +68,11 @@ void checkCombinations(const MeshOptions& options) {
             "--adjust-vertices: is for --method dmc; the vertices of the other methods "
             "lie on the crossings already");
     }
-    if (options.index.border == Border::Open && options.method == Method::Adaptive) {
-        throw UsageError("--method adaptive closes surfaces at the border: not for --border open");
-    }
-    if (!(options.adaptive == AdaptiveOptions{}) && options.method != Method::Adaptive) {
+    const bool isForAdaptive = !(options.adaptive == AdaptiveOptions{}) || options.verifies;
+    if (isForAdaptive && options.method != Method::Adaptive) {
         throw UsageError(
-            "--max-error, --triangles, --reduction and --min-angle are for --method adaptive");
+            "--max-error, --triangles, --reduction, --min-angle and --verify are for --method "
+            "adaptive");
     }
     if (options.mergeWithinBlocks && options.method != Method::DiscretizedMarchingCubes) {
         throw UsageError(
@@ -122,14 +121,14 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
         ->allow_extra_args(false)
         ->group(kSurface);
     addChoice<Method>(app, "--method", options.method,
-                      {{"boxes", Method::Boxes},
-                       {"adaptive", Method::Adaptive},
+                      {{"adaptive", Method::Adaptive},
+                       {"boxes", Method::Boxes},
                        {"dmc", Method::DiscretizedMarchingCubes},
                        {"asc", Method::SkeletonClimbing},
                        {"mc", Method::MarchingCubes}},
-                      "boxes: adaptive, few triangles where the surface is flat (default); "
                       "adaptive: few triangles within a stated distance of the surface, none "
-                      "crossing another; "
+                      "crossing another (default); "
+                      "boxes: cubes of several sizes, merged where the surface is flat; "
                       "dmc: discretized marching cubes, coplanar facets between edge midpoints "
                       "merged; "
                       "asc: adaptive skeleton climbing, rectangular boxes, unmerged; "
@@ -158,6 +157,10 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
                    "triangles (default: 0)")
         ->type_name("DEG")
         ->check(CLI::Range(0.0, 40.0))
+        ->group(kSurface);
+    app.add_flag("--verify", options.verifies,
+                 "Method adaptive: also check the result against the surface of mc, by other "
+                 "code than made it: crossings, pieces, genus and sampled distance. Takes long")
         ->group(kSurface);
     app.add_flag("--adjust-vertices", options.adjustVertices,
                  "Move the vertices of the method dmc from the midpoints to where the image "
@@ -237,7 +240,8 @@ void declareOutput(CLI::App& app, MeshOptions& options) {
         ->group(kOutput);
     app.add_flag_callback(
            "--no-check-crossings", [&options] { options.checksCrossings = false; },
-           "Do not count the pairs of triangles that cross each other for the reports")
+           "Do not count the pairs of triangles that cross each other for the reports (the "
+           "method adaptive makes none)")
         ->group(kOutput);
 }
 

@@ -34,6 +34,12 @@ struct IndexSummary {
     bool isLoaded = false;
 };
 
+/// What --verify has found.
+struct Verification {
+    std::int64_t samples = 0;  ///< points at which distances were measured, both ways
+    double maxMm = 0;          ///< the largest of them
+};
+
 /// What is known of one surface once it has been written.
 struct SurfaceSummary {
     double isovalue = 0;
@@ -43,6 +49,7 @@ struct SurfaceSummary {
     double areaMm2 = 0;
     std::optional<double> volumeMm3;            ///< none of an open surface
     std::optional<std::int64_t> crossingPairs;  ///< none when not asked for
+    std::optional<Verification> verification;   ///< none when not asked for
     std::filesystem::path file;
     const MeshFormat* format = nullptr;
     CoordinateFrame frame{};

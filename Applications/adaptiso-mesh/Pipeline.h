@@ -35,7 +35,7 @@ struct MeshOptions {
     ImageOptions image;
     std::vector<IsovalueChoice> isovalues;
     std::filesystem::path output;  ///< empty: named after the input, in the current folder
-    Method method = Method::Boxes;
+    Method method = Method::Adaptive;
     bool adjustVertices = false;
     bool mergeWithinBlocks = false;
     AdaptiveOptions adaptive;
@@ -44,6 +44,7 @@ struct MeshOptions {
     ComponentSelection selection;
     std::optional<CoordinateFrame> frame;  ///< none: the output format's own
     bool checksCrossings = true;
+    bool verifies = false;  ///< checks the method adaptive's promises by other means, too
     CommonOptions common;
 
     /// Pieces are asked for that only closed surfaces have.

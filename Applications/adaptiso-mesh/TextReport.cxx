@@ -31,6 +31,15 @@ void printSurface(std::ostream& out, const SurfaceSummary& surface) {
             << counted(topology.count(TopologyDefect::BoundaryEdge), "edge") << "), area "
             << formatRounded(surface.areaMm2) << " mm2\n";
     }
+    if (surface.statistics.errorBoundMm) {
+        out << "  no point farther than " << formatFixed(*surface.statistics.errorBoundMm, 4)
+            << " mm from the surface of marching cubes, nor it from this one (proved";
+        if (surface.verification) {
+            out << "; farthest of " << formatCount(surface.verification->samples)
+                << " points measured: " << formatFixed(surface.verification->maxMm, 4) << " mm";
+        }
+        out << ")\n";
+    }
     if (surface.crossingPairs) {
         out << "  " << counted(*surface.crossingPairs, "pair") << " of triangles cross\n";
     }
