@@ -15,9 +15,6 @@
 #include "adaptiso/ImageIO/MappedInput.h"
 
 namespace adaptiso {
-namespace {
-
-/// `text` as one line without control characters.
 std::string oneLine(std::string_view text) {
     std::string line(text);
     for (char& c : line) {
@@ -26,8 +23,6 @@ std::string oneLine(std::string_view text) {
     while (!line.empty() && line.back() == ' ') line.pop_back();
     return line;
 }
-
-}  // namespace
 
 void printError(std::string_view programName, std::string_view message) {
     std::cerr << programName << ": " << oneLine(message) << '\n';

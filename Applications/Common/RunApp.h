@@ -23,9 +23,11 @@ struct Program {
     std::string footer;       ///< last lines of --help: examples, exit codes
 };
 
-/// One line on stderr: "name: message". Line breaks and control characters in the message, which
-/// may hold a file's name or a header's text, become spaces: it can neither break the line nor talk
-/// to the terminal.
+/// `text` as one line: line breaks and control characters in it, which may be from a file's name or
+/// a header, become spaces, so that it can neither break the line nor talk to the terminal.
+std::string oneLine(std::string_view text);
+
+/// One line on stderr: "name: message", the message by oneLine().
 void printError(std::string_view programName, std::string_view message);
 
 namespace detail {

@@ -1,10 +1,9 @@
-#include <iostream>
 #include <sstream>
 
-#include "Common/AtomicOutput.h"
 #include "Common/ExitCodes.h"
 #include "Common/ImageOptions.h"
 #include "Common/Json.h"
+#include "Common/ReportOutput.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 
 namespace adaptiso {
@@ -99,19 +98,8 @@ int runSeriesList(const std::filesystem::path& input, const ImageOptions& option
     const std::string name = baseName(input);
     const std::string json =
         common.wantsJson() ? listJson(program, name, listing, options.showsPhi) : "";
-    if (common.wantsJsonOnStdout()) {
-        std::cout << json;
-    } else if (!common.isQuiet) {
-        printList(std::cout, name, listing, options.showsPhi);
-    }
-    if (common.wantsJson() && !common.wantsJsonOnStdout()) {
-        checkNotInput(common.json, input);
-        checkOutput(common.json);
-        std::vector<AtomicOutput> outputs;
-        outputs.emplace_back(common.json).writeText(json);
-        AtomicOutput::commit(outputs);
-    }
-    if (!std::cout.flush()) throw FileError("standard output: can't be written");
+    deliverReport(common, input, json,
+                  [&](std::ostream& out) { printList(out, name, listing, options.showsPhi); });
     return kExitOk;
 }
 

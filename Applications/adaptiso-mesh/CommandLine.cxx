@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "Common/Numbers.h"
+#include "Common/PreprocessingOptions.h"
 #include "adaptiso/MeshIO/Formats.h"
 
 namespace adaptiso {
 namespace {
 
 constexpr const char* kInput = "Input";
+constexpr const char* kPreprocessing = "Preprocessing (in this order)";
 constexpr const char* kSurface = "Surface";
 constexpr const char* kOutput = "Output";
 constexpr const char* kIndex = "Index";
@@ -54,9 +56,22 @@ double parseVolume(const std::string& text) {
     return *volume;
 }
 
+/// Of the options that make no surface.
+void checkLookingOnly(const MeshOptions& options) {
+    if (options.image.showsPhi && !options.image.listsSeries && !options.image.tellsInfo) {
+        throw UsageError("--show-phi: is for --list-series and --info");
+    }
+    const bool asksForFiles = !options.output.empty() || !options.indexFiles.load.empty() ||
+                              !options.indexFiles.save.empty();
+    if (options.image.tellsInfo && (!options.isovalues.empty() || asksForFiles)) {
+        throw UsageError("--info: makes no surface, so not with --iso, -o, --index, --save-index");
+    }
+}
+
 /// What one option alone can't tell.
 void checkCombinations(const MeshOptions& options) {
-    if (options.isovalues.empty() && !options.image.listsSeries) {
+    checkLookingOnly(options);
+    if (options.isovalues.empty() && !options.image.listsSeries && !options.image.tellsInfo) {
         throw UsageError("--iso is required");
     }
     if (options.index.border == Border::Open && options.needsClosedSurfaces()) {
@@ -107,6 +122,7 @@ void declareInput(CLI::App& app, MeshOptions& options) {
         ->type_name("")
         ->required();
     declareImageOptions(app, options.image, kInput);
+    declarePreprocessingOptions(app, options.preprocessing, kPreprocessing);
 }
 
 void declareSurface(CLI::App& app, MeshOptions& options) {
@@ -253,6 +269,9 @@ constexpr const char* kFooter = R"(Examples:
       one DICOM series, skin and bone, from one reading
   adaptiso-mesh study/ --list-series
       what a DICOM folder holds
+  adaptiso-mesh head.nii.gz --info
+      geometry, range, percentiles, histogram, and isovalues to try
+  adaptiso-mesh ct/ --iso 250 --crop :,:,40: --smooth 0.7 --resample 1
   adaptiso-mesh T1.mgz --iso 90 -o lh.pial
       a FreeSurfer surface in tkRAS
 

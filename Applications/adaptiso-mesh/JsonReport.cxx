@@ -5,7 +5,9 @@
 #include <string_view>
 
 #include "Common/CommonOptions.h"
+#include "Common/ImageJson.h"
 #include "Common/Json.h"
+#include "Common/PreprocessingOptions.h"
 
 namespace adaptiso {
 namespace {
@@ -19,23 +21,23 @@ std::string_view borderWord(Border border) {
 
 Json inputJson(const MeshRun& run) {
     const InputSummary& input = run.input;
-    const ImageGeometry& geometry = input.geometry;
-    Json directions = Json::array();  // rows, as ITK and NRRD users know them
-    Mat3 direction;
-    for (int axis = 0; axis < 3; ++axis) {
-        direction.column[axis] = normalized(geometry.indexToPhysical.column[axis]);
-    }
-    for (const Vec3& row : transpose(direction).column) directions.push_back(vector(row));
-    return {{"file", baseName(run.options.input)},
-            {"format", input.format},
-            {"sizeVoxels", geometry.size},
-            {"spacingMm", vector(geometry.spacingMm())},
-            {"originMm", vector(geometry.originMm)},
-            {"direction", directions},
-            {"pixelType", toString(input.pixelType)},
-            {"minimum", number(input.range.minimum)},
-            {"maximum", number(input.range.maximum)},
-            {"warnings", input.warnings}};
+    Json json{{"file", baseName(run.options.input)}, {"format", input.format}};
+    json.update(geometryJson(input.geometry));
+    json["pixelType"] = toString(input.pixelType);
+    json["minimum"] = number(input.range.minimum);
+    json["maximum"] = number(input.range.maximum);
+    json["warnings"] = input.warnings;
+    return json;
+}
+
+Json preprocessedJson(const MeshRun& run) {
+    if (!run.preprocessed) return nullptr;
+    Json json = preprocessingJson(run.options.preprocessing, run.input.geometry.size);
+    json.update(geometryJson(run.preprocessed->geometry));
+    json["pixelType"] = toString(run.preprocessed->pixelType);
+    json["minimum"] = number(run.preprocessed->range.minimum);
+    json["maximum"] = number(run.preprocessed->range.maximum);
+    return json;
 }
 
 Json optionsJson(const MeshOptions& options) {
@@ -152,6 +154,7 @@ std::string jsonReport(const MeshRun& run) {
     const Json report{{"schema", "adaptiso-mesh/1"},
                       {"program", {{"name", "adaptiso-mesh"}, {"version", programVersion()}}},
                       {"input", inputJson(run)},
+                      {"preprocessing", preprocessedJson(run)},
                       {"options", optionsJson(run.options)},
                       {"index", indexJson(run.index)},
                       {"surfaces", surfaces},

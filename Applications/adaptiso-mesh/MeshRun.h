@@ -15,6 +15,13 @@
 
 namespace adaptiso {
 
+/// What the surfaces are made from when that is not the volume as read.
+struct PreprocessedSummary {
+    ImageGeometry geometry;
+    PixelType pixelType{};
+    ValueRange range{};
+};
+
 /// What is known of the volume once it has been read.
 struct InputSummary {
     std::string format;
@@ -60,9 +67,13 @@ struct SurfaceSummary {
 struct MeshRun {
     const MeshOptions& options;
     InputSummary input;
+    std::optional<PreprocessedSummary> preprocessed;
     IndexSummary index;
     std::vector<SurfaceSummary> surfaces;
     StageTimer timer;
+
+    /// Of the values that the surfaces are made from.
+    const ValueRange& range() const { return preprocessed ? preprocessed->range : input.range; }
 };
 
 }  // namespace adaptiso

@@ -10,6 +10,7 @@
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "IndexSource.h"
+#include "Info.h"
 #include "JsonReport.h"
 #include "MeshRun.h"
 #include "OutputNames.h"
@@ -29,6 +30,7 @@ namespace fs = std::filesystem;
 
 /// The stages of a run, as progress, `seconds` of the report and README.md name them.
 constexpr const char* kRead = "read";
+constexpr const char* kPreprocess = "preprocess";
 constexpr const char* kIndex = "index";
 constexpr const char* kExtract = "extract";
 constexpr const char* kVerify = "verify";
@@ -91,21 +93,21 @@ void checkOutputs(const MeshOptions& options) {
 }
 
 std::string rangeText(const MeshRun& run) {
-    const ValueRange& range = run.input.range;
+    const ValueRange& range = run.range();
     const std::string file =
         run.options.input.filename().empty() ? "the volume" : run.options.input.filename().string();
     if (range.minimum > range.maximum) return file + " holds no numbers";
-    return "the range of " + file + " is " + formatNumber(range.minimum) + " to " +
-           formatNumber(range.maximum);
+    return "the range of " + file + (run.preprocessed ? ", preprocessed, is " : " is ") +
+           formatNumber(range.minimum) + " to " + formatNumber(range.maximum);
 }
 
 /// \throws InvalidInput when the surface would be empty, or the border of the image alone
 void checkIsovalue(double isovalue, const MeshRun& run) {
     const std::string name = "--iso " + formatNumber(isovalue);
-    if (!(isovalue <= run.input.range.maximum)) {
+    if (!(isovalue <= run.range().maximum)) {
         throw InvalidInput(name + ": no voxel reaches it; " + rangeText(run));
     }
-    if (isovalue <= run.input.range.minimum) {
+    if (isovalue <= run.range().minimum) {
         throw InvalidInput(name + ": every voxel reaches it, so there is no surface; " +
                            rangeText(run));
     }
@@ -129,6 +131,20 @@ std::vector<double> chooseIsovalues(const VolumeView& volume, const MeshRun& run
 InputSummary summarize(const ReadVolume& read) {
     const VolumeView& view = read.volume.view();
     return {read.format, view.geometry(), view.pixelType(), valueRange(view), read.warnings};
+}
+
+/// The volume to work on.
+Volume prepare(Volume read, MeshRun& run, ProgressLine& progress) {
+    if (run.options.preprocessing.changesNothing()) return read;
+    progress.show(kPreprocess);
+    return run.timer.time(kPreprocess, [&] {
+        Preprocessed done = preprocess(std::move(read), run.options.preprocessing);
+        const VolumeView& view = done.volume.view();
+        run.preprocessed = {view.geometry(), view.pixelType(), valueRange(view)};
+        run.input.warnings.insert(run.input.warnings.end(), done.warnings.begin(),
+                                  done.warnings.end());
+        return std::move(done.volume);
+    });
 }
 
 /// The output's promise, kept or nothing is written: no defect; with an open border no defect but
@@ -217,7 +233,8 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         AtomicOutput& output = outputs.emplace_back(summary.file);
         MeshWriteOptions write;
         write.frame = summary.frame;
-        write.volume = frameVolume(summary.frame, volume.geometry());
+        // tkRAS and voxel indices are those of the image that the user has
+        write.volume = frameVolume(summary.frame, run.input.geometry);
         output.write([&](const fs::path& path) { writeMesh(mesh, path, write); });
         summary.bytes = fs::file_size(output.temporary());
     });
@@ -263,18 +280,20 @@ int runMesh(const MeshOptions& asked) {
     if (asked.image.listsSeries) {
         return runSeriesList(asked.input, asked.image, asked.common, "adaptiso-mesh");
     }
+    if (asked.image.tellsInfo) return runInfo(asked);
     MeshOptions options = asked;  // a loaded index brings options of its own
     const ThreadLimit threads(options.common);
     ProgressLine progress(options.common.isQuiet);
-    MeshRun run{options, {}, {}, {}, {}};
+    MeshRun run{options, {}, {}, {}, {}, {}};
     checkOutputs(options);
     checkIndexFile(options);
 
     progress.show(kRead);
-    const ReadVolume read =
+    ReadVolume read =
         run.timer.time(kRead, [&] { return readVolume(options.input, options.image.read); });
-    const VolumeView& volume = read.volume.view();
     run.input = run.timer.time(kRead, [&] { return summarize(read); });
+    const Volume prepared = prepare(std::move(read.volume), run, progress);
+    const VolumeView& volume = prepared.view();
     progress.clear();
     printWarnings(run);
     const std::vector<double> isovalues =

@@ -10,6 +10,7 @@
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso {
 
@@ -33,6 +34,7 @@ struct IndexFiles {
 struct MeshOptions {
     std::filesystem::path input;
     ImageOptions image;
+    PreprocessOptions preprocessing;
     std::vector<IsovalueChoice> isovalues;
     std::filesystem::path output;  ///< empty: named after the input, in the current folder
     Method method = Method::Adaptive;
@@ -54,11 +56,12 @@ struct MeshOptions {
 };
 
 /// Reads the volume, extracts and checks the surfaces, and writes all of them or none; or lists the
-/// input's series.
+/// input's series, or tells what the image holds.
 /// \return an exit code
 /// \throws UsageError     the output's format is unknown or can't hold the frame
 /// \throws FileError      the input can't be read, the output can't be written
-/// \throws InvalidInput   an isovalue that cuts nothing, nothing is left of a surface, or an index
+/// \throws InvalidInput   preprocessing that can't be done, an isovalue that cuts nothing, nothing
+/// is left of a surface, or an index
 ///                        that is not the volume's
 /// \throws InternalError  a surface is not sound
 int runMesh(const MeshOptions& asked);

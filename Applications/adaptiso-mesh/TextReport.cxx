@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "Common/Numbers.h"
+#include "Common/PreprocessingOptions.h"
 
 namespace adaptiso {
 namespace {
@@ -48,6 +49,12 @@ void printSurface(std::ostream& out, const SurfaceSummary& surface) {
 }  // namespace
 
 void printReport(std::ostream& out, const MeshRun& run) {
+    if (run.preprocessed) {
+        const Index3& size = run.preprocessed->geometry.size;
+        out << "from " << preprocessingText(run.options.preprocessing, run.input.geometry.size)
+            << ": " << size[0] << " x " << size[1] << " x " << size[2] << " voxels, "
+            << toString(run.preprocessed->pixelType) << '\n';
+    }
     for (const SurfaceSummary& surface : run.surfaces) printSurface(out, surface);
     if (!run.index.file.empty() && !run.index.isLoaded) {
         out << run.index.file.string() << ": index for --index (" << toString(run.index.search)

@@ -128,17 +128,27 @@ double otsuThreshold(const VolumeView& volume) {
     return middlesOfGaps(volume, spread, itkOtsu(fineHistogram(volume, spread), 1)).front();
 }
 
-std::vector<double> otsuThresholds(const VolumeView& volume, int count) {
-    if (count < 1 || count > 3) {
-        throw InvalidInput("otsuThresholds: " + std::to_string(count) + " must be 1 to 3");
+std::vector<std::vector<double>> otsuThresholds(const VolumeView& volume, int most) {
+    if (most < 1 || most > 3) {
+        throw InvalidInput("otsuThresholds: " + std::to_string(most) + " must be 1 to 3");
     }
-    if (count == 1) return {otsuThreshold(volume)};
     const Spread spread = spreadOf(volume);
-    const SampleHistogram histogram = coarseHistogram(volume, spread);
-    const auto filled = std::count_if(histogram.counts.begin(), histogram.counts.end(),
+    const SampleHistogram coarse = coarseHistogram(volume, spread);
+    const auto filled = std::count_if(coarse.counts.begin(), coarse.counts.end(),
                                       [](std::int64_t bin) { return bin > 0; });
-    if (filled <= count) return {};
-    return middlesOfGaps(volume, spread, itkOtsu(histogram, count));
+    std::vector<double> edges = itkOtsu(fineHistogram(volume, spread), 1);
+    int reached = 1;
+    for (; reached < most && reached + 1 < filled; ++reached) {
+        const std::vector<double> more = itkOtsu(coarse, reached + 1);
+        edges.insert(edges.end(), more.begin(), more.end());
+    }
+    const std::vector<double> middles = middlesOfGaps(volume, spread, edges);
+    std::vector<std::vector<double>> thresholds;
+    auto first = middles.begin();
+    for (int count = 1; count <= reached; first += count, ++count) {
+        thresholds.emplace_back(first, first + count);
+    }
+    return thresholds;
 }
 
 }  // namespace adaptiso

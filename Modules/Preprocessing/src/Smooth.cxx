@@ -51,7 +51,7 @@ Operator toOperator(const detail::LatticeGaussian& gaussian) {
 
 template <class F>
 Volume smoothAs(const VolumeView& volume, const std::vector<detail::LatticeGaussian>& gaussians) {
-    const std::shared_ptr<const F> samples = detail::samplesAs<F>(volume);
+    std::shared_ptr<const F> samples = detail::samplesAs<F>(volume);
     typename detail::ItkImage<F>::Pointer image =
         detail::asItkImage(samples.get(), volume.geometry());
     using Filter =
@@ -63,6 +63,7 @@ Volume smoothAs(const VolumeView& volume, const std::vector<detail::LatticeGauss
         detail::runFilter(*filter);
         image = filter->GetOutput();
         image->DisconnectPipeline();  // so that the image before goes
+        samples.reset();
     }
     return detail::toVolume<F>(image, pixelTypeOf<F>(), volume.geometry());
 }

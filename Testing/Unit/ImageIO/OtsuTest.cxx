@@ -66,10 +66,13 @@ TEST(Otsu, RefusesVolumesWithNothingToSeparate) {
     EXPECT_THROW(otsuOf<double>({-largest, largest}), InvalidInput);
 }
 
+/// The choice of `count` thresholds; none when there is no such choice.
 template <class T>
 std::vector<double> thresholdsOf(const std::vector<T>& samples, int count) {
     const auto size = static_cast<std::int64_t>(samples.size());
-    return otsuThresholds(Volume::fromSamples(samples, {{size, 1, 1}, {}, {}}), count);
+    const auto lists = otsuThresholds(Volume::fromSamples(samples, {{size, 1, 1}, {}, {}}), count);
+    for (std::size_t n = 0; n < lists.size(); ++n) EXPECT_EQ(lists[n].size(), n + 1);
+    return static_cast<int>(lists.size()) < count ? std::vector<double>() : lists.back();
 }
 
 /// 100 samples around each of the centres, 20 values wide.

@@ -19,15 +19,15 @@ namespace adaptiso {
 /// Cost: a few parallel passes over the samples; the same answer whatever the thread count.
 double otsuThreshold(const VolumeView& volume);
 
-/// The isovalues that best split a volume's samples into count + 1 classes, ascending. One is
-/// otsuThreshold().
+/// The isovalues that best split a volume's samples into two, three and so on to most + 1 classes,
+/// ascending: first one isovalue, that of otsuThreshold(), then two, then three.
 ///
 /// For several, ITK tries every choice among 256 bins (one a value for integers that span fewer),
 /// between the percentiles 0.1 and 99.9, so that a few outliers do not make the bins coarse;
 /// samples beyond count in the outermost bins.
 ///
-/// \return  empty where fewer than count + 1 bins are filled
-/// \throws  InvalidInput as otsuThreshold(), and unless 1 <= count <= 3 (more would take minutes)
-std::vector<double> otsuThresholds(const VolumeView& volume, int count);
+/// \return  `most` lists; fewer where no more bins than that are filled
+/// \throws  InvalidInput as otsuThreshold(), and unless 1 <= most <= 3 (more would take minutes)
+std::vector<std::vector<double>> otsuThresholds(const VolumeView& volume, int most);
 
 }  // namespace adaptiso
