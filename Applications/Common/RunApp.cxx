@@ -15,6 +15,7 @@
 #include "adaptiso/ImageIO/MappedInput.h"
 
 namespace adaptiso {
+
 std::string oneLine(std::string_view text) {
     std::string line(text);
     for (char& c : line) {

@@ -4,6 +4,7 @@
 #include "Common/ImageOptions.h"
 #include "Common/Json.h"
 #include "Common/ReportOutput.h"
+#include "Common/RunApp.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 
 namespace adaptiso {
@@ -30,7 +31,8 @@ void printSeries(std::ostream& out, const DicomSeries& series, bool showsPhi) {
         << " voxels, " << spacingText(series.spacingMm) << ", " << series.orientation
         << (series.isLocalizer ? ", localizer" : "") << '\n';
     if (showsPhi) {
-        out << "     UID " << series.uid << ", description '" << series.description << "'\n";
+        out << "     UID " << oneLine(series.uid) << ", description '"
+            << oneLine(series.description) << "'\n";
     }
     if (!series.isReadable()) out << "     can't be read: " << series.fault << '\n';
     for (const std::string& warning : series.warnings) out << "     " << warning << '\n';
@@ -38,7 +40,7 @@ void printSeries(std::ostream& out, const DicomSeries& series, bool showsPhi) {
 
 void printList(std::ostream& out, const std::string& name, const DicomListing& listing,
                bool showsPhi) {
-    out << name << " holds " << listing.series.size() << " series\n";
+    out << oneLine(name) << " holds " << listing.series.size() << " series\n";
     for (const DicomSeries& series : listing.series) printSeries(out, series, showsPhi);
     if (listing.otherFiles > 0) {
         out << "  " << counted(static_cast<std::int64_t>(listing.otherFiles), "DICOM file")
@@ -46,8 +48,8 @@ void printList(std::ostream& out, const std::string& name, const DicomListing& l
     }
     for (const std::string& warning : listing.warnings) out << "  " << warning << '\n';
     for (const DicomFault& damaged : listing.damaged) {
-        out << "  damaged file" << (showsPhi ? " " + damaged.file.string() : std::string()) << ": "
-            << damaged.fault << '\n';
+        out << "  damaged file" << (showsPhi ? " " + oneLine(damaged.file.string()) : std::string())
+            << ": " << damaged.fault << '\n';
     }
 }
 

@@ -6,11 +6,13 @@
 
 #include "Common/ImageOptions.h"
 #include "Common/Numbers.h"
+#include "Common/PreprocessingOptions.h"
 
 namespace adaptiso {
 namespace {
 
 constexpr const char* kInput = "Input";
+constexpr const char* kPreprocessing = "Preprocessing of the volume for --iso (in this order)";
 constexpr const char* kRequired = "What is required (exit code 1 when it does not hold)";
 constexpr const char* kOutput = "Output";
 
@@ -54,6 +56,7 @@ void declareInput(CLI::App& app, CheckOptions& options) {
            "Measure how far the surfaces lie from the volume's isosurface at this value")
         ->type_name("V")
         ->group(kInput);
+    declarePreprocessingOptions(app, options.preprocessing, kPreprocessing);
 }
 
 void declareRequirements(CLI::App& app, CheckOptions& options) {
@@ -98,6 +101,9 @@ void checkCombinations(const CheckOptions& options) {
     if (options.minGapMm && !options.isNested) throw UsageError("--min-gap: needs --nested");
     if (options.isovalue && options.volume.empty()) throw UsageError("--iso: needs --volume");
     if (options.maxOffMm && !options.isovalue) throw UsageError("--max-off: needs --iso");
+    if (!options.preprocessing.changesNothing() && !options.isovalue) {
+        throw UsageError("--crop, --smooth, --resample: need --iso");
+    }
 }
 
 constexpr const char* kFooter = R"(Required by the profiles:

@@ -76,14 +76,22 @@ private:
         if (options_.volume.empty()) return;
         std::optional<ReadVolume> read;
         stage(kRead, [&] { read = readVolume(options_.volume, options_.read); });
-        const VolumeView& view = read->volume.view();
-        run_.volume = VolumeSummary{read->format, view.geometry()};
-        image_ = view.geometry();
-        for (const std::string& warning : read->warnings) {
+        image_ = read->volume.view().geometry();
+        run_.volume = VolumeSummary{read->format, *image_};
+        warnOfVolume(read->warnings);
+        if (!options_.isovalue) return;
+        stage(kExtract, [&] {
+            const Preprocessed prepared =
+                preprocess(std::move(read->volume), options_.preprocessing);
+            warnOfVolume(prepared.warnings);
+            isosurface_ = extractIsosurface(prepared.volume, *options_.isovalue);
+        });
+    }
+
+    void warnOfVolume(const std::vector<std::string>& warnings) {
+        for (const std::string& warning : warnings) {
             run_.warnings.push_back(options_.volume.filename().string() + ": " + warning);
         }
-        if (!options_.isovalue) return;
-        stage(kExtract, [&] { isosurface_ = extractIsosurface(view, *options_.isovalue); });
     }
 
     /// Reads one file and asks the questions of one surface. Points stay as stored, so that what

@@ -7,6 +7,7 @@
 
 #include "Common/CommonOptions.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso {
 
@@ -25,6 +26,7 @@ struct CheckOptions {
     std::filesystem::path volume;              ///< empty: none
     ReadOptions read;                          ///< of volume
     std::optional<double> isovalue;            ///< only together with volume
+    PreprocessOptions preprocessing;           ///< of volume; only together with isovalue
     std::optional<double> minGapMm;            ///< none: kDefaultMinGapMm, required of Bem only
     std::optional<double> minAngleDeg;         ///< none: kDefaultMinAngleDeg, required of Bem only
     std::optional<double> maxOffMm;            ///< none: half a voxel on the mean

@@ -10,6 +10,7 @@
 #include "Common/Json.h"
 #include "Common/Numbers.h"
 #include "Common/PreprocessingOptions.h"
+#include "Common/RunApp.h"
 
 namespace adaptiso {
 namespace {
@@ -159,10 +160,11 @@ void printInfo(std::ostream& out, const MeshOptions& options, const ImageInfo& i
     const Vec3 spacing = geometry.spacingMm();
     const double bytes = static_cast<double>(geometry.voxelCount()) *
                          static_cast<double>(bytesPerPixel(info.pixelType));
-    out << baseName(options.input) << ": " << info.format << '\n';
+    out << oneLine(baseName(options.input)) << ": " << info.format << '\n';
     if (info.series) {
         out << "series      " << info.series->number << ", " << info.series->modality << ", UID "
-            << info.series->uid << ", description '" << info.series->description << "'\n";
+            << oneLine(info.series->uid) << ", description '" << oneLine(info.series->description)
+            << "'\n";
     }
     if (!options.preprocessing.changesNothing()) {
         out << "after       " << preprocessingText(options.preprocessing, info.sizeAsRead) << '\n';

@@ -6,6 +6,7 @@
 
 #include "Common/Numbers.h"
 #include "Common/PreprocessingOptions.h"
+#include "Common/RunApp.h"
 
 namespace adaptiso {
 namespace {
@@ -17,7 +18,7 @@ std::string counted(std::int64_t count, const std::string& what) {
 
 void printSurface(std::ostream& out, const SurfaceSummary& surface) {
     const TopologyReport& topology = surface.topology;
-    out << surface.file.string() << ": isovalue " << formatNumber(surface.isovalue)
+    out << oneLine(surface.file.string()) << ": isovalue " << formatNumber(surface.isovalue)
         << (surface.isAutomatic ? " (chosen by Otsu's method)" : "") << ", " << surface.format->name
         << ", " << toString(surface.frame) << '\n';
     out << "  " << counted(topology.triangles, "triangle") << ", " << formatCount(topology.vertices)
@@ -57,8 +58,8 @@ void printReport(std::ostream& out, const MeshRun& run) {
     }
     for (const SurfaceSummary& surface : run.surfaces) printSurface(out, surface);
     if (!run.index.file.empty() && !run.index.isLoaded) {
-        out << run.index.file.string() << ": index for --index (" << toString(run.index.search)
-            << "), " << formatCount(run.index.blocks) << " blocks\n";
+        out << oneLine(run.index.file.string()) << ": index for --index ("
+            << toString(run.index.search) << "), " << formatCount(run.index.blocks) << " blocks\n";
     }
     out << formatFixed(run.timer.total(), 2) << " s (";
     std::string_view separator;

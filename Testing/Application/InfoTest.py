@@ -119,6 +119,10 @@ class Info(ApplicationTest):
         self.mesh("in.nii", "--info", "--quiet", "--json", "out.json")
         self.assertEqual(json.loads(self.path("out.json").read_text()), self.info("in.nii"))
 
+    def test_a_files_name_does_not_talk_to_the_terminal(self):
+        write_nifti(self.path("a\x1b[31m.nii"), ball())
+        self.assertTrue(self.mesh("a\x1b[31m.nii", "--info").stdout.startswith("a [31m.nii: NIfTI"))
+
     def test_keys_are_the_documented_ones(self):
         readme = (SOURCE / "Applications" / "adaptiso-mesh" / "README.md").read_text()
         section = readme.split("## What is told of an image")[1].split("## ")[0]
