@@ -12,9 +12,10 @@ namespace adaptiso {
 /// with w > 0 and integer steps n, so that the Gaussian is a chain of 1-D ones along lines of
 /// voxels, nothing interpolated. Where the axes are at right angles the steps are the axes; a
 /// tilted gantry adds diagonals. The 1-D kernels are the discrete Gaussian [Lindeberg1990], whose
-/// variance is w for any w, also far below a voxel; so the variance is sigma^2 in every direction,
-/// to 1e-4 of it. Kernels end where 1e-6 of their weight is left. Each is applied by
-/// itk::NeighborhoodOperatorImageFilter; samples beyond the border are those at the border.
+/// variance is w for any w, also far below a voxel; they end where 1e-5 of it is left. So the
+/// variance in every direction is sigma^2, but for 1e-5 of it and 1e-6 squared steps. Each is
+/// applied by itk::NeighborhoodOperatorImageFilter; samples beyond the border are those at the
+/// border.
 ///
 /// Labels are blended like any other values.
 /// \param sigmaMm  > 0, at most a quarter of the volume's shortest side
