@@ -11,6 +11,7 @@
 
 #include "Common/AtomicOutput.h"
 #include "Common/Numbers.h"
+#include "Common/OptionsJson.h"
 #include "Common/Resources.h"
 #include "adaptiso/ImageIO/MappedInput.h"
 
@@ -105,6 +106,10 @@ int runApp(int argc, const char* const* argv, const Program& program,
     app.footer(program.footer);
     try {
         declare(app);
+        if (argc == 2 && std::string_view(argv[1]) == "--help-json") {
+            std::cout << optionsJson(app) << std::flush;
+            return std::cout ? kExitOk : kExitBadInput;
+        }
         app.parse(argc, argv);
     } catch (const CLI::Success& asked) {
         return app.exit(asked);  // --help, --version

@@ -41,6 +41,8 @@ int runApp(int argc, const char* const* argv, const Program& program,
 /// UsageError and what CLI11 refuses: 2, with a hint at --help. InvalidInput, FileError: 3. Too
 /// little memory: 3, since a smaller input or a larger machine mends it. All else: 4.
 ///
+/// --help-json alone prints the options as JSON (optionsJson()), from which manual pages are made.
+///
 /// Signals that end the program (Ctrl-C among them) first remove temporary files (AtomicOutput);
 /// reaching the limit of a file's size is an error of writing (3), not a signal, and so is (as an
 /// error of reading) a disk that fails under a mapped image.
