@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "CheckBatch.h"
 #include "CheckRun.h"
 #include "Common/AtomicOutput.h"
 #include "Common/CommonFrame.h"
@@ -264,6 +265,7 @@ bool CheckRun::hasPassed() const {
 }
 
 int runCheck(const CheckOptions& options) {
+    if (options.batch.isAsked()) return runCheckBatch(options);
     const ThreadLimit threads(options.common);
     ProgressLine progress(options.common.isQuiet);
     checkJsonName(options);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "Common/BatchOptions.h"
 #include "Common/CommonOptions.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/Preprocessing/Preprocess.h"
@@ -21,6 +22,7 @@ enum class Profile {
 /// What adaptiso-check is asked to do.
 struct CheckOptions {
     std::vector<std::filesystem::path> files;  ///< one or more
+    BatchOptions batch;                        ///< asked for: a run for each file
     bool isNested = false;                     ///< they lie in each other, the innermost first
     std::optional<Profile> profile;            ///< none: Bem when nested, else Print
     std::filesystem::path volume;              ///< empty: none

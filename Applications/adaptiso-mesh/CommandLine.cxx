@@ -70,6 +70,9 @@ void checkLookingOnly(const MeshOptions& options) {
 
 /// What one option alone can't tell.
 void checkCombinations(const MeshOptions& options) {
+    if (options.inputs.empty() && options.batch.list.empty() && options.batch.bids.empty()) {
+        throw UsageError("INPUT is required");
+    }
     checkLookingOnly(options);
     if (options.isovalues.empty() && !options.image.listsSeries && !options.image.tellsInfo) {
         throw UsageError("--iso is required");
@@ -116,11 +119,10 @@ CLI::Option* addChoice(CLI::App& app, const std::string& name, Target& target,
 
 void declareInput(CLI::App& app, MeshOptions& options) {
     app.add_option(
-           "INPUT", options.input,
+           "INPUT", options.inputs,
            "A 3-D image: NIfTI, NRRD, MetaImage, MGH, a DICOM file or DICOMDIR, or a folder "
-           "that holds the slices of a DICOM series")
-        ->type_name("")
-        ->required();
+           "that holds the slices of a DICOM series; several make a batch")
+        ->type_name("");
     declareImageOptions(app, options.image, kInput);
     declarePreprocessingOptions(app, options.preprocessing, kPreprocessing);
 }
@@ -274,9 +276,13 @@ constexpr const char* kFooter = R"(Examples:
   adaptiso-mesh ct/ --iso 250 --crop :,:,40: --smooth 0.7 --resample 1
   adaptiso-mesh T1.mgz --iso 90 -o lh.pial
       a FreeSurfer surface in tkRAS
+  adaptiso-mesh *.nii.gz --iso auto -o '{name}.stl' --output-dir meshes --jobs 4
+  adaptiso-mesh --bids study --iso auto --skip-existing
+      each image a run of its own; the second goes on where it was interrupted
 
-Exit codes: 0 done, 2 wrong usage, 3 bad input (or no memory or disk left),
-4 internal error. When it is not 0, no file was written.)";
+Exit codes: 0 done, 1 one or more of many inputs failed, 2 wrong usage, 3 bad
+input (or no memory or disk left), 4 internal error. When it is not 0, no file
+was written (of many inputs: no mesh of those that failed).)";
 
 }  // namespace
 
@@ -292,12 +298,15 @@ void declareMeshOptions(CLI::App& app, MeshOptions& options) {
     declareIndex(app, options);
     declarePieces(app, options);
     declareOutput(app, options);
+    declareBatchOptions(app, options.batch, "the T1w images");
     declareCommonOptions(app, options.common);
     app.callback([&app, &options] {
+        if (!options.inputs.empty()) options.input = options.inputs.front();
         options.indexFiles.givesBlockSize = app.count("--block-size") > 0;
         options.indexFiles.givesBorder = app.count("--border") > 0;
         options.indexFiles.givesSearch = app.count("--search") > 0;
         checkCombinations(options);
+        if (options.isBatch()) keepRunOptions(app, options.batch);
     });
 }
 

@@ -12,6 +12,7 @@
 #include "IndexSource.h"
 #include "Info.h"
 #include "JsonReport.h"
+#include "MeshBatch.h"
 #include "MeshRun.h"
 #include "OutputNames.h"
 #include "TextReport.h"
@@ -277,6 +278,7 @@ void report(const MeshRun& run, const std::string& json) {
 }  // namespace
 
 int runMesh(const MeshOptions& asked) {
+    if (asked.isBatch()) return runMeshBatch(asked);
     if (asked.image.listsSeries) {
         return runSeriesList(asked.input, asked.image, asked.common, "adaptiso-mesh");
     }

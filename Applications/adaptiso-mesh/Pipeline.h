@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "Common/BatchOptions.h"
 #include "Common/CommonOptions.h"
 #include "Common/ImageOptions.h"
 #include "adaptiso/Extraction/Components.h"
@@ -32,7 +33,9 @@ struct IndexFiles {
 
 /// What adaptiso-mesh is asked to do.
 struct MeshOptions {
-    std::filesystem::path input;
+    std::vector<std::filesystem::path> inputs;  ///< as given
+    std::filesystem::path input;                ///< the one, when it is one
+    BatchOptions batch;
     ImageOptions image;
     PreprocessOptions preprocessing;
     std::vector<IsovalueChoice> isovalues;
@@ -49,6 +52,11 @@ struct MeshOptions {
     bool verifies = false;  ///< checks the method adaptive's promises by other means, too
     CommonOptions common;
 
+    /// Each input is a run of its own (Batch.h).
+    bool isBatch() const {
+        return batch.isAsked() || inputs.size() > 1 ||
+               output.string().find("{name}") != std::string::npos;
+    }
     /// Pieces are asked for that only closed surfaces have.
     bool needsClosedSurfaces() const {
         return selection.fillCavities || selection.minVolumeMm3 > 0;
