@@ -3,7 +3,7 @@
 #include "Common/ExitCodes.h"
 #include "Common/ImageOptions.h"
 #include "Common/Json.h"
-#include "Common/ReportOutput.h"
+#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 

@@ -10,7 +10,7 @@
 #include "Common/ExitCodes.h"
 #include "Common/Numbers.h"
 #include "Common/Progress.h"
-#include "Common/ReportOutput.h"
+#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "InfoReport.h"
 #include "adaptiso/ImageIO/Otsu.h"

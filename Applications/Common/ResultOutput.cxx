@@ -1,4 +1,4 @@
-#include "Common/ReportOutput.h"
+#include "Common/ResultOutput.h"
 
 #include <iostream>
 #include <vector>
