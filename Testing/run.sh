@@ -9,7 +9,7 @@ top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$top"
 
 . Applications/quickstart/packages.sh
-installPackages Applications/quickstart/packages.txt Testing/packages.txt
+installPackages Applications/quickstart/packages.txt Packaging/packages.txt Testing/packages.txt
 
 cmake --log-level=WARNING --preset release
 cmake --build --preset release

@@ -47,9 +47,14 @@ void declareImageOptions(CLI::App& app, ImageOptions& options, const std::string
         app.add_flag("--list-series", options.listsSeries,
                      "List the series that a DICOM input holds, and do nothing else")
             ->group(group);
+    app.add_flag("--info", options.tellsInfo,
+                 "Tell the image's geometry and values, with thresholds by Otsu's method, and do "
+                 "nothing else; an image that would be refused is refused")
+        ->excludes(list)
+        ->group(group);
     app.add_flag("--show-phi", options.showsPhi,
-                 "List UIDs, descriptions and files' names too: they may identify the patient")
-        ->needs(list)
+                 "With --list-series and --info: tell UIDs, descriptions and files' names too; "
+                 "they may identify the patient")
         ->group(group);
 }
 

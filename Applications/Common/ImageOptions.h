@@ -13,7 +13,8 @@ namespace adaptiso {
 struct ImageOptions {
     ReadOptions read;
     bool listsSeries = false;  ///< list what a DICOM input holds, and do nothing else
-    bool showsPhi = false;     ///< the list holds what may identify the patient
+    bool tellsInfo = false;    ///< tell what the image holds, and do nothing else
+    bool showsPhi = false;     ///< either tells what may identify the patient too
 };
 
 /// Adds --series, --volume-index and --resample-slices. Large images are mapped.
@@ -24,7 +25,7 @@ void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& 
 CLI::Option* declareVolume(CLI::App& app, std::filesystem::path& volume, ReadOptions& options,
                            const std::string& description, const std::string& group);
 
-/// Adds --series, --volume-index, --resample-slices, --list-series and --show-phi.
+/// Adds --series, --volume-index, --resample-slices, --list-series, --info and --show-phi.
 void declareImageOptions(CLI::App& app, ImageOptions& options, const std::string& group);
 
 /// Lists the series of `input` on stdout: as text, or as JSON on stdout or in a file, as `common`

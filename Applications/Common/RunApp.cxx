@@ -11,13 +11,12 @@
 
 #include "Common/AtomicOutput.h"
 #include "Common/Numbers.h"
+#include "Common/OptionsJson.h"
 #include "Common/Resources.h"
 #include "adaptiso/ImageIO/MappedInput.h"
 
 namespace adaptiso {
-namespace {
 
-/// `text` as one line without control characters.
 std::string oneLine(std::string_view text) {
     std::string line(text);
     for (char& c : line) {
@@ -26,8 +25,6 @@ std::string oneLine(std::string_view text) {
     while (!line.empty() && line.back() == ' ') line.pop_back();
     return line;
 }
-
-}  // namespace
 
 void printError(std::string_view programName, std::string_view message) {
     std::cerr << programName << ": " << oneLine(message) << '\n';
@@ -109,6 +106,10 @@ int runApp(int argc, const char* const* argv, const Program& program,
     app.footer(program.footer);
     try {
         declare(app);
+        if (argc == 2 && std::string_view(argv[1]) == "--help-json") {
+            std::cout << optionsJson(app) << std::flush;
+            return std::cout ? kExitOk : kExitBadInput;
+        }
         app.parse(argc, argv);
     } catch (const CLI::Success& asked) {
         return app.exit(asked);  // --help, --version

@@ -23,9 +23,11 @@ struct Program {
     std::string footer;       ///< last lines of --help: examples, exit codes
 };
 
-/// One line on stderr: "name: message". Line breaks and control characters in the message, which
-/// may hold a file's name or a header's text, become spaces: it can neither break the line nor talk
-/// to the terminal.
+/// `text` as one line: line breaks and control characters in it, which may be from a file's name or
+/// a header, become spaces, so that it can neither break the line nor talk to the terminal.
+std::string oneLine(std::string_view text);
+
+/// One line on stderr: "name: message", the message by oneLine().
 void printError(std::string_view programName, std::string_view message);
 
 namespace detail {
@@ -38,6 +40,8 @@ int runApp(int argc, const char* const* argv, const Program& program,
 ///
 /// UsageError and what CLI11 refuses: 2, with a hint at --help. InvalidInput, FileError: 3. Too
 /// little memory: 3, since a smaller input or a larger machine mends it. All else: 4.
+///
+/// --help-json alone prints the options as JSON (optionsJson()), from which manual pages are made.
 ///
 /// Signals that end the program (Ctrl-C among them) first remove temporary files (AtomicOutput);
 /// reaching the limit of a file's size is an error of writing (3), not a signal, and so is (as an

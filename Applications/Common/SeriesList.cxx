@@ -1,10 +1,10 @@
-#include <iostream>
 #include <sstream>
 
-#include "Common/AtomicOutput.h"
 #include "Common/ExitCodes.h"
 #include "Common/ImageOptions.h"
 #include "Common/Json.h"
+#include "Common/ResultOutput.h"
+#include "Common/RunApp.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 
 namespace adaptiso {
@@ -31,7 +31,8 @@ void printSeries(std::ostream& out, const DicomSeries& series, bool showsPhi) {
         << " voxels, " << spacingText(series.spacingMm) << ", " << series.orientation
         << (series.isLocalizer ? ", localizer" : "") << '\n';
     if (showsPhi) {
-        out << "     UID " << series.uid << ", description '" << series.description << "'\n";
+        out << "     UID " << oneLine(series.uid) << ", description '"
+            << oneLine(series.description) << "'\n";
     }
     if (!series.isReadable()) out << "     can't be read: " << series.fault << '\n';
     for (const std::string& warning : series.warnings) out << "     " << warning << '\n';
@@ -39,7 +40,7 @@ void printSeries(std::ostream& out, const DicomSeries& series, bool showsPhi) {
 
 void printList(std::ostream& out, const std::string& name, const DicomListing& listing,
                bool showsPhi) {
-    out << name << " holds " << listing.series.size() << " series\n";
+    out << oneLine(name) << " holds " << listing.series.size() << " series\n";
     for (const DicomSeries& series : listing.series) printSeries(out, series, showsPhi);
     if (listing.otherFiles > 0) {
         out << "  " << counted(static_cast<std::int64_t>(listing.otherFiles), "DICOM file")
@@ -47,8 +48,8 @@ void printList(std::ostream& out, const std::string& name, const DicomListing& l
     }
     for (const std::string& warning : listing.warnings) out << "  " << warning << '\n';
     for (const DicomFault& damaged : listing.damaged) {
-        out << "  damaged file" << (showsPhi ? " " + damaged.file.string() : std::string()) << ": "
-            << damaged.fault << '\n';
+        out << "  damaged file" << (showsPhi ? " " + oneLine(damaged.file.string()) : std::string())
+            << ": " << damaged.fault << '\n';
     }
 }
 
@@ -99,19 +100,8 @@ int runSeriesList(const std::filesystem::path& input, const ImageOptions& option
     const std::string name = baseName(input);
     const std::string json =
         common.wantsJson() ? listJson(program, name, listing, options.showsPhi) : "";
-    if (common.wantsJsonOnStdout()) {
-        std::cout << json;
-    } else if (!common.isQuiet) {
-        printList(std::cout, name, listing, options.showsPhi);
-    }
-    if (common.wantsJson() && !common.wantsJsonOnStdout()) {
-        checkNotInput(common.json, input);
-        checkOutput(common.json);
-        std::vector<AtomicOutput> outputs;
-        outputs.emplace_back(common.json).writeText(json);
-        AtomicOutput::commit(outputs);
-    }
-    if (!std::cout.flush()) throw FileError("standard output: can't be written");
+    deliverReport(common, input, json,
+                  [&](std::ostream& out) { printList(out, name, listing, options.showsPhi); });
     return kExitOk;
 }
 

@@ -6,11 +6,13 @@
 
 #include "Common/ImageOptions.h"
 #include "Common/Numbers.h"
+#include "Common/PreprocessingOptions.h"
 
 namespace adaptiso {
 namespace {
 
 constexpr const char* kInput = "Input";
+constexpr const char* kPreprocessing = "Preprocessing of the volume for --iso (in this order)";
 constexpr const char* kRequired = "What is required (exit code 1 when it does not hold)";
 constexpr const char* kOutput = "Output";
 
@@ -33,8 +35,7 @@ void addNumber(CLI::App& app, const std::string& name, std::optional<double>& ta
 void declareInput(CLI::App& app, CheckOptions& options) {
     app.add_option("FILE", options.files,
                    "Triangle surfaces, in any format adaptiso-mesh writes, however broken")
-        ->type_name("")
-        ->required();
+        ->type_name("");
     app.add_flag("--nested", options.isNested,
                  "The files are the surfaces of one head, from inside to outside (INNER MIDDLE "
                  "OUTER): check how they lie in each other too")
@@ -54,6 +55,7 @@ void declareInput(CLI::App& app, CheckOptions& options) {
            "Measure how far the surfaces lie from the volume's isosurface at this value")
         ->type_name("V")
         ->group(kInput);
+    declarePreprocessingOptions(app, options.preprocessing, kPreprocessing);
 }
 
 void declareRequirements(CLI::App& app, CheckOptions& options) {
@@ -93,12 +95,17 @@ void declareOutput(CLI::App& app, CheckOptions& options) {
 
 /// What one option alone can't tell.
 void checkCombinations(const CheckOptions& options) {
-    if (options.isNested && options.files.size() < 2) {
+    const bool findsFiles = !options.batch.list.empty() || !options.batch.bids.empty();
+    if (options.files.empty() && !findsFiles) throw UsageError("FILE is required");
+    if (options.isNested && options.files.size() < 2 && !findsFiles) {
         throw UsageError("--nested: needs at least two files, from inside to outside");
     }
     if (options.minGapMm && !options.isNested) throw UsageError("--min-gap: needs --nested");
     if (options.isovalue && options.volume.empty()) throw UsageError("--iso: needs --volume");
     if (options.maxOffMm && !options.isovalue) throw UsageError("--max-off: needs --iso");
+    if (!options.preprocessing.changesNothing() && !options.isovalue) {
+        throw UsageError("--crop, --smooth, --resample: need --iso");
+    }
 }
 
 constexpr const char* kFooter = R"(Required by the profiles:
@@ -120,6 +127,8 @@ Examples:
   adaptiso-check bone.ply --volume ct.nii.gz --iso 250 --json report.json
   adaptiso-check --nested *.surf --volume T1.mgz --report check.html
   adaptiso-check --quiet *.vtp || echo 'not all of them are sound'
+  adaptiso-check *.vtp --jobs 4 --output-dir checked --skip-existing
+      a line for each, each in a process of its own; a page checked/summary.html
 
 Exit codes: 0 all that is required holds, 1 something does not, 2 wrong usage,
 3 bad input (or no memory or disk left), 4 internal error. A file that can't be
@@ -136,8 +145,12 @@ void declareCheckOptions(CLI::App& app, CheckOptions& options) {
     declareInput(app, options);
     declareRequirements(app, options);
     declareOutput(app, options);
+    declareBatchOptions(app, options.batch, "the surfaces in derivatives/adaptiso");
     declareCommonOptions(app, options.common);
-    app.callback([&options] { checkCombinations(options); });
+    app.callback([&app, &options] {
+        checkCombinations(options);
+        if (options.batch.isAsked()) keepRunOptions(app, options.batch);
+    });
 }
 
 }  // namespace adaptiso

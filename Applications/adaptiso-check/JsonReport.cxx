@@ -6,6 +6,7 @@
 
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
+#include "Common/PreprocessingOptions.h"
 
 namespace adaptiso {
 namespace {
@@ -258,10 +259,12 @@ Json nestingJson(const CheckRun& run) {
 
 Json volumeJson(const CheckRun& run) {
     if (!run.volume) return nullptr;
-    return {{"file", baseName(run.options.volume)},
-            {"format", run.volume->format},
-            {"sizeVoxels", run.volume->geometry.size},
-            {"spacingMm", vector(run.volume->geometry.spacingMm())}};
+    return {
+        {"file", baseName(run.options.volume)},
+        {"format", run.volume->format},
+        {"sizeVoxels", run.volume->geometry.size},
+        {"spacingMm", vector(run.volume->geometry.spacingMm())},
+        {"preprocessing", preprocessingJson(run.options.preprocessing, run.volume->geometry.size)}};
 }
 
 Json optionsJson(const CheckOptions& options) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "CheckBatch.h"
 #include "CheckRun.h"
 #include "Common/AtomicOutput.h"
 #include "Common/CommonFrame.h"
@@ -86,15 +87,23 @@ private:
         if (options_.volume.empty()) return;
         std::optional<ReadVolume> read;
         stage(kRead, [&] { read = readVolume(options_.volume, options_.read); });
-        const VolumeView& view = read->volume.view();
-        run_.volume = VolumeSummary{read->format, view.geometry()};
-        image_ = view.geometry();
+        image_ = read->volume.view().geometry();
+        run_.volume = VolumeSummary{read->format, *image_};
         if (options_.report.isWanted()) shown_.image = *read;
-        for (const std::string& warning : read->warnings) {
+        warnOfVolume(read->warnings);
+        if (!options_.isovalue) return;
+        stage(kExtract, [&] {
+            const Preprocessed prepared =
+                preprocess(std::move(read->volume), options_.preprocessing);
+            warnOfVolume(prepared.warnings);
+            isosurface_ = extractIsosurface(prepared.volume, *options_.isovalue);
+        });
+    }
+
+    void warnOfVolume(const std::vector<std::string>& warnings) {
+        for (const std::string& warning : warnings) {
             run_.warnings.push_back(options_.volume.filename().string() + ": " + warning);
         }
-        if (!options_.isovalue) return;
-        stage(kExtract, [&] { isosurface_ = extractIsosurface(view, *options_.isovalue); });
     }
 
     /// Reads one file and asks the questions of one surface. Points stay as stored, so that what
@@ -281,6 +290,7 @@ bool CheckRun::hasPassed() const {
 }
 
 int runCheck(const CheckOptions& options) {
+    if (options.batch.isAsked()) return runCheckBatch(options);
     const ThreadLimit threads(options.common);
     ProgressLine progress(options.common.isQuiet);
     checkOutputs(options);

@@ -5,9 +5,11 @@
 #include <optional>
 #include <vector>
 
+#include "Common/BatchOptions.h"
 #include "Common/CommonOptions.h"
 #include "Common/ReportOutput.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso {
 
@@ -21,11 +23,13 @@ enum class Profile {
 /// What adaptiso-check is asked to do.
 struct CheckOptions {
     std::vector<std::filesystem::path> files;  ///< one or more
+    BatchOptions batch;                        ///< asked for: a run for each file
     bool isNested = false;                     ///< they lie in each other, the innermost first
     std::optional<Profile> profile;            ///< none: Bem when nested, else Print
     std::filesystem::path volume;              ///< empty: none
     ReadOptions read;                          ///< of volume
     std::optional<double> isovalue;            ///< only together with volume
+    PreprocessOptions preprocessing;           ///< of volume; only together with isovalue
     std::optional<double> minGapMm;            ///< none: kDefaultMinGapMm, required of Bem only
     std::optional<double> minAngleDeg;         ///< none: kDefaultMinAngleDeg, required of Bem only
     std::optional<double> maxOffMm;            ///< none: half a voxel on the mean

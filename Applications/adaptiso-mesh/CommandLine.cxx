@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "Common/Numbers.h"
+#include "Common/PreprocessingOptions.h"
 #include "adaptiso/MeshIO/Formats.h"
 
 namespace adaptiso {
 namespace {
 
 constexpr const char* kInput = "Input";
+constexpr const char* kPreprocessing = "Preprocessing (in this order)";
 constexpr const char* kSurface = "Surface";
 constexpr const char* kOutput = "Output";
 constexpr const char* kIndex = "Index";
@@ -54,9 +56,25 @@ double parseVolume(const std::string& text) {
     return *volume;
 }
 
+/// Of the options that make no surface.
+void checkLookingOnly(const MeshOptions& options) {
+    if (options.image.showsPhi && !options.image.listsSeries && !options.image.tellsInfo) {
+        throw UsageError("--show-phi: is for --list-series and --info");
+    }
+    const bool asksForFiles = !options.output.empty() || !options.indexFiles.load.empty() ||
+                              !options.indexFiles.save.empty();
+    if (options.image.tellsInfo && (!options.isovalues.empty() || asksForFiles)) {
+        throw UsageError("--info: makes no surface, so not with --iso, -o, --index, --save-index");
+    }
+}
+
 /// What one option alone can't tell.
 void checkCombinations(const MeshOptions& options) {
-    if (options.isovalues.empty() && !options.image.listsSeries) {
+    if (options.inputs.empty() && options.batch.list.empty() && options.batch.bids.empty()) {
+        throw UsageError("INPUT is required");
+    }
+    checkLookingOnly(options);
+    if (options.isovalues.empty() && !options.image.listsSeries && !options.image.tellsInfo) {
         throw UsageError("--iso is required");
     }
     if (options.index.border == Border::Open && options.needsClosedSurfaces()) {
@@ -68,12 +86,11 @@ void checkCombinations(const MeshOptions& options) {
             "--adjust-vertices: is for --method dmc; the vertices of the other methods "
             "lie on the crossings already");
     }
-    if (options.index.border == Border::Open && options.method == Method::Adaptive) {
-        throw UsageError("--method adaptive closes surfaces at the border: not for --border open");
-    }
-    if (!(options.adaptive == AdaptiveOptions{}) && options.method != Method::Adaptive) {
+    const bool isForAdaptive = !(options.adaptive == AdaptiveOptions{}) || options.verifies;
+    if (isForAdaptive && options.method != Method::Adaptive) {
         throw UsageError(
-            "--max-error, --triangles, --reduction and --min-angle are for --method adaptive");
+            "--max-error, --triangles, --reduction, --min-angle and --verify are for --method "
+            "adaptive");
     }
     if (options.mergeWithinBlocks && options.method != Method::DiscretizedMarchingCubes) {
         throw UsageError(
@@ -102,12 +119,12 @@ CLI::Option* addChoice(CLI::App& app, const std::string& name, Target& target,
 
 void declareInput(CLI::App& app, MeshOptions& options) {
     app.add_option(
-           "INPUT", options.input,
+           "INPUT", options.inputs,
            "A 3-D image: NIfTI, NRRD, MetaImage, MGH, a DICOM file or DICOMDIR, or a folder "
-           "that holds the slices of a DICOM series")
-        ->type_name("")
-        ->required();
+           "that holds the slices of a DICOM series; several make a batch")
+        ->type_name("");
     declareImageOptions(app, options.image, kInput);
+    declarePreprocessingOptions(app, options.preprocessing, kPreprocessing);
 }
 
 void declareSurface(CLI::App& app, MeshOptions& options) {
@@ -122,14 +139,14 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
         ->allow_extra_args(false)
         ->group(kSurface);
     addChoice<Method>(app, "--method", options.method,
-                      {{"boxes", Method::Boxes},
-                       {"adaptive", Method::Adaptive},
+                      {{"adaptive", Method::Adaptive},
+                       {"boxes", Method::Boxes},
                        {"dmc", Method::DiscretizedMarchingCubes},
                        {"asc", Method::SkeletonClimbing},
                        {"mc", Method::MarchingCubes}},
-                      "boxes: adaptive, few triangles where the surface is flat (default); "
                       "adaptive: few triangles within a stated distance of the surface, none "
-                      "crossing another; "
+                      "crossing another (default); "
+                      "boxes: cubes of several sizes, merged where the surface is flat; "
                       "dmc: discretized marching cubes, coplanar facets between edge midpoints "
                       "merged; "
                       "asc: adaptive skeleton climbing, rectangular boxes, unmerged; "
@@ -158,6 +175,10 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
                    "triangles (default: 0)")
         ->type_name("DEG")
         ->check(CLI::Range(0.0, 40.0))
+        ->group(kSurface);
+    app.add_flag("--verify", options.verifies,
+                 "Method adaptive: also check the result against the surface of mc, by other "
+                 "code than made it: crossings, pieces, genus and sampled distance. Takes long")
         ->group(kSurface);
     app.add_flag("--adjust-vertices", options.adjustVertices,
                  "Move the vertices of the method dmc from the midpoints to where the image "
@@ -237,7 +258,8 @@ void declareOutput(CLI::App& app, MeshOptions& options) {
         ->group(kOutput);
     app.add_flag_callback(
            "--no-check-crossings", [&options] { options.checksCrossings = false; },
-           "Do not count the pairs of triangles that cross each other for the reports")
+           "Do not count the pairs of triangles that cross each other for the reports (the "
+           "method adaptive makes none)")
         ->group(kOutput);
     declareReportOptions(app, options.report, kOutput);
 }
@@ -250,11 +272,18 @@ constexpr const char* kFooter = R"(Examples:
       one DICOM series, skin and bone, from one reading
   adaptiso-mesh study/ --list-series
       what a DICOM folder holds
+  adaptiso-mesh head.nii.gz --info
+      geometry, range, percentiles, histogram, and isovalues to try
+  adaptiso-mesh ct/ --iso 250 --crop :,:,40: --smooth 0.7 --resample 1
   adaptiso-mesh T1.mgz --iso 90 -o lh.pial
       a FreeSurfer surface in tkRAS
+  adaptiso-mesh *.nii.gz --iso auto -o '{name}.stl' --output-dir meshes --jobs 4
+  adaptiso-mesh --bids study --iso auto --skip-existing
+      each image a run of its own; the second goes on where it was interrupted
 
-Exit codes: 0 done, 2 wrong usage, 3 bad input (or no memory or disk left),
-4 internal error. When it is not 0, no file was written.)";
+Exit codes: 0 done, 1 one or more of many inputs failed, 2 wrong usage, 3 bad
+input (or no memory or disk left), 4 internal error. When it is not 0, no file
+was written (of many inputs: no mesh of those that failed).)";
 
 }  // namespace
 
@@ -270,12 +299,15 @@ void declareMeshOptions(CLI::App& app, MeshOptions& options) {
     declareIndex(app, options);
     declarePieces(app, options);
     declareOutput(app, options);
+    declareBatchOptions(app, options.batch, "the T1w images");
     declareCommonOptions(app, options.common);
     app.callback([&app, &options] {
+        if (!options.inputs.empty()) options.input = options.inputs.front();
         options.indexFiles.givesBlockSize = app.count("--block-size") > 0;
         options.indexFiles.givesBorder = app.count("--border") > 0;
         options.indexFiles.givesSearch = app.count("--search") > 0;
         checkCombinations(options);
+        if (options.isBatch()) keepRunOptions(app, options.batch);
     });
 }
 

@@ -5,7 +5,9 @@
 #include <string_view>
 
 #include "Common/CommonOptions.h"
+#include "Common/ImageJson.h"
 #include "Common/Json.h"
+#include "Common/PreprocessingOptions.h"
 
 namespace adaptiso {
 namespace {
@@ -19,23 +21,23 @@ std::string_view borderWord(Border border) {
 
 Json inputJson(const MeshRun& run) {
     const InputSummary& input = run.input;
-    const ImageGeometry& geometry = input.geometry;
-    Json directions = Json::array();  // rows, as ITK and NRRD users know them
-    Mat3 direction;
-    for (int axis = 0; axis < 3; ++axis) {
-        direction.column[axis] = normalized(geometry.indexToPhysical.column[axis]);
-    }
-    for (const Vec3& row : transpose(direction).column) directions.push_back(vector(row));
-    return {{"file", baseName(run.options.input)},
-            {"format", input.format},
-            {"sizeVoxels", geometry.size},
-            {"spacingMm", vector(geometry.spacingMm())},
-            {"originMm", vector(geometry.originMm)},
-            {"direction", directions},
-            {"pixelType", toString(input.pixelType)},
-            {"minimum", number(input.range.minimum)},
-            {"maximum", number(input.range.maximum)},
-            {"warnings", input.warnings}};
+    Json json{{"file", baseName(run.options.input)}, {"format", input.format}};
+    json.update(geometryJson(input.geometry));
+    json["pixelType"] = toString(input.pixelType);
+    json["minimum"] = number(input.range.minimum);
+    json["maximum"] = number(input.range.maximum);
+    json["warnings"] = input.warnings;
+    return json;
+}
+
+Json preprocessedJson(const MeshRun& run) {
+    if (!run.preprocessed) return nullptr;
+    Json json = preprocessingJson(run.options.preprocessing, run.input.geometry.size);
+    json.update(geometryJson(run.preprocessed->geometry));
+    json["pixelType"] = toString(run.preprocessed->pixelType);
+    json["minimum"] = number(run.preprocessed->range.minimum);
+    json["maximum"] = number(run.preprocessed->range.maximum);
+    return json;
 }
 
 Json optionsJson(const MeshOptions& options) {
@@ -111,32 +113,35 @@ Json soundnessJson(const SurfaceSummary& surface) {
 Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {
     const ExtractionStatistics& statistics = surface.statistics;
     const TopologyReport& topology = surface.topology;
-    return {{"isovalue", surface.isovalue},
-            {"isovalueChosenBy", surface.isAutomatic ? "otsu" : "user"},
-            {"method", toString(run.options.method)},
-            {"blocks",
-             {{"size", run.options.index.blockSize},
-              {"total", statistics.blocksTotal},
-              {"active", statistics.blocksActive},
-              {"nodesVisited", statistics.indexNodesVisited}}},
-            {"boxes", boxesJson(statistics.boxes)},
-            {"boxesChangingTopology", statistics.boxesChangingTopology},
-            {"edgesSplit", statistics.edgesSplit},
-            {"errorBoundMm", orNull(statistics.errorBoundMm)},
-            {"triangles", topology.triangles},
-            {"vertices", topology.vertices},
-            {"marchingCubesTriangles", statistics.marchingCubesTriangles},
-            {"areaMm2", number(surface.areaMm2)},
-            {"volumeMm3", orNull(surface.volumeMm3)},
-            {"genus", orNull(topology.genus())},
-            {"componentCount", topology.components.size()},
-            {"components", componentsJson(topology)},
-            {"soundness", soundnessJson(surface)},
-            {"output",
-             {{"file", surface.file.filename().string()},
-              {"format", surface.format->name},
-              {"coordinates", frameWord(surface.frame)},
-              {"bytes", surface.bytes}}}};
+    return {
+        {"isovalue", surface.isovalue},
+        {"isovalueChosenBy", surface.isAutomatic ? "otsu" : "user"},
+        {"method", toString(run.options.method)},
+        {"blocks",
+         {{"size", run.options.index.blockSize},
+          {"total", statistics.blocksTotal},
+          {"active", statistics.blocksActive},
+          {"nodesVisited", statistics.indexNodesVisited}}},
+        {"boxes", boxesJson(statistics.boxes)},
+        {"boxesChangingTopology", statistics.boxesChangingTopology},
+        {"edgesSplit", statistics.edgesSplit},
+        {"errorBoundMm", orNull(statistics.errorBoundMm)},
+        {"verifiedSamples", surface.verification ? Json(surface.verification->samples) : Json()},
+        {"verifiedMaxMm", surface.verification ? number(surface.verification->maxMm) : Json()},
+        {"triangles", topology.triangles},
+        {"vertices", topology.vertices},
+        {"marchingCubesTriangles", statistics.marchingCubesTriangles},
+        {"areaMm2", number(surface.areaMm2)},
+        {"volumeMm3", orNull(surface.volumeMm3)},
+        {"genus", orNull(topology.genus())},
+        {"componentCount", topology.components.size()},
+        {"components", componentsJson(topology)},
+        {"soundness", soundnessJson(surface)},
+        {"output",
+         {{"file", surface.file.filename().string()},
+          {"format", surface.format->name},
+          {"coordinates", frameWord(surface.frame)},
+          {"bytes", surface.bytes}}}};
 }
 
 }  // namespace
@@ -149,6 +154,7 @@ std::string jsonReport(const MeshRun& run) {
     const Json report{{"schema", "adaptiso-mesh/1"},
                       {"program", {{"name", "adaptiso-mesh"}, {"version", programVersion()}}},
                       {"input", inputJson(run)},
+                      {"preprocessing", preprocessedJson(run)},
                       {"options", optionsJson(run.options)},
                       {"index", indexJson(run.index)},
                       {"surfaces", surfaces},

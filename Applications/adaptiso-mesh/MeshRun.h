@@ -17,6 +17,13 @@
 
 namespace adaptiso {
 
+/// What the surfaces are made from when that is not the volume as read.
+struct PreprocessedSummary {
+    ImageGeometry geometry;
+    PixelType pixelType{};
+    ValueRange range{};
+};
+
 /// What is known of the volume once it has been read.
 struct InputSummary {
     std::string format;
@@ -36,6 +43,12 @@ struct IndexSummary {
     bool isLoaded = false;
 };
 
+/// What --verify has found.
+struct Verification {
+    std::int64_t samples = 0;  ///< points at which distances were measured, both ways
+    double maxMm = 0;          ///< the largest of them
+};
+
 /// What is known of one surface once it has been written.
 struct SurfaceSummary {
     double isovalue = 0;
@@ -45,6 +58,7 @@ struct SurfaceSummary {
     double areaMm2 = 0;
     std::optional<double> volumeMm3;            ///< none of an open surface
     std::optional<std::int64_t> crossingPairs;  ///< none when not asked for
+    std::optional<Verification> verification;   ///< none when not asked for
     std::filesystem::path file;
     const MeshFormat* format = nullptr;
     CoordinateFrame frame{};
@@ -61,10 +75,14 @@ struct ShownSurface {
 struct MeshRun {
     const MeshOptions& options;
     InputSummary input;
+    std::optional<PreprocessedSummary> preprocessed;
     IndexSummary index;
     std::vector<SurfaceSummary> surfaces;
     StageTimer timer;
     std::vector<ShownSurface> shown{};  ///< for the page; empty unless one is wanted
+
+    /// Of the values that the surfaces are made from.
+    const ValueRange& range() const { return preprocessed ? preprocessed->range : input.range; }
 };
 
 }  // namespace adaptiso

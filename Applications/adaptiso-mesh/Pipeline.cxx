@@ -10,11 +10,14 @@
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "IndexSource.h"
+#include "Info.h"
 #include "JsonReport.h"
+#include "MeshBatch.h"
 #include "MeshRun.h"
 #include "OutputNames.h"
 #include "ReportPage.h"
 #include "TextReport.h"
+#include "Verification.h"
 #include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
@@ -29,8 +32,10 @@ namespace fs = std::filesystem;
 
 /// The stages of a run, as progress, `seconds` of the report and README.md name them.
 constexpr const char* kRead = "read";
+constexpr const char* kPreprocess = "preprocess";
 constexpr const char* kIndex = "index";
 constexpr const char* kExtract = "extract";
+constexpr const char* kVerify = "verify";
 constexpr const char* kPieces = "pieces";
 constexpr const char* kCheck = "check";
 constexpr const char* kCrossings = "crossings";
@@ -96,21 +101,21 @@ void checkOutputs(const MeshOptions& options) {
 }
 
 std::string rangeText(const MeshRun& run) {
-    const ValueRange& range = run.input.range;
+    const ValueRange& range = run.range();
     const std::string file =
         run.options.input.filename().empty() ? "the volume" : run.options.input.filename().string();
     if (range.minimum > range.maximum) return file + " holds no numbers";
-    return "the range of " + file + " is " + formatNumber(range.minimum) + " to " +
-           formatNumber(range.maximum);
+    return "the range of " + file + (run.preprocessed ? ", preprocessed, is " : " is ") +
+           formatNumber(range.minimum) + " to " + formatNumber(range.maximum);
 }
 
 /// \throws InvalidInput when the surface would be empty, or the border of the image alone
 void checkIsovalue(double isovalue, const MeshRun& run) {
     const std::string name = "--iso " + formatNumber(isovalue);
-    if (!(isovalue <= run.input.range.maximum)) {
+    if (!(isovalue <= run.range().maximum)) {
         throw InvalidInput(name + ": no voxel reaches it; " + rangeText(run));
     }
-    if (isovalue <= run.input.range.minimum) {
+    if (isovalue <= run.range().minimum) {
         throw InvalidInput(name + ": every voxel reaches it, so there is no surface; " +
                            rangeText(run));
     }
@@ -134,6 +139,20 @@ std::vector<double> chooseIsovalues(const VolumeView& volume, const MeshRun& run
 InputSummary summarize(const ReadVolume& read) {
     const VolumeView& view = read.volume.view();
     return {read.format, view.geometry(), view.pixelType(), valueRange(view), read.warnings};
+}
+
+/// The volume to work on.
+Volume prepare(Volume read, MeshRun& run, ProgressLine& progress) {
+    if (run.options.preprocessing.changesNothing()) return read;
+    progress.show(kPreprocess);
+    return run.timer.time(kPreprocess, [&] {
+        Preprocessed done = preprocess(std::move(read), run.options.preprocessing);
+        const VolumeView& view = done.volume.view();
+        run.preprocessed = {view.geometry(), view.pixelType(), valueRange(view)};
+        run.input.warnings.insert(run.input.warnings.end(), done.warnings.begin(),
+                                  done.warnings.end());
+        return std::move(done.volume);
+    });
 }
 
 /// The output's promise, kept or nothing is written: no defect; with an open border no defect but
@@ -183,10 +202,16 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         extract.progress = progress.callback();
         return extractSurface(volume, index, extract);
     });
-    summary.statistics = std::move(extraction.statistics);
+    summary.statistics = extraction.statistics;
     if (extraction.mesh.triangles.empty()) {
         throw InvalidInput("--iso " + formatNumber(isovalue) +
                            ": the surface is empty; no two neighbouring voxels lie on both sides");
+    }
+
+    if (options.verifies) {
+        progress.show(kVerify);
+        summary.verification =
+            run.timer.time(kVerify, [&] { return verify(volume, index, isovalue, extraction); });
     }
 
     TriangleMesh mesh = std::move(extraction.mesh);
@@ -205,7 +230,9 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
 
     const bool isShown = options.report.isWanted();
     ShownSurface shown;
-    if (options.checksCrossings) {
+    if (options.method == Method::Adaptive) {
+        summary.crossingPairs = 0;  // proved
+    } else if (options.checksCrossings) {
         progress.show(kCrossings);
         SelfIntersections crossings = run.timer.time(kCrossings, [&] {
             return findSelfIntersections(mesh, {.maxPairs = isShown ? kMaxShownPairs : 0});
@@ -219,7 +246,8 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         AtomicOutput& output = outputs.emplace_back(summary.file);
         MeshWriteOptions write;
         write.frame = summary.frame;
-        write.volume = frameVolume(summary.frame, volume.geometry());
+        // tkRAS and voxel indices are those of the image that the user has
+        write.volume = frameVolume(summary.frame, run.input.geometry);
         output.write([&](const fs::path& path) { writeMesh(mesh, path, write); });
         summary.bytes = fs::file_size(output.temporary());
     });
@@ -266,21 +294,24 @@ void report(const MeshRun& run, const std::string& json) {
 }  // namespace
 
 int runMesh(const MeshOptions& asked) {
+    if (asked.isBatch()) return runMeshBatch(asked);
     if (asked.image.listsSeries) {
         return runSeriesList(asked.input, asked.image, asked.common, "adaptiso-mesh");
     }
+    if (asked.image.tellsInfo) return runInfo(asked);
     MeshOptions options = asked;  // a loaded index brings options of its own
     const ThreadLimit threads(options.common);
     ProgressLine progress(options.common.isQuiet);
-    MeshRun run{options, {}, {}, {}, {}};
+    MeshRun run{options, {}, {}, {}, {}, {}};
     checkOutputs(options);
     checkIndexFile(options);
 
     progress.show(kRead);
-    const ReadVolume read =
+    ReadVolume read =
         run.timer.time(kRead, [&] { return readVolume(options.input, options.image.read); });
-    const VolumeView& volume = read.volume.view();
     run.input = run.timer.time(kRead, [&] { return summarize(read); });
+    const Volume prepared = prepare(std::move(read.volume), run, progress);
+    const VolumeView& volume = prepared.view();
     progress.clear();
     printWarnings(run);
     const std::vector<double> isovalues =

@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "Common/BatchOptions.h"
 #include "Common/CommonOptions.h"
 #include "Common/ImageOptions.h"
 #include "Common/ReportOutput.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso {
 
@@ -32,11 +34,14 @@ struct IndexFiles {
 
 /// What adaptiso-mesh is asked to do.
 struct MeshOptions {
-    std::filesystem::path input;
+    std::vector<std::filesystem::path> inputs;  ///< as given
+    std::filesystem::path input;                ///< the one, when it is one
+    BatchOptions batch;
     ImageOptions image;
+    PreprocessOptions preprocessing;
     std::vector<IsovalueChoice> isovalues;
     std::filesystem::path output;  ///< empty: named after the input, in the current folder
-    Method method = Method::Boxes;
+    Method method = Method::Adaptive;
     bool adjustVertices = false;
     bool mergeWithinBlocks = false;
     AdaptiveOptions adaptive;
@@ -45,9 +50,15 @@ struct MeshOptions {
     ComponentSelection selection;
     std::optional<CoordinateFrame> frame;  ///< none: the output format's own
     bool checksCrossings = true;
+    bool verifies = false;  ///< checks the method adaptive's promises by other means, too
     ReportOptions report;
     CommonOptions common;
 
+    /// Each input is a run of its own (Batch.h).
+    bool isBatch() const {
+        return batch.isAsked() || inputs.size() > 1 ||
+               output.string().find("{name}") != std::string::npos;
+    }
     /// Pieces are asked for that only closed surfaces have.
     bool needsClosedSurfaces() const {
         return selection.fillCavities || selection.minVolumeMm3 > 0;
@@ -55,11 +66,12 @@ struct MeshOptions {
 };
 
 /// Reads the volume, extracts and checks the surfaces, and writes all of them or none; or lists the
-/// input's series.
+/// input's series, or tells what the image holds.
 /// \return an exit code
 /// \throws UsageError     the output's format is unknown or can't hold the frame
 /// \throws FileError      the input can't be read, the output can't be written
-/// \throws InvalidInput   an isovalue that cuts nothing, nothing is left of a surface, or an index
+/// \throws InvalidInput   preprocessing that can't be done, an isovalue that cuts nothing, nothing
+/// is left of a surface, or an index
 ///                        that is not the volume's
 /// \throws InternalError  a surface is not sound
 int runMesh(const MeshOptions& asked);

@@ -5,6 +5,8 @@
 #include <string_view>
 
 #include "Common/Numbers.h"
+#include "Common/PreprocessingOptions.h"
+#include "Common/RunApp.h"
 
 namespace adaptiso {
 namespace {
@@ -16,7 +18,7 @@ std::string counted(std::int64_t count, const std::string& what) {
 
 void printSurface(std::ostream& out, const SurfaceSummary& surface) {
     const TopologyReport& topology = surface.topology;
-    out << surface.file.string() << ": isovalue " << formatNumber(surface.isovalue)
+    out << oneLine(surface.file.string()) << ": isovalue " << formatNumber(surface.isovalue)
         << (surface.isAutomatic ? " (chosen by Otsu's method)" : "") << ", " << surface.format->name
         << ", " << toString(surface.frame) << '\n';
     out << "  " << counted(topology.triangles, "triangle") << ", " << formatCount(topology.vertices)
@@ -31,6 +33,15 @@ void printSurface(std::ostream& out, const SurfaceSummary& surface) {
             << counted(topology.count(TopologyDefect::BoundaryEdge), "edge") << "), area "
             << formatRounded(surface.areaMm2) << " mm2\n";
     }
+    if (surface.statistics.errorBoundMm) {
+        out << "  no point farther than " << formatFixed(*surface.statistics.errorBoundMm, 4)
+            << " mm from the surface of marching cubes, nor it from this one (proved";
+        if (surface.verification) {
+            out << "; farthest of " << formatCount(surface.verification->samples)
+                << " points measured: " << formatFixed(surface.verification->maxMm, 4) << " mm";
+        }
+        out << ")\n";
+    }
     if (surface.crossingPairs) {
         out << "  " << counted(*surface.crossingPairs, "pair") << " of triangles cross\n";
     }
@@ -39,10 +50,16 @@ void printSurface(std::ostream& out, const SurfaceSummary& surface) {
 }  // namespace
 
 void printReport(std::ostream& out, const MeshRun& run) {
+    if (run.preprocessed) {
+        const Index3& size = run.preprocessed->geometry.size;
+        out << "from " << preprocessingText(run.options.preprocessing, run.input.geometry.size)
+            << ": " << size[0] << " x " << size[1] << " x " << size[2] << " voxels, "
+            << toString(run.preprocessed->pixelType) << '\n';
+    }
     for (const SurfaceSummary& surface : run.surfaces) printSurface(out, surface);
     if (!run.index.file.empty() && !run.index.isLoaded) {
-        out << run.index.file.string() << ": index for --index (" << toString(run.index.search)
-            << "), " << formatCount(run.index.blocks) << " blocks\n";
+        out << oneLine(run.index.file.string()) << ": index for --index ("
+            << toString(run.index.search) << "), " << formatCount(run.index.blocks) << " blocks\n";
     }
     out << formatFixed(run.timer.total(), 2) << " s (";
     std::string_view separator;

@@ -266,6 +266,22 @@ class Truth(CheckTest):
                                 "--max-off", limit)
             self.assertEqual(report["surfaces"][0]["failed"], failed)
 
+    def test_isosurface_of_a_preprocessed_volume(self):
+        write_nifti(self.path("ball.nii"), ball(24, 8, spacing=(1, 1, 2)))
+        steps = ["--crop", "2:,:,1:", "--smooth", "1", "--resample", "0.8"]
+        self.mesh("ball.nii", "--iso", "100", *steps, "--method", "mc", "--quiet",
+                  "--coordinates", "voxel", "-o", "a.vtp")
+        report = self.check("a.vtp", "--volume", "ball.nii", "--iso", "100", *steps)
+        # the points went through voxel indices: a few times 1e-7 of 24 voxels
+        self.assertLess(report["surfaces"][0]["isosurface"]["maxMm"], 1e-4)
+        self.assertEqual(report["volume"]["preprocessing"],
+                         {"crop": [[2, 24], [0, 24], [1, 24]], "smoothSigmaMm": 1,
+                          "resampleMm": 0.8, "interpolation": "linear"})
+        # unsmoothed, the surface lies further out: by 1 / 8 mm and more across the longer voxels
+        plain = self.check("a.vtp", "--volume", "ball.nii", "--iso", "100")
+        self.assertGreater(plain["surfaces"][0]["isosurface"]["meanMm"], 0.05)
+        self.assertIsNone(plain["volume"]["preprocessing"])
+
     def test_isosurface_of_one_of_several_volumes(self):
         dark = ball(24, 8, (2, 2, 2))
         dark.samples = [0] * len(dark.samples)
@@ -423,6 +439,7 @@ class Refusals(CheckTest):
                 ("--min-angle -1: must be", "a.off", "--min-angle=-1"),
                 ("--iso: needs --volume", "a.off", "--iso", "1"),
                 ("--iso nan: must be", "a.off", "--volume", "i.nii", "--iso", "nan"),
+                ("--resample: need --iso", "a.off", "--volume", "i.nii", "--smooth", "1"),
                 ("--max-off: needs --iso", "a.off", "--volume", "i.nii", "--max-off", "1"),
                 ("--max-pairs", "a.off", "--max-pairs", "-1"),
                 ("frobnicate", "a.off", "--frobnicate")):

@@ -40,8 +40,8 @@ class WrongUsage(ApplicationTest):
     def test_unknown_options(self):
         self.refused("--frobnicate", "ball.nii", "--iso", "100", "--frobnicate")
 
-    def test_two_inputs(self):
-        self.refused("other.nii", "ball.nii", "other.nii", "--iso", "100")
+    def test_two_inputs_for_one_output(self):
+        self.refused("{name}", "ball.nii", "other.nii", "--iso", "100", "-o", "a.vtp")
 
     def test_threads_must_be_a_positive_number(self):
         for text in ("0", "-1", "1.5", "many", "99999999999"):

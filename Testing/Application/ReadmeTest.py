@@ -20,7 +20,7 @@ class Readme(ApplicationTest):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(self.names(), ["head-150.ply", "head-80.ply", "head-iso100.vtp",
                                         "head-iso120.vtp", "head.index", "head.nii.gz", "head.stl",
-                                        "head.vtp", "lh.pial", "report.json"])
+                                        "head.vtp", "lh.pial", "report.json", "smooth.ply"])
         self.assertRegex(done.stdout, r'"triangles": \d+')
 
 

@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # Runs the README's two commands, twice each, in a fresh clone on a minimal Debian 12 made for it,
-# and prints the minutes they take and the megabytes they install. Not part of ctest: it downloads
-# a whole system and builds everything. Needs root, debootstrap and git.
+# and prints the minutes they take and the megabytes they install; then makes the Debian package
+# there, installs it on a second minimal Debian, which has no compiler, and meshes a scan with it.
+# Not part of ctest: it downloads whole systems and builds everything. Needs root, debootstrap, git.
 #
 #   Testing/BareMachine/try.sh [COMMIT [LOG]]       HEAD, /tmp/adaptiso-bare-machine.log
+#   Testing/BareMachine/try.sh --package DEB [LOG]  the package alone, which is there already
 #
 # Works in a folder under /tmp and in mount and process namespaces of its own: when it ends, however
 # it ends, its mounts and processes are gone. It removes the folder and leaves the log. Packages
@@ -21,11 +23,18 @@ if [ "${ADAPTISO_BARE_INSIDE:-}" != yes ]; then
 fi
 
 repository=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
+deb=
+if [ "${1:-}" = --package ]; then
+    deb=$(realpath -e "${2:?"--package needs a .deb"}")
+    shift 2
+    set -- HEAD "$@"
+fi
 commit=$(git -C "$repository" rev-parse --verify "${1:-HEAD}^{commit}")
 log=$(realpath "${2:-/tmp/adaptiso-bare-machine.log}")
 work=$(mktemp -d /tmp/adaptiso-bare.XXXXXX)
 root=$work/root
 clone=/home/adaptiso
+inside=$clone
 
 removeAll() {
     local status=$?
@@ -33,7 +42,7 @@ removeAll() {
         tail -n 30 "$log" >&2
         echo "try.sh: failed; the whole log is $log" >&2
     fi
-    for mounted in "$root/proc" "$root/dev/shm" "$root/dev/pts"; do
+    for mounted in "$work"/*/proc "$work"/*/dev/shm "$work"/*/dev/pts; do
         if mountpoint -q "$mounted"; then
             umount "$mounted"
         fi
@@ -74,14 +83,14 @@ systemMegabytes() {
         --exclude="$root/var/lib/apt/lists" "$root" | cut -f 1
 }
 
-# runInside NAME COMMAND: runs it in the clone as root, times it, adds a line to the summary.
+# runInside NAME COMMAND: runs it in the folder $inside of $root, times it, adds a line to the summary.
 runInside() {
     local before after began seconds
     before=$(systemMegabytes)
     began=$SECONDS
     echo "######## $1: $2"
     env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
-        chroot "$root" bash -c "cd $clone && $2" </dev/null
+        chroot "$root" bash -c "cd $inside && $2" </dev/null
     seconds=$((SECONDS - began))
     after=$(systemMegabytes)
     printf '%-22s %3d min %02d s   %5d MB installed\n' "$1" $((seconds / 60)) $((seconds % 60)) \
@@ -93,6 +102,37 @@ requireFile() {
         echo "try.sh: $1 is missing or empty" >&2
         return 1
     fi
+}
+
+# The package $deb on a Debian of its own: installed by apt with what it depends on, and no more, then
+# used as a user does, on a scan that is brought along.
+tryPackage() {
+    local scan=/usr/share/mricron/templates/ch2bet.nii.gz
+    local scanFrom=$root$scan
+    [ -e "$scanFrom" ] || scanFrom=$scan
+    root=$work/machine
+    inside=/root
+    makeRoot
+    cp "$deb" "$root/root/adaptiso.deb"
+    cp "$scanFrom" "$root/root/"
+    printf 'package %s, %s MB before\n' "$(basename "$deb")" "$(systemMegabytes)" >>"$work/summary"
+    runInside "package: install" \
+        "apt-get -q update && apt-get -q -y install --no-install-recommends ./adaptiso.deb"
+    runInside "package: adaptiso-mesh" \
+        "adaptiso-mesh ch2bet.nii.gz --iso 100 -o brain.stl && adaptiso-check --profile view brain.stl"
+    inside=/ runInside "package: the others" \
+        "adaptiso-bem --version && adaptiso-compare /root/brain.stl /root/brain.stl"
+    if chroot "$root" sh -c 'command -v gcc g++ cmake'; then
+        echo "try.sh: the machine for the package is not bare" >&2
+        return 1
+    fi
+}
+
+# Makes the package of the clone's programs; its name is then in $deb.
+makePackage() {
+    runInside "package: make" ". Applications/quickstart/packages.sh &&
+        installPackages Packaging/packages.txt && cd build/programs && cpack -G DEB"
+    deb=$(find "$root$clone/build/programs" -maxdepth 1 -name 'adaptiso_*.deb')
 }
 
 tryAll() {
@@ -110,9 +150,15 @@ tryAll() {
     runInside "tests, again" Testing/run.sh
     printf 'clone with its build folders: %s MB\n' "$(du -sm "$root$clone" | cut -f 1)" \
         >>"$work/summary"
+    makePackage
+    tryPackage
     cat "$work/summary"
 }
 
 echo "try.sh: writing $log"
-tryAll >"$log" 2>&1
+if [ -n "$deb" ]; then
+    tryPackage >"$log" 2>&1
+else
+    tryAll >"$log" 2>&1
+fi
 cat "$work/summary"

@@ -1,110 +1,154 @@
 #include "adaptiso/ImageIO/Otsu.h"
 
 #include <itkHistogram.h>
-#include <itkOtsuThresholdCalculator.h>
+#include <itkOtsuMultipleThresholdsCalculator.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <mutex>
+#include <string>
 #include <type_traits>
+
+#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/ImageIO/SampleStatistics.h"
 
 namespace adaptiso {
 namespace {
 
-using Histogram = itk::Statistics::Histogram<double>;
+using ItkHistogram = itk::Statistics::Histogram<double>;
 
-template <class T>
-bool isFinite(T value) {
-    if constexpr (std::is_floating_point_v<T>) return std::isfinite(value);
-    return true;
-}
+/// The smallest, the largest, and what lies between but for the last thousandth on both sides.
+struct Spread {
+    double minimum, low, high, maximum;
+};
 
-template <class T>
-void forEachFinite(const TypedVolumeView<T>& view, auto&& body) {
-    const std::int64_t count = view.geometry.voxelCount();
-    for (std::int64_t i = 0; i < count; ++i) {
-        if (isFinite(view.samples[i])) body(view.samples[i]);
+/// \throws InvalidInput when there is nothing to separate
+Spread spreadOf(const VolumeView& volume) {
+    constexpr std::array<double, 4> kPercents{0, 0.1, 99.9, 100};
+    const std::vector<double> values = percentiles(volume, kPercents);
+    if (values.empty() || !(values[0] < values[3])) {
+        throw InvalidInput(
+            "otsuThreshold: all finite samples are equal, or none is finite: "
+            "there is nothing to separate; give an isovalue");
     }
+    if (!std::isfinite(values[3] - values[0])) {
+        throw InvalidInput(
+            "otsuThreshold: the samples span more than a double can hold; give "
+            "an isovalue");
+    }
+    return {values[0], values[1], values[2], values[3]};
 }
 
-template <class T>
-ValueRange finiteRange(const TypedVolumeView<T>& view) {
-    ValueRange range{std::numeric_limits<double>::infinity(),
-                     -std::numeric_limits<double>::infinity()};
-    forEachFinite(view, [&](T sample) {
-        range.minimum = std::min(range.minimum, static_cast<double>(sample));
-        range.maximum = std::max(range.maximum, static_cast<double>(sample));
-    });
-    return range;
+bool isInteger(PixelType type) {
+    return type != PixelType::Float32 && type != PixelType::Float64;
 }
 
 /// Few-valued integers get a bin each, so that no bin mixes two values.
-template <class T>
-Histogram::Pointer makeHistogram(const TypedVolumeView<T>& view, const ValueRange& range) {
-    const double span = range.maximum - range.minimum;
-    const bool binPerValue = std::is_integral_v<T> && span < 65536;
-    const std::size_t bins = binPerValue ? static_cast<std::size_t>(span) + 1 : 1024;
-    const double low = binPerValue ? range.minimum - 0.5 : range.minimum;
-    const double high = binPerValue ? range.maximum + 0.5 : range.maximum;
-    const double binsPerUnit = static_cast<double>(bins) / (high - low);
+bool hasBinPerValue(const VolumeView& volume, const Spread& spread, double mostValues) {
+    return isInteger(volume.pixelType()) && spread.maximum - spread.minimum < mostValues;
+}
 
-    std::vector<std::uint64_t> counts(bins, 0);
-    forEachFinite(view, [&](T sample) {
-        const double place = (static_cast<double>(sample) - low) * binsPerUnit;
-        ++counts[std::min(static_cast<std::size_t>(place), bins - 1)];
+SampleHistogram binPerValue(const VolumeView& volume, const Spread& spread) {
+    const auto bins = static_cast<std::size_t>(spread.maximum - spread.minimum) + 1;
+    return sampleHistogram(volume, spread.minimum - 0.5, spread.maximum + 0.5, bins);
+}
+
+/// What ITK finds: the upper edges of the classes' last bins.
+std::vector<double> itkOtsu(const SampleHistogram& histogram, int count) {
+    const auto itkHistogram = ItkHistogram::New();
+    itkHistogram->SetMeasurementVectorSize(1);
+    ItkHistogram::SizeType size(1);
+    size[0] = histogram.counts.size();
+    ItkHistogram::MeasurementVectorType lower(1), upper(1);
+    lower[0] = histogram.lower;
+    upper[0] = histogram.upper;
+    itkHistogram->Initialize(size, lower, upper);
+    for (std::size_t bin = 0; bin < histogram.counts.size(); ++bin) {
+        itkHistogram->SetFrequency(
+            bin, static_cast<ItkHistogram::AbsoluteFrequencyType>(histogram.counts[bin]));
+    }
+    const auto calculator = itk::OtsuMultipleThresholdsCalculator<ItkHistogram>::New();
+    calculator->SetInputHistogram(itkHistogram);
+    calculator->SetNumberOfThresholds(static_cast<itk::SizeValueType>(count));
+    calculator->Compute();
+    return calculator->GetOutput();
+}
+
+/// From bin edges to the middles of the gaps between the samples on their two sides.
+std::vector<double> middlesOfGaps(const VolumeView& volume, const Spread& spread,
+                                  const std::vector<double>& edges) {
+    std::vector<double> below(edges.size(), spread.minimum), above(edges.size(), spread.maximum);
+    std::mutex mutex;
+    dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
+        constexpr std::int64_t kPiece = std::int64_t{1} << 18;
+        parallelForPieces(
+            view.geometry.voxelCount(), kPiece, [&](std::int64_t begin, std::int64_t end) {
+                for (std::size_t e = 0; e < edges.size(); ++e) {
+                    double nearestBelow = spread.minimum, nearestAbove = spread.maximum;
+                    for (std::int64_t n = begin; n < end; ++n) {
+                        const auto value = static_cast<double>(view.samples[n]);
+                        // NaN is neither, infinity no nearer than what is known
+                        if (value <= edges[e]) nearestBelow = std::max(nearestBelow, value);
+                        if (value > edges[e]) nearestAbove = std::min(nearestAbove, value);
+                    }
+                    const std::lock_guard lock(mutex);
+                    below[e] = std::max(below[e], nearestBelow);
+                    above[e] = std::min(above[e], nearestAbove);
+                }
+            });
     });
+    std::vector<double> middles;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        middles.push_back(below[e] + (above[e] - below[e]) / 2);
+    }
+    return middles;
+}
 
-    auto histogram = Histogram::New();
-    histogram->SetMeasurementVectorSize(1);
-    Histogram::SizeType size(1);
-    size[0] = bins;
-    Histogram::MeasurementVectorType lower(1), upper(1);
-    lower[0] = low;
-    upper[0] = high;
-    histogram->Initialize(size, lower, upper);
-    for (std::size_t bin = 0; bin < bins; ++bin) histogram->SetFrequency(bin, counts[bin]);
+SampleHistogram fineHistogram(const VolumeView& volume, const Spread& spread) {
+    if (hasBinPerValue(volume, spread, 65536)) return binPerValue(volume, spread);
+    return sampleHistogram(volume, spread.minimum, spread.maximum, 1024);
+}
+
+SampleHistogram coarseHistogram(const VolumeView& volume, const Spread& spread) {
+    constexpr std::size_t kBins = 256;
+    if (hasBinPerValue(volume, spread, kBins)) return binPerValue(volume, spread);
+    const bool hasMiddle = spread.low < spread.high;
+    SampleHistogram histogram = sampleHistogram(volume, hasMiddle ? spread.low : spread.minimum,
+                                                hasMiddle ? spread.high : spread.maximum, kBins);
+    histogram.counts.front() += histogram.below;
+    histogram.counts.back() += histogram.above;
     return histogram;
-}
-
-double itkOtsu(const Histogram& histogram) {
-    auto calculator = itk::OtsuThresholdCalculator<Histogram, double>::New();
-    calculator->SetInput(&histogram);
-    calculator->Update();
-    return calculator->GetThreshold();
-}
-
-/// From ITK's bin edge to the middle of the gap between the samples on its two sides.
-template <class T>
-double middleOfGap(const TypedVolumeView<T>& view, const ValueRange& range, double edge) {
-    double below = range.minimum, above = range.maximum;
-    forEachFinite(view, [&](T sample) {
-        const auto value = static_cast<double>(sample);
-        if (value <= edge) {
-            below = std::max(below, value);
-        } else {
-            above = std::min(above, value);
-        }
-    });
-    return below + (above - below) / 2;
 }
 
 }  // namespace
 
 double otsuThreshold(const VolumeView& volume) {
-    return dispatchPixelType(volume, [](const auto& view) {
-        const ValueRange range = finiteRange(view);
-        if (!(range.minimum < range.maximum)) {
-            throw InvalidInput(
-                "otsuThreshold: all finite samples are equal, or none is finite: "
-                "there is nothing to separate; give an isovalue");
-        }
-        if (!std::isfinite(range.maximum - range.minimum)) {
-            throw InvalidInput(
-                "otsuThreshold: the samples span more than a double can hold; give "
-                "an isovalue");
-        }
-        return middleOfGap(view, range, itkOtsu(*makeHistogram(view, range)));
-    });
+    const Spread spread = spreadOf(volume);
+    return middlesOfGaps(volume, spread, itkOtsu(fineHistogram(volume, spread), 1)).front();
+}
+
+std::vector<std::vector<double>> otsuThresholds(const VolumeView& volume, int most) {
+    if (most < 1 || most > 3) {
+        throw InvalidInput("otsuThresholds: " + std::to_string(most) + " must be 1 to 3");
+    }
+    const Spread spread = spreadOf(volume);
+    const SampleHistogram coarse = coarseHistogram(volume, spread);
+    const auto filled = std::count_if(coarse.counts.begin(), coarse.counts.end(),
+                                      [](std::int64_t bin) { return bin > 0; });
+    std::vector<double> edges = itkOtsu(fineHistogram(volume, spread), 1);
+    int reached = 1;
+    for (; reached < most && reached + 1 < filled; ++reached) {
+        const std::vector<double> more = itkOtsu(coarse, reached + 1);
+        edges.insert(edges.end(), more.begin(), more.end());
+    }
+    const std::vector<double> middles = middlesOfGaps(volume, spread, edges);
+    std::vector<std::vector<double>> thresholds;
+    auto first = middles.begin();
+    for (int count = 1; count <= reached; first += count, ++count) {
+        thresholds.emplace_back(first, first + count);
+    }
+    return thresholds;
 }
 
 }  // namespace adaptiso

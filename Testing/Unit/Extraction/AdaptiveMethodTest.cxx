@@ -8,6 +8,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
+#include "adaptiso/MeshQuality/Topology.h"
 #include "adaptive/PieceBound.h"
 #include "adaptive/SheetTest.h"
 
@@ -68,10 +69,67 @@ TEST(AdaptiveMethod, KeepsItsBoundAndCrossesNothingOnRandomVolumes) {
 TEST(AdaptiveMethod, KeepsItsPromisesOnRandomVolumes) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         const int blockSize = 2 << seed % 4;
-        ASSERT_TRUE(
-            keepsItsPromises(hardVolume(seed, 12), Method::Adaptive, blockSize, Border::Closed))
-            << "seed " << seed;
+        for (const Border border : {Border::Closed, Border::Open}) {
+            ASSERT_TRUE(keepsItsPromises(hardVolume(seed, 12), Method::Adaptive, blockSize, border))
+                << "seed " << seed << (border == Border::Open ? ", open" : ", closed");
+        }
     }
+}
+
+TEST(AdaptiveMethod, MakesTheFullSurfaceWhenMoreIsAskedFor) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const HardVolume hard = hardVolume(seed, 6);
+        AdaptiveOptions adaptive;
+        adaptive.maxErrorMm = 0.01;
+        adaptive.maxTriangles = 100'000;
+        const Extraction full =
+            extractFrom(hard.volume, hard.isovalue, Method::MarchingCubes, 4, Border::Closed);
+        EXPECT_EQ(extractWith(hard.volume, hard.isovalue, adaptive).mesh.triangles.size(),
+                  full.mesh.triangles.size())
+            << seed;
+    }
+}
+
+TEST(AdaptiveMethod, LeavesNoiseAtFullResolution) {
+    // every sample inside or outside by chance: nothing is flat
+    ImageGeometry geometry;
+    geometry.size = {20, 20, 20};
+    std::vector<std::uint8_t> samples;
+    std::uint64_t state = 1;
+    for (std::int64_t i = 0; i < geometry.voxelCount(); ++i) {
+        samples.push_back(static_cast<std::uint8_t>(nextRandom(state) >> 56));
+    }
+    const Volume volume = Volume::fromSamples(std::move(samples), geometry);
+    const Extraction ours = extractWith(volume, 127.5, {});
+    const Extraction full = extractFrom(volume, 127.5, Method::MarchingCubes, 4, Border::Closed);
+    EXPECT_EQ(ours.mesh.triangles.size(), full.mesh.triangles.size());
+    EXPECT_TRUE(isSound(ours.mesh));
+    AdaptiveOptions fewer;  // a count is met all the same
+    fewer.reduction = 0.2;
+    EXPECT_LT(extractWith(volume, 127.5, fewer).mesh.triangles.size(),
+              full.mesh.triangles.size() * 81 / 100);
+}
+
+TEST(AdaptiveMethod, KeepsTheBorderOpenWhereItIs) {
+    // half a ball: the rim lies in the plane of the border's samples
+    ImageGeometry geometry;
+    geometry.size = {40, 40, 20};
+    std::vector<float> samples;
+    for (std::int64_t i = 0; i < geometry.voxelCount(); ++i) {
+        const Vec3 d{static_cast<double>(i % 40) - 19.5, static_cast<double>(i / 40 % 40) - 19.5,
+                     static_cast<double>(i / 1600)};
+        samples.push_back(static_cast<float>(15.2 - norm(d)));
+    }
+    const Volume volume = Volume::fromSamples(std::move(samples), geometry);
+    const Extraction ours = extractWith(volume, 0, {}, Border::Open);
+    const TopologyReport topology = checkTopology(ours.mesh);
+    EXPECT_GT(topology.count(TopologyDefect::BoundaryEdge), 0);
+    EXPECT_EQ(topology.components.size(), 1u);
+    EXPECT_EQ(topology.components[0].eulerCharacteristic(), 1);  // a disc
+    EXPECT_TRUE(isSound(ours.mesh, openOnlyAtBorder(geometry)));
+    const Extraction full = extractFrom(volume, 0, Method::MarchingCubes, 4, Border::Open);
+    EXPECT_LT(ours.mesh.triangles.size(), full.mesh.triangles.size() / 4);
+    expectWithin(ours.mesh, full.mesh, *ours.statistics.errorBoundMm);
 }
 
 TEST(AdaptiveMethod, GivesTheSameBytesWhateverTheThreads) {

@@ -66,5 +66,59 @@ TEST(Otsu, RefusesVolumesWithNothingToSeparate) {
     EXPECT_THROW(otsuOf<double>({-largest, largest}), InvalidInput);
 }
 
+/// The choice of `count` thresholds; none when there is no such choice.
+template <class T>
+std::vector<double> thresholdsOf(const std::vector<T>& samples, int count) {
+    const auto size = static_cast<std::int64_t>(samples.size());
+    const auto lists = otsuThresholds(Volume::fromSamples(samples, {{size, 1, 1}, {}, {}}), count);
+    for (std::size_t n = 0; n < lists.size(); ++n) EXPECT_EQ(lists[n].size(), n + 1);
+    return static_cast<int>(lists.size()) < count ? std::vector<double>() : lists.back();
+}
+
+/// 100 samples around each of the centres, 20 values wide.
+template <class T>
+std::vector<T> modes(const std::vector<int>& centres) {
+    std::vector<T> samples;
+    for (const int centre : centres) {
+        for (int n = 0; n < 100; ++n) samples.push_back(static_cast<T>(centre - 10 + n % 21));
+    }
+    return samples;
+}
+
+TEST(OtsuThresholds, LieHalfwayBetweenTheModes) {
+    EXPECT_EQ(thresholdsOf(modes<std::uint8_t>({20, 120, 220}), 2), (std::vector<double>{70, 170}));
+    EXPECT_EQ(thresholdsOf(modes<std::int16_t>({-1000, 0, 60, 1000}), 3),
+              (std::vector<double>{-500, 30, 530}));
+    EXPECT_EQ(thresholdsOf(modes<float>({-1000, 0, 60, 1000}), 3),
+              (std::vector<double>{-500, 30, 530}));
+}
+
+TEST(OtsuThresholds, OneIsThatOfAuto) {
+    const auto samples = modes<std::int16_t>({-1000, 40, 300});
+    EXPECT_EQ(thresholdsOf(samples, 1), std::vector<double>{otsuOf(samples)});
+}
+
+TEST(OtsuThresholds, AreNotSpoiltByAFewOutliers) {
+    auto samples = modes<std::int16_t>({0, 60, 200});
+    for (int n = 0; n < 40; ++n)
+        samples.insert(samples.end(), samples.begin(), samples.begin() + 300);
+    samples.push_back(32767);  // one bin of 256 would be 128 wide
+    EXPECT_EQ(thresholdsOf(samples, 2), (std::vector<double>{30, 130}));
+}
+
+TEST(OtsuThresholds, AreNoneWhereClassesAreTooFew) {
+    EXPECT_TRUE(thresholdsOf<std::uint8_t>({0, 0, 5, 5}, 2).empty());
+    EXPECT_TRUE(thresholdsOf<float>({0, 0, 5, 5, 9}, 3).empty());
+    EXPECT_EQ(thresholdsOf<float>({0, 0, 5, 5, 9}, 2), (std::vector<double>{2.5, 7}));
+    // a mask of less than a thousandth: both percentiles are 0
+    std::vector<float> mask(5000, 0);
+    mask[1] = 1;
+    EXPECT_EQ(thresholdsOf(mask, 1), std::vector<double>{0.5});
+    EXPECT_TRUE(thresholdsOf(mask, 2).empty());
+    EXPECT_THROW(thresholdsOf<float>({1, 1}, 2), InvalidInput);
+    EXPECT_THROW(thresholdsOf<float>({1, 2}, 0), InvalidInput);
+    EXPECT_THROW(thresholdsOf<float>({1, 2}, 4), InvalidInput);
+}
+
 }  // namespace
 }  // namespace adaptiso

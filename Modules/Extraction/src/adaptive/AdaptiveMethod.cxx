@@ -20,7 +20,7 @@ struct WantedCount {
 
     bool isGiven() const { return triangles || reduction; }
     std::int64_t of(std::int64_t fineTriangles) const {
-        std::int64_t count = triangles.value_or(fineTriangles);
+        std::int64_t count = std::min(triangles.value_or(fineTriangles), fineTriangles);
         if (reduction) {
             const double kept = (1 - *reduction) * static_cast<double>(fineTriangles);
             count = std::min(count, static_cast<std::int64_t>(kept));
@@ -45,9 +45,11 @@ public:
         SimplifiedSurface surface =
             simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
         for (double cost = 3 * kFirstCost; cost < kLastCost; cost *= 6) {
+            limits_.triedCost = limits_.maxCost;
             limits_.maxCost = cost * costUnit_;
             simplifyPatches(surface, nextCut(), frame_, {limits_});
         }
+        limits_.triedCost = limits_.maxCost;
         limits_.maxCost = std::numeric_limits<double>::max();
         for (int idle = 0; idle < 2;) {
             const std::int64_t before = surface.triangleCount();
@@ -56,6 +58,7 @@ public:
                            kWorthwhile * static_cast<double>(before)
                        ? idle + 1
                        : 0;
+            limits_.triedCost = limits_.maxCost;
         }
         fit(surface);
         return surface;
@@ -182,26 +185,26 @@ public:
     }
 
     Extraction run() {
-        Extraction result;
-        bool provesAll = false;
         for (int run = 0; run < kMostRuns; ++run) {
             report(run, 0);
-            const SimplifiedSurface surface = simplify(provesAll);
+            const SimplifiedSurface surface = run + 1 < kMostRuns ? simplify() : fullSurface();
             report(run, 0.6);
-            const ErrorBound error =
-                boundError(surface, sampler_, bricks_, frame_,
-                           boundMm_.value_or(std::numeric_limits<double>::max()));
+            ErrorProof proof(sampler_, bricks_, frame_,
+                             boundMm_.value_or(std::numeric_limits<double>::max()));
+            const ErrorBound error = proof.prove(surface);
             report(run, 1);
             if (boundMm_ && error.largest() > *boundMm_) {
                 std::vector<Vec3> places;
-                for (const Vec3& p : error.beyondLimit) places.push_back(frame_.toIndex(p));
+                for (const PlaceBeyond& beyond : error.beyondLimit) {
+                    places.push_back(frame_.toIndex(beyond.point));
+                }
                 tight_.add(places);
                 continue;
             }
+            Extraction result;
             result.mesh = toMesh(surface, geometry_, frame_, sampler_);
-            if (countUnprovedPairs(result.mesh) > 0) {
-                if (provesAll) break;
-                provesAll = true;
+            if (!crossesNothing(result.mesh)) {
+                provesAll_ = true;
                 continue;
             }
             if (!options_.computeNormals) result.mesh.normals = {};
@@ -215,30 +218,41 @@ public:
     }
 
 private:
-    static constexpr int kMostRuns = 24;
+    static constexpr int kMostRuns = 12;
     /// Up to this distance (of the least one between planes of samples) single sheets are certain
     /// not to meet others: see isSingleSheet.
     static constexpr double kSheetVoxels = 0.5;
-    /// First allowed distance of samples, as a part of the bound: points between samples may lie
-    /// somewhat farther.
-    static constexpr double kPartOfBound = 0.9;
+    /// First allowed distance of samples: that much below the bound (in the least distance between
+    /// planes of samples, and as a part of the bound), since points between samples may lie
+    /// farther.
+    static constexpr double kSlackVoxels = 0.05, kSlackPart = 0.25;
 
     void report(int run, double fraction) const {
         // later runs mend what the first could not prove: they come on top
         if (options_.progress) options_.progress(run == 0 ? "extract" : "refine", fraction);
     }
 
-    SimplifiedSurface simplify(bool provesAll) const {
+    /// The marching cubes surface, which needs no simplification to be within any bound.
+    SimplifiedSurface fullSurface() const {
+        PatchLimits limits;
+        limits.maxCost = -1;
+        return simplifyBricks(sampler_, bricks_, frame_, tight_, limits, nullptr);
+    }
+
+    SimplifiedSurface simplify() const {
         const double sheetMm = kSheetVoxels * frame_.narrowestMm();
         PatchLimits limits;
         limits.shape = shape_;
-        limits.maxDistanceMm = kPartOfBound * boundMm_.value_or(sheetMm);
+        limits.leavesNoise = !wanted_.isGiven();
+        const double boundMm = boundMm_.value_or(sheetMm);
+        limits.maxDistanceMm =
+            boundMm - std::min(kSlackVoxels * frame_.narrowestMm(), kSlackPart * boundMm);
         const Index3& size = geometry_.size;
         const double extentMm =
             norm(frame_.fromIndex({static_cast<double>(size[0]), static_cast<double>(size[1]),
                                    static_cast<double>(size[2])}));
         for (;; limits.maxDistanceMm *= 2) {
-            limits.provesAll = provesAll || limits.maxDistanceMm > sheetMm;
+            limits.provesAll = provesAll_ || limits.maxDistanceMm > sheetMm;
             Simplification simplification(sampler_, bricks_, frame_, tight_, limits);
             if (!wanted_.isGiven()) return simplification.toLimits();
             SimplifiedSurface surface = simplification.toCount(wanted_);
@@ -257,6 +271,7 @@ private:
     std::optional<double> boundMm_;
     StarLimits shape_;
     TightPlaces tight_;
+    bool provesAll_ = false;  ///< the last run left triangles that cross
 };
 
 void check(const AdaptiveOptions& options) {
@@ -280,11 +295,6 @@ void check(const AdaptiveOptions& options) {
 Extraction extractAdaptive(const VolumeView& volume, const SpanSpaceIndex& index,
                            const ExtractionOptions& options) {
     check(options.adaptive);
-    if (index.grid().border == Border::Open) {
-        throw InvalidInput(
-            "extractSurface: the method adaptive closes surfaces at the volume's border; the "
-            "index has an open one");
-    }
     const BlockQuery query = index.blocksAt(options.isovalue);
     const auto sampler = LatticeSampler::make(volume, options.isovalue, index.grid().border);
     const Bricks bricks(index.grid(), query.blocks);

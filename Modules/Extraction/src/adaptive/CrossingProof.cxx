@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <vector>
 
 #include "../Certificate.h"
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -37,26 +39,29 @@ bool areClear(const TriangleMesh& mesh, std::int64_t a, std::int64_t b, double g
     return touchAtEdgeOnly(fromEdge, {fromEdge[1], fromEdge[0], mesh.points[t[otherInT]]}, 0);
 }
 
-}  // namespace
-
-std::int64_t countUnprovedPairs(const TriangleMesh& mesh) {
-    if (mesh.triangles.empty()) return 0;
+/// Every two triangles are clear.
+bool allAreClear(const TriangleMesh& mesh) {
+    if (mesh.triangles.empty()) return true;
     constexpr std::int64_t kPiece = 1024;
     const AabbTree tree(mesh);
     const BoundingBox box = boundingBox(mesh);
     const double gap = 1e-13 * (norm(box.maximum) + norm(box.minimum));  // rounding of coordinates
     const auto count = static_cast<std::int64_t>(mesh.triangles.size());
-    std::vector<std::int64_t> unproved((count + kPiece - 1) / kPiece, 0);
+    std::atomic<bool> areAllClear = true;
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t t = begin; t < end; ++t) {
+        for (std::int64_t t = begin; t < end && areAllClear; ++t) {
             tree.forEachOverlap(tree.triangleBox(t), [&](std::int64_t other) {
-                if (other > t && !areClear(mesh, t, other, gap)) ++unproved[begin / kPiece];
+                if (other > t && !areClear(mesh, t, other, gap)) areAllClear = false;
             });
         }
     });
-    std::int64_t total = 0;
-    for (const std::int64_t n : unproved) total += n;
-    return total;
+    return areAllClear;
+}
+
+}  // namespace
+
+bool crossesNothing(const TriangleMesh& mesh) {
+    return allAreClear(mesh) || findSelfIntersections(mesh).pairCount == 0;
 }
 
 }  // namespace adaptiso::detail

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "BrickProof.h"
 #include "Bricks.h"
 #include "MetricFrame.h"
 #include "SimplifiedSurface.h"
+#include "SurfaceLookup.h"
 
 namespace adaptiso::detail {
 
@@ -13,20 +16,30 @@ namespace adaptiso::detail {
 struct ErrorBound {
     double fromFineMm = 0;  ///< points of the full-resolution surface
     double toFineMm = 0;    ///< points of the simplified surface
-    /// Pieces of either surface that lie beyond the limit: one point of each, metric frame.
-    std::vector<Vec3> beyondLimit;
+    std::vector<PlaceBeyond> beyondLimit;
 
     double largest() const { return fromFineMm > toFineMm ? fromFineMm : toFineMm; }
 };
 
 /// Proves bounds by going over both surfaces brick by brick, the full-resolution one made anew.
-///
-/// A piece of a triangle lies within d of a surface if its corners lie within d of one and the same
-/// triangle of it: the distance to a convex set is a convex function. Pieces that do not are
-/// quartered. Nothing of what the simplification believed is trusted, except for where to look
-/// first.
-/// \param limitMm  what is farther than that is noted in beyondLimit
-ErrorBound boundError(const SimplifiedSurface& surface, const LatticeSampler& sampler,
-                      const Bricks& bricks, const MetricFrame& frame, double limitMm);
+/// Nothing of what the simplification believed is trusted, except for where to look first.
+class ErrorProof {
+public:
+    /// \param limitMm  what is farther than that is noted in ErrorBound::beyondLimit
+    ErrorProof(const LatticeSampler& sampler, const Bricks& bricks, const MetricFrame& frame,
+               double limitMm)
+        : sampler_(sampler), bricks_(bricks), frame_(frame), limitMm_(limitMm) {}
+
+    /// Bricks near which the surface has not changed since the last time are not gone over again.
+    ErrorBound prove(const SimplifiedSurface& surface);
+
+private:
+    const LatticeSampler& sampler_;
+    const Bricks& bricks_;
+    const MetricFrame& frame_;
+    double limitMm_;
+    std::unique_ptr<SurfaceLookup> lookup_;  ///< of the last time
+    std::vector<BrickBound> results_;        ///< of each brick
+};
 
 }  // namespace adaptiso::detail

@@ -20,6 +20,12 @@ struct Patch {
 
     std::vector<Vec3> points;
     std::vector<Quadric> quadrics;  ///< of each point
+    enum class State : std::uint8_t {
+        Open,
+        Tried,  ///< nothing around it has changed since all its edges were tried
+        Final   ///< stays
+    };
+    std::vector<State> states;  ///< of each point
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::uint32_t ownTriangles = 0;
 

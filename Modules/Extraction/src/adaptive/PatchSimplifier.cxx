@@ -29,16 +29,27 @@ QuadricMinimum PatchSimplifier::bestPlace(std::uint32_t a, std::uint32_t b) cons
                     0.5 * (patch_.points[a] + patch_.points[b]));
 }
 
-void PatchSimplifier::propose(std::uint32_t halfEdge) {
+void PatchSimplifier::propose(std::uint32_t halfEdge, double leastCost) {
     const std::uint32_t a = topology_.from(halfEdge), b = topology_.to(halfEdge);
-    if (!topology_.isMovable(a) || !topology_.isMovable(b)) return;
+    if (!mayChange(a) || !mayChange(b)) return;
     const double weight = patch_.quadrics[a].weight() + patch_.quadrics[b].weight();
     const double error = bestPlace(a, b).error;
     if (error > weight * limits_.maxDistanceMm * limits_.maxDistanceMm) return;
     const double cost =
         error + kLengthWeight * weight * squaredNorm(patch_.points[b] - patch_.points[a]);
-    if (cost > limits_.maxCost) return;
+    if (cost > limits_.maxCost || cost <= leastCost) return;
     queue_.push({cost, halfEdge, a, b, changes_[a] + changes_[b]});
+}
+
+void PatchSimplifier::setState(std::uint32_t v, Patch::State state) {
+    if (patch_.states[v] != Patch::State::Final) patch_.states[v] = state;
+}
+
+/// What lies around the changed star may be tried again.
+void PatchSimplifier::markChanged() {
+    for (int i = 0; i < changed_.star.count; ++i) {
+        setState(changed_.star.ring[i], Patch::State::Open);
+    }
 }
 
 bool PatchSimplifier::isStale(const Candidate& c) const {
@@ -50,7 +61,13 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
     for (std::uint32_t h = 0; h < 3 * patch_.ownTriangles; ++h) {
         if (patch_.triangles[h / 3][0] == Patch::kGone) continue;
         const std::uint32_t twin = topology_.twin(h);
-        if (twin != PatchTopology::kNone && h < twin) propose(h);
+        if (twin == PatchTopology::kNone || h > twin) continue;
+        const bool isTried = patch_.states[topology_.from(h)] == Patch::State::Tried &&
+                             patch_.states[topology_.to(h)] == Patch::State::Tried;
+        propose(h, isTried ? limits_.triedCost : -1);
+    }
+    for (std::uint32_t v = 0; v < patch_.points.size(); ++v) {
+        if (topology_.isMovable(v)) setState(v, Patch::State::Tried);
     }
     std::int64_t made = 0;
     while (!queue_.empty() && made < most) {
@@ -61,6 +78,8 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
         if (!accepts(place)) continue;
         topology_.collapse(best.halfEdge, changed_.star);
         errors_.commit(changed_);
+        markChanged();
+        setState(best.a, Patch::State::Open);
         patch_.points[best.a] = place;
         patch_.quadrics[best.a] += patch_.quadrics[best.b];
         ++changes_[best.a];
@@ -70,7 +89,7 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
         const std::uint32_t begin = topology_.leaving(best.a);
         std::uint32_t h = begin;
         do {
-            propose(h);
+            propose(h, -1);
             h = topology_.twin(PatchTopology::previous(h));
         } while (h != begin);
     }
@@ -94,7 +113,7 @@ bool PatchSimplifier::isInBox(const Vec3& p) const {
 
 void PatchSimplifier::fitVertices() {
     for (std::uint32_t v = 0; v < patch_.points.size(); ++v) {
-        if (!topology_.isMovable(v) || !topology_.starOf(v, changed_.star)) continue;
+        if (!mayChange(v) || !topology_.starOf(v, changed_.star)) continue;
         changed_.vertex = patch_.points[v];
         if (!shapeStar(patch_, limits_.shape, changed_) ||
             !errors_.assign(changed_, limits_.maxDistanceMm)) {
@@ -108,6 +127,8 @@ void PatchSimplifier::fitVertices() {
             continue;
         }
         errors_.commit(changed_);
+        markChanged();
+        setState(v, Patch::State::Open);
         patch_.points[v] = place;
     }
 }

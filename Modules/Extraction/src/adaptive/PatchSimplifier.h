@@ -14,9 +14,11 @@ namespace adaptiso::detail {
 
 struct PatchLimits {
     double maxCost = 0;        ///< of a collapse, mm2 x mm2
+    double triedCost = -1;     ///< maxCost when the points that are tried were
     double maxDistanceMm = 0;  ///< of a sample from the triangle that stands for it
     StarLimits shape;
-    bool provesAll = false;  ///< also stars that can cross nothing by what is known of them
+    bool provesAll = false;    ///< also stars that can cross nothing by what is known of them
+    bool leavesNoise = false;  ///< bricks full of it stay at full resolution
 };
 
 /// Simplifies a patch in place by quadric edge collapses, cheapest first [Garland1997].
@@ -45,8 +47,14 @@ private:
         }
     };
 
+    bool mayChange(std::uint32_t v) const {
+        return topology_.isMovable(v) && patch_.states[v] != Patch::State::Final;
+    }
+    void setState(std::uint32_t v, Patch::State state);
+    void markChanged();
     QuadricMinimum bestPlace(std::uint32_t a, std::uint32_t b) const;
-    void propose(std::uint32_t halfEdge);
+    /// \param leastCost  of the collapse; it is not proposed below
+    void propose(std::uint32_t halfEdge, double leastCost);
     bool isStale(const Candidate& candidate) const;
     bool accepts(const Vec3& p);
     bool isInBox(const Vec3& p) const;

@@ -35,6 +35,7 @@ public:
 
     /// No point of the pieces so far is farther from the surface, mm; at least enoughMm.
     double boundMm() const { return std::sqrt(enough_); }
+    double squaredBound() const { return enough_; }
 
 private:
     struct Corner {

@@ -70,9 +70,11 @@ void compact(BrickSurface& brick) {
         if (newVertex[v] == kNone) continue;
         newVertex[v] = vertices;
         patch.points[vertices] = patch.points[v];
+        patch.states[vertices] = patch.states[v];
         patch.quadrics[vertices++] = patch.quadrics[v];
     }
     patch.points.resize(vertices);
+    patch.states.resize(vertices);
     patch.quadrics.resize(vertices);
     patch.points.shrink_to_fit();
     patch.quadrics.shrink_to_fit();
@@ -103,6 +105,15 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, Patch& 
     }
 }
 
+/// Nearly all of the surface has other parts of it near: there is nothing flat to simplify, and
+/// each change would take long to prove.
+bool isNoise(const Patch& patch) {
+    constexpr double kMost = 0.05;
+    const auto single = std::count(patch.sampleIsSingleSheet.begin(),
+                                   patch.sampleIsSingleSheet.end(), std::uint8_t{1});
+    return static_cast<double>(single) < kMost * static_cast<double>(patch.samples.size());
+}
+
 BrickSurface simplifyBrick(BrickMesher& mesher, FineSurface& fine, const Brick& brick,
                            const MetricFrame& frame, const TightPlaces& tight,
                            const PatchLimits& limits, std::vector<double>* costs) {
@@ -111,6 +122,7 @@ BrickSurface simplifyBrick(BrickMesher& mesher, FineSurface& fine, const Brick& 
     Patch& patch = result.patch;
     patch.points.reserve(fine.vertices.size());
     for (const FineVertex& v : fine.vertices) patch.points.push_back(frame.fromIndex(v.index));
+    patch.states.assign(patch.points.size(), Patch::State::Open);
     patch.triangles = fine.triangles;
     patch.ownTriangles = static_cast<std::uint32_t>(fine.triangles.size());
     const std::vector<Vec3> areas = addQuadrics(patch);
@@ -135,6 +147,10 @@ BrickSurface simplifyBrick(BrickMesher& mesher, FineSurface& fine, const Brick& 
     for (const Vec3& sample : patch.samples) {
         patch.sampleTightness.push_back(
             static_cast<std::uint8_t>(tight.tightnessAt(frame.toIndex(sample))));
+    }
+    if (limits.leavesNoise && isNoise(patch)) {
+        patch.states.assign(patch.points.size(), Patch::State::Final);
+        return result;
     }
     PatchSimplifier simplifier(patch, frame, limits);
     simplifier.collapseEdges(patch.ownTriangles, costs);
@@ -176,6 +192,7 @@ SimplifiedSurface join(std::vector<BrickSurface> bricks, const MetricFrame& fram
             number[b][v] = whole.points.size();
             whole.points.push_back(patch.points[v]);
             whole.quadrics.push_back(patch.quadrics[v]);
+            whole.states.push_back(patch.states[v]);
         }
     }
     for (std::size_t i = 0, first = 0; i < walls.size(); ++i) {
@@ -334,6 +351,12 @@ public:
 
     std::size_t count() const { return cubes_.count(); }
     bool isEmpty(std::size_t n) const { return triangles_.of(n).empty(); }
+    bool isFinal(std::size_t n) const {
+        const auto members = vertices_.of(n);
+        return std::all_of(members.begin(), members.end(), [&](std::uint64_t v) {
+            return surface_.states[v] == Patch::State::Final;
+        });
+    }
 
     /// `total` dealt out by the patches' numbers of triangles.
     std::vector<std::int64_t> shares(std::int64_t total) const {
@@ -361,6 +384,7 @@ public:
         for (const std::uint64_t v : members) {
             patch.points.push_back(surface_.points[v]);
             patch.quadrics.push_back(surface_.quadrics[v]);
+            patch.states.push_back(surface_.states[v]);
         }
         std::unordered_map<std::uint64_t, std::uint32_t> outside;
         const auto localVertex = [&](std::uint64_t v) {
@@ -370,6 +394,7 @@ public:
             if (isNew) {
                 patch.points.push_back(surface_.points[v]);
                 patch.quadrics.emplace_back();
+                patch.states.push_back(Patch::State::Open);
             }
             return at->second;
         };
@@ -395,6 +420,7 @@ public:
     void putBack(std::size_t n, const Patch& patch, SimplifiedSurface& surface) const {
         const auto members = vertices_.of(n);
         for (std::size_t v = 0; v < members.size(); ++v) {
+            surface.states[members[v]] = patch.states[v];
             // those that other patches look at have not changed, and must not be written
             if (surface.points[members[v]] == patch.points[v]) continue;
             surface.points[members[v]] = patch.points[v];
@@ -474,9 +500,11 @@ void removeGone(SimplifiedSurface& surface) {
         if (newVertex[v] == SimplifiedSurface::kGone) continue;
         newVertex[v] = vertices;
         surface.points[vertices] = surface.points[v];
+        surface.states[vertices] = surface.states[v];
         surface.quadrics[vertices++] = surface.quadrics[v];
     }
     surface.points.resize(vertices);
+    surface.states.resize(vertices);
     surface.quadrics.resize(vertices);
     for (auto& t : surface.triangles) {
         for (std::uint64_t& v : t) v = newVertex[v];
@@ -524,10 +552,10 @@ void TightPlaces::add(const std::vector<Vec3>& places) {
 }
 
 int TightPlaces::tightnessAt(const Vec3& place) const {
-    constexpr int kMost = 20;
+    constexpr std::array kHalvings{0, 1, 4, 12, 24, 40};
     if (tightness_.empty()) return 0;
     const auto at = tightness_.find(cubeAt(place));
-    return at == tightness_.end() ? 0 : std::min(at->second, kMost);
+    return at == tightness_.end() ? 0 : kHalvings[std::min<std::size_t>(at->second, 5)];
 }
 
 double costLimitFor(const CollapseCosts& costs, std::int64_t collapses) {
@@ -556,7 +584,7 @@ void simplifyPatches(SimplifiedSurface& surface, const PatchCut& cut, const Metr
     std::vector<std::int64_t> quota = groups.shares(work.mostCollapses);
     parallelForPieces(
         static_cast<std::int64_t>(groups.count()), 1, [&](std::int64_t n, std::int64_t) {
-            if (groups.isEmpty(n)) return;
+            if (groups.isEmpty(n) || groups.isFinal(n)) return;
             Patch patch = groups.take(n);
             PatchSimplifier simplifier(patch, frame, work.limits);
             if (work.collapses) {

@@ -21,7 +21,8 @@ struct SimplifiedSurface {
     using Sample = std::array<float, 3>;
 
     std::vector<Vec3> points;
-    std::vector<Quadric> quadrics;  ///< of each point
+    std::vector<Quadric> quadrics;     ///< of each point
+    std::vector<Patch::State> states;  ///< of each point
     std::vector<Triangle> triangles;
 
     /// Samples: those within bricks, brick by brick in the mesher's order; then those on bricks'
@@ -41,7 +42,8 @@ struct SimplifiedSurface {
 };
 
 /// Places where the allowed distance was not small enough to keep all points between the samples
-/// within the bound: its square is halved around them, once for every time they were added.
+/// within the bound: its square is halved around them, and more and more often when they are added
+/// again.
 class TightPlaces {
 public:
     /// \param places  continuous sample indices
@@ -52,7 +54,7 @@ private:
     static constexpr double kCube = 1.5;  ///< voxels
     static Index3 cubeAt(const Vec3& place);
 
-    std::map<Index3, int> tightness_;  ///< of cubes of the lattice
+    std::map<Index3, std::size_t> tightness_;  ///< of cubes of the lattice: how often added
 };
 
 /// The costs of a round's collapses, patch by patch in the order they were made.

@@ -14,8 +14,8 @@ namespace adaptiso {
 
 /// How the surface is cut into triangles.
 enum class Method {
-    Adaptive,  ///< few triangles within a stated distance of the surface of MarchingCubes;
-               ///< Border::Closed only
+    Adaptive,  ///< few triangles within a stated distance of the surface of MarchingCubes, none
+               ///< crossing another
     Boxes,     ///< simple cubic boxes of many sizes, merged where they agree: the thesis's method
     DiscretizedMarchingCubes,  ///< facets between edge midpoints, merged where they are coplanar
     SkeletonClimbing,  ///< simple rectangular boxes: adaptive skeleton climbing [Poston1998]
@@ -42,7 +42,7 @@ struct AdaptiveOptions {
 
 struct ExtractionOptions {
     double isovalue = 0;  ///< inside means sample >= isovalue
-    Method method = Method::Boxes;
+    Method method = Method::Adaptive;
     /// Of discretized marching cubes: put the vertices at the crossings, as the other methods do,
     /// instead of at the midpoints of their lattice edges.
     bool adjustVertices = false;

@@ -39,7 +39,7 @@ std::vector<std::byte> encodeIndex(const SpanSpaceIndex& index, const VolumeView
 /// Nothing in the bytes is trusted: their checksum, the volume's size, pixel type and samples, and
 /// every node are checked, the minima and maxima against the volume's own and the tree's order
 /// against them. So even bytes made up with the right checksums give the right index or none.
-/// \param name  what messages call the bytes: the file
+/// Messages call the bytes `name`: the file.
 /// \throws InvalidInput  the bytes are no index, damaged, or of another volume
 /// Cost: O(n) for n blocks, and two passes over the samples. Allocates in proportion to the
 ///       volume, whatever the bytes say.

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "Common/BatchItems.h"
+#include "Common/BatchOptions.h"
+#include "Common/CommonOptions.h"
+#include "Common/Json.h"
+
+namespace adaptiso {
+
+/// What a program brings to a batch of its runs.
+struct BatchProgram {
+    std::string name;                           ///< "adaptiso-mesh"
+    std::vector<std::filesystem::path> inputs;  ///< of the command line
+    bool isOneItem = false;    ///< the inputs, and those of a line of --list, belong together
+    bool keepsRecords = true;  ///< also where no folder is named
+    /// Options that name what a run writes: "--output". Relative names go into the item's folder.
+    std::vector<std::string> outputOptions;
+    /// Given to every run that has no --output; empty: none. With --bids the second.
+    std::string defaultOutput, defaultBidsOutput;
+    std::function<std::string(const std::filesystem::path&)> nameOf;
+    /// findBidsScans() or findBidsSurfaces()
+    std::function<std::vector<BatchItem>(const std::filesystem::path&,
+                                         const std::vector<std::string>&,
+                                         const std::filesystem::path&)>
+        findInBids;
+    /// From the report of a run: what came of it in a few words; the files that it wrote under
+    /// --output, without folders.
+    std::function<std::string(const Json&)> says;
+    std::function<std::vector<std::string>(const Json&)> outputs;
+};
+
+/// Runs the program once for every input, in processes of their own, `batch.jobs` at a time, and
+/// tells of each in a line, in the order of the inputs: as text, or as JSON with --json. A run that
+/// fails or crashes does not keep others from running. A finished run leaves a record in the item's
+/// folder (BatchRecord.h), by which --skip-existing knows it.
+///
+/// In the values of options {name} stands for the item's name.
+/// \return kExitOk, or kExitCheckFailed when any input failed
+/// \throws UsageError    options that don't go together, an output that all runs would write
+/// \throws InvalidInput  no inputs, or two of one name
+/// \throws FileError     list, summary or report can't be read or written
+int runBatch(const BatchProgram& program, const BatchOptions& batch, const CommonOptions& common);
+
+}  // namespace adaptiso

@@ -1,0 +1,70 @@
+#include "Common/BatchOptions.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace adaptiso {
+namespace {
+
+constexpr const char* kGroup = "Many inputs (each a run of its own, in a process of its own)";
+
+/// Options that are not those of a single run of the batch.
+constexpr std::array<std::string_view, 10> kOfTheBatch{
+    "list", "bids",          "participant", "output-dir", "summary",
+    "jobs", "skip-existing", "json",        "quiet",      "threads"};
+
+}  // namespace
+
+void declareBatchOptions(CLI::App& app, BatchOptions& options, const std::string& bidsFinds) {
+    app.add_option("--list", options.list,
+                   "Take the inputs that FILE lists (- for stdin), one a line; a name to use for "
+                   "it may follow after a tab. Lines that begin with # are left out")
+        ->type_name("FILE")
+        ->group(kGroup);
+    app.add_option("--bids", options.bids,
+                   "Take " + bidsFinds + " of a BIDS dataset; write under derivatives/adaptiso")
+        ->type_name("ROOT")
+        ->group(kGroup);
+    app.add_option("--participant", options.participants,
+                   "With --bids: take those of participant LABEL (01 or sub-01) only. Give it "
+                   "several times for several")
+        ->type_name("LABEL")
+        ->allow_extra_args(false)
+        ->group(kGroup);
+    app.add_option("--output-dir", options.outputFolder,
+                   "Write into this folder (made where need be) instead of the current one or "
+                   "derivatives/adaptiso")
+        ->type_name("DIR")
+        ->group(kGroup);
+    app.add_option("--jobs", options.jobs, "Work on N inputs at a time (default: 1)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1024).description(""))
+        ->group(kGroup);
+    app.add_flag("--skip-existing", options.skipsExisting,
+                 "Leave out inputs that an earlier run has finished with the same options; what "
+                 "it said of them is told again")
+        ->group(kGroup);
+    app.add_option("--summary", options.summary,
+                   "Write a page (HTML) of all inputs, with links to what was made of them "
+                   "(default with --bids or --output-dir: summary.html there)")
+        ->type_name("FILE")
+        ->group(kGroup);
+}
+
+void keepRunOptions(const CLI::App& app, BatchOptions& options) {
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->count() == 0 || option->get_lnames().empty()) continue;
+        const std::string& name = option->get_lnames().front();
+        if (std::find(kOfTheBatch.begin(), kOfTheBatch.end(), name) != kOfTheBatch.end()) continue;
+        if (option->get_items_expected_max() == 0) {
+            options.runOptions.push_back("--" + name);
+            continue;
+        }
+        for (const std::string& value : option->results()) {
+            options.runOptions.push_back("--" + name + "=" + value);
+        }
+    }
+}
+
+}  // namespace adaptiso

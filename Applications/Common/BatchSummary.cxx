@@ -1,0 +1,138 @@
+#include "Common/BatchSummary.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "Common/CommonOptions.h"
+#include "Common/Numbers.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kStyle = R"(
+body{font:16px/1.4 sans-serif;margin:2em auto;max-width:70em;padding:0 1em;color:#111;background:#fff}
+table{border-collapse:collapse;width:100%}
+th,td{border-bottom:1px solid #bbb;padding:.4em .6em;text-align:left;vertical-align:top}
+.ok{color:#00532c;font-weight:bold}.failed{color:#a00000;font-weight:bold}
+tr.bad{background:#fff0f0}img{max-width:160px;max-height:120px}td.number{text-align:right}
+@media print{@page{size:A4;margin:15mm}body{margin:0;font-size:11px}tr{break-inside:avoid}}
+)";
+
+std::string escaped(std::string_view text) {
+    std::string result;
+    for (const char c : text) {
+        switch (c) {
+            case '&':
+                result += "&amp;";
+                break;
+            case '<':
+                result += "&lt;";
+                break;
+            case '>':
+                result += "&gt;";
+                break;
+            case '"':
+                result += "&quot;";
+                break;
+            default:
+                result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+        }
+    }
+    return result;
+}
+
+/// As a link's target: percent signs where a name has what a URL may not.
+std::string linkTo(const fs::path& target, const fs::path& page) {
+    constexpr std::string_view kDigits = "0123456789ABCDEF";
+    const fs::path folder = fs::absolute(page).parent_path();
+    std::string link;
+    for (const char c : fs::proximate(fs::absolute(target), folder).generic_string()) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool isPlain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
+                             (c >= 'A' && c <= 'Z') ||
+                             std::string_view("-._~/").find(c) != std::string_view::npos;
+        if (isPlain) {
+            link += c;
+        } else {
+            link += {'%', kDigits[byte >> 4], kDigits[byte & 15]};
+        }
+    }
+    return link;
+}
+
+std::string anchor(const fs::path& target, const std::string& text, const fs::path& page) {
+    return "<a href=\"" + linkTo(target, page) + "\">" + escaped(text) + "</a>";
+}
+
+/// The first picture of a report, as it stands in the page ("data:image/png;base64,..."); empty:
+/// none.
+std::string firstPicture(const fs::path& report) {
+    std::ifstream file(report, std::ios::binary);
+    const std::string page{std::istreambuf_iterator<char>(file), {}};
+    const std::size_t begin = page.find("data:image/png;base64,");
+    if (begin == std::string::npos) return {};
+    return page.substr(begin, page.find('"', begin) - begin);
+}
+
+std::string pictureSource(const SummaryRow& row, const fs::path& page) {
+    for (const std::string_view name : {"contours-axial.png", "surface-1.png"}) {
+        if (!row.pictures.empty() && fs::exists(row.pictures / name)) {
+            return linkTo(row.pictures / name, page);
+        }
+    }
+    return row.report.empty() ? "" : firstPicture(row.report);
+}
+
+std::string thumbnail(const SummaryRow& row, const fs::path& page) {
+    const std::string source = pictureSource(row, page);
+    if (source.empty()) return {};
+    const std::string image =
+        "<img src=\"" + source + "\" alt=\"picture of " + escaped(row.name) + "\">";
+    if (row.report.empty()) return image;
+    return "<a href=\"" + linkTo(row.report, page) + "\">" + image + "</a>";
+}
+
+std::string rowText(const SummaryRow& row, const fs::path& page) {
+    std::string files;
+    for (const fs::path& output : row.outputs) {
+        files += (files.empty() ? "" : "<br>") + anchor(output, output.filename().string(), page);
+    }
+    const std::string report =
+        row.report.empty() ? "" : anchor(row.report, "report of " + row.name, page);
+    return std::string("<tr") + (row.hasPassed ? "" : " class=\"bad\"") + "><td class=\"" +
+           (row.hasPassed ? "ok\">&#10003;&nbsp;done" : "failed\">&#10007;&nbsp;FAILED") +
+           (row.isOfEarlierRun ? " (in an earlier run)" : "") + "</td><th scope=\"row\">" +
+           escaped(row.name) + "</th><td>" + escaped(row.file) + "</td><td>" + escaped(row.says) +
+           "</td><td>" + report + (report.empty() || files.empty() ? "" : "<br>") + files +
+           "</td><td>" + thumbnail(row, page) + "</td><td class=\"number\">" +
+           formatFixed(row.seconds, 1) + "</td></tr>\n";
+}
+
+}  // namespace
+
+std::string summaryPage(const std::string& program, const std::vector<SummaryRow>& rows,
+                        const fs::path& page) {
+    const auto failed = std::count_if(rows.begin(), rows.end(),
+                                      [](const SummaryRow& row) { return !row.hasPassed; });
+    const std::string verdict =
+        failed == 0 ? "All " + std::to_string(rows.size()) + " done"
+                    : std::to_string(failed) + " of " + std::to_string(rows.size()) + " failed";
+    std::string text =
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+        "<meta name=\"viewport\" content=\"width=device-width\"><title>" +
+        escaped(program) + ": " + verdict + "</title><style>" + std::string(kStyle) +
+        "</style></head><body>\n<h1 class=\"" + (failed == 0 ? "ok" : "failed") + "\">" + verdict +
+        "</h1>\n<p>" + escaped(program) + " " + programVersion() +
+        "</p>\n<table><caption>Inputs, in the order given</caption>\n<thead><tr><th>verdict</th>"
+        "<th>name</th><th>input</th><th>what came of it</th><th>files</th><th>picture</th>"
+        "<th>seconds</th></tr></thead><tbody>\n";
+    for (const SummaryRow& row : rows) text += rowText(row, page);
+    return text + "</tbody></table>\n</body></html>\n";
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace adaptiso {
+
+/// How a run of this program as a process of its own ended.
+struct ChildResult {
+    int exitCode = 0;    ///< meaningless when a signal ended it
+    int signal = 0;      ///< that ended it; 0: none
+    int process = 0;     ///< its number
+    std::string output;  ///< its stdout
+    std::string errors;  ///< its stderr
+    double seconds = 0;  ///< wall-clock time
+};
+
+/// Runs this very program `count` times, at most `jobs` at a time, started in order.
+///
+/// A child that crashes, or is killed for want of memory, takes nothing down with it. Children end
+/// (SIGTERM, so that they remove their temporaries) when this process does, however it ends.
+/// \param arguments  of the n-th run, without the program's name
+/// \param finished   called with n and the result, in the order in which the runs end
+/// \pre   no thread of this process runs: it is forked
+/// \throws InternalError  when no process can be started
+void runChildren(std::size_t count, int jobs,
+                 const std::function<std::vector<std::string>(std::size_t)>& arguments,
+                 const std::function<void(std::size_t, ChildResult)>& finished);
+
+}  // namespace adaptiso

@@ -1,0 +1,152 @@
+#include "Common/PreprocessingOptions.h"
+
+#include <charconv>
+#include <string_view>
+#include <vector>
+
+#include "Common/Numbers.h"
+#include "Common/RunApp.h"
+
+namespace adaptiso {
+namespace {
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    for (;;) {
+        const std::size_t end = text.find(separator);
+        parts.push_back(text.substr(0, end));
+        if (end == std::string_view::npos) return parts;
+        text.remove_prefix(end + 1);
+    }
+}
+
+/// Digits alone; no sign.
+std::optional<std::int64_t> parseIndex(std::string_view text) {
+    std::int64_t index = 0;
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, index);
+    if (error != std::errc{} || end != last || index < 0) return std::nullopt;
+    return index;
+}
+
+/// "10:90", "10:", ":90", ":"
+std::optional<IndexRange> parseRange(std::string_view text) {
+    const std::vector<std::string_view> bounds = split(text, ':');
+    if (bounds.size() != 2) return std::nullopt;
+    IndexRange range;
+    if (!bounds[0].empty()) {
+        const auto first = parseIndex(bounds[0]);
+        if (!first) return std::nullopt;
+        range.first = *first;
+    }
+    if (!bounds[1].empty()) {
+        range.end = parseIndex(bounds[1]);
+        if (!range.end) return std::nullopt;
+    }
+    return range;
+}
+
+CropRanges parseCrop(const std::string& text) {
+    const auto refuse = [&] {
+        throw UsageError("--crop " + text +
+                         ": must be three ranges of voxel indices, as in 10:90,:,20:");
+    };
+    const std::vector<std::string_view> parts = split(text, ',');
+    CropRanges ranges;
+    if (parts.size() != ranges.size()) refuse();
+    for (std::size_t axis = 0; axis < ranges.size(); ++axis) {
+        const std::optional<IndexRange> range = parseRange(parts[axis]);
+        if (!range) refuse();
+        ranges[axis] = *range;
+    }
+    return ranges;
+}
+
+CLI::Option* addLength(CLI::App& app, const std::string& name, std::optional<double>& target,
+                       const std::string& description) {
+    return app.add_option_function<std::string>(
+        name,
+        [&target, name](const std::string& text) {
+            target = parseFiniteNumber(text);
+            if (!target || !(*target > 0)) {
+                throw UsageError(name + " " + text + ": must be a number of mm, more than 0");
+            }
+        },
+        description);
+}
+
+Interpolation interpolationOf(const std::string& word) {
+    for (const auto interpolation : {Interpolation::Nearest, Interpolation::BSpline}) {
+        if (word == toString(interpolation)) return interpolation;
+    }
+    return Interpolation::Linear;  // the check has refused all others
+}
+
+}  // namespace
+
+void declarePreprocessingOptions(CLI::App& app, PreprocessOptions& options,
+                                 const std::string& group) {
+    app.add_option_function<std::string>(
+           "--crop", [&options](const std::string& text) { options.crop = parseCrop(text); },
+           "First keep these voxels only: indices from 0, the end not included; a bound left out "
+           "is the image's border: 10:90,:,20:")
+        ->type_name("I0:I1,J0:J1,K0:K1")
+        ->group(group);
+    addLength(app, "--smooth", options.smoothSigmaMm,
+              "Then smooth with a Gaussian of this standard deviation, the same in every direction "
+              "in space")
+        ->type_name("SIGMA_MM")
+        ->group(group);
+    CLI::Option* const resample = addLength(app, "--resample", options.resampleMm,
+                                            "Then resample to cubic voxels with sides of MM mm")
+                                      ->type_name("MM")
+                                      ->group(group);
+    app.add_option_function<std::string>(
+           "--interpolation",
+           [&options](const std::string& word) { options.interpolation = interpolationOf(word); },
+           "How --resample finds values between voxels: linear (default), bspline (cubic), or "
+           "nearest (for labels)")
+        ->type_name("linear|bspline|nearest")
+        ->check(CLI::IsMember({"linear", "bspline", "nearest"}).description(""))
+        ->needs(resample)
+        ->group(group);
+}
+
+std::string preprocessingText(const PreprocessOptions& options, const Index3& size) {
+    std::string text;
+    const auto add = [&](const std::string& step) { text += (text.empty() ? "" : ", ") + step; };
+    if (options.crop) {
+        std::string ranges;
+        for (std::size_t axis = 0; axis < size.size(); ++axis) {
+            const auto& [first, end] = (*options.crop)[axis];
+            ranges += (axis == 0 ? "" : ",") + std::to_string(first) + ":" +
+                      std::to_string(end.value_or(size[axis]));
+        }
+        add("crop " + ranges);
+    }
+    if (options.smoothSigmaMm) add("smooth " + formatNumber(*options.smoothSigmaMm) + " mm");
+    if (options.resampleMm) {
+        add("resample " + formatNumber(*options.resampleMm) + " mm (" +
+            std::string(toString(options.interpolation)) + ")");
+    }
+    return text;
+}
+
+Json preprocessingJson(const PreprocessOptions& options, const Index3& size) {
+    if (options.changesNothing()) return nullptr;
+    Json crop = nullptr;
+    if (options.crop) {
+        crop = Json::array();
+        for (std::size_t axis = 0; axis < size.size(); ++axis) {
+            const auto& [first, end] = (*options.crop)[axis];
+            crop.push_back(Json::array({first, end.value_or(size[axis])}));
+        }
+    }
+    return {{"crop", crop},
+            {"smoothSigmaMm", orNull(options.smoothSigmaMm)},
+            {"resampleMm", orNull(options.resampleMm)},
+            {"interpolation",
+             options.resampleMm ? Json(toString(options.interpolation)) : Json(nullptr)}};
+}
+
+}  // namespace adaptiso

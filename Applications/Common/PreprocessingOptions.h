@@ -1,0 +1,25 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "Common/Json.h"
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
+
+namespace adaptiso {
+
+/// Adds --crop, --smooth, --resample and --interpolation, for programs that look at an image's
+/// values. Parsing throws a CLI::ParseError or a UsageError for values that make no sense.
+void declarePreprocessingOptions(CLI::App& app, PreprocessOptions& options,
+                                 const std::string& group);
+
+/// "crop 10:90,0:256,5:236, smooth 1 mm, resample 0.8 mm (linear)": what was done to an image of
+/// this size.
+std::string preprocessingText(const PreprocessOptions& options, const Index3& size);
+
+/// The same for a report: crop, smoothSigmaMm, resampleMm, interpolation; null where not asked for,
+/// and null altogether when nothing was.
+Json preprocessingJson(const PreprocessOptions& options, const Index3& size);
+
+}  // namespace adaptiso

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "Pipeline.h"
+#include "adaptiso/Core/Volume.h"
+#include "adaptiso/ImageIO/ListSeries.h"
+#include "adaptiso/ImageIO/SampleStatistics.h"
+
+namespace adaptiso {
+
+/// Holds whole numbers.
+bool isInteger(PixelType type);
+
+/// How an image's axes lie in space.
+struct AxesSummary {
+    std::string orientation;  ///< where i, j and k lead, nearest: "LPS", "RAS", ...
+    Vec3 anglesDeg;           ///< between j and k, k and i, i and j
+    double tiltDeg = 0;       ///< between k and the normal of i and j
+
+    /// Not at right angles, by more than headers round.
+    bool isSheared() const;
+};
+AxesSummary summarizeAxes(const ImageGeometry& geometry);
+
+/// What --info tells of an image's values.
+struct ValueSummary {
+    std::int64_t finite = 0;
+    std::int64_t notFinite = 0;                ///< NaN or infinite
+    std::vector<double> percentiles;           ///< of kPercents; empty when none is finite
+    std::optional<SampleHistogram> histogram;  ///< none when all are equal, or none is finite
+    std::vector<std::vector<double>> otsu;     ///< one, two and three thresholds, or none
+};
+inline constexpr double kPercents[] = {0, 0.1, 1, 5, 25, 50, 75, 95, 99, 99.9, 100};
+ValueSummary summarizeValues(const VolumeView& volume);
+
+/// What --info tells.
+struct ImageInfo {
+    std::string fault;  ///< why the image is refused, its path left out; the rest is empty then
+    std::string format;
+    std::vector<std::string> warnings;
+    Index3 sizeAsRead{};
+    ImageGeometry geometry;  ///< as preprocessed, like all that follows
+    PixelType pixelType{};
+    ValueSummary values;
+    std::vector<std::string> refusals;  ///< what making a surface would be refused for
+    std::optional<DicomSeries> series;  ///< with --show-phi, of DICOM
+};
+
+/// Tells what adaptiso-mesh would read: geometry, values, thresholds.
+/// \return kExitOk
+/// \throws Error  as reading and preprocessing do, once the report has been delivered that says so
+int runInfo(const MeshOptions& options);
+
+}  // namespace adaptiso

@@ -1,0 +1,203 @@
+#include "InfoReport.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "Common/CommonOptions.h"
+#include "Common/ImageJson.h"
+#include "Common/Json.h"
+#include "Common/Numbers.h"
+#include "Common/PreprocessingOptions.h"
+#include "Common/RunApp.h"
+
+namespace adaptiso {
+namespace {
+
+/// At most six digits: what a person wants to read.
+std::string shortNumber(double value) {
+    std::ostringstream text;
+    text << (value == 0 ? 0.0 : value);
+    return text.str();
+}
+
+std::string joined(const Vec3& v, const std::string& separator) {
+    return shortNumber(v.x) + separator + shortNumber(v.y) + separator + shortNumber(v.z);
+}
+
+std::string joined(const std::vector<double>& values) {
+    std::string text;
+    for (const double value : values) text += (text.empty() ? "" : ", ") + formatNumber(value);
+    return text;
+}
+
+/// A bar of up to 40 signs, as long as the logarithm of the count.
+std::string bar(std::int64_t count, std::int64_t most) {
+    constexpr double kLength = 40;
+    if (count == 0) return "";
+    const double length =
+        kLength * std::log1p(static_cast<double>(count)) / std::log1p(static_cast<double>(most));
+    return std::string(static_cast<std::size_t>(std::max(1.0, std::round(length))), '#');
+}
+
+/// \param isInteger  bins begin half-way between whole numbers; their first is told
+void printHistogram(std::ostream& out, const SampleHistogram& histogram, bool isInteger) {
+    constexpr std::size_t kMostRows = 32;
+    const std::size_t bins = histogram.counts.size();
+    const std::size_t binsPerRow = (bins + kMostRows - 1) / kMostRows;
+    std::vector<std::int64_t> rows;
+    for (std::size_t first = 0; first < bins; first += binsPerRow) {
+        std::int64_t count = 0;
+        for (std::size_t bin = first; bin < std::min(first + binsPerRow, bins); ++bin) {
+            count += histogram.counts[bin];
+        }
+        rows.push_back(count);
+    }
+    const std::int64_t most = *std::max_element(rows.begin(), rows.end());
+    out << "histogram   from each value up to the next; bars are logarithmic\n";
+    const auto print = [&](const std::string& from, std::int64_t count) {
+        out << std::setw(14) << from << "  " << std::setw(15) << formatCount(count) << "  "
+            << bar(count, most) << '\n';
+    };
+    if (histogram.below > 0) print("below", histogram.below);
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+        print(shortNumber(histogram.edge(row * binsPerRow) + (isInteger ? 0.5 : 0)), rows[row]);
+    }
+    if (histogram.above > 0) print("above", histogram.above);
+}
+
+void printAxes(std::ostream& out, const ImageGeometry& geometry) {
+    const AxesSummary axes = summarizeAxes(geometry);
+    const char* const names[] = {"i", "j", "k"};
+    for (int axis = 0; axis < 3; ++axis) {
+        out << (axis == 0 ? "axes        " : "            ") << names[axis] << " along "
+            << joined(normalized(geometry.indexToPhysical.column[axis]), ", ") << " (to "
+            << axes.orientation[static_cast<std::size_t>(axis)] << ")\n";
+    }
+    out << "            " << (geometry.isMirrored() ? "left-handed (mirrored)" : "right-handed");
+    if (axes.isSheared()) {
+        out << "; sheared: k is tilted by " << formatFixed(axes.tiltDeg, 2)
+            << " degrees, angles jk, ki, ij are " << joined(axes.anglesDeg, ", ");
+    } else {
+        out << "; at right angles";
+    }
+    out << '\n';
+}
+
+void printValues(std::ostream& out, const ValueSummary& values, bool isInteger) {
+    if (values.notFinite > 0) {
+        out << "not finite  " << formatCount(values.notFinite) << " voxels (NaN or infinity)\n";
+    }
+    if (values.percentiles.empty()) return;
+    out << "values      " << formatNumber(values.percentiles.front()) << " to "
+        << formatNumber(values.percentiles.back()) << '\n';
+    out << "percentiles ";
+    for (std::size_t n = 1; n + 1 < values.percentiles.size(); ++n) {
+        out << (n == 1   ? ""
+                : n == 6 ? "\n            "
+                         : ", ")
+            << shortNumber(kPercents[n]) << " %: " << shortNumber(values.percentiles[n]);
+    }
+    out << '\n';
+    for (const std::vector<double>& thresholds : values.otsu) {
+        out << (thresholds.size() == 1 ? "Otsu        " : "            ") << thresholds.size() + 1
+            << " classes: " << joined(thresholds) << '\n';
+    }
+    if (values.histogram) printHistogram(out, *values.histogram, isInteger);
+}
+
+Json valuesJson(const ValueSummary& values) {
+    Json percentiles = Json::array();
+    for (std::size_t n = 0; n < values.percentiles.size(); ++n) {
+        percentiles.push_back(
+            {{"percent", kPercents[n]}, {"value", number(values.percentiles[n])}});
+    }
+    Json histogram = nullptr;
+    if (values.histogram) {
+        histogram = {{"lower", values.histogram->lower},
+                     {"upper", values.histogram->upper},
+                     {"counts", values.histogram->counts},
+                     {"below", values.histogram->below},
+                     {"above", values.histogram->above}};
+    }
+    const bool hasAny = !values.percentiles.empty();
+    return {{"finite", values.finite},
+            {"notFinite", values.notFinite},
+            {"minimum", hasAny ? number(values.percentiles.front()) : Json(nullptr)},
+            {"maximum", hasAny ? number(values.percentiles.back()) : Json(nullptr)},
+            {"percentiles", percentiles},
+            {"otsu", values.otsu},
+            {"histogram", histogram}};
+}
+
+Json imageJson(const ImageInfo& info) {
+    const AxesSummary axes = summarizeAxes(info.geometry);
+    Json json = geometryJson(info.geometry);
+    json["frame"] = "lps";
+    json["orientation"] = axes.orientation;
+    json["rightHanded"] = !info.geometry.isMirrored();
+    json["sheared"] = axes.isSheared();
+    json["tiltDeg"] = axes.tiltDeg;
+    json["axisAnglesDeg"] = vector(axes.anglesDeg);
+    json["voxelVolumeMm3"] = info.geometry.voxelVolumeMm3();
+    json["pixelType"] = toString(info.pixelType);
+    return json;
+}
+
+Json seriesJson(const DicomSeries& series) {
+    return {{"number", series.number},
+            {"modality", series.modality},
+            {"uid", series.uid},
+            {"description", series.description}};
+}
+
+}  // namespace
+
+void printInfo(std::ostream& out, const MeshOptions& options, const ImageInfo& info) {
+    const ImageGeometry& geometry = info.geometry;
+    const Index3& size = geometry.size;
+    const Vec3 spacing = geometry.spacingMm();
+    const double bytes = static_cast<double>(geometry.voxelCount()) *
+                         static_cast<double>(bytesPerPixel(info.pixelType));
+    out << oneLine(baseName(options.input)) << ": " << info.format << '\n';
+    if (info.series) {
+        out << "series      " << info.series->number << ", " << info.series->modality << ", UID "
+            << oneLine(info.series->uid) << ", description '" << oneLine(info.series->description)
+            << "'\n";
+    }
+    if (!options.preprocessing.changesNothing()) {
+        out << "after       " << preprocessingText(options.preprocessing, info.sizeAsRead) << '\n';
+    }
+    out << "size        " << size[0] << " x " << size[1] << " x " << size[2] << " voxels, "
+        << toString(info.pixelType) << ", " << shortNumber(bytes / 1e6) << " MB\n";
+    out << "spacing     " << joined(spacing, " x ") << " mm, voxels of "
+        << shortNumber(geometry.voxelVolumeMm3()) << " mm3\n";
+    out << "frame       LPS mm: x to the left, y to the back, z up\n";
+    out << "origin      " << joined(geometry.originMm, ", ") << " (the first voxel's centre)\n";
+    printAxes(out, geometry);
+    printValues(out, info.values, isInteger(info.pixelType));
+    for (const std::string& refusal : info.refusals) out << "refused     " << refusal << '\n';
+}
+
+std::string infoJson(const MeshOptions& options, const ImageInfo& info) {
+    const bool isRead = info.fault.empty();
+    const auto ifRead = [&](const auto& make) { return isRead ? Json(make()) : Json(nullptr); };
+    Json report{{"schema", "adaptiso-info/1"},
+                {"program", {{"name", "adaptiso-mesh"}, {"version", programVersion()}}},
+                {"input",
+                 {{"file", baseName(options.input)},
+                  {"format", isRead ? Json(info.format) : Json(nullptr)},
+                  {"readable", isRead},
+                  {"fault", isRead ? Json(nullptr) : Json(info.fault)},
+                  {"warnings", info.warnings}}},
+                {"preprocessing",
+                 ifRead([&] { return preprocessingJson(options.preprocessing, info.sizeAsRead); })},
+                {"image", ifRead([&] { return imageJson(info); })},
+                {"values", ifRead([&] { return valuesJson(info.values); })},
+                {"refusals", info.refusals}};
+    if (info.series) report["series"] = seriesJson(*info.series);
+    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,45 @@
+#include "MeshBatch.h"
+
+#include "Common/Batch.h"
+#include "Common/Numbers.h"
+#include "OutputNames.h"
+
+namespace adaptiso {
+namespace {
+
+std::string says(const Json& report) {
+    std::string text;
+    for (const Json& surface : report.value("surfaces", Json::array())) {
+        if (!text.empty()) text += "; ";
+        text += surface.at("output").at("file").get<std::string>() + ", " +
+                formatCount(surface.at("triangles").get<long long>()) + " triangles at " +
+                formatNumber(surface.at("isovalue").get<double>());
+    }
+    return text;
+}
+
+std::vector<std::string> outputs(const Json& report) {
+    std::vector<std::string> files;
+    for (const Json& surface : report.value("surfaces", Json::array())) {
+        files.push_back(surface.at("output").at("file"));
+    }
+    return files;
+}
+
+}  // namespace
+
+int runMeshBatch(const MeshOptions& options) {
+    BatchProgram program;
+    program.name = "adaptiso-mesh";
+    program.inputs = options.inputs;
+    program.outputOptions = {"--output", "--save-index", "--report", "--pictures"};
+    program.defaultOutput = "{name}-iso{iso}.vtp";
+    program.defaultBidsOutput = "{name}_desc-iso{iso}_mesh.vtp";
+    program.nameOf = inputStem;
+    program.findInBids = findBidsScans;
+    program.says = says;
+    program.outputs = outputs;
+    return runBatch(program, options.batch, options.common);
+}
+
+}  // namespace adaptiso

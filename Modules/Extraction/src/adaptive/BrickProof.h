@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "Bricks.h"
+#include "MetricFrame.h"
+#include "PieceBound.h"
+#include "SimplifiedSurface.h"
+#include "SurfaceLookup.h"
+#include "SurfaceWalk.h"
+#include "ZeroedTable.h"
+
+namespace adaptiso::detail {
+
+/// A place where one of the two surfaces lies beyond the limit, and the triangle of the simplified
+/// one that is to blame or lies nearest.
+struct PlaceBeyond {
+    Vec3 point;  ///< metric frame
+    std::uint64_t triangle;
+};
+
+/// What is proved of the surfaces within a brick, mm.
+struct BrickBound {
+    double fromFineMm = 0, toFineMm = 0;
+    std::vector<PlaceBeyond> beyondLimit;
+    double provedArea = 0;  ///< of the simplified surface, mm2
+};
+
+/// Proves bounds of the distance between the full-resolution surface, made anew, and the simplified
+/// one, brick by brick; keeps its working memory between bricks.
+///
+/// Each surface is cut into pieces along walks on the other one (see SurfaceWalk); what a walk
+/// can't settle is left to PieceBound.
+class BrickProof {
+public:
+    /// \param enoughMm  no bound need be tighter
+    /// \param limitMm   pieces farther off are noted, and do not loosen the bound of the rest
+    BrickProof(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
+               const LatticeSampler& sampler, double enoughMm, double limitMm);
+
+    BrickBound prove(std::int64_t brick);
+
+private:
+    using Walkable = WalkableSurface<std::uint32_t>;
+
+    void findStandIns();
+    void findUnmoved();
+    bool isUnchanged(const std::array<std::uint32_t, 3>& fine);
+    void findStarts(std::span<const std::uint64_t> triangles);
+    void rememberCells();
+    void forgetCells();
+
+    void proveFine(std::size_t t);
+    void proveFinePart(const Corners& piece, const std::array<std::uint32_t, 3>& of);
+    void provePiece(const Corners& piece, std::uint32_t start, double area2);
+    void proveWhole(const Corners& piece, std::uint32_t start, double area2);
+    void proveSmall(const Corners& piece);
+    void proveLeaf(const Corners& piece, const CornerBox& box);
+    void include(const Corners& piece, PieceBound& bound, double& worstMm, std::uint64_t triangle);
+
+    CornerBox latticeBox(const Corners& piece) const;
+    std::uint32_t nearestFine(const Vec3& p);
+    void collectNear(const CornerBox& box, double reach);
+    void keepNearest(const Corners& piece);
+
+    const SimplifiedSurface& surface_;
+    const SurfaceLookup& lookup_;
+    const MetricFrame& frame_;
+    double enoughMm_, limitMm_;
+    BrickMesher mesher_;
+
+    std::int64_t brick_ = 0;
+    Index3 low_{};
+    FineSurface fine_;
+    std::vector<Vec3> points_;  ///< of the fine surface, metric frame
+    Walkable walkable_;
+    std::vector<std::uint64_t> standIn_;  ///< of each of the brick's own fine vertices
+    /// For each of the brick's own fine vertices the vertex of the simplified surface in its place.
+    std::vector<VertexId> unmoved_;
+    std::vector<std::uint64_t> unchanged_;  ///< triangles that are fine ones too, ascending
+    std::vector<std::uint32_t> startAt_;    ///< a fine triangle at each of the brick's triangles
+    ZeroedTable cellAt_;                    ///< number + 1
+    std::uint64_t triangle_ = 0;            ///< whose pieces are looked at
+
+    PieceBound fromFine_, toFine_;
+    double worstFromFineMm_ = 0, worstToFineMm_ = 0;
+    BrickBound result_;
+    SurfaceWalk walk_;
+    std::vector<std::uint32_t> near_;
+    std::vector<std::pair<double, std::uint32_t>> ranked_;
+};
+
+}  // namespace adaptiso::detail

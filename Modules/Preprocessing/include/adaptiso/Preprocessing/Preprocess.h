@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adaptiso/Core/Volume.h"
+#include "adaptiso/Preprocessing/Crop.h"
+#include "adaptiso/Preprocessing/Resample.h"
+
+namespace adaptiso {
+
+/// Steps to take before a volume is used, in this order.
+struct PreprocessOptions {
+    std::optional<CropRanges> crop{};
+    std::optional<double> smoothSigmaMm{};
+    std::optional<double> resampleMm{};  ///< side of the cubic voxels
+    Interpolation interpolation = Interpolation::Linear;
+
+    bool changesNothing() const { return !crop && !smoothSigmaMm && !resampleMm; }
+    friend bool operator==(const PreprocessOptions&, const PreprocessOptions&) = default;
+};
+
+struct Preprocessed {
+    Volume volume;
+    std::vector<std::string> warnings;  ///< one line each
+};
+
+/// Crops, then smooths, then resamples: cropVolume(), smoothVolume(), resampleVolume(). Smoothing
+/// sees the image as cropped. Without options the volume comes back as it is, uncopied.
+///
+/// Warns where blending looks wrong (3 to 100 different whole numbers are labels, most likely), and
+/// of what resampling a sheared image adds around it.
+/// \param volume  given up: its samples go as soon as they are not needed
+/// \throws InvalidInput as the three do
+Preprocessed preprocess(Volume volume, const PreprocessOptions& options);
+
+}  // namespace adaptiso

@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "Common/BatchSummary.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BatchSummaryTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = fs::path(::testing::TempDir()) / ("BatchSummary-" + std::string(test->name()));
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+        row_.name = "a";
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    std::string page() const {
+        return summaryPage("adaptiso-mesh", {row_}, folder_ / "summary.html");
+    }
+    void write(const std::string& name, const std::string& text) const {
+        fs::create_directories((folder_ / name).parent_path());
+        std::ofstream(folder_ / name) << text;
+    }
+
+    fs::path folder_;
+    SummaryRow row_;
+};
+
+TEST_F(BatchSummaryTest, LinksTheReportWithItsFirstPictureAsThumbnail) {
+    write("reports/a.html",
+          "<p><img alt=\"x\" src=\"data:image/png;base64,AAAA\"><img "
+          "src=\"data:image/png;base64,BBBB\">");
+    row_.report = folder_ / "reports/a.html";
+    const std::string text = page();
+    EXPECT_NE(text.find("<a href=\"reports/a.html\">report of a</a>"), std::string::npos);
+    EXPECT_NE(text.find("<a href=\"reports/a.html\"><img src=\"data:image/png;base64,AAAA\" "
+                        "alt=\"picture of a\"></a>"),
+              std::string::npos);
+    EXPECT_EQ(text.find("BBBB"), std::string::npos);
+}
+
+TEST_F(BatchSummaryTest, PrefersAPictureOfItsOwnFolder) {
+    write("a.html", "<img src=\"data:image/png;base64,AAAA\">");
+    write("a pictures/surface-1.png", "png");
+    row_.report = folder_ / "a.html";
+    row_.pictures = folder_ / "a pictures";
+    const std::string text = page();
+    EXPECT_NE(text.find("<img src=\"a%20pictures/surface-1.png\""), std::string::npos);
+    EXPECT_EQ(text.find("AAAA"), std::string::npos);
+}
+
+TEST_F(BatchSummaryTest, HasNoPictureWhereTheReportHasNone) {
+    write("a.html", "<p>no renderer");
+    row_.report = folder_ / "a.html";
+    EXPECT_EQ(page().find("<img"), std::string::npos);
+}
+
+TEST_F(BatchSummaryTest, SaysTheVerdictInWords) {
+    EXPECT_NE(page().find("1 of 1 failed"), std::string::npos);
+    row_.hasPassed = true;
+    EXPECT_NE(page().find("All 1 done"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace adaptiso

@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "Grids.h"
+#include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
+#include "adaptiso/Preprocessing/Smooth.h"
+
+namespace adaptiso::testing {
+namespace {
+
+TriangleMesh surfaceOf(const VolumeView& volume, double isovalue) {
+    const SpanSpaceIndex index = SpanSpaceIndex::build(volume, {});
+    ExtractionOptions options;
+    options.isovalue = isovalue;
+    options.method = Method::MarchingCubes;
+    return extractSurface(volume, index, options).mesh;
+}
+
+/// The middle of what a closed surface encloses.
+Vec3 centroidOf(const TriangleMesh& mesh) {
+    Vec3 sum;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Vec3 &p = mesh.points[a], &q = mesh.points[b], &r = mesh.points[c];
+        sum += dot(p, cross(q, r)) / 24 * (p + q + r);
+    }
+    return (1 / enclosedVolume(mesh)) * sum;
+}
+
+TEST(Preprocess, KeepsASphereItsVolumeAndPlaceOnEveryKindOfGrid) {
+    constexpr double kRadius = 15, kPi = 3.14159265358979;
+    const Vec3 centre{1.3, -2.1, 0.7};
+    for (const auto& [name, geometry] : kindsOfGrid({91, 61, 25}, {0.6, 0.9, 2})) {
+        for (const auto interpolation : {Interpolation::Linear, Interpolation::BSpline}) {
+            const AnalyticVolume ball = sampled<float>(sphere(centre, kRadius), geometry);
+            PreprocessOptions options;
+            options.crop = {{{5, 88}, {3, 59}, {1, 24}}};  // 3 mm around the ball are left
+            options.smoothSigmaMm = 0.8;
+            options.resampleMm = 0.7;
+            options.interpolation = interpolation;
+            const Preprocessed done = preprocess(ball.volume, options);
+            const TriangleMesh mesh = surfaceOf(done.volume, ball.isovalue);
+
+            // smoothing draws the surface in by sigma^2 / R = 0.043 mm; linear interpolation by at
+            // most h^2 / 8 R an axis, 0.043 mm in the image (a spline hardly) and 0.012 mm in the
+            // grid, by half of these on the mean
+            const double inwards = 0.8 * 0.8 / kRadius;
+            const double meanRadius = std::cbrt(enclosedVolume(mesh) / (4 * kPi / 3));
+            EXPECT_LT(meanRadius, kRadius - inwards + 0.003) << name;
+            EXPECT_GT(meanRadius, kRadius - inwards - 0.04) << name;
+            EXPECT_LT(norm(centroidOf(mesh) - centre), 0.01) << name;
+            for (const Vec3& point : mesh.points) {
+                EXPECT_NEAR(norm(point - centre), kRadius - inwards, 0.06) << name;
+            }
+        }
+    }
+}
+
+TEST(Preprocess, TakesItsStepsInTheStatedOrder) {
+    const Volume noise = randomVolume<std::int16_t>({30, 25, 20}, 1000, 5);
+    PreprocessOptions options;
+    options.crop = {{{2, 28}, {}, {3, 18}}};
+    options.smoothSigmaMm = 1;
+    options.resampleMm = 1.5;
+    const Volume done = preprocess(noise, options).volume;
+    const Volume byHand = resampleVolume(smoothVolume(cropVolume(noise, *options.crop), 1), 1.5,
+                                         Interpolation::Linear);
+    ASSERT_EQ(done.view().geometry(), byHand.view().geometry());
+    EXPECT_EQ(std::memcmp(done.view().samples(), byHand.view().samples(), done.view().byteCount()),
+              0);
+}
+
+TEST(Preprocess, WithoutOptionsGivesTheVolumeBack) {
+    const Volume volume = randomVolume<std::int16_t>({5, 5, 5}, 10, 1);
+    const Preprocessed done = preprocess(volume, {});
+    EXPECT_EQ(done.volume.view().samples(), volume.view().samples());
+    EXPECT_TRUE(done.warnings.empty());
+    EXPECT_TRUE(PreprocessOptions{}.changesNothing());
+}
+
+TEST(Preprocess, WarnsOfBlendedLabelsOnly) {
+    const auto warningsOf = [](int distinctValues, const PreprocessOptions& options) {
+        return preprocess(randomVolume<std::uint8_t>({12, 12, 12}, distinctValues, 1), options)
+            .warnings;
+    };
+    PreprocessOptions smooth, resample, nearest, crop;
+    smooth.smoothSigmaMm = 1;
+    resample.resampleMm = nearest.resampleMm = 2;
+    nearest.interpolation = Interpolation::Nearest;
+    crop.crop = CropRanges{};
+    ASSERT_EQ(warningsOf(7, smooth).size(), 1U);
+    EXPECT_NE(warningsOf(7, smooth)[0].find("7 different whole numbers"), std::string::npos);
+    EXPECT_EQ(warningsOf(7, resample).size(), 1U);
+    EXPECT_EQ(warningsOf(100, resample).size(), 1U);
+    EXPECT_TRUE(warningsOf(7, nearest).empty());
+    EXPECT_TRUE(warningsOf(7, crop).empty());
+    EXPECT_TRUE(warningsOf(2, smooth).empty());    // a mask
+    EXPECT_TRUE(warningsOf(200, smooth).empty());  // a scan
+}
+
+TEST(Preprocess, WarnsWhenResamplingStraightensAShear) {
+    PreprocessOptions options;
+    options.resampleMm = 1;
+    const auto warningsOf = [&](const ImageGeometry& geometry) {
+        return preprocess(sampledFrom<float>(geometry, [](const Vec3& p) { return p.x; }), options)
+            .warnings.size();
+    };
+    EXPECT_EQ(warningsOf(shearedGeometry({12, 12, 12}, {1, 1, 2})), 1U);
+    EXPECT_EQ(warningsOf(obliqueGeometry({12, 12, 12}, {1, 1, 2})), 0U);
+    EXPECT_EQ(warningsOf(mirroredGeometry({12, 12, 12}, {1, 1, 2})), 0U);
+}
+
+}  // namespace
+}  // namespace adaptiso::testing
