@@ -118,7 +118,8 @@ bool normalize(std::vector<std::byte>& samples, const DicomPixelFormat& format) 
 }  // namespace
 
 DicomPixelFormat dicomPixelFormat(const DicomFile& dicom) {
-    const auto& [path, header] = dicom;
+    const std::filesystem::path& path = dicom.path;
+    const DicomHeader& header = dicom.header;
     const DicomDataset& set = header.dataset;
     const auto need = [&](DicomTag tag, std::string_view name) {
         const auto value = set.integer(tag);
