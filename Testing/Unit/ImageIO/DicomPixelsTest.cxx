@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "DicomBuilder.h"
 #include "Fixtures.h"
@@ -349,6 +350,28 @@ TEST(DicomRle, SegmentsThatReachOutOfTheFragmentAreRefused) {
     std::string runsOver = good;      // a run longer than the image
     put(runsOver, 64, std::uint8_t{129});
     refused(runsOver);
+}
+
+/// Most memory that this process has had, kB.
+long peakKilobytes() {
+    rusage usage{};
+    EXPECT_EQ(getrusage(RUSAGE_SELF, &usage), 0);
+    return usage.ru_maxrss;
+}
+
+TEST(DicomRle, ALargerImageThanItsRunsCanGiveTakesNoMemory) {
+    const TempFolder folder;
+    writeTwo(
+        folder,
+        [&](DicomBuilder& image) {
+            image.us(0x00280010, 65535).us(0x00280011, 65535);  // 8.6 GB a slice
+            image.fragments({encodeWithGdcm(std::vector<std::uint16_t>(kPixels, 300), kColumns,
+                                            kRows, 16, false, DicomCodec::Rle)});
+        },
+        kRleLossless);
+    const long before = peakKilobytes();
+    EXPECT_NE(refusalOf(folder.path()).find("RLE"), std::string::npos);
+    EXPECT_LE(peakKilobytes() - before, 100'000);  // the files have 2 kB
 }
 
 }  // namespace
