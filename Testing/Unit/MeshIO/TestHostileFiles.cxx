@@ -303,6 +303,14 @@ TEST(KeptFaults, ComeThroughAsTheyAre) {
     EXPECT_THROW(kept("OFF\n3 1 0\n0 0 0\n", "a.off"), FileError);
 }
 
+TEST(PlyFile, NamesOfElementsAreShownWithoutControlCharacters) {
+    const std::string ply = written(tetrahedron(), "a.ply");
+    const std::string message = messageOf<FileError>([&] {
+        decoded(replaced(ply, "element vertex 4", "element ver\033[31mtex 4000000000"), "a.ply");
+    });
+    EXPECT_NE(message.find("'ver?[31mtex'"), std::string::npos) << message;
+}
+
 TEST(ReadMesh, OpensRegularFilesOnly) {
     EXPECT_NE(messageOf<FileError>([] { readMesh("/nowhere/a.stl"); }).find("no such file"),
               std::string::npos);
