@@ -15,6 +15,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool isControl(char c) {
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+}
+
+/// A word of a file in single quotes, as a message may show it.
+std::string inQuotes(std::string_view word) {
+    constexpr std::size_t kLongest = 40;
+    std::string shown(word.substr(0, kLongest));
+    std::replace_if(shown.begin(), shown.end(), isControl, '?');
+    return "'" + shown + (word.size() > kLongest ? "...'" : "'");
+}
+
 /// Lines of a small text file, blank ones skipped, with their numbers.
 class Lines {
 public:
@@ -83,7 +95,7 @@ std::size_t countAfter(Lines& lines, const char* keyword) {
         std::from_chars(words[1].data(), words[1].data() + words[1].size(), count);
     if (error != std::errc{} || end != words[1].data() + words[1].size() || count < 1 ||
         count > kMost) {
-        lines.fail("'" + words[1] + "' must be a number from 1 to 100");
+        lines.fail(inQuotes(words[1]) + " must be a number from 1 to 100");
     }
     return count;
 }
@@ -99,7 +111,7 @@ std::string nameAfter(Lines& lines, const std::vector<std::string>& words, const
                c == '_' || c == '-';
     };
     if (name.empty() || !std::all_of(name.begin(), name.end(), isAllowed)) {
-        lines.fail("'" + name + "' is no name (letters, digits, '_', '-')");
+        lines.fail(inQuotes(name) + " is no name (letters, digits, '_', '-')");
     }
     return name;
 }
@@ -124,6 +136,9 @@ std::string fileName(Lines& lines, const std::vector<std::string>& words) {
     if (path.is_absolute() || climbs || path.extension() != ".tri") {
         lines.fail("the file's name must be relative, below this folder, and end in .tri");
     }
+    if (std::any_of(file.begin(), file.end(), isControl)) {
+        lines.fail("its file's name holds control characters");
+    }
     return file;
 }
 
@@ -132,12 +147,13 @@ void addBorders(Lines& lines, const std::vector<std::string>& words, const OpenM
     for (std::size_t n = 2; n < words.size(); ++n) {
         const char sign = words[n].front();
         if (sign != '-' && sign != '+') {
-            lines.fail("'" + words[n] + "' must be '-' (inside) or '+' (outside) and an interface");
+            lines.fail(inQuotes(words[n]) +
+                       " must be '-' (inside) or '+' (outside) and an interface");
         }
         const std::string name = words[n].substr(1);
         const auto found = std::find_if(model.interfaces.begin(), model.interfaces.end(),
                                         [&](const auto& i) { return i.name == name; });
-        if (found == model.interfaces.end()) lines.fail("there is no interface '" + name + "'");
+        if (found == model.interfaces.end()) lines.fail("there is no interface " + inQuotes(name));
         const auto number = static_cast<std::size_t>(found - model.interfaces.begin());
         (sign == '-' ? domain.inside : domain.outside).push_back(number);
     }
@@ -189,7 +205,7 @@ void readConductivities(Lines& lines, OpenMeegModel& model) {
         if (words.size() != 2) lines.fail("must be 'Name value'");
         const auto domain = std::find_if(model.domains.begin(), model.domains.end(),
                                          [&](const auto& d) { return d.name == words[0]; });
-        if (domain == model.domains.end()) lines.fail("there is no domain '" + words[0] + "'");
+        if (domain == model.domains.end()) lines.fail("there is no domain " + inQuotes(words[0]));
         if (!seen.insert(words[0]).second) lines.fail(words[0] + " is given twice");
         const char* const last = words[1].data() + words[1].size();
         const auto [end, error] = std::from_chars(words[1].data(), last, domain->conductivity);

@@ -55,7 +55,7 @@ void DicomBytes::moveWindow(std::uint64_t position) {
 }
 
 void DicomBytes::inflateFrom(std::uint64_t from) {
-    constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 31;
+    constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 29;  // 1 s to inflate
     struct End {
         void operator()(z_stream* stream) const {
             inflateEnd(stream);
@@ -79,11 +79,12 @@ void DicomBytes::inflateFrom(std::uint64_t from) {
         zlib->next_out = reinterpret_cast<Bytef*>(out.data());
         zlib->avail_out = static_cast<uInt>(out.size());
         state = inflate(zlib.get(), Z_NO_FLUSH);
-        inflated.append(out, 0, out.size() - zlib->avail_out);
-        if (inflated.size() > kMostBytes) {
-            refuse(file_, "its deflated data set inflates to more than 2 GiB",
+        const std::size_t made = out.size() - zlib->avail_out;
+        if (made > kMostBytes - inflated.size()) {
+            refuse(file_, "its deflated data set inflates to more than 512 MiB",
                    "save it uncompressed, e.g. with gdcmconv --raw");
         }
+        inflated.append(out, 0, made);
     }
     if (state != Z_STREAM_END) {
         refuse(file_, "truncated or damaged DICOM file: its deflated data set can't be inflated",

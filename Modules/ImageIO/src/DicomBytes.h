@@ -22,7 +22,7 @@ public:
 
     /// From now on position 0 is the first byte that the file inflates to from `from` on (RFC 1951,
     /// without zlib's frame; PS3.5, A.5). All of it is held in memory.
-    /// \throws FileError when the data are damaged, or inflate to more than 2 GiB
+    /// \throws FileError when the data are damaged, or inflate to more than 512 MiB
     void inflateFrom(std::uint64_t from);
 
 private:

@@ -37,10 +37,24 @@ bool belongs(const DicomGroup& group, const DicomGroup& candidate) {
            isSame(a.columnStepMm, b.columnStepMm) && isSame(a.rowStepMm, b.rowStepMm);
 }
 
-void addTo(std::vector<DicomGroup>& groups, DicomGroup candidate) {
+/// Every image is compared with every group found before it, and groups with one another.
+void requireFewGroups(std::size_t count, const DicomFile& at) {
+    constexpr std::size_t kMostGroups = 1000;
+    if (count <= kMostGroups) return;
+    refuse(
+        at.path,
+        fmt::format("here the images come to differ in more than {} ways (series, size, spacing, "
+                    "orientation, kind)",
+                    kMostGroups),
+        "give the folder of one study");
+}
+
+void addTo(std::vector<DicomGroup>& groups, DicomGroup candidate,
+           const std::vector<DicomFile>& files) {
     const auto known = std::ranges::find_if(
         groups, [&](const DicomGroup& group) { return belongs(group, candidate); });
     if (known == groups.end()) {
+        requireFewGroups(groups.size() + 1, files[candidate.planes.front().file]);
         groups.push_back(std::move(candidate));
     } else {
         known->planes.push_back(std::move(candidate.planes.front()));
@@ -95,7 +109,8 @@ std::vector<DicomGroup> groupsOf(const DicomFile& dicom, std::size_t number) {
 }
 
 /// Magnitude and phase, ...: where images of several kinds lie at one place, a group for each.
-std::vector<DicomGroup> splitByImageType(const DicomGroup& group) {
+std::vector<DicomGroup> splitByImageType(const DicomGroup& group,
+                                         const std::vector<DicomFile>& files) {
     if (!group.fault.empty() || !group.isPlaced()) return {group};
     const bool isMixed = std::ranges::any_of(dicomPlaces(group.planes), [&](const auto& place) {
         return std::ranges::any_of(place, [&](std::size_t n) {
@@ -108,6 +123,7 @@ std::vector<DicomGroup> splitByImageType(const DicomGroup& group) {
     std::map<std::string, DicomGroup> byType;
     for (const DicomPlane& plane : group.planes) {
         byType.try_emplace(plane.imageType, empty).first->second.planes.push_back(plane);
+        requireFewGroups(byType.size(), files[plane.file]);
     }
     std::vector<DicomGroup> parts;
     for (auto& [type, part] : byType) parts.push_back(std::move(part));
@@ -155,10 +171,11 @@ bool areParallelPlanes(const DicomGroup& a, const DicomGroup& b) {
 std::vector<DicomGroup> groupDicomPlanes(const std::vector<DicomFile>& files) {
     std::vector<DicomGroup> byGeometry, groups;
     for (std::size_t n = 0; n < files.size(); ++n) {
-        for (DicomGroup& plane : groupsOf(files[n], n)) addTo(byGeometry, std::move(plane));
+        for (DicomGroup& plane : groupsOf(files[n], n)) addTo(byGeometry, std::move(plane), files);
     }
     for (const DicomGroup& group : byGeometry) {
-        for (DicomGroup& part : splitByImageType(group)) groups.push_back(std::move(part));
+        for (DicomGroup& part : splitByImageType(group, files)) groups.push_back(std::move(part));
+        requireFewGroups(groups.size(), files[group.planes.front().file]);
     }
     markSurveys(groups);
     return groups;

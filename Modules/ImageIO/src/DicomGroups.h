@@ -28,6 +28,7 @@ struct DicomGroup {
 
 /// In the order of the files: the same input gives the same numbers. Images of several kinds
 /// (magnitude and phase) at the same places become groups of their own.
+/// \throws FileError when there are more than 1000 groups
 std::vector<DicomGroup> groupDicomPlanes(const std::vector<DicomFile>& files);
 
 /// Within 5 degrees.

@@ -118,7 +118,8 @@ bool normalize(std::vector<std::byte>& samples, const DicomPixelFormat& format) 
 }  // namespace
 
 DicomPixelFormat dicomPixelFormat(const DicomFile& dicom) {
-    const auto& [path, header] = dicom;
+    const std::filesystem::path& path = dicom.path;
+    const DicomHeader& header = dicom.header;
     const DicomDataset& set = header.dataset;
     const auto need = [&](DicomTag tag, std::string_view name) {
         const auto value = set.integer(tag);
@@ -197,6 +198,7 @@ void DicomFrames::openEncapsulated() {
                            format_.highBit, format_.bitsStored),
                kSaveUncompressed);
     }
+    if (codec_ == DicomCodec::Rle) requireRoomInRuns();
     frameBegins_ = firstFragments();
     if (std::ssize(frameBegins_) != format_.frames) {
         refuse(dicom_.path,
@@ -207,6 +209,19 @@ void DicomFrames::openEncapsulated() {
                kGetAgain);
     }
     frameBegins_.push_back(dicom_.header.pixelData->fragments.size());
+}
+
+/// An image is refused here, before there is memory for it, that its data can't possibly give.
+void DicomFrames::requireRoomInRuns() const {
+    constexpr std::uint64_t kMostOfAByte = 64;  // a run of 128 takes two bytes (PS3.5, G.3.1)
+    const std::uint64_t needed = format_.frameBytes() * static_cast<std::uint64_t>(format_.frames);
+    const std::uint64_t there = dicom_.header.pixelData->byteCount;
+    if (needed / kMostOfAByte > there) {
+        refuse(dicom_.path,
+               fmt::format("truncated: {} bytes of RLE data can't hold {} bytes of pixels", there,
+                           needed),
+               "get the whole file");
+    }
 }
 
 /// One fragment a frame, or all fragments for one frame; else as the offset table says (PS3.5,

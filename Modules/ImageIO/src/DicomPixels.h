@@ -36,6 +36,7 @@ public:
 private:
     void openNative();
     void openEncapsulated();
+    void requireRoomInRuns() const;
     std::vector<std::size_t> firstFragments();
     bool beginsCodestream(const DicomPixelData::Fragment& fragment);
     std::string codestreamOf(std::int64_t frame);

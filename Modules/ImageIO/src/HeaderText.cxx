@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "ByteSource.h"
+#include "FileFault.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -56,8 +57,8 @@ std::optional<std::int64_t> parseInteger(std::string_view text) {
 }
 
 std::string readHead(const fs::path& file, std::size_t most) {
-    std::string head(most, '\0');
-    head.resize(ByteSource(file, 0, ByteSource::Encoding::Raw).readSome(head.data(), most));
+    std::string head(std::min<std::uint64_t>(most, requireRegularFile(file)), '\0');
+    head.resize(ByteSource(file, 0, ByteSource::Encoding::Raw).readSome(head.data(), head.size()));
     return head;
 }
 

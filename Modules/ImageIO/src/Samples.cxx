@@ -133,6 +133,12 @@ void requireUsableGeometry(const std::filesystem::path& file, const ImageGeometr
                    "direction matrix)",
                    "repair the header");
         }
+        if (std::abs(geometry.originMm[axis]) > 1e9) {
+            refuse(file,
+                   fmt::format("implausible origin {} mm along {}", number(geometry.originMm[axis]),
+                               "xyz"[axis]),
+                   "repair the header's origin");
+        }
         if (!(step >= 1e-6 && step <= 1e6)) {
             refuse(file,
                    fmt::format("implausible voxel spacing {} mm along axis {}", number(step),

@@ -64,8 +64,8 @@ std::uint64_t requireProduct(const std::filesystem::path& file, std::uint64_t a,
 /// \throws FileError when memory is short
 SampleBuffer allocateSamples(const std::filesystem::path& file, std::uint64_t byteCount);
 
-/// \throws FileError unless spacings are plausible (1e-6 to 1e6 mm), all numbers finite and the
-///         axes span a volume
+/// \throws FileError unless spacings are plausible (1e-6 to 1e6 mm), so is the origin (-1e9 to 1e9
+///         mm along each axis), all numbers are finite and the axes span a volume
 void requireUsableGeometry(const std::filesystem::path& file, const ImageGeometry& geometry);
 
 /// Turns every sample's bytes round where the file's byte order is not this machine's.

@@ -147,6 +147,7 @@ std::vector<T> decodeNumbers(const DataArray& array, std::string_view what) {
     constexpr std::int64_t kBestRatio = 1032;  // of deflate
     const std::string stored = decodeBase64(array.text);
     requireRoom(what, rows, kRowBytes, isPacked ? kBestRatio * stored.size() : stored.size());
+    if (isPacked) requirePlausibleSize(stored.size(), rows * kRowBytes);
     const std::string bytes = isPacked ? inflated(stored, rows * kRowBytes) : stored;
     const bool isBig = attributeOr(attributes, "Endian", "LittleEndian") == "BigEndian";
     numbers.reserve(3 * rows);

@@ -94,6 +94,14 @@ std::string deflated(std::string_view bytes) {
     return packed;
 }
 
+void requirePlausibleSize(std::size_t packedBytes, std::size_t bytes) {
+    constexpr std::size_t kBombBytes = std::size_t{1} << 28, kBombExpansion = 100;
+    if (bytes > kBombBytes && bytes / kBombExpansion > packedBytes) {
+        damaged("its " + std::to_string(packedBytes) + " compressed bytes claim to hold " +
+                std::to_string(bytes) + ", as only a decompression bomb does");
+    }
+}
+
 std::string inflated(std::string_view packed, std::size_t expectedBytes) {
     z_stream stream{};
     constexpr int kZlibOrGzip = 15 + 32;

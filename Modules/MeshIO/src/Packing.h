@@ -20,6 +20,10 @@ constexpr std::size_t base64Length(std::size_t bytes) {
 
 std::string deflated(std::string_view bytes);
 
+/// Damage where packed data would grow a hundredfold to more than 256 MiB, which no surface does:
+/// before anything is unpacked.
+void requirePlausibleSize(std::size_t packedBytes, std::size_t bytes);
+
 /// The bytes that a zlib or gzip stream holds. Grows with what comes out, never by what a header
 /// promises; damage unless it is exactly `expectedBytes`.
 std::string inflated(std::string_view stream, std::size_t expectedBytes);

@@ -187,7 +187,8 @@ void requireElementRoom(const Element& element, const ValueReader& values, std::
         least += values.leastBytes(property.isList ? property.countType : property.type);
     }
     if (least == 0) damaged("its element " + printable(element.name) + " has no property");
-    requireRoom(element.name, element.count, least, left + 1);  // the last value needs no space
+    requireRoom(printable(element.name), element.count, least,
+                left + 1);  // the last value needs no space
 }
 
 void readVertices(const Element& element, ValueReader& values, TriangleMesh& mesh) {

@@ -165,6 +165,7 @@ private:
             std::max(array.text.size(), appendedData_.size()) * (isCompressed_ ? kBestRatio : 1);
         requireRoom(what, count, sizeof(Stored), mostBytes);
         const std::size_t due = count * sizeof(Stored);
+        requirePlausibleSize(isCompressed_ ? mostBytes / kBestRatio : mostBytes, due);
         const std::string bytes = blockBytes(array, due, what);
         if (bytes.size() != due) {
             damaged("its " + std::string(what) + " take " + std::to_string(bytes.size()) +

@@ -133,6 +133,7 @@ TEST_F(OpenMeegModelTest, EveryRuleOfTheGeometry) {
     geometryRefused("\"a.tri\"", "\"/etc/a.tri\"", "must be relative");
     geometryRefused("\"a.tri\"", "\"../a.tri\"", "must be relative");
     geometryRefused("\"a.tri\"", "\"z.tri\"", "z.tri");
+    geometryRefused("\"a.tri\"", "\"a\033.tri\"", "its file's name holds control characters");
     geometryRefused("Domains 4", "Domains 5", "the file ends where a domain should be");
     geometryRefused("Domains 4", "Domains 3", "there is more after the last domain");
     geometryRefused("Domain Skull:", "Domain Brain:", "the name Brain is given twice");
@@ -158,6 +159,16 @@ TEST_F(OpenMeegModelTest, EveryRuleOfTheConductivities) {
     conductivitiesRefused("Skull 0.0041", "Skull 1e", "must be a number above 0");
     conductivitiesRefused("Air 0", "Air 0.1", "of Air (the air) must be 0");
     conductivitiesRefused("Air 0\n", "", "the domain Air has none");
+}
+
+TEST_F(OpenMeegModelTest, ShowsWordsOfTheFilesWithoutControlCharacters) {
+    geometryRefused("Interfaces 3", "Interfaces 3\r", "'3?' must be a number from 1 to 100");
+    geometryRefused("Interface Inner:", "Interface In\033[31mner:", "'In?[31mner' is no name");
+    geometryRefused("-Inner", "\033Inner", "'?Inner' must be '-' (inside) or '+' (outside)");
+    geometryRefused("-Inner", "-\033Inner", "there is no interface '?Inner'");
+    conductivitiesRefused("Skull 0.0041", "Sk\033ull 0.0041", "there is no domain 'Sk?ull'");
+    geometryRefused("Interfaces 3", "Interfaces " + std::string(1000, '3'),
+                    "'" + std::string(40, '3') + "...' must be");
 }
 
 TEST_F(OpenMeegModelTest, EveryRuleOfTheTriangles) {

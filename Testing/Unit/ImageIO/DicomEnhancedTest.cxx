@@ -1,7 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "DicomBuilder.h"
 #include "Fixtures.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/ImageIO/ListSeries.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso::testing {
@@ -194,6 +199,35 @@ TEST(DicomEnhanced, RefusesFramesWithoutAPlace) {
                   "4 frames but 5 functional groups");
     expectRefusal(writeFile(folder / "x", shuffledImage().text(0x00280008, "IS", "6").file()),
                   "of 144 bytes");  // 6 frames of 4 * 3 * 2 bytes
+}
+
+/// One frame of its own direction or kind after the other.
+DicomBuilder manyKinds(int frames, bool byDirection) {
+    std::vector<DicomBuilder> groups;
+    for (int n = 0; n < frames; ++n) {
+        const double angle = byDirection ? std::numbers::pi * n / frames : 0;
+        groups.push_back(positionGroup({0, 0, byDirection ? 1.0 * n : 0}));
+        DicomBuilder orientation, type;
+        orientation.text(0x00200037, "DS",
+                         dicomText({std::cos(angle), std::sin(angle), 0}) + "\\" +
+                             dicomText({-std::sin(angle), std::cos(angle), 0}));
+        type.text(0x00089007, "CS", byDirection ? "ORIGINAL" : "K" + std::to_string(n));
+        groups.back().sequence(0x00209116, {orientation}).sequence(0x00189226, {type});
+    }
+    const std::vector<std::uint16_t> samples(static_cast<std::size_t>(frames * kColumns * kRows));
+    return enhanced(groups, sharedGroup(), samples);
+}
+
+TEST(DicomEnhanced, OfMoreKindsThanAStudyHasIsRefused) {
+    // 20,000 took 5 s to compare with one another
+    for (const bool byDirection : {true, false}) {
+        const TempFolder folder;
+        const auto file = writeFile(folder / "x", manyKinds(1001, byDirection).file());
+        expectRefusal(file, "differ in more than 1000 ways");
+        EXPECT_THROW(listSeries(file), FileError);
+        writeFile(file, manyKinds(1000, byDirection).file());
+        expectRefusal(file, "and 988 more");  // not one volume, but all were compared
+    }
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <zlib.h>
 
 #include "DicomBuilder.h"
 #include "Fixtures.h"
@@ -176,6 +178,30 @@ TEST(DicomDeflated, IsReadWholeAndRefusedCut) {
     }
 }
 
+/// A MiB of zeros as a deflate block that may stand anywhere in a stream, any number of times.
+std::string deflatedMebibyte() {
+    std::string zeros(1 << 20, '\0'), block(1 << 16, '\0');
+    z_stream stream{};
+    EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY), Z_OK);
+    stream.next_in = reinterpret_cast<Bytef*>(zeros.data());
+    stream.avail_in = static_cast<uInt>(zeros.size());
+    stream.next_out = reinterpret_cast<Bytef*>(block.data());
+    stream.avail_out = static_cast<uInt>(block.size());
+    EXPECT_EQ(deflate(&stream, Z_FULL_FLUSH), Z_OK);
+    block.resize(block.size() - stream.avail_out);
+    deflateEnd(&stream);
+    return block;
+}
+
+TEST(DicomDeflated, OfMoreThanHalfAGibibyteIsRefused) {
+    const TempFolder folder;
+    std::string file = dicomImage(kColumns, kRows).file(kDeflatedLittleEndian);
+    file.resize(file.find(kDeflatedLittleEndian) + 22);  // the meta group, which ends with that
+    const std::string block = deflatedMebibyte();
+    for (int n = 0; n < 513; ++n) file += block;
+    expectRefusal(writeFile(folder / "x", file), "inflates to more than 512 MiB");
+}
+
 // ---- compressed pixel data, in fragments
 
 std::vector<std::string> cut(const std::string& stream, int parts) {
@@ -349,6 +375,28 @@ TEST(DicomRle, SegmentsThatReachOutOfTheFragmentAreRefused) {
     std::string runsOver = good;      // a run longer than the image
     put(runsOver, 64, std::uint8_t{129});
     refused(runsOver);
+}
+
+/// Most memory that this process has had, kB.
+long peakKilobytes() {
+    rusage usage{};
+    EXPECT_EQ(getrusage(RUSAGE_SELF, &usage), 0);
+    return usage.ru_maxrss;
+}
+
+TEST(DicomRle, ALargerImageThanItsRunsCanGiveTakesNoMemory) {
+    const TempFolder folder;
+    writeTwo(
+        folder,
+        [&](DicomBuilder& image) {
+            image.us(0x00280010, 65535).us(0x00280011, 65535);  // 8.6 GB a slice
+            image.fragments({encodeWithGdcm(std::vector<std::uint16_t>(kPixels, 300), kColumns,
+                                            kRows, 16, false, DicomCodec::Rle)});
+        },
+        kRleLossless);
+    const long before = peakKilobytes();
+    EXPECT_NE(refusalOf(folder.path()).find("RLE"), std::string::npos);
+    EXPECT_LE(peakKilobytes() - before, 100'000);  // the files have 2 kB
 }
 
 }  // namespace

@@ -105,6 +105,14 @@ TEST(MetaImageData, ReadsBigEndianAndDetachedData) {
               countingSamples<std::int16_t>(24));
 }
 
+TEST(MetaImageGeometry, AnOriginBeyondEveryScannerIsRefused) {
+    // its square is no double, nor do voxels of mm differ there
+    expectRefusedMeta({.offset = "Offset = 10 -1e200 30\n"}, "implausible origin -1e+200 mm");
+    expectRefusedMeta({.offset = "Offset = 1.1e9 0 0\n"}, "implausible origin 1.1e+09 mm");
+    EXPECT_EQ(read({.offset = "Offset = 0 0 -1e9\n"}).volume.view().geometry().originMm,
+              (Vec3{0, 0, -1e9}));
+}
+
 TEST(MetaImageData, LongIsFourBytesOnEveryMachine) {
     const ReadVolume result =
         read({.type = "MET_LONG"}, samplesOf(countingSamples<std::int32_t>(24)));

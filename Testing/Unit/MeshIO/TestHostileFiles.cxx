@@ -303,6 +303,34 @@ TEST(KeptFaults, ComeThroughAsTheyAre) {
     EXPECT_THROW(kept("OFF\n3 1 0\n0 0 0\n", "a.off"), FileError);
 }
 
+TEST(HostileCounts, DecompressionBombsAreNotUnpacked) {
+    // 25 million points take 300 MB (float) and 600 MB (double); 2 MB of what is packed could just
+    // hold them
+    const std::string packed(3 << 20, 'A');
+    const std::string gifti = written(tetrahedron(), "a.gii"),
+                      xml = written(tetrahedron(), "a.vtp");
+    const std::string counts = replaced(gifti, "Dim0=\"4\"", "Dim0=\"25000000\"");
+    const std::pair<const char*, std::string> files[] = {
+        {"a.gii", replaced(counts, "<Data>", "<Data>" + packed)},
+        {"a.vtp", replaced(replaced(xml, "NumberOfPoints=\"4\"", "NumberOfPoints=\"25000000\""),
+                           "</AppendedData>", packed + "</AppendedData>")},
+    };
+    for (const auto& [name, bytes] : files) {
+        largestRequest = 0;
+        const std::string message = messageOf<FileError>([&] { decoded(bytes, name); });
+        EXPECT_NE(message.find("decompression bomb"), std::string::npos) << message;
+        EXPECT_LE(largestRequest, std::size_t{8} << 20) << name;
+    }
+}
+
+TEST(PlyFile, NamesOfElementsAreShownWithoutControlCharacters) {
+    const std::string ply = written(tetrahedron(), "a.ply");
+    const std::string message = messageOf<FileError>([&] {
+        decoded(replaced(ply, "element vertex 4", "element ver\033[31mtex 4000000000"), "a.ply");
+    });
+    EXPECT_NE(message.find("'ver?[31mtex'"), std::string::npos) << message;
+}
+
 TEST(ReadMesh, OpensRegularFilesOnly) {
     EXPECT_NE(messageOf<FileError>([] { readMesh("/nowhere/a.stl"); }).find("no such file"),
               std::string::npos);

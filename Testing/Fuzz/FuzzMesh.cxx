@@ -1,0 +1,47 @@
+// libFuzzer target: bytes that claim to be a mesh file with the ending ADAPTISO_FUZZ_ENDING.
+// Whatever they hold, they are refused with a FileError or give a sound mesh.
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "OneLine.h"
+#include "adaptiso/MeshIO/MeshFile.h"
+
+namespace adaptiso {
+namespace {
+
+/// What decodeMesh() promises of a mesh that it does not refuse.
+void requireSound(const TriangleMesh& mesh) {
+    if (mesh.triangles.empty()) std::abort();
+    for (const Triangle& triangle : mesh.triangles) {
+        for (const VertexId vertex : triangle) {
+            if (vertex < 0 || vertex >= std::ssize(mesh.points)) std::abort();
+        }
+    }
+    for (const Vec3& p : mesh.points) {
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) std::abort();
+    }
+    if (!mesh.normals.empty() && mesh.normals.size() != mesh.points.size()) std::abort();
+}
+
+void decode(std::string_view bytes, bool keepsFaults) {
+    static const MeshFormat& format = findMeshFormat("fuzzed" ADAPTISO_FUZZ_ENDING);
+    try {
+        const MeshFile file = decodeMesh(bytes, format, "fuzzed", {.keepsFaults = keepsFaults});
+        if (!keepsFaults) requireSound(file.mesh);
+    } catch (const FileError& refusal) {
+        fuzz::requireOneLine(refusal);
+    }
+}
+
+}  // namespace
+}  // namespace adaptiso
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+    adaptiso::decode(bytes, false);
+    adaptiso::decode(bytes, true);
+    return 0;
+}

@@ -1,0 +1,120 @@
+// Every mesh format as this library writes it, and the variants that others write.
+
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataWriter.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "InputFolder.h"
+#include "Seeds.h"
+#include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/MeshIO/VtkAdaptor.h"
+
+namespace adaptiso::fuzz {
+namespace {
+
+TriangleMesh tetrahedron() {
+    return {{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}},
+            {{-0.6f, -0.6f, -0.5f}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+            {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
+
+void addOwnFiles(Seeds& seeds) {
+    const InputFolder folder;
+    for (const MeshFormat& format : meshFormats()) {
+        const std::string ending(format.extensions.front());
+        for (const auto frame : {CoordinateFrame::Ras, CoordinateFrame::TkRas}) {
+            MeshWriteOptions options;
+            options.frame = frame;
+            options.volume = ImageGeometry{{10, 20, 30}, {-5, -20, -45}, Mat3::diagonal(1, 2, 3)};
+            const auto file = folder.path() / ("mesh" + ending);
+            writeMesh(tetrahedron(), file, options);
+            std::ifstream stream(file, std::ios::binary);
+            seeds.add(ending.substr(1), std::string(std::istreambuf_iterator<char>(stream), {}));
+        }
+    }
+}
+
+void addVtkFiles(Seeds& seeds) {
+    const auto data = toVtkPolyData(tetrahedron());
+    for (const bool isBinary : {false, true}) {
+        vtkNew<vtkPolyDataWriter> writer;
+        writer->SetInputData(data);
+        writer->SetFileVersion(vtkDataWriter::VTK_LEGACY_READER_VERSION_5_1);
+        isBinary ? writer->SetFileTypeToBinary() : writer->SetFileTypeToASCII();
+        writer->WriteToOutputStringOn();
+        writer->Write();
+        seeds.add("vtk", writer->GetOutputStdString());
+    }
+    for (const int mode : {vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended}) {
+        for (const bool isPlain : {false, true}) {
+            vtkNew<vtkXMLPolyDataWriter> writer;
+            writer->SetInputData(data);
+            writer->SetDataMode(mode);
+            writer->SetBlockSize(64);  // several blocks an array
+            if (isPlain) {
+                writer->SetCompressorTypeToNone();
+                writer->EncodeAppendedDataOff();
+                writer->SetHeaderTypeToUInt32();
+                writer->SetByteOrderToBigEndian();
+            }
+            writer->WriteToOutputStringOn();
+            writer->Write();
+            seeds.add("vtp", writer->GetOutputString());
+        }
+    }
+}
+
+void addForeignTexts(Seeds& seeds) {
+    seeds.add(
+        "stl",
+        "solid a\nfacet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1e0 0 0\n  vertex "
+        "-0 +1 0\n endloop\nendfacet\nendsolid\n");
+    seeds.add("obj",
+              "# CoordinateFrame: LPS mm\r\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\n"
+              "usemtl x\ng y\nf -4/1 -3/1 -2/1\nf 1//1 2//1 4//1\nf 1/1/1 3/1/1 4/1/1\n");
+    seeds.add("off",
+              "COFF 3 1 0\n0 0 0\n\n1 0 0 # CoordinateFrame: LPS mm\n0 1 0\n3 0 1 2 255 0 0\n");
+    const std::string faces =
+        "element face 1\nproperty list uchar uint vertex_index\nproperty uchar "
+        "flag\nend_header\n";
+    seeds.add(
+        "ply",
+        "ply\nformat ascii 1.0\ncomment CoordinateFrame: tkRAS mm\nelement tag 2\nproperty "
+        "list uchar int ids\nelement vertex 3\nproperty uchar red\nproperty float x\nproperty "
+        "float y\nproperty float z\n" +
+            faces + "2 7 8\n0\n9 0 0 0\n9 1.5 0 0\n9 0 1 0\n3 0 1 2 1\n");
+    const std::string zero(4, '\0'), one("\x3F\x80\0\0", 4);
+    seeds.add(
+        "ply",
+        "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty float "
+        "y\nproperty float z\n" +
+            faces + zero + zero + zero + one + zero + zero + zero + one + zero +
+            std::string("\x03\0\0\0\0\0\0\0\x01\0\0\0\x02\x07", 14));
+    const auto array = [](const char* intent, const char* type, const char* order,
+                          const char* data) {
+        return std::string("<DataArray Intent=\"NIFTI_INTENT_") + intent + "\" DataType=\"" + type +
+               "\" ArrayIndexingOrder=\"" + order +
+               "\" Dimensionality=\"2\" Dim0=\"3\" Dim1=\"3\" Encoding=\"ASCII\"><Data>" + data +
+               "</Data></DataArray>";
+    };
+    seeds.add(
+        "gii",
+        "<?xml version=\"1.0\"?><GIFTI Version=\"1.0\" NumberOfDataArrays=\"2\">" +
+            array("POINTSET", "NIFTI_TYPE_FLOAT32", "ColumnMajorOrder", "0 1 0  0 0 1  5 5 5") +
+            array("TRIANGLE", "NIFTI_TYPE_INT32", "RowMajorOrder", "0 1 2 1 2 0 2 0 1") +
+            "</GIFTI>");
+}
+
+}  // namespace
+
+void addMeshSeeds(Seeds& seeds) {
+    addOwnFiles(seeds);
+    addVtkFiles(seeds);
+    addForeignTexts(seeds);
+}
+
+}  // namespace adaptiso::fuzz

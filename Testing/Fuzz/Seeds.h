@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace adaptiso::fuzz {
+
+/// What fuzzing begins with: small sound files of every kind, in one folder for each target.
+class Seeds {
+public:
+    explicit Seeds(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    /// \throws FileError  the disk is full
+    void add(const std::string& target, std::string_view bytes);
+
+private:
+    std::filesystem::path folder_;
+    std::map<std::string, int> counts_;
+};
+
+void addImageSeeds(Seeds& seeds);
+void addDicomSeeds(Seeds& seeds);
+void addMeshSeeds(Seeds& seeds);
+void addFenceSeeds(Seeds& seeds);
+void addIndexSeeds(Seeds& seeds);
+void addOpenMeegSeeds(Seeds& seeds);
+
+}  // namespace adaptiso::fuzz

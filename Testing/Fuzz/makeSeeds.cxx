@@ -1,0 +1,89 @@
+// makeSeeds FOLDER: writes the seeds, FOLDER/<target>/<number>.
+
+#include <cstdio>
+#include <exception>
+#include <fstream>
+
+#include "FenceAnswer.h"
+#include "Seeds.h"
+#include "SmallVolume.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/SpanSpace/IndexFile.h"
+
+namespace adaptiso::fuzz {
+
+void Seeds::add(const std::string& target, std::string_view bytes) {
+    const std::filesystem::path folder = folder_ / target;
+    std::filesystem::create_directories(folder);
+    const std::filesystem::path file = folder / std::to_string(++counts_[target]);
+    std::ofstream stream(file, std::ios::binary);
+    stream << bytes;
+    stream.close();
+    if (!stream) throw FileError(file.string() + ": can't be written");
+}
+
+void addIndexSeeds(Seeds& seeds) {
+    for (unsigned choice = 0; choice < kSmallVolumes; ++choice) {
+        for (const auto search :
+             {BlockSearchKind::KdTree, BlockSearchKind::Octree, BlockSearchKind::Linear}) {
+            const Volume& volume = smallVolume(choice);
+            const IndexOptions options{2, Border::Closed, search};
+            const auto bytes = encodeIndex(SpanSpaceIndex::build(volume, options), volume);
+            seeds.add("index",
+                      std::string(1, static_cast<char>(choice)) +
+                          std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+        }
+    }
+}
+
+void addFenceSeeds(Seeds& seeds) {
+    detail::FenceAnswer answer;
+    answer.kind = detail::FenceAnswer::Kind::Volume;
+    answer.pixelType = PixelType::Int16;
+    answer.geometry = smallVolume(0).view().geometry();
+    answer.byteCount = 2 * 7 * 6 * 5;
+    answer.format = "DICOM";
+    answer.warnings = {"one", "and another"};
+    seeds.add("fence", detail::packFenceAnswer(answer));
+    answer.kind = detail::FenceAnswer::Kind::FileError;
+    answer.message = "x.dcm: is damaged";
+    answer.warnings.clear();
+    seeds.add("fence", detail::packFenceAnswer(answer));
+}
+
+void addOpenMeegSeeds(Seeds& seeds) {
+    const std::string geometry = "# Domain Description 1.1\n\n";
+    const std::string conductivities = "# Properties Description 1.0 (Conductivities)\n\n";
+    seeds.add("openmeeg", geometry +
+                              "Interfaces 1\n\nInterface Scalp: \"a.tri\"\n\n"
+                              "Domains 2\n\nDomain Skin: -Scalp\nDomain Air: +Scalp\n" +
+                              conductivities + "Air 0\nSkin 0.33\n");
+    seeds.add("openmeeg", geometry +
+                              "Interfaces 3\n\nInterface Inner: \"a.tri\"\nInterface Outer: "
+                              "\"b.tri\"\nInterface Scalp: \"c.tri\"\n\nDomains 4\n\n"
+                              "Domain Brain: -Inner\nDomain Skull: -Outer +Inner\n"
+                              "Domain Skin: -Scalp +Outer\nDomain Air: +Scalp\n" +
+                              conductivities + "Air 0\nSkin 0.33\nBrain 0.33\nSkull 0.0041\n");
+}
+
+}  // namespace adaptiso::fuzz
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::fputs("usage: makeSeeds FOLDER\n", stderr);
+        return 2;
+    }
+    try {
+        adaptiso::fuzz::Seeds seeds(argv[1]);
+        adaptiso::fuzz::addImageSeeds(seeds);
+        adaptiso::fuzz::addDicomSeeds(seeds);
+        adaptiso::fuzz::addMeshSeeds(seeds);
+        adaptiso::fuzz::addFenceSeeds(seeds);
+        adaptiso::fuzz::addIndexSeeds(seeds);
+        adaptiso::fuzz::addOpenMeegSeeds(seeds);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "makeSeeds: %s\n", error.what());
+        return 3;
+    }
+    return 0;
+}
