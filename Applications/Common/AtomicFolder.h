@@ -38,6 +38,9 @@ public:
     /// that it goes with the folder.
     std::filesystem::path place(const std::string& name);
 
+    /// The temporary name: where the files are until commit().
+    const std::filesystem::path& path() const { return temporary_; }
+
     /// Names and bytes of the files, in the order in which they got their places.
     std::vector<std::pair<std::string, std::uintmax_t>> files() const;
 

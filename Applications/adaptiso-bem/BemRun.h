@@ -28,6 +28,8 @@ struct BemInput {
 /// One surface, from dense to final.
 struct BemSurface {
     std::int64_t denseTriangles = 0;  ///< 0: the surface was taken as it came
+    /// Of a ready surface that only needs other triangles, and as many.
+    std::optional<std::int64_t> ownVertices;
     std::optional<RemeshStatistics> remesh;
     SurfaceMove move;  ///< by nesting
     TopologyReport topology;

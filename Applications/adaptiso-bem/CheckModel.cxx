@@ -1,20 +1,26 @@
-#include <cmath>
+#include "CheckModel.h"
 
-#include "Common/Numbers.h"
-#include "SurfaceSteps.h"
-#include "adaptiso/MeshQuality/Nesting.h"
-#include "adaptiso/MeshQuality/SelfIntersection.h"
-#include "adaptiso/MeshQuality/Size.h"
-#include "adaptiso/MeshQuality/SolidAngle.h"
+#include <algorithm>
+#include <utility>
 
 namespace adaptiso {
 namespace {
 
-/// What MNE takes for millimetres: every side of a surface's bounding box.
-constexpr double kLeastExtentMm = 50;
-
 std::string nameOf(std::size_t n) {
     return std::string(toString(static_cast<HeadSurface>(n)));
+}
+
+CheckOptions bemRules(std::optional<double> minGapMm = std::nullopt) {
+    CheckOptions rules;
+    rules.profile = Profile::Bem;
+    rules.minGapMm = minGapMm;
+    rules.maxPairs = 1;
+    return rules;
+}
+
+SurfaceFacts factsOf(const TriangleMesh& surface) {
+    TriangleMesh asked = surface;  // what measures may change is not the caller's
+    return measureSurface(asked, sizeLimitsOf(Profile::Bem), 1);
 }
 
 Vec3 middleOf(const TriangleMesh& mesh, std::int64_t triangle) {
@@ -22,99 +28,95 @@ Vec3 middleOf(const TriangleMesh& mesh, std::int64_t triangle) {
     return (1.0 / 3) * (mesh.points[a] + mesh.points[b] + mesh.points[c]);
 }
 
-Vec3 middleOf(const TriangleMesh& mesh) {
+/// Where to look for what a check found.
+Vec3 placeOf(const Check& check, const SurfaceFacts& facts, const TriangleMesh& mesh) {
+    const TopologyReport& topology = facts.topology;
+    if (check.key == "noSelfIntersections" && facts.intersections.pairCount > 0) {
+        return facts.firstCrossingMm;
+    }
+    if (check.key == "minAngle" && facts.shape.triangles > 0) {
+        return middleOf(mesh, facts.shape.minAngleDeg.triangleOfMinimum);
+    }
+    if (check.key == "noDuplicateVertices" && !facts.duplicates.vertices.empty()) {
+        return mesh.points[facts.duplicates.vertices.front()];
+    }
+    if (check.key == "noDuplicateTriangles" && !facts.duplicates.triangles.empty()) {
+        return middleOf(mesh, facts.duplicates.triangles.front());
+    }
+    if (check.key == "oneComponent" && topology.components.size() > 1) {
+        return mesh.points[topology.components[1].firstVertex];
+    }
+    if (!topology.examples.empty()) return topology.examples.front().pointMm;
     const BoundingBox box = boundingBox(mesh);
     return 0.5 * (box.minimum + box.maximum);
 }
 
-class Checklist {
-public:
-    explicit Checklist(BemRun& run) : run_(run) {}
-
-    /// \param pointMm  where to look when it did not pass
-    void add(const std::string& name, bool isPassed, const std::string& detail,
-             const Vec3& pointMm) {
-        run_.checks.push_back(
-            {name, isPassed, detail, isPassed ? std::nullopt : std::optional(pointMm)});
-        if (!isPassed) run_.findings.push_back({name + ": " + detail, pointMm});
+/// Coordinates in findings are to be read by people: scanner RAS, as the program prints elsewhere.
+std::vector<TriangleMesh> inScannerRas(const std::vector<TriangleMesh>& surfaces) {
+    std::vector<TriangleMesh> moved;
+    for (const TriangleMesh& surface : surfaces) {
+        moved.push_back(toFrame(surface, CoordinateFrame::Ras));
     }
-
-private:
-    BemRun& run_;
-};
-
-void checkTopologyOf(const std::string& name, const TriangleMesh& mesh, const BemSurface& surface,
-                     Checklist& list) {
-    const TopologyReport& topology = surface.topology;
-    const bool isBall = topology.isSound() && topology.isWatertight() &&
-                        topology.components.size() == 1 && topology.genus() == 0;
-    const Vec3 place = !topology.examples.empty() ? topology.examples.front().pointMm
-                       : topology.components.size() > 1
-                           ? mesh.points[topology.components[1].firstVertex]
-                           : middleOf(mesh);
-    std::string detail = formatCount(std::ssize(topology.components)) + " components, genus ";
-    detail += topology.genus() ? formatCount(*topology.genus()) : "none";
-    for (int n = 0; n < kTopologyDefectCount; ++n) {
-        const auto defect = static_cast<TopologyDefect>(n);
-        if (topology.count(defect) == 0) continue;
-        detail += ", " + std::string(toString(defect)) + ": " + formatCount(topology.count(defect));
-    }
-    list.add(name + ": one closed surface of genus 0", isBall, detail, place);
+    return moved;
 }
 
-void checkSurface(std::size_t n, const TriangleMesh& mesh, BemRun& run, Checklist& list) {
-    const std::string name = nameOf(n);
-    BemSurface& surface = run.surfaces[n];
-    surface.topology = checkTopology(mesh);
-    surface.areaMm2 = surfaceArea(mesh);
-    surface.volumeMm3 = enclosedVolume(mesh);
-    surface.shape = measureShape(mesh);
-    checkTopologyOf(name, mesh, surface, list);
-
-    const SolidAngleCriterion angle = solidAngleFromMean(mesh);
-    surface.solidAngleShare = angle.share;
-    list.add(name + ": complete and outward (solid angle, as MNE has it)", angle.isMet(),
-             formatNumber(angle.share) + " of the whole sphere", middleOf(mesh));
-
-    const SelfIntersections crossings = findSelfIntersections(mesh, {.maxPairs = 1});
-    surface.crossingPairs = crossings.pairCount;
-    list.add(name + ": does not cross itself", crossings.pairCount == 0,
-             formatCount(crossings.pairCount) + " pairs of triangles",
-             crossings.pairs.empty() ? middleOf(mesh) : middleOf(mesh, crossings.pairs[0][0]));
-
-    const SizeReport size = judgeSize(mesh, {.minExtentMm = kLeastExtentMm,
-                                             .minLargestExtentMm = kLeastExtentMm,
-                                             .maxLargestExtentMm = 1000});
-    surface.extentMm = size.extentMm;
-    list.add(name + ": the size of a head in mm", size.verdict == SizeVerdict::Plausible,
-             formatRounded(size.extentMm.x) + " x " + formatRounded(size.extentMm.y) + " x " +
-                 formatRounded(size.extentMm.z) + " mm",
-             middleOf(mesh));
+void addToReport(const SurfaceFacts& facts, BemSurface& surface) {
+    surface.topology = facts.topology;
+    surface.shape = facts.shape;
+    surface.crossingPairs = facts.intersections.pairCount;
+    surface.areaMm2 = facts.areaMm2;
+    surface.volumeMm3 = facts.volumeMm3.value_or(0);
+    surface.solidAngleShare = facts.solidAngle.share;
+    surface.extentMm = facts.size.extentMm;
 }
 
 }  // namespace
 
+std::vector<Check> askOfSurface(const TriangleMesh& surface) {
+    return judgeSurface(factsOf(surface), bemRules());
+}
+
+ModelChecks askOfModel(std::span<const TriangleMesh> surfaces, std::span<const double> gapsMm) {
+    ModelChecks asked;
+    for (std::size_t n = 0; n < surfaces.size(); ++n) {
+        asked.facts.push_back(factsOf(surfaces[n]));
+        const SurfaceFacts& facts = asked.facts.back();
+        for (Check& check : judgeSurface(facts, bemRules())) {
+            const Vec3 place = placeOf(check, facts, surfaces[n]);
+            asked.checks.push_back({nameOf(n), std::move(check), place});
+        }
+    }
+    for (std::size_t n = 0; n + 1 < surfaces.size(); ++n) {
+        asked.nesting.push_back(checkNesting(surfaces[n], surfaces[n + 1], {.maxPairs = 1}));
+        const NestingReport& report = asked.nesting.back();
+        for (Check& check :
+             judgeNesting(report, nameOf(n), nameOf(n + 1), {}, bemRules(gapsMm[n]))) {
+            asked.checks.push_back(
+                {nameOf(n) + " in " + nameOf(n + 1), std::move(check), report.gap.nearest.pointA});
+        }
+    }
+    return asked;
+}
+
 void checkModel(const std::vector<TriangleMesh>& surfaces, BemRun& run, ProgressLine& progress) {
     progress.show("check");
     run.timer.time("check", [&] {
-        Checklist list(run);
-        for (std::size_t n = 0; n < surfaces.size(); ++n) checkSurface(n, surfaces[n], run, list);
-        const std::array<double, 2> gaps{run.options.boundaries.minSkullMm,
-                                         run.options.boundaries.minScalpMm};
+        const ModelChecks asked = askOfModel(inScannerRas(surfaces), run.options.minGapsMm());
+        const AffineTransform toLps = inverse(lpsToFrame(CoordinateFrame::Ras, {}));
+        for (std::size_t n = 0; n < surfaces.size(); ++n) {
+            addToReport(asked.facts[n], run.surfaces[n]);
+        }
         run.gaps.clear();
-        for (std::size_t n = 0; n + 1 < surfaces.size(); ++n) {
-            const NestingReport nesting =
-                checkNesting(surfaces[n], surfaces[n + 1], {.maxPairs = 0});
-            const NearestPoints& nearest = nesting.gap.nearest;
-            run.gaps.push_back({nearest.distanceMm, nearest.pointA, nearest.pointB});
-            const std::string pair = nameOf(n) + " in " + nameOf(n + 1);
-            list.add(pair + ": strictly nested", nesting.isStrictlyNested(),
-                     std::string(toString(nesting.relation)), nearest.pointA);
-            // nestSurfaces() measures as this does: rounding of a last digit is forgiven
-            constexpr double kRoundingMm = 1e-9;
-            list.add(pair + ": gap of " + formatNumber(gaps[n]) + " mm or more",
-                     nearest.distanceMm >= gaps[n] - kRoundingMm,
-                     formatFixed(nearest.distanceMm, 3) + " mm", nearest.pointA);
+        for (const NestingReport& report : asked.nesting) {
+            const NearestPoints& nearest = report.gap.nearest;
+            run.gaps.push_back({nearest.distanceMm, toLps(nearest.pointA), toLps(nearest.pointB)});
+        }
+        for (const auto& [subject, check, pointMm] : asked.checks) {
+            const std::string name = subject + ": " + std::string(check.name);
+            const bool isPassed = !check.breaksProfile();
+            run.checks.push_back({name, isPassed, check.finding,
+                                  isPassed ? std::nullopt : std::optional(toLps(pointMm))});
+            if (!isPassed) run.findings.push_back({name + ": " + check.finding, toLps(pointMm)});
         }
     });
 }

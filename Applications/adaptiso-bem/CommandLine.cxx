@@ -8,6 +8,7 @@
 
 #include "Common/ImageOptions.h"
 #include "Common/Numbers.h"
+#include "adaptiso-check/Pipeline.h"
 
 namespace adaptiso {
 namespace {
@@ -147,8 +148,11 @@ void declareHead(CLI::App& app, BemOptions& options) {
                    numbers("--min-gap", text, ',', 1, 2, "one or two numbers of mm: SKULL,SCALP");
                head.minSkullMm = gaps.front();
                head.minScalpMm = gaps.back();
-               if (!(head.minSkullMm > 0) || !(head.minScalpMm > 0)) {
-                   throw UsageError("--min-gap " + text + ": must be more than 0 mm");
+               if (!(head.minSkullMm >= CheckOptions::kDefaultMinGapMm) ||
+                   !(head.minScalpMm >= CheckOptions::kDefaultMinGapMm)) {
+                   throw UsageError("--min-gap " + text + ": must be " +
+                                    formatNumber(CheckOptions::kDefaultMinGapMm) +
+                                    " mm or more, as adaptiso-check wants it");
                }
            },
            "Least thickness of skull and scalp, guaranteed (default: 2,2)")
@@ -179,8 +183,10 @@ void declareSurfaces(CLI::App& app, BemOptions& options) {
     constexpr std::int64_t kMostVertices = 200'000;
     app.add_option("--vertices", options.vertices,
                    "Vertices of each surface, evenly spread: 642, 1281, 2562 or any number "
-                   "(default: 2562)")
-        ->type_name("N")
+                   "(default: 2562); or one number for each surface, inside out: N,N,N")
+        ->type_name("N[,N,N]")
+        ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(CLI::Range(std::int64_t{42}, kMostVertices).description(""))
         ->group(kMesh);
     app.add_option_function<std::string>(
@@ -283,6 +289,9 @@ void checkCombinations(const BemOptions& options) {
             "--tissue and --preset need --labels");
     require(options.surfaces.empty() || options.surfaces.size() == options.surfaceCount(),
             "--surfaces needs " + std::to_string(options.surfaceCount()) + " files, inside out");
+    require(options.vertices.size() <= 1 || options.vertices.size() == options.surfaceCount(),
+            "--vertices: must be one number, or " + std::to_string(options.surfaceCount()) +
+                " with commas between them");
     const BoundaryOptions& head = options.boundaries;
     require(head.maxSkullMm > head.minSkullMm, "--max-skull must be more than --min-gap");
     require(

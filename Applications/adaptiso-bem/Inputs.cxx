@@ -82,6 +82,7 @@ HeadBoundaries boundariesFromImages(BemRun& run, ProgressLine& progress) {
         result = timed(run, [&] { return boundariesFromCt(ct.volume, boundaries); });
     }
     run.notes = result.notes;
+    run.warnings.insert(run.warnings.end(), result.warnings.begin(), result.warnings.end());
     return result;
 }
 
@@ -90,7 +91,7 @@ std::vector<TriangleMesh> readSurfaces(BemRun& run) {
     if (!options.volume.empty()) readMainImage(options.volume, "volume", run);
     std::vector<NamedMesh> files;
     for (const fs::path& path : options.surfaces) {
-        files.push_back({path, readMesh(path)});
+        files.push_back({path, readMesh(path, {.keepsFaults = true})});
         run.inputs.push_back({path, "surface", std::string(findMeshFormat(path).name)});
         const MeshFile& file = files.back().file;
         if (file.frame == CoordinateFrame::TkRas && !run.tkRasVolume) run.tkRasVolume = file.volume;

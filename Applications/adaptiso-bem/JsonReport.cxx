@@ -30,7 +30,7 @@ Json optionsJson(const BemOptions& options) {
         edges = {options.edgeLengthMm->minimumMm, options.edgeLengthMm->maximumMm};
     }
     return {{"layers", options.surfaceCount()},
-            {"vertices", orNull(options.vertices)},
+            {"vertices", options.vertices.empty() ? Json(nullptr) : Json(options.vertices)},
             {"edgeLengthMm", edges},
             {"minGapMm", {b.minSkullMm, b.minScalpMm}},
             {"smoothingMm", b.smoothingMm},
@@ -72,6 +72,7 @@ Json surfaceJson(std::size_t n, const BemSurface& surface) {
               {"maximum", number(shape.edgeMm.maximum)}}},
             {"minAngleDeg",
              {{"minimum", number(shape.minAngleDeg.minimum)},
+              {"p5", number(shape.minAngleDeg.p5)},
               {"median", number(shape.minAngleDeg.median)}}},
             {"remesh", remeshJson(surface)},
             {"nesting",

@@ -13,10 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string fileName(std::size_t surface, const char* extension) {
-    return std::string(toString(static_cast<HeadSurface>(surface))) + extension;
-}
-
 std::optional<ImageGeometry> volumeOf(CoordinateFrame frame, const BemRun& run) {
     return frame == CoordinateFrame::TkRas ? run.tkRasVolume : std::nullopt;
 }
@@ -29,6 +25,10 @@ void writeGeneral(const TriangleMesh& surface, const fs::path& path, const BemRu
 }
 
 }  // namespace
+
+std::string fileName(std::size_t surface, const char* extension) {
+    return std::string(toString(static_cast<HeadSurface>(surface))) + extension;
+}
 
 std::vector<std::string_view> modelFileNames() {
     return {"inner_skull.surf", "outer_skull.surf", "outer_skin.surf", "inner_skull.tri",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace adaptiso {
 
 /// Every name that a folder of this program may hold: what --force may replace.
 std::vector<std::string_view> modelFileNames();
+
+/// "inner_skull.surf"
+std::string fileName(std::size_t surface, const char* extension);
 
 /// Where --subject's surfaces go: SUBJECTS_DIR/SUBJECT/bem/<surface>.surf, one a surface.
 std::vector<std::filesystem::path> subjectPaths(const BemOptions& options);

@@ -55,7 +55,8 @@ std::string modelReadme(const BemRun& run) {
         conductivityTuple(run) +
         ", subjects_dir='SUBJECTS_DIR')\nbem = mne.make_bem_solution(model)\n```\n";
     text +=
-        "\nOpenMEEG, in this folder:\n```sh\nom_check_geom -g model.geom\nom_assemble -HM "
+        "\nOpenMEEG (not in Debian; openmeeg.github.io), in this folder:\n```sh\nom_check_geom -g "
+        "model.geom\nom_assemble -HM "
         "model.geom model.cond model.hm\nom_minverser model.hm model.hm_inv\n```\n";
     return text;
 }

@@ -6,17 +6,19 @@
 #include <utility>
 
 #include "BemRun.h"
+#include "CheckModel.h"
 #include "Common/AtomicFolder.h"
 #include "Common/ExitCodes.h"
+#include "Common/Numbers.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "Inputs.h"
 #include "JsonReport.h"
 #include "ModelFiles.h"
+#include "ReadySurfaces.h"
 #include "ReportPage.h"
 #include "SurfaceSteps.h"
 #include "TextReport.h"
-#include "adaptiso/MeshQuality/SelfIntersection.h"
 
 namespace adaptiso {
 namespace {
@@ -98,51 +100,30 @@ void checkOutputs(const BemOptions& options) {
     checkSubject(options);
 }
 
-/// A closed ball that can be worked with as it is. Turns it outward.
-bool isUsable(TriangleMesh& mesh, BemRun& run) {
-    const TopologyReport topology = checkTopology(mesh, {.maxExamplesPerDefect = 0});
-    if (!topology.isSound() || topology.components.size() != 1 || topology.genus() != 0) {
-        return false;
-    }
-    if (findSelfIntersections(mesh, {.maxPairs = 0}).pairCount > 0) return false;
-    if (enclosedVolume(mesh) < 0) {
-        flipOrientation(mesh);
-        run.notes.push_back("a surface was inside out and has been turned");
-    }
-    return true;
-}
-
 /// What the images or the surfaces given lead to, dense or as it came.
 std::vector<TriangleMesh> firstSurfaces(BemRun& run, ProgressLine& progress) {
     if (run.source != "surfaces") {
         return extractSurfaces(boundariesFromImages(run, progress), run, progress);
     }
-    progress.show("read");
-    std::vector<TriangleMesh> surfaces = run.timer.time("read", [&] { return readSurfaces(run); });
-    bool areUsable = true;
-    run.timer.time("check", [&] {
-        for (TriangleMesh& surface : surfaces) areUsable = isUsable(surface, run) && areUsable;
-    });
-    if (areUsable) {
-        run.surfaces.resize(surfaces.size());
-        return surfaces;
-    }
-    run.notes.push_back(
-        "not every surface is a closed one of genus 0 that does not cross itself: "
-        "all are made anew from the solids that they bound");
-    BoundaryOptions boundaries = run.options.boundaries;
-    boundaries.progress = progress.callback();
-    HeadBoundaries mended =
-        run.timer.time("boundaries", [&] { return boundariesFromSurfaces(surfaces, boundaries); });
-    run.notes.insert(run.notes.end(), mended.notes.begin(), mended.notes.end());
-    return extractSurfaces(mended, run, progress);
+    return readySurfaces(run, progress);
 }
 
-void printWarnings(const BemRun& run) {
+/// Those from number `first` on.
+void printWarnings(const BemRun& run, std::size_t first = 0) {
     if (run.options.common.isQuiet) return;
-    for (const std::string& warning : run.warnings) {
-        printError("adaptiso-bem", "warning: " + warning);
+    for (std::size_t n = first; n < run.warnings.size(); ++n) {
+        printError("adaptiso-bem", "warning: " + run.warnings[n]);
     }
+}
+
+/// Solvers take the square of the number of vertices in memory, the cube in time.
+void warnOfMany(const std::vector<TriangleMesh>& surfaces, BemRun& run) {
+    constexpr std::int64_t kMany = 10'000;
+    std::int64_t vertices = 0;
+    for (const TriangleMesh& surface : surfaces) vertices += std::ssize(surface.points);
+    if (vertices <= kMany) return;
+    run.warnings.push_back(formatCount(vertices) +
+                           " vertices in all; MNE warns above 10,000 (--vertices)");
 }
 
 void report(const BemRun& run, const std::string& json) {
@@ -154,6 +135,21 @@ void report(const BemRun& run, const std::string& json) {
     if (!std::cout.flush()) throw FileError("standard output: can't be written");
 }
 
+/// The model's folder, not yet under its name; one that holds nothing when what was written does
+/// not keep the model's promises when read back.
+void fillFolder(const std::vector<TriangleMesh>& surfaces, BemRun& run,
+                std::optional<AtomicFolder>& folder) {
+    const BemOptions& options = run.options;
+    folder.emplace(options.output, replaceable(options));
+    if (!run.hasModel()) return;
+    run.timer.time("write", [&] { writeModel(surfaces, run, *folder); });
+    run.timer.time("check", [&] { checkFiles(folder->path(), surfaces, run); });
+    if (run.hasModel()) return;
+    run.files.clear();
+    folder.reset();
+    folder.emplace(options.output, replaceable(options));
+}
+
 /// Writes the folder (the report alone when there is no model) and all else, or nothing.
 /// \param shown  what the report shows
 std::string write(const std::vector<TriangleMesh>& surfaces, const std::vector<TriangleMesh>& shown,
@@ -161,23 +157,17 @@ std::string write(const std::vector<TriangleMesh>& surfaces, const std::vector<T
     const BemOptions& options = run.options;
     const PictureFolder pictures(options.report.pictures);
     std::vector<AtomicOutput> outputs;
-    std::string json;
     std::optional<AtomicFolder> folder;
-    run.timer.time("write", [&] {
-        if (!options.isDryRun) {
-            folder.emplace(options.output, replaceable(options));
-            if (run.hasModel()) {
-                writeModel(surfaces, run, *folder);
-                outputs = writeSubject(surfaces, run);
-            }
-        }
-    });
+    if (!options.isDryRun) {
+        fillFolder(surfaces, run, folder);
+        if (run.hasModel()) outputs = writeSubject(surfaces, run);
+    }
     if (options.report.isWanted()) {
         Report page = makeReport(run, shown);
         run.timer.time("report",
                        [&] { writeReport(page, "adaptiso-bem", options.report, outputs); });
     }
-    json = jsonReport(run);
+    const std::string json = jsonReport(run);
     if (folder) folder->writeText("report.json", json);
     if (hasJsonFile(options)) outputs.emplace_back(options.common.json).writeText(json);
     if (folder) {
@@ -200,8 +190,13 @@ int runBem(const BemOptions& options) {
     chooseTkRas(run);
     progress.clear();
     printWarnings(run);
-    const std::vector<TriangleMesh> surfaces = remeshAndNest(dense, run, progress);
+    const std::size_t told = run.warnings.size();
+    std::vector<TriangleMesh> surfaces;
+    if (run.hasModel()) surfaces = remeshAndNest(dense, run, progress);
     if (run.hasModel()) checkModel(surfaces, run, progress);
+    warnOfMany(surfaces, run);
+    progress.clear();
+    printWarnings(run, told);
 
     progress.show("write");
     const std::string json = write(surfaces, surfaces.empty() ? dense : surfaces, run);

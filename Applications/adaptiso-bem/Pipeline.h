@@ -33,7 +33,8 @@ struct BemOptions {
     ReadOptions read;                 ///< of the main image
     BoundaryOptions boundaries;       ///< layers, gaps, thicknesses, isovalues
 
-    std::optional<std::int64_t> vertices;  ///< a surface; none: 2,562, or by edge length
+    /// One number for all surfaces or one for each; empty: 2,562, or by edge length.
+    std::vector<std::int64_t> vertices;
     std::optional<EdgeLengthRange> edgeLengthMm;
     ConductivityModel conductivities;
 
@@ -49,6 +50,14 @@ struct BemOptions {
     ReportOptions report;
     CommonOptions common;
 
+    /// Of skull and scalp.
+    std::array<double, 2> minGapsMm() const {
+        return {boundaries.minSkullMm, boundaries.minScalpMm};
+    }
+    std::optional<std::int64_t> verticesOf(std::size_t surface) const {
+        if (vertices.empty()) return std::nullopt;
+        return vertices.size() == 1 ? vertices.front() : vertices[surface];
+    }
     std::size_t surfaceCount() const {
         return boundaries.innerSkullOnly ? 1 : std::size_t{kHeadSurfaceCount};
     }

@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::int64_t kDefaultVertices = 2562;
 constexpr double kFitMm = 0.5;
+/// Files keep floats: a gap must not fall short by their rounding (3e-5 mm at 500 mm).
+constexpr double kRoundingMm = 1e-4;
 
 RemeshOptions remeshOptions(const BemRun& run, const std::vector<TriangleMesh>& dense,
                             std::size_t n) {
@@ -17,7 +19,8 @@ RemeshOptions remeshOptions(const BemRun& run, const std::vector<TriangleMesh>& 
     // what is left of the voxels' stairs after smoothing; ready surfaces are taken at their word
     if (run.source != "surfaces") remesh.fitMm = kFitMm;
     remesh.edgeLengthMm = options.edgeLengthMm;
-    remesh.vertices = options.vertices.value_or(options.edgeLengthMm ? 0 : kDefaultVertices);
+    const std::int64_t usual = run.surfaces[n].ownVertices.value_or(kDefaultVertices);
+    remesh.vertices = options.verticesOf(n).value_or(options.edgeLengthMm ? 0 : usual);
     if (n > 0) remesh.neighbours.push_back(&dense[n - 1]);
     if (n + 1 < dense.size()) remesh.neighbours.push_back(&dense[n + 1]);
     return remesh;
@@ -25,7 +28,7 @@ RemeshOptions remeshOptions(const BemRun& run, const std::vector<TriangleMesh>& 
 
 /// Ready surfaces keep their triangles unless others are asked for.
 bool staysAsItCame(const BemSurface& surface, const BemOptions& options) {
-    return surface.denseTriangles == 0 && !options.vertices && !options.edgeLengthMm;
+    return surface.denseTriangles == 0 && options.vertices.empty() && !options.edgeLengthMm;
 }
 
 std::string nameOf(std::size_t n) {
@@ -77,7 +80,8 @@ std::vector<TriangleMesh> remeshAndNest(const std::vector<TriangleMesh>& dense, 
     }
     progress.show("nest");
     NestOptions nest;
-    nest.minGapsMm = {run.options.boundaries.minSkullMm, run.options.boundaries.minScalpMm};
+    nest.minGapsMm.clear();
+    for (const double gap : run.options.minGapsMm()) nest.minGapsMm.push_back(gap + kRoundingMm);
     NestResult nested = run.timer.time("nest", [&] { return nestSurfaces(surfaces, nest); });
     for (std::size_t n = 0; n < nested.moves.size(); ++n) run.surfaces[n].move = nested.moves[n];
     run.findings = nested.findings;

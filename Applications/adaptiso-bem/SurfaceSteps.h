@@ -18,7 +18,4 @@ std::vector<TriangleMesh> extractSurfaces(const HeadBoundaries& boundaries, BemR
 std::vector<TriangleMesh> remeshAndNest(const std::vector<TriangleMesh>& dense, BemRun& run,
                                         ProgressLine& progress);
 
-/// Checks every promise about the surfaces; what is not kept becomes a finding of the run.
-void checkModel(const std::vector<TriangleMesh>& surfaces, BemRun& run, ProgressLine& progress);
-
 }  // namespace adaptiso

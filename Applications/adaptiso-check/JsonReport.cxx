@@ -141,6 +141,7 @@ Json spreadJson(const Spread& spread) {
     const auto triangle = [](std::int64_t n) { return n < 0 ? Json(nullptr) : Json(n); };
     return {{"minimum", number(spread.minimum)},
             {"p1", number(spread.p1)},
+            {"p5", number(spread.p5)},
             {"median", number(spread.median)},
             {"mean", number(spread.mean)},
             {"p99", number(spread.p99)},

@@ -5,11 +5,18 @@ import math
 import os
 import re
 import subprocess
+import sys
+import unittest
+from pathlib import Path
 
 from support import (BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, USAGE, ApplicationTest, Image, main,
                      write_nifti)
 
+sys.path.insert(0, str(SOURCE / "Testing" / "Support"))
+from headDefects import DEFECTS, good, write_off as write_head_off  # noqa: E402
+
 BEM = str(BIN / "adaptiso-bem")
+CHECK = str(BIN / "adaptiso-check")
 README = SOURCE / "Applications" / "adaptiso-bem" / "README.md"
 NAMES = ("inner_skull", "outer_skull", "outer_skin")
 RADII = (60, 66, 72)
@@ -180,6 +187,13 @@ class Model(BemTest):
             self.assertLess(surface["edgeMm"]["mean"], 20)
             self.assertGreater(surface["edgeMm"]["mean"], 8 * 0.7)
 
+    def test_a_number_of_vertices_for_each_surface(self):
+        arguments = self.labels()
+        arguments = [*arguments[:-4], *arguments[-2:]]  # without --vertices
+        self.assertNotIn("--vertices", arguments)
+        self.bem(*arguments, "--vertices", "162,300,200", "-o", "model")
+        self.assertEqual([s["vertices"] for s in self.report()["surfaces"]], [162, 300, 200])
+
     def test_gap_is_kept_where_the_labels_touch(self):
         arguments = self.labels(image=head(radii=(60, 61, 62)), name="thin.nii")
         self.bem(*arguments, "--min-gap", "4,3", "-o", "model")
@@ -293,7 +307,87 @@ class Surfaces(BemTest):
         names = self.write(*(globe(r / 1000) for r in RADII))
         done = self.run_bem("--surfaces", *names, "-o", "model")
         self.assertEqual(done.returncode, CHECK_FAILED)
-        self.assertNotIn("inner_skull.surf", os.listdir(self.path("model")))
+        self.assertRegex(done.stderr, "too small; in metres?")
+        self.assertEqual(os.listdir(self.path("model")), ["report.json"])
+
+    def test_needles_and_flat_triangles_are_remeshed_to_the_same_number(self):
+        # one vertex moved almost onto its neighbour
+        points, triangles = globe(60)
+        a, b = triangles[40][:2]
+        points[a] = tuple(p + 1e-4 * (q - p) for p, q in zip(points[b], points[a]))
+        names = self.write((points, triangles), globe(66), globe(72))
+        self.bem("--surfaces", *names, "-o", "model")
+        report = self.report()
+        self.assertRegex(" ".join(report["notes"]), "inner_skull: .*; remeshed")
+        self.assertEqual(report["surfaces"][0]["vertices"], len(points))
+        self.assertGreater(report["surfaces"][0]["minAngleDeg"]["p5"], 30)
+        self.assertEqual(report["surfaces"][1]["denseTriangles"], 0)  # taken as it came
+
+    def test_good_surfaces_of_more_vertices_than_mne_likes_are_told(self):
+        names = self.write(globe(60, 60, 60), globe(66, 60, 60), globe(72, 60, 60))
+        done = self.bem("--surfaces", *names, "-o", "model")
+        self.assertRegex(done.stderr, "10,626 vertices in all; MNE warns above 10,000")
+
+    def test_a_gap_that_rounding_of_the_files_would_lessen_is_kept(self):
+        # exactly the gap asked for: floats in the .surf files would fall short of it
+        names = self.write(globe(60), globe(62), globe(72))
+        self.bem("--surfaces", *names, "--min-gap", "1.5,2", "-o", "model")
+        gap = self.report()["gaps"][0]["mm"]
+        self.bem("--surfaces", *names, "--min-gap", f"{gap:.17g},2", "-o", "again")
+        files = [self.path("again") / f"{name}.surf" for name in NAMES]
+        check = subprocess.run([CHECK, "--nested", *files, "--min-gap", f"{gap:.17g}"],
+                               capture_output=True, text=True)
+        self.assertEqual(check.returncode, OK, check.stdout)
+
+
+@unittest.skipUnless(Path(CHECK).exists(), "needs adaptiso-check")
+class PlantedDefects(BemTest):
+    """The 19 defects of the checker, given to the maker: a model that the checker passes, or a
+    finding with its place; never a model with the defect."""
+
+    MENDED_AT_ONCE = {"an inner vertex pokes out", "all triangles are flipped",
+                      "a narrow dent of the outer surface goes through an inner face",
+                      "an isolated vertex", "a triangle soup", "a gap of 0.05 mm",
+                      "a triangle names a vertex twice", "a second closed component",
+                      "two triangles without area, of a collapsed vertex"}
+    MADE_ANEW = {"a hole", "one triangle is flipped", "a handle",
+                 "a spike crosses its own surface", "a coordinate is NaN"}
+    REFUSED = {"inner and outer are swapped": "swapped",
+               "all in metres": "in metres?", "the inner surface in metres": "in metres?",
+               "all in micrometres": "in micrometres?",
+               "the inner surface is 300 mm away": "apart"}
+
+    def test_every_defect_is_mended_or_refused(self):
+        self.assertEqual(self.MENDED_AT_ONCE | self.MADE_ANEW | set(self.REFUSED), set(DEFECTS))
+        for name, plant in DEFECTS.items():
+            with self.subTest(name):
+                self.try_defect(name, plant(good()))
+
+    def try_defect(self, name, model):
+        files = [self.path(f"s{n}.off") for n in range(3)]
+        for path, mesh in zip(files, model):
+            write_head_off(path, mesh)
+        # voxels of 3 mm where surfaces are made anew: for speed
+        done = self.run_bem("--surfaces", *files, "--voxel", "3", "-o", "model", "--force")
+        report = self.report()
+        if name in self.REFUSED:
+            self.assertEqual(done.returncode, CHECK_FAILED, done.stderr)
+            self.assertRegex(report["findings"][0]["what"], re.escape(self.REFUSED[name]))
+            self.assertEqual(os.listdir(self.path("model")), ["report.json"])
+            return
+        self.assertEqual(done.returncode, OK, done.stderr)
+        self.assertEqual("made anew" in " ".join(report["notes"]), name in self.MADE_ANEW)
+        for kind in ("surf", "tri"):
+            files = [self.path("model") / f"{surface}.{kind}" for surface in NAMES]
+            check = subprocess.run([CHECK, "--nested", *files, "--min-gap", "2"],
+                                   capture_output=True, text=True)
+            self.assertEqual(check.returncode, OK, check.stdout)
+        if name in self.MENDED_AT_ONCE:
+            for surface in report["surfaces"]:
+                self.assertLessEqual(abs(surface["vertices"] - 642), 1)  # the dent has one more
+        for surface, radius in zip(report["surfaces"], (80, 86, 92)):
+            volume_mm3 = 4 / 3 * math.pi * radius ** 3
+            self.assertAlmostEqual(surface["volumeMm3"] / volume_mm3, 0.99, delta=0.015)
 
 
 class Output(BemTest):
@@ -378,7 +472,8 @@ class BadInput(BemTest):
                                  "../x"),
             "0 < MIN <= MAX": ("--t1", "a.nii", "-o", "m", "--edge-length", "9:3"),
             "MIN:MAX": ("--t1", "a.nii", "-o", "m", "--edge-length", "9"),
-            "more than 0 mm": ("--t1", "a.nii", "-o", "m", "--min-gap", "0"),
+            "0.5 mm or more": ("--t1", "a.nii", "-o", "m", "--min-gap", "0.4"),
+            "one number, or 3": ("--t1", "a.nii", "-o", "m", "--vertices", "642,642"),
             "one or two numbers": ("--t1", "a.nii", "-o", "m", "--min-gap", "1,2,3"),
             "above 0 and at most 10": ("--t1", "a.nii", "-o", "m", "--conductivity", "0.3,0,0.3"),
             "--max-skull must be more": ("--t1", "a.nii", "-o", "m", "--max-skull", "1"),

@@ -96,6 +96,7 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
     const std::array<double, 2> gaps{options.minSkullMm, options.minScalpMm};
     HeadBoundaries result;
     result.notes = std::move(raw.notes);
+    result.warnings = std::move(raw.warnings);
     for (std::size_t n = 0; n < raw.parts.size(); ++n) {
         tell(options, "smooth", static_cast<double>(n) / static_cast<double>(raw.parts.size()));
         std::vector<float>& part = raw.parts[n];

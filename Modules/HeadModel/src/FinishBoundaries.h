@@ -19,6 +19,7 @@ struct RawBoundaries {
     ImageGeometry grid;
     std::vector<std::vector<float>> parts;
     std::vector<std::string> notes;
+    std::vector<std::string> warnings;
 };
 
 /// Smooths each solid, grows it to hold the one inside it with the least gap, and makes it a ball,

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -44,6 +45,34 @@ double sigmaFor(const ImageGeometry& image, const BoundaryOptions& options) {
     return std::max(options.smoothingMm, 0.6 * std::max({spacing.x, spacing.y, spacing.z}));
 }
 
+/// Tissues in another order than they were named give a model as well, but of no head: most of a
+/// layer must lie outside of the solid within it, and in its own.
+void requireOrder(const std::vector<FloatImage>& enclosed, const RawBoundaries& raw) {
+    constexpr std::array<const char*, kHeadSurfaceCount> kTissue{"brain", "skull", "scalp"};
+    for (std::size_t n = 1; n < enclosed.size(); ++n) {
+        FloatImage layer = enclosed[n];
+        for (std::size_t v = 0; v < layer.values.size(); ++v) {
+            layer.values[v] -= enclosed[n - 1].values[v];
+        }
+        const std::vector<float> part = resampled(layer, raw.grid, 0);
+        double all = 0, inner = 0, own = 0;
+        for (std::size_t v = 0; v < part.size(); ++v) {
+            all += part[v];
+            if (raw.parts[n - 1][v] >= kFractionIsovalue) inner += part[v];
+            if (raw.parts[n][v] >= kFractionIsovalue) own += part[v];
+        }
+        const std::string tissue = kTissue[n], within = kTissue[n - 1];
+        if (inner > 0.5 * all) {
+            throw InvalidInput("HeadModel: most of the " + tissue + " lies inside the " + within +
+                               "; are the tissues named in the right order?");
+        }
+        if (own < 0.5 * all) {
+            throw InvalidInput("HeadModel: most of the " + tissue + " hangs together with no " +
+                               within + "; are the tissues named in the right order?");
+        }
+    }
+}
+
 HeadBoundaries boundariesFrom(const std::vector<FloatImage>& enclosed, BoundaryOptions options) {
     const ImageGeometry& image = enclosed.front().geometry;
     Index3 first, last;
@@ -60,6 +89,7 @@ HeadBoundaries boundariesFrom(const std::vector<FloatImage>& enclosed, BoundaryO
             solidOf(enclosed[n], raw.grid, faces,
                     isSkin ? options.closingMm : std::min(kSeamMm, options.closingMm)));
     }
+    requireOrder(enclosed, raw);
     if (raw.parts.size() == kHeadSurfaceCount) limitOuterSkull(raw, options);
     options.smoothingMm = sigmaFor(image, options);
     return finished(std::move(raw), options);

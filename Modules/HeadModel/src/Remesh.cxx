@@ -1,6 +1,7 @@
 #include "adaptiso/HeadModel/Remesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -201,47 +202,67 @@ RemeshStatistics measure(const TriangleMesh& mesh, const RemeshTarget& target) {
     return s;
 }
 
-}  // namespace
-
-Remeshed remeshForBem(const TriangleMesh& surface, const RemeshOptions& options) {
-    checkOptions(options);
-    checkSurface(surface);
+/// Edges of one length or of the target's own, before the number of vertices counts.
+/// \return  the number to reach
+std::int64_t startOver(RemeshTarget& target, Remesher& remesher, const RemeshOptions& options,
+                       int rounds) {
     constexpr std::int64_t kCoarse = 4;  // times the vertices wanted: room to choose from
-    constexpr int kIsotropicRounds = 8, kEvenRounds = 20, kMendings = 4;
-
-    RemeshTarget target(surface);
-    Remesher remesher(target);
     if (options.edgeLengthMm) {
         target.setSizes(adaptiveSizes(target, remesher, *options.edgeLengthMm, options.neighbours));
         remesher.readSizes();
     } else {
         remesher.coarsen(kCoarse * options.vertices);
     }
-    makeIsotropic(remesher, options.vertices, kIsotropicRounds);
-    const std::int64_t vertices = options.vertices > 0
-                                      ? options.vertices
-                                      : std::max<std::int64_t>(12, remesher.verticesWanted());
+    makeIsotropic(remesher, options.vertices, rounds);
+    return options.vertices > 0 ? options.vertices
+                                : std::max<std::int64_t>(12, remesher.verticesWanted());
+}
 
+/// The number of vertices, and shapes as good as they get.
+TriangleMesh finish(Remesher& remesher, std::int64_t vertices, double fitMm) {
+    constexpr int kEvenRounds = 20;
+    reachVertexCount(remesher, vertices);
+    evenOut(remesher, kEvenRounds);
+    reachVertexCount(remesher, vertices);
+    settleShapes(remesher);
+    if (fitMm > 0) remesher.fitVertices(fitMm);
+    return remesher.mesh().toMesh();
+}
+
+}  // namespace
+
+Remeshed remeshForBem(const TriangleMesh& surface, const RemeshOptions& options) {
+    checkOptions(options);
+    checkSurface(surface);
+    // Where sheets cross it is mostly by chance: other rounds put vertices elsewhere. Shorter edges
+    // cost the rest of the surface, and come last.
+    constexpr std::array<int, 3> kIsotropicRounds{8, 10, 12};
+    constexpr int kMendings = 4;
+
+    RemeshTarget target(surface);
     Remeshed result;
-    for (int mending = 0;; ++mending) {
-        reachVertexCount(remesher, vertices);
-        evenOut(remesher, kEvenRounds);
-        reachVertexCount(remesher, vertices);
-        settleShapes(remesher);
-        if (options.fitMm > 0) remesher.fitVertices(options.fitMm);
-        result.mesh = remesher.mesh().toMesh();
-        const SelfIntersections crossings = findSelfIntersections(result.mesh);
+    SelfIntersections crossings;
+    std::optional<Remesher> remesher;
+    std::int64_t vertices = 0;
+    for (const int rounds : kIsotropicRounds) {
+        remesher.emplace(target);
+        vertices = startOver(target, *remesher, options, rounds);
+        result.mesh = finish(*remesher, vertices, options.fitMm);
+        crossings = findSelfIntersections(result.mesh);
         if (crossings.pairCount == 0) break;
-        if (mending == kMendings) {
-            result.findings.push_back({std::to_string(crossings.pairCount) +
-                                           " pairs of triangles cross at this number of vertices; "
-                                           "ask for more vertices or a smoother surface",
-                                       centreOf(result.mesh, crossings.pairs[0][0])});
-            break;
-        }
-        target.setSizes(shorterWhereCrossing(target, remesher, result.mesh, crossings));
-        remesher.readSizes();
-        makeIsotropic(remesher, vertices, kIsotropicRounds);
+    }
+    for (int n = 0; n < kMendings && crossings.pairCount > 0; ++n) {
+        target.setSizes(shorterWhereCrossing(target, *remesher, result.mesh, crossings));
+        remesher->readSizes();
+        makeIsotropic(*remesher, vertices, kIsotropicRounds.front());
+        result.mesh = finish(*remesher, vertices, options.fitMm);
+        crossings = findSelfIntersections(result.mesh);
+    }
+    if (crossings.pairCount > 0) {
+        result.findings.push_back({std::to_string(crossings.pairCount) +
+                                       " pairs of triangles cross at this number of vertices; ask "
+                                       "for more vertices or a smoother surface",
+                                   centreOf(result.mesh, crossings.pairs[0][0])});
     }
     if (std::ssize(result.mesh.points) != vertices) {
         result.findings.push_back({std::to_string(vertices) +

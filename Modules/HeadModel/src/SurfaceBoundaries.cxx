@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "BallTopology.h"
 #include "FinishBoundaries.h"
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
@@ -127,23 +128,28 @@ private:
     std::vector<std::vector<Crossing>> rows_;
 };
 
-/// The inside of a surface that may have holes, crossings, stray pieces, turned triangles.
-Mask insideOf(const TriangleMesh& surface, const ImageGeometry& grid) {
+/// The inside of a surface that may have holes, crossings, stray pieces, turned triangles. What is
+/// no ball then has tunnels: those that `closingMm` closes are filled, before any are cut.
+Mask insideOf(const TriangleMesh& surface, const ImageGeometry& grid, double closingMm) {
     Mask inside(static_cast<std::size_t>(grid.voxelCount()), 0), outside = inside;
     const bool isOriented = checkTopology(surface, {.maxExamplesPerDefect = 0}).isOriented();
     for (int axis = 0; axis < 3; ++axis)
         Rows(surface, grid, axis).vote(isOriented, inside, outside);
     for (std::size_t n = 0; n < inside.size(); ++n) inside[n] = inside[n] > outside[n] ? 1 : 0;
-    const Mask whole = closed(largestComponent(inside, grid.size), grid, kCrackMm);
-    return filled(whole, grid.size);
+    const Mask whole =
+        filled(closed(largestComponent(inside, grid.size), grid, kCrackMm), grid.size);
+    if (isBall(whole, grid.size)) return whole;
+    const Mask solid = filled(closed(whole, grid, closingMm), grid.size);
+    return isBall(solid, grid.size) ? solid : whole;
 }
 
 /// Parts of voxels, by distance from the surface itself where it is near the solid's.
-std::vector<float> partOf(const TriangleMesh& surface, const ImageGeometry& grid) {
+std::vector<float> partOf(const TriangleMesh& surface, const ImageGeometry& grid,
+                          double closingMm) {
     TriangleMesh outward = surface;
     outward.normals.clear();
     if (enclosedVolume(outward) < 0) flipOrientation(outward);
-    const Mask inside = insideOf(outward, grid);
+    const Mask inside = insideOf(outward, grid, closingMm);
     if (voxelsIn(inside) == 0) {
         throw InvalidInput("boundariesFromSurfaces: a surface encloses nothing");
     }
@@ -186,7 +192,7 @@ HeadBoundaries boundariesFromSurfaces(std::span<const TriangleMesh> surfaces,
         gridAround(surfaces, options.stepMm > 0 ? options.stepMm : kStepMm, marginMm(options));
     for (const TriangleMesh& surface : surfaces) {
         tell(options, "mend", static_cast<double>(raw.parts.size()) / kHeadSurfaceCount);
-        raw.parts.push_back(partOf(surface, raw.grid));
+        raw.parts.push_back(partOf(surface, raw.grid, options.closingMm));
     }
     return finished(std::move(raw), options);
 }

@@ -87,9 +87,33 @@ double skinLevelOf(const Head& head, const Mask& rough, const HeadLevels& levels
     return std::max(mean + 4 * sigma, mean + 0.25 * (levels.tissue - mean));
 }
 
+/// What NaN, and minus infinity, are taken for: air.
+double lowestFinite(const VolumeView& volume) {
+    const double lowest = valueRange(volume).minimum;
+    return std::isfinite(lowest) ? lowest : 0;
+}
+
+/// Single samples brighter or darker than anything in a head would move every threshold.
+void clipSpikes(std::vector<float>& values) {
+    constexpr double kSpikes = 0.0002;
+    std::vector<float> sorted = values;
+    const auto last = static_cast<double>(sorted.size() - 1);
+    const auto low = sorted.begin() + static_cast<std::ptrdiff_t>(kSpikes * last);
+    const auto high = sorted.begin() + static_cast<std::ptrdiff_t>((1 - kSpikes) * last);
+    std::nth_element(sorted.begin(), low, sorted.end());
+    const float least = *low;
+    std::nth_element(low, high, sorted.end());
+    const float most = *high;
+    for (float& value : values) value = std::clamp(value, least, most);
+}
+
 Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
-    FloatImage image = toFloat(t1, 0);
+    FloatImage image = toFloat(t1, static_cast<float>(lowestFinite(t1)));
+    clipSpikes(image.values);
     const auto [air, brightest] = std::minmax_element(image.values.begin(), image.values.end());
+    if (!std::isfinite(*brightest - *air)) {
+        throw InvalidInput("boundariesFromT1: many samples are infinite");
+    }
     if (!(*air < *brightest)) {
         throw InvalidInput("boundariesFromT1: all samples are equal; there is no head");
     }
@@ -122,16 +146,52 @@ Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
     return head;
 }
 
-/// What a brain can be: not the wrong size, not at the skin.
-bool isPlausibleBrain(const Mask& brain, const Head& head, const std::vector<float>& belowSkinMm) {
-    constexpr double kNearestMm = 8;  // scalp and skull are thicker together
-    const double cm3 = static_cast<double>(voxelsIn(brain)) * std::pow(stepMm(head.grid), 3) / 1000;
-    if (cm3 < 500 || cm3 > 2500) return false;
+double cm3Of(const Mask& mask, const ImageGeometry& grid) {
+    return static_cast<double>(voxelsIn(mask)) * std::pow(stepMm(grid), 3) / 1000;
+}
+
+/// How deep every voxel lies below the skin; the image's border is none.
+std::vector<float> belowSkinMm(const Head& head) {
+    Mask headAndBeyond = head.mask;
+    for (std::size_t n = 0; n < headAndBeyond.size(); ++n) {
+        if (head.faces[n] == 0) headAndBeyond[n] = 1;
+    }
+    return depthMm(headAndBeyond, head.grid);
+}
+
+/// The part of `brain` that lies nearer to the skin than `mm`, or outside of it.
+double partAtSkin(const Mask& brain, const std::vector<float>& belowSkin, double mm) {
     std::int64_t near = 0;
     for (std::size_t n = 0; n < brain.size(); ++n) {
-        if (brain[n] != 0 && belowSkinMm[n] < kNearestMm) ++near;
+        if (brain[n] != 0 && belowSkin[n] < mm) ++near;
     }
-    return near <= voxelsIn(brain) / 1000;
+    return static_cast<double>(near) / static_cast<double>(voxelsIn(brain));
+}
+
+constexpr double kMostBrainCm3 = 2500;
+
+/// What a brain can be: not the wrong size, not at the skin.
+bool isPlausibleBrain(const Mask& brain, const Head& head, const std::vector<float>& belowSkin) {
+    constexpr double kNearestMm = 8;  // scalp and skull are thicker together
+    const double cm3 = cm3Of(brain, head.grid);
+    return cm3 >= 500 && cm3 <= kMostBrainCm3 && partAtSkin(brain, belowSkin, kNearestMm) <= 0.001;
+}
+
+/// A mask of something else, or in another place. Looser than what is asked of a guess: brain
+/// extractions leave this and that at the rim.
+void requirePlausibleMask(const Mask& brain, const Head& head) {
+    constexpr double kLeastCm3 = 200, kNearestMm = 4, kMostAtSkin = 0.02;
+    const double cm3 = cm3Of(brain, head.grid);
+    if (!(cm3 >= kLeastCm3 && cm3 <= kMostBrainCm3)) {
+        throw InvalidInput("boundariesFromT1: the brain mask holds " + shortNumber(cm3) +
+                           " cm3, must be 200 to 2500 cm3; is it a mask of the brain?");
+    }
+    const double part = partAtSkin(brain, belowSkinMm(head), kNearestMm);
+    if (part > kMostAtSkin) {
+        throw InvalidInput("boundariesFromT1: " + shortNumber(100 * part) +
+                           " % of the brain mask lie outside the head or within 4 mm of its skin; "
+                           "is it of this head, in the same space?");
+    }
 }
 
 /// Without what hangs on by less than 16 mm: vessels, nerves, muscle below the skull's base.
@@ -153,11 +213,7 @@ Mask guessedBrain(const Head& head) {
         tissue[n] = level > 0.55 && level < 1.45 && depth[n] > 4 ? 1 : 0;
     }
     const Mask middle = ballAround(deepestVoxel(depth), head.grid, 20);
-    Mask headAndBeyond = head.mask;  // the image's border is no skin
-    for (std::size_t n = 0; n < headAndBeyond.size(); ++n) {
-        if (head.faces[n] == 0) headAndBeyond[n] = 1;
-    }
-    const std::vector<float> belowSkin = depthMm(headAndBeyond, head.grid);
+    const std::vector<float> belowSkin = belowSkinMm(head);
     constexpr double kFirstMm = 2, kStepMm = 0.5;
     for (int n = 0; n <= 12; ++n) {
         const double radius = kFirstMm + n * kStepMm;
@@ -226,10 +282,10 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<Volume
     tell(options, "brain", 0);
     const Mask brain =
         brainMask ? above(brainPart(*brainMask, head), kFractionIsovalue) : guessedBrain(head);
-    const double cm3 = static_cast<double>(voxelsIn(brain)) * std::pow(stepMm(head.grid), 3) / 1000;
+    if (brainMask) requirePlausibleMask(brain, head);
     raw.notes.push_back(
         (brainMask ? "brain mask: " : "brain guessed by thresholds, give a mask if it is wrong: ") +
-        shortNumber(cm3) + " cm3");
+        shortNumber(cm3Of(brain, head.grid)) + " cm3");
     raw.parts.push_back(innerSkullPart(brain, head, options));
     if (!options.innerSkullOnly) {
         tell(options, "skull", 0);
@@ -242,6 +298,13 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<Volume
                             " % of the rays to the scalp, median thickness " +
                             shortNumber(band.medianThicknessMm) + " mm; elsewhere " +
                             shortNumber(options.skullMm) + " mm");
+        constexpr double kUsuallySeen = 0.6;
+        if (band.seenFraction < kUsuallySeen) {
+            raw.warnings.push_back("the skull shows on only " +
+                                   shortNumber(100 * band.seenFraction) +
+                                   " % of the rays to the scalp: the brain or its mask may lie "
+                                   "wrong, or the image be too noisy; look at the result");
+        }
         raw.parts.push_back(std::move(band.outerSkull));
         raw.parts.push_back(skin);
         limitOuterSkull(raw, options);

@@ -43,6 +43,7 @@ public:
         if (values_.empty()) return spread_;
         spread_.mean = sum_ / static_cast<double>(values_.size());
         spread_.p1 = percentile(values_, 0.01);
+        spread_.p5 = percentile(values_, 0.05);
         spread_.median = percentile(values_, 0.5);
         spread_.p99 = percentile(values_, 0.99);
         return spread_;

@@ -1,13 +1,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "HeadPhantoms.h"
 #include "Support/Meshes.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
 #include "adaptiso/MeshQuality/Nesting.h"
+#include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso {
 namespace {
@@ -193,6 +196,20 @@ TEST(BoundariesFromLabels, RefuseWhatCantBe) {
     expectRefused([&] { boundariesFromLabels(view, numbered(), options); }, "maxSkullMm is 1 mm");
 }
 
+TEST(BoundariesFromLabels, RefuseTissuesInAnotherOrderThanTheyLie) {
+    const ImageGeometry geometry = centredGeometry({84, 84, 84});
+    const std::vector<std::uint8_t> labels = headLabels(smallHead(), geometry);
+    const auto inOrder = [&](std::int64_t brain, std::int64_t skull, std::int64_t scalp) {
+        boundariesFromLabels({labels.data(), geometry}, {{brain}, {skull}, {scalp}, false},
+                             quick());
+    };
+    EXPECT_NO_THROW(inOrder(1, 2, 3));
+    for (const auto& [brain, skull, scalp] :
+         {std::array{1, 3, 2}, {2, 1, 3}, {2, 3, 1}, {3, 1, 2}, {3, 2, 1}}) {
+        expectRefused([&] { inOrder(brain, skull, scalp); }, "named in the right order?");
+    }
+}
+
 TEST(TissuePreset, NamesWhatItKnows) {
     EXPECT_EQ(tissuePreset("charm").skull, (std::vector<std::int64_t>{4, 7, 8}));
     EXPECT_EQ(tissuePreset("headreco").brain, (std::vector<std::int64_t>{1, 2, 3}));
@@ -343,6 +360,62 @@ TEST(BoundariesFromT1, RefuseWhatIsNoHead) {
                   "lies outside the head's image");
 }
 
+TEST(BoundariesFromT1, RefuseAMaskThatIsNoBrainsOrLiesElsewhere) {
+    const LargeHead head;
+    const std::vector<float> t1 = headT1(head.shapes, 2, head.geometry);
+    const VolumeView view(t1.data(), head.geometry);
+    BoundaryOptions options;
+    options.stepMm = 3;
+    const auto tryMask = [&](const Shape& brain) {
+        std::vector<std::uint8_t> mask;
+        for (const float part : partInside(brain, head.geometry)) mask.push_back(part >= 0.5);
+        boundariesFromT1(view, VolumeView(mask.data(), head.geometry), options);
+    };
+    EXPECT_NO_THROW(tryMask(sphere({3, -4, 8}, 66)));
+    expectRefused([&] { tryMask(sphere({}, 200)); }, "must be 200 to 2500 cm3");
+    expectRefused([&] { tryMask(sphere({3, -4, 8}, 30)); }, "must be 200 to 2500 cm3");
+    // the skin lies at 81 mm: 30 mm to the right, a brain of 66 mm comes out of it
+    expectRefused([&] { tryMask(sphere({33, -4, 8}, 66)); }, "in the same space?");
+}
+
+TEST(BoundariesFromT1, TellWhenTheSkullIsHardlySeen) {
+    const LargeHead head;
+    // no dark band at all: the skull as bright as the brain
+    HeadShapes boneless = head.shapes;
+    boneless.outerSkull = boneless.innerSkull;
+    std::vector<float> t1 = headT1(boneless, 0, head.geometry);
+    for (float& value : t1) value = std::min(value, 100.0f);
+    std::vector<std::uint8_t> mask;
+    for (const float part : partInside(sphere({3, -4, 8}, 66), head.geometry)) {
+        mask.push_back(part >= 0.5);
+    }
+    BoundaryOptions options;
+    options.stepMm = 3;
+    const HeadBoundaries found = boundariesFromT1({t1.data(), head.geometry},
+                                                  VolumeView(mask.data(), head.geometry), options);
+    ASSERT_EQ(found.warnings.size(), 1u);
+    EXPECT_NE(found.warnings[0].find("skull shows on only"), std::string::npos);
+}
+
+TEST(BoundariesFromT1, SinglePointsThatAreNoTissueChangeLittle) {
+    const LargeHead head;
+    std::vector<float> t1 = headT1(head.shapes, 2, head.geometry);
+    BoundaryOptions options;
+    options.stepMm = 3;
+    options.innerSkullOnly = true;
+    const auto innerSkull = [&] {
+        return boundariesFromT1({t1.data(), head.geometry}, std::nullopt, options).solids[0];
+    };
+    const SurfaceError before = surfaceError(innerSkull(), head.shapes.innerSkull);
+    t1[5] = std::numeric_limits<float>::infinity();
+    t1[77] = -1e30f;
+    t1[t1.size() / 2] = 1e30f;  // within the brain
+    for (std::size_t n = 90; n < 9000; n += 7) t1[n] = std::numeric_limits<float>::quiet_NaN();
+    const SurfaceError after = surfaceError(innerSkull(), head.shapes.innerSkull);
+    EXPECT_NEAR(after.meanMm, before.meanMm, 0.1);  // a spike is filled as a hole would be
+    EXPECT_NEAR(after.largestMm, before.largestMm, 0.5);
+}
+
 TEST(BoundariesFromCt, FindSkinBoneAndCavityOfAPhantom) {
     const LargeHead head;
     HeadShapes shapes = head.shapes;
@@ -406,6 +479,20 @@ TEST(BoundariesFromSurfaces, MendHolesCrossingsTurnedTrianglesAndStrayPieces) {
     const BoundingBox box = boundingBox(surfaceOf(united.solids[0]));
     EXPECT_NEAR(box.minimum.x, -34, 0.3);
     EXPECT_NEAR(box.maximum.x, 34, 0.3);
+}
+
+TEST(BoundariesFromSurfaces, FillATunnelThatTheClosingCloses) {
+    // a hole of 4 mm through the whole ball, genus 1
+    const ImageGeometry geometry = centredGeometry({60, 60, 60});
+    const Shape tunnel = box({0, 0, 0}, {2, 2, 40});
+    Shape drilled = sphere({}, 25);
+    drilled.depthMm = [=](const Vec3& p) { return std::min(25 - norm(p), -tunnel.depthMm(p)); };
+    const TriangleMesh surface = surfaceOf({geometry, partInside(drilled, geometry)});
+    ASSERT_EQ(*checkTopology(surface).genus(), 1);
+    BoundaryOptions options = quick();
+    options.innerSkullOnly = true;
+    const HeadBoundaries found = boundariesFromSurfaces(std::span(&surface, 1), options);
+    EXPECT_LE(surfaceError(found.solids[0], sphere({}, 25)).largestMm, 1.0);  // a voxel
 }
 
 TEST(BoundariesFromSurfaces, RefuseOtherNumbersAndUnits) {

@@ -51,6 +51,7 @@ struct BoundaryOptions {
 struct HeadBoundaries {
     std::vector<FractionField> solids;  ///< inner skull, or all three by HeadSurface
     std::vector<std::string> notes;     ///< what was guessed or changed, one line each
+    std::vector<std::string> warnings;  ///< what makes the result doubtful
 };
 
 /// From a T1-weighted image, alone or with a brain mask (brain > 0.5 of the mask's range or, of a
@@ -66,7 +67,8 @@ struct HeadBoundaries {
 /// scalp.
 ///
 /// \param brainMask  on any grid in the same space
-/// \throws InvalidInput  no head, or no brain, is found; the mask is empty or outside the image
+/// \throws InvalidInput  no head, or no brain, is found; the mask is empty, outside the image, not
+///                       of a brain's size (200 to 2500 cm3), or not below the skin of this head
 HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<VolumeView>& brainMask,
                                 const BoundaryOptions& options = {});
 
@@ -86,14 +88,16 @@ TissueLabels tissuePreset(std::string_view name);
 
 /// From a label map. Labels become parts of voxels by smoothing and interpolating each boundary's
 /// own indicator, so that surfaces are not stairs.
-/// \throws InvalidInput  a tissue has no label in the image; labels listed for two tissues
+/// \throws InvalidInput  a tissue has no label in the image; labels listed for two tissues; tissues
+///                       that don't lie round each other in their order
 HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels& tissues,
                                     const BoundaryOptions& options = {});
 
 /// From tissue probabilities in SPM's order: c1 grey, c2 white, c3 CSF, c4 skull, c5 scalp (c6 air
 /// is not needed). All on one grid; values are parts of a voxel (0 to 1; integers are scaled by
 /// the largest value of all maps).
-/// \throws InvalidInput  fewer than five maps (three for innerSkullOnly), grids that differ
+/// \throws InvalidInput  fewer than five maps (three for innerSkullOnly), grids that differ, or
+///                       tissues as above
 HeadBoundaries boundariesFromProbabilities(std::span<const VolumeView> maps,
                                            const BoundaryOptions& options = {});
 

@@ -9,7 +9,7 @@ namespace adaptiso {
 /// How a quantity is spread over a mesh. Percentiles are by nearest rank: the smallest value that
 /// at least that part does not exceed.
 struct Spread {
-    double minimum = 0, p1 = 0, median = 0, mean = 0, p99 = 0, maximum = 0;
+    double minimum = 0, p1 = 0, p5 = 0, median = 0, mean = 0, p99 = 0, maximum = 0;
     std::int64_t triangleOfMinimum = -1;  ///< the first of several; -1: nothing was measured
     std::int64_t triangleOfMaximum = -1;
 };
