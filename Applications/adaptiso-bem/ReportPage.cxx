@@ -50,7 +50,15 @@ void tellOptions(const BemRun& run, Report& report) {
     const BoundaryOptions& head = options.boundaries;
     std::string triangles = run.source == "surfaces" ? "as the surfaces came, where they could stay"
                                                      : "2,562 vertices a surface (default)";
-    if (options.vertices) triangles = formatCount(*options.vertices) + " vertices a surface";
+    if (options.vertices.size() == 1) {
+        triangles = formatCount(options.vertices.front()) + " vertices a surface";
+    } else if (!options.vertices.empty()) {
+        triangles.clear();
+        for (const std::int64_t count : options.vertices) {
+            triangles += (triangles.empty() ? "" : ", ") + formatCount(count);
+        }
+        triangles += " vertices";
+    }
     if (options.edgeLengthMm) {
         triangles = "edges of " + formatNumber(options.edgeLengthMm->minimumMm) + " to " +
                     formatNumber(options.edgeLengthMm->maximumMm) + " mm";
