@@ -250,7 +250,8 @@ AdaptiveCase adaptiveCase(std::uint64_t seed, int maximumSize) {
     const bool isBytes = dice.below(2) == 0;
     const HardVolume hard = hardVolume(seed, maximumSize);
     return {isBytes ? withGeometry(hard.volume, geometry) : drawFloats(dice, geometry),
-            isBytes ? hard.isovalue : 0.0, 2 << dice.below(4), Border::Closed,
+            isBytes ? hard.isovalue : 0.0, 2 << dice.below(4),
+            dice.below(2) == 0 ? Border::Closed : Border::Open,
             drawOptions(dice, narrowestSpacingMm(geometry))};
 }
 

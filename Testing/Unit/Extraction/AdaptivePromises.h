@@ -23,7 +23,8 @@ struct AdaptiveCase {
 /// A case made to break promises, 3 to `maximumSize` samples a side: bytes of few values (noise,
 /// stairs with flaws, single voxels), floats that equal the isovalue, lie a rounding beside it, are
 /// NaN or immense, and smooth waves; in voxels of 1 mm, slabs, sheared and mirrored grids, microns
-/// and metres, far from the origin; with a bound, a count, a reduction, a least angle, or several.
+/// and metres, far from the origin; closed and open; with a bound, a count, a reduction, a least
+/// angle, or several.
 AdaptiveCase adaptiveCase(std::uint64_t seed, int maximumSize);
 
 /// "seed 7: 5 x 3 x 8 float32, isovalue 0, N = 4, closed, maxErrorMm 0.1": enough to repeat it.

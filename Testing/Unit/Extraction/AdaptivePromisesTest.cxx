@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "AdaptivePromises.h"
+#include "Support/AnalyticVolumes.h"
+
+namespace adaptiso::testing {
+
+TEST(AdaptivePromises, HoldOnSmallVolumes) {
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        const AdaptiveCase adaptive = adaptiveCase(seed, 8);
+        EXPECT_TRUE(keepsAdaptivePromises(adaptive)) << describe(seed, adaptive);
+    }
+}
+
+namespace {
+
+/// With a bound of `boundVoxels`, and with a count alone.
+void expectPromises(const AnalyticVolume& analytic, double boundVoxels) {
+    const Vec3 spacing = analytic.volume.view().geometry().spacingMm();
+    for (const Border border : {Border::Closed, Border::Open}) {
+        AdaptiveCase adaptive{analytic.volume, analytic.isovalue, 4, border, {}};
+        adaptive.options.maxErrorMm = boundVoxels * std::min({spacing.x, spacing.y, spacing.z});
+        EXPECT_TRUE(keepsAdaptivePromises(adaptive)) << describe(0, adaptive);
+        adaptive.options = {};
+        adaptive.options.maxTriangles = 100;
+        EXPECT_TRUE(keepsAdaptivePromises(adaptive)) << describe(0, adaptive);
+    }
+}
+
+void expectPromisesOfShapes(const ImageGeometry& geometry) {
+    const Vec3 spacing = geometry.spacingMm();
+    const double radius = 5 * std::min({spacing.x, spacing.y, spacing.z});
+    for (const double bound : {0.03, 0.25, 1.0}) {
+        {
+            SCOPED_TRACE("sphere");
+            expectPromises(sampled<float>(sphere({}, radius), geometry), bound);
+        }
+        {
+            SCOPED_TRACE("shell");
+            expectPromises(sampled<std::uint8_t>(shell({}, 0.5 * radius, radius), geometry), bound);
+        }
+        {
+            SCOPED_TRACE("torus");
+            expectPromises(sampled<float>(torus({}, radius, 0.4 * radius), geometry), bound);
+        }
+        {
+            SCOPED_TRACE("box");
+            const Vec3 half{radius, 0.7 * radius, 0.8 * radius};
+            expectPromises(sampled<std::int16_t>(box({}, half), geometry), bound);
+        }
+        {
+            SCOPED_TRACE("half space");
+            expectPromises(sampled<float>(halfSpace({}, {1, 2, 3}), geometry), bound);
+        }
+    }
+}
+
+}  // namespace
+
+TEST(AdaptivePromises, HoldOnShapesInAStraightGrid) {
+    expectPromisesOfShapes(centredGeometry({14, 15, 16}));
+}
+
+TEST(AdaptivePromises, HoldOnShapesInAnObliqueGrid) {
+    expectPromisesOfShapes(obliqueGeometry({14, 13, 12}, {0.7, 0.9, 1.4}));
+}
+
+TEST(AdaptivePromises, HoldOnShapesInAShearedGrid) {
+    expectPromisesOfShapes(shearedGeometry({14, 13, 12}, {1, 1, 2}));
+}
+
+TEST(AdaptivePromises, HoldOnShapesInAMirroredGrid) {
+    expectPromisesOfShapes(mirroredGeometry({14, 16, 12}, {1, 0.5, 1}));
+}
+
+}  // namespace adaptiso::testing
