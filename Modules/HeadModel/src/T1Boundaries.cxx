@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -87,16 +89,14 @@ double skinLevelOf(const Head& head, const Mask& rough, const HeadLevels& levels
     return std::max(mean + 4 * sigma, mean + 0.25 * (levels.tissue - mean));
 }
 
-/// What NaN, and minus infinity, are taken for: air.
-double lowestFinite(const VolumeView& volume) {
-    const double lowest = valueRange(volume).minimum;
-    return std::isfinite(lowest) ? lowest : 0;
-}
-
-/// Single samples brighter or darker than anything in a head would move every threshold.
+/// Single samples brighter or darker than anything in a head would move every threshold. NaN
+/// becomes the darkest that is left: air.
 void clipSpikes(std::vector<float>& values) {
     constexpr double kSpikes = 0.0002;
-    std::vector<float> sorted = values;
+    std::vector<float> sorted;
+    std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),
+                 [](float value) { return !std::isnan(value); });
+    if (sorted.empty()) throw InvalidInput("boundariesFromT1: all samples are NaN");
     const auto last = static_cast<double>(sorted.size() - 1);
     const auto low = sorted.begin() + static_cast<std::ptrdiff_t>(kSpikes * last);
     const auto high = sorted.begin() + static_cast<std::ptrdiff_t>((1 - kSpikes) * last);
@@ -104,11 +104,11 @@ void clipSpikes(std::vector<float>& values) {
     const float least = *low;
     std::nth_element(low, high, sorted.end());
     const float most = *high;
-    for (float& value : values) value = std::clamp(value, least, most);
+    for (float& value : values) value = std::isnan(value) ? least : std::clamp(value, least, most);
 }
 
 Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
-    FloatImage image = toFloat(t1, static_cast<float>(lowestFinite(t1)));
+    FloatImage image = toFloat(t1, std::numeric_limits<float>::quiet_NaN());
     clipSpikes(image.values);
     const auto [air, brightest] = std::minmax_element(image.values.begin(), image.values.end());
     if (!std::isfinite(*brightest - *air)) {
