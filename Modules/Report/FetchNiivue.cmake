@@ -4,7 +4,7 @@
 # written without a viewer, and say so. -DADAPTISO_NIIVUE=niivue-niivue-0.69.0.tgz takes a package
 # that is there already ("npm pack @niivue/niivue@0.69.0" makes one), for machines without npm or
 # network. Nothing of the package is run here: npm pack fetches and does no more.
-set(ADAPTISO_NIIVUE "" CACHE FILEPATH "niivue's npm package (.tgz); empty: npm fetches it")
+set(ADAPTISO_NIIVUE "" CACHE FILEPATH "niivue's npm package (.tgz); empty: it is fetched")
 set(niivueVersion 0.69.0)
 # the package's "integrity" in the registry, as hexadecimal digits
 set(niivueSha512 60c8d0bc9803d56d9bec3ba8c64c250b85716eb80878f449e6ac90cd72b18b6bf6301560dbce4ffc2210ca0e3aa030c60c871a3656ddf8c86d3bf79d31b5c990)
@@ -22,10 +22,17 @@ elseif(NOT EXISTS ${niivuePackage})
         execute_process(COMMAND ${ADAPTISO_NPM} pack --silent @niivue/niivue@${niivueVersion}
                         WORKING_DIRECTORY ${niivueFolder} TIMEOUT 120
                         OUTPUT_QUIET ERROR_QUIET)
+    else()
+        file(DOWNLOAD https://registry.npmjs.org/@niivue/niivue/-/niivue-${niivueVersion}.tgz
+             ${niivuePackage} TIMEOUT 120 STATUS downloaded)
+        list(GET downloaded 0 error)
+        if(error)
+            file(REMOVE ${niivuePackage})
+        endif()
     endif()
 endif()
 if(NOT EXISTS ${niivuePackage})
-    message(WARNING "niivue ${niivueVersion} is not to be had (no npm, or its registry is not "
+    message(WARNING "niivue ${niivueVersion} is not to be had (npm's registry is not "
                     "reached): reports will have no viewer. -DADAPTISO_NIIVUE=<its .tgz> helps.")
     return()
 endif()
