@@ -34,7 +34,8 @@ std::vector<std::string_view> modelFileNames() {
     return {"inner_skull.surf", "outer_skull.surf", "outer_skin.surf", "inner_skull.tri",
             "outer_skull.tri",  "outer_skin.tri",   "inner_skull.gii", "outer_skull.gii",
             "outer_skin.gii",   "inner_skull.vtp",  "outer_skull.vtp", "outer_skin.vtp",
-            "model.geom",       "model.cond",       "report.json",     "README.md"};
+            "model.geom",       "model.cond",       "report.json",     "spots.png",
+            "README.md"};
 }
 
 std::vector<fs::path> subjectPaths(const BemOptions& options) {

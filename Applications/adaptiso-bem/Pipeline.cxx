@@ -19,6 +19,7 @@
 #include "ReportPage.h"
 #include "SurfaceSteps.h"
 #include "TextReport.h"
+#include "adaptiso/Report/Pictures.h"
 
 namespace adaptiso {
 namespace {
@@ -150,7 +151,17 @@ void fillFolder(const std::vector<TriangleMesh>& surfaces, BemRun& run,
     folder.emplace(options.output, replaceable(options));
 }
 
-/// Writes the folder (the report alone when there is no model) and all else, or nothing.
+/// Puts a picture of the places where a model failed into its folder, where such places are known.
+void drawSpots(const BemRun& run, const std::vector<TriangleMesh>& shown, AtomicFolder& folder) {
+    const Report page = makeReport(run, shown);
+    if (page.spots.empty()) return;
+    for (const Picture& picture : drawPictures(page)) {
+        if (picture.name == "spots.png") folder.writeText(picture.name, picture.png);
+    }
+}
+
+/// Writes the folder (the report and a picture alone when there is no model) and all else, or
+/// nothing.
 /// \param shown  what the report shows
 std::string write(const std::vector<TriangleMesh>& surfaces, const std::vector<TriangleMesh>& shown,
                   BemRun& run) {
@@ -160,7 +171,11 @@ std::string write(const std::vector<TriangleMesh>& surfaces, const std::vector<T
     std::optional<AtomicFolder> folder;
     if (!options.isDryRun) {
         fillFolder(surfaces, run, folder);
-        if (run.hasModel()) outputs = writeSubject(surfaces, run);
+        if (run.hasModel()) {
+            outputs = writeSubject(surfaces, run);
+        } else {
+            run.timer.time("report", [&] { drawSpots(run, shown, *folder); });
+        }
     }
     if (options.report.isWanted()) {
         Report page = makeReport(run, shown);
