@@ -116,10 +116,10 @@ def draw_pareto(volume, path):
         panel.grid(True, which="major", alpha=0.3)
     axes[1][0].set_xlabel("triangles")
     axes[1][1].set_xlabel("seconds")
-    axes[0][0].legend(fontsize=7)
     figure.suptitle(f"{volume['name']} at {volume['isovalue']}: "
                     f"{volume['mcTriangles']:,} triangles at full resolution")
-    figure.tight_layout()
+    figure.legend(*axes[0][0].get_legend_handles_labels(), loc="lower center", ncol=4, fontsize=8)
+    figure.tight_layout(rect=(0, 0.06, 1, 1))
     figure.savefig(path, dpi=75)
     plt.close(figure)
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Measures the adaptive method and its peers; every run is a process of its own.
 
   runPeers.py compare   all methods at one count of triangles, side by side: compare.json
