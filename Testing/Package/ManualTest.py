@@ -94,7 +94,7 @@ class BashCompletion(ApplicationTest):
         self.path("head.nii").touch()
         self.path("scans").mkdir()
         self.assertEqual(self.complete("adaptiso-mesh", "--method", ""),
-                         ["boxes", "adaptive", "dmc", "asc", "mc"])
+                         ["adaptive", "boxes", "dmc", "asc", "mc"])
         self.assertEqual(self.complete("adaptiso-mesh", "--coordinates", "=", "t"), ["tkras"])
         self.assertEqual(self.complete("adaptiso-mesh", "--iso", "a"), ["auto"])
         self.assertEqual(self.complete("adaptiso-mesh", "he"), ["head.nii"])

@@ -20,9 +20,9 @@ struct Picture {
 ///   contours-axial, -coronal, -sagittal  where the surfaces cut slices of the image, as MNE's
 ///                                        plot_bem shows them
 ///   spots                                three slices through each of the first spots
-///   surface-<n>                          each surface from six sides, what faces away from the
+///   surface-N                            each surface from six sides, what faces away from the
 ///                                        viewer in red; values in colour, with a colour bar
-///   triangles, histogram-<n>             sizes and smallest angles; the report's own histograms
+///   triangles, histogram-N               sizes and smallest angles; the report's own histograms
 ///   times                                seconds by stage
 ///
 /// Everything is drawn in memory: no display, no OpenGL. Left is left of the picture, and every
