@@ -56,8 +56,9 @@ class Search(ApplicationTest):
                              (TEMPLATES / "ch2bet.nii.gz", (125,))):
             isovalues = [argument for v in values for argument in ("--iso", v)]
             for size in (2, 4, 8, 16):
-                report = self.report(file, *isovalues, "--no-check-crossings", "--block-size",
-                                     size, "-o", "{iso}.ply")
+                report = self.report(file, *isovalues, "--method", "boxes",
+                                     "--no-check-crossings", "--block-size", size, "-o",
+                                     "{iso}.ply")
                 for surface in report["surfaces"]:
                     counts = surface["blocks"]
                     # the bound of issue 3
