@@ -8,7 +8,7 @@ namespace adaptiso::detail {
 namespace {
 
 /// Side of the cubes in which samples are looked up, and how far around a star, in voxels.
-constexpr double kCube = 2, kReach = 1;
+constexpr double kCube = 1, kReach = 0.5;
 
 /// Room that proofs leave, as a part of the distance between sample planes.
 constexpr double kGap = 1e-4;
@@ -69,13 +69,101 @@ Corners CrossingGuard::cornersOf(std::uint32_t triangle) const {
     return {patch_.points[t[0]], patch_.points[t[1]], patch_.points[t[2]]};
 }
 
+CrossingGuard::Box CrossingGuard::rounded(const CornerBox& box) {
+    constexpr float kMore = 2 * std::numeric_limits<float>::epsilon(),
+                    kLeast = std::numeric_limits<float>::min();
+    Box result;
+    for (int a = 0; a < 3; ++a) {
+        const auto low = static_cast<float>(box.low[a]), high = static_cast<float>(box.high[a]);
+        result.low[a] = low - (kMore * std::abs(low) + kLeast);
+        result.high[a] = high + (kMore * std::abs(high) + kLeast);
+    }
+    return result;
+}
+
+void CrossingGuard::buildBoxes() {
+    box_.resize(patch_.triangles.size());
+    for (std::uint32_t t = 0; t < box_.size(); ++t) {
+        if (patch_.triangles[t][0] != Patch::kGone) box_[t] = rounded(boxOf(cornersOf(t)));
+    }
+}
+
+void CrossingGuard::commit(const ChangedStar& changed) {
+    if (box_.empty()) return;
+    const Star& star = changed.star;
+    for (int i = 0; i < star.count; ++i) {
+        box_[star.triangle[i]] = rounded(boxOf({changed.vertex, patch_.points[star.ring[i]],
+                                                patch_.points[star.ring[(i + 1) % star.count]]}));
+    }
+}
+
 bool CrossingGuard::crossesNothing(const ChangedStar& changed) {
     if (!changed.isGraph && !wedgesAreClear(changed)) return false;
     collectNear(changed);
+    const int n = changed.star.count;
     for (const std::uint32_t other : near_) {
-        const CornerBox box = boxOf(cornersOf(other));
-        for (int i = 0; i < changed.star.count; ++i) {
-            if (box.overlaps(wedgeBox_[i]) && !isClear(changed, i, other)) return false;
+        const Box& box = box_[other];
+        std::array<std::uint8_t, Star::kMost> overlaps;
+        for (int i = 0; i < n; ++i) {
+            overlaps[i] = static_cast<std::uint8_t>(
+                (wedgeLow_[0][i] <= box.high[0]) & (box.low[0] <= wedgeHigh_[0][i]) &
+                (wedgeLow_[1][i] <= box.high[1]) & (box.low[1] <= wedgeHigh_[1][i]) &
+                (wedgeLow_[2][i] <= box.high[2]) & (box.low[2] <= wedgeHigh_[2][i]));
+        }
+        for (int i = 0; i < n; ++i) {
+            if (overlaps[i] != 0 && !isClear(changed, i, other)) return false;
+        }
+    }
+    return true;
+}
+
+/// The triangles around a vertex of the ring share no more than it and their edges: seen along one
+/// direction all are upright and go round the vertex once.
+/// \pre the star's old triangles carry the stamp, and no others
+bool CrossingGuard::fanIsClear(const ChangedStar& changed, int at) const {
+    constexpr int kMost = 24;
+    constexpr double kLeastCosine = 0.02;
+    const Star& star = changed.star;
+    const std::uint32_t r = star.ring[at];
+    if (!topology_.isMovable(r)) return false;
+    const Vec3 centre = patch_.points[r];
+    struct Sector {
+        Vec3 from, to, area2;
+    };
+    std::array<Sector, kMost> sectors;
+    int count = 0;
+    Vec3 axis;
+    const auto add = [&](const Vec3& from, const Vec3& to) {
+        const Vec3 area2 = cross(from, to);
+        sectors[count++] = {from, to, area2};
+        axis += area2;
+    };
+    const int before = (at + star.count - 1) % star.count, after = (at + 1) % star.count;
+    const Vec3 toVertex = changed.vertex - centre;
+    add(patch_.points[star.ring[after]] - centre, toVertex);
+    add(toVertex, patch_.points[star.ring[before]] - centre);
+    const std::uint32_t begin = topology_.leaving(r);
+    std::uint32_t h = begin;
+    do {
+        const std::uint32_t inwards = PatchTopology::previous(h);
+        if (stamp_[h / 3] != now_) {
+            if (count == kMost) return false;
+            add(patch_.points[topology_.to(h)] - centre,
+                patch_.points[topology_.from(inwards)] - centre);
+        }
+        h = topology_.twin(inwards);
+    } while (h != begin);
+    const double least = kLeastCosine * norm(axis);
+    for (int i = 0; i < count; ++i) {
+        const Sector& s = sectors[i];
+        const double upright = dot(s.area2, axis);
+        if (!(upright > 0 && upright * upright > least * least * squaredNorm(s.area2))) {
+            return false;
+        }
+        // a second way round would pass the spoke again
+        if (i >= 2 && dot(cross(s.from, toVertex), axis) >= 0 &&
+            dot(cross(toVertex, s.to), axis) >= 0) {
+            return false;
         }
     }
     return true;
@@ -115,6 +203,9 @@ bool CrossingGuard::isClear(const ChangedStar& changed, int wedge, std::uint32_t
         if (o[c] == r) atR = c;
         if (o[c] == s) atS = c;
     }
+    const bool isInFan =
+        (atR >= 0 && fanIsClear_[wedge]) || (atS >= 0 && fanIsClear_[(wedge + 1) % star.count]);
+    if (isInFan) return true;
     if (atR >= 0 && atS >= 0) {
         return touchAtEdgeOnly({pr, ps, p}, {ps, pr, corner(3 - atR - atS)});
     }
@@ -128,21 +219,31 @@ bool CrossingGuard::isClear(const ChangedStar& changed, int wedge, std::uint32_t
 }
 
 void CrossingGuard::collectNear(const ChangedStar& changed) {
-    if (grid_.begin.empty()) buildGrid();
+    if (grid_.begin.empty()) {
+        buildGrid();
+        buildBoxes();
+    }
     const Star& star = changed.star;
     ++now_;
     near_.clear();
-    starBox_ = {changed.vertex, changed.vertex};
+    CornerBox whole{changed.vertex, changed.vertex};
     for (int i = 0; i < star.count; ++i) {
         const Vec3 &r = patch_.points[star.ring[i]],
                    &s = patch_.points[star.ring[(i + 1) % star.count]];
-        wedgeBox_[i] = boxOf({changed.vertex, r, s});
-        wedgeBox_[i].widen(gapMm_);
-        starBox_.add(r);
+        CornerBox wedge = boxOf({changed.vertex, r, s});
+        wedge.widen(gapMm_);
+        const Box box = rounded(wedge);
+        for (int a = 0; a < 3; ++a) {
+            wedgeLow_[a][i] = box.low[a];
+            wedgeHigh_[a][i] = box.high[a];
+        }
+        whole.add(r);
         stamp_[star.triangle[i]] = now_;
     }
     for (int i = 0; i < star.removedCount; ++i) stamp_[star.removed[i]] = now_;
-    starBox_.widen(gapMm_);
+    whole.widen(gapMm_);
+    starBox_ = rounded(whole);
+    for (int i = 0; i < star.count; ++i) fanIsClear_[i] = fanIsClear(changed, i);
     collectAroundRing(star);
     collectFromGrid(changed);
 }
@@ -191,7 +292,7 @@ void CrossingGuard::collectFromGrid(const ChangedStar& changed) {
 void CrossingGuard::addNear(std::uint32_t triangle) {
     if (stamp_[triangle] == now_) return;
     stamp_[triangle] = now_;
-    if (boxOf(cornersOf(triangle)).overlaps(starBox_)) near_.push_back(triangle);
+    if (box_[triangle].overlaps(starBox_)) near_.push_back(triangle);
 }
 
 }  // namespace adaptiso::detail

@@ -75,9 +75,10 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
         queue_.pop();
         if (isStale(best) || !topology_.starOfEdge(best.halfEdge, changed_.star)) continue;
         const Vec3 place = bestPlace(best.a, best.b).point;
-        if (!accepts(place)) continue;
+        if (!staysNear(place) || !crossesNothing()) continue;
         topology_.collapse(best.halfEdge, changed_.star);
         errors_.commit(changed_);
+        guard_.commit(changed_);
         markChanged();
         setState(best.a, Patch::State::Open);
         patch_.points[best.a] = place;
@@ -96,11 +97,16 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
     queue_ = {};
 }
 
-bool PatchSimplifier::accepts(const Vec3& p) {
+/// With its vertex at p the star has the shape asked for and lies near its samples.
+bool PatchSimplifier::staysNear(const Vec3& p) {
     changed_.vertex = p;
     return isInBox(p) && shapeStar(patch_, limits_.shape, changed_) &&
-           errors_.assign(changed_, limits_.maxDistanceMm) &&
-           (!guard_.needsProof(changed_, errors_.isCrowded()) || guard_.crossesNothing(changed_));
+           errors_.assign(changed_, limits_.maxDistanceMm);
+}
+
+/// \pre staysNear() was true
+bool PatchSimplifier::crossesNothing() {
+    return !guard_.needsProof(changed_, errors_.isCrowded()) || guard_.crossesNothing(changed_);
 }
 
 bool PatchSimplifier::isInBox(const Vec3& p) const {
@@ -123,10 +129,12 @@ void PatchSimplifier::fitVertices() {
         const Vec3 place = fittedPlace(v);
         const Quadric& q = patch_.quadrics[v];
         const double most = q.weight() * limits_.maxDistanceMm * limits_.maxDistanceMm;
-        if (!(q.at(place) <= most) || !accepts(place) || !(errors_.sumOfSquares() < before)) {
+        if (!(q.at(place) <= most) || !staysNear(place) || !(errors_.sumOfSquares() < before) ||
+            !crossesNothing()) {
             continue;
         }
         errors_.commit(changed_);
+        guard_.commit(changed_);
         markChanged();
         setState(v, Patch::State::Open);
         patch_.points[v] = place;

@@ -56,7 +56,8 @@ private:
     /// \param leastCost  of the collapse; it is not proposed below
     void propose(std::uint32_t halfEdge, double leastCost);
     bool isStale(const Candidate& candidate) const;
-    bool accepts(const Vec3& p);
+    bool staysNear(const Vec3& p);
+    bool crossesNothing();
     bool isInBox(const Vec3& p) const;
     Vec3 fittedPlace(std::uint32_t v) const;
 
