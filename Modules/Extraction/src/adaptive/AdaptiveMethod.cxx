@@ -5,9 +5,10 @@
 #include <limits>
 
 #include "../MeshRepair.h"
+#include "BrickRound.h"
 #include "CrossingProof.h"
 #include "ErrorBound.h"
-#include "SimplifiedSurface.h"
+#include "PatchRound.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::detail {
@@ -78,7 +79,9 @@ public:
         }
         for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
             const std::int64_t before = surface.triangleCount();
-            cost *= before > 2 * target ? 4 : 2;
+            cost *= before > 2 * target                                                 ? 16
+                    : static_cast<double>(before) > kNear * static_cast<double>(target) ? 4
+                                                                                        : 2;
             if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
             roundTowards(surface, target, cost);
             if (cost > kLastCost) idle = surface.triangleCount() == before ? idle + 1 : 0;
@@ -92,6 +95,8 @@ private:
     static constexpr double kFirstCost = 1e-3, kLastCost = 10;
     /// A round that leaves more than this part of the triangles was hardly worth it.
     static constexpr double kWorthwhile = 0.99;
+    /// A count up to this part of the wanted one is reached by small steps.
+    static constexpr double kNear = 1.4;
 
     /// Cuts in turn, so that what straddles one cut lies within the next.
     PatchCut nextCut() {
@@ -104,20 +109,17 @@ private:
     void roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
         const PatchCut cut = nextCut();
         const std::int64_t wanted = (surface.triangleCount() - target + 1) / 2;
-        const auto points = surface.points;
-        const auto quadrics = surface.quadrics;
-        const auto triangles = surface.triangles;
-        const auto stands = surface.sampleTriangle;
+        const SurfaceState before = surface;
         CollapseCosts costs;
         limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
         simplifyPatches(surface, cut, frame_, {limits_}, &costs);
         if (surface.triangleCount() >= target) return;
-        surface.points = points;
-        surface.quadrics = quadrics;
-        surface.triangles = triangles;
-        surface.sampleTriangle = stands;
+        surface.state() = before;
         limits_.maxCost = costLimitFor(costs, wanted);
-        simplifyPatches(surface, cut, frame_, {limits_});
+        PatchWork work{limits_};
+        work.fits = true;
+        simplifyPatches(surface, cut, frame_, work);
+        isFitted_ = true;
         // what is left are collapses of one cost
         if (surface.triangleCount() > target) {
             limits_.maxCost = cost * costUnit_;
@@ -127,11 +129,12 @@ private:
         }
     }
 
+    /// Twice, so that what straddles the cut has its turn as well.
     void fit(SimplifiedSurface& surface) {
         PatchWork work{limits_};
         work.collapses = false;
         work.fits = true;
-        for (int i = 0; i < 2; ++i) {
+        for (int i = isFitted_ ? 1 : 0; i < 2; ++i) {
             simplifyPatches(surface, nextCut(), frame_, work);
         }
     }
@@ -143,6 +146,7 @@ private:
     PatchLimits limits_;
     double costUnit_;
     int rounds_ = 0;
+    bool isFitted_ = false;  ///< by the last round
 };
 
 TriangleMesh toMesh(const SimplifiedSurface& surface, const ImageGeometry& geometry,

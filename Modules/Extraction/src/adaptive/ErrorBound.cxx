@@ -20,10 +20,9 @@ double largestSampleDistance(const SimplifiedSurface& surface, const SurfaceLook
     std::vector<double> largest((count + kPiece - 1) / kPiece, 0);
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t s = begin; s < end; ++s) {
-            const auto& p = surface.samples[s];
             largest[begin / kPiece] =
                 std::max(largest[begin / kPiece],
-                         squaredDistanceToTriangle({p[0], p[1], p[2]},
+                         squaredDistanceToTriangle(surface.samples[s].point(),
                                                    lookup.cornersOf(surface.sampleTriangle[s])));
         }
     });

@@ -53,7 +53,7 @@ ErrorTracker::ErrorTracker(Patch& patch, double sampleSpacingMm)
         const std::uint32_t t = patch.sampleTriangle[s];
         nextSample_[s] = firstSample_[t];
         firstSample_[t] = s;
-        if (patch.sampleIsSingleSheet[s] == 0) triangleIsCrowded_[t] = 1;
+        if (!patch.samples[s].isSingleSheet) triangleIsCrowded_[t] = 1;
     }
 }
 
@@ -72,7 +72,7 @@ bool ErrorTracker::forEachTriangle(const Star& star, const F& f) const {
 ErrorTracker::Move ErrorTracker::nearest(const ChangedStar& changed, std::uint32_t sample,
                                          int start, double& squaredDistance) const {
     // downhill from wedge to wedge, one way round
-    const Vec3 q = patch_.samples[sample] - changed.vertex;
+    const Vec3 q = patch_.samples[sample].point() - changed.vertex;
     const int n = changed.star.count;
     Move best{sample, start};
     squaredDistance = kInfinity;
@@ -99,7 +99,7 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
         for (std::uint32_t s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
             double squared = 0;
             const Move move = nearest(changed, s, wedge, squared);
-            if (!(squared <= std::ldexp(most, -patch_.sampleTightness[s]))) return false;
+            if (!(squared <= std::ldexp(most, -patch_.samples[s].tightness))) return false;
             sumOfSquares_ += squared;
             moves_.push_back(move);
         }
@@ -113,17 +113,17 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
 /// its height over the tangent plane at the nearest sample of the last assign().
 double ErrorTracker::heightAt(const Vec3& p) const {
     double nearest = kInfinity;
-    std::uint32_t sample = 0;
+    std::uint32_t at = 0;
     for (const Move& move : moves_) {
-        const double squared = squaredNorm(patch_.samples[move.sample] - p);
+        const double squared = squaredNorm(patch_.samples[move.sample].point() - p);
         if (squared < nearest) {
             nearest = squared;
-            sample = move.sample;
+            at = move.sample;
         }
     }
-    const double height =
-        std::abs(dot(toVec3(patch_.sampleNormals[sample]), p - patch_.samples[sample]));
-    return height * std::exp2(0.5 * patch_.sampleTightness[sample]);
+    const Sample& sample = patch_.samples[at];
+    const double height = std::abs(dot(toVec3(sample.normal), p - sample.point()));
+    return sample.tightness == 0 ? height : height * std::exp2(0.5 * sample.tightness);
 }
 
 /// The way back: a sharp edge may pass between the samples of a rounder surface.
@@ -164,7 +164,7 @@ void ErrorTracker::commit(const ChangedStar& changed) {
         nextSample_[move.sample] = firstSample_[t];
         firstSample_[t] = move.sample;
         patch_.sampleTriangle[move.sample] = t;
-        if (patch_.sampleIsSingleSheet[move.sample] == 0) triangleIsCrowded_[t] = 1;
+        if (!patch_.samples[move.sample].isSingleSheet) triangleIsCrowded_[t] = 1;
     }
     if (!isCrowded_) return;
     for (int i = 0; i < changed.star.count; ++i) {  // without samples: nothing says it is not

@@ -10,6 +10,21 @@
 
 namespace adaptiso::detail {
 
+/// A point of the full-resolution surface, in the metric frame: a vertex, or the middle of a
+/// triangle where the surface bends.
+struct Sample {
+    std::array<float, 3> position{};
+    Normal normal;
+    bool isSingleSheet = true;  ///< see FineVertex
+    /// How often the square of the allowed distance is halved, see TightPlaces.
+    std::uint8_t tightness = 0;
+
+    Vec3 point() const { return {position[0], position[1], position[2]}; }
+    static std::array<float, 3> positionOf(const Vec3& p) {
+        return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+    }
+};
+
 /// A part of a surface that is simplified alone, in the metric frame.
 ///
 /// The first `ownTriangles` triangles may change; those after them are looked at only, so that
@@ -29,13 +44,8 @@ struct Patch {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::uint32_t ownTriangles = 0;
 
-    /// Vertices of the full-resolution surface, and the triangle that stands for each.
-    std::vector<Vec3> samples;
-    std::vector<Normal> sampleNormals;  ///< of the full-resolution surface
-    std::vector<std::uint32_t> sampleTriangle;
-    std::vector<std::uint8_t> sampleIsSingleSheet;
-    /// How often the square of the allowed distance is halved for a sample, see TightPlaces.
-    std::vector<std::uint8_t> sampleTightness;
+    std::vector<Sample> samples;
+    std::vector<std::uint32_t> sampleTriangle;  ///< the triangle that stands for each
 
     /// New vertices stay in this box, in continuous index coordinates.
     Vec3 lowIndex{-kFar, -kFar, -kFar}, highIndex{kFar, kFar, kFar};

@@ -156,7 +156,7 @@ Vec3 PatchSimplifier::fittedPlace(std::uint32_t v) const {
         const Vec3 normal = std::sqrt(w.inverse) * cross(w.e1, w.e2);
         for (std::uint32_t s = errors_.first(changed_.star.triangle[i]); s != ErrorTracker::kNone;
              s = errors_.next(s)) {
-            const Vec3 d = patch_.samples[s] - changed_.vertex;
+            const Vec3 d = patch_.samples[s].point() - changed_.vertex;
             const double d1 = dot(d, w.e1), d2 = dot(d, w.e2);
             const double u = std::clamp((w.a22 * d1 - w.a12 * d2) * w.inverse, 0.0, 1.0),
                          t = std::clamp((w.a11 * d2 - w.a12 * d1) * w.inverse, 0.0, 1.0);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 #include "adaptiso/Core/Geometry.h"
 
@@ -46,6 +47,30 @@ struct Quadric {
 inline Quadric operator+(Quadric a, const Quadric& b) {
     return a += b;
 }
+
+/// A quadric seen from a point near its planes, which loses little in single precision.
+struct StoredQuadric {
+    std::array<float, 10> number{};
+
+    static StoredQuadric of(const Quadric& q, const Vec3& origin) {
+        const Vec3 b = q.timesA(origin) + q.b;
+        const std::array exact{q.xx, q.xy, q.xz, q.yy, q.yz, q.zz, b.x, b.y, b.z, q.at(origin)};
+        StoredQuadric stored;
+        for (std::size_t i = 0; i < exact.size(); ++i) {
+            stored.number[i] = static_cast<float>(exact[i]);
+        }
+        return stored;
+    }
+    Quadric about(const Vec3& origin) const {
+        Quadric q;
+        q.xx = number[0], q.xy = number[1], q.xz = number[2];
+        q.yy = number[3], q.yz = number[4], q.zz = number[5];
+        const Vec3 b{number[6], number[7], number[8]}, moved = q.timesA(origin);
+        q.b = b - moved;
+        q.c = number[9] - dot(origin, b + q.b);
+        return q;
+    }
+};
 
 struct QuadricMinimum {
     Vec3 point;

@@ -1,0 +1,323 @@
+#include "BrickRound.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+
+#include "adaptiso/Core/Parallel.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+/// Gives the vertices of a full-resolution surface their quadrics.
+/// \return the sum of the area vectors around each vertex
+std::vector<Vec3> addQuadrics(Patch& patch) {
+    patch.quadrics.assign(patch.points.size(), {});
+    std::vector<Vec3> areas(patch.points.size());
+    for (const auto& t : patch.triangles) {
+        const Vec3& a = patch.points[t[0]];
+        const Vec3 area2 = areaVector2(a, patch.points[t[1]], patch.points[t[2]]);
+        const Quadric q = Quadric::ofTriangle(area2, a);
+        for (const std::uint32_t v : t) {
+            patch.quadrics[v] += q;
+            areas[v] += area2;
+        }
+    }
+    return areas;
+}
+
+/// A brick after its own round.
+struct BrickSurface {
+    std::vector<Vec3> points;
+    std::vector<StoredQuadric> quadrics;
+    std::vector<Patch::State> states;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<Sample> samples;  ///< those on walls are not among them
+    std::vector<std::uint32_t> sampleTriangle;
+    struct WallVertex {
+        std::uint64_t edge;
+        std::uint32_t vertex;
+        Normal normal;
+        bool isSingleSheet;
+    };
+    std::vector<WallVertex> walls;
+    std::int64_t fineTriangles = 0, tableTriangles = 0;
+};
+
+/// Takes over what is not gone of the patch.
+void takeOver(Patch& patch, BrickSurface& brick) {
+    std::vector<std::uint32_t> newTriangle(patch.triangles.size(), kNone),
+        newVertex(patch.points.size(), kNone);
+    std::uint32_t triangles = 0, vertices = 0;
+    for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
+        if (patch.triangles[t][0] == Patch::kGone) continue;
+        newTriangle[t] = triangles++;
+        for (const std::uint32_t v : patch.triangles[t]) newVertex[v] = 0;
+    }
+    for (std::uint32_t& v : newVertex) {
+        if (v != kNone) v = vertices++;
+    }
+    brick.triangles.reserve(triangles);
+    for (const auto& t : patch.triangles) {
+        if (t[0] == Patch::kGone) continue;
+        brick.triangles.push_back({newVertex[t[0]], newVertex[t[1]], newVertex[t[2]]});
+    }
+    brick.points.reserve(vertices);
+    brick.quadrics.reserve(vertices);
+    brick.states.reserve(vertices);
+    for (std::size_t v = 0; v < patch.points.size(); ++v) {
+        if (newVertex[v] == kNone) continue;
+        brick.points.push_back(patch.points[v]);
+        brick.quadrics.push_back(StoredQuadric::of(patch.quadrics[v], patch.points[v]));
+        brick.states.push_back(patch.states[v]);
+    }
+    brick.samples = std::move(patch.samples);
+    brick.sampleTriangle = std::move(patch.sampleTriangle);
+    brick.samples.shrink_to_fit();
+    brick.sampleTriangle.shrink_to_fit();
+    for (std::uint32_t& t : brick.sampleTriangle) t = newTriangle[t];
+    for (auto& wall : brick.walls) wall.vertex = newVertex[wall.vertex];
+}
+
+/// Where the surface bends within a triangle its middle is a sample too: between corners a ridge
+/// could pass unseen.
+void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, Patch& patch) {
+    constexpr double kLeastCosine = 0.94;  // 20 degrees
+    for (std::uint32_t t = 0; t < fine.triangles.size(); ++t) {
+        const auto& v = fine.triangles[t];
+        const Vec3 a = normalized(areas[v[0]]), b = normalized(areas[v[1]]),
+                   c = normalized(areas[v[2]]);
+        if (std::min({dot(a, b), dot(b, c), dot(c, a)}) > kLeastCosine) continue;
+        const Vec3 &p = patch.points[v[0]], &q = patch.points[v[1]], &r = patch.points[v[2]];
+        Sample& middle = patch.samples.emplace_back();
+        middle.position = Sample::positionOf((1.0 / 3) * (p + q + r));
+        middle.normal = toNormal(areaVector2(p, q, r));
+        middle.isSingleSheet = fine.vertices[v[0]].isSingleSheet &&
+                               fine.vertices[v[1]].isSingleSheet &&
+                               fine.vertices[v[2]].isSingleSheet;
+        patch.sampleTriangle.push_back(t);
+    }
+}
+
+/// Nearly all of the surface has other parts of it near: there is nothing flat to simplify, and
+/// each change would take long to prove.
+bool isNoise(const Patch& patch) {
+    constexpr double kMost = 0.05;
+    const auto single = std::count_if(patch.samples.begin(), patch.samples.end(),
+                                      [](const Sample& s) { return s.isSingleSheet; });
+    return static_cast<double>(single) < kMost * static_cast<double>(patch.samples.size());
+}
+
+/// The brick's full-resolution surface as a patch; vertices on walls go to the brick's list.
+Patch patchOf(const FineSurface& fine, const MetricFrame& frame, BrickSurface& brick) {
+    Patch patch;
+    patch.points.reserve(fine.vertices.size());
+    for (const FineVertex& v : fine.vertices) patch.points.push_back(frame.fromIndex(v.index));
+    patch.states.assign(patch.points.size(), Patch::State::Open);
+    patch.triangles = fine.triangles;
+    patch.ownTriangles = static_cast<std::uint32_t>(fine.triangles.size());
+    const std::vector<Vec3> areas = addQuadrics(patch);
+    std::vector<std::uint32_t> triangleAt(fine.vertices.size());
+    for (std::uint32_t t = 0; t < fine.triangles.size(); ++t) {
+        for (const std::uint32_t v : fine.triangles[t]) triangleAt[v] = t;
+    }
+    for (std::uint32_t v = 0; v < fine.vertices.size(); ++v) {
+        const FineVertex& vertex = fine.vertices[v];
+        const Normal normal = toNormal(areas[v]);
+        if (vertex.isOnWall) {
+            brick.walls.push_back({vertex.edge.word, v, normal, vertex.isSingleSheet});
+            continue;
+        }
+        patch.samples.push_back(
+            {Sample::positionOf(patch.points[v]), normal, vertex.isSingleSheet, 0});
+        patch.sampleTriangle.push_back(triangleAt[v]);
+    }
+    addMiddles(fine, areas, patch);
+    return patch;
+}
+
+BrickSurface simplifyBrick(const FineSurface& fine, const MetricFrame& frame,
+                           const TightPlaces& tight, const PatchLimits& limits,
+                           std::vector<double>* costs) {
+    BrickSurface result;
+    Patch patch = patchOf(fine, frame, result);
+    result.fineTriangles = patch.ownTriangles;
+    result.tableTriangles = result.fineTriangles - 2 * static_cast<std::int64_t>(fine.ownMiddles);
+    for (Sample& sample : patch.samples) {
+        sample.tightness = tight.tightnessAt(frame.toIndex(sample.point()));
+    }
+    if (limits.leavesNoise && isNoise(patch)) {
+        patch.states.assign(patch.points.size(), Patch::State::Final);
+    } else {
+        PatchSimplifier simplifier(patch, frame, limits);
+        simplifier.collapseEdges(patch.ownTriangles, costs);
+    }
+    takeOver(patch, result);
+    return result;
+}
+
+/// Joins bricks at their walls; empties them on the way.
+class Joiner {
+public:
+    Joiner(std::vector<BrickSurface>& bricks, const MetricFrame& frame, const TightPlaces& tight)
+        : bricks_(bricks), frame_(frame), tight_(tight), number_(bricks.size()) {}
+
+    SimplifiedSurface join() {
+        collectWalls();
+        addVertices();
+        addTriangles();
+        addWallSamples();
+        return std::move(whole_);
+    }
+
+private:
+    /// What a brick has of a vertex on a wall.
+    struct WallEntry {
+        std::uint64_t edge;
+        std::uint32_t brick, vertex;
+        Normal normal;
+        bool isSingleSheet;
+        StoredQuadric quadric;
+    };
+    static constexpr std::uint64_t kShared = ~std::uint64_t{0};
+
+    void collectWalls() {
+        for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
+            for (const auto& w : bricks_[b].walls) {
+                walls_.push_back({w.edge, b, w.vertex, w.normal, w.isSingleSheet,
+                                  bricks_[b].quadrics[w.vertex]});
+            }
+            bricks_[b].walls = {};
+            number_[b].assign(bricks_[b].points.size(), 0);
+        }
+        std::sort(walls_.begin(), walls_.end(), [](const WallEntry& a, const WallEntry& b) {
+            return a.edge != b.edge ? a.edge < b.edge : a.brick < b.brick;
+        });
+        // the first brick at a wall vertex keeps it
+        for (std::size_t i = 1; i < walls_.size(); ++i) {
+            if (walls_[i].edge == walls_[i - 1].edge) {
+                number_[walls_[i].brick][walls_[i].vertex] = kShared;
+            }
+        }
+    }
+
+    void addVertices() {
+        std::size_t vertices = 0;
+        for (const auto& numbers : number_) {
+            vertices += static_cast<std::size_t>(
+                std::count_if(numbers.begin(), numbers.end(),
+                              [](std::uint64_t number) { return number != kShared; }));
+        }
+        whole_.points.reserve(vertices);
+        whole_.quadrics.reserve(vertices);
+        whole_.states.reserve(vertices);
+        for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
+            BrickSurface& brick = bricks_[b];
+            for (std::uint32_t v = 0; v < brick.points.size(); ++v) {
+                if (number_[b][v] == kShared) continue;
+                number_[b][v] = whole_.points.size();
+                whole_.points.push_back(brick.points[v]);
+                whole_.quadrics.push_back(brick.quadrics[v]);
+                whole_.states.push_back(brick.states[v]);
+            }
+            brick.points = {};
+            brick.quadrics = {};
+            brick.states = {};
+        }
+        for (std::size_t i = 0, first = 0; i < walls_.size(); ++i) {
+            if (walls_[i].edge != walls_[first].edge) first = i;
+            if (i == first) continue;
+            const std::uint64_t id = number_[walls_[first].brick][walls_[first].vertex];
+            number_[walls_[i].brick][walls_[i].vertex] = id;
+            for (std::size_t n = 0; n < walls_[i].quadric.number.size(); ++n) {
+                whole_.quadrics[id].number[n] += walls_[i].quadric.number[n];
+            }
+        }
+    }
+
+    void addTriangles() {
+        std::size_t triangles = 0, samples = 0;
+        for (const BrickSurface& brick : bricks_) {
+            triangles += brick.triangles.size();
+            samples += brick.samples.size();
+        }
+        whole_.triangles.reserve(triangles);
+        whole_.samples.reserve(samples + walls_.size());
+        whole_.sampleTriangle.reserve(samples + walls_.size());
+        for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
+            BrickSurface& brick = bricks_[b];
+            whole_.firstSample.push_back(whole_.samples.size());
+            const std::uint64_t first = whole_.triangles.size();
+            const auto& number = number_[b];
+            for (const auto& t : brick.triangles) {
+                whole_.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
+            }
+            whole_.samples.insert(whole_.samples.end(), brick.samples.begin(), brick.samples.end());
+            for (const std::uint32_t t : brick.sampleTriangle) {
+                whole_.sampleTriangle.push_back(first + t);
+            }
+            whole_.fineTriangles += brick.fineTriangles;
+            whole_.tableTriangles += brick.tableTriangles;
+            brick = {};
+        }
+        whole_.firstSample.push_back(whole_.samples.size());
+    }
+
+    void addWallSamples() {
+        std::vector<std::uint64_t> triangleAt(whole_.points.size());
+        for (std::uint64_t t = 0; t < whole_.triangles.size(); ++t) {
+            for (const std::uint64_t v : whole_.triangles[t]) triangleAt[v] = t;
+        }
+        for (std::size_t i = 0, j = 0; i < walls_.size(); i = j) {
+            Sample sample;
+            Vec3 normal;
+            for (j = i; j < walls_.size() && walls_[j].edge == walls_[i].edge; ++j) {
+                sample.isSingleSheet = sample.isSingleSheet && walls_[j].isSingleSheet;
+                normal += toVec3(walls_[j].normal);
+            }
+            const std::uint64_t id = number_[walls_[i].brick][walls_[i].vertex];
+            sample.position = Sample::positionOf(whole_.points[id]);
+            sample.normal = toNormal(normal);
+            sample.tightness = tight_.tightnessAt(frame_.toIndex(whole_.points[id]));
+            whole_.samples.push_back(sample);
+            whole_.sampleTriangle.push_back(triangleAt[id]);
+            whole_.wallEdges.push_back(walls_[i].edge);
+        }
+    }
+
+    std::vector<BrickSurface>& bricks_;
+    const MetricFrame& frame_;
+    const TightPlaces& tight_;
+    std::vector<std::vector<std::uint64_t>> number_;  ///< in the whole, of each brick's vertices
+    std::vector<WallEntry> walls_;
+    SimplifiedSurface whole_;
+};
+
+}  // namespace
+
+SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& bricks,
+                                 const MetricFrame& frame, const TightPlaces& tight,
+                                 const PatchLimits& limits, CollapseCosts* costs) {
+    struct Tools {
+        BrickMesher mesher;
+        FineSurface fine;
+    };
+    std::vector<BrickSurface> surfaces(static_cast<std::size_t>(bricks.count()));
+    if (costs != nullptr) costs->assign(surfaces.size(), {});
+    {
+        tbb::enumerable_thread_specific<Tools> tools([&] {
+            return Tools{BrickMesher(sampler, bricks.grid()), {}};
+        });
+        parallelForPieces(bricks.count(), 1, [&](std::int64_t b, std::int64_t) {
+            Tools& mine = tools.local();
+            mine.mesher.mesh(bricks[b], mine.fine);
+            surfaces[b] = simplifyBrick(mine.fine, frame, tight, limits,
+                                        costs != nullptr ? &(*costs)[b] : nullptr);
+        });
+    }
+    return Joiner(surfaces, frame, tight).join();
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "MetricFrame.h"
+#include "PatchGroups.h"
+#include "PatchSimplifier.h"
+#include "SimplifiedSurface.h"
+
+namespace adaptiso::detail {
+
+/// What a round does in every patch.
+struct PatchWork {
+    PatchLimits limits;
+    bool collapses = true;
+    /// Collapses to make in all patches together, or more than there can be.
+    std::int64_t mostCollapses = std::numeric_limits<std::int64_t>::max() / 4;
+    bool fits = false;
+};
+
+/// Works on the surface in the patches of a cut, side by side. Triangles that straddle two cubes
+/// stay as they are.
+/// \param costs  gets those of each patch's collapses; may be null
+void simplifyPatches(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame,
+                     const PatchWork& work, CollapseCosts* costs = nullptr);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,34 @@
+#include "TightPlaces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace adaptiso::detail {
+
+Index3 TightPlaces::cubeAt(const Vec3& place) {
+    Index3 cube;
+    for (int a = 0; a < 3; ++a) cube[a] = static_cast<std::int64_t>(std::floor(place[a] / kCube));
+    return cube;
+}
+
+void TightPlaces::add(const std::vector<Vec3>& places) {
+    std::set<Index3> cubes;
+    for (const Vec3& place : places) {
+        const Index3 cube = cubeAt(place);
+        for (int n = 0; n < 27; ++n) {
+            cubes.insert({cube[0] + n % 3 - 1, cube[1] + n / 3 % 3 - 1, cube[2] + n / 9 - 1});
+        }
+    }
+    for (const Index3& cube : cubes) ++tightness_[cube];
+}
+
+std::uint8_t TightPlaces::tightnessAt(const Vec3& place) const {
+    constexpr std::array<std::uint8_t, 6> kHalvings{0, 1, 4, 12, 24, 40};
+    if (tightness_.empty()) return 0;
+    const auto at = tightness_.find(cubeAt(place));
+    return at == tightness_.end() ? 0 : kHalvings[std::min(at->second, kHalvings.size() - 1)];
+}
+
+}  // namespace adaptiso::detail
