@@ -29,6 +29,7 @@ function(adaptiso_compile_options target)
     target_compile_options(${target} PRIVATE ${ADAPTISO_WARNINGS}
                            $<$<BOOL:${ADAPTISO_WARNINGS_AS_ERRORS}>:-Werror>)
     if(ADAPTISO_SANITIZE)
+        target_compile_definitions(${target} PRIVATE _GLIBCXX_ASSERTIONS)  # vectors' bounds
         target_compile_options(${target} PRIVATE -fsanitize=${ADAPTISO_SANITIZE}
                                -fno-omit-frame-pointer -fno-sanitize-recover=all)
         target_link_options(${target} PUBLIC -fsanitize=${ADAPTISO_SANITIZE})

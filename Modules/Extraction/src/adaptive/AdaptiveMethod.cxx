@@ -1,6 +1,7 @@
 #include "AdaptiveMethod.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -30,6 +31,14 @@ struct WantedCount {
     }
 };
 
+/// A surface after its first rounds, whose changes are too small to matter to the bound: when
+/// places turn out to need more care, it can be gone on from here.
+struct Halfway {
+    SurfaceState state;
+    int rounds = 0;
+    double cost = 0;  ///< limit of its last round
+};
+
 /// One run of the simplification with fixed limits.
 class Simplification {
 public:
@@ -41,25 +50,31 @@ public:
     }
 
     /// As few triangles as the limits allow.
-    SimplifiedSurface toLimits() {
-        limits_.maxCost = kFirstCost * costUnit_;
-        SimplifiedSurface surface =
-            simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
-        for (double cost = 3 * kFirstCost; cost < kLastCost; cost *= 6) {
-            limits_.triedCost = limits_.maxCost;
-            limits_.maxCost = cost * costUnit_;
-            simplifyPatches(surface, nextCut(), frame_, {limits_});
+    /// \param last     of the run before, when that went through `halfway`
+    /// \param halfway  where to start; is filled in when empty
+    SimplifiedSurface toLimits(SimplifiedSurface last, std::optional<Halfway>& halfway) {
+        SimplifiedSurface surface = std::move(last);
+        if (halfway) {
+            goOnFrom(*halfway, surface);
+        } else {
+            limits_.maxCost = kFirstCost * costUnit_;
+            surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
         }
-        limits_.triedCost = limits_.maxCost;
-        limits_.maxCost = std::numeric_limits<double>::max();
+        for (const double cost : kCosts) {
+            if (cost * costUnit_ <= limits_.maxCost) continue;
+            if (!halfway && cost * costUnit_ > halfwayCost()) {
+                halfway = Halfway{surface, rounds_, limits_.maxCost};
+            }
+            roundUpTo(cost * costUnit_, surface);
+        }
+        if (!halfway) halfway = Halfway{surface, rounds_, limits_.maxCost};
         for (int idle = 0; idle < 2;) {
             const std::int64_t before = surface.triangleCount();
-            simplifyPatches(surface, nextCut(), frame_, {limits_});
+            roundUpTo(std::numeric_limits<double>::max(), surface);
             idle = static_cast<double>(surface.triangleCount()) >=
                            kWorthwhile * static_cast<double>(before)
                        ? idle + 1
                        : 0;
-            limits_.triedCost = limits_.maxCost;
         }
         fit(surface);
         return surface;
@@ -93,6 +108,10 @@ public:
 private:
     /// Cost limits, in voxels to the fourth: of the bricks' round, and above which there is none.
     static constexpr double kFirstCost = 1e-3, kLastCost = 10;
+    /// Of the first rounds of toLimits().
+    static constexpr std::array kCosts{3e-3, 1.8e-2, 0.108, 0.648, 3.888};
+    /// Later runs start where changes are below this part of the square of the allowed distance.
+    static constexpr double kHalfway = 2;
     /// A round that leaves more than this part of the triangles was hardly worth it.
     static constexpr double kWorthwhile = 0.99;
     /// A count up to this part of the wanted one is reached by small steps.
@@ -102,6 +121,26 @@ private:
     PatchCut nextCut() {
         ++rounds_;
         return {Brick::kSide, rounds_ % 2 == 1 ? Brick::kSide / 2 : 0};
+    }
+
+    void roundUpTo(double cost, SimplifiedSurface& surface) {
+        limits_.triedCost = limits_.maxCost;
+        limits_.maxCost = cost;
+        simplifyPatches(surface, nextCut(), frame_, {limits_});
+    }
+
+    double halfwayCost() const {
+        const double voxel = frame_.voxelMm();
+        return kHalfway * voxel * voxel * limits_.maxDistanceMm * limits_.maxDistanceMm;
+    }
+
+    void goOnFrom(const Halfway& halfway, SimplifiedSurface& surface) {
+        surface.state() = halfway.state;
+        rounds_ = halfway.rounds;
+        limits_.maxCost = halfway.cost;
+        for (Sample& sample : surface.samples) {
+            sample.tightness = tight_.tightnessAt(frame_.toIndex(sample.point()));
+        }
     }
 
     /// A round up to a cost; undone and done again with a lower one where it leads below the
@@ -189,19 +228,22 @@ public:
     }
 
     Extraction run() {
+        ErrorProof proof(sampler_, bricks_, frame_,
+                         boundMm_.value_or(std::numeric_limits<double>::max()));
+        SimplifiedSurface surface;
         for (int run = 0; run < kMostRuns; ++run) {
             report(run, 0);
-            const SimplifiedSurface surface = run + 1 < kMostRuns ? simplify() : fullSurface();
+            if (run > 0 && run % kRunsOfOneStart == 0) {
+                halfway_.reset();
+                share_ *= kLaterShare;
+            }
+            surface = run + 1 < kMostRuns ? simplify(std::move(surface)) : fullSurface();
             report(run, 0.6);
-            ErrorProof proof(sampler_, bricks_, frame_,
-                             boundMm_.value_or(std::numeric_limits<double>::max()));
             const ErrorBound error = proof.prove(surface);
             report(run, 1);
-            if (boundMm_ && error.largest() > *boundMm_) {
+            if (boundMm_ && error.largestMm > *boundMm_) {
                 std::vector<Vec3> places;
-                for (const PlaceBeyond& beyond : error.beyondLimit) {
-                    places.push_back(frame_.toIndex(beyond.point));
-                }
+                for (const Vec3& place : error.beyondLimit) places.push_back(frame_.toIndex(place));
                 tight_.add(places);
                 continue;
             }
@@ -209,10 +251,11 @@ public:
             result.mesh = toMesh(surface, geometry_, frame_, sampler_);
             if (!crossesNothing(result.mesh)) {
                 provesAll_ = true;
+                halfway_.reset();
                 continue;
             }
             if (!options_.computeNormals) result.mesh.normals = {};
-            result.statistics.errorBoundMm = error.largest();
+            result.statistics.errorBoundMm = error.largestMm;
             result.statistics.marchingCubesTriangles = surface.tableTriangles;
             return result;
         }
@@ -223,13 +266,17 @@ public:
 
 private:
     static constexpr int kMostRuns = 12;
+    /// As many runs start at what the first of them had halfway.
+    static constexpr int kRunsOfOneStart = 6;
+    /// Of the allowed distance, for each start after the first.
+    static constexpr double kLaterShare = 0.7;
     /// Up to this distance (of the least one between planes of samples) single sheets are certain
     /// not to meet others: see isSingleSheet.
     static constexpr double kSheetVoxels = 0.5;
     /// First allowed distance of samples: that much below the bound (in the least distance between
     /// planes of samples, and as a part of the bound), since points between samples may lie
     /// farther.
-    static constexpr double kSlackVoxels = 0.05, kSlackPart = 0.25;
+    static constexpr double kSlackVoxels = 0.05, kSlackPart = 0.3;
 
     void report(int run, double fraction) const {
         // later runs mend what the first could not prove: they come on top
@@ -243,14 +290,15 @@ private:
         return simplifyBricks(sampler_, bricks_, frame_, tight_, limits, nullptr);
     }
 
-    SimplifiedSurface simplify() const {
+    /// \param last  of the run before
+    SimplifiedSurface simplify(SimplifiedSurface last) {
         const double sheetMm = kSheetVoxels * frame_.narrowestMm();
         PatchLimits limits;
         limits.shape = shape_;
         limits.leavesNoise = !wanted_.isGiven();
         const double boundMm = boundMm_.value_or(sheetMm);
-        limits.maxDistanceMm =
-            boundMm - std::min(kSlackVoxels * frame_.narrowestMm(), kSlackPart * boundMm);
+        limits.maxDistanceMm = share_ * (boundMm - std::min(kSlackVoxels * frame_.narrowestMm(),
+                                                            kSlackPart * boundMm));
         const Index3& size = geometry_.size;
         const double extentMm =
             norm(frame_.fromIndex({static_cast<double>(size[0]), static_cast<double>(size[1]),
@@ -258,7 +306,7 @@ private:
         for (;; limits.maxDistanceMm *= 2) {
             limits.provesAll = provesAll_ || limits.maxDistanceMm > sheetMm;
             Simplification simplification(sampler_, bricks_, frame_, tight_, limits);
-            if (!wanted_.isGiven()) return simplification.toLimits();
+            if (!wanted_.isGiven()) return simplification.toLimits(std::move(last), halfway_);
             SimplifiedSurface surface = simplification.toCount(wanted_);
             const bool isThere = surface.triangleCount() <= wanted_.of(surface.fineTriangles) + 1;
             // without a bound the count goes before closeness
@@ -275,6 +323,8 @@ private:
     std::optional<double> boundMm_;
     StarLimits shape_;
     TightPlaces tight_;
+    std::optional<Halfway> halfway_;
+    double share_ = 1;        ///< of the allowed distance
     bool provesAll_ = false;  ///< the last run left triangles that cross
 };
 

@@ -36,10 +36,12 @@ constexpr double kStepsPerFace = 20, kManySteps = 1e6;
 }  // namespace
 
 BrickProof::BrickProof(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
-                       const LatticeSampler& sampler, double enoughMm, double limitMm)
+                       const LatticeSampler& sampler, const ProofScope& scope, double enoughMm,
+                       double limitMm)
     : surface_(surface),
       lookup_(lookup),
       frame_(lookup.frame()),
+      scope_(scope),
       enoughMm_(enoughMm),
       limitMm_(limitMm),
       mesher_(sampler, lookup.bricks().grid()),
@@ -47,6 +49,7 @@ BrickProof::BrickProof(const SimplifiedSurface& surface, const SurfaceLookup& lo
 
 BrickBound BrickProof::prove(std::int64_t brick) {
     brick_ = brick;
+    if (isIdle()) return {};
     low_ = lookup_.bricks()[brick].low;
     mesher_.meshWithHalo(lookup_.bricks(), brick, fine_);
     points_.resize(fine_.vertices.size());
@@ -56,24 +59,56 @@ BrickBound BrickProof::prove(std::int64_t brick) {
     walkable_.assign(points_, fine_.triangles);
     result_ = {};
     fromFine_ = toFine_ = PieceBound(enoughMm_);
-    worstFromFineMm_ = worstToFineMm_ = 0;
+    proveOwnCells();
+    proveTriangles();
+    result_.provedMm = std::max(fromFine_.boundMm(), toFine_.boundMm());
+    return std::move(result_);
+}
+
+/// Nothing in the brick is to be proved.
+bool BrickProof::isIdle() const {
+    const auto& blocks = lookup_.bricks()[brick_].blocks;
+    const auto triangles = lookup_.ofBrick(brick_);
+    return std::none_of(blocks.begin(), blocks.end(),
+                        [&](std::uint32_t block) { return scope_.isWanted(block); }) &&
+           std::all_of(triangles.begin(), triangles.end(),
+                       [&](std::uint64_t t) { return scope_.isProved(t); });
+}
+
+/// The full-resolution surface in the brick's own cells.
+void BrickProof::proveOwnCells() {
     findStandIns();
     findUnmoved();
     unchanged_.clear();
-    for (std::size_t t = 0; t < fine_.ownTriangles; ++t) proveFine(t);
+    const auto& cells = fine_.cells;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        if (cells[c].firstTriangle >= fine_.ownTriangles) break;
+        if (!scope_.isWanted(blockOf(cells[c]))) continue;
+        const std::size_t end =
+            c + 1 < cells.size() ? cells[c + 1].firstTriangle : fine_.triangles.size();
+        for (std::size_t t = cells[c].firstTriangle; t < end; ++t) proveFine(t);
+    }
     std::sort(unchanged_.begin(), unchanged_.end());
+}
+
+std::uint64_t BrickProof::blockOf(const FineSurface::Cell& cell) const {
+    const BlockGrid& grid = lookup_.bricks().grid();
+    const auto at = [&](int a) { return (low_[a] + cell.position[a]) / grid.blockSize; };
+    return static_cast<std::uint64_t>(at(0) + grid.blocks[0] * (at(1) + grid.blocks[1] * at(2)));
+}
+
+/// The pieces of the simplified surface that the brick answers for.
+void BrickProof::proveTriangles() {
     rememberCells();
-    const auto triangles = lookup_.ofBrick(brick);
+    const auto triangles = lookup_.ofBrick(brick_);
     findStarts(triangles);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         triangle_ = triangles[i];
+        if (scope_.isProved(triangle_)) continue;
         const Corners corners = lookup_.cornersOf(triangle_);
         provePiece(corners, startAt_[i], norm(areaVector2(corners[0], corners[1], corners[2])));
     }
     forgetCells();
-    result_.fromFineMm = std::max(worstFromFineMm_, fromFine_.boundMm());
-    result_.toFineMm = std::max(worstToFineMm_, toFine_.boundMm());
-    return std::move(result_);
 }
 
 void BrickProof::findStandIns() {
@@ -147,8 +182,8 @@ void BrickProof::proveFine(std::size_t t) {
     walk_.cover(ConvexPiece(piece), lookup_.walkable(), static_cast<VertexId>(standIn_[v[0]]),
                 fromFine_.squaredBound(), kStepsOfFine);
     for (const ConvexPiece& left : walk_.left()) {
-        for (int i = 2; i < left.count; ++i) {
-            proveFinePart({left.corner[0], left.corner[i - 1], left.corner[i]}, v);
+        for (int i = 2; i < left.count(); ++i) {
+            proveFinePart({left.corner(0), left.corner(i - 1), left.corner(i)}, v);
         }
     }
 }
@@ -170,7 +205,7 @@ void BrickProof::proveFinePart(const Corners& piece, const std::array<std::uint3
     }
     nearby.clear();
     lookup_.forEachNear(piece, reachMm, [&](const Corners& near) { nearby.push_back(near); });
-    include(piece, fromFine_, worstFromFineMm_, ~std::uint64_t{0});
+    include(piece, fromFine_, PlaceBeyond::kNone);
 }
 
 /// Goes over the pieces of a triangle of the simplified surface that this brick answers for.
@@ -204,8 +239,8 @@ void BrickProof::proveWhole(const Corners& piece, std::uint32_t start, double ar
     const int steps = kFewSteps + static_cast<int>(std::min(kManySteps, kStepsPerFace * faces));
     walk_.cover(ConvexPiece(piece), walkable_, start, toFine_.squaredBound(), steps);
     for (const ConvexPiece& left : walk_.left()) {
-        for (int i = 2; i < left.count; ++i) {
-            proveSmall({left.corner[0], left.corner[i - 1], left.corner[i]});
+        for (int i = 2; i < left.count(); ++i) {
+            proveSmall({left.corner(0), left.corner(i - 1), left.corner(i)});
         }
     }
 }
@@ -231,20 +266,17 @@ void BrickProof::proveLeaf(const Corners& piece, const CornerBox& box) {
     if (toFine_.isWithin(piece)) return;
     collectNear(box, 1.5);
     use();
-    include(piece, toFine_, worstToFineMm_, triangle_);
+    include(piece, toFine_, triangle_);
 }
 
-/// \param triangle  to blame when the piece lies beyond the limit; ~0: the nearest one
-void BrickProof::include(const Corners& piece, PieceBound& bound, double& worstMm,
-                         std::uint64_t triangle) {
+/// \param triangle  of the simplified surface that the piece is a part of, or none
+void BrickProof::include(const Corners& piece, PieceBound& bound, std::uint64_t triangle) {
     const PieceBound before = bound.withoutNearby();
     bound.include(piece);
     if (bound.boundMm() <= limitMm_) return;
-    worstMm = std::max(worstMm, bound.boundMm());
+    result_.farthestMm = std::max(result_.farthestMm, bound.boundMm());
     bound = before;
-    const Vec3 middle = (1.0 / 3) * (piece[0] + piece[1] + piece[2]);
-    if (triangle == ~std::uint64_t{0}) triangle = lookup_.nearestTriangle(middle);
-    result_.beyondLimit.push_back({middle, triangle});
+    result_.beyondLimit.push_back({(1.0 / 3) * (piece[0] + piece[1] + piece[2]), triangle});
 }
 
 /// In cells, seen from the brick's first.

@@ -15,18 +15,29 @@
 
 namespace adaptiso::detail {
 
-/// A place where one of the two surfaces lies beyond the limit, and the triangle of the simplified
-/// one that is to blame or lies nearest.
+/// A place where one of the two surfaces lies beyond the limit.
 struct PlaceBeyond {
-    Vec3 point;  ///< metric frame
-    std::uint64_t triangle;
+    static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+
+    Vec3 point;              ///< metric frame
+    std::uint64_t triangle;  ///< of the simplified surface; kNone: it is a place of the other one
 };
 
-/// What is proved of the surfaces within a brick, mm.
+/// What is proved of the surfaces within a brick.
 struct BrickBound {
-    double fromFineMm = 0, toFineMm = 0;
+    double provedMm = 0;    ///< bound of all that lies within the limit
+    double farthestMm = 0;  ///< bound of the rest
     std::vector<PlaceBeyond> beyondLimit;
     double provedArea = 0;  ///< of the simplified surface, mm2
+};
+
+/// What is to be proved; all where the lists are empty.
+struct ProofScope {
+    std::vector<bool> isKnown;  ///< of each triangle of the simplified surface: proved before
+    std::vector<bool> blocks;   ///< those whose part of the full-resolution surface is to be proved
+
+    bool isProved(std::uint64_t triangle) const { return !isKnown.empty() && isKnown[triangle]; }
+    bool isWanted(std::uint64_t block) const { return blocks.empty() || blocks[block]; }
 };
 
 /// Proves bounds of the distance between the full-resolution surface, made anew, and the simplified
@@ -39,7 +50,8 @@ public:
     /// \param enoughMm  no bound need be tighter
     /// \param limitMm   pieces farther off are noted, and do not loosen the bound of the rest
     BrickProof(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
-               const LatticeSampler& sampler, double enoughMm, double limitMm);
+               const LatticeSampler& sampler, const ProofScope& scope, double enoughMm,
+               double limitMm);
 
     BrickBound prove(std::int64_t brick);
 
@@ -53,13 +65,17 @@ private:
     void rememberCells();
     void forgetCells();
 
+    bool isIdle() const;
+    void proveOwnCells();
+    void proveTriangles();
+    std::uint64_t blockOf(const FineSurface::Cell& cell) const;
     void proveFine(std::size_t t);
     void proveFinePart(const Corners& piece, const std::array<std::uint32_t, 3>& of);
     void provePiece(const Corners& piece, std::uint32_t start, double area2);
     void proveWhole(const Corners& piece, std::uint32_t start, double area2);
     void proveSmall(const Corners& piece);
     void proveLeaf(const Corners& piece, const CornerBox& box);
-    void include(const Corners& piece, PieceBound& bound, double& worstMm, std::uint64_t triangle);
+    void include(const Corners& piece, PieceBound& bound, std::uint64_t triangle);
 
     CornerBox latticeBox(const Corners& piece) const;
     std::uint32_t nearestFine(const Vec3& p);
@@ -69,6 +85,7 @@ private:
     const SimplifiedSurface& surface_;
     const SurfaceLookup& lookup_;
     const MetricFrame& frame_;
+    const ProofScope& scope_;
     double enoughMm_, limitMm_;
     BrickMesher mesher_;
 
@@ -86,7 +103,6 @@ private:
     std::uint64_t triangle_ = 0;            ///< whose pieces are looked at
 
     PieceBound fromFine_, toFine_;
-    double worstFromFineMm_ = 0, worstToFineMm_ = 0;
     BrickBound result_;
     SurfaceWalk walk_;
     std::vector<std::uint32_t> near_;

@@ -31,57 +31,126 @@ double largestSampleDistance(const SimplifiedSurface& surface, const SurfaceLook
     return std::sqrt(result);
 }
 
-/// The triangles that a surface has and another one has not, or not in the same place.
-std::vector<std::uint64_t> changedTriangles(const SurfaceLookup& surface,
-                                            const SurfaceLookup& other) {
-    std::vector<std::uint64_t> changed;
-    for (std::uint64_t t = 0; t < surface.triangleCount(); ++t) {
-        if (t >= other.triangleCount() || surface.cornersOf(t) != other.cornersOf(t)) {
-            changed.push_back(t);
+bool isBefore(const Corners& a, const Corners& b) {
+    for (int c = 0; c < 3; ++c) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (a[c][axis] != b[c][axis]) return a[c][axis] < b[c][axis];
         }
     }
-    return changed;
+    return false;
+}
+
+/// Of the triangles that are to be proved.
+double areaOf(const SurfaceLookup& lookup, const ProofScope& scope) {
+    double area = 0;
+    for (std::uint64_t t = 0; t < lookup.triangleCount(); ++t) {
+        if (scope.isProved(t)) continue;
+        const Corners c = lookup.cornersOf(t);
+        area += 0.5 * norm(areaVector2(c[0], c[1], c[2]));
+    }
+    return area;
 }
 
 }  // namespace
 
+ErrorProof::ErrorProof(const LatticeSampler& sampler, const Bricks& bricks,
+                       const MetricFrame& frame, double limitMm)
+    : sampler_(sampler), bricks_(bricks), frame_(frame), limitMm_(limitMm) {}
+
 ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
-    auto lookup = std::make_unique<SurfaceLookup>(surface, bricks_, frame_);
-    std::vector<std::uint8_t> isNew(bricks_.count(), lookup_ ? 0 : 1);
-    if (lookup_) {
-        const auto mark = [&](const SurfaceLookup& of, const SurfaceLookup& other) {
-            for (const std::uint64_t t : changedTriangles(of, other)) {
-                of.forEachBrickNear(t, [&](std::int64_t b) { isNew[b] = 1; });
-            }
-        };
-        mark(*lookup, *lookup_);
-        mark(*lookup_, *lookup);
-    }
-    lookup_ = std::move(lookup);
-    results_.resize(bricks_.count());
+    const SurfaceLookup lookup(surface, bricks_, frame_);
+    const ProofScope scope = scopeOf(lookup);
     // bounds are as tight as the largest sample's distance; below a hundredth of a voxel none cares
     const double enough = std::min(
-        limitMm_, std::max(largestSampleDistance(surface, *lookup_), 0.01 * frame_.narrowestMm()));
+        limitMm_, std::max(largestSampleDistance(surface, lookup), 0.01 * frame_.narrowestMm()));
+    std::vector<BrickBound> results(bricks_.count());
     tbb::enumerable_thread_specific<BrickProof> proofs(
-        [&] { return BrickProof(surface, *lookup_, sampler_, enough, limitMm_); });
-    parallelForPieces(bricks_.count(), 1, [&](std::int64_t b, std::int64_t) {
-        if (isNew[b] != 0) results_[b] = proofs.local().prove(b);
-    });
-    double area = 0, provedArea = 0;
-    for (std::uint64_t t = 0; t < lookup_->triangleCount(); ++t) {
-        const Corners c = lookup_->cornersOf(t);
-        area += 0.5 * norm(areaVector2(c[0], c[1], c[2]));
-    }
-    ErrorBound bound;
-    for (const BrickBound& result : results_) {
-        bound.fromFineMm = std::max(bound.fromFineMm, result.fromFineMm);
-        bound.toFineMm = std::max(bound.toFineMm, result.toFineMm);
-        bound.beyondLimit.insert(bound.beyondLimit.end(), result.beyondLimit.begin(),
-                                 result.beyondLimit.end());
+        [&] { return BrickProof(surface, lookup, sampler_, scope, enough, limitMm_); });
+    parallelForPieces(bricks_.count(), 1,
+                      [&](std::int64_t b, std::int64_t) { results[b] = proofs.local().prove(b); });
+    double provedArea = 0, farthestMm = 0;
+    std::vector<PlaceBeyond> beyond;
+    for (const BrickBound& result : results) {
+        provedMm_ = std::max(provedMm_, result.provedMm);
+        farthestMm = std::max(farthestMm, result.farthestMm);
+        beyond.insert(beyond.end(), result.beyondLimit.begin(), result.beyondLimit.end());
         provedArea += result.provedArea;
     }
-    if (!(provedArea >= (1 - 1e-9) * area)) bound.toFineMm = kInfinity;  // far from every brick
+    ErrorBound bound;
+    bound.largestMm = std::max(provedMm_, farthestMm);
+    for (const PlaceBeyond& place : beyond) bound.beyondLimit.push_back(place.point);
+    known_.clear();
+    if (!(provedArea >= (1 - 1e-9) * areaOf(lookup, scope))) {
+        bound.largestMm = kInfinity;  // far from every brick
+    } else if (!beyond.empty()) {
+        remember(lookup, std::move(beyond));
+    }
     return bound;
+}
+
+void ErrorProof::remember(const SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond) {
+    std::vector<bool> isBeyond(lookup.triangleCount(), false);
+    for (const PlaceBeyond& place : beyond) {
+        if (place.triangle != PlaceBeyond::kNone) isBeyond[place.triangle] = true;
+    }
+    for (std::uint64_t t = 0; t < lookup.triangleCount(); ++t) {
+        if (!isBeyond[t]) known_.push_back(lookup.cornersOf(t));
+    }
+    std::sort(known_.begin(), known_.end(), isBefore);
+    beyond_ = std::move(beyond);
+}
+
+/// What is to be proved: the new triangles, and the full-resolution surface near those that came or
+/// went and where it lay beyond the limit.
+ProofScope ErrorProof::scopeOf(const SurfaceLookup& lookup) const {
+    ProofScope scope;
+    if (known_.empty()) return scope;
+    scope.isKnown.assign(lookup.triangleCount(), false);
+    scope.blocks.assign(bricks_.grid().blockCount(), false);
+    std::vector<bool> isStillThere(known_.size(), false);
+    for (std::uint64_t t = 0; t < lookup.triangleCount(); ++t) {
+        const Corners corners = lookup.cornersOf(t);
+        const auto at = std::lower_bound(known_.begin(), known_.end(), corners, isBefore);
+        if (at != known_.end() && *at == corners) {
+            isStillThere[at - known_.begin()] = true;
+            scope.isKnown[t] = true;
+        } else {
+            markAround(corners, limitMm_, scope);
+        }
+    }
+    for (std::size_t i = 0; i < known_.size(); ++i) {
+        if (!isStillThere[i]) markAround(known_[i], limitMm_, scope);
+    }
+    for (const PlaceBeyond& place : beyond_) {
+        markAround({place.point, place.point, place.point}, 0, scope);
+    }
+    return scope;
+}
+
+/// Marks the blocks that reach within a distance of a triangle.
+void ErrorProof::markAround(const Corners& triangle, double distanceMm, ProofScope& scope) const {
+    constexpr double kWall = 1e-3;  // of a voxel: on a block's wall both blocks are meant
+    const BlockGrid& grid = bricks_.grid();
+    CornerBox box = boxOf(
+        {frame_.toIndex(triangle[0]), frame_.toIndex(triangle[1]), frame_.toIndex(triangle[2])});
+    box.widen(distanceMm / frame_.narrowestMm() + kWall);
+    Index3 first, last;
+    for (int a = 0; a < 3; ++a) {
+        const auto blockAt = [&](double index) {
+            const double lattice = std::clamp(index + static_cast<double>(grid.offset), 0.0,
+                                              static_cast<double>(grid.blocks[a] * grid.blockSize));
+            return static_cast<std::int64_t>(lattice) / grid.blockSize;
+        };
+        first[a] = blockAt(box.low[a]);
+        last[a] = std::min(blockAt(box.high[a]), grid.blocks[a] - 1);
+    }
+    for (std::int64_t z = first[2]; z <= last[2]; ++z) {
+        for (std::int64_t y = first[1]; y <= last[1]; ++y) {
+            for (std::int64_t x = first[0]; x <= last[0]; ++x) {
+                scope.blocks[x + grid.blocks[0] * (y + grid.blocks[1] * z)] = true;
+            }
+        }
+    }
 }
 
 }  // namespace adaptiso::detail

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "BrickProof.h"
@@ -11,35 +10,40 @@
 
 namespace adaptiso::detail {
 
-/// Bounds of the distance between the full-resolution surface and the simplified one, mm: no point
-/// of the one is farther from the other.
 struct ErrorBound {
-    double fromFineMm = 0;  ///< points of the full-resolution surface
-    double toFineMm = 0;    ///< points of the simplified surface
-    std::vector<PlaceBeyond> beyondLimit;
-
-    double largest() const { return fromFineMm > toFineMm ? fromFineMm : toFineMm; }
+    /// No point of the full-resolution surface is farther from the simplified one, and none of the
+    /// latter from the former.
+    double largestMm = 0;
+    std::vector<Vec3> beyondLimit;  ///< places, metric frame
 };
 
 /// Proves bounds by going over both surfaces brick by brick, the full-resolution one made anew.
 /// Nothing of what the simplification believed is trusted, except for where to look first.
+///
+/// What was proved of one surface holds for the next as far as both are the same: a triangle of
+/// both lies as near to the full-resolution surface as before, and a piece of the latter has not
+/// lost what is near it where no triangle came or went within the limit.
 class ErrorProof {
 public:
     /// \param limitMm  what is farther than that is noted in ErrorBound::beyondLimit
     ErrorProof(const LatticeSampler& sampler, const Bricks& bricks, const MetricFrame& frame,
-               double limitMm)
-        : sampler_(sampler), bricks_(bricks), frame_(frame), limitMm_(limitMm) {}
+               double limitMm);
 
-    /// Bricks near which the surface has not changed since the last time are not gone over again.
+    /// What was proved of the last surface is not proved again.
     ErrorBound prove(const SimplifiedSurface& surface);
 
 private:
+    ProofScope scopeOf(const SurfaceLookup& lookup) const;
+    void markAround(const Corners& triangle, double distanceMm, ProofScope& scope) const;
+    void remember(const SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond);
+
     const LatticeSampler& sampler_;
     const Bricks& bricks_;
     const MetricFrame& frame_;
     double limitMm_;
-    std::unique_ptr<SurfaceLookup> lookup_;  ///< of the last time
-    std::vector<BrickBound> results_;        ///< of each brick
+    double provedMm_ = 0;              ///< so far, of what lies within the limit
+    std::vector<Corners> known_;       ///< triangles of the last surface within it, ascending
+    std::vector<PlaceBeyond> beyond_;  ///< of the last surface
 };
 
 }  // namespace adaptiso::detail

@@ -92,6 +92,7 @@ ErrorTracker::Move ErrorTracker::nearest(const ChangedStar& changed, std::uint32
 bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
     const double most = maxDistanceMm * maxDistanceMm;
     moves_.clear();
+    movedPositions_.clear();
     sumOfSquares_ = 0;
     isCrowded_ = false;
     const bool isNear = forEachTriangle(changed.star, [&](std::uint32_t triangle, int wedge) {
@@ -102,6 +103,7 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
             if (!(squared <= std::ldexp(most, -patch_.samples[s].tightness))) return false;
             sumOfSquares_ += squared;
             moves_.push_back(move);
+            movedPositions_.push_back(patch_.samples[s].position);
         }
         return true;
     });
@@ -112,16 +114,19 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
 /// About how far a point lies from the full-resolution surface, larger where that must be tight:
 /// its height over the tangent plane at the nearest sample of the last assign().
 double ErrorTracker::heightAt(const Vec3& p) const {
-    double nearest = kInfinity;
-    std::uint32_t at = 0;
-    for (const Move& move : moves_) {
-        const double squared = squaredNorm(patch_.samples[move.sample].point() - p);
+    const std::array<float, 3> q = Sample::positionOf(p);
+    float nearest = std::numeric_limits<float>::infinity();
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < movedPositions_.size(); ++i) {
+        const auto& s = movedPositions_[i];
+        const float x = s[0] - q[0], y = s[1] - q[1], z = s[2] - q[2];
+        const float squared = x * x + y * y + z * z;
         if (squared < nearest) {
             nearest = squared;
-            at = move.sample;
+            at = i;
         }
     }
-    const Sample& sample = patch_.samples[at];
+    const Sample& sample = patch_.samples[moves_[at].sample];
     const double height = std::abs(dot(toVec3(sample.normal), p - sample.point()));
     return sample.tightness == 0 ? height : height * std::exp2(0.5 * sample.tightness);
 }

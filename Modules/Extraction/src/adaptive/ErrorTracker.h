@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -50,6 +51,7 @@ private:
     std::vector<std::uint32_t> firstSample_, nextSample_;
     std::vector<std::uint8_t> triangleIsCrowded_;
     std::vector<Move> moves_;
+    std::vector<std::array<float, 3>> movedPositions_;  ///< of the moves' samples, side by side
     double sumOfSquares_ = 0;
     bool isCrowded_ = false;
 };

@@ -28,9 +28,6 @@ public:
     }
     const adaptiso::Triangle& triangle(std::uint64_t t) const { return mesh_.triangles[t]; }
     const Vec3& point(VertexId v) const { return mesh_.points[v]; }
-    std::uint64_t nearestTriangle(const Vec3& p) const {
-        return static_cast<std::uint64_t>(tree_.closestPoint(p).triangle);
-    }
     /// Calls f(corners) for all triangles that may lie within a distance of a piece.
     template <class F>
     void forEachNear(const Corners& piece, double distanceMm, const F& f) const {

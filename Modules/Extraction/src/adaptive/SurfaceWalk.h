@@ -12,14 +12,37 @@
 
 namespace adaptiso::detail {
 
-/// A convex part of a triangle.
-struct ConvexPiece {
+/// A convex part of a triangle. Copies what there is of it alone: walks copy a lot.
+class ConvexPiece {
+public:
     static constexpr int kMost = 12;
-    int count = 0;
-    std::array<Vec3, kMost> corner;
 
-    ConvexPiece() = default;
-    explicit ConvexPiece(const Corners& t) : count(3) { std::copy_n(t.begin(), 3, corner.begin()); }
+    ConvexPiece() {}  // NOLINT: numbers without a corner mean nothing
+    explicit ConvexPiece(const Corners& t) {
+        for (const Vec3& p : t) add(p);
+    }
+    ConvexPiece(const ConvexPiece& o) { *this = o; }  // NOLINT: as above
+    ConvexPiece& operator=(const ConvexPiece& o) {
+        count_ = o.count_;
+        std::copy_n(o.number_.begin(), 3 * count_, number_.begin());
+        return *this;
+    }
+    ~ConvexPiece() = default;
+
+    int count() const { return count_; }
+    Vec3 corner(int i) const {
+        const auto at = static_cast<std::size_t>(3 * i);
+        return {number_[at], number_[at + 1], number_[at + 2]};
+    }
+    /// \pre count() < kMost
+    void add(const Vec3& p) {
+        const auto at = static_cast<std::size_t>(3 * count_++);
+        number_[at] = p.x, number_[at + 1] = p.y, number_[at + 2] = p.z;
+    }
+
+private:
+    int count_ = 0;
+    std::array<double, std::size_t{3} * kMost> number_;
 };
 
 /// A surface with the triangle across each edge, for walks from triangle to triangle.
@@ -116,69 +139,94 @@ private:
         ConvexPiece piece;
         std::uint64_t triangle;
     };
-    using Sides = std::array<double, ConvexPiece::kMost>;
-
-    static bool isWithin(const ConvexPiece& piece, const Corners& t, double squaredDistance) {
-        for (int i = 0; i < piece.count; ++i) {
-            if (!(squaredDistanceToTriangle(piece.corner[i], t) <= squaredDistance)) return false;
+    /// A triangle, ready for many points' distances.
+    class Near {
+    public:
+        Near(const Corners& t, const Vec3& normal, double squaredDistance)
+            : t_(t), normal_(normal), squared_(squaredDistance), e_(t[1] - t[0]), f_(t[2] - t[0]) {
+            const double ee = squaredNorm(e_), ef = dot(e_, f_), ff = squaredNorm(f_);
+            const double inverse = 1 / (ee * ff - ef * ef);
+            ee_ = inverse * ee, ef_ = inverse * ef, ff_ = inverse * ff;
         }
-        return true;
-    }
+        bool has(const Vec3& p) const {
+            const Vec3 q = p - t_[0];
+            const double height = dot(normal_, q);
+            if (height * height > squared_) return false;
+            const double d = dot(q, e_), g = dot(q, f_);
+            const double u = ff_ * d - ef_ * g, v = ee_ * g - ef_ * d;
+            if (u >= 0 && v >= 0 && u + v <= 1) return true;  // above the triangle
+            return squaredDistanceToTriangle(p, t_) <= squared_;
+        }
+        bool has(const ConvexPiece& piece) const {
+            for (int i = 0; i < piece.count(); ++i) {
+                if (!has(piece.corner(i))) return false;
+            }
+            return true;
+        }
+
+    private:
+        const Corners& t_;
+        const Vec3& normal_;
+        double squared_;
+        Vec3 e_, f_;
+        double ee_, ef_, ff_;
+    };
 
     template <class Index>
     void step(ConvexPiece piece, const WalkableSurface<Index>& surface, Index t,
               double squaredDistance) {
         const Corners corners = surface.cornersOf(t);
-        if (isWithin(piece, corners, squaredDistance)) return;
+        const Vec3& normal = surface.normalOf(t);
+        const Near near(corners, normal, squaredDistance);
+        if (near.has(piece)) return;
         bool isCut = false;
         for (int c = 0; c < 3; ++c) {
             const Index next = surface.across(t, c);
             if (next == WalkableSurface<Index>::kNone) continue;
-            const Vec3 outward = cross(corners[(c + 1) % 3] - corners[c],
-                                       surface.normalOf(t) + surface.normalOf(next));
-            Sides side;
+            const Vec3 edge = corners[(c + 1) % 3] - corners[c];
+            const Vec3 outward = cross(edge, normal + surface.normalOf(next));
             double most = 0, least = 0;
-            for (int i = 0; i < piece.count; ++i) {
-                side[i] = dot(outward, piece.corner[i] - corners[c]);
-                most = std::max(most, side[i]);
-                least = std::min(least, side[i]);
+            for (int i = 0; i < piece.count(); ++i) {
+                side_[i] = dot(outward, piece.corner(i) - corners[c]);
+                most = std::max(most, side_[i]);
+                least = std::min(least, side_[i]);
             }
-            const double hair = kHair * squaredNorm(corners[(c + 1) % 3] - corners[c]);
+            const double hair = kHair * squaredNorm(edge);
             if (most <= hair) continue;
             if (least >= -hair) {
                 todo_.push_back({piece, static_cast<std::uint64_t>(next)});
                 return;
             }
-            if (piece.count + 2 > ConvexPiece::kMost) {
+            if (piece.count() + 2 > ConvexPiece::kMost) {
                 left_.push_back(piece);
                 return;
             }
-            ConvexPiece inner, outer;
-            cut(piece, side, inner, outer);
-            todo_.push_back({outer, static_cast<std::uint64_t>(next)});
-            piece = inner;
+            todo_.push_back({ConvexPiece(), static_cast<std::uint64_t>(next)});
+            piece = cut(piece, todo_.back().piece);
             isCut = true;
         }
-        if (!isCut || !isWithin(piece, corners, squaredDistance)) left_.push_back(piece);
+        if (!isCut || !near.has(piece)) left_.push_back(piece);
     }
 
-    static void cut(const ConvexPiece& piece, const Sides& side, ConvexPiece& inner,
-                    ConvexPiece& outer) {
-        const auto add = [](ConvexPiece& to, const Vec3& p) { to.corner[to.count++] = p; };
-        for (int i = 0; i < piece.count; ++i) {
-            const int j = i + 1 == piece.count ? 0 : i + 1;
-            add(side[i] > 0 ? outer : inner, piece.corner[i]);
-            if ((side[i] > 0) == (side[j] > 0)) continue;
-            const Vec3 p = piece.corner[i] +
-                           side[i] / (side[i] - side[j]) * (piece.corner[j] - piece.corner[i]);
-            add(inner, p);
-            add(outer, p);
+    /// \param outer  gets the part on the positive sides \return the other part
+    ConvexPiece cut(const ConvexPiece& piece, ConvexPiece& outer) const {
+        ConvexPiece inner;
+        for (int i = 0; i < piece.count(); ++i) {
+            const int j = i + 1 == piece.count() ? 0 : i + 1;
+            (side_[i] > 0 ? outer : inner).add(piece.corner(i));
+            if ((side_[i] > 0) == (side_[j] > 0)) continue;
+            const Vec3 from = piece.corner(i);
+            const Vec3 p = from + side_[i] / (side_[i] - side_[j]) * (piece.corner(j) - from);
+            inner.add(p);
+            outer.add(p);
         }
+        return inner;
     }
 
     /// Of a triangle's edge: what lies less than that beyond it stays.
     static constexpr double kHair = 1e-9;
 
+    std::array<double, ConvexPiece::kMost> side_{};  ///< of the corners to the plane at an edge
     std::vector<Task> todo_;
     std::vector<ConvexPiece> left_;
 };
