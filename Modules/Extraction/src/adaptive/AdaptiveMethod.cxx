@@ -94,9 +94,7 @@ public:
         }
         for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
             const std::int64_t before = surface.triangleCount();
-            cost *= before > 2 * target                                                 ? 16
-                    : static_cast<double>(before) > kNear * static_cast<double>(target) ? 4
-                                                                                        : 2;
+            cost *= costStep(before, target);
             if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
             roundTowards(surface, target, cost);
             if (cost > kLastCost) idle = surface.triangleCount() == before ? idle + 1 : 0;
@@ -114,13 +112,20 @@ private:
     static constexpr double kHalfway = 2;
     /// A round that leaves more than this part of the triangles was hardly worth it.
     static constexpr double kWorthwhile = 0.99;
-    /// A count up to this part of the wanted one is reached by small steps.
+    /// Up to this part of the wanted count steps are large, and up to the other one middling.
+    static constexpr std::int64_t kFar = 2;
     static constexpr double kNear = 1.4;
 
     /// Cuts in turn, so that what straddles one cut lies within the next.
     PatchCut nextCut() {
         ++rounds_;
         return {Brick::kSide, rounds_ % 2 == 1 ? Brick::kSide / 2 : 0};
+    }
+
+    /// How much the limit of cost may grow in a round.
+    static double costStep(std::int64_t triangles, std::int64_t target) {
+        if (triangles > kFar * target) return 16;
+        return static_cast<double>(triangles) > kNear * static_cast<double>(target) ? 4 : 2;
     }
 
     void roundUpTo(double cost, SimplifiedSurface& surface) {
@@ -143,27 +148,40 @@ private:
         }
     }
 
-    /// A round up to a cost; undone and done again with a lower one where it leads below the
-    /// target.
+    /// A round up to a cost that does not lead below the target.
     void roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
-        const PatchCut cut = nextCut();
         const std::int64_t wanted = (surface.triangleCount() - target + 1) / 2;
+        limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
+        if (surface.triangleCount() > kFar * target) {
+            PatchWork work{limits_};
+            work.mostCollapses = wanted;  // not reached but by a cost far too high
+            simplifyPatches(surface, nextCut(), frame_, work);
+        } else {
+            landOn(wanted, surface);
+        }
+    }
+
+    /// A round up to the limit of cost; where that makes more collapses than wanted it is undone,
+    /// and done again with the cost that makes as many.
+    void landOn(std::int64_t wanted, SimplifiedSurface& surface) {
+        const PatchCut cut = nextCut();
+        const double cost = limits_.maxCost;
         const SurfaceState before = surface;
         CollapseCosts costs;
-        limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
         simplifyPatches(surface, cut, frame_, {limits_}, &costs);
-        if (surface.triangleCount() >= target) return;
+        std::int64_t more = wanted - (before.triangleCount() - surface.triangleCount()) / 2;
+        if (more >= 0) return;
         surface.state() = before;
         limits_.maxCost = costLimitFor(costs, wanted);
         PatchWork work{limits_};
         work.fits = true;
         simplifyPatches(surface, cut, frame_, work);
         isFitted_ = true;
-        // what is left are collapses of one cost
-        if (surface.triangleCount() > target) {
-            limits_.maxCost = cost * costUnit_;
+        more = wanted - (before.triangleCount() - surface.triangleCount()) / 2;
+        if (more > 0) {  // collapses of one cost
+            limits_.maxCost = cost;
             PatchWork rest{limits_};
-            rest.mostCollapses = (surface.triangleCount() - target + 1) / 2;
+            rest.mostCollapses = more;
             simplifyPatches(surface, cut, frame_, rest);
         }
     }

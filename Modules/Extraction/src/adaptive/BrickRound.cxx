@@ -39,7 +39,7 @@ struct BrickSurface {
     struct WallVertex {
         std::uint64_t edge;
         std::uint32_t vertex;
-        Normal normal;
+        Vec3 normal;
         bool isSingleSheet;
     };
     std::vector<WallVertex> walls;
@@ -92,8 +92,8 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, Patch& 
         if (std::min({dot(a, b), dot(b, c), dot(c, a)}) > kLeastCosine) continue;
         const Vec3 &p = patch.points[v[0]], &q = patch.points[v[1]], &r = patch.points[v[2]];
         Sample& middle = patch.samples.emplace_back();
-        middle.position = Sample::positionOf((1.0 / 3) * (p + q + r));
-        middle.normal = toNormal(areaVector2(p, q, r));
+        middle.setPoint((1.0 / 3) * (p + q + r));
+        middle.setNormal(areaVector2(p, q, r));
         middle.isSingleSheet = fine.vertices[v[0]].isSingleSheet &&
                                fine.vertices[v[1]].isSingleSheet &&
                                fine.vertices[v[2]].isSingleSheet;
@@ -125,13 +125,15 @@ Patch patchOf(const FineSurface& fine, const MetricFrame& frame, BrickSurface& b
     }
     for (std::uint32_t v = 0; v < fine.vertices.size(); ++v) {
         const FineVertex& vertex = fine.vertices[v];
-        const Normal normal = toNormal(areas[v]);
         if (vertex.isOnWall) {
-            brick.walls.push_back({vertex.edge.word, v, normal, vertex.isSingleSheet});
+            brick.walls.push_back(
+                {vertex.edge.word, v, normalized(areas[v]), vertex.isSingleSheet});
             continue;
         }
-        patch.samples.push_back(
-            {Sample::positionOf(patch.points[v]), normal, vertex.isSingleSheet, 0});
+        Sample& sample = patch.samples.emplace_back();
+        sample.setPoint(patch.points[v]);
+        sample.setNormal(areas[v]);
+        sample.isSingleSheet = vertex.isSingleSheet;
         patch.sampleTriangle.push_back(triangleAt[v]);
     }
     addMiddles(fine, areas, patch);
@@ -177,7 +179,7 @@ private:
     struct WallEntry {
         std::uint64_t edge;
         std::uint32_t brick, vertex;
-        Normal normal;
+        Vec3 normal;
         bool isSingleSheet;
         StoredQuadric quadric;
     };
@@ -275,11 +277,11 @@ private:
             Vec3 normal;
             for (j = i; j < walls_.size() && walls_[j].edge == walls_[i].edge; ++j) {
                 sample.isSingleSheet = sample.isSingleSheet && walls_[j].isSingleSheet;
-                normal += toVec3(walls_[j].normal);
+                normal += walls_[j].normal;
             }
             const std::uint64_t id = number_[walls_[i].brick][walls_[i].vertex];
-            sample.position = Sample::positionOf(whole_.points[id]);
-            sample.normal = toNormal(normal);
+            sample.setPoint(whole_.points[id]);
+            sample.setNormal(normal);
             sample.tightness = tight_.tightnessAt(frame_.toIndex(whole_.points[id]));
             whole_.samples.push_back(sample);
             whole_.sampleTriangle.push_back(triangleAt[id]);

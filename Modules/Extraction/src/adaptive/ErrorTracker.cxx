@@ -127,7 +127,7 @@ double ErrorTracker::heightAt(const Vec3& p) const {
         }
     }
     const Sample& sample = patch_.samples[moves_[at].sample];
-    const double height = std::abs(dot(toVec3(sample.normal), p - sample.point()));
+    const double height = std::abs(dot(sample.normal(), p - sample.point()));
     return sample.tightness == 0 ? height : height * std::exp2(0.5 * sample.tightness);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -14,12 +15,27 @@ namespace adaptiso::detail {
 /// triangle where the surface bends.
 struct Sample {
     std::array<float, 3> position{};
-    Normal normal;
-    bool isSingleSheet = true;  ///< see FineVertex
+    std::array<std::int16_t, 3> direction{};  ///< of the normal, in parts of kUnit
+    bool isSingleSheet = true;                ///< see FineVertex
     /// How often the square of the allowed distance is halved, see TightPlaces.
     std::uint8_t tightness = 0;
 
+    static constexpr double kUnit = 32767;
+
     Vec3 point() const { return {position[0], position[1], position[2]}; }
+    Vec3 normal() const {
+        return (1 / kUnit) * Vec3{static_cast<double>(direction[0]),
+                                  static_cast<double>(direction[1]),
+                                  static_cast<double>(direction[2])};
+    }
+    void setPoint(const Vec3& p) { position = positionOf(p); }
+    /// \param n  of any length
+    void setNormal(const Vec3& n) {
+        const Vec3 unit = kUnit * normalized(n);
+        for (int a = 0; a < 3; ++a) {
+            direction[a] = static_cast<std::int16_t>(std::lround(unit[a]));
+        }
+    }
     static std::array<float, 3> positionOf(const Vec3& p) {
         return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
     }

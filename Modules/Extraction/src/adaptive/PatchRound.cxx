@@ -31,6 +31,10 @@ void removeGone(SurfaceState& surface) {
         for (std::uint64_t& v : t) v = newVertex[v];
     }
     for (std::uint64_t& t : surface.sampleTriangle) t = newTriangle[t];
+    surface.triangles.shrink_to_fit();
+    surface.points.shrink_to_fit();
+    surface.states.shrink_to_fit();
+    surface.quadrics.shrink_to_fit();
 }
 
 }  // namespace
