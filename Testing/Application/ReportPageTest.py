@@ -224,6 +224,13 @@ class EveryProgram(ReportTest):
         self.assertLessEqual({"surface-1.png", "surface-2.png", "contours-axial.png"},
                              self.pictures())
 
+    def test_mesh_knows_of_crossings_that_need_no_counting(self):
+        for method, verdict in (("adaptive", "no triangle crosses another"),
+                                ("mc", "crossings were not looked for")):
+            page = self.run_program("adaptiso-mesh", "ball.nii", "--iso", "100", "--method", method,
+                                    "--no-check-crossings", "-o", method + ".ply")
+            self.assertIn(verdict, page.text())
+
     def test_mesh_writes_nothing_when_it_fails(self):
         before = self.contents()
         self.assert_fails(BAD_INPUT, "no voxel reaches it", "ball.nii", "--iso", "1000",
