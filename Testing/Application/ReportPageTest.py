@@ -283,6 +283,8 @@ class EveryProgram(ReportTest):
         self.assertIn("surface-1.png", self.pictures())
         self.assertEqual(sorted(p.name for p in self.path("model").iterdir()),
                          ["report.json", "spots.png"])
+        self.assertEqual(self.path("model/spots.png").read_bytes(),
+                         self.path("pictures/spots.png").read_bytes())
 
 
 class InTheBrowser(ReportTest):
