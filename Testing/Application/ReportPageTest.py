@@ -5,15 +5,12 @@ import math
 import os
 import re
 import subprocess
-import sys
 import unittest
 from pathlib import Path
 
 import browser
-from support import BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, ApplicationTest, ball, write_nifti
-
-sys.path.insert(0, str(SOURCE / "Testing" / "Support"))
-from headDefects import icosphere, write_off  # noqa: E402
+from support import BAD_INPUT, BIN, CHECK_FAILED, OK, ApplicationTest, ball, write_nifti
+from headDefects import icosphere, write_off
 
 CHECK = str(BIN / "adaptiso-check")
 EXPECTED = Path(__file__).parent / "expected"
