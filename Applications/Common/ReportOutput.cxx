@@ -4,7 +4,6 @@
 #include "Common/Numbers.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Report/Page.h"
-#include "adaptiso/Report/Pictures.h"
 
 namespace adaptiso {
 
@@ -47,12 +46,12 @@ PictureFolder::~PictureFolder() {
     if (isMine_) fs::remove(folder_, error);  // refuses a folder that holds something
 }
 
-void writeReport(Report& report, const std::string& program, const ReportOptions& options,
-                 std::vector<AtomicOutput>& outputs) {
+std::vector<Picture> writeReport(Report& report, const std::string& program,
+                                 const ReportOptions& options, std::vector<AtomicOutput>& outputs) {
     report.program = program;
     report.version = programVersion();
     report.date = reportDate();
-    const std::vector<Picture> pictures = drawPictures(report);
+    std::vector<Picture> pictures = drawPictures(report);
     if (!options.pictures.empty()) {
         for (const Picture& picture : pictures) {
             outputs.emplace_back(options.pictures / picture.name).writeText(picture.png);
@@ -61,6 +60,7 @@ void writeReport(Report& report, const std::string& program, const ReportOptions
     if (!options.page.empty()) {
         outputs.emplace_back(options.page).writeText(htmlPage(report, pictures));
     }
+    return pictures;
 }
 
 std::vector<ReportFact> imageFacts(const std::string& name, const std::string& format,

@@ -9,6 +9,7 @@
 #include "Common/AtomicOutput.h"
 #include "Common/Resources.h"
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Report/Pictures.h"
 #include "adaptiso/Report/Report.h"
 
 namespace adaptiso {
@@ -44,11 +45,12 @@ private:
     bool isMine_ = false;
 };
 
-/// Draws the pictures and writes them, and the page, under temporary names. Program, version and
-/// date are filled in. The folder of --pictures must be there (PictureFolder).
-/// \throws FileError
-void writeReport(Report& report, const std::string& program, const ReportOptions& options,
-                 std::vector<AtomicOutput>& outputs);
+/// Draws the pictures and writes them, and the page, under temporary names: what of them is asked
+/// for. Program, version and date are filled in. The folder of --pictures must be there
+/// (PictureFolder).
+/// \return the pictures  \throws FileError
+std::vector<Picture> writeReport(Report& report, const std::string& program,
+                                 const ReportOptions& options, std::vector<AtomicOutput>& outputs);
 
 /// Size, voxel and format of an image, in words.
 std::vector<ReportFact> imageFacts(const std::string& name, const std::string& format,

@@ -19,7 +19,6 @@
 #include "ReportPage.h"
 #include "SurfaceSteps.h"
 #include "TextReport.h"
-#include "adaptiso/Report/Pictures.h"
 
 namespace adaptiso {
 namespace {
@@ -151,13 +150,23 @@ void fillFolder(const std::vector<TriangleMesh>& surfaces, BemRun& run,
     folder.emplace(options.output, replaceable(options));
 }
 
-/// Puts a picture of the places where a model failed into its folder, where such places are known.
-void drawSpots(const BemRun& run, const std::vector<TriangleMesh>& shown, AtomicFolder& folder) {
-    const Report page = makeReport(run, shown);
-    if (page.spots.empty()) return;
-    for (const Picture& picture : drawPictures(page)) {
-        if (picture.name == "spots.png") folder.writeText(picture.name, picture.png);
-    }
+/// Shows the run as asked for. Where there is no model and places are known where it failed, a
+/// picture of them goes into the model's folder in its stead.
+/// \param folder  none with --dry-run
+void show(BemRun& run, const std::vector<TriangleMesh>& shown, std::vector<AtomicOutput>& outputs,
+          std::optional<AtomicFolder>& folder) {
+    const bool showsFailure = folder && !run.hasModel();
+    const ReportOptions& asked = run.options.report;
+    if (!asked.isWanted() && !showsFailure) return;
+    Report page = makeReport(run, shown);
+    if (!asked.isWanted() && page.spots.empty()) return;
+    run.timer.time("report", [&] {
+        for (const Picture& picture : writeReport(page, "adaptiso-bem", asked, outputs)) {
+            if (showsFailure && picture.name == "spots.png") {
+                folder->writeText(picture.name, picture.png);
+            }
+        }
+    });
 }
 
 /// Writes the folder (the report and a picture alone when there is no model) and all else, or
@@ -171,17 +180,9 @@ std::string write(const std::vector<TriangleMesh>& surfaces, const std::vector<T
     std::optional<AtomicFolder> folder;
     if (!options.isDryRun) {
         fillFolder(surfaces, run, folder);
-        if (run.hasModel()) {
-            outputs = writeSubject(surfaces, run);
-        } else {
-            run.timer.time("report", [&] { drawSpots(run, shown, *folder); });
-        }
+        if (run.hasModel()) outputs = writeSubject(surfaces, run);
     }
-    if (options.report.isWanted()) {
-        Report page = makeReport(run, shown);
-        run.timer.time("report",
-                       [&] { writeReport(page, "adaptiso-bem", options.report, outputs); });
-    }
+    show(run, shown, outputs, folder);
     const std::string json = jsonReport(run);
     if (folder) folder->writeText("report.json", json);
     if (hasJsonFile(options)) outputs.emplace_back(options.common.json).writeText(json);

@@ -83,8 +83,8 @@ void checkCombinations(const MeshOptions& options) {
     }
     if (options.adjustVertices && options.method != Method::DiscretizedMarchingCubes) {
         throw UsageError(
-            "--adjust-vertices: is for --method dmc; the vertices of the other methods "
-            "lie on the crossings already");
+            "--adjust-vertices: is for --method dmc; no other method has its vertices at "
+            "midpoints");
     }
     const bool isForAdaptive = !(options.adaptive == AdaptiveOptions{}) || options.verifies;
     if (isForAdaptive && options.method != Method::Adaptive) {
@@ -94,8 +94,7 @@ void checkCombinations(const MeshOptions& options) {
     }
     if (options.mergeWithinBlocks && options.method != Method::DiscretizedMarchingCubes) {
         throw UsageError(
-            "--merge-within-blocks: is for --method dmc; boxes merges as far as it "
-            "can, the other methods do not merge facets");
+            "--merge-within-blocks: is for --method dmc; no other method can merge within blocks");
     }
 }
 
@@ -156,7 +155,7 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
            "--max-error", options.adaptive.maxErrorMm,
            "Method adaptive: no point of the surface of mc is farther than MM from the mesh, "
            "nor the other way round (default, unless a count is given: a quarter of the "
-           "voxel)")
+           "least distance between planes of voxels)")
         ->type_name("MM")
         ->check(CLI::PositiveNumber)
         ->group(kSurface);
@@ -187,9 +186,10 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
     app.add_flag("--merge-within-blocks", options.mergeWithinBlocks,
                  "Merge facets of the method dmc within blocks of --block-size voxels only")
         ->group(kSurface);
-    addChoice<int>(app, "--block-size", options.index.blockSize,
-                   {{"2", 2}, {"4", 4}, {"8", 8}, {"16", 16}},
-                   "Largest box of the methods boxes and asc, in voxels a side (default: 4)")
+    addChoice<int>(
+        app, "--block-size", options.index.blockSize, {{"2", 2}, {"4", 4}, {"8", 8}, {"16", 16}},
+        "Voxels a side of the index's blocks, and of the largest box of the methods boxes "
+        "and asc (default: 4)")
         ->group(kSurface);
     addChoice<Border>(app, "--border", options.index.border,
                       {{"closed", Border::Closed}, {"open", Border::Open}},
@@ -258,8 +258,8 @@ void declareOutput(CLI::App& app, MeshOptions& options) {
         ->group(kOutput);
     app.add_flag_callback(
            "--no-check-crossings", [&options] { options.checksCrossings = false; },
-           "Do not count the pairs of triangles that cross each other for the reports (the "
-           "method adaptive makes none)")
+           "Do not count the pairs of triangles that cross each other. The method adaptive makes "
+           "none and counts none, whether given or not")
         ->group(kOutput);
     declareReportOptions(app, options.report, kOutput);
 }

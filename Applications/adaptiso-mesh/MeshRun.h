@@ -57,7 +57,7 @@ struct SurfaceSummary {
     TopologyReport topology;          ///< of what was written
     double areaMm2 = 0;
     std::optional<double> volumeMm3;            ///< none of an open surface
-    std::optional<std::int64_t> crossingPairs;  ///< none when not asked for
+    std::optional<std::int64_t> crossingPairs;  ///< 0 of Method::Adaptive; none when not asked for
     std::optional<Verification> verification;   ///< none when not asked for
     std::filesystem::path file;
     const MeshFormat* format = nullptr;

@@ -20,15 +20,16 @@ void tellVerdict(const MeshRun& run, Report& report) {
                        ? "Surface of " + baseName(run.options.input)
                        : std::to_string(count) + " surfaces of " + baseName(run.options.input);
     std::int64_t crossings = 0;
-    bool areClosed = true;
+    bool isKnown = true, areClosed = true;
     for (const SurfaceSummary& surface : run.surfaces) {
         crossings += surface.crossingPairs.value_or(0);
+        isKnown = isKnown && surface.crossingPairs.has_value();
         areClosed = areClosed && surface.topology.isClosed();
     }
     report.headline = std::string(count == 1 ? "Written: manifold" : "All written: manifold") +
                       (areClosed ? ", closed" : ", open at the image's border") +
                       " and facing outward";
-    report.headline += !run.options.checksCrossings ? "; crossings were not looked for."
+    report.headline += !isKnown ? "; crossings were not looked for."
                        : crossings == 0
                            ? "; no triangle crosses another."
                            : "; " + formatCount(crossings) + (crossings == 1 ? " pair" : " pairs") +

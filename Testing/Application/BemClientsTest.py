@@ -18,12 +18,10 @@ except ImportError as missing:
 
 sys.path.insert(0, str(SOURCE / "Testing" / "Benchmark"))
 import solveSpheres  # noqa: E402  (the analytic potentials and MNE's)
+from bemSpheres import CENTRE, NAMES, RADII, scanner_points  # noqa: E402
 
 BEM = str(BIN / "adaptiso-bem")
 TEMPLATES = Path("/usr/share/mricron/templates")
-NAMES = ("inner_skull", "outer_skull", "outer_skin")
-CENTRE = np.array([3.3, -7.1, 5.7])  # scanner RAS, off the voxels' lattice
-RADII = (80, 86, 92)
 
 mne.set_log_level("error")
 
@@ -48,17 +46,6 @@ def part_of_ball(points, radius, steps=5):
         count += np.linalg.norm(points[near] + offset - CENTRE, axis=-1) <= radius
     part[near] = count / steps ** 3
     return part
-
-
-def scanner_points(path):
-    """Points in scanner RAS by the footer, as nibabel reads it, and triangles."""
-    points, triangles, info = nibabel.freesurfer.read_geometry(path, read_metadata=True)
-    header = nibabel.freesurfer.MGHImage(np.zeros(info["volume"], np.uint8), np.eye(4)).header
-    header["delta"] = info["voxelsize"]
-    header["Mdc"] = np.array([info["xras"], info["yras"], info["zras"]])
-    header["Pxyz_c"] = info["cras"]
-    move = header.get_vox2ras() @ np.linalg.inv(header.get_vox2ras_tkr())
-    return points @ move[:3, :3].T + move[:3, 3], triangles
 
 
 class ClientTest(ApplicationTest):

@@ -5,118 +5,12 @@ import math
 import os
 import re
 import subprocess
-import sys
 import unittest
 from pathlib import Path
 
-from support import (BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, USAGE, ApplicationTest, Image, main,
-                     write_nifti)
-
-sys.path.insert(0, str(SOURCE / "Testing" / "Support"))
-from headDefects import DEFECTS, good, write_off as write_head_off  # noqa: E402
-
-BEM = str(BIN / "adaptiso-bem")
-CHECK = str(BIN / "adaptiso-check")
-README = SOURCE / "Applications" / "adaptiso-bem" / "README.md"
-NAMES = ("inner_skull", "outer_skull", "outer_skin")
-RADII = (60, 66, 72)
-STEP = 4
-# voxels of 4 mm, so that Python makes them quickly; the working grid is 3 mm
-QUICK = ("--voxel", "3", "--vertices", "162", "--closing", "4")
-
-
-def head(centre=(0, 0, 0), radii=RADII, n=44, origin=None, values=(1, 2, 3)):
-    """uint8 labels of three spheres; `centre` in RAS mm."""
-    origin = origin or (-STEP * (n - 1) / 2,) * 3
-    samples = bytearray()
-    squares = [r * r for r in radii]
-    for k in range(n):
-        for j in range(n):
-            for i in range(n):
-                d = sum((o + STEP * v - c) ** 2 for o, v, c in zip(origin, (i, j, k), centre))
-                samples.append(next((v for s, v in zip(squares, values) if d <= s), 0))
-    return Image((n, n, n), "B", bytes(samples), (STEP,) * 3, origin)
-
-
-LABELS = head()
-
-
-def read_tri(path):
-    """Points and triangles of an OpenMEEG .tri."""
-    words = path.read_text().split()
-    count = int(words[1])
-    values = list(map(float, words[2:2 + 6 * count]))
-    points = [tuple(values[6 * n:6 * n + 3]) for n in range(count)]
-    at = 2 + 6 * count
-    corners = list(map(int, words[at + 4:]))
-    return points, [tuple(corners[n:n + 3]) for n in range(0, len(corners), 3)]
-
-
-def volume(points, triangles):
-    return sum(a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
-               a[2] * (b[0] * c[1] - b[1] * c[0])
-               for a, b, c in ((points[i], points[j], points[k]) for i, j, k in triangles)) / 6
-
-
-def write_off(path, points, triangles):
-    lines = ["OFF", f"{len(points)} {len(triangles)} 0"]
-    lines += [f"{x} {y} {z}" for x, y, z in points]
-    lines += [f"3 {a} {b} {c}" for a, b, c in triangles]
-    path.write_text("\n".join(lines) + "\n")
-
-
-def globe(radius, rings=12, steps=24, centre=(0, 0, 0)):
-    """A closed outward sphere of triangles."""
-    points = [(0, 0, -radius)]
-    for ring in range(1, rings):
-        t = math.pi * ring / rings - math.pi / 2
-        for step in range(steps):
-            p = 2 * math.pi * step / steps
-            points.append((radius * math.cos(t) * math.cos(p), radius * math.cos(t) * math.sin(p),
-                           radius * math.sin(t)))
-    points.append((0, 0, radius))
-    def at(ring, step): return 1 + (ring - 1) * steps + step % steps
-    triangles = []
-    for step in range(steps):
-        triangles.append((0, at(1, step + 1), at(1, step)))
-        triangles.append((len(points) - 1, at(rings - 1, step), at(rings - 1, step + 1)))
-        for ring in range(1, rings - 1):
-            a, b = at(ring, step), at(ring, step + 1)
-            c, d = at(ring + 1, step), at(ring + 1, step + 1)
-            triangles += [(a, b, d), (a, d, c)]
-    return [tuple(v + o for v, o in zip(p, centre)) for p in points], triangles
-
-
-class BemTest(ApplicationTest):
-    program = BEM
-
-    def run_bem(self, *arguments, **options):
-        return subprocess.run([BEM, *map(str, arguments)], cwd=self.folder, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=300,
-                              **options)
-
-    def bem(self, *arguments, **options):
-        done = self.run_bem(*arguments, **options)
-        self.assertEqual(done.returncode, OK, done.stderr)
-        return done
-
-    def fails(self, code, pattern, *arguments):
-        before = self.contents()
-        done = self.run_bem(*arguments)
-        self.assertEqual(done.returncode, code, done.stderr)
-        self.assertRegex(done.stderr, pattern)
-        self.assertEqual(len(done.stderr.splitlines()), 2 if code == USAGE else 1, done.stderr)
-        self.assertEqual(done.stdout, "")
-        self.assertEqual(self.contents(), before)
-        self.assertFalse([p for p in self.names() if p.startswith(".adaptiso")])
-
-    def report(self, folder="model"):
-        return json.loads((self.folder / folder / "report.json").read_text())
-
-    def labels(self, name="seg.nii", image=LABELS):
-        write_nifti(self.path(name), image)
-        return ("--labels", name, "--tissue", "brain=1", "--tissue", "skull=2", "--tissue",
-                "scalp=3", *QUICK)
+from support import BAD_INPUT, CHECK_FAILED, OK, USAGE, Image, main, write_nifti
+from bemSupport import BEM, CHECK, NAMES, QUICK, RADII, README, BemTest, head, read_tri, volume
+from headDefects import DEFECTS, good, write_off
 
 
 class Model(BemTest):
@@ -250,98 +144,6 @@ class Presets(BemTest):
             self.assertLess(max(abs(math.dist(p, (0, 0, 0)) - radius) for p in points), 2.5)
 
 
-class Surfaces(BemTest):
-    def write(self, *meshes):
-        names = []
-        for n, (points, triangles) in enumerate(meshes):
-            names.append(f"s{n}.off")
-            write_off(self.path(names[-1]), points, triangles)
-        return names
-
-    def test_good_ones_stay_to_the_bit(self):
-        names = self.write(*(globe(r) for r in RADII))
-        self.bem("--surfaces", *names, "-o", "model")
-        for name, radius in zip(NAMES, RADII):
-            points, triangles = read_tri(self.path("model") / f"{name}.tri")
-            expected, corners = globe(radius)
-            self.assertEqual(triangles, corners)
-            for p, q in zip(points, expected):
-                self.assertLess(math.dist(p, q), 1e-6)  # nine digits
-
-    def test_inside_out_ones_are_turned(self):
-        points, triangles = globe(60)
-        names = self.write((points, [(a, c, b) for a, b, c in triangles]), globe(66), globe(72))
-        self.bem("--surfaces", *names, "-o", "model")
-        self.assertGreater(volume(*read_tri(self.path("model") / "inner_skull.tri")), 0)
-        self.assertRegex(" ".join(self.report()["notes"]), "inside out")
-
-    def test_crossing_ones_are_pushed_apart(self):
-        names = self.write(globe(60, centre=(4, 0, 0)), globe(62), globe(72))
-        self.bem("--surfaces", *names, "-o", "model")
-        report = self.report()
-        self.assertGreaterEqual(report["gaps"][0]["mm"], 2 - 1e-9)
-        self.assertEqual(report["surfaces"][0]["nesting"]["movedVertices"], 0)
-        self.assertGreater(report["surfaces"][1]["nesting"]["movedVertices"], 0)
-
-    def test_broken_ones_are_made_anew(self):
-        points, triangles = globe(60)
-        names = self.write((points, triangles[5:]), globe(66), globe(72))
-        self.bem("--surfaces", *names, "-o", "model", *QUICK)
-        report = self.report()
-        self.assertRegex(" ".join(report["notes"]), "made anew")
-        self.assertTrue(all(check["passed"] for check in report["checks"]))
-
-    def test_what_cannot_be_guaranteed_gives_the_report_alone_and_says_where(self):
-        # the outer skull lies far from the inner one
-        names = self.write(globe(60), globe(66, centre=(300, 0, 0)), globe(72))
-        done = self.run_bem("--surfaces", *names, "-o", "model", "--json", "-")
-        self.assertEqual(done.returncode, CHECK_FAILED, done.stderr)
-        self.assertRegex(done.stderr.splitlines()[-1],
-                         r"no model: .* at \(-?[\d.]+, -?[\d.]+, -?[\d.]+\) mm RAS")
-        self.assertEqual(sorted(os.listdir(self.path("model"))), ["report.json", "spots.png"])
-        self.assertTrue(Path(self.path("model"), "spots.png").read_bytes()
-                        .startswith(b"\x89PNG"))
-        report = json.loads(done.stdout)
-        self.assertEqual(report["model"], False)
-        self.assertGreater(len(report["findings"]), 0)
-
-    def test_metres_are_refused(self):
-        names = self.write(*(globe(r / 1000) for r in RADII))
-        done = self.run_bem("--surfaces", *names, "-o", "model")
-        self.assertEqual(done.returncode, CHECK_FAILED)
-        self.assertRegex(done.stderr, "too small; in metres?")
-        self.assertLessEqual(set(os.listdir(self.path("model"))), {"report.json", "spots.png"})
-
-    def test_needles_and_flat_triangles_are_remeshed_to_the_same_number(self):
-        # one vertex moved almost onto its neighbour
-        points, triangles = globe(60)
-        a, b = triangles[40][:2]
-        points[a] = tuple(p + 1e-4 * (q - p) for p, q in zip(points[b], points[a]))
-        names = self.write((points, triangles), globe(66), globe(72))
-        self.bem("--surfaces", *names, "-o", "model")
-        report = self.report()
-        self.assertRegex(" ".join(report["notes"]), "inner_skull: .*; remeshed")
-        self.assertEqual(report["surfaces"][0]["vertices"], len(points))
-        self.assertGreater(report["surfaces"][0]["minAngleDeg"]["p5"], 30)
-        self.assertEqual(report["surfaces"][1]["denseTriangles"], 0)  # taken as it came
-
-    def test_good_surfaces_of_more_vertices_than_mne_likes_are_told(self):
-        names = self.write(globe(60, 60, 60), globe(66, 60, 60), globe(72, 60, 60))
-        done = self.bem("--surfaces", *names, "-o", "model")
-        self.assertRegex(done.stderr, "10,626 vertices in all; MNE warns above 10,000")
-
-    def test_a_gap_that_rounding_of_the_files_would_lessen_is_kept(self):
-        # exactly the gap asked for: floats in the .surf files would fall short of it
-        names = self.write(globe(60), globe(62), globe(72))
-        self.bem("--surfaces", *names, "--min-gap", "1.5,2", "-o", "model")
-        gap = self.report()["gaps"][0]["mm"]
-        self.bem("--surfaces", *names, "--min-gap", f"{gap:.17g},2", "-o", "again")
-        files = [self.path("again") / f"{name}.surf" for name in NAMES]
-        check = subprocess.run([CHECK, "--nested", *files, "--min-gap", f"{gap:.17g}"],
-                               capture_output=True, text=True)
-        self.assertEqual(check.returncode, OK, check.stdout)
-
-
 @unittest.skipUnless(Path(CHECK).exists(), "needs adaptiso-check")
 class PlantedDefects(BemTest):
     """The 19 defects of the checker, given to the maker: a model that the checker passes, or a
@@ -368,7 +170,7 @@ class PlantedDefects(BemTest):
     def try_defect(self, name, model):
         files = [self.path(f"s{n}.off") for n in range(3)]
         for path, mesh in zip(files, model):
-            write_head_off(path, mesh)
+            write_off(path, mesh)
         # voxels of 3 mm where surfaces are made anew: for speed
         done = self.run_bem("--surfaces", *files, "--voxel", "3", "-o", "model", "--force")
         report = self.report()

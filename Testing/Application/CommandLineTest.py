@@ -2,7 +2,7 @@
 
 import re
 
-from support import MESH, OK, SOURCE, USAGE, ApplicationTest, ball, main, write_nifti
+from support import SOURCE, USAGE, ApplicationTest, ball, main, write_nifti
 
 README = SOURCE / "Applications" / "adaptiso-mesh" / "README.md"
 

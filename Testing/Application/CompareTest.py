@@ -1,4 +1,4 @@
-"""adaptiso-compare: numbers known on paper, frames, checks, reports and refusals."""
+"""adaptiso-compare: numbers known on paper, overlaps, colours, checks and reports."""
 
 import json
 import math
@@ -6,98 +6,14 @@ import re
 import subprocess
 import unittest
 
-from support import (BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, USAGE, ApplicationTest, Image, ball,
-                     main, write_4d_nifti, write_nifti)
+from support import BAD_INPUT, BIN, CHECK_FAILED, Image, ball, main, write_4d_nifti, write_nifti
+from compareSupport import README, CompareTest, plane, sphere
+from headDefects import cube
 
 try:
     import vtk
 except ImportError:  # Debian's python3-vtk9
     vtk = None
-
-COMPARE = str(BIN / "adaptiso-compare")
-README = SOURCE / "Applications" / "adaptiso-compare" / "README.md"
-
-RAS, LPS, TKRAS, VOXEL = "RAS mm", "LPS mm", "tkRAS mm", "voxel indices"
-
-
-def sphere(radius, steps=48, centre=(0, 0, 0)):
-    """Closed, outward: `steps` meridians, half as many parallels, vertices on the sphere."""
-    rings = steps // 2
-    points = [(0, 0, 1)]
-    for ring in range(1, rings):
-        polar = math.pi * ring / rings
-        for step in range(steps):
-            azimuth = 2 * math.pi * step / steps
-            points.append((math.sin(polar) * math.cos(azimuth),
-                           math.sin(polar) * math.sin(azimuth), math.cos(polar)))
-    points.append((0, 0, -1))
-    last = len(points) - 1
-    triangles = []
-    for step in range(steps):
-        after = (step + 1) % steps
-        triangles.append((0, 1 + step, 1 + after))
-        triangles.append((last, last - steps + after, last - steps + step))
-        for ring in range(rings - 2):
-            upper, lower = 1 + ring * steps, 1 + (ring + 1) * steps
-            triangles.append((upper + step, lower + step, lower + after))
-            triangles.append((upper + step, lower + after, upper + after))
-    return [tuple(radius * x + c for x, c in zip(p, centre)) for p in points], triangles
-
-
-def plane(height, size=10):
-    """The square [0, size]^2 at z = height, facing up."""
-    return ([(0, 0, height), (size, 0, height), (size, size, height), (0, size, height)],
-            [(0, 1, 2), (0, 2, 3)])
-
-
-def cube(low, high):
-    """Closed, outward, between two corners."""
-    points = [tuple((high if n >> axis & 1 else low)[axis] for axis in range(3))
-              for n in range(8)]
-    return points, [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4),
-                    (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
-
-
-def write_off(path, mesh, frame=RAS):
-    points, triangles = mesh
-    marker = f"# CoordinateFrame: {frame}\n" if frame else ""
-    path.write_text(f"OFF\n{marker}{len(points)} {len(triangles)} 0\n" +
-                    "".join("%.17g %.17g %.17g\n" % tuple(p) for p in points) +
-                    "".join("3 %d %d %d\n" % t for t in triangles))
-
-
-def to_lps(mesh):
-    points, triangles = mesh
-    return [(-x, -y, z) for x, y, z in points], triangles
-
-
-class CompareTest(ApplicationTest):
-    def write(self, name, mesh, frame=RAS):
-        write_off(self.path(name), mesh, frame)
-
-    def run_compare(self, *arguments):
-        return subprocess.run([COMPARE, *map(str, arguments)], cwd=self.folder, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=300)
-
-    def compare(self, *arguments):
-        """The report of a run that must succeed, without a word on stderr but warnings."""
-        done = self.run_compare(*arguments, "--json", "-")
-        self.assertEqual(done.returncode, OK, done.stderr)
-        report = json.loads(done.stdout)
-        self.assertEqual(done.stderr, "".join(f"adaptiso-compare: warning: {warning}\n"
-                                              for warning in report["warnings"]))
-        return report
-
-    def refused(self, code, pattern, *arguments):
-        before = self.contents()
-        done = self.run_compare(*arguments)
-        self.assertEqual(done.returncode, code, done.stderr)
-        self.assertRegex(done.stderr, pattern)
-        lines = done.stderr.splitlines()
-        self.assertEqual(len(lines), 2 if code == USAGE else 1, done.stderr)
-        self.assertTrue(lines[0].startswith("adaptiso-compare: "), lines[0])
-        self.assertEqual(done.stdout, "")
-        self.assertEqual(self.contents(), before)
 
 
 class Truth(CompareTest):
@@ -223,80 +139,6 @@ class Colored(CompareTest):
                                       "out.vtp")["colored"]["maximumMm"], 0)
 
 
-class Frames(CompareTest):
-    def setUp(self):
-        super().setUp()
-        self.write("ras.off", sphere(10, 24, (3, 5, 7)))
-
-    def assert_same(self, *arguments, warnings=()):
-        report = self.compare(*arguments, "--samples", "2000")
-        self.assertLess(report["distances"]["combined"]["maxMm"], 1e-5)  # .surf is float: 1e-6
-        self.assertGreater(report["b"]["volumeMm3"], 0)
-        self.assertEqual(len(report["warnings"]), len(warnings), report["warnings"])
-        for warning, pattern in zip(report["warnings"], warnings):
-            self.assertRegex(warning, pattern)
-        return report
-
-    def test_ras_and_lps_meet(self):
-        self.write("lps.off", to_lps(sphere(10, 24, (3, 5, 7))), LPS)
-        report = self.assert_same("ras.off", "lps.off")
-        self.assertEqual((report["a"]["coordinates"], report["b"]["coordinates"],
-                          report["coordinates"]), ("ras", "lps", "ras"))
-
-    def test_unknown_is_taken_for_the_other_with_a_warning(self):
-        self.write("bare.off", sphere(10, 24, (3, 5, 7)), None)
-        self.assert_same("ras.off", "bare.off", warnings=["bare.off does not say .*RAS mm"])
-        self.assert_same("bare.off", "ras.off", warnings=["bare.off does not say .*RAS mm"])
-        report = self.assert_same("bare.off", "bare.off", warnings=["neither surface says"])
-        self.assertIsNone(report["a"]["coordinates"])
-
-    def test_quiet_says_no_warning(self):
-        self.write("bare.off", sphere(10, 24), None)
-        done = self.run_compare("bare.off", "bare.off", "--quiet")
-        self.assertEqual((done.returncode, done.stdout, done.stderr), (OK, "", ""))
-
-    def test_tkras_without_a_volume_meets_its_like_only(self):
-        self.write("tk.off", sphere(10, 24), TKRAS)
-        report = self.assert_same("tk.off", "tk.off", warnings=["taken for surfaces of one volume"])
-        self.assertEqual(report["coordinates"], "tkras")
-        self.refused(BAD_INPUT, r"tk.off is in tkRAS mm and ras.off is in RAS mm.*--volume",
-                     "tk.off", "ras.off")
-
-    def test_tkras_is_reported_and_coloured_in_tkras(self):
-        self.write("tk.off", plane(0), TKRAS)
-        points, triangles = plane(0)
-        self.write("peak.off", ([points[0], points[1], (12, 10, 1), points[3]], triangles), TKRAS)
-        report = self.compare("peak.off", "tk.off", "--colored", "out.vtp")
-        self.assertEqual(report["distances"]["combined"]["maxPointMm"], [12, 10, 1])
-        self.assertEqual(self.compare("out.vtp", "tk.off")["a"]["coordinates"], "tkras")
-        self.assertLess(self.compare("out.vtp", "peak.off")["distances"]["combined"]["maxMm"],
-                        1e-12)
-
-    def test_voxel_indices_need_the_image(self):
-        self.write("voxel.off", sphere(10, 24), VOXEL)
-        self.refused(BAD_INPUT, "voxel.off is in voxel indices.*--volume", "voxel.off", "ras.off")
-        self.refused(BAD_INPUT, "voxel.off is in voxel indices.*--volume", "voxel.off", "voxel.off")
-
-    def test_every_frame_and_format_of_adaptiso_mesh(self):
-        """One surface, written in all frames, is one surface again; of an image off the
-        origin, its voxels 1 x 2 x 3 mm large."""
-        write_nifti(self.path("ball.nii"), ball(20, 6, (1, 2, 3), (-40, 5, 11)))
-        make = ("ball.nii", "--iso", "100", "--quiet")
-        self.mesh(*make, "-o", "ras.vtp")
-        for name in ("a.vtk", "a.ply", "a.stl", "a.obj", "a.off", "a.gii", "lh.pial"):
-            self.mesh(*make, "-o", name)
-            with self.subTest(name):
-                self.assert_same("ras.vtp", name)
-        self.mesh(*make, "-o", "a.tri")  # says no frame
-        self.assert_same("ras.vtp", "a.tri", warnings=["a.tri does not say"])
-        for frame in ("lps", "tkras", "voxel"):
-            self.mesh(*make, "--coordinates", frame, "-o", f"{frame}.vtp")
-            with self.subTest(frame):
-                self.assert_same("ras.vtp", f"{frame}.vtp", "--volume", "ball.nii")
-        self.assert_same("lh.pial", "tkras.vtp", warnings=["taken for surfaces of one volume"])
-        self.refused(BAD_INPUT, "--volume", "ras.vtp", "tkras.vtp")
-
-
 class Volumes(CompareTest):
     """An image of 20 x 20 x 20 voxels of 1 x 1 x 2 mm; the first voxel's centre is 0, 0, 0."""
 
@@ -410,46 +252,6 @@ class Checks(CompareTest):
         done = self.run_compare("a.off", "b.off", "--max-mean", "1", "--max-hausdorff", "0.4")
         self.assertEqual(done.returncode, CHECK_FAILED)
         self.assertRegex(done.stderr, "^adaptiso-compare: check failed: maximum distance 0.5 mm")
-
-
-class Refusals(CompareTest):
-    def setUp(self):
-        super().setUp()
-        self.write("a.off", plane(0))
-
-    def test_wrong_usage(self):
-        for pattern, *arguments in (
-                ("B", "a.off"),
-                ("c.off", "a.off", "a.off", "c.off"),
-                ("frobnicate", "a.off", "a.off", "--frobnicate"),
-                ("--samples", "a.off", "a.off", "--samples", "0"),
-                ("--samples", "a.off", "a.off", "--samples", "1.5"),
-                ("--voxel 0: .*more than 0", "a.off", "a.off", "--voxel", "0"),
-                ("--max-mean nan: ", "a.off", "a.off", "--max-mean", "nan"),
-                ("--max-hausdorff -1: .*0 or more", "a.off", "a.off", "--max-hausdorff=-1"),
-                ("--voxel", "a.off", "a.off", "--voxel", "1", "--volume", "i.nii"),
-                ("--volume-index.*--volume", "a.off", "a.off", "--volume-index", "0"),
-                ("--one-sided", "a.off", "a.off", "--one-sided", "--symmetric"),
-                ("a.xyz", "a.xyz", "a.off"),
-                (r"--colored out.ply: must be a .vtp", "a.off", "a.off", "--colored", "out.ply"),
-                ("--json", "a.off", "a.off", "--colored", "o.vtp", "--json", "./o.vtp")):
-            with self.subTest(arguments):
-                self.refused(USAGE, pattern, *arguments)
-
-    def test_bad_input(self):
-        self.path("broken.off").write_text("OFF\n3 1 0\n0 0 0\n")
-        self.write("flat.off", ([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)]))
-        self.path("a.vtp").write_text("in use")
-        for pattern, *arguments in (
-                ("missing.off: no such file", "missing.off", "a.off"),
-                ("broken.off", "a.off", "broken.off"),
-                ("flat.off: .*no area", "a.off", "flat.off"),
-                ("missing.nii", "a.off", "a.off", "--volume", "missing.nii"),
-                ("no/out.vtp", "a.off", "a.off", "--colored", "no/out.vtp"),
-                ("a.off", "a.off", "a.off", "--json", "a.off"),
-                ("a.vtp", "a.vtp", "a.off", "--colored", "a.vtp")):
-            with self.subTest(arguments):
-                self.refused(BAD_INPUT, pattern, *arguments)
 
 
 def documented_keys():

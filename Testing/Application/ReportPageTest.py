@@ -5,15 +5,12 @@ import math
 import os
 import re
 import subprocess
-import sys
 import unittest
 from pathlib import Path
 
 import browser
-from support import BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, ApplicationTest, ball, write_nifti
-
-sys.path.insert(0, str(SOURCE / "Testing" / "Support"))
-from headDefects import icosphere, write_off  # noqa: E402
+from support import BAD_INPUT, BIN, CHECK_FAILED, OK, ApplicationTest, ball, write_nifti
+from headDefects import icosphere, write_off
 
 CHECK = str(BIN / "adaptiso-check")
 EXPECTED = Path(__file__).parent / "expected"
@@ -224,6 +221,13 @@ class EveryProgram(ReportTest):
         self.assertLessEqual({"surface-1.png", "surface-2.png", "contours-axial.png"},
                              self.pictures())
 
+    def test_mesh_knows_of_crossings_that_need_no_counting(self):
+        for method, verdict in (("adaptive", "no triangle crosses another"),
+                                ("mc", "crossings were not looked for")):
+            page = self.run_program("adaptiso-mesh", "ball.nii", "--iso", "100", "--method", method,
+                                    "--no-check-crossings", "-o", method + ".ply")
+            self.assertIn(verdict, page.text())
+
     def test_mesh_writes_nothing_when_it_fails(self):
         before = self.contents()
         self.assert_fails(BAD_INPUT, "no voxel reaches it", "ball.nii", "--iso", "1000",
@@ -276,6 +280,8 @@ class EveryProgram(ReportTest):
         self.assertIn("surface-1.png", self.pictures())
         self.assertEqual(sorted(p.name for p in self.path("model").iterdir()),
                          ["report.json", "spots.png"])
+        self.assertEqual(self.path("model/spots.png").read_bytes(),
+                         self.path("pictures/spots.png").read_bytes())
 
 
 class InTheBrowser(ReportTest):

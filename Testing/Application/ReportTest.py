@@ -156,6 +156,23 @@ class Numbers(ApplicationTest):
                     self.assertGreaterEqual(soundness.pop("crossingPairs"), 0)
                     self.assertEqual(set(soundness.values()), {0})
 
+    def test_crossings_are_proved_absent_or_counted_or_not_known(self):
+        write_nifti(self.path("ball.nii"), ball())
+        for method, counted, uncounted in (("adaptive", 0, 0), ("mc", 0, None)):
+            for options, expected in (([], counted), (["--no-check-crossings"], uncounted)):
+                with self.subTest(method=method, options=options):
+                    report = self.report("ball.nii", "--iso", "100", "--method", method, *options)
+                    self.assertEqual(report["surfaces"][0]["soundness"]["crossingPairs"], expected)
+                    self.assertEqual("crossings" in report["seconds"],
+                                     method == "mc" and not options)
+
+    def test_statistics_of_boxes_are_empty_without_boxes(self):
+        write_nifti(self.path("ball.nii"), ball())
+        for method in ("adaptive", "mc"):
+            surface = self.report("ball.nii", "--iso", "100", "--method", method)["surfaces"][0]
+            self.assertEqual((surface["boxes"], surface["boxesChangingTopology"],
+                              surface["edgesSplit"]), ([], 0, 0), method)
+
     def test_open_surfaces_have_no_volume(self):
         write_nifti(self.path("ball.nii"), ball(12, 8))  # cut by the border
         surface = self.report("ball.nii", "--iso", "100", "--border", "open")["surfaces"][0]

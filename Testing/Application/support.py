@@ -8,6 +8,7 @@ import random
 import shutil
 import struct
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -15,6 +16,7 @@ from pathlib import Path
 BIN = Path(os.environ["ADAPTISO_BIN"])
 SOURCE = Path(os.environ["ADAPTISO_SOURCE"])
 MESH = str(BIN / "adaptiso-mesh")
+sys.path.insert(0, str(SOURCE / "Testing" / "Support"))  # headDefects
 
 OK, CHECK_FAILED, USAGE, BAD_INPUT, INTERNAL = range(5)
 

@@ -23,7 +23,7 @@ import numpy as np
 
 NAMES = ("inner_skull", "outer_skull", "outer_skin")
 RADII = (80, 86, 92)
-CENTRE = np.array([3.3, -7.1, 5.7])  # scanner RAS
+CENTRE = np.array([3.3, -7.1, 5.7])  # scanner RAS, off the voxels' lattice
 SIZE = 200
 AFFINE = np.diag([1.0, 1, 1, 1])
 AFFINE[:3, 3] = -99.5
@@ -66,7 +66,7 @@ def images(folder, name):
 
 
 def scanner_points(path):
-    """Through the footer, as nibabel reads it."""
+    """Points of a .surf in scanner RAS by its footer, as nibabel reads it, and triangles."""
     points, triangles, info = nibabel.freesurfer.read_geometry(path, read_metadata=True)
     header = nibabel.freesurfer.MGHImage(np.zeros(info["volume"], np.uint8), np.eye(4)).header
     header["delta"] = info["voxelsize"]

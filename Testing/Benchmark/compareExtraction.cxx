@@ -1,6 +1,5 @@
 // compareExtraction VOLUME --iso V: this library and vtkFlyingEdges3D on one scan, side by side.
 #include <CLI/CLI.hpp>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -10,16 +9,12 @@
 #include "Comparison.h"
 #include "ComparisonReport.h"
 #include "Crop.h"
+#include "RunBenchmark.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso::benchmarks {
 namespace {
-
-// as the programs of Applications/ exit
-constexpr int kExitUsage = 2;
-constexpr int kExitBadInput = 3;
-constexpr int kExitInternal = 4;
 
 struct Arguments {
     std::string volume;
@@ -77,32 +72,14 @@ void run(const Arguments& arguments) {
     if (!arguments.json.empty()) writeJsonFile(arguments.json, comparison, context);
 }
 
-int fail(const std::exception& error, int code) {
-    std::cerr << "compareExtraction: " << error.what() << '\n';
-    return code;
-}
-
 }  // namespace
 }  // namespace adaptiso::benchmarks
 
 int main(int argc, char** argv) {
     using namespace adaptiso::benchmarks;
-    CLI::App app("Compares this library's isosurfaces with vtkFlyingEdges3D's");
+    CLI::App app("Compares this library's isosurfaces with vtkFlyingEdges3D's",
+                 "compareExtraction");
     Arguments arguments;
     declareOptions(app, arguments);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : kExitUsage;
-    }
-    try {
-        run(arguments);
-    } catch (const adaptiso::InternalError& error) {
-        return fail(error, kExitInternal);
-    } catch (const adaptiso::Error& error) {
-        return fail(error, kExitBadInput);
-    } catch (const std::exception& error) {
-        return fail(error, kExitInternal);
-    }
-    return 0;
+    return runBenchmark(app, argc, argv, [&] { run(arguments); });
 }

@@ -10,12 +10,12 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "RunBenchmark.h"
 #include "Support/Meshes.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Extraction/Extraction.h"
@@ -129,19 +129,13 @@ void makeSpheres(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("Three spheres from images of 1 mm, remeshed for boundary elements");
+    CLI::App app("Three spheres from images of 1 mm, remeshed for boundary elements",
+                 "makeSpheres");
     Options options;
     app.add_option("folder", options.folder)->required();
     app.add_option("--image", options.image)
         ->check(CLI::IsMember({"partial", "binary", "icosphere"}));
     app.add_option("--vertices", options.vertices);
     app.add_option("--fit", options.fitMm, "how far vertices may leave the input, mm");
-    CLI11_PARSE(app, argc, argv);
-    try {
-        makeSpheres(options);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "makeSpheres: %s\n", error.what());
-        return 1;
-    }
-    return 0;
+    return adaptiso::benchmarks::runBenchmark(app, argc, argv, [&] { makeSpheres(options); });
 }

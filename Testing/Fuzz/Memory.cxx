@@ -2,43 +2,15 @@
 // claims to hold. Readers turn std::bad_alloc into a FileError or never cause it.
 
 #include <cstdlib>
-#include <new>
 
-namespace {
+#include "Support/OperatorNew.h"
 
-// deflate packs 1032 bytes into one: 64 kB of input may become 64 MB
-constexpr std::size_t kLargestPiece = std::size_t{256} << 20;
+namespace adaptiso::testing {
 
-}  // namespace
-
-void* operator new(std::size_t byteCount) {
-    if (void* const memory = operator new(byteCount, std::nothrow)) return memory;
-    throw std::bad_alloc();
-}
-void* operator new[](std::size_t byteCount) {
-    return operator new(byteCount);
-}
-void* operator new(std::size_t byteCount, const std::nothrow_t&) noexcept {
+void* memoryForNew(std::size_t byteCount) noexcept {
+    // deflate packs 1032 bytes into one: 64 kB of input may become 64 MB
+    constexpr std::size_t kLargestPiece = std::size_t{256} << 20;
     return byteCount <= kLargestPiece ? std::malloc(byteCount) : nullptr;
 }
-void* operator new[](std::size_t byteCount, const std::nothrow_t&) noexcept {
-    return operator new(byteCount, std::nothrow);
-}
-void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, const std::nothrow_t&) noexcept {
-    std::free(memory);
-}
-void operator delete[](void* memory, const std::nothrow_t&) noexcept {
-    std::free(memory);
-}
+
+}  // namespace adaptiso::testing

@@ -3,6 +3,7 @@
 import gzip
 import json
 import os
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -38,6 +39,7 @@ class Packages(ApplicationTest):
         self.assertEqual(sorted(self.debs), ["adaptiso", "libadaptiso-dev"])
         self.look_at_fields()
         self.look_at_files()
+        self.ask_lintian()
         self.use_programs()
         self.use_library()
 
@@ -63,6 +65,21 @@ class Packages(ApplicationTest):
             self.assertIn(program.upper().replace("-", "\\-"), page.decode())
         for package in self.debs:
             self.assertIn(f"usr/share/doc/{package}/copyright", files)
+            changes = gzip.decompress(
+                (self.prefix / f"usr/share/doc/{package}/changelog.gz").read_bytes())
+            self.path("changelog").write_bytes(changes)
+            for field, value in (("Source", "adaptiso"), ("Version", VERSION)):
+                self.assertEqual(output("dpkg-parsechangelog", "-l", self.path("changelog"), "-S",
+                                        field).strip(), value)
+            for line in changes.decode().splitlines():
+                self.assertLessEqual(len(line), 80)
+
+    def ask_lintian(self):
+        """Debian's checker of packages finds neither errors nor warnings."""
+        self.assertIsNotNone(shutil.which("lintian"), "lintian is missing: see Testing/packages.txt")
+        done = subprocess.run(["lintian", "--no-cfg", "--allow-root", *map(str, self.debs.values())],
+                              text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.assertEqual((done.returncode, done.stdout), (0, ""))
 
     def use_programs(self):
         write_nifti(self.path("ball.nii"), ball(24, 9))

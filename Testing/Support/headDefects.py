@@ -18,6 +18,13 @@ def scaled(p, by):
     return tuple(by * x for x in p)
 
 
+def cube(low, high):
+    """Closed, outward, between two corners."""
+    points = [tuple((high if n >> axis & 1 else low)[axis] for axis in range(3)) for n in range(8)]
+    return points, [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4),
+                    (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
+
+
 def icosphere(radius, subdivisions=3, centre=(0, 0, 0)):
     """20 * 4^subdivisions triangles; 642 vertices by default."""
     g = (1 + math.sqrt(5)) / 2

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -12,16 +11,11 @@
 #include <string>
 
 #include "../HeapMeter.h"
+#include "../RunBenchmark.h"
 #include "PeerFiles.h"
-#include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::benchmarks {
 namespace {
-
-// as the programs of Applications/ exit
-constexpr int kExitUsage = 2;
-constexpr int kExitBadInput = 3;
-constexpr int kExitInternal = 4;
 
 struct Arguments {
     std::string volume;
@@ -100,32 +94,14 @@ nlohmann::ordered_json run(const PeerProgram& program, const Arguments& argument
     return report;
 }
 
-int fail(const PeerProgram& program, const std::exception& error, int code) {
-    std::cerr << program.name << ": " << error.what() << '\n';
-    return code;
-}
-
 }  // namespace
 
 int runPeer(int argc, char** argv, const PeerProgram& program) {
-    CLI::App app("Runs one method once and says what it cost");
+    CLI::App app("Runs one method once and says what it cost", program.name);
     Arguments arguments;
     declareOptions(app, program, arguments);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : kExitUsage;
-    }
-    try {
-        std::cout << run(program, arguments).dump() << '\n';
-    } catch (const InternalError& error) {
-        return fail(program, error, kExitInternal);
-    } catch (const Error& error) {
-        return fail(program, error, kExitBadInput);
-    } catch (const std::exception& error) {
-        return fail(program, error, kExitInternal);
-    }
-    return 0;
+    return runBenchmark(app, argc, argv,
+                        [&] { std::cout << run(program, arguments).dump() << '\n'; });
 }
 
 }  // namespace adaptiso::benchmarks

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <exception>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -13,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "../RunBenchmark.h"
 #include "PeerFiles.h"
-#include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
@@ -75,27 +74,27 @@ nlohmann::ordered_json distanceTo(const TriangleMesh& reference, const TriangleM
             {"fromReference", toJson(distance.bToA)}};
 }
 
-int run(int argc, char** argv) {
-    CLI::App app("Measures a mesh against references");
-    std::string volumePath, meshPath;
+struct Arguments {
+    std::string volume, mesh;
     std::vector<std::string> references;
     std::int64_t samples = 200000;
     bool distancesOnly = false;
-    app.add_option("volume", volumePath)->required();
-    app.add_option("mesh", meshPath)->required();
-    app.add_option("references", references);
-    app.add_option("--samples", samples, "On each surface (default 200000)");
-    app.add_flag("--distances-only", distancesOnly, "Leave the defects out");
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 2;
-    }
-    const ImageGeometry geometry = readVolumeFile(volumePath).view().geometry();
-    const TriangleMesh mesh = readMeshFile(meshPath);
+};
+
+void declareOptions(CLI::App& app, Arguments& arguments) {
+    app.add_option("volume", arguments.volume)->required();
+    app.add_option("mesh", arguments.mesh)->required();
+    app.add_option("references", arguments.references);
+    app.add_option("--samples", arguments.samples, "On each surface (default 200000)");
+    app.add_flag("--distances-only", arguments.distancesOnly, "Leave the defects out");
+}
+
+void run(const Arguments& arguments) {
+    const ImageGeometry geometry = readVolumeFile(arguments.volume).view().geometry();
+    const TriangleMesh mesh = readMeshFile(arguments.mesh);
     const TriangleMesh meshInVoxels = inVoxels(mesh, geometry);
     nlohmann::ordered_json report{{"triangles", mesh.triangles.size()}};
-    if (!distancesOnly) {
+    if (!arguments.distancesOnly) {
         const TopologyReport topology = checkTopology(mesh);
         report["components"] = topology.components.size();
         report["openEdges"] = topology.count(TopologyDefect::BoundaryEdge);
@@ -108,26 +107,21 @@ int run(int argc, char** argv) {
         report["crossingPairs"] = findSelfIntersections(mesh).pairCount;
     }
     nlohmann::ordered_json distances = nlohmann::ordered_json::array();
-    for (const std::string& path : references) {
+    for (const std::string& path : arguments.references) {
         distances.push_back(
-            distanceTo(inVoxels(readMeshFile(path), geometry), meshInVoxels, samples));
+            distanceTo(inVoxels(readMeshFile(path), geometry), meshInVoxels, arguments.samples));
     }
     report["distances"] = distances;
     std::cout << report.dump() << '\n';
-    return 0;
 }
 
 }  // namespace
 }  // namespace adaptiso::benchmarks
 
 int main(int argc, char** argv) {
-    try {
-        return adaptiso::benchmarks::run(argc, argv);
-    } catch (const adaptiso::Error& error) {
-        std::cerr << "peerMeasure: " << error.what() << '\n';
-        return 3;
-    } catch (const std::exception& error) {
-        std::cerr << "peerMeasure: " << error.what() << '\n';
-        return 4;
-    }
+    using namespace adaptiso::benchmarks;
+    CLI::App app("Measures a mesh against references", "peerMeasure");
+    Arguments arguments;
+    declareOptions(app, arguments);
+    return runBenchmark(app, argc, argv, [&] { run(arguments); });
 }

@@ -4,48 +4,24 @@
 //   peerVolume gyroid SIDE [--periods P] -o FILE
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <exception>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "../Crop.h"
+#include "../RunBenchmark.h"
 #include "PeerFiles.h"
-#include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso::benchmarks {
 namespace {
-
-using Place = std::array<std::int64_t, 3>;
-
-Volume cropped(const VolumeView& volume, const Place& low, const Place& high) {
-    ImageGeometry geometry = volume.geometry();
-    for (int a = 0; a < 3; ++a) {
-        if (low[a] < 0 || high[a] < low[a] || high[a] >= volume.geometry().size[a]) {
-            throw InvalidInput("peerVolume: --low and --high must lie in the image, low first");
-        }
-        geometry.size[a] = high[a] - low[a] + 1;
-    }
-    geometry.originMm = volume.geometry().toPhysical(
-        {static_cast<double>(low[0]), static_cast<double>(low[1]), static_cast<double>(low[2])});
-    return dispatchPixelType(volume, [&](const auto& typed) {
-        std::vector<std::remove_cvref_t<decltype(typed.samples[0])>> samples;
-        samples.reserve(static_cast<std::size_t>(geometry.voxelCount()));
-        for (std::int64_t k = low[2]; k <= high[2]; ++k) {
-            for (std::int64_t j = low[1]; j <= high[1]; ++j) {
-                const auto* row = &typed.at(low[0], j, k);
-                samples.insert(samples.end(), row, row + geometry.size[0]);
-            }
-        }
-        return Volume::fromSamples(std::move(samples), geometry);
-    });
-}
 
 /// int16 samples 10000 * gyroid, `periods` along each axis: smooth, and whole numbers move its
 /// surface at 0.5 by less than a hundredth of a voxel even at 1024 samples a side.
@@ -99,56 +75,55 @@ std::int64_t activeCells(const VolumeView& volume, double isovalue) {
     return count;
 }
 
-int run(int argc, char** argv) {
-    CLI::App app("Makes volumes for the benchmark of peers");
-    app.require_subcommand(1);
-    app.fallthrough();  // -o may stand behind the subcommand
-    std::string output, image;
-    Place low{}, high{};
+struct Arguments {
+    std::string output;
+    std::optional<double> isovalue;
+    std::optional<std::string> image;  ///< none: a gyroid is made
+    std::optional<Index3> low, high;   ///< none: the whole image
     std::int64_t side = 0;
     double periods = 4;
-    std::optional<double> isovalue;
-    app.add_option("-o,--output", output, "FILE")->required();
-    app.add_option("--iso", isovalue, "Count the cells that this isovalue cuts");
+};
+
+void declareOptions(CLI::App& app, Arguments& arguments) {
+    app.require_subcommand(1);
+    app.fallthrough();  // -o may stand behind the subcommand
+    app.add_option("-o,--output", arguments.output, "FILE")->required();
+    app.add_option("--iso", arguments.isovalue, "Count the cells that this isovalue cuts");
     CLI::App* scan = app.add_subcommand("scan", "A scan, or the part of it from --low to --high");
-    scan->add_option("image", image, "As adaptiso-mesh takes it")->required();
-    CLI::Option* from = scan->add_option("--low", low, "First voxel");
-    CLI::Option* to = scan->add_option("--high", high, "Last voxel");
-    from->needs(to);
-    to->needs(from);
+    scan->add_option("image", arguments.image, "As adaptiso-mesh takes it")->required();
+    CLI::Option* low = scan->add_option("--low", arguments.low, "First voxel");
+    CLI::Option* high = scan->add_option("--high", arguments.high, "Last voxel");
+    low->needs(high);
+    high->needs(low);
     CLI::App* made = app.add_subcommand("gyroid", "A gyroid of int16 samples; isovalue 0.5");
-    made->add_option("side", side, "Samples a side")->required()->check(CLI::Range(8, 4096));
-    made->add_option("--periods", periods, "Along each axis (default 4)");
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 2;
-    }
+    made->add_option("side", arguments.side, "Samples a side")
+        ->required()
+        ->check(CLI::Range(8, 4096));
+    made->add_option("--periods", arguments.periods, "Along each axis (default 4)");
+}
+
+void run(const Arguments& arguments) {
     const Volume volume = [&] {
-        if (*made) return gyroid(side, periods);
-        Volume whole = readVolume(image).volume;
-        return to->count() > 0 ? cropped(whole, low, high) : whole;
+        if (!arguments.image) return gyroid(arguments.side, arguments.periods);
+        Volume whole = readVolume(*arguments.image).volume;
+        if (!arguments.low) return whole;
+        return cropped(whole, {*arguments.low, *arguments.high});
     }();
-    writeVolumeFile(output, volume);
+    writeVolumeFile(arguments.output, volume);
     nlohmann::ordered_json report{{"size", volume.view().geometry().size},
                                   {"pixelType", toString(volume.view().pixelType())},
                                   {"bytes", volume.view().byteCount()}};
-    if (isovalue) report["activeCells"] = activeCells(volume, *isovalue);
+    if (arguments.isovalue) report["activeCells"] = activeCells(volume, *arguments.isovalue);
     std::cout << report.dump() << '\n';
-    return 0;
 }
 
 }  // namespace
 }  // namespace adaptiso::benchmarks
 
 int main(int argc, char** argv) {
-    try {
-        return adaptiso::benchmarks::run(argc, argv);
-    } catch (const adaptiso::Error& error) {
-        std::cerr << "peerVolume: " << error.what() << '\n';
-        return 3;
-    } catch (const std::exception& error) {
-        std::cerr << "peerVolume: " << error.what() << '\n';
-        return 4;
-    }
+    using namespace adaptiso::benchmarks;
+    CLI::App app("Makes volumes for the benchmark of peers", "peerVolume");
+    Arguments arguments;
+    declareOptions(app, arguments);
+    return runBenchmark(app, argc, argv, [&] { run(arguments); });
 }

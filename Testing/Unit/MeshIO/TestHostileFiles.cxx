@@ -5,44 +5,24 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
-#include <new>
 #include <random>
 
 #include "MeshIOTestSupport.h"
+#include "Support/OperatorNew.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace {
 
 std::atomic<std::size_t> largestRequest{0};
 
-void* noted(std::size_t bytes) {
-    std::size_t largest = largestRequest;
-    while (bytes > largest && !largestRequest.compare_exchange_weak(largest, bytes)) {
-    }
-    if (void* const memory = std::malloc(bytes)) return memory;
-    throw std::bad_alloc();
-}
-
 }  // namespace
 
-// this program's allocations pass by here, so that tests see what a hostile file asks for
-void* operator new(std::size_t bytes) {
-    return noted(bytes);
-}
-void* operator new[](std::size_t bytes) {
-    return noted(bytes);
-}
-void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-    std::free(memory);
+// tests see what a hostile file asks for
+void* adaptiso::testing::memoryForNew(std::size_t byteCount) noexcept {
+    std::size_t largest = largestRequest;
+    while (byteCount > largest && !largestRequest.compare_exchange_weak(largest, byteCount)) {
+    }
+    return std::malloc(byteCount);
 }
 
 namespace adaptiso {
@@ -212,6 +192,7 @@ TEST(HostileCounts, AllocateNothingOfTheirSize) {
     for (const auto& [name, bytes] : files) {
         largestRequest = 0;
         EXPECT_FALSE(decodesSafely(bytes, name)) << name;
+        EXPECT_GT(largestRequest, std::size_t{0}) << "requests go unseen";
         // the readers' own pieces (1 MB) and XML parser, never what the file claims
         EXPECT_LE(largestRequest, std::size_t{4} << 20) << name;
     }
