@@ -1,210 +1,17 @@
 #include "AdaptiveMethod.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "../MeshRepair.h"
-#include "BrickRound.h"
 #include "CrossingProof.h"
 #include "ErrorBound.h"
-#include "PatchRound.h"
+#include "Simplification.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::detail {
 namespace {
-
-/// How many triangles are wanted: a number, or a share of those of the full surface to drop.
-struct WantedCount {
-    std::optional<std::int64_t> triangles;
-    std::optional<double> reduction;
-
-    bool isGiven() const { return triangles || reduction; }
-    std::int64_t of(std::int64_t fineTriangles) const {
-        std::int64_t count = std::min(triangles.value_or(fineTriangles), fineTriangles);
-        if (reduction) {
-            const double kept = (1 - *reduction) * static_cast<double>(fineTriangles);
-            count = std::min(count, static_cast<std::int64_t>(kept));
-        }
-        return count;
-    }
-};
-
-/// A surface after its first rounds, whose changes are too small to matter to the bound: when
-/// places turn out to need more care, it can be gone on from here.
-struct Halfway {
-    SurfaceState state;
-    int rounds = 0;
-    double cost = 0;  ///< limit of its last round
-};
-
-/// One run of the simplification with fixed limits.
-class Simplification {
-public:
-    Simplification(const LatticeSampler& sampler, const Bricks& bricks, const MetricFrame& frame,
-                   const TightPlaces& tight, const PatchLimits& limits)
-        : sampler_(sampler), bricks_(bricks), frame_(frame), tight_(tight), limits_(limits) {
-        const double voxel = frame.voxelMm();
-        costUnit_ = voxel * voxel * voxel * voxel;
-    }
-
-    /// As few triangles as the limits allow.
-    /// \param last     of the run before, when that went through `halfway`
-    /// \param halfway  where to start; is filled in when empty
-    SimplifiedSurface toLimits(SimplifiedSurface last, std::optional<Halfway>& halfway) {
-        SimplifiedSurface surface = std::move(last);
-        if (halfway) {
-            goOnFrom(*halfway, surface);
-        } else {
-            limits_.maxCost = kFirstCost * costUnit_;
-            surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
-        }
-        for (const double cost : kCosts) {
-            if (cost * costUnit_ <= limits_.maxCost) continue;
-            if (!halfway && cost * costUnit_ > halfwayCost()) {
-                halfway = Halfway{surface, rounds_, limits_.maxCost};
-            }
-            roundUpTo(cost * costUnit_, surface);
-        }
-        if (!halfway) halfway = Halfway{surface, rounds_, limits_.maxCost};
-        for (int idle = 0; idle < 2;) {
-            const std::int64_t before = surface.triangleCount();
-            roundUpTo(std::numeric_limits<double>::max(), surface);
-            idle = static_cast<double>(surface.triangleCount()) >=
-                           kWorthwhile * static_cast<double>(before)
-                       ? idle + 1
-                       : 0;
-        }
-        fit(surface);
-        return surface;
-    }
-
-    /// The wanted number of triangles, or as few as the limits allow.
-    SimplifiedSurface toCount(const WantedCount& wanted) {
-        CollapseCosts costs;
-        double cost = kFirstCost;
-        limits_.maxCost = cost * costUnit_;
-        SimplifiedSurface surface =
-            simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, &costs);
-        const std::int64_t target = wanted.of(surface.fineTriangles);
-        if (surface.triangleCount() < target) {
-            limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
-            surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
-        }
-        for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
-            const std::int64_t before = surface.triangleCount();
-            cost *= costStep(before, target);
-            if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
-            roundTowards(surface, target, cost);
-            if (cost > kLastCost) idle = surface.triangleCount() == before ? idle + 1 : 0;
-        }
-        fit(surface);
-        return surface;
-    }
-
-private:
-    /// Cost limits, in voxels to the fourth: of the bricks' round, and above which there is none.
-    static constexpr double kFirstCost = 1e-3, kLastCost = 10;
-    /// Of the first rounds of toLimits().
-    static constexpr std::array kCosts{3e-3, 1.8e-2, 0.108, 0.648, 3.888};
-    /// Later runs start where changes are below this part of the square of the allowed distance.
-    static constexpr double kHalfway = 2;
-    /// A round that leaves more than this part of the triangles was hardly worth it.
-    static constexpr double kWorthwhile = 0.99;
-    /// Up to this part of the wanted count steps are large, and up to the other one middling.
-    static constexpr std::int64_t kFar = 2;
-    static constexpr double kNear = 1.4;
-
-    /// Cuts in turn, so that what straddles one cut lies within the next.
-    PatchCut nextCut() {
-        ++rounds_;
-        return {Brick::kSide, rounds_ % 2 == 1 ? Brick::kSide / 2 : 0};
-    }
-
-    /// How much the limit of cost may grow in a round.
-    static double costStep(std::int64_t triangles, std::int64_t target) {
-        if (triangles > kFar * target) return 16;
-        return static_cast<double>(triangles) > kNear * static_cast<double>(target) ? 4 : 2;
-    }
-
-    void roundUpTo(double cost, SimplifiedSurface& surface) {
-        limits_.triedCost = limits_.maxCost;
-        limits_.maxCost = cost;
-        simplifyPatches(surface, nextCut(), frame_, {limits_});
-    }
-
-    double halfwayCost() const {
-        const double voxel = frame_.voxelMm();
-        return kHalfway * voxel * voxel * limits_.maxDistanceMm * limits_.maxDistanceMm;
-    }
-
-    void goOnFrom(const Halfway& halfway, SimplifiedSurface& surface) {
-        surface.state() = halfway.state;
-        rounds_ = halfway.rounds;
-        limits_.maxCost = halfway.cost;
-        for (Sample& sample : surface.samples) {
-            sample.tightness = tight_.tightnessAt(frame_.toIndex(sample.point()));
-        }
-    }
-
-    /// A round up to a cost that does not lead below the target.
-    void roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
-        const std::int64_t wanted = (surface.triangleCount() - target + 1) / 2;
-        limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
-        if (surface.triangleCount() > kFar * target) {
-            PatchWork work{limits_};
-            work.mostCollapses = wanted;  // not reached but by a cost far too high
-            simplifyPatches(surface, nextCut(), frame_, work);
-        } else {
-            landOn(wanted, surface);
-        }
-    }
-
-    /// A round up to the limit of cost; where that makes more collapses than wanted it is undone,
-    /// and done again with the cost that makes as many.
-    void landOn(std::int64_t wanted, SimplifiedSurface& surface) {
-        const PatchCut cut = nextCut();
-        const double cost = limits_.maxCost;
-        const SurfaceState before = surface;
-        CollapseCosts costs;
-        simplifyPatches(surface, cut, frame_, {limits_}, &costs);
-        std::int64_t more = wanted - (before.triangleCount() - surface.triangleCount()) / 2;
-        if (more >= 0) return;
-        surface.state() = before;
-        limits_.maxCost = costLimitFor(costs, wanted);
-        PatchWork work{limits_};
-        work.fits = true;
-        simplifyPatches(surface, cut, frame_, work);
-        isFitted_ = true;
-        more = wanted - (before.triangleCount() - surface.triangleCount()) / 2;
-        if (more > 0) {  // collapses of one cost
-            limits_.maxCost = cost;
-            PatchWork rest{limits_};
-            rest.mostCollapses = more;
-            simplifyPatches(surface, cut, frame_, rest);
-        }
-    }
-
-    /// Twice, so that what straddles the cut has its turn as well.
-    void fit(SimplifiedSurface& surface) {
-        PatchWork work{limits_};
-        work.collapses = false;
-        work.fits = true;
-        for (int i = isFitted_ ? 1 : 0; i < 2; ++i) {
-            simplifyPatches(surface, nextCut(), frame_, work);
-        }
-    }
-
-    const LatticeSampler& sampler_;
-    const Bricks& bricks_;
-    const MetricFrame& frame_;
-    const TightPlaces& tight_;
-    PatchLimits limits_;
-    double costUnit_;
-    int rounds_ = 0;
-    bool isFitted_ = false;  ///< by the last round
-};
 
 TriangleMesh toMesh(const SimplifiedSurface& surface, const ImageGeometry& geometry,
                     const MetricFrame& frame, const LatticeSampler& sampler) {
@@ -238,33 +45,25 @@ public:
           options_(options),
           frame_(geometry_),
           wanted_{options.adaptive.maxTriangles, options.adaptive.reduction},
-          boundMm_(options.adaptive.maxErrorMm) {
+          boundMm_(boundOf(options.adaptive)),
+          proof_(sampler, bricks, frame_, boundMm_.value_or(std::numeric_limits<double>::max())) {
         shape_.leastAngleDeg = options.adaptive.minAngleDeg;
-        if (!boundMm_ && !wanted_.isGiven()) {
-            boundMm_ = AdaptiveOptions::kDefaultMaxErrorVoxels * frame_.narrowestMm();
-        }
     }
 
     Extraction run() {
-        ErrorProof proof(sampler_, bricks_, frame_,
-                         boundMm_.value_or(std::numeric_limits<double>::max()));
         SimplifiedSurface surface;
         for (int run = 0; run < kMostRuns; ++run) {
             report(run, 0);
-            if (run > 0 && run % kRunsOfOneStart == 0) {
-                halfway_.reset();
-                share_ *= kLaterShare;
-            }
             surface = run + 1 < kMostRuns ? simplify(std::move(surface)) : fullSurface();
             report(run, 0.6);
-            const ErrorBound error = proof.prove(surface);
-            report(run, 1);
-            if (boundMm_ && error.largestMm > *boundMm_) {
-                std::vector<Vec3> places;
-                for (const Vec3& place : error.beyondLimit) places.push_back(frame_.toIndex(place));
-                tight_.add(places);
+            ErrorBound error = proof_.prove(surface);
+            if (isBeyond(error)) {
+                tighten(error);
+                if (halfway_ && hasStalled(error)) mendHalfway(surface);
                 continue;
             }
+            if (!wanted_.isGiven() && run + 1 < kMostRuns) error = fit(surface, error);
+            report(run, 1);
             Extraction result;
             result.mesh = toMesh(surface, geometry_, frame_, sampler_);
             if (!crossesNothing(result.mesh)) {
@@ -283,11 +82,11 @@ public:
     }
 
 private:
-    static constexpr int kMostRuns = 12;
-    /// As many runs start at what the first of them had halfway.
-    static constexpr int kRunsOfOneStart = 6;
-    /// Of the allowed distance, for each start after the first.
-    static constexpr double kLaterShare = 0.7;
+    static constexpr int kMostRuns = 16, kMostMends = 6, kMostFits = 3;
+    /// Vertices are fitted within this part of the allowed distance: then few places are lost.
+    static constexpr double kFitDistance = 0.75;
+    /// Runs that leave more than this part of the places beyond the bound lead nowhere.
+    static constexpr double kStalled = 0.25;
     /// Up to this distance (of the least one between planes of samples) single sheets are certain
     /// not to meet others: see isSingleSheet.
     static constexpr double kSheetVoxels = 0.5;
@@ -295,6 +94,59 @@ private:
     /// planes of samples, and as a part of the bound), since points between samples may lie
     /// farther.
     static constexpr double kSlackVoxels = 0.05, kSlackPart = 0.3;
+
+    bool isBeyond(const ErrorBound& error) const { return boundMm_ && error.largestMm > *boundMm_; }
+
+    /// Moves vertices to where they serve the mean distance best, if what is proved stays true.
+    /// \return what is proved of the surface then
+    ErrorBound fit(SimplifiedSurface& surface, const ErrorBound& proved) {
+        const SurfaceState before = surface;
+        for (int attempt = 0; attempt < kMostFits; ++attempt) {
+            PatchLimits closer = limits();
+            closer.maxDistanceMm *= kFitDistance;
+            Simplification(sampler_, bricks_, frame_, tight_, closer).fit(surface);
+            ErrorBound error = proof_.prove(surface);
+            if (!isBeyond(error)) return error;
+            tighten(error);
+            surface.state() = before;
+            tight_.apply(frame_, surface.samples);
+        }
+        return proved;
+    }
+
+    void tighten(const ErrorBound& error) {
+        std::vector<Vec3> places;
+        for (const Vec3& place : error.beyondLimit) places.push_back(frame_.toIndex(place));
+        tight_.add(places);
+    }
+
+    /// Hardly fewer places lie beyond the bound than after the run before: what they need may have
+    /// been lost before halfway.
+    bool hasStalled(const ErrorBound& error) {
+        const auto count = static_cast<double>(error.beyondLimit.size());
+        const bool isStalled = count > kStalled * beyond_;
+        beyond_ = isStalled ? std::numeric_limits<double>::max() : count;
+        return isStalled;
+    }
+
+    /// Makes what runs start from anew until that lies within the bound itself: at worst a run can
+    /// then stay with it where it is tight.
+    void mendHalfway(SimplifiedSurface& surface) {
+        ErrorProof proof(sampler_, bricks_, frame_, *boundMm_);
+        for (int mend = 0; mend < kMostMends; ++mend) {
+            surface.state() = halfway_->state;
+            const ErrorBound error = proof.prove(surface);
+            if (error.largestMm <= *boundMm_) return;
+            tighten(error);
+            halfway_ =
+                Simplification(sampler_, bricks_, frame_, tight_, limits()).toHalfway(surface);
+        }
+    }
+
+    std::optional<double> boundOf(const AdaptiveOptions& adaptive) const {
+        if (adaptive.maxErrorMm || wanted_.isGiven()) return adaptive.maxErrorMm;
+        return AdaptiveOptions::kDefaultMaxErrorVoxels * frame_.narrowestMm();
+    }
 
     void report(int run, double fraction) const {
         // later runs mend what the first could not prove: they come on top
@@ -308,27 +160,36 @@ private:
         return simplifyBricks(sampler_, bricks_, frame_, tight_, limits, nullptr);
     }
 
-    /// \param last  of the run before
-    SimplifiedSurface simplify(SimplifiedSurface last) {
+    PatchLimits limits() const {
         const double sheetMm = kSheetVoxels * frame_.narrowestMm();
+        const double boundMm = boundMm_.value_or(sheetMm);
         PatchLimits limits;
         limits.shape = shape_;
         limits.leavesNoise = !wanted_.isGiven();
-        const double boundMm = boundMm_.value_or(sheetMm);
-        limits.maxDistanceMm = share_ * (boundMm - std::min(kSlackVoxels * frame_.narrowestMm(),
-                                                            kSlackPart * boundMm));
+        limits.maxDistanceMm =
+            boundMm - std::min(kSlackVoxels * frame_.narrowestMm(), kSlackPart * boundMm);
+        limits.provesAll = provesAll_ || limits.maxDistanceMm > sheetMm;
+        return limits;
+    }
+
+    /// \param last  of the run before
+    SimplifiedSurface simplify(SimplifiedSurface last) {
+        PatchLimits limits = this->limits();
+        const auto simplification = [&] {
+            return Simplification(sampler_, bricks_, frame_, tight_, limits);
+        };
+        if (!wanted_.isGiven()) return simplification().toLimits(std::move(last), halfway_);
         const Index3& size = geometry_.size;
         const double extentMm =
             norm(frame_.fromIndex({static_cast<double>(size[0]), static_cast<double>(size[1]),
                                    static_cast<double>(size[2])}));
-        for (;; limits.maxDistanceMm *= 2) {
-            limits.provesAll = provesAll_ || limits.maxDistanceMm > sheetMm;
-            Simplification simplification(sampler_, bricks_, frame_, tight_, limits);
-            if (!wanted_.isGiven()) return simplification.toLimits(std::move(last), halfway_);
-            SimplifiedSurface surface = simplification.toCount(wanted_);
+        for (;;) {
+            SimplifiedSurface surface = simplification().toCount(wanted_);
             const bool isThere = surface.triangleCount() <= wanted_.of(surface.fineTriangles) + 1;
             // without a bound the count goes before closeness
             if (isThere || boundMm_ || limits.maxDistanceMm > extentMm) return surface;
+            limits.maxDistanceMm *= 2;
+            limits.provesAll = true;  // beyond what single sheets are certain of
         }
     }
 
@@ -342,7 +203,8 @@ private:
     StarLimits shape_;
     TightPlaces tight_;
     std::optional<Halfway> halfway_;
-    double share_ = 1;        ///< of the allowed distance
+    ErrorProof proof_;
+    double beyond_ = std::numeric_limits<double>::max();  ///< places after the last run
     bool provesAll_ = false;  ///< the last run left triangles that cross
 };
 

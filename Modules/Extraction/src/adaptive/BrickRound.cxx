@@ -147,9 +147,7 @@ BrickSurface simplifyBrick(const FineSurface& fine, const MetricFrame& frame,
     Patch patch = patchOf(fine, frame, result);
     result.fineTriangles = patch.ownTriangles;
     result.tableTriangles = result.fineTriangles - 2 * static_cast<std::int64_t>(fine.ownMiddles);
-    for (Sample& sample : patch.samples) {
-        sample.tightness = tight.tightnessAt(frame.toIndex(sample.point()));
-    }
+    tight.apply(frame, patch.samples);
     if (limits.leavesNoise && isNoise(patch)) {
         patch.states.assign(patch.points.size(), Patch::State::Final);
     } else {

@@ -11,7 +11,7 @@
 namespace adaptiso::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kBoundless = std::numeric_limits<double>::max();
 
 /// The largest distance of a sample to the triangle that stands for it: no bound can be less.
 double largestSampleDistance(const SimplifiedSurface& surface, const SurfaceLookup& lookup) {
@@ -81,8 +81,8 @@ ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
     for (const PlaceBeyond& place : beyond) bound.beyondLimit.push_back(place.point);
     known_.clear();
     if (!(provedArea >= (1 - 1e-9) * areaOf(lookup, scope))) {
-        bound.largestMm = kInfinity;  // far from every brick
-    } else if (!beyond.empty()) {
+        bound.largestMm = kBoundless;  // far from every brick
+    } else if (limitMm_ < kBoundless) {
         remember(lookup, std::move(beyond));
     }
     return bound;

@@ -94,7 +94,7 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
     moves_.clear();
     movedPositions_.clear();
     sumOfSquares_ = 0;
-    isCrowded_ = false;
+    isCrowded_ = isTight_ = false;
     const bool isNear = forEachTriangle(changed.star, [&](std::uint32_t triangle, int wedge) {
         if (triangleIsCrowded_[triangle] != 0) isCrowded_ = true;
         for (std::uint32_t s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
@@ -102,6 +102,7 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
             const Move move = nearest(changed, s, wedge, squared);
             if (!(squared <= std::ldexp(most, -patch_.samples[s].tightness))) return false;
             sumOfSquares_ += squared;
+            if (patch_.samples[s].tightness > 0) isTight_ = true;
             moves_.push_back(move);
             movedPositions_.push_back(patch_.samples[s].position);
         }

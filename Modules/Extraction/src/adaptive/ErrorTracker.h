@@ -25,6 +25,8 @@ public:
     double sumOfSquares() const { return sumOfSquares_; }
     /// Of the last assign(): some sample has other parts of the surface near it.
     bool isCrowded() const { return isCrowded_; }
+    /// Of the last assign(): some sample lies where the bound was missed before.
+    bool isTight() const { return isTight_; }
 
     /// Makes the last assign() true.
     void commit(const ChangedStar& changed);
@@ -53,7 +55,7 @@ private:
     std::vector<Move> moves_;
     std::vector<std::array<float, 3>> movedPositions_;  ///< of the moves' samples, side by side
     double sumOfSquares_ = 0;
-    bool isCrowded_ = false;
+    bool isCrowded_ = false, isTight_ = false;
 };
 
 }  // namespace adaptiso::detail

@@ -122,7 +122,7 @@ void PatchSimplifier::fitVertices() {
         if (!mayChange(v) || !topology_.starOf(v, changed_.star)) continue;
         changed_.vertex = patch_.points[v];
         if (!shapeStar(patch_, limits_.shape, changed_) ||
-            !errors_.assign(changed_, limits_.maxDistanceMm)) {
+            !errors_.assign(changed_, limits_.maxDistanceMm) || errors_.isTight()) {
             continue;
         }
         const double before = errors_.sumOfSquares();

@@ -25,10 +25,14 @@ void TightPlaces::add(const std::vector<Vec3>& places) {
 }
 
 std::uint8_t TightPlaces::tightnessAt(const Vec3& place) const {
-    constexpr std::array<std::uint8_t, 6> kHalvings{0, 1, 4, 12, 24, 40};
+    constexpr std::array<std::uint8_t, 5> kHalvings{0, 1, 4, 12, 40};
     if (tightness_.empty()) return 0;
     const auto at = tightness_.find(cubeAt(place));
     return at == tightness_.end() ? 0 : kHalvings[std::min(at->second, kHalvings.size() - 1)];
+}
+
+void TightPlaces::apply(const MetricFrame& frame, std::vector<Sample>& samples) const {
+    for (Sample& sample : samples) sample.tightness = tightnessAt(frame.toIndex(sample.point()));
 }
 
 }  // namespace adaptiso::detail

@@ -4,6 +4,8 @@
 #include <map>
 #include <vector>
 
+#include "MetricFrame.h"
+#include "Patch.h"
 #include "adaptiso/Core/Geometry.h"
 #include "adaptiso/Core/ImageGeometry.h"
 
@@ -19,6 +21,7 @@ public:
 
     /// How often the square is halved.
     std::uint8_t tightnessAt(const Vec3& place) const;
+    void apply(const MetricFrame& frame, std::vector<Sample>& samples) const;
 
 private:
     static constexpr double kCube = 1.5;  ///< voxels

@@ -1,0 +1,170 @@
+#include "Simplification.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace adaptiso::detail {
+namespace {
+
+/// Cost limits, in voxels to the fourth: of the bricks' round, and above which there is none.
+constexpr double kFirstCost = 1e-3, kLastCost = 10;
+
+/// Of the first rounds of toLimits().
+constexpr std::array kCosts{3e-3, 1.8e-2, 0.108, 0.648, 3.888};
+
+/// Up to halfway costs stay below this part of the square of the allowed distance, and distances
+/// below this part of it.
+constexpr double kHalfway = 2, kEarlyDistance = 0.5;
+
+/// A round that leaves more than this part of the triangles was hardly worth it.
+constexpr double kWorthwhile = 0.99;
+
+/// Up to this part of the wanted count steps are large, and up to the other one middling.
+constexpr std::int64_t kFar = 2;
+constexpr double kNear = 1.4;
+
+/// How much the limit of cost may grow in a round.
+double costStep(std::int64_t triangles, std::int64_t target) {
+    if (triangles > kFar * target) return 16;
+    return static_cast<double>(triangles) > kNear * static_cast<double>(target) ? 4 : 2;
+}
+
+}  // namespace
+
+Simplification::Simplification(const LatticeSampler& sampler, const Bricks& bricks,
+                               const MetricFrame& frame, const TightPlaces& tight,
+                               const PatchLimits& limits)
+    : sampler_(sampler), bricks_(bricks), frame_(frame), tight_(tight), limits_(limits) {
+    const double voxel = frame.voxelMm();
+    costUnit_ = voxel * voxel * voxel * voxel;
+}
+
+/// Cuts in turn, so that what straddles one cut lies within the next.
+PatchCut Simplification::nextCut() {
+    ++rounds_;
+    return {Brick::kSide, rounds_ % 2 == 1 ? Brick::kSide / 2 : 0};
+}
+
+void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
+    limits_.triedCost = limits_.maxCost;
+    limits_.maxCost = cost;
+    simplifyPatches(surface, nextCut(), frame_, {limits_});
+}
+
+Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
+    const double distanceMm = limits_.maxDistanceMm, voxel = frame_.voxelMm();
+    const double mostCost = kHalfway * voxel * voxel * distanceMm * distanceMm;
+    limits_.maxDistanceMm *= kEarlyDistance;
+    limits_.maxCost = kFirstCost * costUnit_;
+    surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
+    for (const double cost : kCosts) {
+        if (cost * costUnit_ > mostCost) break;
+        roundUpTo(cost * costUnit_, surface);
+    }
+    // what was refused for its distance is to be tried again
+    for (Patch::State& state : surface.states) {
+        if (state == Patch::State::Tried) state = Patch::State::Open;
+    }
+    limits_.maxDistanceMm = distanceMm;
+    return {surface, rounds_, limits_.maxCost};
+}
+
+void Simplification::goOnFrom(const Halfway& halfway, SimplifiedSurface& surface) {
+    surface.state() = halfway.state;
+    rounds_ = halfway.rounds;
+    limits_.maxCost = halfway.cost;
+    tight_.apply(frame_, surface.samples);
+}
+
+SimplifiedSurface Simplification::toLimits(SimplifiedSurface last,
+                                           std::optional<Halfway>& halfway) {
+    SimplifiedSurface surface = std::move(last);
+    if (halfway) {
+        goOnFrom(*halfway, surface);
+    } else {
+        halfway = toHalfway(surface);
+    }
+    for (const double cost : kCosts) {
+        if (cost * costUnit_ > limits_.maxCost) roundUpTo(cost * costUnit_, surface);
+    }
+    for (int idle = 0; idle < 2;) {
+        const std::int64_t before = surface.triangleCount();
+        roundUpTo(std::numeric_limits<double>::max(), surface);
+        idle = static_cast<double>(surface.triangleCount()) >=
+                       kWorthwhile * static_cast<double>(before)
+                   ? idle + 1
+                   : 0;
+    }
+    return surface;
+}
+
+/// A round up to a cost that does not lead below the target.
+void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
+    const std::int64_t wanted = (surface.triangleCount() - target + 1) / 2;
+    limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
+    if (surface.triangleCount() > kFar * target) {
+        PatchWork work{limits_};
+        work.mostCollapses = wanted;  // not reached but by a cost far too high
+        simplifyPatches(surface, nextCut(), frame_, work);
+    } else {
+        landOn(wanted, surface);
+    }
+}
+
+/// A round up to the limit of cost; where that makes more collapses than wanted it is undone,
+/// and done again with the cost that makes as many.
+void Simplification::landOn(std::int64_t wanted, SimplifiedSurface& surface) {
+    const PatchCut cut = nextCut();
+    const double cost = limits_.maxCost;
+    const SurfaceState before = surface;
+    CollapseCosts costs;
+    simplifyPatches(surface, cut, frame_, {limits_}, &costs);
+    std::int64_t more = wanted - (before.triangleCount() - surface.triangleCount()) / 2;
+    if (more >= 0) return;
+    surface.state() = before;
+    limits_.maxCost = costLimitFor(costs, wanted);
+    PatchWork work{limits_};
+    work.fits = true;
+    simplifyPatches(surface, cut, frame_, work);
+    isFitted_ = true;
+    more = wanted - (before.triangleCount() - surface.triangleCount()) / 2;
+    if (more > 0) {  // collapses of one cost
+        limits_.maxCost = cost;
+        PatchWork rest{limits_};
+        rest.mostCollapses = more;
+        simplifyPatches(surface, cut, frame_, rest);
+    }
+}
+
+SimplifiedSurface Simplification::toCount(const WantedCount& wanted) {
+    CollapseCosts costs;
+    double cost = kFirstCost;
+    limits_.maxCost = cost * costUnit_;
+    SimplifiedSurface surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, &costs);
+    const std::int64_t target = wanted.of(surface.fineTriangles);
+    if (surface.triangleCount() < target) {
+        limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
+        surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
+    }
+    for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
+        const std::int64_t before = surface.triangleCount();
+        cost *= costStep(before, target);
+        if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
+        roundTowards(surface, target, cost);
+        if (cost > kLastCost) idle = surface.triangleCount() == before ? idle + 1 : 0;
+    }
+    fit(surface);
+    return surface;
+}
+
+void Simplification::fit(SimplifiedSurface& surface) {
+    PatchWork work{limits_};
+    work.collapses = false;
+    work.fits = true;
+    for (int i = isFitted_ ? 1 : 0; i < 2; ++i) {
+        simplifyPatches(surface, nextCut(), frame_, work);
+    }
+}
+
+}  // namespace adaptiso::detail
