@@ -154,8 +154,8 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
     app.add_option(
            "--max-error", options.adaptive.maxErrorMm,
            "Method adaptive: no point of the surface of mc is farther than MM from the mesh, "
-           "nor the other way round (default, unless a count is given: a quarter of the "
-           "least distance between planes of voxels)")
+           "nor the other way round (default, unless a count is given: 0.15 of the least "
+           "distance between planes of voxels)")
         ->type_name("MM")
         ->check(CLI::PositiveNumber)
         ->group(kSurface);

@@ -104,15 +104,16 @@ class Numbers(ApplicationTest):
                 surface = self.report("ball.nii", "--iso", "100", "--method",
                                       method)["surfaces"][0]
                 # vertices lie on the sphere, so the mesh lies inside it. Marching cubes' chords
-                # are at most sqrt(3) voxels: 3 / (8 * 16^2) of the radius. The boxes know no
-                # bound: where a box is simple its surface is taken as flat
-                least = 0.99 if method == "mc" else 0.8
+                # are at most sqrt(3) voxels: 3 / (8 * 16^2) of the radius. The adaptive mesh lies
+                # within 0.15 voxel of it, on both sides, of 16. The boxes know no bound: where a
+                # box is simple its surface is taken as flat
+                bound = 3 * 0.15 / 16
+                least = {"mc": 0.99, "adaptive": 0.99 - bound}.get(method, 0.8)
                 for value, truth in ((surface["volumeMm3"], 4 / 3 * math.pi * 8 ** 3),
                                      (surface["areaMm2"], 4 * math.pi * 8 ** 2)):
                     self.assertGreater(value / truth, least)
-                    # samples are rounded to 0.1 voxel; the adaptive mesh lies on both sides of
-                    # the sphere, within 0.25 voxel of 16
-                    most = 1 + 3 * 0.25 / 16 if method == "adaptive" else 1.001
+                    # samples are rounded to 0.1 voxel
+                    most = 1 + bound if method == "adaptive" else 1.001
                     self.assertLess(value / truth, most)
                 self.assertEqual(surface["genus"], 0)
                 self.assertEqual(surface["componentCount"], 1)

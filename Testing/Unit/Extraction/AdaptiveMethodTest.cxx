@@ -212,6 +212,20 @@ TEST(AdaptiveMethod, MakesNoSharperAngleThanAsked) {
     EXPECT_TRUE(isSound(ours.mesh));
 }
 
+TEST(AdaptiveMethod, HasABoundOfAPartOfTheLeastDistanceBetweenPlanesUnlessAsked) {
+    // steps of 2 mm along i and j at 60 degrees: their planes are sqrt(3) mm apart, those of k 2.5
+    const Mat3 steps{{{{2, 0, 0}, {1, std::sqrt(3.0), 0}, {0, 0, 2.5}}}};
+    const Volume volume = ball(32, 16, steps);
+    AdaptiveOptions stated;
+    stated.maxErrorMm = 0.15 * std::sqrt(3.0);
+    const Extraction ours = extractWith(volume, 0, {});
+    EXPECT_LE(*ours.statistics.errorBoundMm, *stated.maxErrorMm + 1e-12);  // sqrt(3) is rounded
+    EXPECT_EQ(ours.mesh.triangles.size(), extractWith(volume, 0, stated).mesh.triangles.size());
+    // another bound makes another mesh, so that the counts above tell something
+    stated.maxErrorMm = 0.15 * 2;
+    EXPECT_NE(ours.mesh.triangles.size(), extractWith(volume, 0, stated).mesh.triangles.size());
+}
+
 TEST(AdaptiveMethod, RefusesLimitsThatMeanNothing) {
     const Volume volume = ball(8, 3, Mat3{});
     for (AdaptiveOptions bad :
