@@ -60,6 +60,7 @@ ErrorProof::ErrorProof(const LatticeSampler& sampler, const Bricks& bricks,
 ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
     const SurfaceLookup lookup(surface, bricks_, frame_);
     const ProofScope scope = scopeOf(lookup);
+    if (known_.empty()) provedMm_ = 0;
     // bounds are as tight as the largest sample's distance; below a hundredth of a voxel none cares
     const double enough = std::min(
         limitMm_, std::max(largestSampleDistance(surface, lookup), 0.01 * frame_.narrowestMm()));
