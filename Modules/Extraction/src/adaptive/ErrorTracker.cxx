@@ -100,11 +100,15 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
         for (std::uint32_t s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
             double squared = 0;
             const Move move = nearest(changed, s, wedge, squared);
-            if (!(squared <= std::ldexp(most, -patch_.samples[s].tightness))) return false;
+            const Sample& sample = patch_.samples[s];
+            if (sample.tightness > 0) isTight_ = true;
+            if (!(squared <=
+                  (sample.tightness == 0 ? most : std::ldexp(most, -sample.tightness)))) {
+                return false;
+            }
             sumOfSquares_ += squared;
-            if (patch_.samples[s].tightness > 0) isTight_ = true;
             moves_.push_back(move);
-            movedPositions_.push_back(patch_.samples[s].position);
+            movedPositions_.push_back(sample.position);
         }
         return true;
     });

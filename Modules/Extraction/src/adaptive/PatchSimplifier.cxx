@@ -117,7 +117,7 @@ bool PatchSimplifier::isInBox(const Vec3& p) const {
     return true;
 }
 
-void PatchSimplifier::fitVertices() {
+void PatchSimplifier::fitVertices(bool crowdedToo) {
     for (std::uint32_t v = 0; v < patch_.points.size(); ++v) {
         if (!mayChange(v) || !topology_.starOf(v, changed_.star)) continue;
         changed_.vertex = patch_.points[v];
@@ -125,6 +125,7 @@ void PatchSimplifier::fitVertices() {
             !errors_.assign(changed_, limits_.maxDistanceMm) || errors_.isTight()) {
             continue;
         }
+        if (!crowdedToo && guard_.needsProof(changed_, errors_.isCrowded())) continue;
         const double before = errors_.sumOfSquares();
         const Vec3 place = fittedPlace(v);
         const Quadric& q = patch_.quadrics[v];

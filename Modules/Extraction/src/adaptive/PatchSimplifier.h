@@ -32,7 +32,7 @@ public:
 
     /// Moves vertices to where their triangles lie closest to the samples that they stand for
     /// (least squares, held by the vertex's quadric).
-    void fitVertices();
+    void fitVertices(bool crowdedToo);
 
 private:
     struct Candidate {
