@@ -336,7 +336,7 @@ void BrickProof::keepNearest(const Corners& piece) {
     ranked_.clear();
     for (const std::uint32_t t : near_) {
         const Corners c = walkable_.cornersOf(t);
-        ranked_.push_back({squaredNorm(c[0] + c[1] + c[2] - middle), t});
+        ranked_.emplace_back(squaredNorm(c[0] + c[1] + c[2] - middle), t);
     }
     std::partial_sort(ranked_.begin(), ranked_.begin() + kFew, ranked_.end());
     near_.resize(kFew);

@@ -79,7 +79,7 @@ public:
     void mesh(const Brick& brick, FineSurface& surface);
 
     /// The brick's surface, and after it that of the cells up to kHalo around the brick.
-    void meshWithHalo(const Bricks& bricks, std::int64_t brick, FineSurface& surface);
+    void meshWithHalo(const Bricks& bricks, std::int64_t number, FineSurface& surface);
 
 private:
     struct CellRange {

@@ -31,6 +31,6 @@ struct StarLimits {
 /// Fills in the wedges for the star's vertex at star.vertex.
 /// \return false when a triangle would be flat, turn too far from the surface, or have too sharp a
 ///         corner. Slivers on the way are allowed: forbidding them costs accuracy.
-bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& star);
+bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& changed);
 
 }  // namespace adaptiso::detail

@@ -12,7 +12,8 @@ namespace adaptiso::detail {
 /// are those of physical space; orientation is that of index space. Index (0, 0, 0) is the origin.
 class MetricFrame {
 public:
-    explicit MetricFrame(const ImageGeometry& geometry) {
+    explicit MetricFrame(const ImageGeometry& geometry)
+        : voxelMm_(std::cbrt(geometry.voxelVolumeMm3())) {
         // QR by Gram-Schmidt: indexToPhysical = Q R, and R is what is wanted
         const auto& c = geometry.indexToPhysical.column;
         const Vec3 x = normalized(c[0]);
@@ -25,7 +26,6 @@ public:
         const Mat3 rows = transpose(toIndex_);
         narrowestMm_ =
             1 / std::max({norm(rows.column[0]), norm(rows.column[1]), norm(rows.column[2])});
-        voxelMm_ = std::cbrt(geometry.voxelVolumeMm3());
     }
 
     Vec3 fromIndex(const Vec3& index) const { return toFrame_ * index; }

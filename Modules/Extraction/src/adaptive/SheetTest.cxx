@@ -17,7 +17,7 @@ struct Direction {
 struct Tables {
     std::array<Direction, kDirections> direction{};
     /// Bits of the directions near one: d along it, d + kDirections against it.
-    std::array<std::uint32_t, 2 * kDirections> cone{};
+    std::array<std::uint32_t, std::size_t{2} * kDirections> cone{};
 };
 
 constexpr bool isWithin(const std::array<int, 3>& a, const std::array<int, 3>& b) {
