@@ -130,7 +130,7 @@ std::string fileName(Lines& lines, const std::vector<std::string>& words) {
         words[2].back() != '"') {
         lines.fail("must end with one file name in double quotes, without spaces");
     }
-    const std::string file = words[2].substr(1, words[2].size() - 2);
+    std::string file = words[2].substr(1, words[2].size() - 2);
     const fs::path path(file);
     const bool climbs = std::find(path.begin(), path.end(), "..") != path.end();
     if (path.is_absolute() || climbs || path.extension() != ".tri") {

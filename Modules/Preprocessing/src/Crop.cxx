@@ -14,8 +14,8 @@ ImageGeometry croppedGeometry(const ImageGeometry& whole, const CropRanges& rang
     ImageGeometry part = whole;
     Vec3 first;
     for (int axis = 0; axis < 3; ++axis) {
-        const auto [begin, givenEnd] = ranges[axis];
-        const std::int64_t end = givenEnd.value_or(whole.size[axis]);
+        const std::int64_t begin = ranges[axis].first;
+        const std::int64_t end = ranges[axis].end.value_or(whole.size[axis]);
         const auto refuse = [&](const std::string& rule) {
             throw InvalidInput("cropVolume: " + std::to_string(begin) + ":" + std::to_string(end) +
                                " along " + "ijk"[axis] + ": " + rule);
