@@ -83,7 +83,8 @@ public:
 
 private:
     static constexpr int kMostRuns = 16, kMostMends = 6, kMostFits = 3;
-    /// Vertices are fitted within this part of the allowed distance: then few places are lost.
+    /// Vertices are fitted within this part of the allowed distance, or no farther than they were:
+    /// then few places are lost.
     static constexpr double kFitDistance = 0.75;
     /// Runs that leave more than this part of the places beyond the bound lead nowhere.
     static constexpr double kStalled = 0.25;
@@ -103,7 +104,7 @@ private:
         const SurfaceState before = surface;
         for (int attempt = 0; attempt < kMostFits; ++attempt) {
             PatchLimits closer = limits();
-            closer.maxDistanceMm *= kFitDistance;
+            closer.maxFittedMm = kFitDistance * closer.maxDistanceMm;
             Simplification(sampler_, bricks_, frame_, tight_, closer).fit(surface);
             ErrorBound error = proof_.prove(surface);
             if (!isBeyond(error)) return error;

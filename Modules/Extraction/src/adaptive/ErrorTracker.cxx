@@ -93,7 +93,7 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
     const double most = maxDistanceMm * maxDistanceMm;
     moves_.clear();
     movedPositions_.clear();
-    sumOfSquares_ = 0;
+    sumOfSquares_ = largestSquare_ = 0;
     isCrowded_ = isTight_ = false;
     const bool isNear = forEachTriangle(changed.star, [&](std::uint32_t triangle, int wedge) {
         if (triangleIsCrowded_[triangle] != 0) isCrowded_ = true;
@@ -107,6 +107,7 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
                 return false;
             }
             sumOfSquares_ += squared;
+            largestSquare_ = std::max(largestSquare_, squared);
             moves_.push_back(move);
             movedPositions_.push_back(sample.position);
         }

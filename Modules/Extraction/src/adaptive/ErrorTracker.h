@@ -23,6 +23,8 @@ public:
 
     /// Of the last assign(): the sum of squared distances, mm2.
     double sumOfSquares() const { return sumOfSquares_; }
+    /// Of the last assign(): the largest squared distance, mm2.
+    double largestSquare() const { return largestSquare_; }
     /// Of the last assign(): some sample has other parts of the surface near it.
     bool isCrowded() const { return isCrowded_; }
     /// Of the last assign(): some sample lies where the bound was missed before.
@@ -54,7 +56,7 @@ private:
     std::vector<std::uint8_t> triangleIsCrowded_;
     std::vector<Move> moves_;
     std::vector<std::array<float, 3>> movedPositions_;  ///< of the moves' samples, side by side
-    double sumOfSquares_ = 0;
+    double sumOfSquares_ = 0, largestSquare_ = 0;
     bool isCrowded_ = false, isTight_ = false;
 };
 

@@ -127,11 +127,13 @@ void PatchSimplifier::fitVertices(bool crowdedToo) {
         }
         if (!crowdedToo && guard_.needsProof(changed_, errors_.isCrowded())) continue;
         const double before = errors_.sumOfSquares();
+        const double farthest =
+            std::max(errors_.largestSquare(), limits_.maxFittedMm * limits_.maxFittedMm);
         const Vec3 place = fittedPlace(v);
         const Quadric& q = patch_.quadrics[v];
         const double most = q.weight() * limits_.maxDistanceMm * limits_.maxDistanceMm;
         if (!(q.at(place) <= most) || !staysNear(place) || !(errors_.sumOfSquares() < before) ||
-            !crossesNothing()) {
+            errors_.largestSquare() > farthest || !crossesNothing()) {
             continue;
         }
         errors_.commit(changed_);

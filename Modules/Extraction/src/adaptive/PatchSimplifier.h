@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <queue>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct PatchLimits {
     double maxCost = 0;        ///< of a collapse, mm2 x mm2
     double triedCost = -1;     ///< maxCost when the points that are tried were
     double maxDistanceMm = 0;  ///< of a sample from the triangle that stands for it
+    /// Of a sample from the triangles of a fitted vertex, unless some sample was as far before.
+    double maxFittedMm = std::numeric_limits<double>::max();
     StarLimits shape;
     bool provesAll = false;    ///< also stars that can cross nothing by what is known of them
     bool leavesNoise = false;  ///< bricks full of it stay at full resolution
