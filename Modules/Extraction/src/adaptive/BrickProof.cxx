@@ -271,10 +271,20 @@ void BrickProof::proveLeaf(const Corners& piece, const CornerBox& box) {
 
 /// \param triangle  of the simplified surface that the piece is a part of, or none
 void BrickProof::include(const Corners& piece, PieceBound& bound, std::uint64_t triangle) {
+    PieceBound atMost(limitMm_);
+    const double limit = atMost.squaredBound();
     const PieceBound before = bound.withoutNearby();
     bound.include(piece);
-    if (bound.boundMm() <= limitMm_) return;
-    result_.farthestMm = std::max(result_.farthestMm, bound.boundMm());
+    if (bound.squaredBound() <= limit) return;
+    // it grew by more than it had to: try the limit itself
+    atMost.nearby() = bound.nearby();
+    const double reached = bound.boundMm();
+    atMost.include(piece);
+    if (atMost.squaredBound() <= limit) {
+        bound = atMost.withoutNearby();
+        return;
+    }
+    result_.farthestMm = std::max(result_.farthestMm, reached);
     bound = before;
     result_.beyondLimit.push_back({(1.0 / 3) * (piece[0] + piece[1] + piece[2]), triangle});
 }
