@@ -9,8 +9,11 @@
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptive/CrossingProof.h"
 #include "adaptive/PieceBound.h"
+#include "adaptive/SheetRoom.h"
 #include "adaptive/SheetTest.h"
+#include "adaptive/TightPlaces.h"
 
 namespace adaptiso::testing {
 namespace {
@@ -290,6 +293,48 @@ TEST(SheetTest, KnowsOneSheetFromTwo) {
     EXPECT_FALSE(detail::isSingleSheet(window([](int x, int, int z) { return z == 1 && x < 2; })));
     EXPECT_FALSE(detail::isSingleSheet(window([](int x, int y, int) { return x == y; })));
     EXPECT_FALSE(detail::isSingleSheet(0));
+}
+
+TEST(SheetRoom, IsTheDistanceToASheetThatFacesElsewhere) {
+    // two sheets 0.5 apart that face away from each other, and a third 0.9 over them
+    std::vector<Vec3> points, normals;
+    for (int i = 0; i < 300; ++i) {
+        const int layer = i % 3;
+        points.push_back({0.25 * (i / 3 % 10), 0.25 * (i / 30), layer == 2 ? 1.4 : 0.5 * layer});
+        normals.push_back({0, 0, layer == 1 ? 3.0 : -3.0});
+    }
+    std::vector<std::uint8_t> room(points.size(), 0);
+    room.front() = detail::SheetRoom::kAlone;
+    ImageGeometry geometry;
+    geometry.size = {8, 8, 8};
+    detail::SheetRoom::fillIn(points, normals, detail::MetricFrame(geometry), room);
+    constexpr int kParts = detail::SheetRoom::kParts;
+    EXPECT_EQ(room.front(), detail::SheetRoom::kAlone);
+    for (std::size_t i = 1; i < room.size(); ++i) {
+        EXPECT_NEAR(room[i], (i % 3 == 2 ? 0.9 : 0.5) * kParts, 1) << i;
+    }
+}
+
+TEST(TightPlaces, AskForProofsWhereTrianglesCrossed) {
+    detail::TightPlaces places;
+    places.addCrossings({{10, 10, 10}});
+    std::vector<detail::Sample> samples(2);
+    samples[0].setPoint({11, 10, 9});
+    samples[1].setPoint({20, 10, 10});
+    ImageGeometry geometry;
+    geometry.size = {32, 32, 32};
+    places.apply(detail::MetricFrame(geometry), samples);
+    EXPECT_EQ(samples[0].room, 0);
+    EXPECT_TRUE(samples[1].isAlone());
+}
+
+TEST(CrossingProof, FindsTrianglesThatCross) {
+    TriangleMesh mesh;
+    mesh.points = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {5, 5, 1}};
+    mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+    EXPECT_EQ(detail::crossingPlaces(mesh).size(), 2U);
+    mesh.points[3] = {1, 1, 0.5};
+    EXPECT_TRUE(detail::crossingPlaces(mesh).empty());
 }
 
 TEST(PieceBound, IsTheDistanceOfAPieceAcrossARidge) {

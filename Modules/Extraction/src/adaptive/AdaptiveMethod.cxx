@@ -66,9 +66,9 @@ public:
             report(run, 1);
             Extraction result;
             result.mesh = toMesh(surface, geometry_, frame_, sampler_);
-            if (!crossesNothing(result.mesh)) {
-                provesAll_ = true;
-                halfway_.reset();
+            const std::vector<Vec3> crossings = crossingPlaces(result.mesh);
+            if (!crossings.empty()) {
+                proveAround(crossings);
                 continue;
             }
             if (!options_.computeNormals) result.mesh.normals = {};
@@ -82,7 +82,7 @@ public:
     }
 
 private:
-    static constexpr int kMostRuns = 16, kMostMends = 6, kMostFits = 3;
+    static constexpr int kMostRuns = 16, kMostMends = 6, kMostFits = 3, kMostCrossedRuns = 3;
     /// Vertices are fitted within this part of the allowed distance, or no farther than they were:
     /// then few places are lost.
     static constexpr double kFitDistance = 0.75;
@@ -113,6 +113,15 @@ private:
             tight_.apply(frame_, surface.samples);
         }
         return proved;
+    }
+
+    /// Starts anew, with more proved. \param crossings  in physical space
+    void proveAround(const std::vector<Vec3>& crossings) {
+        std::vector<Vec3> places;
+        for (const Vec3& place : crossings) places.push_back(geometry_.toIndex(place));
+        tight_.addCrossings(places);
+        if (++crossedRuns_ == kMostCrossedRuns) provesAll_ = true;
+        halfway_.reset();
     }
 
     void tighten(const ErrorBound& error) {
@@ -206,7 +215,8 @@ private:
     std::optional<Halfway> halfway_;
     ErrorProof proof_;
     double beyond_ = std::numeric_limits<double>::max();  ///< places after the last run
-    bool provesAll_ = false;  ///< the last run left triangles that cross
+    int crossedRuns_ = 0;                                 ///< that left triangles that cross
+    bool provesAll_ = false;                              ///< every star, everywhere
 };
 
 void check(const AdaptiveOptions& options) {

@@ -40,7 +40,7 @@ struct BrickSurface {
         std::uint64_t edge;
         std::uint32_t vertex;
         Vec3 normal;
-        bool isSingleSheet;
+        std::uint8_t room;
     };
     std::vector<WallVertex> walls;
     std::int64_t fineTriangles = 0, tableTriangles = 0;
@@ -83,7 +83,8 @@ void takeOver(Patch& patch, BrickSurface& brick) {
 
 /// Where the surface bends within a triangle its middle is a sample too: between corners a ridge
 /// could pass unseen.
-void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, Patch& patch) {
+void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas,
+                const std::vector<std::uint8_t>& room, Patch& patch) {
     constexpr double kLeastCosine = 0.94;  // 20 degrees
     for (std::uint32_t t = 0; t < fine.triangles.size(); ++t) {
         const auto& v = fine.triangles[t];
@@ -94,9 +95,7 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, Patch& 
         Sample& middle = patch.samples.emplace_back();
         middle.setPoint((1.0 / 3) * (p + q + r));
         middle.setNormal(areaVector2(p, q, r));
-        middle.isSingleSheet = fine.vertices[v[0]].isSingleSheet &&
-                               fine.vertices[v[1]].isSingleSheet &&
-                               fine.vertices[v[2]].isSingleSheet;
+        middle.room = std::min({room[v[0]], room[v[1]], room[v[2]]});
         patch.sampleTriangle.push_back(t);
     }
 }
@@ -106,7 +105,7 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, Patch& 
 bool isNoise(const Patch& patch) {
     constexpr double kMost = 0.05;
     const auto single = std::count_if(patch.samples.begin(), patch.samples.end(),
-                                      [](const Sample& s) { return s.isSingleSheet; });
+                                      [](const Sample& s) { return s.isAlone(); });
     return static_cast<double>(single) < kMost * static_cast<double>(patch.samples.size());
 }
 
@@ -119,6 +118,11 @@ Patch patchOf(const FineSurface& fine, const MetricFrame& frame, BrickSurface& b
     patch.triangles = fine.triangles;
     patch.ownTriangles = static_cast<std::uint32_t>(fine.triangles.size());
     const std::vector<Vec3> areas = addQuadrics(patch);
+    std::vector<std::uint8_t> room;
+    room.reserve(fine.vertices.size());
+    for (const FineVertex& v : fine.vertices)
+        room.push_back(v.isSingleSheet ? SheetRoom::kAlone : 0);
+    SheetRoom::fillIn(patch.points, areas, frame, room);
     std::vector<std::uint32_t> triangleAt(fine.vertices.size());
     for (std::uint32_t t = 0; t < fine.triangles.size(); ++t) {
         for (const std::uint32_t v : fine.triangles[t]) triangleAt[v] = t;
@@ -126,17 +130,16 @@ Patch patchOf(const FineSurface& fine, const MetricFrame& frame, BrickSurface& b
     for (std::uint32_t v = 0; v < fine.vertices.size(); ++v) {
         const FineVertex& vertex = fine.vertices[v];
         if (vertex.isOnWall) {
-            brick.walls.push_back(
-                {vertex.edge.word, v, normalized(areas[v]), vertex.isSingleSheet});
+            brick.walls.push_back({vertex.edge.word, v, normalized(areas[v]), room[v]});
             continue;
         }
         Sample& sample = patch.samples.emplace_back();
         sample.setPoint(patch.points[v]);
         sample.setNormal(areas[v]);
-        sample.isSingleSheet = vertex.isSingleSheet;
+        sample.room = room[v];
         patch.sampleTriangle.push_back(triangleAt[v]);
     }
-    addMiddles(fine, areas, patch);
+    addMiddles(fine, areas, room, patch);
     return patch;
 }
 
@@ -178,7 +181,7 @@ private:
         std::uint64_t edge;
         std::uint32_t brick, vertex;
         Vec3 normal;
-        bool isSingleSheet;
+        std::uint8_t room;
         StoredQuadric quadric;
     };
     static constexpr std::uint64_t kShared = ~std::uint64_t{0};
@@ -186,8 +189,8 @@ private:
     void collectWalls() {
         for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
             for (const auto& w : bricks_[b].walls) {
-                walls_.push_back({w.edge, b, w.vertex, w.normal, w.isSingleSheet,
-                                  bricks_[b].quadrics[w.vertex]});
+                walls_.push_back(
+                    {w.edge, b, w.vertex, w.normal, w.room, bricks_[b].quadrics[w.vertex]});
             }
             bricks_[b].walls = {};
             number_[b].assign(bricks_[b].points.size(), 0);
@@ -274,13 +277,13 @@ private:
             Sample sample;
             Vec3 normal;
             for (j = i; j < walls_.size() && walls_[j].edge == walls_[i].edge; ++j) {
-                sample.isSingleSheet = sample.isSingleSheet && walls_[j].isSingleSheet;
+                sample.room = std::min(sample.room, walls_[j].room);
                 normal += walls_[j].normal;
             }
             const std::uint64_t id = number_[walls_[i].brick][walls_[i].vertex];
             sample.setPoint(whole_.points[id]);
             sample.setNormal(normal);
-            sample.tightness = tight_.tightnessAt(frame_.toIndex(whole_.points[id]));
+            tight_.apply(frame_, sample);
             whole_.samples.push_back(sample);
             whole_.sampleTriangle.push_back(triangleAt[id]);
             whole_.wallEdges.push_back(walls_[i].edge);

@@ -33,7 +33,7 @@ void CrossingGuard::buildGrid() {
     std::vector<Index3> cubes;
     Index3 high{};
     for (std::uint32_t s = 0; s < patch_.samples.size(); ++s) {
-        if (patch_.samples[s].isSingleSheet && !looksEverywhere_) continue;
+        if (patch_.samples[s].isAlone() && !looksEverywhere_) continue;
         const Vec3 index = frame_.toIndex(patch_.samples[s].point());
         const Index3 cube{cubeOf(index.x), cubeOf(index.y), cubeOf(index.z)};
         for (int a = 0; a < 3; ++a) {

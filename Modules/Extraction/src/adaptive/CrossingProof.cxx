@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <vector>
 
 #include "../Certificate.h"
@@ -39,29 +38,35 @@ bool areClear(const TriangleMesh& mesh, std::int64_t a, std::int64_t b, double g
     return touchAtEdgeOnly(fromEdge, {fromEdge[1], fromEdge[0], mesh.points[t[otherInT]]}, 0);
 }
 
-/// Every two triangles are clear.
-bool allAreClear(const TriangleMesh& mesh) {
-    if (mesh.triangles.empty()) return true;
+}  // namespace
+
+std::vector<Vec3> crossingPlaces(const TriangleMesh& mesh) {
+    if (mesh.triangles.empty()) return {};
     constexpr std::int64_t kPiece = 1024;
     const AabbTree tree(mesh);
     const BoundingBox box = boundingBox(mesh);
     const double gap = 1e-13 * (norm(box.maximum) + norm(box.minimum));  // rounding of coordinates
     const auto count = static_cast<std::int64_t>(mesh.triangles.size());
-    std::atomic<bool> areAllClear = true;
+    const auto cornersOf = [&](std::int64_t t) {
+        const Triangle& c = mesh.triangles[t];
+        return Corners{mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]};
+    };
+    std::vector<std::vector<Vec3>> places((count + kPiece - 1) / kPiece);
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t t = begin; t < end && areAllClear; ++t) {
+        for (std::int64_t t = begin; t < end; ++t) {
             tree.forEachOverlap(tree.triangleBox(t), [&](std::int64_t other) {
-                if (other > t && !areClear(mesh, t, other, gap)) areAllClear = false;
+                if (other <= t || areClear(mesh, t, other, gap)) return;
+                const Corners a = cornersOf(t), b = cornersOf(other);
+                if (!trianglesCross(a, b)) return;
+                for (const Corners& c : {a, b}) {
+                    places[begin / kPiece].push_back((1.0 / 3) * (c[0] + c[1] + c[2]));
+                }
             });
         }
     });
-    return areAllClear;
-}
-
-}  // namespace
-
-bool crossesNothing(const TriangleMesh& mesh) {
-    return allAreClear(mesh) || findSelfIntersections(mesh).pairCount == 0;
+    std::vector<Vec3> all;
+    for (const auto& some : places) all.insert(all.end(), some.begin(), some.end());
+    return all;
 }
 
 }  // namespace adaptiso::detail

@@ -10,6 +10,11 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// A star may come this part of the way to other sheets without a proof that it meets none, unless
+/// they are nearer than kNarrow (in the least distance between planes of samples): two stars that
+/// come towards each other still pass, and what lies between samples strays little more than they.
+constexpr double kUsableRoom = 0.4, kNarrow = 0.7;
+
 /// Squared distance from q to the segment from the origin to e.
 double squaredDistanceToSegment(const Vec3& q, const Vec3& e) {
     const double t = std::clamp(dot(q, e) / squaredNorm(e), 0.0, 1.0);
@@ -41,19 +46,34 @@ WedgeDistance distanceTo(const ChangedStar::Wedge& w, const Vec3& q) {
     return result;
 }
 
+/// About how far a point lies from the full-resolution surface: its height over the tangent plane.
+double heightOver(const Sample& sample, const Vec3& p) {
+    return std::abs(dot(sample.normal(), p - sample.point()));
+}
+
+/// A distance, larger where it must be small.
+double tightened(double distanceMm, const Sample& sample) {
+    return sample.tightness == 0 ? distanceMm : distanceMm * std::exp2(0.5 * sample.tightness);
+}
+
 }  // namespace
 
-ErrorTracker::ErrorTracker(Patch& patch, double sampleSpacingMm)
+ErrorTracker::ErrorTracker(Patch& patch, const MetricFrame& frame)
     : patch_(patch),
-      sampleSpacingMm_(sampleSpacingMm),
+      sampleSpacingMm_(frame.voxelMm()),
       firstSample_(patch.triangles.size(), kNone),
       nextSample_(patch.samples.size(), kNone),
-      triangleIsCrowded_(patch.triangles.size(), 0) {
+      triangleRoom_(patch.triangles.size(), SheetRoom::kAlone) {
+    for (int room = 0; room < kRooms; ++room) {
+        const double voxels = static_cast<double>(room) / SheetRoom::kParts,
+                     mm = kUsableRoom * voxels * frame.narrowestMm();
+        squaredRoom_[room] = voxels < kNarrow ? -1 : mm * mm;
+    }
+    squaredRoom_[SheetRoom::kAlone] = kInfinity;
     for (auto s = static_cast<std::uint32_t>(patch.samples.size()); s-- > 0;) {
         const std::uint32_t t = patch.sampleTriangle[s];
         nextSample_[s] = firstSample_[t];
         firstSample_[t] = s;
-        if (!patch.samples[s].isSingleSheet) triangleIsCrowded_[t] = 1;
     }
 }
 
@@ -95,13 +115,17 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
     movedPositions_.clear();
     sumOfSquares_ = largestSquare_ = 0;
     isCrowded_ = isTight_ = false;
+    leastRoom_ = SheetRoom::kAlone;
+    std::uint8_t roomUnseen = SheetRoom::kAlone;
     const bool isNear = forEachTriangle(changed.star, [&](std::uint32_t triangle, int wedge) {
-        if (triangleIsCrowded_[triangle] != 0) isCrowded_ = true;
+        roomUnseen = std::min(roomUnseen, triangleRoom_[triangle]);
         for (std::uint32_t s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
             double squared = 0;
             const Move move = nearest(changed, s, wedge, squared);
             const Sample& sample = patch_.samples[s];
             if (sample.tightness > 0) isTight_ = true;
+            leastRoom_ = std::min(leastRoom_, sample.room);
+            if (squared > squaredRoom_[sample.room]) isCrowded_ = true;
             if (!(squared <=
                   (sample.tightness == 0 ? most : std::ldexp(most, -sample.tightness)))) {
                 return false;
@@ -113,13 +137,20 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
         }
         return true;
     });
-    return isNear && (moves_.empty() || (heightAt(changed.vertex) <= maxDistanceMm &&
-                                         ridgesAreNear(changed, maxDistanceMm)));
+    leastRoom_ = std::min(leastRoom_, roomUnseen);
+    if (!isNear) return false;
+    if (moves_.empty()) {
+        isCrowded_ = leastRoom_ != SheetRoom::kAlone;
+        return true;
+    }
+    const Sample& nearest = sampleNearest(changed.vertex);
+    const double height = heightOver(nearest, changed.vertex);
+    if (height * height > squaredRoom_[std::min(nearest.room, roomUnseen)]) isCrowded_ = true;
+    return tightened(height, nearest) <= maxDistanceMm && ridgesAreNear(changed, maxDistanceMm);
 }
 
-/// About how far a point lies from the full-resolution surface, larger where that must be tight:
-/// its height over the tangent plane at the nearest sample of the last assign().
-double ErrorTracker::heightAt(const Vec3& p) const {
+/// Of the last assign().
+const Sample& ErrorTracker::sampleNearest(const Vec3& p) const {
     const std::array<float, 3> q = Sample::positionOf(p);
     float nearest = std::numeric_limits<float>::infinity();
     std::size_t at = 0;
@@ -132,9 +163,7 @@ double ErrorTracker::heightAt(const Vec3& p) const {
             at = i;
         }
     }
-    const Sample& sample = patch_.samples[moves_[at].sample];
-    const double height = std::abs(dot(sample.normal(), p - sample.point()));
-    return sample.tightness == 0 ? height : height * std::exp2(0.5 * sample.tightness);
+    return patch_.samples[moves_[at].sample];
 }
 
 /// The way back: a sharp edge may pass between the samples of a rounder surface.
@@ -156,7 +185,9 @@ bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, double maxDistanceM
         const int steps =
             std::min(kMostSteps, 1 + static_cast<int>(norm(spoke) / (kSpacing * sampleSpacingMm_)));
         for (int k = 1; k < steps; ++k) {
-            if (heightAt(changed.vertex + static_cast<double>(k) / steps * spoke) > maxDistanceMm) {
+            const Vec3 p = changed.vertex + static_cast<double>(k) / steps * spoke;
+            const Sample& nearest = sampleNearest(p);
+            if (tightened(heightOver(nearest, p), nearest) > maxDistanceMm) {
                 return false;
             }
         }
@@ -167,7 +198,6 @@ bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, double maxDistanceM
 void ErrorTracker::commit(const ChangedStar& changed) {
     forEachTriangle(changed.star, [&](std::uint32_t triangle, int) {
         firstSample_[triangle] = kNone;
-        triangleIsCrowded_[triangle] = 0;
         return true;
     });
     for (const Move& move : moves_) {
@@ -175,12 +205,10 @@ void ErrorTracker::commit(const ChangedStar& changed) {
         nextSample_[move.sample] = firstSample_[t];
         firstSample_[t] = move.sample;
         patch_.sampleTriangle[move.sample] = t;
-        if (!patch_.samples[move.sample].isSingleSheet) triangleIsCrowded_[t] = 1;
     }
-    if (!isCrowded_) return;
-    for (int i = 0; i < changed.star.count; ++i) {  // without samples: nothing says it is not
+    for (int i = 0; i < changed.star.count; ++i) {  // what lies around it tells
         const std::uint32_t t = changed.star.triangle[i];
-        if (firstSample_[t] == kNone) triangleIsCrowded_[t] = 1;
+        if (firstSample_[t] == kNone) triangleRoom_[t] = leastRoom_;
     }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ChangedStar.h"
+#include "MetricFrame.h"
 
 namespace adaptiso::detail {
 
@@ -14,8 +15,7 @@ class ErrorTracker {
 public:
     static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-    /// \param sampleSpacingMm  about the distance between neighbouring samples
-    ErrorTracker(Patch& patch, double sampleSpacingMm);
+    ErrorTracker(Patch& patch, const MetricFrame& frame);
 
     /// Finds for every sample of the star's triangles the near one of the changed triangles.
     /// \return false when a sample would be farther than maxDistanceMm from it
@@ -25,7 +25,7 @@ public:
     double sumOfSquares() const { return sumOfSquares_; }
     /// Of the last assign(): the largest squared distance, mm2.
     double largestSquare() const { return largestSquare_; }
-    /// Of the last assign(): some sample has other parts of the surface near it.
+    /// Of the last assign(): the star comes so far towards other sheets that it could meet them.
     bool isCrowded() const { return isCrowded_; }
     /// Of the last assign(): some sample lies where the bound was missed before.
     bool isTight() const { return isTight_; }
@@ -47,16 +47,19 @@ private:
     Move nearest(const ChangedStar& changed, std::uint32_t sample, int start,
                  double& squaredDistance) const;
 
-    double heightAt(const Vec3& p) const;
+    const Sample& sampleNearest(const Vec3& p) const;
     bool ridgesAreNear(const ChangedStar& changed, double maxDistanceMm) const;
 
     Patch& patch_;
     double sampleSpacingMm_;
+    static constexpr int kRooms = SheetRoom::kAlone + 1;
+    std::array<double, kRooms> squaredRoom_{};  ///< that may be used, by Sample::room
     std::vector<std::uint32_t> firstSample_, nextSample_;
-    std::vector<std::uint8_t> triangleIsCrowded_;
+    std::vector<std::uint8_t> triangleRoom_;  ///< where there are no samples, see Sample
     std::vector<Move> moves_;
     std::vector<std::array<float, 3>> movedPositions_;  ///< of the moves' samples, side by side
     double sumOfSquares_ = 0, largestSquare_ = 0;
+    std::uint8_t leastRoom_ = SheetRoom::kAlone;
     bool isCrowded_ = false, isTight_ = false;
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Quadric.h"
+#include "SheetRoom.h"
 #include "adaptiso/Core/Geometry.h"
 
 namespace adaptiso::detail {
@@ -16,11 +17,13 @@ namespace adaptiso::detail {
 struct Sample {
     std::array<float, 3> position{};
     std::array<std::int16_t, 3> direction{};  ///< of the normal, in parts of kUnit
-    bool isSingleSheet = true;                ///< see FineVertex
+    std::uint8_t room = SheetRoom::kAlone;    ///< to other sheets, see SheetRoom
     /// How often the square of the allowed distance is halved, see TightPlaces.
     std::uint8_t tightness = 0;
 
     static constexpr double kUnit = 32767;
+
+    bool isAlone() const { return room == SheetRoom::kAlone; }
 
     Vec3 point() const { return {position[0], position[1], position[2]}; }
     Vec3 normal() const {

@@ -20,7 +20,7 @@ PatchSimplifier::PatchSimplifier(Patch& patch, const MetricFrame& frame, const P
       frame_(frame),
       limits_(limits),
       topology_(patch),
-      errors_(patch, frame.voxelMm()),
+      errors_(patch, frame),
       guard_(patch, topology_, frame, limits.provesAll),
       changes_(patch.points.size(), 0) {}
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 
 namespace adaptiso::detail {
 
@@ -13,7 +12,7 @@ Index3 TightPlaces::cubeAt(const Vec3& place) {
     return cube;
 }
 
-void TightPlaces::add(const std::vector<Vec3>& places) {
+std::set<Index3> TightPlaces::cubesAround(const std::vector<Vec3>& places) {
     std::set<Index3> cubes;
     for (const Vec3& place : places) {
         const Index3 cube = cubeAt(place);
@@ -21,18 +20,33 @@ void TightPlaces::add(const std::vector<Vec3>& places) {
             cubes.insert({cube[0] + n % 3 - 1, cube[1] + n / 3 % 3 - 1, cube[2] + n / 9 - 1});
         }
     }
-    for (const Index3& cube : cubes) ++tightness_[cube];
+    return cubes;
 }
 
-std::uint8_t TightPlaces::tightnessAt(const Vec3& place) const {
+void TightPlaces::add(const std::vector<Vec3>& places) {
+    for (const Index3& cube : cubesAround(places)) ++tightness_[cube];
+}
+
+void TightPlaces::addCrossings(const std::vector<Vec3>& places) {
+    crossings_.merge(cubesAround(places));
+}
+
+/// How often the square is halved.
+std::uint8_t TightPlaces::tightnessAt(const Index3& cube) const {
     constexpr std::array<std::uint8_t, 5> kHalvings{0, 1, 4, 12, 40};
-    if (tightness_.empty()) return 0;
-    const auto at = tightness_.find(cubeAt(place));
+    const auto at = tightness_.find(cube);
     return at == tightness_.end() ? 0 : kHalvings[std::min(at->second, kHalvings.size() - 1)];
 }
 
+void TightPlaces::apply(const MetricFrame& frame, Sample& sample) const {
+    if (tightness_.empty() && crossings_.empty()) return;
+    const Index3 cube = cubeAt(frame.toIndex(sample.point()));
+    sample.tightness = tightnessAt(cube);
+    if (crossings_.contains(cube)) sample.room = 0;
+}
+
 void TightPlaces::apply(const MetricFrame& frame, std::vector<Sample>& samples) const {
-    for (Sample& sample : samples) sample.tightness = tightnessAt(frame.toIndex(sample.point()));
+    for (Sample& sample : samples) apply(frame, sample);
 }
 
 }  // namespace adaptiso::detail
