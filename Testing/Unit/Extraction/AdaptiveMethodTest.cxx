@@ -2,6 +2,7 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
+#include <random>
 
 #include "RandomVolumes.h"
 #include "Support/AnalyticVolumes.h"
@@ -10,6 +11,7 @@
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptive/CrossingProof.h"
+#include "adaptive/NearTriangle.h"
 #include "adaptive/PieceBound.h"
 #include "adaptive/SheetRoom.h"
 #include "adaptive/SheetTest.h"
@@ -335,6 +337,25 @@ TEST(CrossingProof, FindsTrianglesThatCross) {
     EXPECT_EQ(detail::crossingPlaces(mesh).size(), 2U);
     mesh.points[3] = {1, 1, 0.5};
     EXPECT_TRUE(detail::crossingPlaces(mesh).empty());
+}
+
+TEST(NearTriangle, TellsWhatTheDistanceTells) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> at(-1, 1), squared(0.001, 2);
+    const auto point = [&] { return Vec3{at(random), at(random), at(random)}; };
+    int within = 0;
+    for (int n = 0; n < 20000; ++n) {
+        detail::Corners t{point(), point(), point()};
+        if (n % 10 == 0) t[2] = t[0] + 0.3 * (t[1] - t[0]) + 1e-9 * t[2];  // next to flat
+        const Vec3 p = point(), normal = normalized(areaVector2(t[0], t[1], t[2]));
+        const double limit = squared(random), distance = detail::squaredDistanceToTriangle(p, t);
+        if (std::abs(distance - limit) < 1e-6) continue;
+        const detail::NearTriangle near(t, normal, limit);
+        EXPECT_EQ(near.has(p), distance < limit) << n;
+        within += static_cast<int>(near.has(p));
+    }
+    EXPECT_GT(within, 5000);
+    EXPECT_LT(within, 15000);
 }
 
 TEST(PieceBound, IsTheDistanceOfAPieceAcrossARidge) {

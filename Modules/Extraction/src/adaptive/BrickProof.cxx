@@ -33,6 +33,9 @@ bool isSmall(const CornerBox& box) {
 constexpr int kStepsOfFine = 40, kFewSteps = 100;
 constexpr double kStepsPerFace = 20, kManySteps = 1e6;
 
+/// From this bound on, in voxels, few pieces need cuts.
+constexpr double kLoose = 0.2;
+
 }  // namespace
 
 BrickProof::BrickProof(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
@@ -176,8 +179,12 @@ void BrickProof::proveFine(std::size_t t) {
     const auto& v = fine_.triangles[t];
     if (isUnchanged(v)) return;
     const Corners piece{points_[v[0]], points_[v[1]], points_[v[2]]};
-    for (const std::uint32_t corner : v) {
-        if (fromFine_.isWithin(piece, lookup_.cornersOf(standIn_[corner]))) return;
+    for (int c = 0; c < 3; ++c) {
+        const std::uint64_t stand = standIn_[v[c]];
+        if (c > 0 && stand == standIn_[v[c - 1]]) continue;
+        const Corners corners = lookup_.cornersOf(stand);
+        const Vec3& normal = lookup_.walkable().normalOf(static_cast<VertexId>(stand));
+        if (NearTriangle(corners, normal, fromFine_.squaredBound()).has(piece)) return;
     }
     walk_.cover(ConvexPiece(piece), lookup_.walkable(), static_cast<VertexId>(standIn_[v[0]]),
                 fromFine_.squaredBound(), kStepsOfFine);
@@ -237,7 +244,12 @@ void BrickProof::proveWhole(const Corners& piece, std::uint32_t start, double ar
     }
     const double faces = area2 / (frame_.narrowestMm() * frame_.narrowestMm());
     const int steps = kFewSteps + static_cast<int>(std::min(kManySteps, kStepsPerFace * faces));
-    walk_.cover(ConvexPiece(piece), walkable_, start, toFine_.squaredBound(), steps);
+    const double squared = toFine_.squaredBound(), voxel = frame_.voxelMm();
+    if (squared > kLoose * kLoose * voxel * voxel) {
+        walk_.coverLoosely(piece, walkable_, start, squared, steps);
+    } else {
+        walk_.cover(ConvexPiece(piece), walkable_, start, squared, steps);
+    }
     for (const ConvexPiece& left : walk_.left()) {
         for (int i = 2; i < left.count(); ++i) {
             proveSmall({left.corner(0), left.corner(i - 1), left.corner(i)});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -112,7 +113,7 @@ ErrorTracker::Move ErrorTracker::nearest(const ChangedStar& changed, std::uint32
 bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
     const double most = maxDistanceMm * maxDistanceMm;
     moves_.clear();
-    movedPositions_.clear();
+    for (auto& along : movedAlong_) along.clear();
     sumOfSquares_ = largestSquare_ = 0;
     isCrowded_ = isTight_ = false;
     leastRoom_ = SheetRoom::kAlone;
@@ -133,7 +134,7 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
             sumOfSquares_ += squared;
             largestSquare_ = std::max(largestSquare_, squared);
             moves_.push_back(move);
-            movedPositions_.push_back(sample.position);
+            for (int a = 0; a < 3; ++a) movedAlong_[a].push_back(sample.position[a]);
         }
         return true;
     });
@@ -149,18 +150,27 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
     return tightened(height, nearest) <= maxDistanceMm && ridgesAreNear(changed, maxDistanceMm);
 }
 
-/// Of the last assign().
+/// Of the samples of the last assign(), but for differences of a ten-thousandth.
 const Sample& ErrorTracker::sampleNearest(const Vec3& p) const {
+    // a number of 32 bits for each, by which the compiler takes several at once: the square, as
+    // floats that are not negative sort by their bits, with the place in its last bits
+    constexpr std::int32_t kPlaces = 1 << 10;
     const std::array<float, 3> q = Sample::positionOf(p);
-    float nearest = std::numeric_limits<float>::infinity();
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < movedPositions_.size(); ++i) {
-        const auto& s = movedPositions_[i];
-        const float x = s[0] - q[0], y = s[1] - q[1], z = s[2] - q[2];
-        const float squared = x * x + y * y + z * z;
-        if (squared < nearest) {
-            nearest = squared;
-            at = i;
+    const auto count = static_cast<std::int32_t>(moves_.size());
+    std::int32_t at = 0, least = std::numeric_limits<std::int32_t>::max();
+    for (std::int32_t begin = 0; begin < count; begin += kPlaces) {
+        const std::int32_t here = std::min(kPlaces, count - begin);
+        const float *xs = movedAlong_[0].data() + begin, *ys = movedAlong_[1].data() + begin,
+                    *zs = movedAlong_[2].data() + begin;
+        std::int32_t best = std::numeric_limits<std::int32_t>::max();
+        for (std::int32_t i = 0; i < here; ++i) {
+            const float x = xs[i] - q[0], y = ys[i] - q[1], z = zs[i] - q[2];
+            const auto bits = std::bit_cast<std::int32_t>(x * x + y * y + z * z);
+            best = std::min(best, (bits & ~(kPlaces - 1)) | i);
+        }
+        if ((best & ~(kPlaces - 1)) < (least & ~(kPlaces - 1))) {
+            least = best;
+            at = begin + (best & (kPlaces - 1));
         }
     }
     return patch_.samples[moves_[at].sample];

@@ -57,7 +57,7 @@ private:
     std::vector<std::uint32_t> firstSample_, nextSample_;
     std::vector<std::uint8_t> triangleRoom_;  ///< where there are no samples, see Sample
     std::vector<Move> moves_;
-    std::vector<std::array<float, 3>> movedPositions_;  ///< of the moves' samples, side by side
+    std::array<std::vector<float>, 3> movedAlong_;  ///< positions of the moves' samples, by axis
     double sumOfSquares_ = 0, largestSquare_ = 0;
     std::uint8_t leastRoom_ = SheetRoom::kAlone;
     bool isCrowded_ = false, isTight_ = false;

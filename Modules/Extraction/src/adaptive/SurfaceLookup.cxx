@@ -1,5 +1,7 @@
 #include "SurfaceLookup.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -37,15 +39,19 @@ std::pair<Index3, Index3> SurfaceLookup::placesNear(std::uint64_t t) const {
 
 SurfaceLookup::SurfaceLookup(const SimplifiedSurface& surface, const Bricks& bricks,
                              const MetricFrame& frame)
-    : bricks_(bricks),
-      frame_(frame),
-      mesh_(meshOf(surface)),
-      tree_(mesh_),
-      ofBrick_(bricks.count()) {
+    : bricks_(bricks), frame_(frame), mesh_(meshOf(surface)), ofBrick_(bricks.count()) {
     walkable_.assign(mesh_.points, mesh_.triangles);
     for (std::uint64_t t = 0; t < triangleCount(); ++t) {
         forEachBrickNear(t, [&](std::int64_t b) { ofBrick_[b].push_back(t); });
     }
+}
+
+const AabbTree& SurfaceLookup::tree() const {
+    std::call_once(treeIsBuilt_, [&] {
+        // while it waits for its own tasks a thread must not take one that asks for the tree
+        tbb::this_task_arena::isolate([&] { tree_.emplace(mesh_); });
+    });
+    return *tree_;
 }
 
 std::int64_t SurfaceLookup::brickFor(const Vec3& lattice) const {

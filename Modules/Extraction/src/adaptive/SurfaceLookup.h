@@ -1,5 +1,7 @@
 #pragma once
 
+#include <mutex>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -33,7 +35,7 @@ public:
     void forEachNear(const Corners& piece, double distanceMm, const F& f) const {
         CornerBox box = boxOf(piece);
         box.widen(distanceMm);
-        tree_.forEachOverlap({box.low, box.high}, [&](std::int64_t t) { f(cornersOf(t)); });
+        tree().forEachOverlap({box.low, box.high}, [&](std::int64_t t) { f(cornersOf(t)); });
     }
     const WalkableSurface<VertexId>& walkable() const { return walkable_; }
     std::span<const std::uint64_t> ofBrick(std::int64_t b) const { return ofBrick_[b]; }
@@ -73,10 +75,14 @@ private:
     /// First and last of the bricks' places that a triangle reaches into, with room around.
     std::pair<Index3, Index3> placesNear(std::uint64_t t) const;
 
+    /// Built when it is first asked for.
+    const AabbTree& tree() const;
+
     const Bricks& bricks_;
     const MetricFrame& frame_;
     TriangleMesh mesh_;
-    AabbTree tree_;
+    mutable std::once_flag treeIsBuilt_;
+    mutable std::optional<AabbTree> tree_;
     WalkableSurface<VertexId> walkable_;
     std::vector<std::vector<std::uint64_t>> ofBrick_;
 };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../Certificate.h"
-#include "PieceBound.h"
+#include "NearTriangle.h"
 
 namespace adaptiso::detail {
 
@@ -124,6 +124,71 @@ public:
     void cover(const ConvexPiece& piece, const WalkableSurface<Index>& surface, Index start,
                double squaredDistance, int steps) {
         left_.clear();
+        walk(piece, surface, start, squaredDistance, steps);
+    }
+
+    /// The same of a triangle, quicker where the distance is not small beside the surface's
+    /// triangles: parts that lie within it of the triangle under their middle need no cuts.
+    template <class Index>
+    void coverLoosely(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
+                      double squaredDistance, int steps) {
+        left_.clear();
+        quarter(piece, surface, start, squaredDistance, steps);
+    }
+
+private:
+    /// Parts whose longest side is less than kSmall times the distance are not quartered again;
+    /// those above kLarge times are without a look at what they lie over.
+    static constexpr double kSmall = 2, kLarge = 6;
+
+    template <class Index>
+    void quarter(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
+                 double squaredDistance, int steps) {
+        const auto& [a, b, c] = piece;
+        const double longest =
+            std::max({squaredNorm(b - a), squaredNorm(c - b), squaredNorm(a - c)});
+        Index t = start;
+        if (longest <= kLarge * kLarge * squaredDistance) {
+            t = under((1.0 / 3) * (a + b + c), surface, start);
+            const Corners corners = surface.cornersOf(t);
+            if (NearTriangle(corners, surface.normalOf(t), squaredDistance).has(piece)) return;
+        }
+        if (longest <= kSmall * kSmall * squaredDistance) {
+            walk(ConvexPiece(piece), surface, t, squaredDistance, steps);
+            return;
+        }
+        const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+        quarter({ab, bc, ca}, surface, t, squaredDistance, steps);
+        quarter({a, ab, ca}, surface, t, squaredDistance, steps);
+        quarter({ab, b, bc}, surface, t, squaredDistance, steps);
+        quarter({ca, bc, c}, surface, t, squaredDistance, steps);
+    }
+
+    /// The triangle that a point lies over, or one on the way there.
+    template <class Index>
+    static Index under(const Vec3& p, const WalkableSurface<Index>& surface, Index t) {
+        constexpr int kMostSteps = 16;
+        for (int step = 0; step < kMostSteps; ++step) {
+            const Corners corners = surface.cornersOf(t);
+            const Vec3& normal = surface.normalOf(t);
+            Index onward = WalkableSurface<Index>::kNone;
+            for (int c = 0; c < 3 && onward == WalkableSurface<Index>::kNone; ++c) {
+                const Index next = surface.across(t, c);
+                if (next == WalkableSurface<Index>::kNone) continue;
+                const Vec3 edge = corners[(c + 1) % 3] - corners[c];
+                if (dot(cross(edge, normal + surface.normalOf(next)), p - corners[c]) > 0) {
+                    onward = next;
+                }
+            }
+            if (onward == WalkableSurface<Index>::kNone) break;
+            t = onward;
+        }
+        return t;
+    }
+
+    template <class Index>
+    void walk(const ConvexPiece& piece, const WalkableSurface<Index>& surface, Index start,
+              double squaredDistance, int steps) {
         todo_.clear();
         todo_.push_back({piece, static_cast<std::uint64_t>(start)});
         for (; !todo_.empty() && steps > 0; --steps) {
@@ -134,51 +199,24 @@ public:
         for (const Task& task : todo_) left_.push_back(task.piece);
     }
 
-private:
     struct Task {
         ConvexPiece piece;
         std::uint64_t triangle;
     };
-    /// A triangle, ready for many points' distances.
-    class Near {
-    public:
-        Near(const Corners& t, const Vec3& normal, double squaredDistance)
-            : t_(t), normal_(normal), squared_(squaredDistance), e_(t[1] - t[0]), f_(t[2] - t[0]) {
-            const double ee = squaredNorm(e_), ef = dot(e_, f_), ff = squaredNorm(f_);
-            const double inverse = 1 / (ee * ff - ef * ef);
-            ee_ = inverse * ee, ef_ = inverse * ef, ff_ = inverse * ff;
+    static bool has(const NearTriangle& near, const ConvexPiece& piece) {
+        for (int i = 0; i < piece.count(); ++i) {
+            if (!near.has(piece.corner(i))) return false;
         }
-        bool has(const Vec3& p) const {
-            const Vec3 q = p - t_[0];
-            const double height = dot(normal_, q);
-            if (height * height > squared_) return false;
-            const double d = dot(q, e_), g = dot(q, f_);
-            const double u = ff_ * d - ef_ * g, v = ee_ * g - ef_ * d;
-            if (u >= 0 && v >= 0 && u + v <= 1) return true;  // above the triangle
-            return squaredDistanceToTriangle(p, t_) <= squared_;
-        }
-        bool has(const ConvexPiece& piece) const {
-            for (int i = 0; i < piece.count(); ++i) {
-                if (!has(piece.corner(i))) return false;
-            }
-            return true;
-        }
-
-    private:
-        const Corners& t_;
-        const Vec3& normal_;
-        double squared_;
-        Vec3 e_, f_;
-        double ee_, ef_, ff_;
-    };
+        return true;
+    }
 
     template <class Index>
     void step(ConvexPiece piece, const WalkableSurface<Index>& surface, Index t,
               double squaredDistance) {
         const Corners corners = surface.cornersOf(t);
         const Vec3& normal = surface.normalOf(t);
-        const Near near(corners, normal, squaredDistance);
-        if (near.has(piece)) return;
+        const NearTriangle near(corners, normal, squaredDistance);
+        if (has(near, piece)) return;
         bool isCut = false;
         for (int c = 0; c < 3; ++c) {
             const Index next = surface.across(t, c);
@@ -205,7 +243,7 @@ private:
             piece = cut(piece, todo_.back().piece);
             isCut = true;
         }
-        if (!isCut || !near.has(piece)) left_.push_back(piece);
+        if (!isCut || !has(near, piece)) left_.push_back(piece);
     }
 
     /// \param outer  gets the part on the positive sides \return the other part
