@@ -33,10 +33,12 @@ struct BrickBound {
 
 /// What is to be proved; all where the lists are empty.
 struct ProofScope {
-    std::vector<bool> isKnown;  ///< of each triangle of the simplified surface: proved before
-    std::vector<bool> blocks;   ///< those whose part of the full-resolution surface is to be proved
+    std::vector<std::uint8_t> isKnown;  ///< of each triangle of the simplified one: proved before
+    std::vector<bool> blocks;  ///< those whose part of the full-resolution surface is to be proved
 
-    bool isProved(std::uint64_t triangle) const { return !isKnown.empty() && isKnown[triangle]; }
+    bool isProved(std::uint64_t triangle) const {
+        return !isKnown.empty() && isKnown[triangle] != 0;
+    }
     bool isWanted(std::uint64_t block) const { return blocks.empty() || blocks[block]; }
 };
 

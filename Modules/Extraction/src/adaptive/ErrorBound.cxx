@@ -1,6 +1,7 @@
 #include "ErrorBound.h"
 
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +13,10 @@ namespace adaptiso::detail {
 namespace {
 
 constexpr double kBoundless = std::numeric_limits<double>::max();
+constexpr std::int64_t kPiece = 1 << 14;
 
 /// The largest distance of a sample to the triangle that stands for it: no bound can be less.
 double largestSampleDistance(const SimplifiedSurface& surface, const SurfaceLookup& lookup) {
-    constexpr std::int64_t kPiece = 1 << 14;
     const auto count = static_cast<std::int64_t>(surface.samples.size());
     std::vector<double> largest((count + kPiece - 1) / kPiece, 0);
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
@@ -97,7 +98,7 @@ void ErrorProof::remember(const SurfaceLookup& lookup, std::vector<PlaceBeyond> 
     for (std::uint64_t t = 0; t < lookup.triangleCount(); ++t) {
         if (!isBeyond[t]) known_.push_back(lookup.cornersOf(t));
     }
-    std::sort(known_.begin(), known_.end(), isBefore);
+    tbb::parallel_sort(known_.begin(), known_.end(), isBefore);
     beyond_ = std::move(beyond);
 }
 
@@ -106,21 +107,24 @@ void ErrorProof::remember(const SurfaceLookup& lookup, std::vector<PlaceBeyond> 
 ProofScope ErrorProof::scopeOf(const SurfaceLookup& lookup) const {
     ProofScope scope;
     if (known_.empty()) return scope;
-    scope.isKnown.assign(lookup.triangleCount(), false);
+    const auto count = static_cast<std::int64_t>(lookup.triangleCount());
+    scope.isKnown.assign(count, 0);
     scope.blocks.assign(bricks_.grid().blockCount(), false);
-    std::vector<bool> isStillThere(known_.size(), false);
-    for (std::uint64_t t = 0; t < lookup.triangleCount(); ++t) {
-        const Corners corners = lookup.cornersOf(t);
-        const auto at = std::lower_bound(known_.begin(), known_.end(), corners, isBefore);
-        if (at != known_.end() && *at == corners) {
-            isStillThere[at - known_.begin()] = true;
-            scope.isKnown[t] = true;
-        } else {
-            markAround(corners, limitMm_, scope);
+    std::vector<std::uint8_t> isStillThere(known_.size(), 0);
+    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t t = begin; t < end; ++t) {
+            const Corners corners = lookup.cornersOf(t);
+            const auto at = std::lower_bound(known_.begin(), known_.end(), corners, isBefore);
+            if (at == known_.end() || *at != corners) continue;
+            isStillThere[at - known_.begin()] = 1;
+            scope.isKnown[t] = 1;
         }
+    });
+    for (std::int64_t t = 0; t < count; ++t) {
+        if (scope.isKnown[t] == 0) markAround(lookup.cornersOf(t), limitMm_, scope);
     }
     for (std::size_t i = 0; i < known_.size(); ++i) {
-        if (!isStillThere[i]) markAround(known_[i], limitMm_, scope);
+        if (isStillThere[i] == 0) markAround(known_[i], limitMm_, scope);
     }
     for (const PlaceBeyond& place : beyond_) {
         markAround({place.point, place.point, place.point}, 0, scope);
