@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "../Certificate.h"
@@ -12,15 +15,88 @@
 namespace adaptiso::detail {
 namespace {
 
+/// The triangles round each vertex, and whether they are clear of each other.
+class Fans {
+public:
+    explicit Fans(const TriangleMesh& mesh)
+        : mesh_(mesh), begin_(mesh.points.size() + 1, 0), isClear_(mesh.points.size(), 0) {
+        for (const Triangle& t : mesh.triangles) {
+            for (const VertexId v : t) ++begin_[v + 1];
+        }
+        for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
+        around_.resize(3 * mesh.triangles.size());
+        std::vector<std::int64_t> at(begin_.begin(), begin_.end() - 1);
+        for (const Triangle& t : mesh.triangles) {
+            for (int c = 0; c < 3; ++c) around_[at[t[c]]++] = {t[(c + 1) % 3], t[(c + 2) % 3]};
+        }
+        constexpr std::int64_t kPiece = 4096;
+        parallelForPieces(static_cast<std::int64_t>(isClear_.size()), kPiece,
+                          [&](std::int64_t begin, std::int64_t end) {
+                              for (std::int64_t v = begin; v < end; ++v) isClear_[v] = prove(v);
+                          });
+    }
+
+    bool isClear(VertexId v) const { return isClear_[v] != 0; }
+
+private:
+    using Sector = std::array<VertexId, 2>;  ///< the other corners of a triangle, in its order
+
+    /// Seen along one direction all are upright and go round the vertex once.
+    bool prove(std::int64_t v) {
+        constexpr std::int64_t kMost = 24;
+        constexpr double kLeastCosine = 0.02;
+        const std::int64_t count = begin_[v + 1] - begin_[v];
+        if (count < 3 || count > kMost) return false;
+        const std::span<Sector> sectors(around_.data() + begin_[v],
+                                        static_cast<std::size_t>(count));
+        for (std::int64_t i = 1; i < count; ++i) {  // into one ring
+            const auto next =
+                std::find_if(sectors.begin() + i, sectors.end(),
+                             [&](const Sector& s) { return s[0] == sectors[i - 1][1]; });
+            if (next == sectors.end()) return false;
+            std::swap(sectors[i], *next);
+        }
+        if (sectors.back()[1] != sectors.front()[0]) return false;
+        std::array<Vec3, kMost> spoke, area2;
+        Vec3 axis;
+        for (std::int64_t i = 0; i < count; ++i)
+            spoke[i] = mesh_.points[sectors[i][0]] - mesh_.points[v];
+        for (std::int64_t i = 0; i < count; ++i) {
+            area2[i] = cross(spoke[i], spoke[(i + 1) % count]);
+            axis += area2[i];
+        }
+        const Vec3 across =
+            std::abs(axis.x) < std::abs(axis.y) ? cross(axis, {1, 0, 0}) : cross(axis, {0, 1, 0});
+        const double least = kLeastCosine * norm(axis);
+        int rounds = 0;  // how often the sectors pass the direction from which `across` grows
+        for (std::int64_t i = 0; i < count; ++i) {
+            const double upright = dot(area2[i], axis);
+            if (!(upright > 0 && upright * upright > least * least * squaredNorm(area2[i]))) {
+                return false;
+            }
+            if (dot(spoke[i], across) < 0 && dot(spoke[(i + 1) % count], across) >= 0) ++rounds;
+        }
+        return rounds == 1;
+    }
+
+    const TriangleMesh& mesh_;
+    std::vector<std::int64_t> begin_;
+    std::vector<Sector> around_;
+    std::vector<std::uint8_t> isClear_;
+};
+
 /// Two triangles that do not cross, for sure.
-bool areClear(const TriangleMesh& mesh, std::int64_t a, std::int64_t b, double gap) {
+bool areClear(const TriangleMesh& mesh, const Fans& fans, std::int64_t a, std::int64_t b,
+              double gap) {
     const Triangle &s = mesh.triangles[a], &t = mesh.triangles[b];
     std::array<int, 3> inT{};
     int shared = 0;
     for (int i = 0; i < 3; ++i) {
         const auto at = std::find(t.begin(), t.end(), s[i]);
         inT[i] = at == t.end() ? -1 : static_cast<int>(at - t.begin());
-        if (inT[i] >= 0) ++shared;
+        if (inT[i] < 0) continue;
+        if (fans.isClear(s[i])) return true;
+        ++shared;
     }
     const auto cornersFrom = [&](const Triangle& u, int first) {
         return Corners{mesh.points[u[first]], mesh.points[u[(first + 1) % 3]],
@@ -44,6 +120,7 @@ std::vector<Vec3> crossingPlaces(const TriangleMesh& mesh) {
     if (mesh.triangles.empty()) return {};
     constexpr std::int64_t kPiece = 1024;
     const AabbTree tree(mesh);
+    const Fans fans(mesh);
     const BoundingBox box = boundingBox(mesh);
     const double gap = 1e-13 * (norm(box.maximum) + norm(box.minimum));  // rounding of coordinates
     const auto count = static_cast<std::int64_t>(mesh.triangles.size());
@@ -55,7 +132,7 @@ std::vector<Vec3> crossingPlaces(const TriangleMesh& mesh) {
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t t = begin; t < end; ++t) {
             tree.forEachOverlap(tree.triangleBox(t), [&](std::int64_t other) {
-                if (other <= t || areClear(mesh, t, other, gap)) return;
+                if (other <= t || areClear(mesh, fans, t, other, gap)) return;
                 const Corners a = cornersOf(t), b = cornersOf(other);
                 if (!trianglesCross(a, b)) return;
                 for (const Corners& c : {a, b}) {

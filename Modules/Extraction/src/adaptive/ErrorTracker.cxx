@@ -110,12 +110,27 @@ ErrorTracker::Move ErrorTracker::nearest(const ChangedStar& changed, std::uint32
     return best;
 }
 
+bool ErrorTracker::measure(const ChangedStar& unchanged) {
+    sumOfSquares_ = largestSquare_ = 0;
+    return forEachTriangle(unchanged.star, [&](std::uint32_t triangle, int wedge) {
+        for (std::uint32_t s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
+            const Sample& sample = patch_.samples[s];
+            if (sample.tightness > 0) return false;
+            const double squared =
+                distanceTo(unchanged.wedge[wedge], sample.point() - unchanged.vertex).squared;
+            sumOfSquares_ += squared;
+            largestSquare_ = std::max(largestSquare_, squared);
+        }
+        return true;
+    });
+}
+
 bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
     const double most = maxDistanceMm * maxDistanceMm;
     moves_.clear();
     for (auto& along : movedAlong_) along.clear();
     sumOfSquares_ = largestSquare_ = 0;
-    isCrowded_ = isTight_ = false;
+    isCrowded_ = false;
     leastRoom_ = SheetRoom::kAlone;
     std::uint8_t roomUnseen = SheetRoom::kAlone;
     const bool isNear = forEachTriangle(changed.star, [&](std::uint32_t triangle, int wedge) {
@@ -124,7 +139,6 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
             double squared = 0;
             const Move move = nearest(changed, s, wedge, squared);
             const Sample& sample = patch_.samples[s];
-            if (sample.tightness > 0) isTight_ = true;
             leastRoom_ = std::min(leastRoom_, sample.room);
             if (squared > squaredRoom_[sample.room]) isCrowded_ = true;
             if (!(squared <=

@@ -17,18 +17,20 @@ public:
 
     ErrorTracker(Patch& patch, const MetricFrame& frame);
 
+    /// Measures how far the samples of an unchanged star are from their triangles.
+    /// \return false when it touches places that must be tight
+    bool measure(const ChangedStar& unchanged);
+
     /// Finds for every sample of the star's triangles the near one of the changed triangles.
     /// \return false when a sample would be farther than maxDistanceMm from it
     bool assign(const ChangedStar& changed, double maxDistanceMm);
 
-    /// Of the last assign(): the sum of squared distances, mm2.
+    /// Of the last assign() or measure(): the sum of squared distances, mm2.
     double sumOfSquares() const { return sumOfSquares_; }
-    /// Of the last assign(): the largest squared distance, mm2.
+    /// Of the last assign() or measure(): the largest squared distance, mm2.
     double largestSquare() const { return largestSquare_; }
     /// Of the last assign(): the star comes so far towards other sheets that it could meet them.
     bool isCrowded() const { return isCrowded_; }
-    /// Of the last assign(): some sample lies where the bound was missed before.
-    bool isTight() const { return isTight_; }
 
     /// Makes the last assign() true.
     void commit(const ChangedStar& changed);
@@ -60,7 +62,7 @@ private:
     std::array<std::vector<float>, 3> movedAlong_;  ///< positions of the moves' samples, by axis
     double sumOfSquares_ = 0, largestSquare_ = 0;
     std::uint8_t leastRoom_ = SheetRoom::kAlone;
-    bool isCrowded_ = false, isTight_ = false;
+    bool isCrowded_ = false;
 };
 
 }  // namespace adaptiso::detail

@@ -121,11 +121,7 @@ void PatchSimplifier::fitVertices(bool crowdedToo) {
     for (std::uint32_t v = 0; v < patch_.points.size(); ++v) {
         if (!mayChange(v) || !topology_.starOf(v, changed_.star)) continue;
         changed_.vertex = patch_.points[v];
-        if (!shapeStar(patch_, limits_.shape, changed_) ||
-            !errors_.assign(changed_, limits_.maxDistanceMm) || errors_.isTight()) {
-            continue;
-        }
-        if (!crowdedToo && guard_.needsProof(changed_, errors_.isCrowded())) continue;
+        if (!shapeStar(patch_, limits_.shape, changed_) || !errors_.measure(changed_)) continue;
         const double before = errors_.sumOfSquares();
         const double farthest =
             std::max(errors_.largestSquare(), limits_.maxFittedMm * limits_.maxFittedMm);
@@ -133,9 +129,11 @@ void PatchSimplifier::fitVertices(bool crowdedToo) {
         const Quadric& q = patch_.quadrics[v];
         const double most = q.weight() * limits_.maxDistanceMm * limits_.maxDistanceMm;
         if (!(q.at(place) <= most) || !staysNear(place) || !(errors_.sumOfSquares() < before) ||
-            errors_.largestSquare() > farthest || !crossesNothing()) {
+            errors_.largestSquare() > farthest) {
             continue;
         }
+        if (!crowdedToo && guard_.needsProof(changed_, errors_.isCrowded())) continue;
+        if (!crossesNothing()) continue;
         errors_.commit(changed_);
         guard_.commit(changed_);
         markChanged();
