@@ -1,7 +1,6 @@
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
 #include <algorithm>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -114,64 +113,6 @@ void keepFirst(std::vector<TrianglePair>& pairs, std::int64_t count) {
     pairs.resize(static_cast<std::size_t>(count));
 }
 
-/// Some triangles that follow each other in the tree, and all whose boxes touch theirs. One search
-/// of the tree serves all of them: a search for each took most of the time.
-class Neighbourhood {
-public:
-    /// A leaf: two or four of them compare more boxes than they save steps down the tree.
-    static constexpr std::int64_t kTriangles = 4;
-
-    Neighbourhood(const TriangleMesh& mesh, const AabbTree& tree) : mesh_(mesh), tree_(tree) {}
-
-    /// \param begin, end  places in tree.triangles(), `begin` < `end`
-    void moveTo(std::int64_t begin, std::int64_t end) {
-        own_ = tree_.triangles().subspan(begin, end - begin);
-        BoundingBox box = tree_.triangleBox(own_.front());
-        for (const std::int64_t n : own_.subspan(1)) box = unite(box, tree_.triangleBox(n));
-        others_.clear();
-        tree_.forEachOverlap(box, [&](std::int64_t other) {
-            others_.push_back({tree_.triangleBox(other), other});
-        });
-    }
-
-    /// Adds the pairs whose smaller number is here. Of the pairs themselves the first `maxPairs`
-    /// stay, and sometimes more.
-    void findCrossings(std::int64_t maxPairs, SelfIntersections& found) const {
-        for (const std::int64_t n : own_) {
-            const Corners corners = cornersOf(mesh_, n);
-            if (!areFinite(corners)) continue;
-            const BoundingBox box = tree_.triangleBox(n);
-            for (const Other& other : others_) {
-                if (other.triangle <= n || !overlaps(box, other.box) ||
-                    !trianglesCross(corners, cornersOf(mesh_, other.triangle))) {
-                    continue;
-                }
-                ++found.pairCount;
-                if (maxPairs > 0) found.pairs.push_back({n, other.triangle});
-            }
-        }
-        if (std::ssize(found.pairs) / 2 > maxPairs) keepFirst(found.pairs, maxPairs);
-    }
-
-private:
-    struct Other {
-        BoundingBox box;
-        std::int64_t triangle;
-    };
-
-    static BoundingBox unite(const BoundingBox& a, const BoundingBox& b) {
-        return {{std::min(a.minimum.x, b.minimum.x), std::min(a.minimum.y, b.minimum.y),
-                 std::min(a.minimum.z, b.minimum.z)},
-                {std::max(a.maximum.x, b.maximum.x), std::max(a.maximum.y, b.maximum.y),
-                 std::max(a.maximum.z, b.maximum.z)}};
-    }
-
-    const TriangleMesh& mesh_;
-    const AabbTree& tree_;
-    std::span<const std::int64_t> own_;
-    std::vector<Other> others_;
-};
-
 }  // namespace
 
 bool trianglesCross(const Corners& a, const Corners& b) {
@@ -210,11 +151,16 @@ SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
     std::vector<SelfIntersections> ofPiece((tree.triangleCount() + kGrain - 1) / kGrain);
     parallelForPieces(tree.triangleCount(), kGrain, [&](std::int64_t begin, std::int64_t end) {
         SelfIntersections& found = ofPiece[begin / kGrain];
-        Neighbourhood near(mesh, tree);
-        for (std::int64_t at = begin; at < end; at += Neighbourhood::kTriangles) {
-            near.moveTo(at, std::min(end, at + Neighbourhood::kTriangles));
-            near.findCrossings(options.maxPairs, found);
-        }
+        tree.forEachOverlappingPair(begin, end, [&](std::int64_t a, std::int64_t b) {
+            const Corners first = cornersOf(mesh, a), second = cornersOf(mesh, b);
+            if (!areFinite(first) || !areFinite(second) || !trianglesCross(first, second)) return;
+            ++found.pairCount;
+            if (options.maxPairs == 0) return;
+            found.pairs.push_back({a, b});
+            if (std::ssize(found.pairs) / 2 > options.maxPairs) {
+                keepFirst(found.pairs, options.maxPairs);
+            }
+        });
         keepFirst(found.pairs, options.maxPairs);
     });
 

@@ -13,7 +13,7 @@ namespace adaptiso::detail {
 
 /// A cube of blocks, worked on as one: what is made of it fits a processor's cache.
 struct Brick {
-    static constexpr int kSide = 64;  ///< cells
+    static constexpr int kSide = 32;  ///< cells
 
     Index3 low{};                       ///< lattice position of its first sample
     std::vector<std::uint32_t> blocks;  ///< active ones, ascending

@@ -123,23 +123,21 @@ std::vector<Vec3> crossingPlaces(const TriangleMesh& mesh) {
     const Fans fans(mesh);
     const BoundingBox box = boundingBox(mesh);
     const double gap = 1e-13 * (norm(box.maximum) + norm(box.minimum));  // rounding of coordinates
-    const auto count = static_cast<std::int64_t>(mesh.triangles.size());
+    const auto count = tree.triangleCount();
     const auto cornersOf = [&](std::int64_t t) {
         const Triangle& c = mesh.triangles[t];
         return Corners{mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]};
     };
     std::vector<std::vector<Vec3>> places((count + kPiece - 1) / kPiece);
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t t = begin; t < end; ++t) {
-            tree.forEachOverlap(tree.triangleBox(t), [&](std::int64_t other) {
-                if (other <= t || areClear(mesh, fans, t, other, gap)) return;
-                const Corners a = cornersOf(t), b = cornersOf(other);
-                if (!trianglesCross(a, b)) return;
-                for (const Corners& c : {a, b}) {
-                    places[begin / kPiece].push_back((1.0 / 3) * (c[0] + c[1] + c[2]));
-                }
-            });
-        }
+        tree.forEachOverlappingPair(begin, end, [&](std::int64_t a, std::int64_t b) {
+            if (areClear(mesh, fans, a, b, gap)) return;
+            const Corners first = cornersOf(a), second = cornersOf(b);
+            if (!trianglesCross(first, second)) return;
+            for (const Corners& c : {first, second}) {
+                places[begin / kPiece].push_back((1.0 / 3) * (c[0] + c[1] + c[2]));
+            }
+        });
     });
     std::vector<Vec3> all;
     for (const auto& some : places) all.insert(all.end(), some.begin(), some.end());

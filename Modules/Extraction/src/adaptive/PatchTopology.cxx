@@ -1,15 +1,18 @@
 #include "PatchTopology.h"
 
 #include <algorithm>
+#include <span>
+
+#include "HalfEdges.h"
 
 namespace adaptiso::detail {
 
 PatchTopology::PatchTopology(Patch& patch)
-    : patch_(patch),
-      twin_(std::size_t{3} * patch.ownTriangles, kNone),
-      leaving_(patch.points.size(), kNone),
-      stamp_(patch.points.size(), 0) {
-    makeTwins();
+    : patch_(patch), leaving_(patch.points.size(), kNone), stamp_(patch.points.size(), 0) {
+    const std::span own(patch.triangles.data(), patch.ownTriangles);
+    HalfEdges<std::uint32_t> halfEdges;
+    halfEdges.assign(patch.points.size(), own);
+    halfEdges.match(own, twin_);
     // a vertex is movable if turning around it from twin to twin comes back after as many
     // triangles as it has
     std::vector<std::uint32_t> triangles(patch.points.size(), 0);
@@ -27,24 +30,6 @@ PatchTopology::PatchTopology(Patch& patch)
         } while (g != kNone && g != h);
         if (g == h && turned == triangles[v]) leaving_[v] = h;
         triangles[v] = kNone;
-    }
-}
-
-void PatchTopology::makeTwins() {
-    // half-edges in lists by the vertex they start from
-    std::vector<std::uint32_t> first(patch_.points.size(), kNone), following(twin_.size());
-    for (std::uint32_t h = static_cast<std::uint32_t>(twin_.size()); h-- > 0;) {
-        following[h] = first[from(h)];
-        first[from(h)] = h;
-    }
-    for (std::uint32_t h = 0; h < twin_.size(); ++h) {
-        if (twin_[h] != kNone) continue;
-        for (std::uint32_t g = first[to(h)]; g != kNone; g = following[g]) {
-            if (to(g) != from(h) || twin_[g] != kNone) continue;
-            twin_[h] = g;
-            twin_[g] = h;
-            break;
-        }
     }
 }
 

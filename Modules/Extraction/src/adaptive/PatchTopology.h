@@ -55,7 +55,6 @@ public:
 
 private:
     bool ringIsSimple(const Star& star);
-    void makeTwins();
 
     Patch& patch_;
     std::vector<std::uint32_t> twin_;

@@ -24,6 +24,10 @@ constexpr double kWorthwhile = 0.99;
 constexpr std::int64_t kFar = 2;
 constexpr double kNear = 1.4;
 
+/// Below this part of the full surface's triangles cubes are twice as large as bricks: else too
+/// much would straddle them. Small ones stay in a processor's cache.
+constexpr std::int64_t kCoarse = 3;
+
 /// How much the limit of cost may grow in a round.
 double costStep(std::int64_t triangles, std::int64_t target) {
     if (triangles > kFar * target) return 16;
@@ -40,16 +44,19 @@ Simplification::Simplification(const LatticeSampler& sampler, const Bricks& bric
     costUnit_ = voxel * voxel * voxel * voxel;
 }
 
-/// Cuts in turn, so that what straddles one cut lies within the next.
-PatchCut Simplification::nextCut() {
+/// Cuts in turn, so that what straddles one cut lies within the next, also where their cubes grow.
+PatchCut Simplification::nextCut(const SimplifiedSurface& surface) {
     ++rounds_;
-    return {Brick::kSide, rounds_ % 2 == 1 ? Brick::kSide / 2 : 0};
+    const bool isFine = kCoarse * surface.triangleCount() > surface.fineTriangles;
+    const std::int64_t side = (isFine ? 1 : 2) * Brick::kSide,
+                       shift = isFine ? 0 : Brick::kSide / 4;
+    return {side, shift + (rounds_ % 2 == 1 ? side / 2 : 0)};
 }
 
 void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
     limits_.triedCost = limits_.maxCost;
     limits_.maxCost = cost;
-    simplifyPatches(surface, nextCut(), frame_, {limits_});
+    simplifyPatches(surface, nextCut(surface), frame_, {limits_});
 }
 
 Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
@@ -106,7 +113,7 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
     if (surface.triangleCount() > kFar * target) {
         PatchWork work{limits_};
         work.mostCollapses = wanted;  // not reached but by a cost far too high
-        simplifyPatches(surface, nextCut(), frame_, work);
+        simplifyPatches(surface, nextCut(surface), frame_, work);
     } else {
         landOn(wanted, surface);
     }
@@ -115,7 +122,7 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
 /// A round up to the limit of cost; where that makes more collapses than wanted it is undone,
 /// and done again with the cost that makes as many.
 void Simplification::landOn(std::int64_t wanted, SimplifiedSurface& surface) {
-    const PatchCut cut = nextCut();
+    const PatchCut cut = nextCut(surface);
     const double cost = limits_.maxCost;
     const SurfaceState before = surface;
     CollapseCosts costs;
@@ -164,7 +171,7 @@ void Simplification::fit(SimplifiedSurface& surface) {
     work.fits = true;
     for (int i = isFitted_ ? 1 : 0; i < 2; ++i) {
         work.fitsCrowded = i == 0;
-        simplifyPatches(surface, nextCut(), frame_, work);
+        simplifyPatches(surface, nextCut(surface), frame_, work);
     }
 }
 

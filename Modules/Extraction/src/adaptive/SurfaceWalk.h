@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../Certificate.h"
+#include "HalfEdges.h"
 #include "NearTriangle.h"
 
 namespace adaptiso::detail {
@@ -55,23 +56,9 @@ public:
     void assign(std::span<const Vec3> points, std::span<const std::array<Index, 3>> triangles) {
         points_ = points;
         triangles_ = triangles;
-        leaving_.assign(points.size(), kNone);
-        following_.resize(3 * triangles.size());
-        across_.assign(3 * triangles.size(), kNone);
+        halfEdges_.assign(points.size(), triangles);
+        halfEdges_.match(triangles, twin_);
         normal_.resize(triangles.size());
-        for (std::size_t h = 3 * triangles.size(); h-- > 0;) {
-            following_[h] = leaving_[from(h)];
-            leaving_[from(h)] = static_cast<Index>(h);
-        }
-        for (std::size_t h = 0; h < 3 * triangles.size(); ++h) {
-            if (across_[h] != kNone) continue;
-            for (Index g = leaving_[to(h)]; g != kNone; g = following_[g]) {
-                if (to(g) != from(h) || across_[g] != kNone) continue;
-                across_[h] = g / 3;
-                across_[g] = static_cast<Index>(h / 3);
-                break;
-            }
-        }
         for (std::size_t t = 0; t < triangles.size(); ++t) {
             const Corners c = cornersOf(static_cast<Index>(t));
             normal_[t] = normalized(areaVector2(c[0], c[1], c[2]));
@@ -85,28 +72,32 @@ public:
     const Vec3& normalOf(Index t) const { return normal_[t]; }
 
     /// Across the edge from corner c to the next one; kNone where the surface ends.
-    Index across(Index t, int c) const { return across_[3 * t + static_cast<Index>(c)]; }
+    Index across(Index t, int c) const {
+        const Index h = twin_[3 * t + static_cast<Index>(c)];
+        return h == kNone ? kNone : h / 3;
+    }
 
     /// A triangle at a vertex; kNone for a vertex without one.
     Index triangleAt(Index vertex) const {
-        return leaving_[vertex] == kNone ? kNone : leaving_[vertex] / 3;
+        const auto leaving = halfEdges_.from(vertex);
+        return leaving.empty() ? kNone : leaving.front().halfEdge / 3;
     }
 
     /// The triangle with these corners in this order; kNone where there is none.
     Index find(Index a, Index b, Index c) const {
-        for (Index h = leaving_[a]; h != kNone; h = following_[h]) {
-            if (to(h) == b && triangles_[h / 3][(h + 2) % 3] == c) return h / 3;
+        for (const auto& l : halfEdges_.from(a)) {
+            if (l.to == b && triangles_[l.halfEdge / 3][(l.halfEdge + 2) % 3] == c) {
+                return l.halfEdge / 3;
+            }
         }
         return kNone;
     }
 
 private:
-    Index from(std::size_t h) const { return triangles_[h / 3][h % 3]; }
-    Index to(std::size_t h) const { return triangles_[h / 3][(h + 1) % 3]; }
-
     std::span<const Vec3> points_;
     std::span<const std::array<Index, 3>> triangles_;
-    std::vector<Index> leaving_, following_, across_;
+    HalfEdges<Index> halfEdges_;
+    std::vector<Index> twin_;
     std::vector<Vec3> normal_;
 };
 

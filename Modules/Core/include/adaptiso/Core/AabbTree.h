@@ -60,6 +60,12 @@ public:
     template <class Visit>
     void forEachOverlap(const BoundingBox& box, const Visit& visit) const;
 
+    /// Calls visit(a, b) for every two triangles a < b whose boxes overlap, with a at the places
+    /// [begin, end) of triangles(), in an order that is always the same: all places give each pair
+    /// once. One search serves a leaf's triangles, as a search for each takes most of the time.
+    template <class Visit>
+    void forEachOverlappingPair(std::int64_t begin, std::int64_t end, const Visit& visit) const;
+
     /// Calls visit(triangle) for every triangle that may lie within a distance of `box`, nearer
     /// ones first by and large: all triangles of the leaves whose boxes do. squaredReachMm2() says
     /// the distance's square; it is asked at every box, so that it may shrink as the search goes
@@ -100,6 +106,12 @@ private:
         const std::int64_t end = (leaf + 1) * kLeafTriangles;
         return end < triangleCount() ? end : triangleCount();
     }
+    static BoundingBox unite(const BoundingBox& a, const BoundingBox& b) {
+        return {{std::min(a.minimum.x, b.minimum.x), std::min(a.minimum.y, b.minimum.y),
+                 std::min(a.minimum.z, b.minimum.z)},
+                {std::max(a.maximum.x, b.maximum.x), std::max(a.maximum.y, b.maximum.y),
+                 std::max(a.maximum.z, b.maximum.z)}};
+    }
     void improve(ClosestPoint& best, const Vec3& p, std::int64_t triangle) const;
 
     const TriangleMesh* mesh_;
@@ -124,6 +136,30 @@ void AabbTree::forEachOverlap(const BoundingBox& box, const Visit& visit) const 
         const Subtree left = at.left(), right = at.right();
         if (overlaps(box, boxes_[right.node])) stack[depth++] = right;
         if (overlaps(box, boxes_[left.node])) stack[depth++] = left;
+    }
+}
+
+template <class Visit>
+void AabbTree::forEachOverlappingPair(std::int64_t begin, std::int64_t end,
+                                      const Visit& visit) const {
+    struct Other {
+        BoundingBox box;
+        std::int64_t triangle;
+    };
+    std::vector<Other> others;
+    for (std::int64_t at = begin; at < end; at += kLeafTriangles) {
+        const std::int64_t last = std::min(end, at + kLeafTriangles);
+        BoundingBox box = triangleBox(order_[at]);
+        for (std::int64_t n = at + 1; n < last; ++n) box = unite(box, triangleBox(order_[n]));
+        others.clear();
+        forEachOverlap(box, [&](std::int64_t t) { others.push_back({triangleBox(t), t}); });
+        for (std::int64_t n = at; n < last; ++n) {
+            const std::int64_t own = order_[n];
+            const BoundingBox ownBox = triangleBox(own);
+            for (const Other& other : others) {
+                if (other.triangle > own && overlaps(ownBox, other.box)) visit(own, other.triangle);
+            }
+        }
     }
 }
 
