@@ -28,6 +28,9 @@ constexpr double kNear = 1.4;
 /// much would straddle them. Small ones stay in a processor's cache.
 constexpr std::int64_t kCoarse = 3;
 
+/// Up to this part of the wanted count the rest is dealt out by size: the patches' costs hardly differ.
+constexpr double kLanding = 1.05;
+
 /// How much the limit of cost may grow in a round.
 double costStep(std::int64_t triangles, std::int64_t target) {
     if (triangles > kFar * target) return 16;
@@ -110,9 +113,14 @@ SimplifiedSurface Simplification::toLimits(SimplifiedSurface last,
 void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
     const std::int64_t wanted = (surface.triangleCount() - target + 1) / 2;
     limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
-    if (surface.triangleCount() > kFar * target) {
+    const bool isFar = surface.triangleCount() > kFar * target,
+               isNear = static_cast<double>(surface.triangleCount()) <
+                        kLanding * static_cast<double>(target);
+    if (isFar || isNear) {
         PatchWork work{limits_};
-        work.mostCollapses = wanted;  // not reached but by a cost far too high
+        work.mostCollapses = wanted;  // from afar not reached but by a cost far too high
+        work.fits = isNear;
+        isFitted_ = isNear;
         simplifyPatches(surface, nextCut(surface), frame_, work);
     } else {
         landOn(wanted, surface);
