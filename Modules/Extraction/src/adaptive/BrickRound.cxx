@@ -100,10 +100,14 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas,
     }
 }
 
-/// Nearly all of the surface has other parts of it near: there is nothing flat to simplify, and
-/// each change would take long to prove.
-bool isNoise(const Patch& patch) {
-    constexpr double kMost = 0.05;
+/// Half of the cells are crossed, and nearly all of the surface has other parts of it near: there is
+/// nothing flat to simplify, and each change would take long to prove.
+bool isNoise(const FineSurface& fine, const Patch& patch) {
+    constexpr double kMost = 0.05, kLeastCrossed = 0.5;
+    if (static_cast<double>(fine.cells.size()) <
+        kLeastCrossed * static_cast<double>(fine.cellsSeen)) {
+        return false;
+    }
     const auto single = std::count_if(patch.samples.begin(), patch.samples.end(),
                                       [](const Sample& s) { return s.isAlone(); });
     return static_cast<double>(single) < kMost * static_cast<double>(patch.samples.size());
@@ -151,7 +155,7 @@ BrickSurface simplifyBrick(const FineSurface& fine, const MetricFrame& frame,
     result.fineTriangles = patch.ownTriangles;
     result.tableTriangles = result.fineTriangles - 2 * static_cast<std::int64_t>(fine.ownMiddles);
     tight.apply(frame, patch.samples);
-    if (limits.leavesNoise && isNoise(patch)) {
+    if (limits.leavesNoise && isNoise(fine, patch)) {
         patch.states.assign(patch.points.size(), Patch::State::Final);
     } else {
         PatchSimplifier simplifier(patch, frame, limits);

@@ -121,6 +121,7 @@ void BrickMesher::meshBrick(const Brick& brick, FineSurface& surface) {
     surface.vertices.clear();
     surface.triangles.clear();
     surface.cells.clear();
+    surface.cellsSeen = 0;
     for (const std::uint32_t block : brick.blocks) {
         meshBlock(brick, block, cellsOf(block), surface);
     }
@@ -189,6 +190,9 @@ void BrickMesher::meshBlock(const Brick& brick, std::uint32_t block, const CellR
         return slot - 1;
     };
 
+    std::int64_t seen = 1;
+    for (int a = 0; a < 3; ++a) seen *= range.end[a] - range.begin[a];
+    surface.cellsSeen += seen;
     const std::uint32_t cellsInRange = (1u << range.end[0]) - (1u << range.begin[0]);
     for (int z = range.begin[2]; z < range.end[2]; ++z) {
         for (int y = range.begin[1]; y < range.end[1]; ++y) {

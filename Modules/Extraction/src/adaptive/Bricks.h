@@ -66,12 +66,13 @@ struct FineSurface {
         std::uint32_t firstTriangle;
     };
     std::vector<Cell> cells;
+    std::int64_t cellsSeen = 0;  ///< of the active blocks, crossed or not
 };
 
 /// Makes fine surfaces brick by brick; keeps its working memory between them.
 class BrickMesher {
 public:
-    static constexpr int kHalo = 4;  ///< cells
+    static constexpr int kHalo = 3;  ///< cells
 
     explicit BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid);
 

@@ -14,7 +14,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A star may come this part of the way to other sheets without a proof that it meets none, unless
 /// they are nearer than kNarrow (in the least distance between planes of samples): two stars that
 /// come towards each other still pass, and what lies between samples strays little more than they.
-constexpr double kUsableRoom = 0.4, kNarrow = 0.7;
+constexpr double kUsableRoom = 0.4, kNarrow = 0.6;
 
 /// Squared distance from q to the segment from the origin to e.
 double squaredDistanceToSegment(const Vec3& q, const Vec3& e) {

@@ -24,9 +24,9 @@ constexpr double kWorthwhile = 0.99;
 constexpr std::int64_t kFar = 2;
 constexpr double kNear = 1.4;
 
-/// Below this part of the full surface's triangles cubes are twice as large as bricks: else too
-/// much would straddle them. Small ones stay in a processor's cache.
-constexpr std::int64_t kCoarse = 3;
+/// Above this cost cubes are twice as large as bricks: else too much would straddle them. Small ones
+/// stay in a processor's cache.
+constexpr double kCoarse = 0.07;
 
 /// Up to this part of the wanted count the rest is dealt out by size: the patches' costs hardly differ.
 constexpr double kLanding = 1.05;
@@ -48,9 +48,9 @@ Simplification::Simplification(const LatticeSampler& sampler, const Bricks& bric
 }
 
 /// Cuts in turn, so that what straddles one cut lies within the next, also where their cubes grow.
-PatchCut Simplification::nextCut(const SimplifiedSurface& surface) {
+PatchCut Simplification::nextCut() {
     ++rounds_;
-    const bool isFine = kCoarse * surface.triangleCount() > surface.fineTriangles;
+    const bool isFine = limits_.maxCost <= kCoarse * costUnit_;
     const std::int64_t side = (isFine ? 1 : 2) * Brick::kSide,
                        shift = isFine ? 0 : Brick::kSide / 4;
     return {side, shift + (rounds_ % 2 == 1 ? side / 2 : 0)};
@@ -59,7 +59,7 @@ PatchCut Simplification::nextCut(const SimplifiedSurface& surface) {
 void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
     limits_.triedCost = limits_.maxCost;
     limits_.maxCost = cost;
-    simplifyPatches(surface, nextCut(surface), frame_, {limits_});
+    simplifyPatches(surface, nextCut(), frame_, {limits_});
 }
 
 Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
@@ -121,7 +121,7 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
         work.mostCollapses = wanted;  // from afar not reached but by a cost far too high
         work.fits = isNear;
         isFitted_ = isNear;
-        simplifyPatches(surface, nextCut(surface), frame_, work);
+        simplifyPatches(surface, nextCut(), frame_, work);
     } else {
         landOn(wanted, surface);
     }
@@ -130,7 +130,7 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
 /// A round up to the limit of cost; where that makes more collapses than wanted it is undone,
 /// and done again with the cost that makes as many.
 void Simplification::landOn(std::int64_t wanted, SimplifiedSurface& surface) {
-    const PatchCut cut = nextCut(surface);
+    const PatchCut cut = nextCut();
     const double cost = limits_.maxCost;
     const SurfaceState before = surface;
     CollapseCosts costs;
@@ -179,7 +179,7 @@ void Simplification::fit(SimplifiedSurface& surface) {
     work.fits = true;
     for (int i = isFitted_ ? 1 : 0; i < 2; ++i) {
         work.fitsCrowded = i == 0;
-        simplifyPatches(surface, nextCut(surface), frame_, work);
+        simplifyPatches(surface, nextCut(), frame_, work);
     }
 }
 

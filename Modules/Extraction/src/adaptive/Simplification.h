@@ -56,7 +56,7 @@ public:
     void fit(SimplifiedSurface& surface);
 
 private:
-    PatchCut nextCut(const SimplifiedSurface& surface);
+    PatchCut nextCut();
     void roundUpTo(double cost, SimplifiedSurface& surface);
     void goOnFrom(const Halfway& halfway, SimplifiedSurface& surface);
     void roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost);
