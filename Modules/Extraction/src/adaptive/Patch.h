@@ -56,8 +56,9 @@ struct Patch {
     std::vector<Quadric> quadrics;  ///< of each point
     enum class State : std::uint8_t {
         Open,
-        Tried,  ///< nothing around it has changed since all its edges were tried
-        Final   ///< stays
+        Tried,   ///< nothing around it has changed since all its edges were tried
+        Fitted,  ///< no edge around it was collapsed since it was fitted
+        Final    ///< stays
     };
     std::vector<State> states;  ///< of each point
     std::vector<std::array<std::uint32_t, 3>> triangles;

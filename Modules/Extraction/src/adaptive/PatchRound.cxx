@@ -52,7 +52,7 @@ void simplifyPatches(SimplifiedSurface& surface, const PatchCut& cut, const Metr
             if (work.collapses) {
                 simplifier.collapseEdges(quota[n], costs != nullptr ? &(*costs)[n] : nullptr);
             }
-            if (work.fits) simplifier.fitVertices(work.fitsCrowded);
+            if (work.fits) simplifier.fitVertices();
             groups.putBack(n, patch, surface);
         });
     if (work.collapses) removeGone(surface);

@@ -17,7 +17,6 @@ struct PatchWork {
     /// Collapses to make in all patches together, or more than there can be.
     std::int64_t mostCollapses = std::numeric_limits<std::int64_t>::max() / 4;
     bool fits = false;
-    bool fitsCrowded = true;  ///< also where each change takes a proof
 };
 
 /// Works on the surface in the patches of a cut, side by side. Triangles that straddle two cubes

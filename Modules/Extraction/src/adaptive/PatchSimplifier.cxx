@@ -117,9 +117,13 @@ bool PatchSimplifier::isInBox(const Vec3& p) const {
     return true;
 }
 
-void PatchSimplifier::fitVertices(bool crowdedToo) {
+void PatchSimplifier::fitVertices() {
     for (std::uint32_t v = 0; v < patch_.points.size(); ++v) {
-        if (!mayChange(v) || !topology_.starOf(v, changed_.star)) continue;
+        if (!mayChange(v) || patch_.states[v] == Patch::State::Fitted ||
+            !topology_.starOf(v, changed_.star)) {
+            continue;
+        }
+        patch_.states[v] = Patch::State::Fitted;
         changed_.vertex = patch_.points[v];
         if (!shapeStar(patch_, limits_.shape, changed_) || !errors_.measure(changed_)) continue;
         const double before = errors_.sumOfSquares();
@@ -129,15 +133,11 @@ void PatchSimplifier::fitVertices(bool crowdedToo) {
         const Quadric& q = patch_.quadrics[v];
         const double most = q.weight() * limits_.maxDistanceMm * limits_.maxDistanceMm;
         if (!(q.at(place) <= most) || !staysNear(place) || !(errors_.sumOfSquares() < before) ||
-            errors_.largestSquare() > farthest) {
+            errors_.largestSquare() > farthest || !crossesNothing()) {
             continue;
         }
-        if (!crowdedToo && guard_.needsProof(changed_, errors_.isCrowded())) continue;
-        if (!crossesNothing()) continue;
         errors_.commit(changed_);
         guard_.commit(changed_);
-        markChanged();
-        setState(v, Patch::State::Open);
         patch_.points[v] = place;
     }
 }

@@ -34,8 +34,8 @@ public:
     void collapseEdges(std::int64_t most, std::vector<double>* costs);
 
     /// Moves vertices to where their triangles lie closest to the samples that they stand for
-    /// (least squares, held by the vertex's quadric).
-    void fitVertices(bool crowdedToo);
+    /// (least squares, held by the vertex's quadric): those that are not fitted yet.
+    void fitVertices();
 
 private:
     struct Candidate {

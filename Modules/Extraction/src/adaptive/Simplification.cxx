@@ -178,7 +178,6 @@ void Simplification::fit(SimplifiedSurface& surface) {
     work.collapses = false;
     work.fits = true;
     for (int i = isFitted_ ? 1 : 0; i < 2; ++i) {
-        work.fitsCrowded = i == 0;
         simplifyPatches(surface, nextCut(), frame_, work);
     }
 }
