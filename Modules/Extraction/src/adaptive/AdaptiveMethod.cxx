@@ -9,6 +9,7 @@
 #include "ErrorBound.h"
 #include "Simplification.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -16,13 +17,16 @@ namespace {
 TriangleMesh toMesh(const SimplifiedSurface& surface, const ImageGeometry& geometry,
                     const MetricFrame& frame, const LatticeSampler& sampler) {
     TriangleMesh mesh;
-    mesh.points.reserve(surface.points.size());
-    mesh.normals.reserve(surface.points.size());
-    for (const Vec3& p : surface.points) {
-        const Vec3 index = frame.toIndex(p);
-        mesh.points.push_back(geometry.toPhysical(index));
-        mesh.normals.push_back(toNormal(sampler.normalAt(index)));
-    }
+    constexpr std::int64_t kPiece = 4096;
+    mesh.points.resize(surface.points.size());
+    mesh.normals.resize(surface.points.size());
+    parallelForPieces(std::ssize(mesh.points), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t v = begin; v < end; ++v) {
+            const Vec3 index = frame.toIndex(surface.points[v]);
+            mesh.points[v] = geometry.toPhysical(index);
+            mesh.normals[v] = toNormal(sampler.normalAt(index));
+        }
+    });
     mesh.triangles.reserve(surface.triangles.size());
     const bool isMirrored = geometry.isMirrored();
     for (const auto& t : surface.triangles) {

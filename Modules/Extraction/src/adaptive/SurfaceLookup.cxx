@@ -1,5 +1,6 @@
 #include "SurfaceLookup.h"
 
+#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -40,10 +41,13 @@ std::pair<Index3, Index3> SurfaceLookup::placesNear(std::uint64_t t) const {
 SurfaceLookup::SurfaceLookup(const SimplifiedSurface& surface, const Bricks& bricks,
                              const MetricFrame& frame)
     : bricks_(bricks), frame_(frame), mesh_(meshOf(surface)), ofBrick_(bricks.count()) {
-    walkable_.assign(mesh_.points, mesh_.triangles);
-    for (std::uint64_t t = 0; t < triangleCount(); ++t) {
-        forEachBrickNear(t, [&](std::int64_t b) { ofBrick_[b].push_back(t); });
-    }
+    tbb::parallel_invoke([&] { walkable_.assign(mesh_.points, mesh_.triangles); },
+                         [&] {
+                             for (std::uint64_t t = 0; t < triangleCount(); ++t) {
+                                 forEachBrickNear(
+                                     t, [&](std::int64_t b) { ofBrick_[b].push_back(t); });
+                             }
+                         });
 }
 
 const AabbTree& SurfaceLookup::tree() const {
