@@ -20,21 +20,23 @@ constexpr double kHalfway = 2, kEarlyDistance = 0.35;
 /// A round that leaves more than this part of the triangles was hardly worth it.
 constexpr double kWorthwhile = 0.99;
 
-/// Up to this part of the wanted count steps are large, and up to the other one middling.
-constexpr std::int64_t kFar = 2;
-constexpr double kNear = 1.4;
+/// Above this part of the wanted count a round is not thought to lead below it.
+constexpr double kFar = 2;
 
-/// Above this cost cubes are twice as large as bricks: else too much would straddle them. Small ones
-/// stay in a processor's cache.
+/// Above this cost cubes are twice as large as bricks: else too much would straddle them. Small
+/// ones stay in a processor's cache.
 constexpr double kCoarse = 0.07;
 
-/// Up to this part of the wanted count the rest is dealt out by size: the patches' costs hardly differ.
+/// Up to this part of the wanted count the rest is dealt out by size: the patches' costs hardly
+/// differ.
 constexpr double kLanding = 1.05;
 
-/// How much the limit of cost may grow in a round.
+/// How much the limit of cost may grow in a round: the more the farther the wanted count is.
 double costStep(std::int64_t triangles, std::int64_t target) {
-    if (triangles > kFar * target) return 16;
-    return static_cast<double>(triangles) > kNear * static_cast<double>(target) ? 4 : 2;
+    const double part = static_cast<double>(triangles) / static_cast<double>(target);
+    if (part > kFar) return 16;
+    if (part > 1.6) return 8;
+    return part > 1.4 ? 4 : 2;
 }
 
 }  // namespace
@@ -113,9 +115,8 @@ SimplifiedSurface Simplification::toLimits(SimplifiedSurface last,
 void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
     const std::int64_t wanted = (surface.triangleCount() - target + 1) / 2;
     limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
-    const bool isFar = surface.triangleCount() > kFar * target,
-               isNear = static_cast<double>(surface.triangleCount()) <
-                        kLanding * static_cast<double>(target);
+    const double part = static_cast<double>(surface.triangleCount()) / static_cast<double>(target);
+    const bool isFar = part > kFar, isNear = part < kLanding;
     if (isFar || isNear) {
         PatchWork work{limits_};
         work.mostCollapses = wanted;  // from afar not reached but by a cost far too high
