@@ -35,7 +35,6 @@ constexpr double kLanding = 1.05;
 double costStep(std::int64_t triangles, std::int64_t target) {
     const double part = static_cast<double>(triangles) / static_cast<double>(target);
     if (part > kFar) return 16;
-    if (part > 1.6) return 8;
     return part > 1.4 ? 4 : 2;
 }
 
