@@ -95,6 +95,9 @@ private:
     /// Up to this distance (of the least one between planes of samples) single sheets are certain
     /// not to meet others: see isSingleSheet.
     static constexpr double kSheetVoxels = 0.5;
+    /// What is tried first for a count without a bound: the largest distance stays below half a
+    /// voxel.
+    static constexpr double kCountVoxels = 0.46;
     /// First allowed distance of samples: that much below the bound (in the least distance between
     /// planes of samples, and as a part of the bound), since points between samples may lie
     /// farther.
@@ -176,7 +179,7 @@ private:
 
     PatchLimits limits() const {
         const double sheetMm = kSheetVoxels * frame_.narrowestMm();
-        const double boundMm = boundMm_.value_or(sheetMm);
+        const double boundMm = boundMm_.value_or(kCountVoxels * frame_.narrowestMm());
         PatchLimits limits;
         limits.shape = shape_;
         limits.leavesNoise = !wanted_.isGiven();
