@@ -95,7 +95,7 @@ private:
     /// Up to this distance (of the least one between planes of samples) single sheets are certain
     /// not to meet others: see isSingleSheet.
     static constexpr double kSheetVoxels = 0.5;
-    /// What is tried first for a count without a bound: the largest distance stays below half a
+    /// What is tried first for a count without a bound: it leads to largest distances below half a
     /// voxel.
     static constexpr double kCountVoxels = 0.46;
     /// First allowed distance of samples: that much below the bound (in the least distance between
