@@ -125,6 +125,7 @@ private:
     /// Starts anew, with more proved. \param crossings  in physical space
     void proveAround(const std::vector<Vec3>& crossings) {
         std::vector<Vec3> places;
+        places.reserve(crossings.size());
         for (const Vec3& place : crossings) places.push_back(geometry_.toIndex(place));
         tight_.addCrossings(places);
         if (++crossedRuns_ == kMostCrossedRuns) provesAll_ = true;

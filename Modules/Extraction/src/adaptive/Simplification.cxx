@@ -52,7 +52,7 @@ Simplification::Simplification(const LatticeSampler& sampler, const Bricks& bric
 PatchCut Simplification::nextCut() {
     ++rounds_;
     const bool isFine = limits_.maxCost <= kCoarse * costUnit_;
-    const std::int64_t side = (isFine ? 1 : 2) * Brick::kSide,
+    const std::int64_t side = isFine ? Brick::kSide : std::int64_t{2} * Brick::kSide,
                        shift = isFine ? 0 : Brick::kSide / 4;
     return {side, shift + (rounds_ % 2 == 1 ? side / 2 : 0)};
 }
