@@ -100,8 +100,8 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas,
     }
 }
 
-/// Half of the cells are crossed, and nearly all of the surface has other parts of it near: there is
-/// nothing flat to simplify, and each change would take long to prove.
+/// Half of the cells are crossed, and nearly all of the surface has other parts of it near: there
+/// is nothing flat to simplify, and each change would take long to prove.
 bool isNoise(const FineSurface& fine, const Patch& patch) {
     constexpr double kMost = 0.05, kLeastCrossed = 0.5;
     if (static_cast<double>(fine.cells.size()) <
