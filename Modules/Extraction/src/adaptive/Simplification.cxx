@@ -15,7 +15,7 @@ constexpr std::array kCosts{3e-3, 1.8e-2, 0.108, 0.648, 3.888};
 
 /// Up to halfway costs stay below this part of the square of the allowed distance, and distances
 /// below this part of it.
-constexpr double kHalfway = 2, kEarlyDistance = 0.35;
+constexpr double kHalfway = 2, kEarlyDistance = 0.25;
 
 /// A round that leaves more than this part of the triangles was hardly worth it.
 constexpr double kWorthwhile = 0.99;
