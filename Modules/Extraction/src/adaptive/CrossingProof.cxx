@@ -59,8 +59,9 @@ private:
         if (sectors.back()[1] != sectors.front()[0]) return false;
         std::array<Vec3, kMost> spoke, area2;
         Vec3 axis;
-        for (std::int64_t i = 0; i < count; ++i)
+        for (std::int64_t i = 0; i < count; ++i) {
             spoke[i] = mesh_.points[sectors[i][0]] - mesh_.points[v];
+        }
         for (std::int64_t i = 0; i < count; ++i) {
             area2[i] = cross(spoke[i], spoke[(i + 1) % count]);
             axis += area2[i];
