@@ -135,6 +135,31 @@ TEST(AdaptiveMethod, LeavesNoiseAtFullResolution) {
               full.mesh.triangles.size() * 81 / 100);
 }
 
+TEST(AdaptiveMethod, ReachesACountWhereFewPatchesTellForAll) {
+    // long ground with hills: all along it, or in every second piece of 32 cells, where patches
+    // that are tried may all be flat
+    ImageGeometry geometry;
+    geometry.size = {1060, 40, 24};
+    for (const bool isEven : {true, false}) {
+        std::vector<float> samples;
+        for (std::int64_t i = 0; i < geometry.voxelCount(); ++i) {
+            const auto x = static_cast<double>(i % 1060), y = static_cast<double>(i / 1060 % 40),
+                       z = static_cast<double>(i / (1060 * 40));
+            const bool isHilly = isEven || i % 1060 / 32 % 2 == 1;
+            const double hill = isHilly ? 2 * std::sin(0.19 * x) * std::sin(0.31 * y) : 0;
+            samples.push_back(static_cast<float>(12.3 + hill - z));
+        }
+        const Volume volume = Volume::fromSamples(std::move(samples), geometry);
+        for (const std::int64_t wanted : {80'000, 50'000, 20'000, 6'000}) {
+            AdaptiveOptions adaptive;
+            adaptive.maxTriangles = wanted;
+            const auto count = std::ssize(extractWith(volume, 0, adaptive).mesh.triangles);
+            EXPECT_LE(count, wanted);
+            EXPECT_GE(count, wanted - 1);
+        }
+    }
+}
+
 TEST(AdaptiveMethod, MeetsSmallBoundsWithoutTheFullSurface) {
     // smooth lumps everywhere: places beyond the bound came back in other ones, run after run
     ImageGeometry geometry;

@@ -186,8 +186,8 @@ void BrickProof::proveFine(std::size_t t) {
         const Vec3& normal = lookup_.walkable().normalOf(static_cast<VertexId>(stand));
         if (NearTriangle(corners, normal, fromFine_.squaredBound()).has(piece)) return;
     }
-    walk_.cover(ConvexPiece(piece), lookup_.walkable(), static_cast<VertexId>(standIn_[v[0]]),
-                fromFine_.squaredBound(), kStepsOfFine);
+    cover(piece, lookup_.walkable(), static_cast<VertexId>(standIn_[v[0]]),
+          fromFine_.squaredBound(), kStepsOfFine);
     for (const ConvexPiece& left : walk_.left()) {
         for (int i = 2; i < left.count(); ++i) {
             proveFinePart({left.corner(0), left.corner(i - 1), left.corner(i)}, v);
@@ -244,16 +244,22 @@ void BrickProof::proveWhole(const Corners& piece, std::uint32_t start, double ar
     }
     const double faces = area2 / (frame_.narrowestMm() * frame_.narrowestMm());
     const int steps = kFewSteps + static_cast<int>(std::min(kManySteps, kStepsPerFace * faces));
-    const double squared = toFine_.squaredBound(), voxel = frame_.voxelMm();
-    if (squared > kLoose * kLoose * voxel * voxel) {
-        walk_.coverLoosely(piece, walkable_, start, squared, steps);
-    } else {
-        walk_.cover(ConvexPiece(piece), walkable_, start, squared, steps);
-    }
+    cover(piece, walkable_, start, toFine_.squaredBound(), steps);
     for (const ConvexPiece& left : walk_.left()) {
         for (int i = 2; i < left.count(); ++i) {
             proveSmall({left.corner(0), left.corner(i - 1), left.corner(i)});
         }
+    }
+}
+
+template <class Index>
+void BrickProof::cover(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
+                       double squaredDistance, int steps) {
+    const double loose = kLoose * frame_.voxelMm();
+    if (squaredDistance > loose * loose) {
+        walk_.coverLoosely(piece, surface, start, squaredDistance, steps);
+    } else {
+        walk_.cover(ConvexPiece(piece), surface, start, squaredDistance, steps);
     }
 }
 

@@ -75,6 +75,9 @@ private:
     void proveFinePart(const Corners& piece, const std::array<std::uint32_t, 3>& of);
     void provePiece(const Corners& piece, std::uint32_t start, double area2);
     void proveWhole(const Corners& piece, std::uint32_t start, double area2);
+    template <class Index>
+    void cover(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
+               double squaredDistance, int steps);
     void proveSmall(const Corners& piece);
     void proveLeaf(const Corners& piece, const CornerBox& box);
     void include(const Corners& piece, PieceBound& bound, std::uint64_t triangle);

@@ -102,15 +102,15 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas,
 
 /// Half of the cells are crossed, and nearly all of the surface has other parts of it near: there
 /// is nothing flat to simplify, and each change would take long to prove.
-bool isNoise(const FineSurface& fine, const Patch& patch) {
+bool isNoise(const FineSurface& fine) {
     constexpr double kMost = 0.05, kLeastCrossed = 0.5;
     if (static_cast<double>(fine.cells.size()) <
         kLeastCrossed * static_cast<double>(fine.cellsSeen)) {
         return false;
     }
-    const auto single = std::count_if(patch.samples.begin(), patch.samples.end(),
-                                      [](const Sample& s) { return s.isAlone(); });
-    return static_cast<double>(single) < kMost * static_cast<double>(patch.samples.size());
+    const auto single = std::count_if(fine.vertices.begin(), fine.vertices.end(),
+                                      [](const FineVertex& v) { return v.isSingleSheet; });
+    return static_cast<double>(single) < kMost * static_cast<double>(fine.vertices.size());
 }
 
 /// The brick's full-resolution surface as a patch; vertices on walls go to the brick's list.
@@ -155,7 +155,7 @@ BrickSurface simplifyBrick(const FineSurface& fine, const MetricFrame& frame,
     result.fineTriangles = patch.ownTriangles;
     result.tableTriangles = result.fineTriangles - 2 * static_cast<std::int64_t>(fine.ownMiddles);
     tight.apply(frame, patch.samples);
-    if (limits.leavesNoise && isNoise(fine, patch)) {
+    if (limits.leavesNoise && isNoise(fine)) {
         patch.states.assign(patch.points.size(), Patch::State::Final);
     } else {
         PatchSimplifier simplifier(patch, frame, limits);

@@ -89,12 +89,14 @@ BrickMesher::BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid)
       rows_(std::size_t{kLargestBlock + 1 + 2 * kMargin} * (kLargestBlock + 1 + 2 * kMargin)) {}
 
 void BrickMesher::mesh(const Brick& brick, FineSurface& surface) {
+    findsSheets_ = true;
     meshBrick(brick, surface);
     forget(brick, surface);
 }
 
 void BrickMesher::meshWithHalo(const Bricks& bricks, std::int64_t number, FineSurface& surface) {
     const Brick& brick = bricks[number];
+    findsSheets_ = false;
     meshBrick(brick, surface);
     for (int n = 0; n < 27; ++n) {
         const std::int64_t other = bricks.at({brick.low[0] / Brick::kSide + n % 3 - 1,
@@ -205,13 +207,16 @@ void BrickMesher::meshBlock(const Brick& brick, std::uint32_t block, const CellR
             crossed &= cellsInRange;
             for (; crossed != 0; crossed &= crossed - 1) {
                 const int x = std::countr_zero(crossed);
-                std::uint64_t window = 0;
-                for (int dz = 0; dz < 4; ++dz) {
-                    for (int dy = 0; dy < 4; ++dy) {
-                        window |= static_cast<std::uint64_t>(row(dy, dz) >> x & 15u)
-                                  << (4 * (dy + 4 * dz));
+                const auto window = [&] {
+                    std::uint64_t inside = 0;
+                    for (int dz = 0; dz < 4; ++dz) {
+                        for (int dy = 0; dy < 4; ++dy) {
+                            inside |= static_cast<std::uint64_t>(row(dy, dz) >> x & 15u)
+                                      << (4 * (dy + 4 * dz));
+                        }
                     }
-                }
+                    return inside;
+                };
                 const auto pair = [&](int dy, int dz) { return row(dy, dz) >> (x + 1) & 3u; };
                 const unsigned corners =
                     pair(1, 1) | pair(2, 1) << 2 | pair(1, 2) << 4 | pair(2, 2) << 6;
@@ -224,7 +229,7 @@ void BrickMesher::meshBlock(const Brick& brick, std::uint32_t block, const CellR
                     joined |= static_cast<unsigned>(sampler_.insideJoins(sample, face / 2)) << face;
                 }
                 const BoxCase& boxCase = cases[cases.caseIndex(corners, joined)];
-                const bool isSingle = isSingleSheet(window);
+                const bool isSingle = findsSheets_ && isSingleSheet(window());
                 surface.cells.push_back({{static_cast<std::int16_t>(inBrick[0] + x),
                                           static_cast<std::int16_t>(inBrick[1] + y),
                                           static_cast<std::int16_t>(inBrick[2] + z)},

@@ -79,7 +79,8 @@ public:
     /// The same brick always gives the same vertices and triangles in the same order.
     void mesh(const Brick& brick, FineSurface& surface);
 
-    /// The brick's surface, and after it that of the cells up to kHalo around the brick.
+    /// The brick's surface, and after it that of the cells up to kHalo around the brick. Single
+    /// sheets are not looked for.
     void meshWithHalo(const Bricks& bricks, std::int64_t number, FineSurface& surface);
 
 private:
@@ -94,6 +95,7 @@ private:
 
     const LatticeSampler& sampler_;
     const BlockGrid& grid_;
+    bool findsSheets_ = true;
     ZeroedTable vertexOnEdge_;  ///< number + 1
     std::vector<std::uint32_t> rows_;
 };

@@ -60,4 +60,16 @@ private:
     bool isFlat_;
 };
 
+/// A side of a triangle that a point lies beyond, by the corner that it begins at; -1 for a point
+/// over the triangle.
+inline int sideTowards(const Vec3& p, const Corners& t) {
+    const Vec3 e = t[1] - t[0], f = t[2] - t[0], q = p - t[0];
+    const double ee = squaredNorm(e), ef = dot(e, f), ff = squaredNorm(f), d = dot(q, e),
+                 g = dot(q, f);
+    const double u = ff * d - ef * g, v = ee * g - ef * d;  // of the corners 1 and 2, x area
+    if (u < 0) return 2;
+    if (v < 0) return 0;
+    return u + v > ee * ff - ef * ef ? 1 : -1;
+}
+
 }  // namespace adaptiso::detail

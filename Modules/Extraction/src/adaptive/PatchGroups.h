@@ -78,6 +78,7 @@ public:
     std::size_t count() const { return cubes_.count(); }
     /// Nothing of it can change.
     bool isIdle(std::size_t n) const;
+    std::size_t triangleCount(std::size_t n) const { return triangles_.of(n).size(); }
 
     /// `total` dealt out by the patches' numbers of triangles.
     std::vector<std::int64_t> shares(std::int64_t total) const;

@@ -1,5 +1,7 @@
 #include "PatchRound.h"
 
+#include <algorithm>
+
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {
@@ -39,23 +41,53 @@ void removeGone(SurfaceState& surface) {
 
 }  // namespace
 
-void simplifyPatches(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame,
-                     const PatchWork& work, CollapseCosts* costs) {
-    const PatchGroups groups(surface, cut, frame);
-    if (costs != nullptr) costs->assign(groups.count(), {});
-    const std::vector<std::int64_t> quota = groups.shares(work.mostCollapses);
-    parallelForPieces(
-        static_cast<std::int64_t>(groups.count()), 1, [&](std::int64_t n, std::int64_t) {
-            if (groups.isIdle(n)) return;
-            Patch patch = groups.take(n);
-            PatchSimplifier simplifier(patch, frame, work.limits);
-            if (work.collapses) {
-                simplifier.collapseEdges(quota[n], costs != nullptr ? &(*costs)[n] : nullptr);
-            }
-            if (work.fits) simplifier.fitVertices();
-            groups.putBack(n, patch, surface);
-        });
-    if (work.collapses) removeGone(surface);
+std::int64_t PatchTrial::collapses() const {
+    std::int64_t count = 0;
+    for (const auto& patch : costs) count += std::ssize(patch);
+    return count;
+}
+
+PatchRound::PatchRound(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame)
+    : surface_(surface), frame_(frame), groups_(surface, cut, frame) {}
+
+PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
+    constexpr std::size_t kFewest = 16, kEvery = 8;  // of fewer all are tried; of more every eighth
+    std::vector<std::size_t> all, some;
+    for (std::size_t n = 0; n < groups_.count(); ++n) {
+        if (!groups_.isIdle(n)) all.push_back(n);
+    }
+    const std::size_t every =
+        triesAll ? 1 : std::clamp<std::size_t>(all.size() / kFewest, 1, kEvery);
+    double triangles = 0, tried = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto count = static_cast<double>(groups_.triangleCount(all[i]));
+        triangles += count;
+        if (i % every != every / 2) continue;
+        some.push_back(all[i]);
+        tried += count;
+    }
+    PatchTrial trial;
+    trial.costs.resize(some.size());
+    if (every > 1) trial.share = tried / triangles;
+    parallelForPieces(std::ssize(some), 1, [&](std::int64_t i, std::int64_t) {
+        Patch patch = groups_.take(some[i]);
+        PatchSimplifier(patch, frame_, limits).collapseEdges(patch.ownTriangles, &trial.costs[i]);
+    });
+    return trial;
+}
+
+void PatchRound::run(const PatchWork& work) {
+    const std::vector<std::int64_t> quota = groups_.shares(work.mostCollapses);
+    parallelForPieces(static_cast<std::int64_t>(groups_.count()), 1,
+                      [&](std::int64_t n, std::int64_t) {
+                          if (groups_.isIdle(n)) return;
+                          Patch patch = groups_.take(n);
+                          PatchSimplifier simplifier(patch, frame_, work.limits);
+                          if (work.collapses) simplifier.collapseEdges(quota[n], nullptr);
+                          if (work.fits) simplifier.fitVertices();
+                          groups_.putBack(n, patch, surface_);
+                      });
+    if (work.collapses) removeGone(surface_);
 }
 
 }  // namespace adaptiso::detail

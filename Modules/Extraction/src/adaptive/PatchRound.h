@@ -19,10 +19,30 @@ struct PatchWork {
     bool fits = false;
 };
 
+/// What a round would do, by some of its patches.
+struct PatchTrial {
+    CollapseCosts costs;  ///< of their collapses
+    double share = 1;     ///< of all patches' triangles
+
+    std::int64_t collapses() const;
+};
+
 /// Works on the surface in the patches of a cut, side by side. Triangles that straddle two cubes
 /// stay as they are.
-/// \param costs  gets those of each patch's collapses; may be null
-void simplifyPatches(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame,
-                     const PatchWork& work, CollapseCosts* costs = nullptr);
+class PatchRound {
+public:
+    PatchRound(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame);
+
+    /// Collapses edges in copies of some patches, spread over the surface, or of all.
+    PatchTrial tryOut(const PatchLimits& limits, bool triesAll) const;
+
+    /// Once.
+    void run(const PatchWork& work);
+
+private:
+    SimplifiedSurface& surface_;
+    const MetricFrame& frame_;
+    PatchGroups groups_;
+};
 
 }  // namespace adaptiso::detail

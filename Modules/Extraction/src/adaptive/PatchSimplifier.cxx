@@ -38,7 +38,8 @@ void PatchSimplifier::propose(std::uint32_t halfEdge, double leastCost) {
     const double cost =
         error + kLengthWeight * weight * squaredNorm(patch_.points[b] - patch_.points[a]);
     if (cost > limits_.maxCost || cost <= leastCost) return;
-    queue_.push({cost, halfEdge, a, b, changes_[a] + changes_[b]});
+    queue_.push_back({cost, halfEdge, a, b, changes_[a] + changes_[b]});
+    std::push_heap(queue_.begin(), queue_.end(), IsLater());
 }
 
 void PatchSimplifier::setState(std::uint32_t v, Patch::State state) {
@@ -67,12 +68,15 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
         propose(h, isTried ? limits_.triedCost : -1);
     }
     for (std::uint32_t v = 0; v < patch_.points.size(); ++v) {
-        if (topology_.isMovable(v)) setState(v, Patch::State::Tried);
+        if (topology_.isMovable(v) && patch_.states[v] == Patch::State::Open) {
+            patch_.states[v] = Patch::State::Tried;
+        }
     }
     std::int64_t made = 0;
     while (!queue_.empty() && made < most) {
-        const Candidate best = queue_.top();
-        queue_.pop();
+        const Candidate best = queue_.front();
+        std::pop_heap(queue_.begin(), queue_.end(), IsLater());
+        queue_.pop_back();
         if (isStale(best) || !topology_.starOfEdge(best.halfEdge, changed_.star)) continue;
         const Vec3 place = bestPlace(best.a, best.b).point;
         if (!staysNear(place) || !crossesNothing()) continue;
@@ -94,7 +98,12 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
             h = topology_.twin(PatchTopology::previous(h));
         } while (h != begin);
     }
-    queue_ = {};
+    for (const Candidate& untried : queue_) {
+        for (const std::uint32_t v : {untried.a, untried.b}) {
+            if (patch_.states[v] == Patch::State::Tried) patch_.states[v] = Patch::State::Open;
+        }
+    }
+    queue_.clear();
 }
 
 /// With its vertex at p the star has the shape asked for and lies near its samples.

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <queue>
 #include <vector>
 
 #include "CrossingGuard.h"
@@ -71,7 +70,7 @@ private:
     ErrorTracker errors_;
     CrossingGuard guard_;
     std::vector<std::uint32_t> changes_;  ///< of each vertex
-    std::priority_queue<Candidate, std::vector<Candidate>, IsLater> queue_;
+    std::vector<Candidate> queue_;        ///< a heap
     ChangedStar changed_;
 };
 

@@ -13,23 +13,19 @@ PatchTopology::PatchTopology(Patch& patch)
     HalfEdges<std::uint32_t> halfEdges;
     halfEdges.assign(patch.points.size(), own);
     halfEdges.match(own, twin_);
-    // a vertex is movable if turning around it from twin to twin comes back after as many
-    // triangles as it has
-    std::vector<std::uint32_t> triangles(patch.points.size(), 0);
-    for (std::uint32_t h = 0; h < twin_.size(); ++h) ++triangles[from(h)];
-    for (std::size_t t = patch.ownTriangles; t < patch.triangles.size(); ++t) {
-        for (const std::uint32_t v : patch.triangles[t]) triangles[v] = kNone;
+    // the whole surface is a manifold: a vertex whose triangles all have neighbours has one fan
+    std::uint32_t h = 0;
+    for (const auto& t : own) {
+        for (const std::uint32_t v : t) leaving_[v] = h++;
     }
-    for (std::uint32_t h = 0; h < twin_.size(); ++h) {
-        const std::uint32_t v = from(h);
-        if (triangles[v] == kNone) continue;
-        std::uint32_t turned = 0, g = h;
-        do {
-            g = twin_[previous(g)];
-            ++turned;
-        } while (g != kNone && g != h);
-        if (g == h && turned == triangles[v]) leaving_[v] = h;
-        triangles[v] = kNone;
+    h = 0;
+    for (const auto& [a, b, c] : own) {
+        for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+            if (twin_[h++] == kNone) leaving_[from] = leaving_[to] = kNone;
+        }
+    }
+    for (std::size_t t = patch.ownTriangles; t < patch.triangles.size(); ++t) {
+        for (const std::uint32_t v : patch.triangles[t]) leaving_[v] = kNone;
     }
 }
 

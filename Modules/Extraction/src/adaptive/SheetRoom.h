@@ -19,11 +19,12 @@ class SheetRoom {
 public:
     /// Parts that rooms are counted in.
     static constexpr int kParts = 128;
-    static constexpr std::uint8_t kAlone = 255;  ///< a single sheet for sure
+    static constexpr std::uint8_t kAlone = 255;  ///< no other sheet is as near as that
 
     /// \param normals  of any length
     /// \param room  of each point, in parts of the least distance between planes of samples;
-    ///              where it is kAlone it stays so, the others are filled in
+    ///              where it is kAlone, a single sheet for sure, it stays so; the others are
+    ///              filled in
     static void fillIn(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
                        const MetricFrame& frame, std::vector<std::uint8_t>& room);
 };

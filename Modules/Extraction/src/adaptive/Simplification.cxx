@@ -25,11 +25,15 @@ constexpr double kFar = 2;
 
 /// Above this cost cubes are twice as large as bricks: else too much would straddle them. Small
 /// ones stay in a processor's cache.
-constexpr double kCoarse = 0.07;
+constexpr double kCoarse = 0.13;
 
 /// Up to this part of the wanted count the rest is dealt out by size: the patches' costs hardly
 /// differ.
 constexpr double kLanding = 1.05;
+
+/// Where some patches tell for all, it is landed on this part of the wanted collapses, so that it
+/// does not become more of them.
+constexpr double kAim = 0.95;
 
 /// How much the limit of cost may grow in a round: the more the farther the wanted count is.
 double costStep(std::int64_t triangles, std::int64_t target) {
@@ -60,7 +64,7 @@ PatchCut Simplification::nextCut() {
 void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
     limits_.triedCost = limits_.maxCost;
     limits_.maxCost = cost;
-    simplifyPatches(surface, nextCut(), frame_, {limits_});
+    PatchRound(surface, nextCut(), frame_).run({limits_});
 }
 
 Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
@@ -110,52 +114,46 @@ SimplifiedSurface Simplification::toLimits(SimplifiedSurface last,
     return surface;
 }
 
-/// A round up to a cost that does not lead below the target.
+/// A round up to a cost that does not lead below the target: where it would, by a trial, up to the
+/// cost that makes as many collapses as wanted.
 void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
-    const std::int64_t wanted = (surface.triangleCount() - target + 1) / 2;
     limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
-    const double part = static_cast<double>(surface.triangleCount()) / static_cast<double>(target);
-    const bool isFar = part > kFar, isNear = part < kLanding;
-    if (isFar || isNear) {
-        PatchWork work{limits_};
-        work.mostCollapses = wanted;  // from afar not reached but by a cost far too high
-        work.fits = isNear;
-        isFitted_ = isNear;
-        simplifyPatches(surface, nextCut(), frame_, work);
-    } else {
-        landOn(wanted, surface);
-    }
-}
-
-/// A round up to the limit of cost; where that makes more collapses than wanted it is undone,
-/// and done again with the cost that makes as many.
-void Simplification::landOn(std::int64_t wanted, SimplifiedSurface& surface) {
-    const PatchCut cut = nextCut();
-    const double cost = limits_.maxCost;
-    const SurfaceState before = surface;
-    CollapseCosts costs;
-    simplifyPatches(surface, cut, frame_, {limits_}, &costs);
-    std::int64_t more = wanted - (before.triangleCount() - surface.triangleCount()) / 2;
-    if (more >= 0) return;
-    surface.state() = before;
-    limits_.maxCost = costLimitFor(costs, wanted);
     PatchWork work{limits_};
-    work.fits = true;
-    simplifyPatches(surface, cut, frame_, work);
-    isFitted_ = true;
-    more = wanted - (before.triangleCount() - surface.triangleCount()) / 2;
-    if (more > 0) {  // collapses of one cost
-        limits_.maxCost = cost;
-        PatchWork rest{limits_};
-        rest.mostCollapses = more;
-        simplifyPatches(surface, cut, frame_, rest);
+    work.mostCollapses = (surface.triangleCount() - target + 1) / 2;
+    const double times = static_cast<double>(surface.triangleCount()) / static_cast<double>(target);
+    PatchRound round(surface, nextCut(), frame_);
+    if (times < kLanding) {
+        work.fits = true;
+    } else if (times <= kFar) {  // from afar not reached but by a cost far too high
+        const PatchTrial trial = round.tryOut(limits_, triesAll_);
+        const double part = trial.share < 1 ? kAim * trial.share : 1;
+        const auto most = static_cast<std::int64_t>(part * static_cast<double>(work.mostCollapses));
+        if (trial.collapses() > most) {
+            work.limits.maxCost = costLimitFor(trial.costs, most);
+            work.fits = true;
+        }
+        work.mostCollapses = PatchWork{}.mostCollapses;
     }
+    fits_ = work.fits ? fits_ + 1 : 0;
+    round.run(work);
 }
 
 SimplifiedSurface Simplification::toCount(const WantedCount& wanted) {
+    SimplifiedSurface surface = towards(wanted);
+    if (surface.triangleCount() + 1 < wanted.of(surface.fineTriangles)) {
+        triesAll_ = true;  // the patches that were tried were not like the others
+        surface = towards(wanted);
+    }
+    fit(surface);
+    return surface;
+}
+
+/// All but the last fits.
+SimplifiedSurface Simplification::towards(const WantedCount& wanted) {
     CollapseCosts costs;
     double cost = kFirstCost;
     limits_.maxCost = cost * costUnit_;
+    rounds_ = fits_ = 0;
     SimplifiedSurface surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, &costs);
     const std::int64_t target = wanted.of(surface.fineTriangles);
     if (surface.triangleCount() < target) {
@@ -169,7 +167,6 @@ SimplifiedSurface Simplification::toCount(const WantedCount& wanted) {
         roundTowards(surface, target, cost);
         if (cost > kLastCost) idle = surface.triangleCount() == before ? idle + 1 : 0;
     }
-    fit(surface);
     return surface;
 }
 
@@ -177,9 +174,7 @@ void Simplification::fit(SimplifiedSurface& surface) {
     PatchWork work{limits_};
     work.collapses = false;
     work.fits = true;
-    for (int i = isFitted_ ? 1 : 0; i < 2; ++i) {
-        simplifyPatches(surface, nextCut(), frame_, work);
-    }
+    for (; fits_ < 2; ++fits_) PatchRound(surface, nextCut(), frame_).run(work);
 }
 
 }  // namespace adaptiso::detail

@@ -59,8 +59,8 @@ private:
     PatchCut nextCut();
     void roundUpTo(double cost, SimplifiedSurface& surface);
     void goOnFrom(const Halfway& halfway, SimplifiedSurface& surface);
+    SimplifiedSurface towards(const WantedCount& wanted);
     void roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost);
-    void landOn(std::int64_t wanted, SimplifiedSurface& surface);
 
     const LatticeSampler& sampler_;
     const Bricks& bricks_;
@@ -69,7 +69,8 @@ private:
     PatchLimits limits_;
     double costUnit_;
     int rounds_ = 0;
-    bool isFitted_ = false;  ///< by the last round
+    int fits_ = 0;           ///< how many of the last rounds were with fits
+    bool triesAll_ = false;  ///< patches, before it lands on a count
 };
 
 }  // namespace adaptiso::detail

@@ -159,20 +159,14 @@ private:
     template <class Index>
     static Index under(const Vec3& p, const WalkableSurface<Index>& surface, Index t) {
         constexpr int kMostSteps = 16;
+        Index last = WalkableSurface<Index>::kNone;
         for (int step = 0; step < kMostSteps; ++step) {
-            const Corners corners = surface.cornersOf(t);
-            const Vec3& normal = surface.normalOf(t);
-            Index onward = WalkableSurface<Index>::kNone;
-            for (int c = 0; c < 3 && onward == WalkableSurface<Index>::kNone; ++c) {
-                const Index next = surface.across(t, c);
-                if (next == WalkableSurface<Index>::kNone) continue;
-                const Vec3 edge = corners[(c + 1) % 3] - corners[c];
-                if (dot(cross(edge, normal + surface.normalOf(next)), p - corners[c]) > 0) {
-                    onward = next;
-                }
-            }
-            if (onward == WalkableSurface<Index>::kNone) break;
-            t = onward;
+            const int side = sideTowards(p, surface.cornersOf(t));
+            if (side < 0) break;
+            const Index next = surface.across(t, side);
+            if (next == WalkableSurface<Index>::kNone || next == last) break;
+            last = t;
+            t = next;
         }
         return t;
     }

@@ -60,9 +60,10 @@ public:
     template <class Visit>
     void forEachOverlap(const BoundingBox& box, const Visit& visit) const;
 
-    /// Calls visit(a, b) for every two triangles a < b whose boxes overlap, with a at the places
-    /// [begin, end) of triangles(), in an order that is always the same: all places give each pair
-    /// once. One search serves a leaf's triangles, as a search for each takes most of the time.
+    /// Calls visit(a, b) for every two triangles a < b whose boxes overlap and of which the one
+    /// that comes first in triangles() has a place in [begin, end) there, in an order that is
+    /// always the same: all places give each pair once. One search serves a leaf's triangles, as a
+    /// search for each takes most of the time.
     template <class Visit>
     void forEachOverlappingPair(std::int64_t begin, std::int64_t end, const Visit& visit) const;
 
@@ -98,6 +99,10 @@ private:
     /// Halving leaves no more than 64 levels, with one subtree a level left to do.
     using Stack = std::array<Subtree, 64>;
 
+    /// Calls visit(place, box) for the triangles of the leaves, from one on, that overlap a box.
+    template <class Visit>
+    void forEachPlace(const BoundingBox& box, std::int64_t firstLeaf, const Visit& visit) const;
+
     struct Item;
     void build(std::vector<Item>& items, const Subtree& subtree);
     Subtree root() const { return {0, 0, (triangleCount() + kLeafTriangles - 1) / kLeafTriangles}; }
@@ -121,21 +126,32 @@ private:
 
 template <class Visit>
 void AabbTree::forEachOverlap(const BoundingBox& box, const Visit& visit) const {
+    forEachPlace(box, 0, [&](std::int64_t place, const BoundingBox& own) {
+        if (overlaps(box, own)) visit(order_[place]);
+    });
+}
+
+template <class Visit>
+void AabbTree::forEachPlace(const BoundingBox& box, std::int64_t firstLeaf,
+                            const Visit& visit) const {
     if (order_.empty() || !overlaps(box, boxes_[0])) return;
     Stack stack;
     std::size_t depth = 0;
     stack[depth++] = root();
+    const auto push = [&](const Subtree& subtree) {
+        const bool isWanted = subtree.firstLeaf + subtree.leaves > firstLeaf;
+        if (isWanted && overlaps(box, boxes_[subtree.node])) stack[depth++] = subtree;
+    };
     while (depth > 0) {
         const Subtree at = stack[--depth];
         if (at.isLeaf()) {
             for (std::int64_t n = leafBegin(at.firstLeaf); n < leafEnd(at.firstLeaf); ++n) {
-                if (overlaps(box, triangleBox(order_[n]))) visit(order_[n]);
+                visit(n, triangleBox(order_[n]));
             }
             continue;
         }
-        const Subtree left = at.left(), right = at.right();
-        if (overlaps(box, boxes_[right.node])) stack[depth++] = right;
-        if (overlaps(box, boxes_[left.node])) stack[depth++] = left;
+        push(at.right());
+        push(at.left());
     }
 }
 
@@ -144,20 +160,23 @@ void AabbTree::forEachOverlappingPair(std::int64_t begin, std::int64_t end,
                                       const Visit& visit) const {
     struct Other {
         BoundingBox box;
-        std::int64_t triangle;
+        std::int64_t place;
     };
     std::vector<Other> others;
-    for (std::int64_t at = begin; at < end; at += kLeafTriangles) {
-        const std::int64_t last = std::min(end, at + kLeafTriangles);
+    for (std::int64_t at = begin; at < end;) {
+        const std::int64_t leaf = at / kLeafTriangles, last = std::min(end, leafEnd(leaf));
         BoundingBox box = triangleBox(order_[at]);
         for (std::int64_t n = at + 1; n < last; ++n) box = unite(box, triangleBox(order_[n]));
         others.clear();
-        forEachOverlap(box, [&](std::int64_t t) { others.push_back({triangleBox(t), t}); });
-        for (std::int64_t n = at; n < last; ++n) {
-            const std::int64_t own = order_[n];
-            const BoundingBox ownBox = triangleBox(own);
+        forEachPlace(box, leaf, [&](std::int64_t place, const BoundingBox& other) {
+            if (place > at && overlaps(box, other)) others.push_back({other, place});
+        });
+        for (; at < last; ++at) {
+            const BoundingBox own = triangleBox(order_[at]);
             for (const Other& other : others) {
-                if (other.triangle > own && overlaps(ownBox, other.box)) visit(own, other.triangle);
+                if (other.place <= at || !overlaps(own, other.box)) continue;
+                const auto [a, b] = std::minmax(order_[at], order_[other.place]);
+                visit(a, b);
             }
         }
     }
