@@ -58,6 +58,7 @@ public:
         SimplifiedSurface surface;
         for (int run = 0; run < kMostRuns; ++run) {
             report(run, 0);
+            unfitted_ = {};
             surface = run + 1 < kMostRuns ? simplify(std::move(surface)) : fullSurface();
             report(run, 0.6);
             ErrorBound error = proof_.prove(surface);
@@ -70,7 +71,12 @@ public:
             report(run, 1);
             Extraction result;
             result.mesh = toMesh(surface, geometry_, frame_, sampler_);
-            const std::vector<Vec3> crossings = crossingPlaces(result.mesh);
+            std::vector<Vec3> crossings = indicesOf(crossingPlaces(result.mesh));
+            if (!crossings.empty() && undoFits(crossings, surface)) {
+                error = proveFitted(surface);
+                result.mesh = toMesh(surface, geometry_, frame_, sampler_);
+                crossings = indicesOf(crossingPlaces(result.mesh));
+            }
             if (!crossings.empty()) {
                 proveAround(crossings);
                 continue;
@@ -86,7 +92,7 @@ public:
     }
 
 private:
-    static constexpr int kMostRuns = 16, kMostMends = 6, kMostFits = 3, kMostCrossedRuns = 3;
+    static constexpr int kMostRuns = 16, kMostMends = 6, kMostUndos = 6, kMostCrossedRuns = 3;
     /// Vertices are fitted within this part of the allowed distance, or no farther than they were:
     /// then few places are lost.
     static constexpr double kFitDistance = 0.75;
@@ -103,40 +109,73 @@ private:
     /// farther.
     static constexpr double kSlackVoxels = 0.05, kSlackPart = 0.3;
 
+    /// The surface before its vertices were fitted.
+    struct Unfitted {
+        std::vector<Vec3> points;
+        ErrorBound proved;
+    };
+
     bool isBeyond(const ErrorBound& error) const { return boundMm_ && error.largestMm > *boundMm_; }
 
     /// Moves vertices to where they serve the mean distance best, if what is proved stays true.
     /// \return what is proved of the surface then
     ErrorBound fit(SimplifiedSurface& surface, const ErrorBound& proved) {
-        const SurfaceState before = surface;
-        for (int attempt = 0; attempt < kMostFits; ++attempt) {
-            PatchLimits closer = limits();
-            closer.maxFittedMm = kFitDistance * closer.maxDistanceMm;
-            Simplification(sampler_, bricks_, frame_, tight_, closer).fit(surface);
+        PatchLimits closer = limits();
+        closer.maxFittedMm = kFitDistance * closer.maxDistanceMm;
+        unfitted_ = {surface.points, proved};
+        Simplification(sampler_, bricks_, frame_, tight_, closer).fit(surface);
+        return proveFitted(surface);
+    }
+
+    /// Where the bound is lost vertices go back to where they were.
+    ErrorBound proveFitted(SimplifiedSurface& surface) {
+        for (int undo = 0; undo < kMostUndos; ++undo) {
             ErrorBound error = proof_.prove(surface);
             if (!isBeyond(error)) return error;
-            tighten(error);
-            surface.state() = before;
-            tight_.apply(frame_, surface.samples);
+            if (!undoFits(indicesOf(error), surface)) break;
         }
-        return proved;
+        surface.points = unfitted_.points;
+        return unfitted_.proved;
     }
 
-    /// Starts anew, with more proved. \param crossings  in physical space
+    /// \param places  continuous sample indices
+    /// \return false when no vertex was fitted there
+    bool undoFits(const std::vector<Vec3>& places, SimplifiedSurface& surface) const {
+        if (unfitted_.points.empty()) return false;
+        TightPlaces around;
+        around.add(places);
+        bool isUndone = false;
+        for (std::size_t s = 0; s < surface.samples.size(); ++s) {
+            if (!around.has(frame_, surface.samples[s])) continue;
+            for (const std::uint64_t v : surface.triangles[surface.sampleTriangle[s]]) {
+                if (surface.points[v] == unfitted_.points[v]) continue;
+                surface.points[v] = unfitted_.points[v];
+                isUndone = true;
+            }
+        }
+        return isUndone;
+    }
+
+    std::vector<Vec3> indicesOf(const ErrorBound& error) const {
+        std::vector<Vec3> indices;
+        for (const Vec3& place : error.beyondLimit) indices.push_back(frame_.toIndex(place));
+        return indices;
+    }
+    /// \param places  in physical space
+    std::vector<Vec3> indicesOf(std::vector<Vec3> places) const {
+        for (Vec3& place : places) place = geometry_.toIndex(place);
+        return places;
+    }
+
+    /// Goes on with more proved: from halfway, and when that does not help from the beginning.
+    /// \param crossings  continuous sample indices
     void proveAround(const std::vector<Vec3>& crossings) {
-        std::vector<Vec3> places;
-        places.reserve(crossings.size());
-        for (const Vec3& place : crossings) places.push_back(geometry_.toIndex(place));
-        tight_.addCrossings(places);
+        tight_.addCrossings(crossings);
         if (++crossedRuns_ == kMostCrossedRuns) provesAll_ = true;
-        halfway_.reset();
+        if (crossedRuns_ > 1) halfway_.reset();
     }
 
-    void tighten(const ErrorBound& error) {
-        std::vector<Vec3> places;
-        for (const Vec3& place : error.beyondLimit) places.push_back(frame_.toIndex(place));
-        tight_.add(places);
-    }
+    void tighten(const ErrorBound& error) { tight_.add(indicesOf(error)); }
 
     /// Hardly fewer places lie beyond the bound than after the run before: what they need may have
     /// been lost before halfway.
@@ -222,6 +261,7 @@ private:
     TightPlaces tight_;
     std::optional<Halfway> halfway_;
     ErrorProof proof_;
+    Unfitted unfitted_;
     double beyond_ = std::numeric_limits<double>::max();  ///< places after the last run
     int crossedRuns_ = 0;                                 ///< that left triangles that cross
     bool provesAll_ = false;                              ///< every star, everywhere

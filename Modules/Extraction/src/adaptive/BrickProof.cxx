@@ -61,6 +61,7 @@ BrickBound BrickProof::prove(std::int64_t brick) {
     }
     walkable_.assign(points_, fine_.triangles);
     result_ = {};
+    searches_ = 0;
     fromFine_ = toFine_ = PieceBound(enoughMm_);
     proveOwnCells();
     proveTriangles();
@@ -183,8 +184,7 @@ void BrickProof::proveFine(std::size_t t) {
         const std::uint64_t stand = standIn_[v[c]];
         if (c > 0 && stand == standIn_[v[c - 1]]) continue;
         const Corners corners = lookup_.cornersOf(stand);
-        const Vec3& normal = lookup_.walkable().normalOf(static_cast<VertexId>(stand));
-        if (NearTriangle(corners, normal, fromFine_.squaredBound()).has(piece)) return;
+        if (NearTriangle(corners, fromFine_.squaredBound()).has(piece)) return;
     }
     cover(piece, lookup_.walkable(), static_cast<VertexId>(standIn_[v[0]]),
           fromFine_.squaredBound(), kStepsOfFine);
@@ -201,6 +201,8 @@ void BrickProof::proveFinePart(const Corners& piece, const std::array<std::uint3
     nearby.clear();
     for (const std::uint32_t corner : of) nearby.push_back(lookup_.cornersOf(standIn_[corner]));
     if (fromFine_.isWithin(piece)) return;
+    collectAround(of);
+    if (fromFine_.isWithin(piece)) return;
     // all that can be nearer than what the corners are known to be
     double reachMm = fromFine_.boundMm();
     for (const Vec3& corner : piece) {
@@ -210,9 +212,39 @@ void BrickProof::proveFinePart(const Corners& piece, const std::array<std::uint3
         }
         reachMm = std::max(reachMm, std::sqrt(nearest));
     }
-    nearby.clear();
-    lookup_.forEachNear(piece, reachMm, [&](const Corners& near) { nearby.push_back(near); });
+    collectWithin(reachMm, piece);
     include(piece, fromFine_, PlaceBeyond::kNone);
+}
+
+/// The triangles that share corners with those that stand for a fine triangle's corners.
+void BrickProof::collectAround(const std::array<std::uint32_t, 3>& fine) {
+    around_.clear();
+    for (const std::uint32_t corner : fine) {
+        for (const VertexId v : lookup_.triangle(standIn_[corner])) {
+            lookup_.walkable().forEachAt(v, [&](VertexId t) { around_.push_back(t); });
+        }
+    }
+    std::sort(around_.begin(), around_.end());
+    around_.erase(std::unique(around_.begin(), around_.end()), around_.end());
+    fromFine_.nearby().clear();
+    for (const VertexId t : around_) fromFine_.nearby().push_back(lookup_.cornersOf(t));
+}
+
+/// The triangles that may lie within a distance of a part of a fine triangle.
+void BrickProof::collectWithin(double distanceMm, const Corners& piece) {
+    constexpr int kFew = 30;  // searches by which a tree of all triangles is not worth its time
+    std::vector<Corners>& nearby = fromFine_.nearby();
+    nearby.clear();
+    if (++searches_ > kFew || !lookup_.ofBrickHasAllWithin(distanceMm)) {
+        lookup_.forEachNear(piece, distanceMm, [&](const Corners& c) { nearby.push_back(c); });
+        return;
+    }
+    CornerBox box = boxOf(piece);
+    box.widen(distanceMm);
+    for (const std::uint64_t t : lookup_.ofBrick(brick_)) {
+        const Corners corners = lookup_.cornersOf(t);
+        if (boxOf(corners).overlaps(box)) nearby.push_back(corners);
+    }
 }
 
 /// Goes over the pieces of a triangle of the simplified surface that this brick answers for.

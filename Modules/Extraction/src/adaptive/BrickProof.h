@@ -73,6 +73,8 @@ private:
     std::uint64_t blockOf(const FineSurface::Cell& cell) const;
     void proveFine(std::size_t t);
     void proveFinePart(const Corners& piece, const std::array<std::uint32_t, 3>& of);
+    void collectWithin(double distanceMm, const Corners& piece);
+    void collectAround(const std::array<std::uint32_t, 3>& fine);
     void provePiece(const Corners& piece, std::uint32_t start, double area2);
     void proveWhole(const Corners& piece, std::uint32_t start, double area2);
     template <class Index>
@@ -107,10 +109,13 @@ private:
     ZeroedTable cellAt_;                    ///< number + 1
     std::uint64_t triangle_ = 0;            ///< whose pieces are looked at
 
+    int searches_ = 0;  ///< for near triangles of the simplified surface
+
     PieceBound fromFine_, toFine_;
     BrickBound result_;
     SurfaceWalk walk_;
     std::vector<std::uint32_t> near_;
+    std::vector<VertexId> around_;
     std::vector<std::pair<double, std::uint32_t>> ranked_;
 };
 

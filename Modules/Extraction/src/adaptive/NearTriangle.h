@@ -10,24 +10,23 @@ namespace adaptiso::detail {
 /// A triangle, ready to tell of many points whether they lie within a distance of it.
 class NearTriangle {
 public:
-    /// \param normal  unit
-    NearTriangle(const Corners& t, const Vec3& normal, double squaredDistance)
+    NearTriangle(const Corners& t, double squaredDistance)
         : t_(t),
-          normal_(normal),
           squared_(squaredDistance),
           e_(t[1] - t[0]),
           f_(t[2] - t[0]),
+          area2_(cross(e_, f_)),
           ee_(squaredNorm(e_)),
           ef_(dot(e_, f_)),
           ff_(squaredNorm(f_)),
-          area_(ee_ * ff_ - ef_ * ef_),
+          area_(squaredNorm(area2_)),
           isFlat_(!(area_ > kFlat * ee_ * ff_)) {}
 
     bool has(const Vec3& p) const {
-        const Vec3 q = p - t_[0];
-        const double height = dot(normal_, q);
-        if (height * height > squared_) return false;
         if (isFlat_) return squaredDistanceToTriangle(p, t_) <= squared_;
+        const Vec3 q = p - t_[0];
+        const double height = dot(area2_, q);  // times the doubled area
+        if (height * height > squared_ * area_) return false;
         const double d = dot(q, e_), g = dot(q, f_);
         const double u = ff_ * d - ef_ * g,
                      v = ee_ * g - ef_ * d;  // of the corners 1 and 2, x area
@@ -53,9 +52,8 @@ private:
     }
 
     const Corners& t_;
-    const Vec3& normal_;
     double squared_;
-    Vec3 e_, f_;
+    Vec3 e_, f_, area2_;
     double ee_, ef_, ff_, area_;  ///< area: squared and doubled twice
     bool isFlat_;
 };

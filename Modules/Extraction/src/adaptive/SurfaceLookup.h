@@ -39,6 +39,10 @@ public:
     }
     const WalkableSurface<VertexId>& walkable() const { return walkable_; }
     std::span<const std::uint64_t> ofBrick(std::int64_t b) const { return ofBrick_[b]; }
+    /// ofBrick() has all triangles within a distance of the brick.
+    bool ofBrickHasAllWithin(double distanceMm) const {
+        return distanceMm <= kRoom * frame_.narrowestMm();
+    }
 
     /// Calls f(brick) for the bricks whose neighbourhood a triangle reaches into.
     template <class F>

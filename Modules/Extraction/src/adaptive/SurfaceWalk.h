@@ -58,18 +58,16 @@ public:
         triangles_ = triangles;
         halfEdges_.assign(points.size(), triangles);
         halfEdges_.match(triangles, twin_);
-        normal_.resize(triangles.size());
-        for (std::size_t t = 0; t < triangles.size(); ++t) {
-            const Corners c = cornersOf(static_cast<Index>(t));
-            normal_[t] = normalized(areaVector2(c[0], c[1], c[2]));
-        }
     }
 
     Corners cornersOf(Index t) const {
         const auto& v = triangles_[t];
         return {points_[v[0]], points_[v[1]], points_[v[2]]};
     }
-    const Vec3& normalOf(Index t) const { return normal_[t]; }
+    Vec3 normalOf(Index t) const {
+        const Corners c = cornersOf(t);
+        return normalized(areaVector2(c[0], c[1], c[2]));
+    }
 
     /// Across the edge from corner c to the next one; kNone where the surface ends.
     Index across(Index t, int c) const {
@@ -81,6 +79,12 @@ public:
     Index triangleAt(Index vertex) const {
         const auto leaving = halfEdges_.from(vertex);
         return leaving.empty() ? kNone : leaving.front().halfEdge / 3;
+    }
+
+    /// Calls f(triangle) for those at a vertex.
+    template <class F>
+    void forEachAt(Index vertex, const F& f) const {
+        for (const auto& l : halfEdges_.from(vertex)) f(l.halfEdge / 3);
     }
 
     /// The triangle with these corners in this order; kNone where there is none.
@@ -98,7 +102,6 @@ private:
     std::span<const std::array<Index, 3>> triangles_;
     HalfEdges<Index> halfEdges_;
     std::vector<Index> twin_;
-    std::vector<Vec3> normal_;
 };
 
 /// Cuts pieces so that each part lies within a distance of one triangle of a surface: those that
@@ -142,7 +145,7 @@ private:
         if (longest <= kLarge * kLarge * squaredDistance) {
             t = under((1.0 / 3) * (a + b + c), surface, start);
             const Corners corners = surface.cornersOf(t);
-            if (NearTriangle(corners, surface.normalOf(t), squaredDistance).has(piece)) return;
+            if (NearTriangle(corners, squaredDistance).has(piece)) return;
         }
         if (longest <= kSmall * kSmall * squaredDistance) {
             walk(ConvexPiece(piece), surface, t, squaredDistance, steps);
@@ -199,9 +202,9 @@ private:
     void step(ConvexPiece piece, const WalkableSurface<Index>& surface, Index t,
               double squaredDistance) {
         const Corners corners = surface.cornersOf(t);
-        const Vec3& normal = surface.normalOf(t);
-        const NearTriangle near(corners, normal, squaredDistance);
+        const NearTriangle near(corners, squaredDistance);
         if (has(near, piece)) return;
+        const Vec3 normal = surface.normalOf(t);
         bool isCut = false;
         for (int c = 0; c < 3; ++c) {
             const Index next = surface.across(t, c);

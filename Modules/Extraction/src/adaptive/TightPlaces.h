@@ -24,6 +24,9 @@ public:
     /// \param places  of triangles that crossed, continuous sample indices
     void addCrossings(const std::vector<Vec3>& places);
 
+    /// The sample lies at a place added by add().
+    bool has(const MetricFrame& frame, const Sample& sample) const;
+
     void apply(const MetricFrame& frame, Sample& sample) const;
     void apply(const MetricFrame& frame, std::vector<Sample>& samples) const;
 
