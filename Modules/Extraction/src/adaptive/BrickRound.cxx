@@ -1,6 +1,7 @@
 #include "BrickRound.h"
 
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 
@@ -38,7 +39,7 @@ struct BrickSurface {
     std::vector<std::uint32_t> sampleTriangle;
     struct WallVertex {
         std::uint64_t edge;
-        std::uint32_t vertex;
+        std::uint32_t vertex, triangle;  ///< and one of its triangles
         Vec3 normal;
         std::uint8_t room;
     };
@@ -78,7 +79,14 @@ void takeOver(Patch& patch, BrickSurface& brick) {
     brick.samples.shrink_to_fit();
     brick.sampleTriangle.shrink_to_fit();
     for (std::uint32_t& t : brick.sampleTriangle) t = newTriangle[t];
-    for (auto& wall : brick.walls) wall.vertex = newVertex[wall.vertex];
+    std::vector<std::uint32_t> triangleAt(vertices);
+    for (std::uint32_t t = 0; t < triangles; ++t) {
+        for (const std::uint32_t v : brick.triangles[t]) triangleAt[v] = t;
+    }
+    for (auto& wall : brick.walls) {
+        wall.vertex = newVertex[wall.vertex];
+        wall.triangle = triangleAt[wall.vertex];
+    }
 }
 
 /// Where the surface bends within a triangle its middle is a sample too: between corners a ridge
@@ -134,7 +142,7 @@ Patch patchOf(const FineSurface& fine, const MetricFrame& frame, BrickSurface& b
     for (std::uint32_t v = 0; v < fine.vertices.size(); ++v) {
         const FineVertex& vertex = fine.vertices[v];
         if (vertex.isOnWall) {
-            brick.walls.push_back({vertex.edge.word, v, normalized(areas[v]), room[v]});
+            brick.walls.push_back({vertex.edge.word, v, 0, normalized(areas[v]), room[v]});
             continue;
         }
         Sample& sample = patch.samples.emplace_back();
@@ -173,8 +181,9 @@ public:
 
     SimplifiedSurface join() {
         collectWalls();
-        addVertices();
-        addTriangles();
+        numberMembers();
+        tbb::parallel_invoke([&] { appendPoints(); }, [&] { appendQuadrics(); },
+                             [&] { appendTriangles(); }, [&] { appendSamples(); });
         addWallSamples();
         return std::move(whole_);
     }
@@ -183,7 +192,7 @@ private:
     /// What a brick has of a vertex on a wall.
     struct WallEntry {
         std::uint64_t edge;
-        std::uint32_t brick, vertex;
+        std::uint32_t brick, vertex, triangle;
         Vec3 normal;
         std::uint8_t room;
         StoredQuadric quadric;
@@ -193,8 +202,8 @@ private:
     void collectWalls() {
         for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
             for (const auto& w : bricks_[b].walls) {
-                walls_.push_back(
-                    {w.edge, b, w.vertex, w.normal, w.room, bricks_[b].quadrics[w.vertex]});
+                walls_.push_back({w.edge, b, w.vertex, w.triangle, w.normal, w.room,
+                                  bricks_[b].quadrics[w.vertex]});
             }
             bricks_[b].walls = {};
             number_[b].assign(bricks_[b].points.size(), 0);
@@ -210,73 +219,93 @@ private:
         }
     }
 
-    void addVertices() {
-        std::size_t vertices = 0;
-        for (const auto& numbers : number_) {
-            vertices += static_cast<std::size_t>(
-                std::count_if(numbers.begin(), numbers.end(),
-                              [](std::uint64_t number) { return number != kShared; }));
-        }
-        whole_.points.reserve(vertices);
-        whole_.quadrics.reserve(vertices);
-        whole_.states.reserve(vertices);
+    /// Of the whole's vertices and triangles.
+    void numberMembers() {
+        firstTriangle_.push_back(0);
         for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
-            BrickSurface& brick = bricks_[b];
-            for (std::uint32_t v = 0; v < brick.points.size(); ++v) {
-                if (number_[b][v] == kShared) continue;
-                number_[b][v] = whole_.points.size();
-                whole_.points.push_back(brick.points[v]);
-                whole_.quadrics.push_back(brick.quadrics[v]);
-                whole_.states.push_back(brick.states[v]);
+            for (std::uint64_t& number : number_[b]) {
+                if (number != kShared) number = vertices_++;
             }
-            brick.points = {};
-            brick.quadrics = {};
-            brick.states = {};
+            firstTriangle_.push_back(firstTriangle_.back() + bricks_[b].triangles.size());
         }
         for (std::size_t i = 0, first = 0; i < walls_.size(); ++i) {
             if (walls_[i].edge != walls_[first].edge) first = i;
-            if (i == first) continue;
-            const std::uint64_t id = number_[walls_[first].brick][walls_[first].vertex];
-            number_[walls_[i].brick][walls_[i].vertex] = id;
-            for (std::size_t n = 0; n < walls_[i].quadric.number.size(); ++n) {
-                whole_.quadrics[id].number[n] += walls_[i].quadric.number[n];
+            if (i != first) numberOf(walls_[i]) = numberOf(walls_[first]);
+        }
+    }
+
+    std::uint64_t& numberOf(const WallEntry& wall) { return number_[wall.brick][wall.vertex]; }
+
+    /// Vertices of the whole are numbered in the order in which bricks first have them.
+    template <class F>
+    void forEachNewVertex(const F& f) {
+        std::uint64_t next = 0;
+        for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
+            for (std::uint32_t v = 0; v < number_[b].size(); ++v) {
+                if (number_[b][v] != next) continue;
+                f(bricks_[b], v);
+                ++next;
             }
         }
     }
 
-    void addTriangles() {
-        std::size_t triangles = 0, samples = 0;
-        for (const BrickSurface& brick : bricks_) {
-            triangles += brick.triangles.size();
-            samples += brick.samples.size();
+    void appendPoints() {
+        whole_.points.reserve(vertices_);
+        whole_.states.reserve(vertices_);
+        forEachNewVertex([&](const BrickSurface& brick, std::uint32_t v) {
+            whole_.points.push_back(brick.points[v]);
+            whole_.states.push_back(brick.states[v]);
+        });
+        for (BrickSurface& brick : bricks_) brick.points = {};
+    }
+
+    void appendQuadrics() {
+        whole_.quadrics.reserve(vertices_);
+        forEachNewVertex([&](const BrickSurface& brick, std::uint32_t v) {
+            whole_.quadrics.push_back(brick.quadrics[v]);
+        });
+        for (BrickSurface& brick : bricks_) brick.quadrics = {};
+        for (std::size_t i = 1; i < walls_.size(); ++i) {
+            if (walls_[i].edge != walls_[i - 1].edge) continue;
+            StoredQuadric& sum = whole_.quadrics[numberOf(walls_[i])];
+            for (std::size_t n = 0; n < sum.number.size(); ++n) {
+                sum.number[n] += walls_[i].quadric.number[n];
+            }
         }
-        whole_.triangles.reserve(triangles);
-        whole_.samples.reserve(samples + walls_.size());
-        whole_.sampleTriangle.reserve(samples + walls_.size());
+    }
+
+    void appendTriangles() {
+        whole_.triangles.reserve(firstTriangle_.back());
+        for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
+            const auto& number = number_[b];
+            for (const auto& t : bricks_[b].triangles) {
+                whole_.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
+            }
+            bricks_[b].triangles = {};
+            whole_.fineTriangles += bricks_[b].fineTriangles;
+            whole_.tableTriangles += bricks_[b].tableTriangles;
+        }
+    }
+
+    void appendSamples() {
+        std::size_t samples = walls_.size();
+        for (const BrickSurface& brick : bricks_) samples += brick.samples.size();
+        whole_.samples.reserve(samples);
+        whole_.sampleTriangle.reserve(samples);
         for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
             BrickSurface& brick = bricks_[b];
             whole_.firstSample.push_back(whole_.samples.size());
-            const std::uint64_t first = whole_.triangles.size();
-            const auto& number = number_[b];
-            for (const auto& t : brick.triangles) {
-                whole_.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
-            }
             whole_.samples.insert(whole_.samples.end(), brick.samples.begin(), brick.samples.end());
             for (const std::uint32_t t : brick.sampleTriangle) {
-                whole_.sampleTriangle.push_back(first + t);
+                whole_.sampleTriangle.push_back(firstTriangle_[b] + t);
             }
-            whole_.fineTriangles += brick.fineTriangles;
-            whole_.tableTriangles += brick.tableTriangles;
-            brick = {};
+            brick.samples = {};
+            brick.sampleTriangle = {};
         }
         whole_.firstSample.push_back(whole_.samples.size());
     }
 
     void addWallSamples() {
-        std::vector<std::uint64_t> triangleAt(whole_.points.size());
-        for (std::uint64_t t = 0; t < whole_.triangles.size(); ++t) {
-            for (const std::uint64_t v : whole_.triangles[t]) triangleAt[v] = t;
-        }
         for (std::size_t i = 0, j = 0; i < walls_.size(); i = j) {
             Sample sample;
             Vec3 normal;
@@ -284,12 +313,11 @@ private:
                 sample.room = std::min(sample.room, walls_[j].room);
                 normal += walls_[j].normal;
             }
-            const std::uint64_t id = number_[walls_[i].brick][walls_[i].vertex];
-            sample.setPoint(whole_.points[id]);
+            sample.setPoint(whole_.points[numberOf(walls_[i])]);
             sample.setNormal(normal);
             tight_.apply(frame_, sample);
             whole_.samples.push_back(sample);
-            whole_.sampleTriangle.push_back(triangleAt[id]);
+            whole_.sampleTriangle.push_back(firstTriangle_[walls_[i].brick] + walls_[i].triangle);
             whole_.wallEdges.push_back(walls_[i].edge);
         }
     }
@@ -298,6 +326,8 @@ private:
     const MetricFrame& frame_;
     const TightPlaces& tight_;
     std::vector<std::vector<std::uint64_t>> number_;  ///< in the whole, of each brick's vertices
+    std::uint64_t vertices_ = 0;                      ///< of the whole
+    std::vector<std::uint64_t> firstTriangle_;        ///< of each brick, in the whole
     std::vector<WallEntry> walls_;
     SimplifiedSurface whole_;
 };

@@ -1,8 +1,9 @@
 #include "PatchGroups.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 #include "adaptiso/Core/Parallel.h"
 
@@ -56,19 +57,13 @@ PatchGroups::PatchGroups(const SimplifiedSurface& surface, const PatchCut& cut,
       cubeOfTriangle_(cubesOfTriangles()),
       placeOfVertex_(surface.points.size()),
       placeOfTriangle_(surface.triangles.size()),
-      vertices_(cubes_.count(), surface.points.size(),
-                [&](std::size_t v) { return cubeOfVertex_[v]; }),
-      triangles_(cubes_.count(), surface.triangles.size(),
-                 [&](std::size_t t) { return cubeOfTriangle_[t]; }),
-      samples_(cubes_.count(), surface.samples.size(),
-               [&](std::size_t s) { return cubeOfTriangle_[surface.sampleTriangle[s]]; }),
       obstacles_(cubes_.count()) {
-    numberMembers();
-    strayedSamples_ = Groups(straddling_.size(), surface.samples.size(), [&](std::size_t s) {
-        const std::uint64_t t = surface.sampleTriangle[s];
-        return cubeOfTriangle_[t] == kStraddles ? placeOfTriangle_[t] : kStraddles;
-    });
-    collectObstacles();
+    tbb::parallel_invoke([&] { groupVertices(); }, [&] { groupTriangles(); },
+                         [&] {
+                             samples_ = Groups(count(), surface.samples.size(), [&](std::size_t s) {
+                                 return cubeOfTriangle_[surface.sampleTriangle[s]];
+                             });
+                         });
 }
 
 std::vector<std::uint32_t> PatchGroups::cubesOfVertices() const {
@@ -96,18 +91,26 @@ std::vector<std::uint32_t> PatchGroups::cubesOfTriangles() const {
     return cubes;
 }
 
-void PatchGroups::numberMembers() {
-    parallelForPieces(static_cast<std::int64_t>(count()), 1, [&](std::int64_t n, std::int64_t) {
-        std::uint32_t place = 0;
-        for (const std::uint64_t v : vertices_.of(n)) placeOfVertex_[v] = place++;
-        place = 0;
-        for (const std::uint64_t t : triangles_.of(n)) placeOfTriangle_[t] = place++;
-    });
+void PatchGroups::groupVertices() {
+    vertices_ =
+        Groups(count(), surface_.points.size(), [&](std::size_t v) { return cubeOfVertex_[v]; });
+    vertices_.number(placeOfVertex_);
+}
+
+void PatchGroups::groupTriangles() {
+    triangles_ = Groups(count(), surface_.triangles.size(),
+                        [&](std::size_t t) { return cubeOfTriangle_[t]; });
+    triangles_.number(placeOfTriangle_);
     for (std::uint64_t t = 0; t < cubeOfTriangle_.size(); ++t) {
         if (cubeOfTriangle_[t] != kStraddles) continue;
         placeOfTriangle_[t] = static_cast<std::uint32_t>(straddling_.size());
         straddling_.push_back(t);
     }
+    strayedSamples_ = Groups(straddling_.size(), surface_.samples.size(), [&](std::size_t s) {
+        const std::uint64_t t = surface_.sampleTriangle[s];
+        return cubeOfTriangle_[t] == kStraddles ? placeOfTriangle_[t] : kStraddles;
+    });
+    collectObstacles();
 }
 
 /// Triangles that straddle cubes are obstacles in all the cubes that they may reach into.
@@ -155,7 +158,7 @@ std::vector<std::int64_t> PatchGroups::shares(std::int64_t total) const {
 }
 
 /// The samples of the cube's triangles, triangle by triangle.
-std::vector<std::uint64_t> PatchGroups::ownSamples(std::size_t n) const {
+void PatchGroups::sortSamples(std::size_t n, std::vector<std::uint64_t>& sorted) const {
     const auto members = samples_.of(n);
     const auto triangleOf = [&](std::uint64_t s) {
         return placeOfTriangle_[surface_.sampleTriangle[s]];
@@ -163,12 +166,11 @@ std::vector<std::uint64_t> PatchGroups::ownSamples(std::size_t n) const {
     std::vector<std::uint32_t> at(triangles_.of(n).size() + 1, 0);
     for (const std::uint64_t s : members) ++at[triangleOf(s) + 1];
     for (std::size_t t = 1; t < at.size(); ++t) at[t] += at[t - 1];
-    std::vector<std::uint64_t> sorted(members.size());
+    sorted.resize(members.size());
     for (const std::uint64_t s : members) sorted[at[triangleOf(s)]++] = s;
-    return sorted;
 }
 
-Patch PatchGroups::take(std::size_t n) const {
+Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
     Patch patch;
     cubes_.setBounds(n, patch);
     const auto members = vertices_.of(n);
@@ -188,30 +190,31 @@ Patch PatchGroups::take(std::size_t n) const {
             {placeOfVertex_[c[0]], placeOfVertex_[c[1]], placeOfVertex_[c[2]]});
     }
     patch.ownTriangles = static_cast<std::uint32_t>(own.size());
-    const std::vector<std::uint64_t> samples = ownSamples(n);
-    patch.samples.reserve(samples.size());
-    patch.sampleTriangle.reserve(samples.size());
-    for (const std::uint64_t s : samples) {
+    sortSamples(n, scratch.samples);
+    patch.samples.reserve(scratch.samples.size());
+    patch.sampleTriangle.reserve(scratch.samples.size());
+    for (const std::uint64_t s : scratch.samples) {
         patch.samples.push_back(surface_.samples[s]);
         patch.sampleTriangle.push_back(placeOfTriangle_[surface_.sampleTriangle[s]]);
     }
-    addObstacles(n, patch);
+    addObstacles(n, patch, scratch);
     return patch;
 }
 
 /// Adds the triangles that straddle the cube's walls, with their vertices and samples.
-void PatchGroups::addObstacles(std::size_t n, Patch& patch) const {
-    std::unordered_map<std::uint64_t, std::uint32_t> outside;
+void PatchGroups::addObstacles(std::size_t n, Patch& patch, PatchScratch& scratch) const {
+    scratch.outsideNumber.resize(surface_.points.size());
     const auto localVertex = [&](std::uint64_t v) {
         if (cubeOfVertex_[v] == n) return placeOfVertex_[v];
-        const auto [at, isNew] =
-            outside.try_emplace(v, static_cast<std::uint32_t>(patch.points.size()));
-        if (isNew) {
+        std::uint32_t& number = scratch.outsideNumber[v];
+        if (number == 0) {
             patch.points.push_back(surface_.points[v]);
             patch.quadrics.emplace_back();
             patch.states.push_back(Patch::State::Open);
+            scratch.outsideVertices.push_back(v);
+            number = static_cast<std::uint32_t>(patch.points.size());
         }
-        return at->second;
+        return number - 1;
     };
     for (const std::uint32_t obstacle : obstacles_[n]) {
         for (const std::uint64_t s : strayedSamples_.of(obstacle)) {
@@ -221,10 +224,12 @@ void PatchGroups::addObstacles(std::size_t n, Patch& patch) const {
         const SurfaceState::Triangle& c = surface_.triangles[straddling_[obstacle]];
         patch.triangles.push_back({localVertex(c[0]), localVertex(c[1]), localVertex(c[2])});
     }
+    for (const std::uint64_t v : scratch.outsideVertices) scratch.outsideNumber[v] = 0;
+    scratch.outsideVertices.clear();
 }
 
-void PatchGroups::putBack(std::size_t n, const Patch& patch, SurfaceState& surface) const {
-    const std::vector<std::uint64_t> samples = ownSamples(n);  // before it changes
+void PatchGroups::putBack(std::size_t n, const Patch& patch, const PatchScratch& scratch,
+                          SurfaceState& surface) const {
     const auto members = vertices_.of(n);
     for (std::size_t v = 0; v < members.size(); ++v) {
         surface.states[members[v]] = patch.states[v];
@@ -234,8 +239,8 @@ void PatchGroups::putBack(std::size_t n, const Patch& patch, SurfaceState& surfa
         surface.quadrics[members[v]] = StoredQuadric::of(patch.quadrics[v], patch.points[v]);
     }
     const auto own = triangles_.of(n);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        surface.sampleTriangle[samples[i]] = own[patch.sampleTriangle[i]];
+    for (std::size_t i = 0; i < scratch.samples.size(); ++i) {
+        surface.sampleTriangle[scratch.samples[i]] = own[patch.sampleTriangle[i]];
     }
     for (std::size_t t = 0; t < own.size(); ++t) {
         for (int c = 0; c < 3; ++c) {

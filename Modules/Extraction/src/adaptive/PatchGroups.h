@@ -62,12 +62,26 @@ public:
     std::span<const std::uint64_t> of(std::size_t group) const {
         return {members_.data() + begin_[group], begin_[group + 1] - begin_[group]};
     }
+    /// Gives each member its place in its group.
+    void number(std::vector<std::uint32_t>& places) const {
+        for (std::size_t g = 0; g + 1 < begin_.size(); ++g) {
+            std::uint32_t place = 0;
+            for (const std::uint64_t member : of(g)) places[member] = place++;
+        }
+    }
     /// How many members the groups up to one have together.
     std::size_t upTo(std::size_t group) const { return begin_[group + 1]; }
     std::size_t memberCount() const { return members_.size(); }
 
 private:
     std::vector<std::uint64_t> begin_{0}, members_;
+};
+
+/// What a thread needs while it works on patches, one after the other.
+struct PatchScratch {
+    std::vector<std::uint64_t> samples;        ///< of the patch's own triangles, in its order
+    std::vector<std::uint32_t> outsideNumber;  ///< number + 1 in the patch, of the whole's vertices
+    std::vector<std::uint64_t> outsideVertices;  ///< that have one
 };
 
 /// The patches of a cut: who belongs to which.
@@ -84,21 +98,24 @@ public:
     std::vector<std::int64_t> shares(std::int64_t total) const;
 
     /// A copy of a patch, with the triangles around it as obstacles.
-    Patch take(std::size_t n) const;
+    Patch take(std::size_t n, PatchScratch& scratch) const;
 
     /// Writes what take() copied, and has changed since, back to the surface. Different patches
     /// touch different members, so this may run in parallel.
-    void putBack(std::size_t n, const Patch& patch, SurfaceState& surface) const;
+    /// \param scratch  as take() left it
+    void putBack(std::size_t n, const Patch& patch, const PatchScratch& scratch,
+                 SurfaceState& surface) const;
 
 private:
     static constexpr std::uint32_t kStraddles = 0xFFFFFFFF;
 
     std::vector<std::uint32_t> cubesOfVertices() const;
     std::vector<std::uint32_t> cubesOfTriangles() const;
-    void numberMembers();
+    void groupVertices();
+    void groupTriangles();
     void collectObstacles();
-    std::vector<std::uint64_t> ownSamples(std::size_t n) const;
-    void addObstacles(std::size_t n, Patch& patch) const;
+    void sortSamples(std::size_t n, std::vector<std::uint64_t>& sorted) const;
+    void addObstacles(std::size_t n, Patch& patch, PatchScratch& scratch) const;
 
     const SimplifiedSurface& surface_;
     PatchCubes cubes_;

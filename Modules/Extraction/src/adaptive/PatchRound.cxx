@@ -1,5 +1,8 @@
 #include "PatchRound.h"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 
 #include "adaptiso/Core/Parallel.h"
@@ -18,25 +21,29 @@ void removeGone(SurfaceState& surface) {
         newTriangle[t] = triangles;
         surface.triangles[triangles++] = surface.triangles[t];
     }
-    surface.triangles.resize(triangles);
-    for (std::size_t v = 0; v < surface.points.size(); ++v) {
-        if (newVertex[v] == kGone) continue;
-        newVertex[v] = vertices;
-        surface.points[vertices] = surface.points[v];
-        surface.states[vertices] = surface.states[v];
-        surface.quadrics[vertices++] = surface.quadrics[v];
+    for (std::uint64_t& v : newVertex) {
+        if (v != kGone) v = vertices++;
     }
-    surface.points.resize(vertices);
-    surface.states.resize(vertices);
-    surface.quadrics.resize(vertices);
-    for (auto& t : surface.triangles) {
-        for (std::uint64_t& v : t) v = newVertex[v];
-    }
-    for (std::uint64_t& t : surface.sampleTriangle) t = newTriangle[t];
-    surface.triangles.shrink_to_fit();
-    surface.points.shrink_to_fit();
-    surface.states.shrink_to_fit();
-    surface.quadrics.shrink_to_fit();
+    const auto keep = [&](auto& members) {
+        for (std::size_t v = 0; v < newVertex.size(); ++v) {
+            if (newVertex[v] != kGone) members[newVertex[v]] = members[v];
+        }
+        members.resize(vertices);
+        members.shrink_to_fit();
+    };
+    tbb::parallel_invoke(
+        [&] {
+            surface.triangles.resize(triangles);
+            surface.triangles.shrink_to_fit();
+            for (auto& t : surface.triangles) {
+                for (std::uint64_t& v : t) v = newVertex[v];
+            }
+        },
+        [&] { keep(surface.quadrics); }, [&] { keep(surface.points); },
+        [&] { keep(surface.states); },
+        [&] {
+            for (std::uint64_t& t : surface.sampleTriangle) t = newTriangle[t];
+        });
 }
 
 }  // namespace
@@ -69,8 +76,9 @@ PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
     PatchTrial trial;
     trial.costs.resize(some.size());
     if (every > 1) trial.share = tried / triangles;
+    tbb::enumerable_thread_specific<PatchScratch> scratches;
     parallelForPieces(std::ssize(some), 1, [&](std::int64_t i, std::int64_t) {
-        Patch patch = groups_.take(some[i]);
+        Patch patch = groups_.take(some[i], scratches.local());
         PatchSimplifier(patch, frame_, limits).collapseEdges(patch.ownTriangles, &trial.costs[i]);
     });
     return trial;
@@ -78,14 +86,16 @@ PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
 
 void PatchRound::run(const PatchWork& work) {
     const std::vector<std::int64_t> quota = groups_.shares(work.mostCollapses);
+    tbb::enumerable_thread_specific<PatchScratch> scratches;
     parallelForPieces(static_cast<std::int64_t>(groups_.count()), 1,
                       [&](std::int64_t n, std::int64_t) {
                           if (groups_.isIdle(n)) return;
-                          Patch patch = groups_.take(n);
+                          PatchScratch& scratch = scratches.local();
+                          Patch patch = groups_.take(n, scratch);
                           PatchSimplifier simplifier(patch, frame_, work.limits);
                           if (work.collapses) simplifier.collapseEdges(quota[n], nullptr);
                           if (work.fits) simplifier.fitVertices();
-                          groups_.putBack(n, patch, surface_);
+                          groups_.putBack(n, patch, scratch, surface_);
                       });
     if (work.collapses) removeGone(surface_);
 }

@@ -21,7 +21,7 @@ constexpr double kHalfway = 2, kEarlyDistance = 0.25;
 constexpr double kWorthwhile = 0.99;
 
 /// Above this part of the wanted count a round is not thought to lead below it.
-constexpr double kFar = 2;
+constexpr double kFar = 1.6;
 
 /// Above this cost cubes are twice as large as bricks: else too much would straddle them. Small
 /// ones stay in a processor's cache.
@@ -38,7 +38,7 @@ constexpr double kAim = 0.95;
 /// How much the limit of cost may grow in a round: the more the farther the wanted count is.
 double costStep(std::int64_t triangles, std::int64_t target) {
     const double part = static_cast<double>(triangles) / static_cast<double>(target);
-    if (part > kFar) return 16;
+    if (part > 2) return 16;
     return part > 1.4 ? 4 : 2;
 }
 
