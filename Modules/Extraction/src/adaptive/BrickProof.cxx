@@ -180,12 +180,6 @@ void BrickProof::proveFine(std::size_t t) {
     const auto& v = fine_.triangles[t];
     if (isUnchanged(v)) return;
     const Corners piece{points_[v[0]], points_[v[1]], points_[v[2]]};
-    for (int c = 0; c < 3; ++c) {
-        const std::uint64_t stand = standIn_[v[c]];
-        if (c > 0 && stand == standIn_[v[c - 1]]) continue;
-        const Corners corners = lookup_.cornersOf(stand);
-        if (NearTriangle(corners, fromFine_.squaredBound()).has(piece)) return;
-    }
     cover(piece, lookup_.walkable(), static_cast<VertexId>(standIn_[v[0]]),
           fromFine_.squaredBound(), kStepsOfFine);
     for (const ConvexPiece& left : walk_.left()) {
