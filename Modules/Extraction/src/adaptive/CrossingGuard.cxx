@@ -81,20 +81,18 @@ CrossingGuard::Box CrossingGuard::rounded(const CornerBox& box) {
     return result;
 }
 
-void CrossingGuard::buildBoxes() {
-    box_.resize(patch_.triangles.size());
-    for (std::uint32_t t = 0; t < box_.size(); ++t) {
-        if (patch_.triangles[t][0] != Patch::kGone) box_[t] = rounded(boxOf(cornersOf(t)));
-    }
+void CrossingGuard::commit(const ChangedStar& changed) {
+    if (hasBox_.empty()) return;
+    for (int i = 0; i < changed.star.count; ++i) hasBox_[changed.star.triangle[i]] = 0;
 }
 
-void CrossingGuard::commit(const ChangedStar& changed) {
-    if (box_.empty()) return;
-    const Star& star = changed.star;
-    for (int i = 0; i < star.count; ++i) {
-        box_[star.triangle[i]] = rounded(boxOf({changed.vertex, patch_.points[star.ring[i]],
-                                                patch_.points[star.ring[(i + 1) % star.count]]}));
+/// Few triangles are ever asked for.
+const CrossingGuard::Box& CrossingGuard::boxAt(std::uint32_t triangle) {
+    if (hasBox_[triangle] == 0) {
+        box_[triangle] = rounded(boxOf(cornersOf(triangle)));
+        hasBox_[triangle] = 1;
     }
+    return box_[triangle];
 }
 
 bool CrossingGuard::crossesNothing(const ChangedStar& changed) {
@@ -221,7 +219,8 @@ bool CrossingGuard::isClear(const ChangedStar& changed, int wedge, std::uint32_t
 void CrossingGuard::collectNear(const ChangedStar& changed) {
     if (grid_.begin.empty()) {
         buildGrid();
-        buildBoxes();
+        box_.resize(patch_.triangles.size());
+        hasBox_.assign(patch_.triangles.size(), 0);
     }
     const Star& star = changed.star;
     ++now_;
@@ -292,7 +291,7 @@ void CrossingGuard::collectFromGrid(const ChangedStar& changed) {
 void CrossingGuard::addNear(std::uint32_t triangle) {
     if (stamp_[triangle] == now_) return;
     stamp_[triangle] = now_;
-    if (box_[triangle].overlaps(starBox_)) near_.push_back(triangle);
+    if (boxAt(triangle).overlaps(starBox_)) near_.push_back(triangle);
 }
 
 }  // namespace adaptiso::detail

@@ -50,7 +50,7 @@ private:
         std::vector<std::uint32_t> begin, samples;
     };
     void buildGrid();
-    void buildBoxes();
+    const Box& boxAt(std::uint32_t triangle);
     Corners cornersOf(std::uint32_t triangle) const;
     bool wedgesAreClear(const ChangedStar& changed) const;
     bool fanIsClear(const ChangedStar& changed, int at) const;
@@ -69,7 +69,8 @@ private:
     std::vector<std::uint32_t> stamp_;  ///< of triangles seen in this search
     std::uint32_t now_ = 0;
     std::vector<std::uint32_t> near_;
-    std::vector<Box> box_;  ///< of each triangle
+    std::vector<Box> box_;              ///< of each triangle, where it is known
+    std::vector<std::uint8_t> hasBox_;  ///< it is known
     Box starBox_{};
     std::array<std::array<float, Star::kMost>, 3> wedgeLow_{}, wedgeHigh_{};  ///< by axis
     std::array<bool, Star::kMost> fanIsClear_{};  ///< of each vertex of the ring
