@@ -19,7 +19,7 @@ class SheetRoom {
 public:
     /// Parts that rooms are counted in.
     static constexpr int kParts = 128;
-    static constexpr std::uint8_t kAlone = 255;  ///< no other sheet is as near as that
+    static constexpr std::uint8_t kAlone = 255;  ///< no other sheet within that distance
 
     /// \param normals  of any length
     /// \param room  of each point, in parts of the least distance between planes of samples;
