@@ -160,6 +160,31 @@ TEST(AdaptiveMethod, ReachesACountWhereFewPatchesTellForAll) {
     }
 }
 
+TEST(AdaptiveMethod, ReachesACountWhereAllCostsAreEqual) {
+    // a flat slab: any edge is as good
+    ImageGeometry geometry;
+    geometry.size = {90, 80, 12};
+    std::vector<float> samples;
+    for (std::int64_t i = 0; i < geometry.voxelCount(); ++i) {
+        samples.push_back(6.3F - static_cast<float>(i / (90 * 80)));
+    }
+    const Volume volume = Volume::fromSamples(std::move(samples), geometry);
+    const auto full =
+        std::ssize(extractFrom(volume, 0, Method::MarchingCubes, 4, Border::Closed).mesh.triangles);
+    for (const double part : {0.95, 0.8, 0.5, 0.2}) {
+        AdaptiveOptions adaptive;
+        adaptive.maxTriangles = static_cast<std::int64_t>(part * static_cast<double>(full));
+        const Extraction ours = extractWith(volume, 0, adaptive);
+        const auto count = std::ssize(ours.mesh.triangles);
+        EXPECT_LE(count, *adaptive.maxTriangles) << part;
+        EXPECT_GE(count, *adaptive.maxTriangles - 1) << part;
+        EXPECT_TRUE(isSound(ours.mesh)) << part;
+    }
+    const Extraction fewest = extractWith(volume, 0, {});
+    EXPECT_LT(std::ssize(fewest.mesh.triangles), full / 20);
+    EXPECT_LT(*fewest.statistics.errorBoundMm, 0.15);
+}
+
 TEST(AdaptiveMethod, MeetsSmallBoundsWithoutTheFullSurface) {
     // smooth lumps everywhere: places beyond the bound came back in other ones, run after run
     ImageGeometry geometry;

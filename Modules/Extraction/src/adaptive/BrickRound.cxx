@@ -121,8 +121,25 @@ bool isNoise(const FineSurface& fine) {
     return static_cast<double>(single) < kMost * static_cast<double>(fine.vertices.size());
 }
 
+/// Vertices whose triangles all lie in one plane: their area vectors add up to their area.
+/// \return nothing where they are few
+std::vector<std::uint8_t> flatVertices(const Patch& patch, const std::vector<Vec3>& areas) {
+    constexpr double kFlat = 1e-9, kFew = 0.05;
+    std::vector<std::uint8_t> isFlat(areas.size());
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < areas.size(); ++v) {
+        const double area2 = 2 * patch.quadrics[v].weight();
+        isFlat[v] = static_cast<std::uint8_t>(norm(areas[v]) >= (1 - kFlat) * area2);
+        count += isFlat[v];
+    }
+    if (static_cast<double>(count) < kFew * static_cast<double>(isFlat.size())) return {};
+    return isFlat;
+}
+
 /// The brick's full-resolution surface as a patch; vertices on walls go to the brick's list.
-Patch patchOf(const FineSurface& fine, const MetricFrame& frame, BrickSurface& brick) {
+/// \param isFlat  gets what flatVertices() says
+Patch patchOf(const FineSurface& fine, const MetricFrame& frame, BrickSurface& brick,
+              std::vector<std::uint8_t>& isFlat) {
     Patch patch;
     patch.points.reserve(fine.vertices.size());
     for (const FineVertex& v : fine.vertices) patch.points.push_back(frame.fromIndex(v.index));
@@ -130,6 +147,7 @@ Patch patchOf(const FineSurface& fine, const MetricFrame& frame, BrickSurface& b
     patch.triangles = fine.triangles;
     patch.ownTriangles = static_cast<std::uint32_t>(fine.triangles.size());
     const std::vector<Vec3> areas = addQuadrics(patch);
+    isFlat = flatVertices(patch, areas);
     std::vector<std::uint8_t> room;
     room.reserve(fine.vertices.size());
     for (const FineVertex& v : fine.vertices)
@@ -159,7 +177,8 @@ BrickSurface simplifyBrick(const FineSurface& fine, const MetricFrame& frame,
                            const TightPlaces& tight, const PatchLimits& limits,
                            std::vector<double>* costs) {
     BrickSurface result;
-    Patch patch = patchOf(fine, frame, result);
+    std::vector<std::uint8_t> isFlat;
+    Patch patch = patchOf(fine, frame, result, isFlat);
     result.fineTriangles = patch.ownTriangles;
     result.tableTriangles = result.fineTriangles - 2 * static_cast<std::int64_t>(fine.ownMiddles);
     tight.apply(frame, patch.samples);
@@ -167,6 +186,9 @@ BrickSurface simplifyBrick(const FineSurface& fine, const MetricFrame& frame,
         patch.states.assign(patch.points.size(), Patch::State::Final);
     } else {
         PatchSimplifier simplifier(patch, frame, limits);
+        if (limits.settlesFlat && !isFlat.empty()) {
+            simplifier.settleFlatBoxes(isFlat, Brick::kSide / 2);
+        }
         simplifier.collapseEdges(patch.ownTriangles, costs);
     }
     takeOver(patch, result);

@@ -58,6 +58,41 @@ bool PatchSimplifier::isStale(const Candidate& c) const {
            !topology_.isMovable(c.b);
 }
 
+/// \pre changed_ has the edge's star \return false when it must not be collapsed
+bool PatchSimplifier::collapse(std::uint32_t halfEdge) {
+    const std::uint32_t a = topology_.from(halfEdge), b = topology_.to(halfEdge);
+    const Vec3 place = bestPlace(a, b).point;
+    if (!staysNear(place) || !crossesNothing()) return false;
+    topology_.collapse(halfEdge, changed_.star);
+    errors_.commit(changed_);
+    guard_.commit(changed_);
+    markChanged();
+    setState(a, Patch::State::Open);
+    patch_.points[a] = place;
+    patch_.quadrics[a] += patch_.quadrics[b];
+    ++changes_[a];
+    ++changes_[b];
+    return true;
+}
+
+void PatchSimplifier::settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, int largestSide) {
+    const auto boxAt = [&](std::uint32_t v, int side) {
+        const Vec3 index = frame_.toIndex(patch_.points[v]);
+        return Index3{static_cast<std::int64_t>(std::floor(index.x / side)),
+                      static_cast<std::int64_t>(std::floor(index.y / side)),
+                      static_cast<std::int64_t>(std::floor(index.z / side))};
+    };
+    for (int side = 2; side <= largestSide; side *= 2) {
+        for (std::uint32_t h = 0; h < 3 * patch_.ownTriangles; ++h) {
+            if (patch_.triangles[h / 3][0] == Patch::kGone) continue;
+            const std::uint32_t a = topology_.from(h), b = topology_.to(h);
+            if (isFlat[a] == 0 || isFlat[b] == 0 || !mayChange(a) || !mayChange(b)) continue;
+            if (boxAt(a, side) != boxAt(b, side)) continue;
+            if (topology_.starOfEdge(h, changed_.star)) collapse(h);
+        }
+    }
+}
+
 void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* costs) {
     for (std::uint32_t h = 0; h < 3 * patch_.ownTriangles; ++h) {
         if (patch_.triangles[h / 3][0] == Patch::kGone) continue;
@@ -78,17 +113,7 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
         std::pop_heap(queue_.begin(), queue_.end(), IsLater());
         queue_.pop_back();
         if (isStale(best) || !topology_.starOfEdge(best.halfEdge, changed_.star)) continue;
-        const Vec3 place = bestPlace(best.a, best.b).point;
-        if (!staysNear(place) || !crossesNothing()) continue;
-        topology_.collapse(best.halfEdge, changed_.star);
-        errors_.commit(changed_);
-        guard_.commit(changed_);
-        markChanged();
-        setState(best.a, Patch::State::Open);
-        patch_.points[best.a] = place;
-        patch_.quadrics[best.a] += patch_.quadrics[best.b];
-        ++changes_[best.a];
-        ++changes_[best.b];
+        if (!collapse(best.halfEdge)) continue;
         ++made;
         if (costs != nullptr) costs->push_back(best.cost);
         const std::uint32_t begin = topology_.leaving(best.a);

@@ -21,12 +21,18 @@ struct PatchLimits {
     StarLimits shape;
     bool provesAll = false;    ///< also stars that can cross nothing by what is known of them
     bool leavesNoise = false;  ///< bricks full of it stay at full resolution
+    bool settlesFlat = false;  ///< flat boxes of bricks before all else
 };
 
 /// Simplifies a patch in place by quadric edge collapses, cheapest first [Garland1997].
 class PatchSimplifier {
 public:
     PatchSimplifier(Patch& patch, const MetricFrame& frame, const PatchLimits& limits);
+
+    /// Makes one vertex of those that lie in the same box of the lattice, in boxes of 2, 4, ...
+    /// cells a side, where the surface is flat: there any order is as good, and none has to wait.
+    /// \param isFlat  of each vertex: all triangles around it lie in one plane
+    void settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, int largestSide);
 
     /// Collapses edges until none is left within the limits, at most `most` of them.
     /// \param costs  gets the cost of each, in order; may be null
@@ -57,6 +63,7 @@ private:
     QuadricMinimum bestPlace(std::uint32_t a, std::uint32_t b) const;
     /// \param leastCost  of the collapse; it is not proposed below
     void propose(std::uint32_t halfEdge, double leastCost);
+    bool collapse(std::uint32_t halfEdge);
     bool isStale(const Candidate& candidate) const;
     bool staysNear(const Vec3& p);
     bool crossesNothing();

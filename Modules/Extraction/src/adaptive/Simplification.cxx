@@ -72,7 +72,7 @@ Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
     const double mostCost = kHalfway * voxel * voxel * distanceMm * distanceMm;
     limits_.maxDistanceMm *= kEarlyDistance;
     limits_.maxCost = kFirstCost * costUnit_;
-    surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
+    surface = brickRound(nullptr);
     for (const double cost : kCosts) {
         if (cost * costUnit_ > mostCost) break;
         roundUpTo(cost * costUnit_, surface);
@@ -114,6 +114,13 @@ SimplifiedSurface Simplification::toLimits(SimplifiedSurface last,
     return surface;
 }
 
+/// \param costs  gets those of the collapses, and no flat boxes are settled; may be null
+SimplifiedSurface Simplification::brickRound(CollapseCosts* costs) const {
+    PatchLimits limits = limits_;
+    limits.settlesFlat = costs == nullptr;
+    return simplifyBricks(sampler_, bricks_, frame_, tight_, limits, costs);
+}
+
 /// A round up to a cost that does not lead below the target: where it would, by a trial, up to the
 /// cost that makes as many collapses as wanted.
 void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
@@ -122,7 +129,9 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
     work.mostCollapses = (surface.triangleCount() - target + 1) / 2;
     const double times = static_cast<double>(surface.triangleCount()) / static_cast<double>(target);
     PatchRound round(surface, nextCut(), frame_);
-    if (times < kLanding) {
+    const std::int64_t wanted = work.mostCollapses, before = surface.triangleCount();
+    bool isLanding = false;
+    if (times < kLanding || isTied_) {
         work.fits = true;
     } else if (times <= kFar) {  // from afar not reached but by a cost far too high
         const PatchTrial trial = round.tryOut(limits_, triesAll_);
@@ -130,12 +139,14 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
         const auto most = static_cast<std::int64_t>(part * static_cast<double>(work.mostCollapses));
         if (trial.collapses() > most) {
             work.limits.maxCost = costLimitFor(trial.costs, most);
-            work.fits = true;
+            work.fits = isLanding = true;
         }
         work.mostCollapses = PatchWork{}.mostCollapses;
     }
     fits_ = work.fits ? fits_ + 1 : 0;
     round.run(work);
+    // where costs are equal, as on flat parts, a limit leaves all or none: the next round deals out
+    isTied_ = isLanding && before - surface.triangleCount() < wanted;
 }
 
 SimplifiedSurface Simplification::toCount(const WantedCount& wanted) {
@@ -150,15 +161,17 @@ SimplifiedSurface Simplification::toCount(const WantedCount& wanted) {
 
 /// All but the last fits.
 SimplifiedSurface Simplification::towards(const WantedCount& wanted) {
-    CollapseCosts costs;
     double cost = kFirstCost;
     limits_.maxCost = cost * costUnit_;
     rounds_ = fits_ = 0;
-    SimplifiedSurface surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, &costs);
+    isTied_ = false;
+    SimplifiedSurface surface = brickRound(nullptr);
     const std::int64_t target = wanted.of(surface.fineTriangles);
-    if (surface.triangleCount() < target) {
+    if (surface.triangleCount() < target) {  // by costs alone
+        CollapseCosts costs;
+        brickRound(&costs);
         limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
-        surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
+        surface = brickRound(&costs);
     }
     for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
         const std::int64_t before = surface.triangleCount();
