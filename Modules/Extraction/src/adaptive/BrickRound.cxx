@@ -186,8 +186,8 @@ BrickSurface simplifyBrick(const FineSurface& fine, const MetricFrame& frame,
         patch.states.assign(patch.points.size(), Patch::State::Final);
     } else {
         PatchSimplifier simplifier(patch, frame, limits);
-        if (limits.settlesFlat && !isFlat.empty()) {
-            simplifier.settleFlatBoxes(isFlat, Brick::kSide / 2);
+        if (limits.maxCost > 0 && !isFlat.empty()) {
+            simplifier.settleFlatBoxes(isFlat, Brick::kSide / 2, costs);
         }
         simplifier.collapseEdges(patch.ownTriangles, costs);
     }

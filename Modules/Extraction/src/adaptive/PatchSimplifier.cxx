@@ -75,7 +75,8 @@ bool PatchSimplifier::collapse(std::uint32_t halfEdge) {
     return true;
 }
 
-void PatchSimplifier::settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, int largestSide) {
+void PatchSimplifier::settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, int largestSide,
+                                      std::vector<double>* costs) {
     const auto boxAt = [&](std::uint32_t v, int side) {
         const Vec3 index = frame_.toIndex(patch_.points[v]);
         return Index3{static_cast<std::int64_t>(std::floor(index.x / side)),
@@ -88,7 +89,8 @@ void PatchSimplifier::settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, i
             const std::uint32_t a = topology_.from(h), b = topology_.to(h);
             if (isFlat[a] == 0 || isFlat[b] == 0 || !mayChange(a) || !mayChange(b)) continue;
             if (boxAt(a, side) != boxAt(b, side)) continue;
-            if (topology_.starOfEdge(h, changed_.star)) collapse(h);
+            if (!topology_.starOfEdge(h, changed_.star) || !collapse(h)) continue;
+            if (costs != nullptr) costs->push_back(0);
         }
     }
 }

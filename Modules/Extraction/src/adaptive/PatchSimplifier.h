@@ -21,7 +21,6 @@ struct PatchLimits {
     StarLimits shape;
     bool provesAll = false;    ///< also stars that can cross nothing by what is known of them
     bool leavesNoise = false;  ///< bricks full of it stay at full resolution
-    bool settlesFlat = false;  ///< flat boxes of bricks before all else
 };
 
 /// Simplifies a patch in place by quadric edge collapses, cheapest first [Garland1997].
@@ -31,8 +30,11 @@ public:
 
     /// Makes one vertex of those that lie in the same box of the lattice, in boxes of 2, 4, ...
     /// cells a side, where the surface is flat: there any order is as good, and none has to wait.
-    /// \param isFlat  of each vertex: all triangles around it lie in one plane
-    void settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, int largestSide);
+    /// \param isFlat       of each vertex: all triangles around it lie in one plane
+    /// \param largestSide  cells
+    /// \param costs        gets a 0 for each collapse; may be null
+    void settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, int largestSide,
+                         std::vector<double>* costs);
 
     /// Collapses edges until none is left within the limits, at most `most` of them.
     /// \param costs  gets the cost of each, in order; may be null

@@ -72,7 +72,7 @@ Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
     const double mostCost = kHalfway * voxel * voxel * distanceMm * distanceMm;
     limits_.maxDistanceMm *= kEarlyDistance;
     limits_.maxCost = kFirstCost * costUnit_;
-    surface = brickRound(nullptr);
+    surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
     for (const double cost : kCosts) {
         if (cost * costUnit_ > mostCost) break;
         roundUpTo(cost * costUnit_, surface);
@@ -114,29 +114,22 @@ SimplifiedSurface Simplification::toLimits(SimplifiedSurface last,
     return surface;
 }
 
-/// \param costs  gets those of the collapses, and no flat boxes are settled; may be null
-SimplifiedSurface Simplification::brickRound(CollapseCosts* costs) const {
-    PatchLimits limits = limits_;
-    limits.settlesFlat = costs == nullptr;
-    return simplifyBricks(sampler_, bricks_, frame_, tight_, limits, costs);
-}
-
 /// A round up to a cost that does not lead below the target: where it would, by a trial, up to the
 /// cost that makes as many collapses as wanted.
 void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
     limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
+    const std::int64_t before = surface.triangleCount(), wanted = (before - target + 1) / 2;
+    const double times = static_cast<double>(before) / static_cast<double>(target);
     PatchWork work{limits_};
-    work.mostCollapses = (surface.triangleCount() - target + 1) / 2;
-    const double times = static_cast<double>(surface.triangleCount()) / static_cast<double>(target);
+    work.mostCollapses = wanted;
     PatchRound round(surface, nextCut(), frame_);
-    const std::int64_t wanted = work.mostCollapses, before = surface.triangleCount();
     bool isLanding = false;
     if (times < kLanding || isTied_) {
         work.fits = true;
     } else if (times <= kFar) {  // from afar not reached but by a cost far too high
         const PatchTrial trial = round.tryOut(limits_, triesAll_);
         const double part = trial.share < 1 ? kAim * trial.share : 1;
-        const auto most = static_cast<std::int64_t>(part * static_cast<double>(work.mostCollapses));
+        const auto most = static_cast<std::int64_t>(part * static_cast<double>(wanted));
         if (trial.collapses() > most) {
             work.limits.maxCost = costLimitFor(trial.costs, most);
             work.fits = isLanding = true;
@@ -161,17 +154,16 @@ SimplifiedSurface Simplification::toCount(const WantedCount& wanted) {
 
 /// All but the last fits.
 SimplifiedSurface Simplification::towards(const WantedCount& wanted) {
+    CollapseCosts costs;
     double cost = kFirstCost;
     limits_.maxCost = cost * costUnit_;
     rounds_ = fits_ = 0;
     isTied_ = false;
-    SimplifiedSurface surface = brickRound(nullptr);
+    SimplifiedSurface surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, &costs);
     const std::int64_t target = wanted.of(surface.fineTriangles);
-    if (surface.triangleCount() < target) {  // by costs alone
-        CollapseCosts costs;
-        brickRound(&costs);
+    if (surface.triangleCount() < target) {
         limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
-        surface = brickRound(&costs);
+        surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
     }
     for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
         const std::int64_t before = surface.triangleCount();

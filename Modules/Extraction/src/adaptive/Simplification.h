@@ -59,7 +59,6 @@ private:
     PatchCut nextCut();
     void roundUpTo(double cost, SimplifiedSurface& surface);
     void goOnFrom(const Halfway& halfway, SimplifiedSurface& surface);
-    SimplifiedSurface brickRound(CollapseCosts* costs) const;
     SimplifiedSurface towards(const WantedCount& wanted);
     void roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost);
 
@@ -70,9 +69,8 @@ private:
     PatchLimits limits_;
     double costUnit_;
     int rounds_ = 0;
-    int fits_ = 0;  ///< how many of the last rounds were with fits
-    bool isTied_ =
-        false;  ///< the last round made fewer than half of the collapses it was meant for
+    int fits_ = 0;           ///< how many of the last rounds were with fits
+    bool isTied_ = false;    ///< the last round made less than half of its collapses
     bool triesAll_ = false;  ///< patches, before it lands on a count
 };
 
