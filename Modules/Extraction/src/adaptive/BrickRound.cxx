@@ -173,12 +173,14 @@ Patch patchOf(const FineSurface& fine, const MetricFrame& frame, BrickSurface& b
     return patch;
 }
 
-BrickSurface simplifyBrick(const FineSurface& fine, const MetricFrame& frame,
-                           const TightPlaces& tight, const PatchLimits& limits,
-                           std::vector<double>* costs) {
+/// \param lowIndex  sample index of the brick's first lattice position
+BrickSurface simplifyBrick(const FineSurface& fine, const Index3& lowIndex,
+                           const MetricFrame& frame, const TightPlaces& tight,
+                           const PatchLimits& limits, std::vector<double>* costs) {
     BrickSurface result;
     std::vector<std::uint8_t> isFlat;
     Patch patch = patchOf(fine, frame, result, isFlat);
+    patch.setBox(lowIndex, Brick::kSide);
     result.fineTriangles = patch.ownTriangles;
     result.tableTriangles = result.fineTriangles - 2 * static_cast<std::int64_t>(fine.ownMiddles);
     tight.apply(frame, patch.samples);
@@ -372,7 +374,9 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
         parallelForPieces(bricks.count(), 1, [&](std::int64_t b, std::int64_t) {
             Tools& mine = tools.local();
             mine.mesher.mesh(bricks[b], mine.fine);
-            surfaces[b] = simplifyBrick(mine.fine, frame, tight, limits,
+            Index3 lowIndex = bricks[b].low;
+            for (std::int64_t& along : lowIndex) along -= bricks.grid().offset;
+            surfaces[b] = simplifyBrick(mine.fine, lowIndex, frame, tight, limits,
                                         costs != nullptr ? &(*costs)[b] : nullptr);
         });
     }

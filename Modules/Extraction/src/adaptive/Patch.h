@@ -3,12 +3,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "Quadric.h"
 #include "SheetRoom.h"
 #include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Core/ImageGeometry.h"
 
 namespace adaptiso::detail {
 
@@ -67,9 +67,19 @@ struct Patch {
     std::vector<Sample> samples;
     std::vector<std::uint32_t> sampleTriangle;  ///< the triangle that stands for each
 
-    /// New vertices stay in this box, in continuous index coordinates.
-    Vec3 lowIndex{-kFar, -kFar, -kFar}, highIndex{kFar, kFar, kFar};
-    static constexpr double kFar = std::numeric_limits<double>::infinity();
+    /// New vertices stay in this box, in continuous index coordinates: so nothing that the patch
+    /// makes can meet what other patches make at the same time in boxes of their own.
+    Vec3 lowIndex, highIndex;
+
+    /// Of a cube of `side` cells. A hair inside, so that no rounding takes a vertex out, and none
+    /// comes to lie in a wall beside those that are fixed there.
+    void setBox(const Index3& low, std::int64_t side) {
+        constexpr double kInside = 1e-6;
+        for (int a = 0; a < 3; ++a) {
+            lowIndex[a] = static_cast<double>(low[a]) + kInside;
+            highIndex[a] = static_cast<double>(low[a] + side) - kInside;
+        }
+    }
 };
 
 }  // namespace adaptiso::detail

@@ -39,14 +39,10 @@ Index3 PatchCubes::cubeAtIndex(const Vec3& index) const {
 
 void PatchCubes::setBounds(std::size_t number, Patch& patch) const {
     const auto n = static_cast<std::int64_t>(number);
-    const Index3 cube{n % count_[0] + low_[0], n / count_[0] % count_[1] + low_[1],
-                      n / (count_[0] * count_[1]) + low_[2]};
-    // a hair inside, so that no rounding takes a vertex out
-    for (int a = 0; a < 3; ++a) {
-        const auto low = static_cast<double>(cube[a] * cut_.side + cut_.shift);
-        patch.lowIndex[a] = low + 1e-6;
-        patch.highIndex[a] = low + static_cast<double>(cut_.side) - 1e-6;
-    }
+    Index3 low{n % count_[0] + low_[0], n / count_[0] % count_[1] + low_[1],
+               n / (count_[0] * count_[1]) + low_[2]};
+    for (std::int64_t& along : low) along = along * cut_.side + cut_.shift;
+    patch.setBox(low, cut_.side);
 }
 
 PatchGroups::PatchGroups(const SimplifiedSurface& surface, const PatchCut& cut,
