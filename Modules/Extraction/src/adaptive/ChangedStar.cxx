@@ -41,7 +41,10 @@ bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& change
         mean += areaVector2(point(t[0]), point(t[1]), point(t[2]));
     }
     const Vec3 normal = normalized(mean);
+    const Vec3 across = std::abs(normal.x) < std::abs(normal.y) ? cross(normal, {1, 0, 0})
+                                                                : cross(normal, {0, 1, 0});
     changed.isGraph = true;
+    int turns = 0;        // how often the spokes pass the direction from which `across` grows
     double sharpest = 0;  // squared cosine
     for (int i = 0; i < star.count; ++i) {
         ChangedStar::Wedge& w = changed.wedge[i];
@@ -59,10 +62,12 @@ bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& change
             return false;
         }
         if (!(upright > 0) || !(dot(before[i], normal) > 0)) changed.isGraph = false;
+        if (dot(w.e1, across) < 0 && dot(w.e2, across) >= 0) ++turns;
         if (limits.leastAngleDeg > 0) {
             sharpest = std::max(sharpest, sharpestSquaredCosine(w.a11, w.a22, third, squared));
         }
     }
+    if (turns != 1) changed.isGraph = false;
     if (limits.leastAngleDeg == 0) return true;
     const double cosine = std::cos(limits.leastAngleDeg * std::numbers::pi / 180);
     if (sharpest <= cosine * cosine) return true;

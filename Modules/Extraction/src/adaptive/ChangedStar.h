@@ -19,7 +19,8 @@ struct ChangedStar {
     Vec3 vertex;
     std::array<Wedge, Star::kMost> wedge;
     /// Before and after the change the star is a graph over one plane: all its triangles face the
-    /// same side. Then its triangles can't cross each other, nor what lies beside the star.
+    /// same side, and go round the new vertex once. Then its triangles can't cross each other, nor
+    /// what lies beside the star.
     bool isGraph = false;
 };
 

@@ -7,15 +7,13 @@
 namespace adaptiso::detail {
 namespace {
 
-/// Side of the cubes in which samples are looked up, and how far around a star, in voxels.
-constexpr double kCube = 1, kReach = 0.5;
+/// Side of the grid's cubes, in voxels: about the size of triangles that are not fine ones.
+constexpr double kCube = 2;
 
 /// Room that proofs leave, as a part of the distance between sample planes.
 constexpr double kGap = 1e-4;
 
-std::int64_t cubeOf(double index) {
-    return static_cast<std::int64_t>(std::floor(index / kCube));
-}
+constexpr std::uint32_t kNoEntry = 0xFFFFFFFF;
 
 }  // namespace
 
@@ -23,45 +21,99 @@ CrossingGuard::CrossingGuard(const Patch& patch, const PatchTopology& topology,
                              const MetricFrame& frame, bool looksEverywhere)
     : patch_(patch),
       topology_(topology),
-      frame_(frame),
       looksEverywhere_(looksEverywhere),
-      gapMm_(kGap * frame.narrowestMm()) {}
+      gapMm_(kGap * frame.narrowestMm()),
+      cubeMm_(kCube * frame.voxelMm()) {}
+
+/// Those whose samples know of no other sheet near them; of those without samples, those between
+/// three such ones.
+std::vector<std::uint8_t> CrossingGuard::trianglesInSingleSheets() const {
+    enum : std::uint8_t { kUnknown, kSingle, kOther };
+    std::vector<std::uint8_t> sheet(patch_.triangles.size(), kUnknown);
+    for (std::size_t s = 0; s < patch_.samples.size(); ++s) {
+        std::uint8_t& known = sheet[patch_.sampleTriangle[s]];
+        if (!patch_.samples[s].isAlone()) {
+            known = kOther;
+        } else if (known == kUnknown) {
+            known = kSingle;
+        }
+    }
+    std::vector<std::uint8_t> isSingle(sheet.size());
+    for (std::uint32_t t = 0; t < sheet.size(); ++t) {
+        isSingle[t] = static_cast<std::uint8_t>(sheet[t] == kSingle);
+        if (sheet[t] != kUnknown || t >= patch_.ownTriangles) continue;
+        bool isBetween = true;
+        for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+            const std::uint32_t twin = topology_.twin(h);
+            isBetween = isBetween && twin != PatchTopology::kNone && sheet[twin / 3] == kSingle;
+        }
+        isSingle[t] = static_cast<std::uint8_t>(isBetween);
+    }
+    return isSingle;
+}
 
 void CrossingGuard::buildGrid() {
     stamp_.assign(patch_.triangles.size(), 0);
-    std::vector<std::uint32_t> members;
-    std::vector<Index3> cubes;
-    Index3 high{};
-    for (std::uint32_t s = 0; s < patch_.samples.size(); ++s) {
-        if (patch_.samples[s].isAlone() && !looksEverywhere_) continue;
-        const Vec3 index = frame_.toIndex(patch_.samples[s].point());
-        const Index3 cube{cubeOf(index.x), cubeOf(index.y), cubeOf(index.z)};
-        for (int a = 0; a < 3; ++a) {
-            grid_.low[a] = members.empty() ? cube[a] : std::min(grid_.low[a], cube[a]);
-            high[a] = members.empty() ? cube[a] : std::max(high[a], cube[a]);
+    box_.resize(patch_.triangles.size());
+    hasBox_.assign(patch_.triangles.size(), 0);
+    CornerBox all{patch_.points[0], patch_.points[0]};
+    for (const Vec3& p : patch_.points) all.add(p);
+    low_ = all.low;
+    const Vec3 extent = all.high - all.low;
+    std::size_t cubes = 1;
+    for (int a = 0; a < 3; ++a) {
+        count_[a] = 1 + static_cast<std::int32_t>(extent[a] / cubeMm_);
+        cubes *= static_cast<std::size_t>(count_[a]);
+    }
+    firstEntry_.assign(cubes, kNoEntry);
+    const std::vector<std::uint8_t> isSingle =
+        looksEverywhere_ ? std::vector<std::uint8_t>(patch_.triangles.size(), 0)
+                         : trianglesInSingleSheets();
+    for (std::uint32_t t = 0; t < patch_.triangles.size(); ++t) {
+        if (patch_.triangles[t][0] == Patch::kGone) continue;
+        if (isSingle[t] == 0) enter(t);
+    }
+}
+
+CrossingGuard::Cubes CrossingGuard::cubesOf(const Box& box) const {
+    Cubes cubes{};
+    for (int a = 0; a < 3; ++a) {
+        const auto at = [&](float position) {
+            const double cube = (position - low_[a]) / cubeMm_;
+            return static_cast<std::int32_t>(
+                std::clamp(cube, 0.0, static_cast<double>(count_[a] - 1)));
+        };
+        cubes.first[a] = at(box.low[a]);
+        cubes.last[a] = at(box.high[a]);
+    }
+    return cubes;
+}
+
+template <class F>
+void CrossingGuard::forEachCube(const Cubes& cubes, const F& f) const {
+    for (std::int32_t z = cubes.first[2]; z <= cubes.last[2]; ++z) {
+        for (std::int32_t y = cubes.first[1]; y <= cubes.last[1]; ++y) {
+            const std::size_t row =
+                static_cast<std::size_t>(count_[0]) *
+                static_cast<std::size_t>(y + static_cast<std::int64_t>(count_[1]) * z);
+            for (std::int32_t x = cubes.first[0]; x <= cubes.last[0]; ++x) f(row + x);
         }
-        members.push_back(s);
-        cubes.push_back(cube);
     }
-    if (members.empty()) {
-        grid_.begin.assign(2, 0);
-        return;
+}
+
+void CrossingGuard::enter(std::uint32_t triangle) {
+    forEachCube(cubesOf(boxAt(triangle)), [&](std::size_t cube) {
+        entries_.push_back({triangle, firstEntry_[cube]});
+        firstEntry_[cube] = static_cast<std::uint32_t>(entries_.size() - 1);
+    });
+}
+
+const CrossingGuard::Box& CrossingGuard::boxAt(std::uint32_t triangle) {
+    if (hasBox_[triangle] == 0) {
+        box_[triangle] = rounded(boxOf(cornersOf(triangle)));
+        hasBox_[triangle] = 1;
     }
-    for (int a = 0; a < 3; ++a) grid_.count[a] = high[a] - grid_.low[a] + 1;
-    const auto number = [&](const Index3& c) {
-        return static_cast<std::size_t>(
-            c[0] - grid_.low[0] +
-            grid_.count[0] * (c[1] - grid_.low[1] + grid_.count[1] * (c[2] - grid_.low[2])));
-    };
-    grid_.begin.assign(
-        static_cast<std::size_t>(grid_.count[0] * grid_.count[1] * grid_.count[2]) + 1, 0);
-    for (const Index3& cube : cubes) ++grid_.begin[number(cube) + 1];
-    for (std::size_t i = 1; i < grid_.begin.size(); ++i) grid_.begin[i] += grid_.begin[i - 1];
-    std::vector<std::uint32_t> at(grid_.begin.begin(), grid_.begin.end() - 1);
-    grid_.samples.resize(members.size());
-    for (std::size_t i = 0; i < members.size(); ++i) {
-        grid_.samples[at[number(cubes[i])]++] = members[i];
-    }
+    return box_[triangle];
 }
 
 Corners CrossingGuard::cornersOf(std::uint32_t triangle) const {
@@ -81,22 +133,28 @@ CrossingGuard::Box CrossingGuard::rounded(const CornerBox& box) {
     return result;
 }
 
-void CrossingGuard::commit(const ChangedStar& changed) {
-    if (hasBox_.empty()) return;
-    for (int i = 0; i < changed.star.count; ++i) hasBox_[changed.star.triangle[i]] = 0;
-}
-
-/// Few triangles are ever asked for.
-const CrossingGuard::Box& CrossingGuard::boxAt(std::uint32_t triangle) {
-    if (hasBox_[triangle] == 0) {
-        box_[triangle] = rounded(boxOf(cornersOf(triangle)));
-        hasBox_[triangle] = 1;
+void CrossingGuard::commit(const ChangedStar& changed, bool isSingleSheet) {
+    if (box_.empty()) return;
+    const Star& star = changed.star;
+    for (int i = 0; i < star.count; ++i) {
+        const std::uint32_t t = star.triangle[i];
+        hasBox_[t] = 0;
+        if (isSingleSheet && !looksEverywhere_) continue;
+        box_[t] = rounded(boxOf({changed.vertex, patch_.points[star.ring[i]],
+                                 patch_.points[star.ring[(i + 1) % star.count]]}));
+        hasBox_[t] = 1;
+        enter(t);
     }
-    return box_[triangle];
+    constexpr float kFar = std::numeric_limits<float>::max();
+    for (int i = 0; i < star.removedCount; ++i) {  // some cubes still list them
+        box_[star.removed[i]] = {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+        hasBox_[star.removed[i]] = 1;
+    }
 }
 
 bool CrossingGuard::crossesNothing(const ChangedStar& changed) {
     if (!changed.isGraph && !wedgesAreClear(changed)) return false;
+    if (box_.empty()) buildGrid();
     collectNear(changed);
     const int n = changed.star.count;
     for (const std::uint32_t other : near_) {
@@ -217,11 +275,6 @@ bool CrossingGuard::isClear(const ChangedStar& changed, int wedge, std::uint32_t
 }
 
 void CrossingGuard::collectNear(const ChangedStar& changed) {
-    if (grid_.begin.empty()) {
-        buildGrid();
-        box_.resize(patch_.triangles.size());
-        hasBox_.assign(patch_.triangles.size(), 0);
-    }
     const Star& star = changed.star;
     ++now_;
     near_.clear();
@@ -244,7 +297,7 @@ void CrossingGuard::collectNear(const ChangedStar& changed) {
     starBox_ = rounded(whole);
     for (int i = 0; i < star.count; ++i) fanIsClear_[i] = fanIsClear(changed, i);
     collectAroundRing(star);
-    collectFromGrid(changed);
+    collectFromGrid();
 }
 
 void CrossingGuard::collectAroundRing(const Star& star) {
@@ -259,33 +312,12 @@ void CrossingGuard::collectAroundRing(const Star& star) {
     }
 }
 
-void CrossingGuard::collectFromGrid(const ChangedStar& changed) {
-    const Star& star = changed.star;
-    Vec3 low = frame_.toIndex(changed.vertex), high = low;
-    for (int i = 0; i < star.count; ++i) {
-        const Vec3 index = frame_.toIndex(patch_.points[star.ring[i]]);
-        for (int a = 0; a < 3; ++a) {
-            low[a] = std::min(low[a], index[a]);
-            high[a] = std::max(high[a], index[a]);
+void CrossingGuard::collectFromGrid() {
+    forEachCube(cubesOf(starBox_), [&](std::size_t cube) {
+        for (std::uint32_t e = firstEntry_[cube]; e != kNoEntry; e = entries_[e].next) {
+            addNear(entries_[e].triangle);
         }
-    }
-    Index3 first, last;
-    for (int a = 0; a < 3; ++a) {
-        first[a] = std::max<std::int64_t>(0, cubeOf(low[a] - kReach) - grid_.low[a]);
-        last[a] = std::min(grid_.count[a] - 1, cubeOf(high[a] + kReach) - grid_.low[a]);
-    }
-    for (std::int64_t z = first[2]; z <= last[2]; ++z) {
-        for (std::int64_t y = first[1]; y <= last[1]; ++y) {
-            const std::size_t row =
-                static_cast<std::size_t>(grid_.count[0] * (y + grid_.count[1] * z));
-            if (first[0] > last[0]) continue;
-            const std::uint32_t begin = grid_.begin[row + first[0]],
-                                end = grid_.begin[row + last[0] + 1];
-            for (std::uint32_t i = begin; i < end; ++i) {
-                addNear(patch_.sampleTriangle[grid_.samples[i]]);
-            }
-        }
-    }
+    });
 }
 
 void CrossingGuard::addNear(std::uint32_t triangle) {

@@ -12,14 +12,15 @@ namespace adaptiso::detail {
 
 /// Proves that a changed star crosses no triangle near it. What can't be proved is refused.
 ///
-/// Near triangles are found by the samples around the star: each names the triangle that stands
-/// for it. Samples that lie in a single sheet are left out, since no other part of the surface
-/// comes near them; so most stars need no proof at all (see needsProof). Triangles that share a
-/// vertex of the ring are proved together, by their common view (see fanIsClear); planes between
-/// two triangles are tried for the others.
+/// Near triangles are found by their boxes, in a grid of cubes. Those whose samples all lie in a
+/// single sheet are left out, since no other part of the surface comes near them; so most stars
+/// need no proof at all (see needsProof). A triangle without samples is left out only between three
+/// of those: nothing else tells what is near it. Triangles that share a vertex of the ring are
+/// proved together, by their common view (see fanIsClear); planes between two triangles are tried
+/// for the others.
 class CrossingGuard {
 public:
-    /// \param looksEverywhere  all samples are looked at, and every star is proved
+    /// \param looksEverywhere  all triangles are looked at, and every star is proved
     CrossingGuard(const Patch& patch, const PatchTopology& topology, const MetricFrame& frame,
                   bool looksEverywhere);
 
@@ -31,7 +32,8 @@ public:
     bool crossesNothing(const ChangedStar& changed);
 
     /// The star was changed.
-    void commit(const ChangedStar& changed);
+    /// \param isSingleSheet  all its samples, one or more, know of no other sheet near them
+    void commit(const ChangedStar& changed, bool isSingleSheet);
 
 private:
     /// Single precision, rounded outwards.
@@ -44,12 +46,19 @@ private:
     };
     static Box rounded(const CornerBox& box);
 
-    /// Samples by cubes of the lattice.
-    struct Grid {
-        Index3 low{}, count{1, 1, 1};
-        std::vector<std::uint32_t> begin, samples;
+    /// The cubes that a box overlaps.
+    struct Cubes {
+        std::array<std::int32_t, 3> first, last;
+    };
+    struct Entry {
+        std::uint32_t triangle, next;
     };
     void buildGrid();
+    std::vector<std::uint8_t> trianglesInSingleSheets() const;
+    Cubes cubesOf(const Box& box) const;
+    template <class F>
+    void forEachCube(const Cubes& cubes, const F& f) const;
+    void enter(std::uint32_t triangle);
     const Box& boxAt(std::uint32_t triangle);
     Corners cornersOf(std::uint32_t triangle) const;
     bool wedgesAreClear(const ChangedStar& changed) const;
@@ -57,16 +66,18 @@ private:
     bool isClear(const ChangedStar& changed, int wedge, std::uint32_t other) const;
     void collectNear(const ChangedStar& changed);
     void collectAroundRing(const Star& star);
-    void collectFromGrid(const ChangedStar& changed);
+    void collectFromGrid();
     void addNear(std::uint32_t triangle);
 
     const Patch& patch_;
     const PatchTopology& topology_;
-    const MetricFrame& frame_;
     bool looksEverywhere_;
-    double gapMm_;
-    Grid grid_;
-    std::vector<std::uint32_t> stamp_;  ///< of triangles seen in this search
+    double gapMm_, cubeMm_;
+    Vec3 low_;                               ///< of the grid
+    std::array<std::int32_t, 3> count_{};    ///< of its cubes, by axis
+    std::vector<std::uint32_t> firstEntry_;  ///< of each cube: a list
+    std::vector<Entry> entries_;             ///< some are of triangles that have changed since
+    std::vector<std::uint32_t> stamp_;       ///< of triangles seen in this search
     std::uint32_t now_ = 0;
     std::vector<std::uint32_t> near_;
     std::vector<Box> box_;              ///< of each triangle, where it is known

@@ -32,6 +32,9 @@ public:
     /// Of the last assign(): the star comes so far towards other sheets that it could meet them.
     bool isCrowded() const { return isCrowded_; }
 
+    /// Of the last assign(): all samples, one or more, know of no other sheet near them.
+    bool isInSingleSheet() const { return !moves_.empty() && leastRoom_ == SheetRoom::kAlone; }
+
     /// Makes the last assign() true.
     void commit(const ChangedStar& changed);
 

@@ -65,7 +65,7 @@ bool PatchSimplifier::collapse(std::uint32_t halfEdge) {
     if (!staysNear(place) || !crossesNothing()) return false;
     topology_.collapse(halfEdge, changed_.star);
     errors_.commit(changed_);
-    guard_.commit(changed_);
+    guard_.commit(changed_, errors_.isInSingleSheet());
     markChanged();
     setState(a, Patch::State::Open);
     patch_.points[a] = place;
@@ -173,7 +173,7 @@ void PatchSimplifier::fitVertices() {
             continue;
         }
         errors_.commit(changed_);
-        guard_.commit(changed_);
+        guard_.commit(changed_, errors_.isInSingleSheet());
         patch_.points[v] = place;
     }
 }

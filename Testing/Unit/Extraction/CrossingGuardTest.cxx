@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "adaptive/ChangedStar.h"
+#include "adaptive/CrossingGuard.h"
+
+namespace adaptiso::testing {
+namespace {
+
+using detail::ChangedStar;
+using detail::CrossingGuard;
+using detail::MetricFrame;
+using detail::Patch;
+using detail::PatchTopology;
+using detail::Sample;
+
+constexpr std::uint32_t kSide = 5;
+
+std::uint32_t vertexAt(std::uint32_t x, std::uint32_t y) {
+    return x + kSide * y;
+}
+
+/// A flat sheet of 5 x 5 vertices at z = 0, 1 mm apart, a sample at each, and over it at z = 0.5
+/// one large triangle without any. A second sheet lies near all samples, by what they know.
+Patch sheetUnderTriangle() {
+    Patch patch;
+    for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+        patch.points.push_back({static_cast<double>(i % kSide), static_cast<double>(i / kSide), 0});
+    }
+    for (std::uint32_t y = 0; y + 1 < kSide; ++y) {
+        for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
+            const std::uint32_t a = vertexAt(x, y), b = vertexAt(x + 1, y), c = vertexAt(x, y + 1),
+                                d = vertexAt(x + 1, y + 1);
+            patch.triangles.push_back({a, b, d});
+            patch.triangles.push_back({a, d, c});
+        }
+    }
+    const auto first = static_cast<std::uint32_t>(patch.points.size());
+    patch.points.insert(patch.points.end(), {{-20, -20, 0.5}, {30, -20, 0.5}, {0, 40, 0.5}});
+    patch.triangles.push_back({first, first + 1, first + 2});
+    patch.ownTriangles = static_cast<std::uint32_t>(patch.triangles.size());
+    patch.quadrics.resize(patch.points.size());
+    patch.states.assign(patch.points.size(), Patch::State::Open);
+    for (std::uint32_t t = 0; t + 1 < patch.triangles.size(); ++t) {
+        Sample& sample = patch.samples.emplace_back();
+        sample.setPoint(patch.points[patch.triangles[t][0]]);
+        sample.setNormal({0, 0, 1});
+        sample.room = 0;
+        patch.sampleTriangle.push_back(t);
+    }
+    return patch;
+}
+
+MetricFrame millimetres() {
+    ImageGeometry geometry;
+    geometry.size = {32, 32, 32};
+    return MetricFrame(geometry);
+}
+
+}  // namespace
+
+TEST(CrossingGuard, SeesTrianglesThatNoSampleIsAssignedTo) {
+    Patch patch = sheetUnderTriangle();
+    const MetricFrame frame = millimetres();
+    const PatchTopology topology(patch);
+    for (const bool looksEverywhere : {false, true}) {
+        CrossingGuard guard(patch, topology, frame, looksEverywhere);
+        ChangedStar changed;
+        ASSERT_TRUE(topology.starOf(vertexAt(2, 2), changed.star));
+        for (const double height : {0.3, 0.7}) {  // below the triangle, and through it
+            changed.vertex = {2, 2, height};
+            ASSERT_TRUE(shapeStar(patch, {}, changed));
+            EXPECT_EQ(guard.crossesNothing(changed), height < 0.5) << height;
+        }
+    }
+}
+
+TEST(CrossingGuard, SeesTrianglesWhereACommitPutThem) {
+    Patch patch = sheetUnderTriangle();
+    const MetricFrame frame = millimetres();
+    const PatchTopology topology(patch);
+    CrossingGuard guard(patch, topology, frame, false);
+    ChangedStar changed;
+    ASSERT_TRUE(topology.starOf(vertexAt(1, 1), changed.star));
+    changed.vertex = {1, 1, 0.4};
+    ASSERT_TRUE(shapeStar(patch, {}, changed));
+    ASSERT_TRUE(guard.crossesNothing(changed));
+    // a tent of 3 mm beside it, over the place that the next star wants
+    changed.vertex = {4.5, 1, 0.4};
+    ASSERT_TRUE(topology.starOf(vertexAt(1, 1), changed.star));
+    guard.commit(changed, false);
+    patch.points[vertexAt(1, 1)] = changed.vertex;
+    ChangedStar other;
+    ASSERT_TRUE(topology.starOf(vertexAt(3, 1), other.star));
+    other.vertex = {3, 1, 0.45};
+    ASSERT_TRUE(shapeStar(patch, {}, other));
+    EXPECT_FALSE(guard.crossesNothing(other));
+}
+
+TEST(ChangedStar, IsNoGraphWhereItGoesRoundItsVertexTwice) {
+    // ten triangles in a spiral staircase of two turns about the z axis, each of them upright
+    Patch patch;
+    ChangedStar changed;
+    constexpr int kSteps = 10;
+    for (int i = 0; i < kSteps; ++i) {
+        const double angle = 4 * M_PI * i / kSteps;
+        patch.points.push_back({std::cos(angle), std::sin(angle), 0.05 * i});
+        changed.star.ring[i] = static_cast<std::uint32_t>(i);
+        changed.star.apex[i] = kSteps;
+        changed.star.triangle[i] = static_cast<std::uint32_t>(i);
+    }
+    patch.points.push_back({0, 0, 0.2});
+    changed.star.count = kSteps;
+    changed.vertex = {0, 0, 0.25};
+    ASSERT_TRUE(shapeStar(patch, {}, changed));
+    EXPECT_FALSE(changed.isGraph);
+}
+
+}  // namespace adaptiso::testing
