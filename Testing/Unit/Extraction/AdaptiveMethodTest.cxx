@@ -1,15 +1,18 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "LatticeSampler.h"
 #include "RandomVolumes.h"
 #include "Support/AnalyticVolumes.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptive/BrickRound.h"
 #include "adaptive/CrossingProof.h"
 #include "adaptive/NearTriangle.h"
 #include "adaptive/PieceBound.h"
@@ -273,6 +276,65 @@ TEST(AdaptiveMethod, MakesTheCountThatIsAskedFor) {
                 2);
 }
 
+TEST(AdaptiveMethod, MakesTheCountAtClosedBordersAndWholeIsovalues) {
+    // folded sheets a voxel or two apart, in whole numbers: a tenth of the samples equal the
+    // isovalue
+    ImageGeometry geometry;
+    geometry.size = {66, 68, 70};
+    const Volume smooth = smoothNoise(geometry, 2);
+    std::vector<std::uint8_t> samples;
+    const auto view = smooth.view().as<float>();
+    for (std::int64_t i = 0; i < geometry.voxelCount(); ++i) {
+        const double value = 20 + 60 * (view.samples[i] - 0.5);
+        samples.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 40.0))));
+    }
+    const Volume volume = Volume::fromSamples(std::move(samples), geometry);
+    for (const Border border : {Border::Closed, Border::Open}) {
+        for (const double isovalue : {19.0, 20.0, 21.0}) {
+            const Extraction full = extractFrom(volume, isovalue, Method::MarchingCubes, 4, border);
+            AdaptiveOptions adaptive;
+            adaptive.maxTriangles = std::ssize(full.mesh.triangles) / 4;
+            const Extraction ours = extractWith(volume, isovalue, adaptive, border);
+            EXPECT_LE(std::ssize(ours.mesh.triangles), *adaptive.maxTriangles) << isovalue;
+            EXPECT_GE(std::ssize(ours.mesh.triangles), *adaptive.maxTriangles - 1) << isovalue;
+            EXPECT_EQ(ours.statistics.wantedTriangles, adaptive.maxTriangles);
+            EXPECT_EQ(findSelfIntersections(ours.mesh).pairCount, 0) << isovalue;
+        }
+    }
+}
+
+TEST(AdaptiveMethod, SaysWhatWasWantedWhereTopologyDoesNotAllowIt) {
+    // single voxels: each keeps a closed surface of its own, of four triangles at least
+    const HardVolume dots = binaryVolume({40, 40, 40}, [](auto x, auto y, auto z) {
+        return x % 4 == 2 && y % 4 == 2 && z % 4 == 2;
+    });
+    AdaptiveOptions adaptive;
+    adaptive.maxTriangles = 3;
+    const Extraction ours = extractWith(dots.volume, dots.isovalue, adaptive);
+    EXPECT_EQ(std::ssize(ours.mesh.triangles), 4 * 1000);
+    EXPECT_EQ(ours.statistics.wantedTriangles, 3);
+    EXPECT_TRUE(isSound(ours.mesh));
+    EXPECT_FALSE(extractWith(dots.volume, dots.isovalue, {}).statistics.wantedTriangles);
+}
+
+TEST(AdaptiveMethod, BoundsTheDistanceOfTrianglesFarFromTheSurface) {
+    // a shell 1 voxel thick: with few triangles its faces leave the shell by many voxels
+    const HardVolume shell = binaryVolume({80, 80, 80}, [](auto x, auto y, auto z) {
+        const double r = std::hypot(static_cast<double>(x) - 40, static_cast<double>(y) - 40,
+                                    static_cast<double>(z) - 40);
+        return r < 36 && r > 34.5;
+    });
+    const Extraction full =
+        extractFrom(shell.volume, shell.isovalue, Method::MarchingCubes, 4, Border::Closed);
+    AdaptiveOptions adaptive;
+    adaptive.maxTriangles = 60;
+    const Extraction ours = extractWith(shell.volume, shell.isovalue, adaptive);
+    ASSERT_TRUE(ours.statistics.errorBoundMm);
+    EXPECT_GT(*ours.statistics.errorBoundMm, 3);
+    EXPECT_LT(*ours.statistics.errorBoundMm, 80);
+    expectWithin(ours.mesh, full.mesh, *ours.statistics.errorBoundMm);
+}
+
 TEST(AdaptiveMethod, NeedsTwelveTrianglesForAFlatBox) {
     // a box between samples: its surface is bevelled by half a voxel, so a bound of half a voxel
     // leaves the corners alone
@@ -378,6 +440,39 @@ TEST(TightPlaces, AskForProofsWhereTrianglesCrossed) {
     places.apply(detail::MetricFrame(geometry), samples);
     EXPECT_EQ(samples[0].room, 0);
     EXPECT_TRUE(samples[1].isAlone());
+}
+
+TEST(TightPlaces, FreezeWhatIsAroundThem) {
+    detail::TightPlaces places;
+    EXPECT_FALSE(places.isFrozen({10, 10, 10}));
+    places.freeze({{10, 10, 10}}, 0);
+    EXPECT_TRUE(places.isFrozen({10, 10, 11.5}));
+    EXPECT_FALSE(places.isFrozen({10, 10, 20}));
+    places.freeze({{10, 10, 10}}, 3);  // 12 voxels around
+    EXPECT_TRUE(places.isFrozen({10, 10, 20}));
+    EXPECT_FALSE(places.isFrozen({10, 10, 40}));
+}
+
+TEST(BrickRound, LeavesFrozenPlacesAtFullResolution) {
+    const Volume volume = ball(48, 18, Mat3{});
+    const auto index = SpanSpaceIndex::build(volume.view(), {4, Border::Closed});
+    const auto sampler = detail::LatticeSampler::make(volume.view(), 0, Border::Closed);
+    const detail::Bricks bricks(index.grid(), index.blocksAt(0).blocks);
+    const detail::MetricFrame frame(volume.view().geometry());
+    detail::PatchLimits limits;
+    limits.maxCost = 10;
+    limits.maxDistanceMm = 0.5;
+    detail::TightPlaces tight;
+    const auto simplified = [&] {
+        return detail::simplifyBricks(*sampler, bricks, frame, tight, limits, nullptr);
+    };
+    const std::int64_t without = simplified().triangleCount();
+    tight.freeze({{23.5, 23.5, 41.5}}, 1);  // the ball's pole
+    const detail::SimplifiedSurface surface = simplified();
+    EXPECT_GT(surface.triangleCount(), without + 50);
+    EXPECT_LT(surface.triangleCount(), surface.fineTriangles / 2);
+    tight.freeze({{23.5, 23.5, 23.5}}, 6);  // all of it
+    EXPECT_EQ(simplified().triangleCount(), surface.fineTriangles);
 }
 
 TEST(CrossingProof, FindsTrianglesThatCross) {

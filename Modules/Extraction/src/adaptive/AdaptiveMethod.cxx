@@ -59,15 +59,19 @@ public:
         for (int run = 0; run < kMostRuns; ++run) {
             report(run, 0);
             unfitted_ = {};
-            surface = run + 1 < kMostRuns ? simplify(std::move(surface)) : fullSurface();
+            surface = simplify(std::move(surface));
             report(run, 0.6);
             ErrorBound error = proof_.prove(surface);
             if (isBeyond(error)) {
                 tighten(error);
-                if (halfway_ && hasStalled(error)) mendHalfway(surface);
+                if (run >= kFirstFreeze) {
+                    freeze(indicesOf(error), run);
+                } else if (halfway_ && hasStalled(error)) {
+                    mendHalfway(surface);
+                }
                 continue;
             }
-            if (!wanted_.isGiven() && run + 1 < kMostRuns) error = fit(surface, error);
+            if (!wanted_.isGiven()) error = fit(surface, error);
             report(run, 1);
             Extraction result;
             result.mesh = toMesh(surface, geometry_, frame_, sampler_);
@@ -79,11 +83,11 @@ public:
             }
             if (!crossings.empty()) {
                 proveAround(crossings);
+                if (run >= kFirstFreeze) freeze(crossings, run);
                 continue;
             }
             if (!options_.computeNormals) result.mesh.normals = {};
-            result.statistics.errorBoundMm = error.largestMm;
-            result.statistics.marchingCubesTriangles = surface.tableTriangles;
+            result.statistics = statisticsOf(surface, error);
             return result;
         }
         throw InternalError(
@@ -93,6 +97,9 @@ public:
 
 private:
     static constexpr int kMostRuns = 16, kMostMends = 6, kMostUndos = 6, kMostCrossedRuns = 3;
+    /// What fails from this run on stays at full resolution, twice as far around with every run:
+    /// in the last one all of it, if need be.
+    static constexpr int kFirstFreeze = 6;
     /// Vertices are fitted within this part of the allowed distance, or no farther than they were:
     /// then few places are lost.
     static constexpr double kFitDistance = 0.75;
@@ -175,6 +182,20 @@ private:
         if (crossedRuns_ > 1) halfway_.reset();
     }
 
+    void freeze(const std::vector<Vec3>& places, int run) {
+        tight_.freeze(places, run - kFirstFreeze);
+        halfway_.reset();
+    }
+
+    ExtractionStatistics statisticsOf(const SimplifiedSurface& surface,
+                                      const ErrorBound& error) const {
+        ExtractionStatistics statistics;
+        statistics.errorBoundMm = error.largestMm;
+        if (wanted_.isGiven()) statistics.wantedTriangles = wanted_.of(surface.fineTriangles);
+        statistics.marchingCubesTriangles = surface.tableTriangles;
+        return statistics;
+    }
+
     void tighten(const ErrorBound& error) { tight_.add(indicesOf(error)); }
 
     /// Hardly fewer places lie beyond the bound than after the run before: what they need may have
@@ -210,13 +231,6 @@ private:
         if (options_.progress) options_.progress(run == 0 ? "extract" : "refine", fraction);
     }
 
-    /// The marching cubes surface, which needs no simplification to be within any bound.
-    SimplifiedSurface fullSurface() const {
-        PatchLimits limits;
-        limits.maxCost = -1;
-        return simplifyBricks(sampler_, bricks_, frame_, tight_, limits, nullptr);
-    }
-
     PatchLimits limits() const {
         const double sheetMm = kSheetVoxels * frame_.narrowestMm();
         const double boundMm = boundMm_.value_or(kCountVoxels * frame_.narrowestMm());
@@ -231,23 +245,15 @@ private:
 
     /// \param last  of the run before
     SimplifiedSurface simplify(SimplifiedSurface last) {
-        PatchLimits limits = this->limits();
-        const auto simplification = [&] {
-            return Simplification(sampler_, bricks_, frame_, tight_, limits);
-        };
-        if (!wanted_.isGiven()) return simplification().toLimits(std::move(last), halfway_);
+        Simplification simplification(sampler_, bricks_, frame_, tight_, limits());
+        if (!wanted_.isGiven()) return simplification.toLimits(std::move(last), halfway_);
+        if (boundMm_) return simplification.toCount(wanted_, 0);
+        // without a bound the count goes before closeness
         const Index3& size = geometry_.size;
-        const double extentMm =
-            norm(frame_.fromIndex({static_cast<double>(size[0]), static_cast<double>(size[1]),
-                                   static_cast<double>(size[2])}));
-        for (;;) {
-            SimplifiedSurface surface = simplification().toCount(wanted_);
-            const bool isThere = surface.triangleCount() <= wanted_.of(surface.fineTriangles) + 1;
-            // without a bound the count goes before closeness
-            if (isThere || boundMm_ || limits.maxDistanceMm > extentMm) return surface;
-            limits.maxDistanceMm *= 2;
-            limits.provesAll = true;  // beyond what single sheets are certain of
-        }
+        const Vec3 extent =
+            frame_.fromIndex({static_cast<double>(size[0]), static_cast<double>(size[1]),
+                              static_cast<double>(size[2])});
+        return simplification.toCount(wanted_, norm(extent));
     }
 
     const ImageGeometry& geometry_;

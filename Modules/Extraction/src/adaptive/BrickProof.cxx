@@ -9,23 +9,12 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::array<Corners, 4> quarter(const Corners& t) {
-    const Vec3 a = 0.5 * (t[0] + t[1]), b = 0.5 * (t[1] + t[2]), c = 0.5 * (t[2] + t[0]);
-    return {{{t[0], a, c}, {a, t[1], b}, {c, b, t[2]}, {a, b, c}}};
-}
-
 constexpr int kCells = Brick::kSide + 2 * BrickMesher::kHalo;
 
 /// Where a cell is remembered, by its place in the brick.
 std::size_t cellSlot(int x, int y, int z) {
     constexpr int kHalo = BrickMesher::kHalo;
     return static_cast<std::size_t>(x + kHalo + kCells * (y + kHalo + kCells * (z + kHalo)));
-}
-
-/// A piece's box (in cells) that PieceBound can do with.
-bool isSmall(const CornerBox& box) {
-    const Vec3 side = box.high - box.low;
-    return std::max({side.x, side.y, side.z}) <= 1;
 }
 
 /// How many triangles a walk may visit: for a fine triangle; for one of the simplified surface, by
@@ -251,7 +240,7 @@ void BrickProof::provePiece(const Corners& piece, std::uint32_t start, double ar
     }
     const Vec3 middle = (1.0 / 3) * (piece[0] + piece[1] + piece[2]);
     const std::int64_t brick = lookup_.brickFor(lookup_.latticeOf(middle));
-    if (isSmall(box) || (brick != Bricks::kNone && lookup_.isWithinReach(brick, piece))) {
+    if (lookup_.isSmall(piece) || (brick != Bricks::kNone && lookup_.isWithinReach(brick, piece))) {
         if (brick != brick_) return;
         result_.provedArea += 0.5 * area2;
         if (!std::binary_search(unchanged_.begin(), unchanged_.end(), triangle_)) {
@@ -290,9 +279,8 @@ void BrickProof::cover(const Corners& piece, const WalkableSurface<Index>& surfa
 }
 
 void BrickProof::proveSmall(const Corners& piece) {
-    const CornerBox box = latticeBox(piece);
-    if (isSmall(box)) {
-        proveLeaf(piece, box);
+    if (lookup_.isSmall(piece)) {
+        proveLeaf(piece, latticeBox(piece));
         return;
     }
     for (const Corners& part : quarter(piece)) proveSmall(part);
@@ -308,7 +296,10 @@ void BrickProof::proveLeaf(const Corners& piece, const CornerBox& box) {
     use();
     if (!near_.empty() && toFine_.isWithin(piece, toFine_.nearby().front())) return;
     if (toFine_.isWithin(piece)) return;
-    collectNear(box, 1.5);
+    for (double reach = 1.5;; reach *= 2) {  // mostly once
+        collectNear(box, reach);
+        if (!near_.empty() || reach > kCells) break;
+    }
     use();
     include(piece, toFine_, triangle_);
 }

@@ -184,6 +184,9 @@ BrickSurface simplifyBrick(const FineSurface& fine, const Index3& lowIndex,
     result.fineTriangles = patch.ownTriangles;
     result.tableTriangles = result.fineTriangles - 2 * static_cast<std::int64_t>(fine.ownMiddles);
     tight.apply(frame, patch.samples);
+    for (std::size_t v = 0; v < patch.points.size(); ++v) {
+        if (tight.isFrozen(fine.vertices[v].index)) patch.states[v] = Patch::State::Final;
+    }
     if (limits.leavesNoise && isNoise(fine)) {
         patch.states.assign(patch.points.size(), Patch::State::Final);
     } else {

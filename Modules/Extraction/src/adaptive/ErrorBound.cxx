@@ -12,7 +12,6 @@
 namespace adaptiso::detail {
 namespace {
 
-constexpr double kBoundless = std::numeric_limits<double>::max();
 constexpr std::int64_t kPiece = 1 << 14;
 
 /// The largest distance of a sample to the triangle that stands for it: no bound can be less.
@@ -52,6 +51,19 @@ double areaOf(const SurfaceLookup& lookup, const ProofScope& scope) {
     return area;
 }
 
+/// Calls f(piece) for the parts of a triangle that no brick has in its reach.
+template <class F>
+void forEachFarPiece(const SurfaceLookup& lookup, const Corners& piece, const F& f) {
+    const std::int64_t brick =
+        lookup.brickFor(lookup.latticeOf((1.0 / 3) * (piece[0] + piece[1] + piece[2])));
+    if (lookup.isSmall(piece)) {
+        if (brick == Bricks::kNone) f(piece);
+        return;
+    }
+    if (brick != Bricks::kNone && lookup.isWithinReach(brick, piece)) return;
+    for (const Corners& part : quarter(piece)) forEachFarPiece(lookup, part, f);
+}
+
 }  // namespace
 
 ErrorProof::ErrorProof(const LatticeSampler& sampler, const Bricks& bricks,
@@ -83,11 +95,43 @@ ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
     for (const PlaceBeyond& place : beyond) bound.beyondLimit.push_back(place.point);
     known_.clear();
     if (!(provedArea >= (1 - 1e-9) * areaOf(lookup, scope))) {
-        bound.largestMm = kBoundless;  // far from every brick
-    } else if (limitMm_ < kBoundless) {
+        includeFarPieces(surface, lookup, bound);
+    } else if (limitMm_ < std::numeric_limits<double>::max()) {
         remember(lookup, std::move(beyond));
     }
     return bound;
+}
+
+/// Bounds the distance of what is too far from every brick for one to answer for it, by single
+/// points of the full-resolution surface: loosely.
+void ErrorProof::includeFarPieces(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
+                                  ErrorBound& bound) const {
+    constexpr std::size_t kPoints = 4096;
+    std::vector<Vec3> points;
+    const std::size_t step = 1 + surface.samples.size() / kPoints;
+    for (std::size_t s = 0; s < surface.samples.size(); s += step) {
+        points.push_back(surface.samples[s].point());
+    }
+    std::vector<double> largest(lookup.triangleCount(), 0);
+    parallelForPieces(std::ssize(largest), 1, [&](std::int64_t t, std::int64_t) {
+        forEachFarPiece(lookup, lookup.cornersOf(t), [&](const Corners& piece) {
+            double least = std::numeric_limits<double>::infinity();
+            for (const Vec3& p : points) {
+                least =
+                    std::min(least, std::max({squaredNorm(piece[0] - p), squaredNorm(piece[1] - p),
+                                              squaredNorm(piece[2] - p)}));
+            }
+            largest[t] = std::max(largest[t], least);
+        });
+    });
+    for (std::size_t t = 0; t < largest.size(); ++t) {
+        if (largest[t] == 0) continue;
+        constexpr double kRounding = 1 + 1e-6;  // samples are kept in single precision
+        const double mm = kRounding * std::sqrt(largest[t]);
+        bound.largestMm = std::max(bound.largestMm, mm);
+        const Corners c = lookup.cornersOf(t);
+        if (mm > limitMm_) bound.beyondLimit.push_back((1.0 / 3) * (c[0] + c[1] + c[2]));
+    }
 }
 
 void ErrorProof::remember(const SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond) {

@@ -34,6 +34,8 @@ public:
 
 private:
     ProofScope scopeOf(const SurfaceLookup& lookup) const;
+    void includeFarPieces(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
+                          ErrorBound& bound) const;
     void markAround(const Corners& triangle, double distanceMm, ProofScope& scope) const;
     void remember(const SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond);
 

@@ -17,6 +17,9 @@ constexpr std::array kCosts{3e-3, 1.8e-2, 0.108, 0.648, 3.888};
 /// below this part of it.
 constexpr double kHalfway = 2, kEarlyDistance = 0.25;
 
+/// Where the allowed distance grows on the way to a count, costs start anew from here.
+constexpr double kCostAfterDistance = 0.01;
+
 /// A round that leaves more than this part of the triangles was hardly worth it.
 constexpr double kWorthwhile = 0.99;
 
@@ -142,18 +145,20 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
     isTied_ = isLanding && before - surface.triangleCount() < wanted;
 }
 
-SimplifiedSurface Simplification::toCount(const WantedCount& wanted) {
-    SimplifiedSurface surface = towards(wanted);
+SimplifiedSurface Simplification::toCount(const WantedCount& wanted, double farthestMm) {
+    const PatchLimits limits = limits_;
+    SimplifiedSurface surface = towards(wanted, farthestMm);
     if (surface.triangleCount() + 1 < wanted.of(surface.fineTriangles)) {
         triesAll_ = true;  // the patches that were tried were not like the others
-        surface = towards(wanted);
+        limits_ = limits;
+        surface = towards(wanted, farthestMm);
     }
     fit(surface);
     return surface;
 }
 
 /// All but the last fits.
-SimplifiedSurface Simplification::towards(const WantedCount& wanted) {
+SimplifiedSurface Simplification::towards(const WantedCount& wanted, double farthestMm) {
     CollapseCosts costs;
     double cost = kFirstCost;
     limits_.maxCost = cost * costUnit_;
@@ -165,14 +170,28 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted) {
         limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
         surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
     }
-    for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
-        const std::int64_t before = surface.triangleCount();
-        cost *= costStep(before, target);
-        if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
-        roundTowards(surface, target, cost);
-        if (cost > kLastCost) idle = surface.triangleCount() == before ? idle + 1 : 0;
+    for (;;) {
+        for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
+            const std::int64_t before = surface.triangleCount();
+            cost *= costStep(before, target);
+            if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
+            roundTowards(surface, target, cost);
+            if (cost > kLastCost) idle = surface.triangleCount() == before ? idle + 1 : 0;
+        }
+        if (surface.triangleCount() <= target || limits_.maxDistanceMm >= farthestMm) break;
+        goFarther(surface);
+        cost = kCostAfterDistance;
     }
     return surface;
+}
+
+/// Goes on with twice the allowed distance: what was refused for it is to be tried again.
+void Simplification::goFarther(SimplifiedSurface& surface) {
+    limits_.maxDistanceMm *= 2;
+    limits_.provesAll = true;  // beyond what single sheets are certain of
+    for (Patch::State& state : surface.states) {
+        if (state == Patch::State::Tried) state = Patch::State::Open;
+    }
 }
 
 void Simplification::fit(SimplifiedSurface& surface) {

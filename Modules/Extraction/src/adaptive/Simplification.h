@@ -49,7 +49,9 @@ public:
     Halfway toHalfway(SimplifiedSurface& surface);
 
     /// The wanted number of triangles, or as few as the limits allow.
-    SimplifiedSurface toCount(const WantedCount& wanted);
+    /// \param farthestMm  where they don't, the allowed distance of samples is doubled on the way
+    ///                    until it is as large as that
+    SimplifiedSurface toCount(const WantedCount& wanted, double farthestMm);
 
     /// Moves vertices to where they lie closest to their samples: twice, so that what straddles the
     /// cut has its turn as well.
@@ -59,7 +61,8 @@ private:
     PatchCut nextCut();
     void roundUpTo(double cost, SimplifiedSurface& surface);
     void goOnFrom(const Halfway& halfway, SimplifiedSurface& surface);
-    SimplifiedSurface towards(const WantedCount& wanted);
+    SimplifiedSurface towards(const WantedCount& wanted, double farthestMm);
+    void goFarther(SimplifiedSurface& surface);
     void roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost);
 
     const LatticeSampler& sampler_;

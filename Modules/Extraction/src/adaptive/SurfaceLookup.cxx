@@ -81,6 +81,12 @@ bool SurfaceLookup::isNear(const Brick& brick, const Vec3& lattice) {
     return true;
 }
 
+bool SurfaceLookup::isSmall(const Corners& piece) const {
+    const CornerBox box = boxOf({latticeOf(piece[0]), latticeOf(piece[1]), latticeOf(piece[2])});
+    const Vec3 side = box.high - box.low;
+    return std::max({side.x, side.y, side.z}) <= 1;
+}
+
 bool SurfaceLookup::isWithinReach(std::int64_t brick, const Corners& piece) const {
     return std::all_of(piece.begin(), piece.end(), [&](const Vec3& corner) {
         return isNear(bricks_[brick], latticeOf(corner));

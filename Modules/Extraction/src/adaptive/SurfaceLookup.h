@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -13,6 +14,11 @@
 #include "adaptiso/Core/AabbTree.h"
 
 namespace adaptiso::detail {
+
+inline std::array<Corners, 4> quarter(const Corners& t) {
+    const Vec3 a = 0.5 * (t[0] + t[1]), b = 0.5 * (t[1] + t[2]), c = 0.5 * (t[2] + t[0]);
+    return {{{t[0], a, c}, {a, t[1], b}, {c, b, t[2]}, {a, b, c}}};
+}
 
 /// Triangles of a simplified surface by the bricks whose neighbourhood they reach into, and by
 /// their places. A copy: the surface may change.
@@ -67,6 +73,9 @@ public:
     /// The brick that answers for a point: the one that it lies in, or else the first one that has
     /// it in its halo with room around; kNone where there is none.
     std::int64_t brickFor(const Vec3& lattice) const;
+
+    /// A piece is not cut further: its box is no larger than a cell.
+    bool isSmall(const Corners& piece) const;
 
     /// All of a piece lies in the brick or in its halo with room around.
     bool isWithinReach(std::int64_t brick, const Corners& piece) const;

@@ -6,16 +6,17 @@
 
 namespace adaptiso::detail {
 
-Index3 TightPlaces::cubeAt(const Vec3& place) {
+Index3 TightPlaces::cubeAt(const Vec3& place, int level) {
+    const double side = std::ldexp(kCube, level);
     Index3 cube;
-    for (int a = 0; a < 3; ++a) cube[a] = static_cast<std::int64_t>(std::floor(place[a] / kCube));
+    for (int a = 0; a < 3; ++a) cube[a] = static_cast<std::int64_t>(std::floor(place[a] / side));
     return cube;
 }
 
-std::set<Index3> TightPlaces::cubesAround(const std::vector<Vec3>& places) {
+std::set<Index3> TightPlaces::cubesAround(const std::vector<Vec3>& places, int level) {
     std::set<Index3> cubes;
     for (const Vec3& place : places) {
-        const Index3 cube = cubeAt(place);
+        const Index3 cube = cubeAt(place, level);
         for (int n = 0; n < 27; ++n) {
             cubes.insert({cube[0] + n % 3 - 1, cube[1] + n / 3 % 3 - 1, cube[2] + n / 9 - 1});
         }
@@ -29,6 +30,16 @@ void TightPlaces::add(const std::vector<Vec3>& places) {
 
 void TightPlaces::addCrossings(const std::vector<Vec3>& places) {
     crossings_.merge(cubesAround(places));
+}
+
+void TightPlaces::freeze(const std::vector<Vec3>& places, int level) {
+    frozen_[level].merge(cubesAround(places, level));
+}
+
+bool TightPlaces::isFrozen(const Vec3& index) const {
+    return std::any_of(frozen_.begin(), frozen_.end(), [&](const auto& level) {
+        return level.second.contains(cubeAt(index, level.first));
+    });
 }
 
 /// How often the square is halved.

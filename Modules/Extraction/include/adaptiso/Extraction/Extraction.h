@@ -76,6 +76,10 @@ struct ExtractionStatistics {
     /// Of Method::Adaptive: the proved bound of the distance to the surface of MarchingCubes, both
     /// ways, mm.
     std::optional<double> errorBoundMm;
+    /// Of Method::Adaptive: the count that maxTriangles and reduction ask for, where they do. The
+    /// mesh has more triangles when the bound (maxErrorMm) or the surface's topology does not allow
+    /// as few.
+    std::optional<std::int64_t> wantedTriangles;
     std::int64_t edgesSplit = 0;  ///< edges halved because two of them joined the same two vertices
 };
 
