@@ -19,4 +19,12 @@ TEST(AdaptivePromises, HoldOnManyLargerVolumes) {
     }
 }
 
+// more than 32 cells a side: parts are simplified side by side and joined
+TEST(AdaptivePromises, HoldAcrossManyPartsWorkedOnSideBySide) {
+    for (std::uint64_t seed = 3'000'000; seed < 3'000'040; ++seed) {
+        const AdaptiveCase adaptive = adaptiveCase(seed, 48);
+        EXPECT_TRUE(keepsAdaptivePromises(adaptive)) << describe(seed, adaptive);
+    }
+}
+
 }  // namespace adaptiso::testing
