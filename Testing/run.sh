@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the packages, builds everything and runs the tests (all but those labelled long).
-# Debian 12, as root or with sudo. Running it again is harmless. Ends with ctest's own summary.
+# Debian 12, as root or with sudo. Running it again is harmless. Ends with ctest's own summary, and
+# leaves the results in build/release/junit.xml (Documentation/Validation.md is made from them).
 #
 #   Testing/run.sh [CTEST-OPTION...]       e.g. Testing/run.sh -L unit, Testing/run.sh -R KdTree
 set -euo pipefail
@@ -13,4 +14,5 @@ installPackages Applications/quickstart/packages.txt Packaging/packages.txt Test
 
 cmake --log-level=WARNING --preset release
 cmake --build --preset release
-exec ctest --preset release --output-on-failure -LE long -j 2 "$@"
+exec ctest --preset release --output-on-failure -LE long -j 2 \
+    --output-junit "$top/build/release/junit.xml" "$@"

@@ -82,6 +82,27 @@ void declareRequirements(CLI::App& app, CheckOptions& options) {
               kRequired);
 }
 
+void declareSelfTest(CLI::App& app, CheckOptions& options) {
+    app.add_flag("--self-test", options.isSelfTest,
+                 "Check this installation instead of files: phantoms whose size is known on paper, "
+                 "from image to surface, and a defect for every check; a table to sign")
+        ->group("Self-test (takes no files)");
+}
+
+/// The self-test makes its own input.
+void checkSelfTestAlone(const CLI::App& app) {
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_name();
+        const bool isOfRun = name == "--self-test" || name == "--json" || name == "--report" ||
+                             name == "--pictures" || name == "--quiet" || name == "--threads" ||
+                             name == "--strict" || name == "--no-warnings";
+        if (option->count() > 0 && !isOfRun) {
+            throw UsageError("--self-test: not together with " +
+                             (name.starts_with("-") ? name : "files"));
+        }
+    }
+}
+
 void declareOutput(CLI::App& app, CheckOptions& options) {
     constexpr std::int64_t kMaxPairs = 1'000'000'000;
     app.add_option("--max-pairs", options.maxPairs,
@@ -129,6 +150,7 @@ Examples:
   adaptiso-check --quiet *.vtp || echo 'not all of them are sound'
   adaptiso-check *.vtp --jobs 4 --output-dir checked --skip-existing
       a line for each, each in a process of its own; a page checked/summary.html
+  adaptiso-check --self-test --report self-test.html
 
 Exit codes: 0 all that is required holds, 1 something does not, 2 wrong usage,
 3 bad input (or no memory or disk left), 4 internal error. A file that can't be
@@ -144,10 +166,15 @@ Program checkProgram() {
 void declareCheckOptions(CLI::App& app, CheckOptions& options) {
     declareInput(app, options);
     declareRequirements(app, options);
+    declareSelfTest(app, options);
     declareOutput(app, options);
     declareBatchOptions(app, options.batch, "the surfaces in derivatives/adaptiso");
     declareCommonOptions(app, options.common);
     app.callback([&app, &options] {
+        if (options.isSelfTest) {
+            checkSelfTestAlone(app);
+            return;
+        }
         checkCombinations(options);
         if (options.batch.isAsked()) keepRunOptions(app, options.batch);
     });

@@ -16,6 +16,7 @@
 #include "Isosurface.h"
 #include "JsonReport.h"
 #include "ReportPage.h"
+#include "SelfTest.h"
 #include "TextReport.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
@@ -290,6 +291,7 @@ bool CheckRun::hasPassed() const {
 }
 
 int runCheck(const CheckOptions& options) {
+    if (options.isSelfTest) return runSelfTest(options);
     if (options.batch.isAsked()) return runCheckBatch(options);
     const ThreadLimit threads(options.common);
     ProgressLine progress(options.common.isQuiet);

@@ -34,6 +34,7 @@ struct CheckOptions {
     std::optional<double> minAngleDeg;         ///< none: kDefaultMinAngleDeg, required of Bem only
     std::optional<double> maxOffMm;            ///< none: half a voxel on the mean
     std::int64_t maxPairs = 1000;              ///< of triangles that cross, to list
+    bool isSelfTest = false;                   ///< instead of all that; see SelfTest.h
     ReportOptions report;
     CommonOptions common;
 

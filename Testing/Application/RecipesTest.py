@@ -53,8 +53,20 @@ class Recipes(ApplicationTest):
         bone = self.surface("bone.ply")
         self.assertAlmostEqual(bone["volumeMm3"], 15_750, delta=0.08 * 15_750)
         self.assertEqual(bone["componentCount"], 1)
+        self.assertLessEqual(self.surface("bone-600.ply")["triangles"], 600)
+        # less bone the higher the value
+        volumes = [self.surface(f"bone-{value}.vtp")["volumeMm3"] for value in (200, 250, 300)]
+        self.assertEqual(volumes, sorted(volumes, reverse=True))
+        # a Gaussian of 1 mm, half a voxel, moves the surface by a few hundredths of a voxel
+        self.assertAlmostEqual(self.surface("print.stl")["volumeMm3"], volumes[1],
+                               delta=0.03 * volumes[1])
         self.assertEqual(sorted(path.name for path in self.path("regions").glob("*.gii")),
                          ["label-1.gii", "label-2.gii", "label-7.gii"])
+        self.assertEqual(len(list(self.path("regions").glob("label-*-smooth.ply"))), 3)
+        # both subjects have the same image
+        distance = json.loads(self.path("distance.json").read_text())
+        self.assertLess(distance["distances"]["combined"]["maxMm"], 1e-12)  # rounding
+        self.assertIn('<html', self.path("print.html").read_text())
         with open(self.path("quality.csv"), newline="") as table:
             rows = list(csv.DictReader(table))
         self.assertEqual([row["file"][:6] for row in rows], ["sub-01", "sub-02"])

@@ -10,7 +10,9 @@ from pathlib import Path
 from support import SOURCE, ApplicationTest, ball, main, write_nifti
 
 BUILD = Path(os.environ["ADAPTISO_BUILD"])
+SOURCES = Path(os.environ["ADAPTISO_SOURCE"])
 VERSION = os.environ["ADAPTISO_VERSION"]
+MOMENT = 1700000000  # s since 1970: 2023-11-14 22:13:20 UTC
 PROGRAMS = ("adaptiso-mesh", "adaptiso-bem", "adaptiso-check", "adaptiso-compare")
 
 
@@ -25,11 +27,16 @@ def output(*command, **options):
 class Packages(ApplicationTest):
     def setUp(self):
         super().setUp()
-        output(os.environ["ADAPTISO_CPACK"], "-G", "DEB", "-B", self.path("packages"), cwd=BUILD)
-        self.debs = {deb.name.split("_")[0]: deb for deb in self.path("packages").glob("*.deb")}
+        self.debs = self.packed("packages")
         self.prefix = self.path("prefix")
         for deb in self.debs.values():
             output("dpkg-deb", "-x", deb, self.prefix)
+
+    def packed(self, folder, **environment):
+        """Packages of this build, {name: file}."""
+        output(os.environ["ADAPTISO_CPACK"], "-G", "DEB", "-B", self.path(folder), cwd=BUILD,
+               umask=0o022, env={**os.environ, "SOURCE_DATE_EPOCH": str(MOMENT), **environment})
+        return {deb.name.split("_")[0]: deb for deb in self.path(folder).glob("*.deb")}
 
     def field(self, package, name):
         return output("dpkg-deb", "-f", self.debs[package], name).strip()
@@ -40,6 +47,9 @@ class Packages(ApplicationTest):
         self.look_at_fields()
         self.look_at_files()
         self.ask_lintian()
+        self.look_at_materials()
+        self.look_for_traces()
+        self.pack_again()
         self.use_programs()
         self.use_library()
 
@@ -80,6 +90,54 @@ class Packages(ApplicationTest):
         done = subprocess.run(["lintian", "--no-cfg", "--allow-root", *map(str, self.debs.values())],
                               text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         self.assertEqual((done.returncode, done.stdout), (0, ""))
+
+    def look_at_materials(self):
+        """The bill of materials: whole, and with all that the programs are linked to."""
+        said = json.loads((self.prefix / "usr/share/doc/adaptiso/adaptiso.spdx.json").read_text())
+        self.assertEqual((said["spdxVersion"], said["dataLicense"], said["SPDXID"]),
+                         ("SPDX-2.3", "CC0-1.0", "SPDXRef-DOCUMENT"))
+        self.assertRegex(said["creationInfo"]["created"], r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+        self.assertRegex(said["documentNamespace"], r"^https://[^\s#]+$")
+        parts = {part["SPDXID"]: part for part in said["packages"]}
+        self.assertEqual(len(parts), len(said["packages"]))
+        for name, part in parts.items():
+            self.assertRegex(name, r"^SPDXRef-[A-Za-z0-9.-]+$")
+            for key in ("name", "downloadLocation", "licenseConcluded", "licenseDeclared",
+                        "copyrightText"):
+                self.assertIn(key, part)
+        for relation in said["relationships"]:
+            for end in (relation["spdxElementId"], relation["relatedSpdxElement"]):
+                self.assertIn(end, {"SPDXRef-DOCUMENT", *parts})
+        versions = {part["name"]: part.get("versionInfo") for part in parts.values()}
+        self.assertEqual(versions["adaptiso"], VERSION)
+        # dpkg-shlibdeps found these by its own way; "libc6 (>= 2.34), libtbb12 (>= 2021.4)"
+        for needed in self.field("adaptiso", "Depends").split(", "):
+            package = needed.split(" ")[0]
+            self.assertEqual(versions[package],
+                             output("dpkg-query", "-W", "-f", "${Version}\n", package).split()[0])
+        self.assertIn("nlohmann-json3-dev", versions)  # headers leave no trace in a program
+
+    def look_for_traces(self):
+        """Nothing says in which folder, when or by whom it was built."""
+        folders = [str(path).encode() for path in (BUILD, SOURCES)]
+        for path in self.prefix.rglob("*"):
+            if not path.is_file():
+                continue
+            content = path.read_bytes()
+            if path.suffix == ".gz":
+                content = gzip.decompress(content)
+            for folder in folders:
+                self.assertNotIn(folder, content, path)
+        for deb in self.debs.values():
+            for line in output("dpkg-deb", "-c", deb, env={**os.environ, "TZ": "UTC"}).splitlines():
+                _, owner, _, day, hour, *_ = line.split()
+                self.assertEqual((owner, day, hour), ("root/root", "2023-11-14", "22:13"), line)
+
+    def pack_again(self):
+        """The same build packed elsewhere, in another place of the world, gives the same bytes."""
+        again = self.packed("elsewhere/deeper", TZ="Pacific/Kiritimati", LC_ALL="C.UTF-8")
+        for name, deb in self.debs.items():
+            self.assertEqual(deb.read_bytes(), again[name].read_bytes(), name)
 
     def use_programs(self):
         write_nifti(self.path("ball.nii"), ball(24, 9))

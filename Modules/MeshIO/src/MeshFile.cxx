@@ -1,5 +1,6 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>

@@ -6,6 +6,7 @@
 #include <vtkNew.h>
 #include <vtkXMLPolyDataWriter.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "ByteSource.h"

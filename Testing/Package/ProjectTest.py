@@ -1,0 +1,121 @@
+"""What the sources say of themselves: licences, citation, versions, claims. All of it is true."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+BUILD = Path(os.environ["ADAPTISO_BUILD"])
+SOURCE = Path(os.environ["ADAPTISO_SOURCE"])
+VERSION = os.environ["ADAPTISO_VERSION"]
+
+
+def text(name):
+    return (SOURCE / name).read_text(encoding="utf-8")
+
+
+class Licences(unittest.TestCase):
+    def test_every_file_says_its_licence(self):
+        self.assertIsNotNone(shutil.which("reuse"), "reuse is missing: see Testing/packages.txt")
+        done = subprocess.run(["reuse", "--root", SOURCE, "lint"], text=True, capture_output=True)
+        self.assertEqual(done.returncode, 0, done.stdout[-3000:] + done.stderr)
+
+    def test_the_licence_is_the_one_beside_the_readme(self):
+        self.assertEqual(text("LICENSE"), text("LICENSES/Apache-2.0.txt"))
+
+
+class Citation(unittest.TestCase):
+    """CITATION.cff, by the rules of its format's version 1.2.0."""
+
+    TYPES = {"thesis", "conference-paper", "article", "book", "software"}
+
+    def setUp(self):
+        import yaml
+        self.said = yaml.safe_load(text("CITATION.cff"))
+
+    def test_has_what_the_format_requires(self):
+        self.assertEqual(self.said["cff-version"], "1.2.0")
+        self.assertLessEqual(set(self.said), {
+            "cff-version", "message", "type", "title", "abstract", "version", "license", "authors",
+            "keywords", "references", "date-released", "doi", "url", "repository-code"})
+        for key in ("message", "title"):
+            self.assertIsInstance(self.said[key], str)
+        self.assertEqual(self.said["type"], "software")
+        for author in self.said["authors"]:
+            self.assertIn(set(author), ({"name"}, {"family-names", "given-names"}))
+
+    def test_references_are_whole(self):
+        for reference in self.said["references"]:
+            self.assertLessEqual({"authors", "title", "type"}, set(reference))
+            self.assertIn(reference["type"], self.TYPES)
+            if "doi" in reference:
+                self.assertRegex(reference["doi"], r"^10\.\d{4,9}(\.\d+)?/[A-Za-z0-9:/_;\-.()\[\]\\]+$")
+
+    def test_is_of_this_version_and_licence(self):
+        self.assertEqual((self.said["version"], self.said["license"]), (VERSION, "Apache-2.0"))
+
+
+class Versions(unittest.TestCase):
+    def test_the_changelog_begins_with_this_one(self):
+        """Every heading is one that Packaging/changelog.py understands."""
+        headings = re.findall(r"(?m)^## (.*)$", text("CHANGELOG.md"))
+        for heading in headings:
+            self.assertRegex(heading, r"^\d+\.\d+\.\d+ \((unreleased|\d{4}-\d\d-\d\d)\)$")
+        self.assertEqual(headings[0].split(" ")[0], VERSION)
+        numbers = [tuple(map(int, heading.split(" ")[0].split("."))) for heading in headings]
+        self.assertEqual(numbers, sorted(numbers, reverse=True))
+
+    def test_the_readme_names_the_packages_of_this_one(self):
+        named = set(re.findall(r"adaptiso(?:-dev)?_([\d.]+)_", text("README.md")))
+        self.assertEqual(named, {VERSION})
+        minor = ".".join(VERSION.split(".")[:2])
+        for place in ("README.md", "Examples/meshScan/CMakeLists.txt"):
+            self.assertIn(f"find_package(adaptiso {minor} REQUIRED", text(place))
+
+
+class Compilation(unittest.TestCase):
+    def test_no_sum_is_fused_with_a_product(self):
+        """Documentation/Reproducibility.md: what may be fused gives other bytes on other processors."""
+        commands = json.loads((BUILD / "compile_commands.json").read_text())
+        ours = [command for command in commands
+                if Path(command["file"]).is_relative_to(SOURCE / "Modules")
+                or Path(command["file"]).is_relative_to(SOURCE / "Applications")]
+        self.assertGreater(len(ours), 100)
+        for command in ours:
+            self.assertIn(" -ffp-contract=off ", command["command"], command["file"])
+            self.assertNotIn("-ffast-math", command["command"])
+
+
+class Validation(unittest.TestCase):
+    def test_the_page_is_in_step_with_claims_and_tests(self):
+        done = subprocess.run([sys.executable, "-B", SOURCE / "Documentation" / "validation.py",
+                               SOURCE, "--check"], text=True, capture_output=True)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_a_test_that_is_not_there_is_told(self):
+        sys.dont_write_bytecode = True
+        sys.path.insert(0, str(SOURCE / "Documentation"))
+        import validation
+        claims = {"section": [{"claim": [{"tests": ["MarchingCubes.IsPerfect"]}]}]}
+        self.assertEqual(validation.check(claims, validation.sources(SOURCE), None),
+                         ["MarchingCubes.IsPerfect: there is no such test"])
+
+    def test_one_failed_instance_fails_the_test(self):
+        import tempfile
+        import validation
+        with tempfile.NamedTemporaryFile("w", suffix=".xml") as file:
+            file.write('<testsuite><testcase name="All/A.B/mc" status="run"/>'
+                       '<testcase name="All/A.B/boxes" status="fail"><failure/></testcase>'
+                       '<testcase name="C.D" status="notrun"><skipped/></testcase>'
+                       '<testcase name="E.F" status="run"/></testsuite>')
+            file.flush()
+            self.assertEqual(validation.results(file.name), {
+                "A.B": validation.FAILED, "C.D": validation.NOT_RUN, "E.F": validation.PASSED})
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
