@@ -74,10 +74,12 @@ Footer footerOf(const ByteTail& tail) {
         // utils/tags.cpp: old tags have another kind of length, or none
         constexpr std::int32_t kOldColourTable = 1, kOldRealRas = 2, kOldSurface = 20,
                                kOldXform = 30;
-        constexpr std::int32_t kLastTag = 1000;
+        constexpr std::int32_t kLastTag = 1000, kEndTag = -1;
         if (bytes.size() - at < sizeof(std::int32_t)) return Footer::CutOff;
         const auto tag = bytes.at<std::int32_t>(at);
         at += sizeof(std::int32_t);
+        const bool isEnd = tag == kEndTag && bytes.size() - at <= sizeof(std::int64_t);
+        if (isEnd) return Footer::Whole;
         if (tag < 1 || tag > kLastTag) return Footer::None;
         if (tag == kOldRealRas) continue;
         if (tag == kOldColourTable || tag == kOldSurface) return Footer::OpenEnded;

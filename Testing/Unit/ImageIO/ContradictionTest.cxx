@@ -239,6 +239,8 @@ TEST(MghFooter, IsNoImage) {
         expectRead(writeFile(folder / "x.mgh", image + footer));
         expectRead(writeFile(folder / "x.mgz", gzipped(image + footer)));
     }
+    const std::string end = bytesOf(-1, std::endian::big);
+    expectRead(writeFile(folder / "x.mgh", image + numbers + mghTag(31, xform) + end));
     // a colour table (tag 1) tells of no length
     expectRead(writeFile(folder / "x.mgh",
                          image + numbers + bytesOf(1, std::endian::big) + std::string(200, 'l')));
