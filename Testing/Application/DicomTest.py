@@ -1,5 +1,6 @@
 """DICOM folders: tilt, what a folder holds, volumes, uneven slices."""
 
+import gzip
 import json
 import math
 import re
@@ -105,6 +106,17 @@ class DicomImages(ApplicationTest):
         self.assert_fails(BAD_INPUT, "uneven slice spacing.*--resample-slices", "ct", "--iso", "250")
         # blended and interpolated: 0.025 mm each, and the values' rounding
         self.assert_is_sphere(self.vertices("ct", "--resample-slices"), 0.1)
+
+    def test_a_slice_that_is_there_only_compressed_is_refused(self):
+        Sphere().write(self.path("ct"), range(10, 71, 2))
+        last = self.path("ct") / str(30 * 7 % 101)  # no gap would tell of it
+        compressed = gzip.compress(last.read_bytes())
+        (self.path("ct") / f"{last.name}.dcm.gz").write_bytes(compressed)
+        last.rename(self.path("ct") / f"{last.name}.dcm")
+        self.assertIn("left out 1 compressed", self.mesh("ct", "--iso", "250", "-o", "a.ply").stderr)
+        self.path("a.ply").unlink()
+        (self.path("ct") / f"{last.name}.dcm").unlink()
+        self.assert_fails(BAD_INPUT, r"8\.dcm\.gz: is a compressed DICOM file", "ct", "--iso", "250")
 
     def test_a_volume_is_chosen_by_its_index(self):
         for echo in (1, 2):

@@ -134,6 +134,26 @@ class BadInput(ApplicationTest):
         self.path("ball.nii").write_bytes(whole[:len(whole) // 2])
         self.refused(r"ball\.nii", "ball.nii", "--iso", "100")
 
+    def test_more_than_the_header_says(self):
+        write_nifti(self.path("two.nii"), ball(16, 5))
+        whole = self.path("two.nii").read_bytes()
+        self.path("two.nii").write_bytes(whole + whole[352:])
+        self.refused(r"two\.nii: holds .* behind the image .*1 more image", "two.nii", "--iso", "100")
+        write_metaimage(self.path("wide.mha"), ball(16, 5))
+        header = self.path("wide.mha").read_bytes().partition(b"LOCAL\n")[0]
+        self.path("wide.mha").write_bytes(header.replace(b"MET_SHORT", b"MET_LONG") + b"LOCAL\n" +
+                                          struct.pack("<4096q", *range(4096)))  # 16^3
+        self.refused("MET_LONG has 4 bytes", "wide.mha", "--iso", "100")
+
+    def test_what_is_harmless_is_said_and_read(self):
+        write_metaimage(self.path("ball.mha"), ball(16, 5))
+        content = self.path("ball.mha").read_bytes()
+        start, end = content.index(b"Offset"), content.index(b"CenterOfRotation")
+        self.path("ball.mha").write_bytes(content[:start] + content[end:] + b"a note")
+        done = self.mesh("ball.mha", "--iso", "100")
+        self.assertIn("no Offset", done.stderr)
+        self.assertIn("6 bytes follow", done.stderr)
+
     def test_isovalue_outside_the_values_names_them(self):
         write_nifti(self.path("two.nii"), Image((2, 2, 2), "B", [10, 20, 20, 20, 20, 20, 20, 30]))
         self.refused("no voxel reaches it; the range of two.nii is 10 to 30", "two.nii",

@@ -119,6 +119,28 @@ std::string directory() {
     return builder.file() + stack({0, 2}, kExplicitLittleEndian);
 }
 
+/// More pixels than the header says, and slices that disagree.
+void addContradictions(Seeds& seeds) {
+    const std::string pixels = samplesOf(std::vector<std::uint16_t>(kColumns * kRows, 7));
+    std::string padded, mixed, rescaled;
+    for (const int k : {0, 1}) {
+        const double height = 2.0 * k;
+        const std::string extra = k == 0 ? std::string("\1\2", 2) : std::string(2048, '\0');
+        padded += slice(height).bytes(0x7FE00010, "OW", pixels + extra).file(kDeflatedLittleEndian);
+        mixed += slice(height).text(0x00280004, "CS", k ? "MONOCHROME1" : "MONOCHROME2").file();
+        rescaled += slice(height)
+                        .text(0x00281052, "DS", "-3e38")
+                        .text(0x00281053, "DS", k ? "1e34" : "2.5")
+                        .text(0x00281054, "LO", "HU")
+                        .text(0x00541001, "CS", "BQML")
+                        .us(0x00280103, static_cast<std::uint16_t>(k))
+                        .file();
+    }
+    for (const std::string& files : {padded, mixed, rescaled}) seeds.add("dicom", files);
+    seeds.add("dicom", compressedStack(kRleLossless, {rleFrame(), rleFrame()}));
+    seeds.add("dicom", compressedStack(kJpeg2000, {jpeg2000Header(), jpeg2000Header()}));
+}
+
 }  // namespace
 
 void addDicomSeeds(Seeds& seeds) {
@@ -144,6 +166,7 @@ void addDicomSeeds(Seeds& seeds) {
                            .file(kRleLossless));
     seeds.add("dicom", mosaic());
     seeds.add("dicom", directory());
+    addContradictions(seeds);
 }
 
 }  // namespace adaptiso::fuzz

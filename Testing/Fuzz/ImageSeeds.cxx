@@ -60,6 +60,15 @@ void addNiftiSeeds(Seeds& seeds) {
     header.dataOffset = 0;
     seeds.add("nii", header.header());
     seeds.add("nii", nifti2());
+    std::string mangled = nifti2();
+    mangled.erase(8, 1);  // "\r\n" to "\n"
+    seeds.add("nii", mangled);
+    NiftiFile steep = placed;
+    steep.slope = 1e37F;
+    seeds.add("nii", steep.bytes());
+    seeds.add("nii", plain.bytes() + plain.data);  // another volume
+    seeds.add("nii", plain.bytes() + "a note");
+    seeds.add("nii", gzipped(plain.bytes()) + zlibbed(plain.data));
 }
 
 void addMghSeeds(Seeds& seeds) {
@@ -72,6 +81,14 @@ void addMghSeeds(Seeds& seeds) {
     const std::string file = h + shortSamples(kBig);
     seeds.add("mgh", file);
     seeds.add("mgh", gzipped(file));
+    // the footer: five numbers, then tags with their lengths
+    const std::string tag = bytesOf<std::int32_t>(3, kBig) + bytesOf<std::int64_t>(11, kBig);
+    const std::string footer = std::string(20, 'A') + tag + "mri_convert";
+    const std::string xform = bytesOf<std::int32_t>(30, kBig) + bytesOf<std::int32_t>(4, kBig);
+    seeds.add("mgh", file + footer);
+    seeds.add("mgh", gzipped(file + footer + xform + "file"));
+    seeds.add("mgh", file + footer + bytesOf<std::int32_t>(1, kBig) + "colours");
+    seeds.add("mgh", file + shortSamples(kBig));
     put<std::int32_t>(h, 16, 2, kBig);
     seeds.add("mgh", h + shortSamples(kBig) + shortSamples(kBig));
     put<std::int16_t>(h, 28, 0, kBig);
@@ -92,6 +109,10 @@ void addNrrdSeeds(Seeds& seeds) {
     std::string numbers;
     for (int n = 0; n < 24; ++n) numbers += std::to_string(n) + (n % 4 == 3 ? "\n" : " ");
     seeds.add("nrrd", file("encoding: ascii\nspacings: 1 2 3\n", numbers));
+    seeds.add("nrrd", file("encoding: text\nspacings: 1 2 3\n", numbers + "1.5e1, -7 nan 99999\n"));
+    seeds.add("nrrd",
+              "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: txt\n\n"
+              "0 1e3 -0.5, inf nan 3.4e38 1e-40 7\n");
     seeds.add("nrrd", file("endian: big\nencoding: hex\n", std::string(96, 'a')));
     seeds.add("nrrd", file(placed + "encoding: raw\nline skip: 1\nbyte skip: 2\n",
                            "\n12" + shortSamples()));
@@ -115,6 +136,10 @@ void addMetaImageSeeds(Seeds& seeds) {
     seeds.add("mha", header("CompressedData = True\nCompressedDataSize = " +
                                 std::to_string(packed.size()) + "\n",
                             "LOCAL\n" + packed));
+    seeds.add("mha", header("ElementToIntensityFunctionSlope = 2\n"
+                            "ElementToIntensityFunctionOffset = -1\nPosition = 10 20 30\n",
+                            "LOCAL\n" + shortSamples() + shortSamples()));
+    seeds.add("mha", header("CompressedData = True\n", "LOCAL\n" + packed + packed));
     seeds.add("mha", header("HeaderSize = -1\nDistanceUnits = mm\n", "x.raw\n"));
     seeds.add("mha", header("HeaderSize = 4\nElementNumberOfChannels = 1\n", "x.raw\n"));
     seeds.add(

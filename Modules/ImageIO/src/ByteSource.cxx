@@ -9,12 +9,46 @@
 #include <cerrno>
 #include <cstring>
 #include <limits>
+#include <string_view>
 
 #include "FileFault.h"
 #include "MappedFile.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::detail {
+namespace {
+
+constexpr std::size_t kTailHead = std::size_t{1} << 20;
+constexpr std::size_t kMostPadding = std::size_t{1} << 16;
+
+bool isAllZeros(std::string_view bytes) {
+    return bytes.find_first_not_of('\0') == std::string_view::npos;
+}
+
+/// Counts `bytes` in.
+void take(std::string_view bytes, ByteTail& tail) {
+    tail.byteCount += bytes.size();
+    tail.isZeros = tail.isZeros && tail.byteCount <= kMostPadding && isAllZeros(bytes);
+    tail.head += bytes.substr(0, kTailHead - std::min(kTailHead, tail.head.size()));
+}
+
+/// Whether `bytes` inflate, as far as they go.
+bool beginsStream(std::string& bytes) {
+    z_stream stream{};
+    constexpr int kGzipOrZlib = MAX_WBITS + 32;
+    if (inflateInit2(&stream, kGzipOrZlib) != Z_OK) return false;
+    unsigned char out[256];
+    stream.next_in = reinterpret_cast<unsigned char*>(bytes.data());
+    stream.avail_in = static_cast<uInt>(bytes.size());
+    stream.next_out = out;
+    stream.avail_out = sizeof out;
+    const int status = inflate(&stream, Z_NO_FLUSH);
+    const bool hasOutput = stream.total_out > 0;
+    inflateEnd(&stream);
+    return hasOutput && (status == Z_OK || status == Z_STREAM_END);
+}
+
+}  // namespace
 
 void ByteSource::CloseFile::operator()(const int* descriptor) const {
     ::close(*descriptor);
@@ -131,12 +165,39 @@ std::shared_ptr<const void> ByteSource::map(std::uint64_t byteCount, std::size_t
     return bytes;
 }
 
-void ByteSource::finish() {
-    if (!inflater_) return;
-    std::vector<char> scratch(std::size_t{1} << 16);
-    for (int piece = 0; piece < 1024 && !inflateDone_; ++piece) {
-        if (readSome(scratch.data(), scratch.size()) < scratch.size()) return;
+ByteTail ByteSource::readTail(std::uint64_t enough) {
+    if (!inflater_) return rawTail();
+    enough = std::max(enough, std::uint64_t{64} << 20);
+    ByteTail tail;
+    std::string piece(std::size_t{1} << 16, '\0');
+    while (!inflateDone_ && tail.byteCount < enough) {
+        const std::size_t got = readSome(piece.data(), piece.size());
+        take(std::string_view(piece).substr(0, got), tail);
     }
+    if (inflateDone_) lookBehindStream(tail);
+    return tail;
+}
+
+ByteTail ByteSource::rawTail() {
+    const std::uint64_t left = bytesLeft();
+    ByteTail tail;
+    std::string head(std::min<std::uint64_t>(left, kTailHead), '\0');
+    head.resize(readRaw(head.data(), head.size()));
+    take(head, tail);
+    tail.byteCount = left;
+    tail.isZeros = tail.isZeros && left <= kMostPadding;
+    return tail;
+}
+
+/// Compressed data end by themselves. Tapes leave zeros behind them; another stream is more data.
+void ByteSource::lookBehindStream(ByteTail& tail) {
+    std::string rest(reinterpret_cast<const char*>(inflater_->next_in), inflater_->avail_in);
+    const std::size_t held = rest.size();
+    rest.resize(held + std::min<std::uint64_t>(bytesLeft(), kMostPadding + 1));
+    rest.resize(held + readRaw(rest.data() + held, rest.size() - held));
+    if (rest.size() <= kMostPadding && isAllZeros(rest)) return;
+    tail.hasSecondStream = beginsStream(rest);
+    tail.hasStray = !tail.hasSecondStream;
 }
 
 std::size_t ByteSource::readRaw(void* out, std::size_t byteCount) {

@@ -6,9 +6,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace adaptiso::detail {
+
+/// What a file holds behind the last byte that was read.
+struct ByteTail {
+    std::uint64_t byteCount = 0;   ///< inflated where the data are compressed
+    bool isZeros = true;           ///< no more than 64 KiB, all of them 0: padding
+    std::string head;              ///< the first of them, at most 1 MiB
+    bool hasSecondStream = false;  ///< behind compressed data: zlib or gzip data begin again
+    bool hasStray = false;         ///< or something else that is no padding
+};
 
 /// The bytes of a file from an offset on, as they are or inflated. Every read that can't be
 /// fulfilled throws FileError: nobody downstream sees bytes that are not in the file.
@@ -44,8 +54,10 @@ public:
     /// \throws FileError when the data end early
     std::shared_ptr<const void> map(std::uint64_t byteCount, std::size_t alignment);
 
-    /// Checks the checksum of compressed data by inflating what is left (at most 64 MiB of it).
-    void finish();
+    /// Reads on to the end, which also checks the checksum of compressed data; of these no more
+    /// than `enough` bytes and at least 64 MiB are inflated.
+    /// \throws FileError when compressed data are damaged or end early
+    ByteTail readTail(std::uint64_t enough);
 
 private:
     struct InflateEnd {
@@ -63,6 +75,8 @@ private:
     std::size_t readInflated(void* out, std::size_t byteCount);
     bool refillInput();
     bool nextMemberBegins();
+    ByteTail rawTail();
+    void lookBehindStream(ByteTail& tail);
     [[noreturn]] void refuseTruncated(std::uint64_t missing) const;
 
     std::filesystem::path file_;

@@ -22,24 +22,42 @@ constexpr auto kJp2Start = "\0\0\0\x0cjP  "sv;
     refuse(file, fmt::format("{}: its pixel data can't be decoded", what), "get the file again");
 }
 
+enum class Segment { Whole, Damaged, TooLong };
+
+/// Bytes that runs and copies give, as far as they go.
+std::uint64_t unpackedLength(std::string_view in) {
+    std::uint64_t length = 0;
+    for (std::size_t at = 0; at < in.size();) {
+        const auto control = static_cast<unsigned char>(in[at++]);
+        if (control == 128) continue;
+        length += control > 128 ? 257U - control : control + 1U;
+        at += control > 128 ? 1 : control + 1U;
+    }
+    return length;
+}
+
 /// One segment: runs and copies (PS3.5, G.3.1) of exactly `count` bytes, put `stride` bytes apart.
-/// \return false when the segment ends early or holds more
-bool unpackRle(std::string_view in, std::byte* out, std::uint64_t count, std::size_t stride) {
+/// \return Damaged when the segment ends early, TooLong when it goes on for `rowBytes` and more
+Segment unpackRle(std::string_view in, std::byte* out, std::uint64_t count, std::size_t stride,
+                  std::uint64_t rowBytes) {
     std::uint64_t done = 0;
-    for (std::size_t at = 0; done < count;) {
-        if (at >= in.size()) return false;
+    std::size_t at = 0;
+    while (done < count) {
+        if (at >= in.size()) return Segment::Damaged;
         const auto control = static_cast<unsigned char>(in[at++]);
         if (control == 128) continue;
         const bool isRun = control > 128;
         const std::size_t length = isRun ? 257U - control : control + 1U;
-        if (length > count - done || (isRun ? 1 : length) > in.size() - at) return false;
+        if (length > count - done || (isRun ? 1 : length) > in.size() - at) return Segment::Damaged;
         for (std::size_t n = 0; n < length; ++n) {
             out[(done + n) * stride] = static_cast<std::byte>(in[isRun ? at : at + n]);
         }
         at += isRun ? 1 : length;
         done += length;
     }
-    return true;
+    in.remove_prefix(at);
+    const bool isPadding = in.find_first_not_of('\0') == std::string_view::npos;
+    return isPadding || unpackedLength(in) < rowBytes ? Segment::Whole : Segment::TooLong;
 }
 
 /// JPEG and JPEG-LS: the frame header (ISO 10918-1, B.2.2; ISO 14495-1, C.2.2), once the scan that
@@ -115,12 +133,19 @@ void decodeDicomRle(const fs::path& file, std::string_view stream, const DicomPi
         const std::uint64_t begin = header.at<std::uint32_t>(4 + 4 * s);
         const std::uint64_t end =
             s + 1 < segments ? header.at<std::uint32_t>(8 + 4 * s) : stream.size();
-        const bool isSound =
-            begin >= kHeaderBytes && begin < end && end <= stream.size() &&
-            // the most significant bytes come first; samples are little endian here
+        const bool isInside = begin >= kHeaderBytes && begin < end && end <= stream.size();
+        if (!isInside) refuseDamaged(file, kDamaged);
+        // the most significant bytes come first; samples are little endian here
+        const Segment segment =
             unpackRle(stream.substr(begin, end - begin), samples.data() + (segments - 1 - s), count,
-                      segments);
-        if (!isSound) refuseDamaged(file, kDamaged);
+                      segments, static_cast<std::uint64_t>(format.columns));
+        if (segment == Segment::Damaged) refuseDamaged(file, kDamaged);
+        if (segment == Segment::TooLong) {
+            refuse(file,
+                   fmt::format("its RLE data hold more pixels than its header describes ({} x {})",
+                               format.columns, format.rows),
+                   "correct Rows, Columns or NumberOfFrames, or get the file again");
+        }
     }
 }
 

@@ -60,6 +60,46 @@ void rescaleRow(const DicomPlane& plane, const Stored* in, std::int64_t count, O
     }
 }
 
+/// Rescaling is by what fits into the samples' type: nothing may become infinite.
+void requireFiniteRescale(const DicomFile& dicom, const DicomPixelFormat& format,
+                          const DicomPlane& plane, PixelType type) {
+    const double most = std::ldexp(1, format.bitsStored);  // beyond any stored value
+    const double largest = std::abs(plane.slope) * most + std::abs(plane.intercept);
+    const double limit = type == PixelType::Float32 ? std::numeric_limits<float>::max()
+                                                    : std::numeric_limits<double>::max();
+    if (largest <= limit) return;
+    refuse(dicom.path,
+           fmt::format("its RescaleSlope {} and RescaleIntercept {} make values infinite",
+                       number(plane.slope), number(plane.intercept)),
+           "get the file again");
+}
+
+/// Tiles of a mosaic behind its last slice hold one value, 0 as a rule.
+void requireBlankTiles(const DicomFile& dicom, const DicomPixelFormat& format,
+                       const std::vector<std::byte>& frame, std::int64_t columns, std::int64_t rows,
+                       std::int64_t slices) {
+    const std::int64_t across = format.columns / columns, tiles = across * (format.rows / rows);
+    withPixelType(format.stored, [&]<class Stored>(Stored) {
+        const auto* const pixels = reinterpret_cast<const Stored*>(frame.data());
+        for (std::int64_t tile = slices; tile < tiles; ++tile) {
+            const Stored* const corner =
+                pixels + tile / across * rows * format.columns + tile % across * columns;
+            for (std::int64_t row = 0; row < rows; ++row) {
+                const Stored* const begin = corner + row * format.columns;
+                if (std::all_of(begin, begin + columns, [&](Stored s) { return s == *corner; })) {
+                    continue;
+                }
+                refuse(
+                    dicom.path,
+                    fmt::format("is a Siemens mosaic of {} slices by its header, but its tile {} "
+                                "holds an image too",
+                                slices, tile + 1),
+                    "convert it with dcm2niix first");
+            }
+        }
+    });
+}
+
 /// Where decoded planes go.
 struct SliceStore {
     std::byte* samples;
@@ -110,7 +150,7 @@ Volume decodePlanes(const fs::path& input, const std::vector<DicomFile>& files,
     const SliceStore store{samples.get(), type, geometry.size[0], geometry.size[1]};
 
     std::vector<std::byte> frame;
-    std::size_t filesWithStrayBits = 0;
+    std::size_t filesWithStrayBits = 0, filesWithPadding = 0;
     for (std::size_t file = 0; file < files.size(); ++file) {
         std::vector<std::size_t>& slices = slicesOfFile[file];
         if (slices.empty()) continue;
@@ -119,11 +159,23 @@ Volume decodePlanes(const fs::path& input, const std::vector<DicomFile>& files,
         std::int64_t decoded = -1;
         for (const std::size_t slice : slices) {
             const DicomPlane& plane = stack.planes[slice];
+            requireFiniteRescale(files[file], formats[file], plane, type);
             if (plane.frame != decoded) frames.read(plane.frame, frame);  // tiles share theirs
             decoded = plane.frame;
             store.store(formats[file], plane, frame, slice);
         }
+        if (isSiemensMosaic(files[file].header)) {
+            requireBlankTiles(files[file], formats[file], frame, store.columns, store.rows,
+                              std::ssize(slices));
+        }
         filesWithStrayBits += frames.hasStrayBits() ? 1 : 0;
+        filesWithPadding += frames.hasPadding() ? 1 : 0;
+    }
+    if (filesWithPadding > 0) {
+        warnings.push_back(
+            fmt::format("{} files hold a few bytes more of pixel data than their header describes: "
+                        "left out",
+                        filesWithPadding));
     }
     if (filesWithStrayBits > 0) {
         warnings.push_back(

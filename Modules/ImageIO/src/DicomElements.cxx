@@ -51,7 +51,9 @@ constexpr std::array kWantedValues = {
     WantedValue{tag::kHighBit, DicomValueKind::UInt16},
     WantedValue{tag::kPixelRepresentation, DicomValueKind::UInt16},
     WantedValue{tag::kRescaleIntercept},
-    WantedValue{tag::kRescaleSlope}};
+    WantedValue{tag::kRescaleSlope},
+    WantedValue{tag::kRescaleType},
+    WantedValue{tag::kUnits}};
 
 constexpr std::array kWantedSequences = {
     tag::kDirectoryRecordSequence, tag::kModalityLutSequence,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "ByteSource.h"
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "Readers.h"
@@ -17,10 +18,25 @@ namespace {
 
 constexpr std::string_view kDirectoryStorage = "1.2.840.10008.1.3.10";  // DICOMDIR
 constexpr const char* kGetOrRemove = "get it again or remove it";
+constexpr const char* kDecompress = "decompress it, e.g. with gunzip, or remove it";
 
 bool hasDicomName(const fs::path& file) {
     const std::string ending = lowerCase(file.extension().native());
     return ending == ".dcm" || ending == ".ima" || ending == ".dicom";
+}
+
+/// A DICOM file that somebody has compressed as a whole, by its name or, for gzip, its content.
+bool isCompressedDicom(const fs::path& file, std::string_view head) {
+    const std::string ending = lowerCase(file.extension().native());
+    for (const std::string_view packed : {".gz", ".bz2", ".xz", ".zst", ".z", ".zip"}) {
+        if (ending == packed && hasDicomName(file.stem())) return true;
+    }
+    if (!head.starts_with("\x1f\x8b")) return false;
+    try {
+        return isGzippedDicom(file);
+    } catch (const FileError&) {
+        return false;  // damaged, and nothing says that it was a slice
+    }
 }
 
 bool isHidden(const fs::path& path) {
@@ -59,6 +75,7 @@ public:
     const std::vector<fs::path>& dicomFiles() const { return dicomFiles_; }
     const std::vector<DicomFault>& damaged() const { return damaged_; }
     std::size_t oddEntries() const { return oddEntries_; }
+    std::size_t compressedCopies() const { return compressedCopies_; }
 
 private:
     void walk(const fs::path& folder, int depth) {
@@ -119,10 +136,22 @@ private:
         const std::string head = readHead(entry, kMagicEnd);
         if (looksLikeDicom(head)) {
             dicomFiles_.push_back(entry);
+        } else if (!isHidden(entry) && isCompressedDicom(entry, head)) {
+            takeCompressed(entry);
         } else if (!isHidden(entry) && (hasDicomName(entry) || isBlankStub(head, kMagicEnd))) {
             refuse(entry, "is empty, or named like a DICOM file but none: a slice may be damaged",
                    kGetOrRemove);
         }
+    }
+
+    /// One that lies beside what it holds is a copy; alone, it is a slice that would be missing.
+    void takeCompressed(const fs::path& entry) {
+        std::error_code ignored;
+        const fs::path slice = fs::path(entry).replace_extension();
+        if (slice == entry || !fs::is_regular_file(slice, ignored)) {
+            refuse(entry, "is a compressed DICOM file: a slice would be missing", kDecompress);
+        }
+        ++compressedCopies_;
     }
 
     const fs::path& folder_;
@@ -130,6 +159,7 @@ private:
     std::vector<fs::path> dicomFiles_;
     std::vector<DicomFault> damaged_;
     std::size_t oddEntries_ = 0;  ///< pipes, devices, link loops, links to folders
+    std::size_t compressedCopies_ = 0;
     std::size_t entries_ = 0;
 };
 
@@ -209,6 +239,13 @@ std::vector<fs::path> referencedFiles(const fs::path& directory, const DicomHead
 
 }  // namespace
 
+bool isGzippedDicom(const fs::path& file) {
+    std::string head(132, '\0');
+    head.resize(
+        ByteSource(file, 0, ByteSource::Encoding::Deflate).readSome(head.data(), head.size()));
+    return looksLikeDicom(head);
+}
+
 std::string withoutName(const std::string& message, const fs::path& file) {
     const std::string prefix = displayName(file) + ": ";
     return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
@@ -224,6 +261,11 @@ DicomInput readDicomHeaders(const fs::path& folder, DamagedFiles damaged, bool k
             fmt::format("left out {} entries of the folder that are no regular files (pipes, "
                         "links to folders, link loops)",
                         walk.oddEntries()));
+    }
+    if (walk.compressedCopies() > 0) {
+        input.warnings.push_back(
+            fmt::format("left out {} compressed files that lie beside files of the same name",
+                        walk.compressedCopies()));
     }
     return input;
 }

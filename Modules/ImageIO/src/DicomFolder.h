@@ -20,6 +20,9 @@ struct DicomInput {
 /// \return a FileError's message without the file's name that it begins with
 std::string withoutName(const std::string& message, const std::filesystem::path& file);
 
+/// \throws FileError when it is no gzip file, or a damaged one
+bool isGzippedDicom(const std::filesystem::path& file);
+
 /// What to do about a file that is damaged.
 enum class DamagedFiles { Refuse, List };
 

@@ -176,6 +176,7 @@ private:
     void takeContent(const Element& element, std::uint64_t end, int depth, DicomDataset& dataset) {
         if (element.tag == tag::kPixelData) {
             DicomPixelData pixels = takePixelData(element, end);
+            if (depth == 0 && header_.pixelData) refuseDamaged("it holds pixel data twice");
             if (depth == 0) header_.pixelData = std::move(pixels);
             return;
         }

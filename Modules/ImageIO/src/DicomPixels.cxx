@@ -8,7 +8,9 @@
 #include <set>
 #include <string_view>
 
+#include "DataTail.h"
 #include "FileFault.h"
+#include "HeaderBytes.h"
 #include "HeaderText.h"
 #include "Samples.h"
 
@@ -189,6 +191,38 @@ void DicomFrames::openNative() {
                fmt::format("truncated: its pixel data hold {} of {} bytes", there, needed),
                "get the whole file");
     }
+    const std::uint64_t extra = there - needed;
+    if (extra <= needed % 2) return;  // lengths are even (PS3.5, 8.1.1)
+    hasPadding_ = true;
+    const std::uint64_t rowBytes = format_.frameBytes() / static_cast<std::uint64_t>(format_.rows);
+    if (!isMoreImage(extra, {rowBytes, format_.frameBytes()}) ||
+        isZeros(dicom_.header.pixelData->offset + needed, extra)) {
+        return;
+    }
+    refuse(
+        dicom_.path,
+        fmt::format("its pixel data hold {} bytes, its header describes {} ({} x {} pixels of {} "
+                    "bits, {} frame{})",
+                    there, needed, format_.columns, format_.rows, 8 * bytesPerPixel(format_.stored),
+                    format_.frames, format_.frames > 1 ? "s" : ""),
+        "correct Rows, Columns, BitsAllocated or NumberOfFrames, or get the file again");
+}
+
+/// Padding: no more than 64 KiB of zeros.
+bool DicomFrames::isZeros(std::uint64_t position, std::uint64_t byteCount) {
+    constexpr std::uint64_t kMostPadding = 1 << 16;
+    if (byteCount > kMostPadding) return false;
+    inflateOnce();
+    std::string bytes(byteCount, '\0');
+    bytes_.read(position, bytes.data(), bytes.size());
+    return bytes.find_first_not_of('\0') == std::string::npos;
+}
+
+/// Positions are those of the inflated data set where it is deflated.
+void DicomFrames::inflateOnce() {
+    if (!dicom_.header.deflatedFrom || isInflated_) return;
+    bytes_.inflateFrom(*dicom_.header.deflatedFrom);
+    isInflated_ = true;
 }
 
 void DicomFrames::openEncapsulated() {
@@ -199,6 +233,7 @@ void DicomFrames::openEncapsulated() {
                kSaveUncompressed);
     }
     if (codec_ == DicomCodec::Rle) requireRoomInRuns();
+    if (format_.frames == 1) requireOneFrame();
     frameBegins_ = firstFragments();
     if (std::ssize(frameBegins_) != format_.frames) {
         refuse(dicom_.path,
@@ -245,6 +280,31 @@ std::vector<std::size_t> DicomFrames::firstFragments() {
     return begins;
 }
 
+/// The fragments of one frame are one codestream: where another begins, the header has too few.
+void DicomFrames::requireOneFrame() {
+    const auto& fragments = dicom_.header.pixelData->fragments;
+    if (fragments.size() < 2) return;
+    const auto begins = [&](const DicomPixelData::Fragment& fragment) {
+        return codec_ == DicomCodec::Rle ? beginsRle(fragment) : beginsCodestream(fragment);
+    };
+    const auto frames = std::ranges::count_if(fragments, begins);
+    if (frames <= 1) return;
+    refuse(dicom_.path,
+           fmt::format("its pixel data hold {} compressed frames, its header describes 1", frames),
+           "correct NumberOfFrames, or get the file again");
+}
+
+/// An RLE header (PS3.5, G.5): as many segments as a pixel has bytes, the first behind the header.
+bool DicomFrames::beginsRle(const DicomPixelData::Fragment& fragment) {
+    constexpr std::uint64_t kHeaderBytes = 64;
+    if (fragment.byteCount < kHeaderBytes) return false;
+    std::string head(8, '\0');
+    bytes_.read(fragment.offset, head.data(), head.size());
+    const HeaderBytes bytes(head, std::endian::little);
+    return bytes.at<std::uint32_t>(0) == bytesPerPixel(format_.stored) &&
+           bytes.at<std::uint32_t>(4) == kHeaderBytes;
+}
+
 bool DicomFrames::beginsCodestream(const DicomPixelData::Fragment& fragment) {
     std::string head(std::min<std::uint64_t>(fragment.byteCount, 4), '\0');
     bytes_.read(fragment.offset, head.data(), head.size());
@@ -266,10 +326,7 @@ std::string DicomFrames::codestreamOf(std::int64_t frame) {
 void DicomFrames::read(std::int64_t frame, std::vector<std::byte>& samples) {
     if (codec_ == DicomCodec::None) {
         const DicomHeader& header = dicom_.header;
-        if (header.deflatedFrom && !isInflated_) {
-            bytes_.inflateFrom(*header.deflatedFrom);
-            isInflated_ = true;
-        }
+        inflateOnce();
         samples.resize(format_.frameBytes());
         bytes_.read(header.pixelData->offset + static_cast<std::uint64_t>(frame) * samples.size(),
                     samples.data(), samples.size());

@@ -21,8 +21,8 @@ DicomPixelFormat dicomPixelFormat(const DicomFile& dicom);
 /// given one frame's codestream at a time, after a look at the codestream's own header.
 class DicomFrames {
 public:
-    /// \throws FileError for an unknown transfer syntax, too few pixel data, or frames that can't
-    ///         be told apart
+    /// \throws FileError for an unknown transfer syntax, too few pixel data, as many too many as
+    ///         rows or frames more would have, or frames that can't be told apart
     DicomFrames(const DicomFile& dicom, const DicomPixelFormat& format);
 
     /// Fills `samples` with frameBytes() bytes in this machine's byte order, without what lies
@@ -33,19 +33,27 @@ public:
     /// A frame read so far had bits above HighBit that are neither the sign nor an overlay.
     bool hasStrayBits() const { return hasStrayBits_; }
 
+    /// Its pixel data are longer than its frames, by less than an image would be; not by the one
+    /// byte that makes lengths even.
+    bool hasPadding() const { return hasPadding_; }
+
 private:
     void openNative();
+    bool isZeros(std::uint64_t position, std::uint64_t byteCount);
+    void inflateOnce();
     void openEncapsulated();
     void requireRoomInRuns() const;
     std::vector<std::size_t> firstFragments();
     bool beginsCodestream(const DicomPixelData::Fragment& fragment);
+    bool beginsRle(const DicomPixelData::Fragment& fragment);
+    void requireOneFrame();
     std::string codestreamOf(std::int64_t frame);
 
     const DicomFile& dicom_;
     DicomPixelFormat format_;
     DicomCodec codec_ = DicomCodec::None;
     DicomBytes bytes_;
-    bool isInflated_ = false, hasStrayBits_ = false;
+    bool isInflated_ = false, hasStrayBits_ = false, hasPadding_ = false;
     std::vector<std::size_t> frameBegins_;  ///< each frame's first fragment, and one past the last
 };
 

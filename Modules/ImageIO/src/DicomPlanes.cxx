@@ -44,6 +44,10 @@ DicomPlane placedPlane(const fs::path& path, const PlaneSources& from) {
     const auto intercept = numbers(from.transformation, tag::kRescaleIntercept);
     if (!slope.empty()) plane.slope = slope.front();
     if (!intercept.empty()) plane.intercept = intercept.front();
+    plane.hasRescale = !slope.empty() || !intercept.empty();
+    if (from.transformation) {
+        plane.rescaleType = from.transformation->text(tag::kRescaleType).value_or("");
+    }
     if (plane.slope == 0) {
         refuse(path, "its RescaleSlope is 0: the image would be constant", "get the file again");
     }

@@ -26,6 +26,8 @@ struct DicomPlane {
     std::optional<Vec3> alongRow, alongColumn;   ///< unit vectors
     std::optional<double> columnStepMm, rowStepMm;
     double slope = 1, intercept = 0;
+    bool hasRescale = false;  ///< the header says so, be it by 1 and 0
+    std::string rescaleType;  ///< "HU", ...; empty when absent
 
     std::string imageType;  ///< ImageType or FrameType, with the complex component (phase, ...)
     std::array<std::vector<double>, kDicomLabels> labels;

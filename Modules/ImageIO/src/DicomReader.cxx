@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "DicomAgreement.h"
 #include "DicomDecoding.h"
 #include "DicomFolder.h"
 #include "DicomGroups.h"
@@ -73,8 +74,12 @@ DicomStack stackOf(const fs::path& input, const std::vector<DicomFile>& files,
                "give the folder with all slices of the series");
     }
     requirePlacedPlanes(files, group);
-    return stackDicomPlanes(input, group, chooseVolume(input, files, group, options.volumeIndex),
-                            options.resampleSlices);
+    std::vector<DicomPlane> planes = chooseVolume(input, files, group, options.volumeIndex);
+    std::vector<std::string> warnings;
+    requireAgreement(input, files, planes, warnings);
+    DicomStack stack = stackDicomPlanes(input, group, std::move(planes), options.resampleSlices);
+    stack.warnings.insert(stack.warnings.end(), warnings.begin(), warnings.end());
+    return stack;
 }
 
 /// JPEG, JPEG-LS or JPEG 2000 in any of the stack's files: the rest is decoded here.

@@ -56,6 +56,19 @@ std::optional<std::int64_t> parseInteger(std::string_view text) {
     return parseAll<std::int64_t>(text);
 }
 
+template <class T>
+std::optional<T> parseNumberAs(std::string_view text) {
+    return parseAll<T>(text);
+}
+template std::optional<std::int8_t> parseNumberAs(std::string_view);
+template std::optional<std::uint8_t> parseNumberAs(std::string_view);
+template std::optional<std::int16_t> parseNumberAs(std::string_view);
+template std::optional<std::uint16_t> parseNumberAs(std::string_view);
+template std::optional<std::int32_t> parseNumberAs(std::string_view);
+template std::optional<std::uint32_t> parseNumberAs(std::string_view);
+template std::optional<std::int64_t> parseNumberAs(std::string_view);
+template std::optional<std::uint64_t> parseNumberAs(std::string_view);
+
 std::string readHead(const fs::path& file, std::size_t most) {
     std::string head(std::min<std::uint64_t>(most, requireRegularFile(file)), '\0');
     head.resize(ByteSource(file, 0, ByteSource::Encoding::Raw).readSome(head.data(), head.size()));

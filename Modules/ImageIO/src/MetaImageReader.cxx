@@ -7,6 +7,7 @@
 #include <string>
 
 #include "DataFile.h"
+#include "DataTail.h"
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "Readers.h"
@@ -93,20 +94,16 @@ bool parseFlag(const fs::path& file, const MetaHeader& header,
         "it must be True or False");
 }
 
-/// `count` finite numbers under one of several names, or nothing when none of them is there.
-std::optional<std::vector<double>> parseNumbers(const fs::path& file, const MetaHeader& header,
-                                                std::initializer_list<std::string_view> names,
-                                                std::size_t count) {
-    const auto text = header.find(names);
-    if (!text) return std::nullopt;
+std::vector<double> numbersIn(const fs::path& file, std::string_view name, std::string_view text,
+                              std::size_t count) {
     std::vector<double> numbers;
-    for (const std::string_view word : words(*text)) {
+    for (const std::string_view word : words(text)) {
         const auto value = parseNumber(word);
         if (!value || !std::isfinite(*value)) {
             refuse(file,
                    fmt::format("its MetaImage header is damaged: {} holds '{}', not a "
                                "finite number",
-                               *names.begin(), printable(word)),
+                               name, printable(word)),
                    "repair the header");
         }
         numbers.push_back(*value);
@@ -115,10 +112,59 @@ std::optional<std::vector<double>> parseNumbers(const fs::path& file, const Meta
         refuse(file,
                fmt::format("its MetaImage header is damaged: {} holds {} numbers, must "
                            "hold {}",
-                           *names.begin(), numbers.size(), count),
+                           name, numbers.size(), count),
                "repair the header");
     }
     return numbers;
+}
+
+/// `count` finite numbers under one of several names, or nothing when none of them is there.
+std::optional<std::vector<double>> parseNumbers(const fs::path& file, const MetaHeader& header,
+                                                std::initializer_list<std::string_view> names,
+                                                std::size_t count) {
+    std::optional<std::vector<double>> numbers;
+    std::string_view first;
+    for (const std::string_view name : names) {
+        const auto text = header.find({name});
+        if (!text) continue;
+        std::vector<double> found = numbersIn(file, name, *text, count);
+        if (numbers && *numbers != found) {
+            refuse(file,
+                   fmt::format("its MetaImage header contradicts itself: {} and {} differ", first,
+                               name),
+                   "remove the wrong one");
+        }
+        if (!numbers) first = name;
+        numbers = std::move(found);
+    }
+    return numbers;
+}
+
+/// MetaIO keeps tubes, meshes, landmarks and more in files that look alike.
+void requireImage(const fs::path& file, const MetaHeader& header) {
+    const auto type = header.find({"ObjectType"});
+    if (!type || lowerCase(*type) == "image") return;
+    refuse(file, fmt::format("its ObjectType is '{}', not Image", printable(*type)),
+           "give an image; adaptiso reads no other MetaIO objects");
+}
+
+/// intensity = slope * element + offset.
+void parseScaling(const fs::path& file, const MetaHeader& header, SampleLayout& layout,
+                  std::vector<std::string>& warnings) {
+    const auto slope = parseNumbers(file, header, {"ElementToIntensityFunctionSlope"}, 1);
+    const auto offset = parseNumbers(file, header, {"ElementToIntensityFunctionOffset"}, 1);
+    if (slope) layout.slope = slope->front();
+    if (offset) layout.intercept = offset->front();
+    if (layout.slope == 0) {
+        refuse(file, "its ElementToIntensityFunctionSlope is 0: the image would be constant",
+               "repair the header");
+    }
+    layout.isScaled = layout.slope != 1 || layout.intercept != 0;
+    if (!layout.isScaled) return;
+    warnings.push_back(fmt::format(
+        "values are {} x stored value + {}, as its ElementToIntensityFunction says; ITK "
+        "and programs that rest on it show the stored values",
+        number(layout.slope), number(layout.intercept)));
 }
 
 struct Extents {
@@ -192,6 +238,7 @@ ImageGeometry geometryOf(const fs::path& file, const MetaHeader& header, const E
         parseNumbers(file, header, {"TransformMatrix", "Rotation", "Orientation"}, n * n);
     if (!matrix) warnings.emplace_back("no TransformMatrix: the axes were taken as LPS");
     const auto origin = parseNumbers(file, header, {"Offset", "Origin", "Position"}, n);
+    if (!origin) warnings.emplace_back("no Offset: the first voxel was put at 0, 0, 0");
 
     ImageGeometry geometry{extents.size, {}, {}};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -226,8 +273,28 @@ std::int64_t parseHeaderSize(const fs::path& file, const MetaHeader& header, boo
     return *size;
 }
 
-/// At the first sample of the file that holds them.
-ByteSource openData(const fs::path& file, const MetaHeader& header, std::uint64_t byteCount) {
+std::endian byteOrderOf(const fs::path& file, const MetaHeader& header, PixelType type) {
+    const bool isBig = parseFlag(file, header, {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"});
+    const bool isAlsoBig =
+        parseFlag(file, header, {"ElementByteOrderMSB", "BinaryDataByteOrderMSB"});
+    if (isBig != isAlsoBig && bytesPerPixel(type) > 1) {
+        refuse(file,
+               "its MetaImage header contradicts itself: BinaryDataByteOrderMSB and "
+               "ElementByteOrderMSB differ",
+               "remove the wrong one");
+    }
+    return isBig ? std::endian::big : std::endian::little;
+}
+
+/// The file that holds the samples, at the first of them.
+struct MetaData {
+    fs::path file;
+    ByteSource source;
+    bool isChosenPart = false;  ///< the header points into a larger file
+};
+
+MetaData openData(const fs::path& file, const MetaHeader& header, std::uint64_t byteCount,
+                  const ImageExtent& extent) {
     const std::string_view name = header.require(file, "ElementDataFile");
     const bool isLocal = lowerCase(name) == "local";
     if (name.starts_with("LIST") || words(name).size() > 1) {
@@ -243,10 +310,25 @@ ByteSource openData(const fs::path& file, const MetaHeader& header, std::uint64_
     const std::int64_t headerSize =
         parseHeaderSize(file, header, isCompressed, isLocal ? begin : 0);
     const auto encoding = isCompressed ? ByteSource::Encoding::Deflate : ByteSource::Encoding::Raw;
-    ByteSource source(dataFile, headerSize > 0 ? static_cast<std::uint64_t>(headerSize) : begin,
-                      encoding);
-    if (headerSize == -1) source.skipToLast(byteCount);
-    return source;
+    const std::uint64_t from = headerSize > 0 ? static_cast<std::uint64_t>(headerSize) : begin;
+    MetaData data{dataFile, ByteSource(dataFile, from, encoding), from - begin >= extent.piece};
+    if (headerSize == -1) {
+        data.source.skipToLast(byteCount);
+        checkBytesBefore(dataFile, data.source.position() - begin, extent);
+    }
+    return data;
+}
+
+/// MetaIO's MET_LONG has 4 bytes on every machine; other writers take their own long of 8.
+void requireFourByteLong(const fs::path& file, std::string_view type, const ByteTail& tail,
+                         std::uint64_t byteCount) {
+    if (tail.byteCount != byteCount || (type != "MET_LONG" && type != "MET_ULONG")) return;
+    refuse(
+        file,
+        fmt::format("its ElementType {} has 4 bytes (MetaIO), but its data hold 8 for each "
+                    "voxel",
+                    type),
+        fmt::format("write {}_LONG for integers of 8 bytes, or cut the file to one image", type));
 }
 
 }  // namespace
@@ -263,22 +345,28 @@ bool looksLikeMetaImage(std::string_view head) {
 
 ReadVolume readMetaImage(const fs::path& file, const ReadOptions& options) {
     const MetaHeader header = parseHeader(file);
+    requireImage(file, header);
     const Extents extents = parseExtents(file, header);
     requireScalar(file, header);
-    SampleLayout layout{parseType(file, header.require(file, "ElementType"))};
+    const std::string_view type = header.require(file, "ElementType");
+    std::vector<std::string> warnings;
+    SampleLayout layout{parseType(file, type)};
     layout.volumeCount = extents.volumeCount;
     layout.volumeIndex = chooseVolume(file, extents.volumeCount, options);
-    const bool isBigEndian =
-        parseFlag(file, header, {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"});
-    layout.byteOrder = isBigEndian ? std::endian::big : std::endian::little;
-    const std::uint64_t volumeBytes = requireImageBytes(file, extents.size, layout.stored);
-    std::vector<std::string> warnings;
+    layout.byteOrder = byteOrderOf(file, header, layout.stored);
+    parseScaling(file, header, layout, warnings);
+    const std::uint64_t byteCount =
+        requireProduct(file, requireImageBytes(file, extents.size, layout.stored),
+                       static_cast<std::uint64_t>(extents.volumeCount));
     const ImageGeometry geometry = geometryOf(file, header, extents, warnings);
     requireUsableGeometry(file, geometry);
-    ByteSource source = openData(
-        file, header,
-        requireProduct(file, volumeBytes, static_cast<std::uint64_t>(extents.volumeCount)));
-    return {readSamples(file, source, layout, geometry, options), "MetaImage", std::move(warnings)};
+    const ImageExtent extent = ImageExtent::of(layout, extents.size);
+    MetaData data = openData(file, header, byteCount, extent);
+    Volume volume = readSamples(file, data.source, layout, geometry, options);
+    const ByteTail tail = data.source.readTail(byteCount + 1);
+    requireFourByteLong(file, type, tail, byteCount);
+    checkTail(data.file, tail, extent, data.isChosenPart, warnings);
+    return {std::move(volume), "MetaImage", std::move(warnings)};
 }
 
 }  // namespace adaptiso::detail

@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 
+#include "DataTail.h"
 #include "FileFault.h"
 #include "HeaderBytes.h"
 #include "Readers.h"
@@ -59,6 +60,42 @@ ImageGeometry geometryOf(const HeaderBytes& bytes, const Index3& size,
     return {size, toLps * (centre - ras * half), toLps * ras};
 }
 
+/// What mghWrite puts behind the samples: four or five numbers of the scan (TR, flip angle, TE, TI,
+/// field of view), and tags, each with its length.
+enum class Footer { Whole, OpenEnded, CutOff, None };
+
+Footer footerOf(const ByteTail& tail) {
+    constexpr std::size_t kLeastNumbers = 4 * sizeof(float), kNumbers = 5 * sizeof(float);
+    if (tail.byteCount == 0 || tail.byteCount == kLeastNumbers) return Footer::Whole;
+    if (tail.byteCount < kNumbers) return Footer::CutOff;
+    const HeaderBytes bytes(tail.head, std::endian::big);
+    bool isCutOff = false;
+    for (std::size_t at = kNumbers; at < bytes.size();) {
+        // utils/tags.cpp: old tags have another kind of length, or none
+        constexpr std::int32_t kOldColourTable = 1, kOldRealRas = 2, kOldSurface = 20,
+                               kOldXform = 30;
+        constexpr std::int32_t kLastTag = 1000, kEndTag = -1;
+        if (bytes.size() - at < sizeof(std::int32_t)) return Footer::CutOff;
+        const auto tag = bytes.at<std::int32_t>(at);
+        at += sizeof(std::int32_t);
+        const bool isEnd = tag == kEndTag && bytes.size() - at <= sizeof(std::int64_t);
+        if (isEnd) return Footer::Whole;
+        if (tag < 1 || tag > kLastTag) return Footer::None;
+        if (tag == kOldRealRas) continue;
+        if (tag == kOldColourTable || tag == kOldSurface) return Footer::OpenEnded;
+        const std::size_t lengthBytes = tag == kOldXform ? 4 : 8;
+        if (bytes.size() - at < lengthBytes) return Footer::CutOff;
+        const std::int64_t length =
+            tag == kOldXform ? bytes.at<std::int32_t>(at) : bytes.at<std::int64_t>(at);
+        at += lengthBytes;
+        if (length < 0) return Footer::None;
+        isCutOff = static_cast<std::uint64_t>(length) > tail.byteCount - at;
+        if (isCutOff || static_cast<std::uint64_t>(length) > bytes.size() - at) break;
+        at += static_cast<std::size_t>(length);
+    }
+    return isCutOff ? Footer::CutOff : Footer::Whole;
+}
+
 }  // namespace
 
 ReadVolume readMgh(const fs::path& file, const ReadOptions& options) {
@@ -85,7 +122,18 @@ ReadVolume readMgh(const fs::path& file, const ReadOptions& options) {
     layout.volumeIndex = chooseVolume(file, frames, options);
     std::vector<std::string> warnings;
     const ImageGeometry geometry = geometryOf(bytes, size, warnings);
-    return {readSamples(file, source, layout, geometry, options), "MGH", std::move(warnings)};
+    Volume volume = readSamples(file, source, layout, geometry, options);
+
+    const ImageExtent extent = ImageExtent::of(layout, size);
+    const ByteTail tail = source.readTail(extent.whole + 1);
+    const Footer footer = footerOf(tail);
+    const bool mayBeImage = footer != Footer::Whole && isMoreImage(tail.byteCount, extent);
+    if (footer == Footer::None || mayBeImage) {
+        checkTail(file, tail, extent, false, warnings);
+    } else if (footer == Footer::CutOff) {
+        warnings.emplace_back("the notes that follow its image (MGH footer) are cut off");
+    }
+    return {std::move(volume), "MGH", std::move(warnings)};
 }
 
 }  // namespace adaptiso::detail

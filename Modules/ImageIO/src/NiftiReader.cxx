@@ -7,6 +7,7 @@
 #include <string>
 
 #include "DataFile.h"
+#include "DataTail.h"
 #include "FileFault.h"
 #include "HeaderBytes.h"
 #include "Readers.h"
@@ -87,6 +88,19 @@ NiftiHeader parseVersion2(const HeaderBytes& bytes) {
     return h;
 }
 
+/// NIfTI-2's magic ends with the line ends of every system, as PNG's does: a transfer that turns
+/// line ends changes them, and moves what follows.
+void requireLineEnds(const fs::path& file, std::string_view head) {
+    constexpr std::size_t kAt = 8;
+    const bool isLeftOut = isMagic(head, kAt, std::string_view("\0\0\0\0", 4));  // by some writers
+    if (isLeftOut || isMagic(head, kAt, "\r\n\x1a\n")) return;
+    refuse(
+        file,
+        "its NIfTI-2 magic is damaged, as by a transfer in text mode that turns line ends: so are "
+        "its header and voxels",
+        "transfer it again in binary mode");
+}
+
 NiftiHeader readHeader(const fs::path& file) {
     std::array<char, kHeader2Bytes> buffer{};
     ByteSource source = ByteSource::openPlainOrGzip(file);
@@ -118,6 +132,7 @@ NiftiHeader readHeader(const fs::path& file) {
             if (!h.hasDataInside && !isMagic(head, 4, std::string_view("ni2\0", 4))) {
                 refuse(file, "not a NIfTI-2 file: the magic is missing", "check what it is");
             }
+            requireLineEnds(file, head);
         } else {
             continue;
         }
@@ -283,6 +298,31 @@ double largestCornerDistance(const ImageGeometry& a, const ImageGeometry& b) {
     return largest;
 }
 
+/// The sform's voxel size is taken, as nibabel and FreeSurfer do; ANALYZE's heirs take pixdim's.
+void compareVoxelSizes(const fs::path& file, const NiftiHeader& h, const ImageGeometry& geometry,
+                       double scale, std::vector<std::string>& warnings) {
+    constexpr double kSame = 0.01;   // registered images may be stretched; less is rounding
+    constexpr double kAbsurd = 100;  // another unit, no brain's
+    std::array<double, 3> steps{}, said{};
+    double worst = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto at = static_cast<std::size_t>(axis);
+        steps[at] = norm(geometry.indexToPhysical.column[axis]);
+        said[at] = scale * std::abs(h.pixdim[at + 1]);
+        if (!std::isfinite(said[at]) || said[at] == 0) return;  // it does not say
+        worst = std::max({worst, steps[at] / said[at], said[at] / steps[at]});
+    }
+    if (worst <= 1 + kSame) return;
+    const std::string sizes = fmt::format(
+        "voxels are {} x {} x {} mm by pixdim and {} x {} x {} mm by the sform", number(said[0]),
+        number(said[1]), number(said[2]), number(steps[0]), number(steps[1]), number(steps[2]));
+    if (worst >= kAbsurd) {
+        refuse(file, "its header contradicts itself: " + sizes,
+               "correct the sform or pixdim; one may be in another unit");
+    }
+    warnings.push_back(sizes + "; the sform was taken");
+}
+
 ImageGeometry geometryOf(const fs::path& file, const NiftiHeader& h, const Index3& size,
                          std::vector<std::string>& warnings) {
     const double scale = millimetresPerUnit(file, h.units);
@@ -293,6 +333,7 @@ ImageGeometry geometryOf(const fs::path& file, const NiftiHeader& h, const Index
     if (h.sformCode > 0) {
         const ImageGeometry geometry = toLpsMm(sformAffine(h), scale, size);
         requireUsableGeometry(file, geometry);
+        compareVoxelSizes(file, h, geometry, scale, warnings);
         if (h.qformCode > 0) {
             const double apart =
                 largestCornerDistance(geometry, toLpsMm(qformAffine(file, h), scale, size));
@@ -351,10 +392,19 @@ std::uint64_t requireDataOffset(const fs::path& file, const NiftiHeader& h) {
     return static_cast<std::uint64_t>(h.dataOffset);
 }
 
-SampleLayout layoutOf(const fs::path& file, const NiftiHeader& h) {
+SampleLayout layoutOf(const fs::path& file, const NiftiHeader& h,
+                      std::vector<std::string>& warnings) {
     SampleLayout layout{pixelTypeOfCode(file, h), h.byteOrder};
     // slope 0 or NaN means "no scaling": nifti1.h and, for NaN, what nibabel and SPM write
-    if (h.slope == 0 || std::isnan(h.slope)) return layout;
+    if (h.slope == 0 || std::isnan(h.slope)) {
+        if (std::isfinite(h.intercept) && h.intercept != 0) {
+            warnings.push_back(
+                fmt::format("scl_inter is {} but scl_slope {}, which means no scaling: the stored "
+                            "values were taken",
+                            number(h.intercept), number(h.slope)));
+        }
+        return layout;
+    }
     if (!std::isfinite(h.slope) || !std::isfinite(h.intercept)) {
         refuse(file, "its scaling is not finite (scl_slope or scl_inter)", "repair the header");
     }
@@ -378,11 +428,13 @@ ReadVolume readNifti(const fs::path& input, const ReadOptions& options) {
         isImgName(input) ? partner(input, {".hdr", ".HDR", ".hdr.gz"}) : input;
     const NiftiHeader header = readHeader(headerFile);
     const Extents extents = extentsOf(headerFile, header);
-    SampleLayout layout = layoutOf(headerFile, header);
+    std::vector<std::string> warnings;
+    SampleLayout layout = layoutOf(headerFile, header, warnings);
     layout.volumeCount = extents.volumeCount;
     layout.volumeIndex = chooseVolume(headerFile, extents.volumeCount, options);
-    requireImageBytes(headerFile, extents.size, layout.stored);
-    std::vector<std::string> warnings;
+    const std::uint64_t byteCount =
+        requireProduct(headerFile, requireImageBytes(headerFile, extents.size, layout.stored),
+                       static_cast<std::uint64_t>(extents.volumeCount));
     const ImageGeometry geometry = geometryOf(headerFile, header, extents.size, warnings);
 
     const fs::path dataFile =
@@ -391,8 +443,10 @@ ReadVolume readNifti(const fs::path& input, const ReadOptions& options) {
     const std::uint64_t offset = requireDataOffset(headerFile, header);
     source.requireRoomFor(offset);
     source.skip(offset);
-    return {readSamples(dataFile, source, layout, geometry, options),
-            header.version == 1 ? "NIfTI-1" : "NIfTI-2", std::move(warnings)};
+    Volume volume = readSamples(dataFile, source, layout, geometry, options);
+    checkTail(dataFile, source.readTail(byteCount + 1), ImageExtent::of(layout, extents.size),
+              false, warnings);
+    return {std::move(volume), header.version == 1 ? "NIfTI-1" : "NIfTI-2", std::move(warnings)};
 }
 
 }  // namespace adaptiso::detail

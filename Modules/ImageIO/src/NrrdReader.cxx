@@ -5,18 +5,18 @@
 #include <string>
 
 #include "DataFile.h"
-#include "Fence.h"
+#include "DataTail.h"
 #include "FileFault.h"
 #include "HeaderText.h"
-#include "ItkDecoder.h"
 #include "NrrdHeader.h"
+#include "NrrdText.h"
 #include "Readers.h"
 #include "Samples.h"
 
 // The header is read here: ITK 5.2.1 flips the wrong axis for left-anterior-superior, takes unknown
-// spaces as LPS and opens any file a header names. So are raw and gzip samples, once and in place:
-// ITK copies them, and leaves memory uninitialised where they are short. Text goes to ITK, behind
-// the fence, once all of its numbers are known to be there.
+// spaces as LPS and opens any file a header names. So are the samples, once and in place: ITK
+// copies them, leaves memory uninitialised where they are short, and wraps numbers of text that
+// their type can't hold.
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
 
@@ -59,24 +59,6 @@ std::uint64_t parseSkip(const fs::path& file, const NrrdHeader& header, std::str
     return countsFromEnd ? 0 : static_cast<std::uint64_t>(*skip);
 }
 
-void requireAsciiNumbers(const fs::path& file, ByteSource& source, std::int64_t count) {
-    std::vector<char> piece(std::size_t{1} << 16);
-    std::int64_t found = 0;
-    bool inNumber = false;
-    while (const std::size_t got = source.readSome(piece.data(), piece.size())) {
-        for (std::size_t i = 0; i < got; ++i) {
-            const bool isBlank =
-                piece[i] == ' ' || piece[i] == ',' || (piece[i] >= '\t' && piece[i] <= '\r');
-            found += !isBlank && !inNumber;
-            inNumber = !isBlank;
-        }
-    }
-    if (found < count) {
-        refuse(file, fmt::format("truncated: its data hold {} of {} numbers", found, count),
-               "get the whole file");
-    }
-}
-
 /// Samples begin after `lines` lines of the file, then `bytes` bytes of what is decoded; or, for
 /// raw data, they are the last bytes of the file.
 struct Skip {
@@ -110,19 +92,6 @@ ByteSource openData(const fs::path& dataFile, std::uint64_t begin, NrrdEncoding 
     return plain;
 }
 
-ReadVolume readText(const fs::path& file, ByteSource& source, PixelType type, const NrrdAxes& axes,
-                    const ImageGeometry& geometry, const ReadOptions& options,
-                    std::vector<std::string> warnings) {
-    if (axes.volumeAxis) {
-        refuse(file, "has 4 dimensions and its data are text", "save it with encoding raw or gzip");
-    }
-    requireAsciiNumbers(file, source, geometry.voxelCount());
-    const auto decode = [&] {
-        return ReadVolume{decodeNrrdWithItk(file, type, geometry), "NRRD", warnings};
-    };
-    return options.fence ? readBehindFence(file, fenceLimitsFor(file), decode) : decode();
-}
-
 }  // namespace
 
 bool looksLikeNrrd(std::string_view head) {
@@ -145,14 +114,25 @@ ReadVolume readNrrd(const fs::path& file, const ReadOptions& options) {
     const Skip skip = skipOf(file, header, encoding);
     const auto detached = header.find("datafile");
     const fs::path dataFile = detached ? requireDataFile(file, *detached) : file;
-    ByteSource source =
-        openData(dataFile, detached ? 0 : header.byteCount, encoding, skip,
-                 requireProduct(file, volumeBytes, static_cast<std::uint64_t>(axes.volumeCount)));
+    const std::uint64_t begin = detached ? 0 : header.byteCount;
+    const std::uint64_t byteCount =
+        requireProduct(file, volumeBytes, static_cast<std::uint64_t>(axes.volumeCount));
+    const ImageExtent extent = ImageExtent::of(layout, axes.size);
+    ByteSource source = openData(dataFile, begin, encoding, skip, byteCount);
     if (encoding == NrrdEncoding::Text) {
-        return readText(file, source, layout.stored, axes, geometry, options, std::move(warnings));
+        if (axes.volumeAxis) {
+            refuse(file, "has 4 dimensions and its data are text",
+                   "save it with encoding raw or gzip");
+        }
+        Volume volume = readNrrdText(dataFile, source, layout.stored, geometry, warnings);
+        return {std::move(volume), "NRRD", std::move(warnings)};
     }
+    if (skip.countsFromEnd) checkBytesBefore(dataFile, source.position() - begin, extent);
     layout.byteOrder = byteOrderOf(file, header, layout.stored);
-    return {readSamples(file, source, layout, geometry, options), "NRRD", std::move(warnings)};
+    Volume volume = readSamples(file, source, layout, geometry, options);
+    checkTail(dataFile, source.readTail(byteCount + 1), extent, skip.bytes >= extent.piece,
+              warnings);
+    return {std::move(volume), "NRRD", std::move(warnings)};
 }
 
 }  // namespace adaptiso::detail

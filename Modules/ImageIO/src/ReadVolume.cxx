@@ -82,7 +82,8 @@ ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
     if (head.empty()) detail::refuse(input, "is an empty file", "get the file again");
     if (detail::looksLikeNrrd(head)) return detail::readNrrd(input, options);
     if (detail::looksLikeMetaImage(head)) return detail::readMetaImage(input, options);
-    if (detail::looksLikeNifti(inflatedHead(input))) return detail::readNifti(input, options);
+    const std::string inflated = inflatedHead(input);
+    if (detail::looksLikeNifti(inflated)) return detail::readNifti(input, options);
 
     // content that only its name explains, or a damaged file whose reader says best what is wrong
     const std::string ending = formatEnding(input);
@@ -91,6 +92,12 @@ ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
     if (ending == "mgh" || ending == "mgz") return detail::readMgh(input, options);
     if (ending == "mha" || ending == "mhd") return detail::readMetaImage(input, options);
     if (detail::looksLikeDicom(head)) return detail::readDicomFile(input, options);
+    for (const auto looksLikeOne :
+         {detail::looksLikeDicom, detail::looksLikeNrrd, detail::looksLikeMetaImage}) {
+        if (!looksLikeOne(inflated)) continue;
+        detail::refuse(input, "is compressed as a whole, as its format is not",
+                       "decompress it, e.g. with gunzip");
+    }
     detail::refuse(input, "not a format that is read here",
                    "give NIfTI, NRRD, MetaImage, MGH, or DICOM");
 }

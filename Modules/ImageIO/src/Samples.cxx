@@ -14,8 +14,11 @@ namespace {
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 60;  // bytes
 
 /// Reads in pieces, picks and scales on the way, so that what is stored is never all in memory.
+/// \return samples that were finite and are no more
 template <class Out, class Stored>
-void readConverted(ByteSource& source, const SampleLayout& layout, std::int64_t count, Out* out) {
+std::int64_t readConverted(ByteSource& source, const SampleLayout& layout, std::int64_t count,
+                           Out* out) {
+    std::int64_t overflows = 0;
     const std::int64_t stride = layout.isInterleaved ? layout.volumeCount : 1;
     const std::int64_t first = layout.isInterleaved ? layout.volumeIndex : 0;
     constexpr std::int64_t kPieceSamples = 1 << 17;
@@ -30,35 +33,41 @@ void readConverted(ByteSource& source, const SampleLayout& layout, std::int64_t 
         }
         for (std::int64_t i = 0; i < n; ++i) {
             const Stored stored = piece[static_cast<std::size_t>(i * stride + first)];
-            out[done + i] = layout.isScaled
-                                ? static_cast<Out>(layout.slope * static_cast<double>(stored) +
-                                                   layout.intercept)
-                                : static_cast<Out>(stored);
+            if (!layout.isScaled) {
+                out[done + i] = static_cast<Out>(stored);
+                continue;
+            }
+            const auto value = static_cast<double>(stored);
+            out[done + i] = scaledSample<Out>(value, layout.slope, layout.intercept);
+            overflows += std::isfinite(value) && !std::isfinite(out[done + i]);
         }
         done += n;
     }
+    return overflows;
 }
 
-void readInto(std::byte* samples, PixelType type, ByteSource& source, const SampleLayout& layout,
-              std::int64_t count) {
+/// \return as readConverted()
+std::int64_t readInto(std::byte* samples, PixelType type, ByteSource& source,
+                      const SampleLayout& layout, std::int64_t count) {
     if (!layout.isScaled && !layout.isInterleaved) {
         const std::uint64_t byteCount = static_cast<std::uint64_t>(count) * bytesPerPixel(type);
         source.read(samples, byteCount);
         if (layout.byteOrder != std::endian::native) {
             swapBytes(samples, byteCount, bytesPerPixel(type));
         }
-        return;
+        return 0;
     }
-    withPixelType(layout.stored, [&]<class Stored>(Stored) {
+    return withPixelType(layout.stored, [&]<class Stored>(Stored) {
         if (!layout.isScaled) {
-            readConverted<Stored, Stored>(source, layout, count,
-                                          reinterpret_cast<Stored*>(samples));
-        } else if (type == PixelType::Float32) {
-            readConverted<float, Stored>(source, layout, count, reinterpret_cast<float*>(samples));
-        } else {
-            readConverted<double, Stored>(source, layout, count,
-                                          reinterpret_cast<double*>(samples));
+            return readConverted<Stored, Stored>(source, layout, count,
+                                                 reinterpret_cast<Stored*>(samples));
         }
+        if (type == PixelType::Float32) {
+            return readConverted<float, Stored>(source, layout, count,
+                                                reinterpret_cast<float*>(samples));
+        }
+        return readConverted<double, Stored>(source, layout, count,
+                                             reinterpret_cast<double*>(samples));
     });
 }
 
@@ -188,15 +197,24 @@ Volume readSamples(const std::filesystem::path& file, ByteSource& source,
 
     if (options.mapFiles && liesAsUsed(layout)) {
         const auto samples = source.map(volumeBytes, bytesPerPixel(layout.stored));
-        if (samples) return Volume(VolumeView(samples.get(), layout.stored, geometry), samples);
+        if (samples) {
+            source.skip((volumes - 1 - volumesBefore) * volumeBytes);
+            return Volume(VolumeView(samples.get(), layout.stored, geometry), samples);
+        }
     }
     const PixelType type = layout.isScaled ? floatTypeFor(layout.stored) : layout.stored;
     const std::int64_t count = geometry.voxelCount();
     SampleBuffer samples =
         allocateSamples(file, static_cast<std::uint64_t>(count) * bytesPerPixel(type));
-    readInto(samples.get(), type, source, layout, count);
+    const std::int64_t overflows = readInto(samples.get(), type, source, layout, count);
+    if (overflows > 0) {
+        refuse(
+            file,
+            fmt::format("its scaling (slope {}, intercept {}) makes {} of its {} voxels infinite",
+                        number(layout.slope), number(layout.intercept), overflows, count),
+            "repair the header");
+    }
     if (!layout.isInterleaved) source.skip((volumes - 1 - volumesBefore) * volumeBytes);
-    source.finish();
     return makeVolume(std::move(samples), type, geometry);
 }
 

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "ByteSource.h"
@@ -52,6 +55,16 @@ inline PixelType floatTypeFor(PixelType stored) {
                                                                       : PixelType::Float64;
 }
 
+/// slope * stored + intercept; infinite where `Out` can't hold that.
+template <class Out>
+Out scaledSample(double stored, double slope, double intercept) {
+    const double value = slope * stored + intercept;
+    if (std::is_same_v<Out, float> && std::abs(value) > std::numeric_limits<float>::max()) {
+        return static_cast<Out>(std::copysign(std::numeric_limits<double>::infinity(), value));
+    }
+    return static_cast<Out>(value);
+}
+
 /// Bytes that an image of this size takes.
 /// \throws FileError when an extent is < 1, there is one slice only, or the product overflows
 std::uint64_t requireImageBytes(const std::filesystem::path& file, const Index3& size,
@@ -88,9 +101,10 @@ struct SampleLayout {
 std::int64_t chooseVolume(const std::filesystem::path& file, std::int64_t volumeCount,
                           const ReadOptions& options);
 
-/// Reads exactly the geometry's voxels, checks that the file holds the other volumes too and the
-/// checksum of compressed data, and wraps the samples up. Maps them instead where the options and
-/// the layout allow it.
+/// Reads exactly the geometry's voxels, checks that the file holds the other volumes too, and wraps
+/// the samples up. Maps them instead where the options and the layout allow it. What follows in the
+/// file is `source`'s tail then, which checkTail() judges.
+/// \throws FileError  samples are missing, or the scaling makes finite ones infinite
 Volume readSamples(const std::filesystem::path& file, ByteSource& source,
                    const SampleLayout& layout, const ImageGeometry& geometry,
                    const ReadOptions& options);

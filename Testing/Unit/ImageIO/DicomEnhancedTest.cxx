@@ -195,8 +195,10 @@ TEST(DicomEnhanced, RefusesFramesWithoutAPlace) {
                   "does not say where its frames lie");
     expectRefusal(writeFile(folder / "x", shuffledImage().without(0x52009229).file()),
                   "ImageOrientationPatient");
-    expectRefusal(writeFile(folder / "x", shuffledImage().text(0x00280008, "IS", "4").file()),
-                  "4 frames but 5 functional groups");
+    const std::vector<std::uint16_t> ofFour(4 * kColumns * kRows);
+    expectRefusal(
+        writeFile(folder / "x", shuffledImage().text(0x00280008, "IS", "4").pixels(ofFour).file()),
+        "4 frames but 5 functional groups");
     expectRefusal(writeFile(folder / "x", shuffledImage().text(0x00280008, "IS", "6").file()),
                   "of 144 bytes");  // 6 frames of 4 * 3 * 2 bytes
 }

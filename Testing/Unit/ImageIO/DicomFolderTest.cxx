@@ -137,7 +137,8 @@ TEST(DicomStrays, NothingOfTheSameSeriesIsLeftAside) {
         const std::string message = refusalOf(folder.path());
         EXPECT_NE(message.find(fault), std::string::npos) << message;
     };
-    refused(slice(4).us(0x00280010, 2).us(0x00280011, 2), "differ in series, size");
+    refused(slice(4).us(0x00280010, 2).us(0x00280011, 2).pixels({1, 2, 3, 4}),
+            "differ in series, size");
     refused(slice(4).text(0x00280030, "DS", "0.75\\0.6"), "differ in series, size");
     refused(slice(4).text(0x00200037, "DS", "0.9998\\0.02\\0\\-0.02\\0.9998\\0"), "differ in");
     refused(slice(4).us(0x00280100, 12), "pixel bits");

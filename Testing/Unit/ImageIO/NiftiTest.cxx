@@ -83,6 +83,7 @@ TYPED_TEST(NiftiPixels, KeepTypeAndEverySampleInBothByteOrders) {
     const auto samples = countingSamples<TypeParam>(24);
     for (const std::endian order : {std::endian::little, std::endian::big}) {
         NiftiFile file = withSform();
+        file.pixdim = {1, 2, 3, 4, 0, 0, 0, 0};
         file.order = order;
         file.datatype = NiftiCode<TypeParam>::value;
         file.bitpix = 8 * sizeof(TypeParam);

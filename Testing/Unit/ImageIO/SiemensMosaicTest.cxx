@@ -96,6 +96,20 @@ TEST(SiemensMosaic, TilesMayStackAgainstTheNormal) {
     expectField(read.volume, tellTale);
 }
 
+TEST(SiemensMosaic, MoreTilesThanItsHeaderCountsAreRefused) {
+    const TempFolder folder;
+    const Vec3 up{0, 0, 1};
+    const auto counted = [&](const char* count) {
+        const std::string csa = csaHeader(
+            {{"NumberOfImagesInMosaic", {count}}, {"SliceNormalVector", {"0", "0", "1"}}}, 2);
+        return writeFile(folder / "x", mosaic(tellTale, up, csa).file());
+    };
+    expectRefusal(counted("6"), "of 6 slices by its header, but its tile 7 holds an image too");
+    expectRefusal(counted("5"), "but its tile 6 holds an image too");
+    EXPECT_NO_THROW(readVolume(counted("7")));
+    EXPECT_NO_THROW(readVolume(counted("8")));  // the last one is blank
+}
+
 TEST(SiemensMosaic, SeveralAreVolumes) {
     const TempFolder folder;
     for (int v = 0; v < 2; ++v) {

@@ -23,9 +23,9 @@ struct ReadOptions {
     /// steps of their usual distance; the samples become float. Unset: they are refused.
     bool resampleSlices = false;
 
-    /// Run ITK's and GDCM's decoders in a child process with limits on time and memory, so that
-    /// their abort, crash, hang or hunger becomes a FileError. Without it they run in this process,
-    /// for callers that must not fork, or that debug a decoder.
+    /// Run GDCM's decoders in a child process with limits on time and memory, so that their abort,
+    /// crash, hang or hunger becomes a FileError. Without it they run in this process, for callers
+    /// that must not fork, or that debug a decoder.
     bool fence = true;
 
     /// Map large uncompressed files into memory in place of reading them, where their samples can
@@ -58,11 +58,15 @@ struct ReadVolume {
 ///              normal; the step from slice to slice is kept as it is, so gantry tilt stays in the
 ///              geometry as shear, with a warning
 ///
-/// Samples keep their type. Scaled ones (NIfTI scl_slope, DICOM rescale) become float32, or
-/// float64 where float32 could not hold the stored integers; a DICOM rescale by whole numbers with
-/// slope 1 stays an integer type. MONOCHROME1 is not inverted. Of a 4-D file one volume is read;
-/// the others must be there too. Warnings count voxels that are not finite, and integers beyond
-/// 2^53.
+/// Samples keep their type. Scaled ones (NIfTI scl_slope, DICOM rescale, MetaImage
+/// ElementToIntensityFunction) become float32, or float64 where float32 could not hold the stored
+/// integers; a DICOM rescale by whole numbers with slope 1 stays an integer type. MONOCHROME1 is
+/// not inverted. Of a 4-D file one volume is read; the others must be there too. Warnings count
+/// voxels that are not finite, and integers beyond 2^53.
+///
+/// Nor may more be there than the header says: another image, more slices, rows or frames, wider
+/// samples. What else follows the samples is left out with a warning. The slices of a DICOM volume
+/// must agree on what their values mean.
 ///
 /// A header's data file lies in or below the header's folder; a link to it may lead to there, to
 /// the folder of the file that the header's name links to, or into .git/annex/objects of a folder
@@ -72,10 +76,11 @@ struct ReadVolume {
 /// \throws FileError  one line "<file>: <fault>; <remedy>", without patient data, when the input
 ///         is missing, no regular file, of no known format, truncated or damaged, holds no
 ///         orientation or a singular one, an unknown space, colour, vector or complex samples,
-///         several volumes or series, a single slice, uneven, missing or repeated slices, or names
-///         data outside its own folder. Nothing is padded and nothing is guessed.
+///         several volumes or series, a single slice, uneven, missing or repeated slices, names
+///         data outside its own folder, or contradicts its own data. Nothing is padded and nothing
+///         is guessed.
 /// \pre  not called from two threads at once for DICOM (GDCM's message switches are global).
-/// \throws FileError  as well when ITK's or GDCM's decoder crashes or takes more than it may: 15 s
+/// \throws FileError  as well when GDCM's decoder crashes or takes more than it may: 15 s
 ///         and 1 s for each MB of input, 1 GiB and 64 bytes for each byte (ReadOptions::fence)
 /// \post no process or file of this call's is left
 /// Cost: one copy of the samples, or none (ReadOptions::mapFiles), and one DICOM file's; one pass.

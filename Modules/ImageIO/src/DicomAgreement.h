@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "DicomFile.h"
+#include "DicomPlanes.h"
+
+namespace adaptiso::detail {
+
+/// Compares what the slices of one volume say their values mean.
+///
+/// \throws FileError  some are MONOCHROME1 and some MONOCHROME2, they are of several units
+///         (RescaleType, Units), or some are rescaled while others do not say
+/// A warning is added where some hold signed samples and some unsigned ones, each read as it says.
+void requireAgreement(const std::filesystem::path& input, const std::vector<DicomFile>& files,
+                      const std::vector<DicomPlane>& planes, std::vector<std::string>& warnings);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,467 @@
+// Files that hold something else than their header says, in every format but DICOM: what could give
+// wrong values or a wrong place is refused by name, what is harmless is read with a warning.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+
+#include "Fixtures.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
+
+namespace adaptiso::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+// 16 x 8 x 4 samples of 16 bits: a slice has 256 bytes, a volume 1024
+constexpr int kColumns = 16, kRows = 8, kSlices = 4;
+constexpr std::size_t kSliceBytes = 2 * kColumns * kRows, kVolumeBytes = kSliceBytes * kSlices;
+constexpr const char* kBehind = "behind the image that its header describes";
+
+const std::vector<std::int16_t>& samples() {
+    static const auto all = countingSamples<std::int16_t>(kColumns * kRows * kSlices);
+    return all;
+}
+std::string data(std::endian order = std::endian::little) {
+    return samplesOf(samples(), order);
+}
+
+std::string niftiHeader(const std::function<void(NiftiFile&)>& change = {}) {
+    NiftiFile file;
+    file.dim = {3, kColumns, kRows, kSlices, 1, 1, 1, 1};
+    file.sformCode = 1;
+    file.sform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    if (change) change(file);
+    return file.header();
+}
+
+std::string nrrdHeader(const std::string& fields, const std::string& type = "short") {
+    return "NRRD0004\ntype: " + type +
+           "\ndimension: 3\nspace: LPS\nsizes: 16 8 4\nspace directions: (1,0,0) (0,1,0) "
+           "(0,0,1)\nspace origin: (0,0,0)\nendian: little\n" +
+           fields + "\n";
+}
+const std::string kRawNrrd = nrrdHeader("encoding: raw\n");
+
+std::string metaHeader(const std::string& fields = "", const std::string& dataFile = "LOCAL",
+                       const std::string& type = "MET_SHORT") {
+    return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+           "TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\nElementSpacing = 1 1 1\n"
+           "DimSize = 16 8 4\n" +
+           fields + "ElementType = " + type + "\nElementDataFile = " + dataFile + "\n";
+}
+
+std::string mghHeader() {
+    std::string h(284, '\0');
+    const std::int32_t numbers[] = {1, kColumns, kRows, kSlices, 1, 4};
+    for (std::size_t i = 0; i < 6; ++i) put(h, 4 * i, numbers[i], std::endian::big);
+    put<std::int16_t>(h, 28, 1, std::endian::big);
+    const float geometry[] = {1, 1, 1, -1, 0, 0, 0, 0, -1, 0, 1, 0, 5, 6, 7};
+    for (std::size_t i = 0; i < 15; ++i) put(h, 30 + 4 * i, geometry[i], std::endian::big);
+    return h;
+}
+
+/// One format's whole file, with `extra` behind its samples.
+struct Format {
+    const char* name;
+    std::function<std::string(const std::string& extra)> file;
+};
+
+const std::vector<Format>& formats() {
+    using Text = const std::string&;
+    static const std::vector<Format> all = {
+        {"x.nii", [](Text extra) { return niftiHeader() + data() + extra; }},
+        {"x.nii.gz", [](Text extra) { return gzipped(niftiHeader() + data() + extra); }},
+        {"raw.nrrd", [](Text extra) { return kRawNrrd + data() + extra; }},
+        {"gzip.nrrd",
+         [](Text extra) { return nrrdHeader("encoding: gzip\n") + gzipped(data() + extra); }},
+        {"x.mha", [](Text extra) { return metaHeader() + data() + extra; }},
+        {"packed.mha",
+         [](Text extra) {
+             return metaHeader("CompressedData = True\n") + zlibbed(data() + extra);
+         }},
+        {"x.mgh", [](Text extra) { return mghHeader() + data(std::endian::big) + extra; }},
+        {"x.mgz",
+         [](Text extra) { return gzipped(mghHeader() + data(std::endian::big) + extra); }}};
+    return all;
+}
+
+bool mentions(const ReadVolume& read, std::string_view text) {
+    return std::ranges::any_of(read.warnings, [&](const std::string& line) {
+        return line.find(text) != std::string::npos;
+    });
+}
+
+void expectRead(const fs::path& file, std::string_view warning = "") {
+    const ReadVolume read = readVolume(file);
+    EXPECT_EQ(samplesIn<std::int16_t>(read.volume), samples()) << file;
+    if (warning.empty()) {
+        EXPECT_TRUE(read.warnings.empty()) << file << ": " << read.warnings.front();
+    } else {
+        EXPECT_TRUE(mentions(read, warning)) << file << " without '" << warning << "'";
+    }
+}
+
+TEST(MoreThanTheHeaderSays, AnotherVolumeIsRefusedInEveryFormat) {
+    const TempFolder folder;
+    for (const Format& format : formats()) {
+        expectRead(writeFile(folder / format.name, format.file("")));
+        const bool isBig = std::string_view(format.name).find(".mg") != std::string_view::npos;
+        const std::string volume = data(isBig ? std::endian::big : std::endian::little);
+        const auto file = writeFile(folder / format.name, format.file(volume));
+        expectRefusal(file, kBehind);
+        expectRefusal(file, "1 more image of that size");
+    }
+}
+
+TEST(MoreThanTheHeaderSays, MoreSlicesAreRefusedInEveryFormat) {
+    const TempFolder folder;
+    for (const Format& format : formats()) {
+        expectRefusal(writeFile(folder / format.name, format.file(std::string(kSliceBytes, '\7'))),
+                      "1 more slice");
+        expectRefusal(writeFile(folder / format.name, format.file(std::string(700, '\7'))),
+                      "half as much again or more");
+    }
+}
+
+TEST(MoreThanTheHeaderSays, AFewBytesOrPaddingAreReadWithAWarning) {
+    const TempFolder folder;
+    for (const Format& format : formats()) {
+        if (std::string_view(format.name).find(".mg") != std::string_view::npos) continue;
+        expectRead(writeFile(folder / format.name, format.file("a note of 22 bytes, me")),
+                   "22 bytes follow");
+        expectRead(writeFile(folder / format.name, format.file(std::string(kVolumeBytes, '\0'))),
+                   "1024 bytes, all 0, follow");
+    }
+}
+
+TEST(MoreThanTheHeaderSays, ALongerImgOfAPairIsRefused) {
+    const TempFolder folder;
+    const auto header = writeFile(folder / "x.hdr", niftiHeader([](NiftiFile& f) {
+                                                        f.magic = std::string("ni1\0", 4);
+                                                        f.dataOffset = 0;
+                                                    }).substr(0, 348));
+    writeFile(folder / "x.img", data());
+    expectRead(header);
+    const auto image = writeFile(folder / "x.img", data() + data());
+    EXPECT_NE(refusalOf(header).find(kBehind), std::string::npos);
+    expectRefusal(image, "1 more image");
+}
+
+TEST(MoreThanTheHeaderSays, TwoFilesJoinedIntoOneAreRefused) {
+    const TempFolder folder;
+    const std::string nifti = niftiHeader() + data();
+    expectRefusal(writeFile(folder / "x.nii", nifti + nifti), kBehind);
+    expectRefusal(writeFile(folder / "x.nii.gz", gzipped(nifti) + gzipped(nifti)), kBehind);
+    expectRefusal(writeFile(folder / "x.mha", metaHeader("CompressedData = True\n") +
+                                                  zlibbed(data()) + zlibbed(data())),
+                  "more compressed data");
+}
+
+TEST(MoreThanTheHeaderSays, WhatFollowsCompressedDataIsWarnedOfUnlessItIsZeros) {
+    const TempFolder folder;
+    const std::string nifti = gzipped(niftiHeader() + data());
+    expectRead(writeFile(folder / "x.nii.gz", nifti + std::string(512, '\0')));  // a tape's block
+    expectRead(writeFile(folder / "x.nii.gz", nifti + "signed by me"), "no compressed data");
+}
+
+TEST(MoreThanTheHeaderSays, AllVolumesOfA4DFileCount) {
+    const TempFolder folder;
+    const std::string header =
+        niftiHeader([](NiftiFile& f) { f.dim = {4, kColumns, kRows, kSlices, 2, 1, 1, 1}; });
+    const auto file = folder / "x.nii";
+    writeFile(file, header + data() + data());
+    for (const std::int64_t index : {0, 1}) {
+        EXPECT_TRUE(readVolume(file, {.volumeIndex = index}).warnings.empty());
+    }
+    writeFile(file, header + data() + data() + data());
+    for (const std::int64_t index : {0, 1}) {
+        expectRefusal(file, kBehind, {.volumeIndex = index});
+    }
+}
+
+TEST(MoreThanTheHeaderSays, MappedFilesAreLookedAtToo) {
+    const TempFolder folder;
+    NiftiFile large;
+    large.dim = {3, 256, 256, 64, 1, 1, 1, 1};
+    large.sformCode = 1;
+    large.sform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    const std::string image(std::size_t{2} * 256 * 256 * 64, '\1');
+    const auto file = writeFile(folder / "x.nii", large.header() + image + image);
+    expectRefusal(file, "1 more image", {.mapFiles = true});
+    writeFile(file, large.header() + image);
+    EXPECT_TRUE(readVolume(file, {.mapFiles = true}).warnings.empty());
+}
+
+TEST(MoreThanTheHeaderSays, ALargerDataFileIsFineWhereTheHeaderPointsIntoIt) {
+    const TempFolder folder;
+    writeFile(folder / "x.raw", data() + data() + data());
+    const auto nrrd = [&](const std::string& skip) {
+        return writeFile(folder / "x.nhdr",
+                         nrrdHeader("encoding: raw\n" + skip + "data file: x.raw\n"));
+    };
+    const auto meta = [&](const std::string& size) {
+        return writeFile(folder / "x.mhd", metaHeader("HeaderSize = " + size + "\n", "x.raw"));
+    };
+    const std::string second = std::to_string(kVolumeBytes);
+    expectRead(nrrd("byte skip: " + second + "\n"), "1024 bytes follow");
+    expectRead(meta(second), "1024 bytes follow");
+    const auto refused = [](const fs::path& file, std::string_view fault) {
+        EXPECT_NE(refusalOf(file).find(fault), std::string::npos) << refusalOf(file);
+    };
+    refused(nrrd(""), "2 more images of that size");
+    refused(nrrd("byte skip: 0\n"), "2 more images of that size");
+    refused(meta("0"), "2 more images of that size");
+    // the last bytes of a file: what is before may be a header, but no image
+    refused(nrrd("byte skip: -1\n"), "before the image");
+    refused(meta("-1"), "before the image");
+    writeFile(folder / "x.raw", std::string(300, 'h') + data());
+    expectRead(nrrd("byte skip: -1\n"));
+    expectRead(meta("-1"));
+}
+
+std::string mghTag(std::int32_t tag, const std::string& content) {
+    return bytesOf(tag, std::endian::big) +
+           bytesOf(static_cast<std::int64_t>(content.size()), std::endian::big) + content;
+}
+
+TEST(MghFooter, IsNoImage) {
+    const TempFolder folder;
+    const std::string image = mghHeader() + data(std::endian::big);
+    const std::string numbers(20, '\x41');  // TR, flip angle, TE, TI, FoV
+    const std::string xform =
+        "/home/someone/talairach.xfm\0";  // as much text as an image has bytes
+    const std::string commands(2 * kVolumeBytes, 'c');
+    for (const std::string& footer :
+         {numbers.substr(0, 16), numbers, numbers + mghTag(31, xform),
+          numbers + mghTag(3, commands) + mghTag(41, "AXIAL") + mghTag(3, "mri_convert")}) {
+        expectRead(writeFile(folder / "x.mgh", image + footer));
+        expectRead(writeFile(folder / "x.mgz", gzipped(image + footer)));
+    }
+    const std::string end = bytesOf(-1, std::endian::big);
+    expectRead(writeFile(folder / "x.mgh", image + numbers + mghTag(31, xform) + end));
+    // a colour table (tag 1) tells of no length
+    expectRead(writeFile(folder / "x.mgh",
+                         image + numbers + bytesOf(1, std::endian::big) + std::string(200, 'l')));
+    for (const std::string& footer : {numbers.substr(0, 7), numbers + mghTag(3, "cut").substr(0, 9),
+                                      numbers + mghTag(3, commands).substr(0, 100)}) {
+        expectRead(writeFile(folder / "x.mgh", image + footer), "MGH footer) are cut off");
+    }
+}
+
+TEST(MghFooter, ASecondVolumeIsNotTakenForOne) {
+    const TempFolder folder;
+    // tags 0, 1, 2, ... could be read from these
+    using Value = std::int16_t;
+    for (const auto value : {Value{0}, Value{1}, Value{3}, Value{20}, Value{31}}) {
+        std::vector<std::int16_t> second(samples().size(), value);
+        second[40] = 500;
+        expectRefusal(writeFile(folder / "x.mgh", mghHeader() + data(std::endian::big) +
+                                                      samplesOf(second, std::endian::big)),
+                      "1 more image");
+    }
+}
+
+TEST(MetaImageContradiction, LongOfEightBytesIsRefusedByName) {
+    const TempFolder folder;
+    const std::vector<std::int64_t> wide(samples().size(), 100);
+    for (const char* type : {"MET_LONG", "MET_ULONG"}) {
+        const std::string fault = std::string("its ElementType ") + type + " has 4 bytes";
+        expectRefusal(writeFile(folder / "x.mha", metaHeader("", "LOCAL", type) + samplesOf(wide)),
+                      fault);
+        expectRefusal(
+            writeFile(folder / "x.mha", metaHeader("CompressedData = True\n", "LOCAL", type) +
+                                            zlibbed(samplesOf(wide))),
+            fault);
+    }
+    const ReadVolume read = readVolume(
+        writeFile(folder / "x.mha", metaHeader("", "LOCAL", "MET_LONG_LONG") + samplesOf(wide)));
+    EXPECT_EQ(samplesIn<std::int64_t>(read.volume), wide);
+}
+
+TEST(MetaImageContradiction, SlopeAndOffsetAreApplied) {
+    const TempFolder folder;
+    const ReadVolume read = readVolume(
+        writeFile(folder / "x.mha", metaHeader("ElementToIntensityFunctionSlope = 0.5\n"
+                                               "ElementToIntensityFunctionOffset = -3\n") +
+                                        data()));
+    const auto values = samplesIn<float>(read.volume);
+    for (std::size_t n = 0; n < values.size(); ++n) {
+        // 16 bits, halved: exact in float
+        ASSERT_EQ(values[n], 0.5F * static_cast<float>(samples()[n]) - 3);
+    }
+    EXPECT_TRUE(mentions(read, "ElementToIntensityFunction"));
+    expectRead(writeFile(folder / "x.mha", metaHeader("ElementToIntensityFunctionSlope = 1\n"
+                                                      "ElementToIntensityFunctionOffset = 0\n") +
+                                               data()));
+    for (const char* slope : {"0", "nan", "inf", "steep", "1 2"}) {
+        expectRefusal(
+            writeFile(folder / "x.mha",
+                      metaHeader(std::string("ElementToIntensityFunctionSlope = ") + slope + "\n") +
+                          data()),
+            "ElementToIntensityFunctionSlope");
+    }
+}
+
+TEST(MetaImageContradiction, WithoutOffsetIsReadWithAWarning) {
+    const TempFolder folder;
+    std::string header = metaHeader();
+    header.erase(header.find("Offset"), std::string("Offset = 0 0 0\n").size());
+    expectRead(writeFile(folder / "x.mha", header + data()), "no Offset");
+}
+
+TEST(MetaImageContradiction, OtherObjectsAreRefusedByName) {
+    const TempFolder folder;
+    for (const char* type : {"Tube", "Mesh", "Scene", "Landmark"}) {
+        std::string header = metaHeader();
+        header.replace(header.find("Image"), 5, type);
+        expectRefusal(writeFile(folder / "x.mha", header + data()),
+                      std::string("its ObjectType is '") + type + "', not Image");
+    }
+}
+
+TEST(MetaImageContradiction, TwoNamesOfOneThingMustAgree) {
+    const TempFolder folder;
+    expectRead(writeFile(folder / "x.mha", metaHeader("Position = 0 0 0.0\n") + data()));
+    expectRefusal(writeFile(folder / "x.mha", metaHeader("Position = 0 0 9\n") + data()),
+                  "Offset and Position differ");
+    expectRefusal(
+        writeFile(folder / "x.mha", metaHeader("Orientation = 1 0 0 0 -1 0 0 0 1\n") + data()),
+        "TransformMatrix and Orientation differ");
+    expectRefusal(writeFile(folder / "x.mha", metaHeader("ElementByteOrderMSB = True\n") + data()),
+                  "ElementByteOrderMSB differ");
+}
+
+ReadVolume readText(const std::string& type, const std::vector<std::string>& words) {
+    const TempFolder folder;
+    std::string text;
+    for (const std::string& word : words) text += word + "\n";
+    return readVolume(writeFile(
+        folder / "x.nrrd",
+        "NRRD0004\ntype: " + type + "\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n\n" + text));
+}
+
+std::vector<std::string> eight(const std::string& last) {
+    return {"0", "1", "2", "3", "4", "5", "6", last};
+}
+
+TEST(NrrdText, NumbersBeyondTheirTypeAreRefused) {
+    struct Case {
+        const char *type, *good, *bad;
+    };
+    for (const Case& c : {Case{"signed char", "-128", "-129"}, Case{"uchar", "255", "256"},
+                          Case{"uchar", "0", "-1"}, Case{"short", "-32768", "32768"},
+                          Case{"ushort", "65535", "70000"}, Case{"int", "2147483647", "2147483648"},
+                          Case{"uint", "4294967295", "4294967296"}, Case{"uint", "1", "-1"},
+                          Case{"int64", "9223372036854775807", "9223372036854775808"},
+                          Case{"uint64", "18446744073709551615", "18446744073709551616"},
+                          Case{"float", "3.4e38", "3.5e38"}, Case{"double", "1e308", "1e309"},
+                          Case{"short", "12.0", "12.5"}, Case{"short", "1.2e3", "1.2e9"},
+                          Case{"float", "nan", "none"}, Case{"uchar", "7", "seven"}}) {
+        EXPECT_NO_THROW(readText(c.type, eight(c.good))) << c.type << ' ' << c.good;
+        try {
+            readText(c.type, eight(c.bad));
+            ADD_FAILURE() << c.type << ' ' << c.bad << " was read";
+        } catch (const FileError& error) {
+            const std::string message = error.what();
+            EXPECT_NE(message.find("number 8 of its data, '" + std::string(c.bad) + "'"),
+                      std::string::npos)
+                << message;
+        }
+    }
+    EXPECT_EQ(samplesIn<std::int16_t>(readText("short", eight("1.2e3")).volume)[7], 1200);
+    EXPECT_EQ(samplesIn<std::uint64_t>(readText("uint64", eight("18446744073709551615")).volume)[7],
+              ~std::uint64_t{0});
+    EXPECT_EQ(samplesIn<float>(readText("float", eight("-0.25")).volume)[7], -0.25F);
+    const std::string endless = "1." + std::string(500, '0') + "e5";  // cut, it would be 1
+    EXPECT_THROW(readText("float", eight(endless)), FileError);
+}
+
+TEST(NrrdText, MoreNumbersThanVoxelsAreRefused) {
+    std::vector<std::string> words = eight("7");
+    words.push_back("8");
+    EXPECT_TRUE(mentions(readText("short", words), "1 words follow"));
+    for (int n = 9; n < 12; ++n) words.push_back(std::to_string(n));  // one more slice
+    try {
+        readText("short", words);
+        ADD_FAILURE() << "was read";
+    } catch (const FileError& error) {
+        EXPECT_NE(std::string(error.what()).find("hold 12 numbers, its header describes 8"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
+std::string nifti2(const std::string& lineEnds) {
+    std::string h(544, '\0');
+    put<std::int32_t>(h, 0, 540);
+    h.replace(4, 8, std::string("n+2\0", 4) + lineEnds);
+    put<std::int16_t>(h, 12, 4);
+    put<std::int16_t>(h, 14, 16);
+    const std::int64_t dim[] = {3, kColumns, kRows, kSlices, 1, 1, 1, 1};
+    for (std::size_t i = 0; i < 8; ++i) put(h, 16 + 8 * i, dim[i]);
+    put<std::int64_t>(h, 168, 544);
+    put<std::int32_t>(h, 348, 1);
+    for (std::size_t i : {0, 5, 10}) put(h, 400 + 8 * i, 1.0);
+    return h + data();
+}
+
+TEST(NiftiContradiction, Nifti2MangledByTextTransferIsRefusedByName) {
+    const TempFolder folder;
+    expectRead(writeFile(folder / "x.nii", nifti2("\r\n\x1a\n")));
+    expectRead(writeFile(folder / "x.nii", nifti2(std::string(4, '\0'))));  // left out
+    for (const char* ends : {"\n\x1a\n\0", "\r\r\n\x1a", "\r\x1a\r\0", "\r\n\r\n"}) {
+        expectRefusal(writeFile(folder / "x.nii", nifti2(std::string(ends, 4))), "text mode");
+    }
+    // "\r\n" to "\n", all through the file
+    std::string mangled = nifti2("\r\n\x1a\n");
+    mangled.erase(mangled.find("\r\n"), 1);
+    expectRefusal(writeFile(folder / "x.nii", mangled), "text mode");
+}
+
+TEST(NiftiContradiction, ScalingThatMakesVoxelsInfiniteIsRefused) {
+    const TempFolder folder;
+    const auto scaled = [&](float slope, float intercept) {
+        return writeFile(folder / "x.nii", niftiHeader([&](NiftiFile& f) {
+                                               f.slope = slope;
+                                               f.intercept = intercept;
+                                           }) + data());
+    };
+    expectRefusal(scaled(1e37F, 0), "its scaling (slope 1e+37, intercept 0) makes");
+    expectRefusal(scaled(3e38F, 3e38F), "voxels infinite");
+    EXPECT_TRUE(readVolume(scaled(1e33F, 0)).warnings.empty());
+    EXPECT_TRUE(mentions(readVolume(scaled(0, 5)), "scl_inter is 5 but scl_slope 0"));
+    EXPECT_TRUE(readVolume(scaled(std::numeric_limits<float>::quiet_NaN(), 0)).warnings.empty());
+}
+
+TEST(NiftiContradiction, InfiniteVoxelsOfTheFileItselfAreNoFaultOfTheScaling) {
+    const TempFolder folder;
+    std::vector<float> values(samples().size(), 1);
+    values[7] = std::numeric_limits<float>::infinity();
+    const auto file = writeFile(folder / "x.nii", niftiHeader([](NiftiFile& f) {
+                                                      f.datatype = 16;
+                                                      f.bitpix = 32;
+                                                      f.slope = 2;
+                                                  }) + samplesOf(values));
+    EXPECT_TRUE(mentions(readVolume(file), "1 of its voxels hold no finite number"));
+}
+
+TEST(NiftiContradiction, VoxelSizesOfPixdimAndSformAreCompared) {
+    const TempFolder folder;
+    const auto sized = [&](float size) {
+        return writeFile(folder / "x.nii", niftiHeader([&](NiftiFile& f) {
+                                               f.pixdim = {1, size, 1, 1, 0, 0, 0, 0};
+                                           }) + data());
+    };
+    expectRead(sized(1));
+    expectRead(sized(1.005F));
+    expectRead(sized(-1));  // nifti1.h: the amount counts
+    expectRead(sized(0));   // it does not say
+    expectRead(sized(2), "voxels are 2 x 1 x 1 mm by pixdim and 1 x 1 x 1 mm by the sform");
+    expectRefusal(sized(1000), "1000 x 1 x 1 mm by pixdim");
+    expectRefusal(sized(0.001F), "contradicts itself");
+}
+
+}  // namespace
+}  // namespace adaptiso::testing
