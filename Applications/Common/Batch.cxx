@@ -12,6 +12,7 @@
 #include "Common/Numbers.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
+#include "Common/Warnings.h"
 
 namespace adaptiso {
 namespace {
@@ -92,7 +93,14 @@ private:
 
     std::string says(const BatchRecord& record) const {
         if (!record.error.empty()) return record.error;
-        return record.report.is_object() ? program_.says(record.report) : "";
+        if (!record.report.is_object()) return "";
+        if (!record.report.value("failedByWarnings", false)) return program_.says(record.report);
+        return strictFailure(warningsOf(record), "");
+    }
+
+    static std::vector<std::string> warningsOf(const BatchRecord& record) {
+        if (!record.report.is_object()) return {};
+        return record.report.value("warnings", std::vector<std::string>{});
     }
 
     /// Tells of the items whose turn has come: in the order of the inputs, whatever ended first.
@@ -107,6 +115,7 @@ private:
 
     void tell(const BatchItem& item, const BatchRecord& record) {
         const std::string name = item.inputs.front().string();
+        printWarnings(program_.name, common_, warningsOf(record));
         if (common_.wantsJson()) {
             const std::string line =
                 toJson(record, program_.name).dump(-1, ' ', false, Json::error_handler_t::replace) +

@@ -4,15 +4,17 @@
 #include <array>
 #include <string_view>
 
+#include "Common/OptionValues.h"
+
 namespace adaptiso {
 namespace {
 
 constexpr const char* kGroup = "Many inputs (each a run of its own, in a process of its own)";
 
 /// Options that are not those of a single run of the batch.
-constexpr std::array<std::string_view, 10> kOfTheBatch{
-    "list", "bids",          "participant", "output-dir", "summary",
-    "jobs", "skip-existing", "json",        "quiet",      "threads"};
+constexpr std::array<std::string_view, 11> kOfTheBatch{
+    "list", "bids",          "participant", "output-dir", "summary",    "jobs",
+    "json", "skip-existing", "quiet",       "threads",    "no-warnings"};
 
 }  // namespace
 
@@ -37,9 +39,7 @@ void declareBatchOptions(CLI::App& app, BatchOptions& options, const std::string
                    "derivatives/adaptiso")
         ->type_name("DIR")
         ->group(kGroup);
-    app.add_option("--jobs", options.jobs, "Work on N inputs at a time (default: 1)")
-        ->type_name("N")
-        ->check(CLI::Range(1, 1024).description(""))
+    addCount(app, "--jobs", options.jobs, 1, 1024, "Work on N inputs at a time (default: 1)")
         ->group(kGroup);
     app.add_flag("--skip-existing", options.skipsExisting,
                  "Leave out inputs that an earlier run has finished with the same options; what "

@@ -25,7 +25,7 @@ struct BatchOptions {
                !summary.empty() || jobs || skipsExisting;
     }
     /// The options of every run, as given ("--iso=100"), without those of this struct, --json,
-    /// --quiet and --threads. Set by keepRunOptions().
+    /// --quiet, --no-warnings and --threads. Set by keepRunOptions().
     std::vector<std::string> runOptions{};
 };
 

@@ -150,7 +150,7 @@ std::vector<std::string> BatchPlan::arguments(const BatchItem& item) const {
         const int machine = static_cast<int>(std::thread::hardware_concurrency());
         arguments.push_back("--threads=" + std::to_string(std::max(1, machine / *batch_.jobs)));
     }
-    arguments.insert(arguments.end(), {"--quiet", "--json=-", "--"});
+    arguments.insert(arguments.end(), {"--quiet", "--no-warnings", "--json=-", "--"});
     for (const fs::path& input : item.inputs) arguments.push_back(input.string());
     return arguments;
 }

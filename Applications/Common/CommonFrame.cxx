@@ -18,6 +18,15 @@ std::string nameOf(const NamedMesh& mesh) {
     return mesh.path.filename().string();
 }
 
+/// "a.stl and b.stl", "a.stl, b.stl and c.stl"
+std::string namesOf(std::span<const NamedMesh> meshes) {
+    std::string text;
+    for (std::size_t n = 0; n < meshes.size(); ++n) {
+        text += (n == 0 ? "" : n + 1 == meshes.size() ? " and " : ", ") + nameOf(meshes[n]);
+    }
+    return text;
+}
+
 std::string frameText(const NamedMesh& mesh) {
     return nameOf(mesh) + " is in " + std::string(toString(*mesh.file.frame));
 }
@@ -32,9 +41,8 @@ void assumeRas(std::span<NamedMesh> meshes, CommonFrame& common) {
     const std::size_t count = meshes.size();
     common.warnings.push_back(
         count == 1 ? nameOf(meshes[0]) + " does not say its coordinate frame; taken for RAS mm"
-                   : std::string(count == 2 ? "neither surface says its coordinate frame; both"
-                                            : "no surface says its coordinate frame; all") +
-                         " are taken for RAS mm");
+                   : namesOf(meshes) + " don't say their coordinate frame; " +
+                         (count == 2 ? "both" : "all") + " are taken for RAS mm");
 }
 
 void assumeUnknownFrames(std::span<NamedMesh> meshes, CommonFrame& common) {
@@ -81,8 +89,8 @@ void placeLooseTkRas(std::span<NamedMesh> meshes, CommonFrame& common) {
         if (!mesh.file.volume) mesh.file.volume = volume;
     }
     if (meshes.size() == 1) return;
-    common.warnings.push_back(std::string(meshes.size() == 2 ? "both" : "all") +
-                              " surfaces are in tkRAS mm; taken for surfaces of one volume");
+    common.warnings.push_back(namesOf(meshes) + (meshes.size() == 2 ? " are both" : " are all") +
+                              " in tkRAS mm; taken for surfaces of one volume");
 }
 
 }  // namespace

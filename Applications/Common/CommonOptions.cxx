@@ -5,15 +5,25 @@
 
 #include <memory>
 
+#include "Common/OptionValues.h"
+
 namespace adaptiso {
 
-void declareCommonOptions(CLI::App& app, CommonOptions& options) {
+void declareCommonOptions(CLI::App& app, CommonOptions& options, const std::string& strictly) {
     constexpr const char* kGroup = "Running";
-    app.add_option("--threads", options.threads, "Use N threads (default: all of the machine's)")
-        ->type_name("N")
-        ->check(CLI::Range(1, 1024).description(""))
+    addCount(app, "--threads", options.threads, 1, 1024,
+             "Use N threads (default: all of the machine's)")
         ->group(kGroup);
-    app.add_flag("-q,--quiet", options.isQuiet, "Print nothing but errors")->group(kGroup);
+    app.add_flag("-q,--quiet", options.isQuiet,
+                 "Print neither progress nor results; warnings and errors still go to stderr")
+        ->group(kGroup);
+    app.add_flag("--no-warnings", options.hidesWarnings,
+                 "Print no warnings; --json and --report hold them all the same")
+        ->group(kGroup);
+    app.add_flag(
+           "--strict", options.isStrict,
+           "Fail (exit code 1) when there is any warning, with a line that says which; " + strictly)
+        ->group(kGroup);
     app.add_option("--json", options.json,
                    "Write a report to FILE, or to stdout when FILE is -, in place of the text")
         ->type_name("FILE")

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,14 +11,17 @@ namespace adaptiso {
 struct CommonOptions {
     std::optional<int> threads;  ///< none: as many as the machine has
     bool isQuiet = false;
-    std::string json;  ///< a file's name, "-" for stdout, empty for no report
+    bool hidesWarnings = false;
+    bool isStrict = false;  ///< warnings make the run fail (Common/Warnings.h)
+    std::string json;       ///< a file's name, "-" for stdout, empty for no report
 
     bool wantsJson() const { return !json.empty(); }
     bool wantsJsonOnStdout() const { return json == "-"; }
 };
 
-/// Adds --threads, --quiet, --json and --version.
-void declareCommonOptions(CLI::App& app, CommonOptions& options);
+/// Adds --threads, --quiet, --no-warnings, --strict, --json and --version.
+/// \param strictly  what --strict means for what the program writes: "no surface is written"
+void declareCommonOptions(CLI::App& app, CommonOptions& options, const std::string& strictly);
 
 /// "0.1.0"
 std::string programVersion();

@@ -1,33 +1,62 @@
 #include "Common/ImageOptions.h"
 
-#include "Common/Numbers.h"
+#include <algorithm>
+
+#include "Common/InputKind.h"
+#include "Common/OptionValues.h"
 #include "Common/RunApp.h"
 
 namespace adaptiso {
+namespace {
+
+/// A series' number from 1, or a UID: digits and dots.
+bool isSeries(const std::string& text) {
+    const bool hasDigits = text.find_first_of("123456789") != std::string::npos &&
+                           text.find_first_not_of("0123456789.") == std::string::npos &&
+                           text.front() != '.';
+    return hasDigits && text.size() <= 64;  // no UID is longer
+}
+
+}  // namespace
 
 void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& group) {
     options.mapFiles = true;  // runApp() answers a disk that fails
-    app.add_option("--series", options.series,
-                   "Which series of a DICOM input with several: its number in the list that "
-                   "--list-series prints, or its UID")
+    app.add_option_function<std::string>(
+           "--series",
+           [&options](const std::string& text) {
+               if (!isSeries(text)) {
+                   throw UsageError("--series " + shown(text) +
+                                    ": must be a number from the list of --list-series, from 1, "
+                                    "or a series' UID");
+               }
+               options.series = text;
+           },
+           "Which series of a DICOM input with several: its number in the list that "
+           "--list-series prints, or its UID")
         ->type_name("N|UID")
         ->group(group);
-    app.add_option_function<std::string>(
-           "--volume-index",
-           [&options](const std::string& text) {
-               std::int64_t index = -1;
-               if (!CLI::detail::lexical_cast(text, index) || index < 0) {
-                   throw UsageError("--volume-index " + text + ": must be a whole number from 0");
-               }
-               options.volumeIndex = index;
-           },
-           "Which volume of a 4-D image (time points, echoes), counted from 0")
-        ->type_name("N")
+    addCount(app, "--volume-index", options.volumeIndex, 0, kAnyCount,
+             "Which volume of a 4-D image (time points, echoes), counted from 0")
         ->group(group);
     app.add_flag("--resample-slices", options.resampleSlices,
                  "Blend unevenly spaced DICOM slices linearly onto even steps, in place of "
                  "refusing them")
         ->group(group);
+}
+
+ReadVolume readImage(const std::filesystem::path& file, const ReadOptions& options) {
+    try {
+        ReadVolume read = readVolume(file, options);
+        if (options.series && read.format != "DICOM") {
+            throw InvalidInput("--series " + *options.series + ": " + file.string() + " is " +
+                               read.format + ", which has no series; leave --series out");
+        }
+        return read;
+    } catch (const FileError&) {
+        const std::string hint = surfaceHint(file);
+        if (hint.empty()) throw;
+        throw FileError(file.string() + ": " + hint);
+    }
 }
 
 CLI::Option* declareVolume(CLI::App& app, std::filesystem::path& volume, ReadOptions& options,

@@ -20,6 +20,11 @@ struct ImageOptions {
 /// Adds --series, --volume-index and --resample-slices. Large images are mapped.
 void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& group);
 
+/// Reads an image as readVolume() does. A surface given for it is told as one, and --series for
+/// what is no DICOM is refused.
+/// \throws FileError, InvalidInput
+ReadVolume readImage(const std::filesystem::path& file, const ReadOptions& options);
+
 /// Adds --volume, an image beside a program's surfaces, and the same options, which then need it.
 /// \return --volume
 CLI::Option* declareVolume(CLI::App& app, std::filesystem::path& volume, ReadOptions& options,
@@ -31,7 +36,8 @@ void declareImageOptions(CLI::App& app, ImageOptions& options, const std::string
 /// Lists the series of `input` on stdout: as text, or as JSON on stdout or in a file, as `common`
 /// says. UIDs, descriptions and files' names are shown only with --show-phi.
 /// \param program  the calling program's name, for the JSON
-/// \return kExitOk, also when some of the series can't be read
+/// \return kExitOk, also when some of the series can't be read; kExitCheckFailed with --strict and
+/// warnings
 /// \throws FileError      the input is no DICOM, or holds no image
 int runSeriesList(const std::filesystem::path& input, const ImageOptions& options,
                   const CommonOptions& common, const std::string& program);

@@ -6,7 +6,14 @@
 #include <iomanip>
 #include <sstream>
 
+#include "adaptiso/Core/Text.h"
+
 namespace adaptiso {
+namespace {
+
+constexpr double kMostInFull = 1e15;  // longer numbers are no help to a reader
+
+}  // namespace
 
 std::optional<double> parseFiniteNumber(std::string_view text) {
     if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
@@ -21,10 +28,14 @@ std::string formatNumber(double value) {
     if (value == 0) return "0";
     const double size = std::abs(value);
     const auto format =
-        size >= 1e-6 && size < 1e15 ? std::chars_format::fixed : std::chars_format::general;
+        size >= 1e-6 && size < kMostInFull ? std::chars_format::fixed : std::chars_format::general;
     std::array<char, 64> text;
     const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value, format);
     return {text.data(), end};
+}
+
+std::string formatShort(double value) {
+    return shortText(value);
 }
 
 std::string formatCount(long long value) {
@@ -35,10 +46,12 @@ std::string formatCount(long long value) {
 }
 
 std::string formatRounded(double value) {
+    if (!(std::abs(value) < kMostInFull)) return formatShort(value);
     return formatCount(std::llround(value));
 }
 
 std::string formatFixed(double value, int digits) {
+    if (!(std::abs(value) < kMostInFull)) return formatShort(value);
     std::ostringstream text;
     text << std::fixed << std::setprecision(digits) << value;
     return text.str();

@@ -2,10 +2,11 @@
 
 #include <charconv>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "Common/Numbers.h"
-#include "Common/RunApp.h"
+#include "Common/OptionValues.h"
 
 namespace adaptiso {
 namespace {
@@ -48,7 +49,7 @@ std::optional<IndexRange> parseRange(std::string_view text) {
 
 CropRanges parseCrop(const std::string& text) {
     const auto refuse = [&] {
-        throw UsageError("--crop " + text +
+        throw UsageError("--crop " + shown(text) +
                          ": must be three ranges of voxel indices, as in 10:90,:,20:");
     };
     const std::vector<std::string_view> parts = split(text, ',');
@@ -62,54 +63,69 @@ CropRanges parseCrop(const std::string& text) {
     return ranges;
 }
 
-CLI::Option* addLength(CLI::App& app, const std::string& name, std::optional<double>& target,
-                       const std::string& description) {
-    return app.add_option_function<std::string>(
-        name,
-        [&target, name](const std::string& text) {
-            target = parseFiniteNumber(text);
-            if (!target || !(*target > 0)) {
-                throw UsageError(name + " " + text + ": must be a number of mm, more than 0");
-            }
-        },
-        description);
+/// "10:90,:,20:", as --crop takes it.
+std::string cropText(const CropRanges& ranges) {
+    std::string text;
+    for (const auto& [first, end] : ranges) {
+        text += text.empty() ? "" : ",";
+        if (first != 0 || end) text += std::to_string(first);
+        text += ":";
+        if (end) text += std::to_string(*end);
+    }
+    return text;
 }
 
-Interpolation interpolationOf(const std::string& word) {
-    for (const auto interpolation : {Interpolation::Nearest, Interpolation::BSpline}) {
-        if (word == toString(interpolation)) return interpolation;
+/// The option that asks for a step, with its value.
+std::string optionOf(PreprocessStep step, const PreprocessOptions& options) {
+    switch (step) {
+        case PreprocessStep::Crop:
+            return "--crop " + cropText(options.crop.value());
+        case PreprocessStep::Smooth:
+            return "--smooth " + formatNumber(options.smoothSigmaMm.value());
+        case PreprocessStep::Resample:
+            return "--resample " + formatNumber(options.resampleMm.value());
     }
-    return Interpolation::Linear;  // the check has refused all others
+    throw InternalError("optionOf: unknown step");
 }
 
 }  // namespace
 
 void declarePreprocessingOptions(CLI::App& app, PreprocessOptions& options,
                                  const std::string& group) {
+    const NumberRule length{.least = 0, .isAbove = true, .unit = "mm"};
     app.add_option_function<std::string>(
            "--crop", [&options](const std::string& text) { options.crop = parseCrop(text); },
            "First keep these voxels only: indices from 0, the end not included; a bound left out "
            "is the image's border: 10:90,:,20:")
         ->type_name("I0:I1,J0:J1,K0:K1")
         ->group(group);
-    addLength(app, "--smooth", options.smoothSigmaMm,
+    addNumber(app, "--smooth", options.smoothSigmaMm, length,
               "Then smooth with a Gaussian of this standard deviation, the same in every direction "
               "in space")
         ->type_name("SIGMA_MM")
         ->group(group);
-    CLI::Option* const resample = addLength(app, "--resample", options.resampleMm,
+    CLI::Option* const resample = addNumber(app, "--resample", options.resampleMm, length,
                                             "Then resample to cubic voxels with sides of MM mm")
                                       ->type_name("MM")
                                       ->group(group);
-    app.add_option_function<std::string>(
-           "--interpolation",
-           [&options](const std::string& word) { options.interpolation = interpolationOf(word); },
-           "How --resample finds values between voxels: linear (default), bspline (cubic), or "
-           "nearest (for labels)")
-        ->type_name("linear|bspline|nearest")
-        ->check(CLI::IsMember({"linear", "bspline", "nearest"}).description(""))
+    addChoice<Interpolation>(app, "--interpolation", options.interpolation,
+                             {{"linear", Interpolation::Linear},
+                              {"bspline", Interpolation::BSpline},
+                              {"nearest", Interpolation::Nearest}},
+                             "How --resample finds values between voxels: linear (default), "
+                             "bspline (cubic), or nearest (for labels)")
         ->needs(resample)
         ->group(group);
+}
+
+Preprocessed preprocessImage(Volume volume, const PreprocessOptions& options,
+                             const std::filesystem::path& file) {
+    try {
+        return preprocess(std::move(volume), options);
+    } catch (const PreprocessError& error) {
+        throw InvalidInput(optionOf(error.step(), options) + ": " + error.what() + " (" +
+                           file.string() + ")");
+    }
 }
 
 std::string preprocessingText(const PreprocessOptions& options, const Index3& size) {

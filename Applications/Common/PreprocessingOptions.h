@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 
 #include "Common/Json.h"
@@ -13,6 +14,11 @@ namespace adaptiso {
 /// values. Parsing throws a CLI::ParseError or a UsageError for values that make no sense.
 void declarePreprocessingOptions(CLI::App& app, PreprocessOptions& options,
                                  const std::string& group);
+
+/// preprocess(), whose refusals name the option and the file: "--smooth 50: ... (in.nii)".
+/// \throws InvalidInput
+Preprocessed preprocessImage(Volume volume, const PreprocessOptions& options,
+                             const std::filesystem::path& file);
 
 /// "crop 10:90,0:256,5:236, smooth 1 mm, resample 0.8 mm (linear)": what was done to an image of
 /// this size.

@@ -1,7 +1,7 @@
 #include "Common/ReportOutput.h"
 
-#include "Common/CommonOptions.h"
 #include "Common/Numbers.h"
+#include "Common/Warnings.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Report/Page.h"
 
@@ -61,6 +61,15 @@ std::vector<Picture> writeReport(Report& report, const std::string& program,
         outputs.emplace_back(options.page).writeText(htmlPage(report, pictures));
     }
     return pictures;
+}
+
+void tellStrict(Report& report, const CommonOptions& common, std::span<const std::string> warnings,
+                const std::string& consequence) {
+    if (!failsStrict(common, warnings)) return;
+    const std::string text = strictFailure(warnings, consequence) + ".";
+    const bool hasFailed = report.verdict == ReportVerdict::Failed;
+    report.headline = hasFailed ? report.headline + " " + text : text;
+    report.verdict = ReportVerdict::Failed;
 }
 
 std::vector<ReportFact> imageFacts(const std::string& name, const std::string& format,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Common/AtomicOutput.h"
+#include "Common/CommonOptions.h"
 #include "Common/Resources.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Report/Pictures.h"
@@ -51,6 +52,11 @@ private:
 /// \return the pictures  \throws FileError
 std::vector<Picture> writeReport(Report& report, const std::string& program,
                                  const ReportOptions& options, std::vector<AtomicOutput>& outputs);
+
+/// Where --strict and warnings make a run fail, the page says so.
+/// \param consequence  as strictFailure() takes it
+void tellStrict(Report& report, const CommonOptions& common, std::span<const std::string> warnings,
+                const std::string& consequence);
 
 /// Size, voxel and format of an image, in words.
 std::vector<ReportFact> imageFacts(const std::string& name, const std::string& format,

@@ -13,6 +13,7 @@
 #include "Common/Numbers.h"
 #include "Common/OptionsJson.h"
 #include "Common/Resources.h"
+#include "Common/UsageWords.h"
 #include "adaptiso/ImageIO/MappedInput.h"
 
 namespace adaptiso {
@@ -66,9 +67,7 @@ int fail(const Program& program, std::string_view message, ExitCode code) {
 }
 
 int failUsage(const Program& program, std::string_view message) {
-    fail(program, message, kExitUsage);
-    std::cerr << "Try '" << program.name << " --help'.\n";
-    return kExitUsage;
+    return fail(program, std::string(message) + " (see " + program.name + " --help)", kExitUsage);
 }
 
 int runParsed(const Program& program, const std::function<int()>& run) {
@@ -110,11 +109,13 @@ int runApp(int argc, const char* const* argv, const Program& program,
             std::cout << optionsJson(app) << std::flush;
             return std::cout ? kExitOk : kExitBadInput;
         }
+        refuseMissingValues(app);
+        refuseEmptyAssignments(app, argc, argv);
         app.parse(argc, argv);
     } catch (const CLI::Success& asked) {
         return app.exit(asked);  // --help, --version
     } catch (const CLI::ParseError& error) {
-        return failUsage(program, error.what());
+        return failUsage(program, inWords(app, error));
     } catch (const UsageError& error) {
         return failUsage(program, error.what());
     }

@@ -1,10 +1,10 @@
-#include <sstream>
-
 #include "Common/ExitCodes.h"
 #include "Common/ImageOptions.h"
 #include "Common/Json.h"
+#include "Common/Numbers.h"
 #include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
+#include "Common/Warnings.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 
 namespace adaptiso {
@@ -15,11 +15,7 @@ std::string counted(std::int64_t count, const std::string& thing) {
 }
 
 std::string spacingText(const Vec3& mm) {
-    const auto text = [](double value) {
-        std::ostringstream digits;
-        digits << value;  // six of them
-        return value > 0 ? digits.str() : "?";
-    };
+    const auto text = [](double value) { return value > 0 ? formatShort(value) : "?"; };
     return text(mm.x) + " x " + text(mm.y) + " x " + text(mm.z) + " mm";
 }
 
@@ -92,6 +88,17 @@ std::string listJson(const std::string& program, const std::string& name,
     return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+/// All that the list tells as warnings.
+std::vector<std::string> warningsOf(const DicomListing& listing) {
+    std::vector<std::string> warnings = listing.warnings;
+    for (const DicomSeries& series : listing.series) {
+        for (const std::string& warning : series.warnings) {
+            warnings.push_back("series " + std::to_string(series.number) + ": " + warning);
+        }
+    }
+    return warnings;
+}
+
 }  // namespace
 
 int runSeriesList(const std::filesystem::path& input, const ImageOptions& options,
@@ -102,7 +109,7 @@ int runSeriesList(const std::filesystem::path& input, const ImageOptions& option
         common.wantsJson() ? listJson(program, name, listing, options.showsPhi) : "";
     deliverReport(common, input, json,
                   [&](std::ostream& out) { printList(out, name, listing, options.showsPhi); });
-    return kExitOk;
+    return strictVerdict(program, common, warningsOf(listing), "", kExitOk);
 }
 
 }  // namespace adaptiso

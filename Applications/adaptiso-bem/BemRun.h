@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "Common/Resources.h"
+#include "Common/Warnings.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/HeadModel/Finding.h"
@@ -69,6 +70,8 @@ struct BemRun {
     std::optional<ReadVolume> shownImage{};  ///< for the report; none unless one is wanted
 
     bool hasModel() const { return findings.empty(); }
+    /// --strict makes the warnings failures: of the model only the report is written.
+    bool failsStrict() const { return adaptiso::failsStrict(options.common, warnings); }
 };
 
 }  // namespace adaptiso

@@ -314,9 +314,9 @@ constexpr const char* kFooter = R"(Examples:
   adaptiso-bem --ct ct.nii.gz --meg -o model --report model.html
   adaptiso-bem --surfaces inner.stl outer.stl skin.stl --min-gap 3,2 -o model
 
-Exit codes: 0 done, 1 no model could be guaranteed (the folder holds report.json
-alone), 2 wrong usage, 3 bad input (or no memory or disk left), 4 internal
-error. When it is above 1, nothing was written.)";
+Exit codes: 0 done, 1 no model could be guaranteed, or a warning with --strict
+(the folder holds report.json alone), 2 wrong usage, 3 bad input (or no memory
+or disk left), 4 internal error. When it is above 1, nothing was written.)";
 
 }  // namespace
 
@@ -332,7 +332,8 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
     declareHead(app, options);
     declareSurfaces(app, options);
     declareOutput(app, options);
-    declareCommonOptions(app, options.common);
+    declareCommonOptions(app, options.common,
+                         "of the model only the report is then written");
     app.callback([&options] { checkCombinations(options); });
 }
 

@@ -45,7 +45,8 @@ Json optionsJson(const BemOptions& options) {
              {{"brain", options.conductivities.brain},
               {"skull", options.conductivities.skull},
               {"scalp", options.conductivities.scalp}}},
-            {"threads", orNull(options.common.threads)}};
+            {"threads", orNull(options.common.threads)},
+            {"strict", options.common.isStrict}};
 }
 
 Json remeshJson(const BemSurface& surface) {
@@ -111,7 +112,8 @@ std::string jsonReport(const BemRun& run) {
     const BemOptions& options = run.options;
     const Json report{{"schema", "adaptiso-bem/1"},
                       {"program", {{"name", "adaptiso-bem"}, {"version", programVersion()}}},
-                      {"model", run.hasModel() && !options.isDryRun},
+                      {"model", run.hasModel() && !run.failsStrict() && !options.isDryRun},
+                      {"failedByWarnings", run.failsStrict()},
                       {"input", inputJson(run)},
                       {"options", optionsJson(options)},
                       {"notes", run.notes},

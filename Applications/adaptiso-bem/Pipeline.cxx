@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "BemRun.h"
@@ -12,6 +13,7 @@
 #include "Common/Numbers.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
+#include "Common/Warnings.h"
 #include "Inputs.h"
 #include "JsonReport.h"
 #include "ModelFiles.h"
@@ -109,11 +111,8 @@ std::vector<TriangleMesh> firstSurfaces(BemRun& run, ProgressLine& progress) {
 }
 
 /// Those from number `first` on.
-void printWarnings(const BemRun& run, std::size_t first = 0) {
-    if (run.options.common.isQuiet) return;
-    for (std::size_t n = first; n < run.warnings.size(); ++n) {
-        printError("adaptiso-bem", "warning: " + run.warnings[n]);
-    }
+void tellWarnings(const BemRun& run, std::size_t first = 0) {
+    printWarnings("adaptiso-bem", run.options.common, std::span(run.warnings).subspan(first));
 }
 
 /// Solvers take the square of the number of vertices in memory, the cube in time.
@@ -141,7 +140,7 @@ void fillFolder(const std::vector<TriangleMesh>& surfaces, BemRun& run,
                 std::optional<AtomicFolder>& folder) {
     const BemOptions& options = run.options;
     folder.emplace(options.output, replaceable(options));
-    if (!run.hasModel()) return;
+    if (!run.hasModel() || run.failsStrict()) return;
     run.timer.time("write", [&] { writeModel(surfaces, run, *folder); });
     run.timer.time("check", [&] { checkFiles(folder->path(), surfaces, run); });
     if (run.hasModel()) return;
@@ -180,7 +179,7 @@ std::string write(const std::vector<TriangleMesh>& surfaces, const std::vector<T
     std::optional<AtomicFolder> folder;
     if (!options.isDryRun) {
         fillFolder(surfaces, run, folder);
-        if (run.hasModel()) outputs = writeSubject(surfaces, run);
+        if (run.hasModel() && !run.failsStrict()) outputs = writeSubject(surfaces, run);
     }
     show(run, shown, outputs, folder);
     const std::string json = jsonReport(run);
@@ -205,20 +204,23 @@ int runBem(const BemOptions& options) {
     const std::vector<TriangleMesh> dense = firstSurfaces(run, progress);
     chooseTkRas(run);
     progress.clear();
-    printWarnings(run);
+    tellWarnings(run);
     const std::size_t told = run.warnings.size();
     std::vector<TriangleMesh> surfaces;
     if (run.hasModel()) surfaces = remeshAndNest(dense, run, progress);
     if (run.hasModel()) checkModel(surfaces, run, progress);
     warnOfMany(surfaces, run);
     progress.clear();
-    printWarnings(run, told);
+    tellWarnings(run, told);
 
     progress.show("write");
     const std::string json = write(surfaces, surfaces.empty() ? dense : surfaces, run);
     progress.clear();
     report(run, json);
-    if (run.hasModel()) return kExitOk;
+    if (run.hasModel()) {
+        return strictVerdict("adaptiso-bem", options.common, run.warnings,
+                             "so no model was written", kExitOk);
+    }
     printError("adaptiso-bem", "no model: " + failureText(run));
     return kExitCheckFailed;
 }

@@ -146,6 +146,7 @@ Report makeReport(const BemRun& run, const std::vector<TriangleMesh>& surfaces) 
     if (!run.checks.empty()) report.tables.push_back(surfaceTable(run));
     if (!run.files.empty()) report.tables.push_back(fileTable(run));
     report.notes = run.warnings;
+    tellStrict(report, run.options.common, run.warnings, "so no model was written");
     report.notes.insert(report.notes.end(), run.notes.begin(), run.notes.end());
     if (run.options.isDryRun) report.notes.push_back("Nothing else was written (--dry-run).");
     if (!run.hasModel() && !surfaces.empty()) {

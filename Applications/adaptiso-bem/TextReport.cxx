@@ -53,7 +53,7 @@ void printReport(std::ostream& out, const BemRun& run) {
     if (run.options.isDryRun) {
         out << "nothing written (--dry-run)\n";
     } else {
-        out << run.options.output.string() << (run.hasModel() ? ": the model" : ": the report only")
+        out << run.options.output.string() << (run.hasModel() && !run.failsStrict() ? ": the model" : ": the report only")
             << '\n';
         for (const auto& path : run.subjectFiles) out << path.string() << '\n';
     }

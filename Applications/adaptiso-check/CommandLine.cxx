@@ -1,11 +1,10 @@
 #include "CommandLine.h"
 
-#include <map>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "Common/ImageOptions.h"
-#include "Common/Numbers.h"
+#include "Common/OptionValues.h"
 #include "Common/PreprocessingOptions.h"
 
 namespace adaptiso {
@@ -15,22 +14,6 @@ constexpr const char* kInput = "Input";
 constexpr const char* kPreprocessing = "Preprocessing of the volume for --iso (in this order)";
 constexpr const char* kRequired = "What is required (exit code 1 when it does not hold)";
 constexpr const char* kOutput = "Output";
-
-void addNumber(CLI::App& app, const std::string& name, std::optional<double>& target,
-               const std::string& unit, const std::string& description, const char* group) {
-    app.add_option_function<std::string>(
-           name,
-           [&target, name, unit](const std::string& text) {
-               target = parseFiniteNumber(text);
-               if (!target || *target < 0) {
-                   throw UsageError(name + " " + text + ": must be a number of " + unit +
-                                    ", 0 or more");
-               }
-           },
-           description)
-        ->type_name(unit == "mm" ? "MM" : "DEG")
-        ->group(group);
-}
 
 void declareInput(CLI::App& app, CheckOptions& options) {
     app.add_option("FILE", options.files,
@@ -47,10 +30,7 @@ void declareInput(CLI::App& app, CheckOptions& options) {
     app.add_option_function<std::string>(
            "--iso",
            [&options](const std::string& text) {
-               options.isovalue = parseFiniteNumber(text);
-               if (!options.isovalue) {
-                   throw UsageError("--iso " + text + ": must be a finite number");
-               }
+               options.isovalue = parseNumber("--iso", text, {});
            },
            "Measure how far the surfaces lie from the volume's isosurface at this value")
         ->type_name("V")
@@ -59,27 +39,28 @@ void declareInput(CLI::App& app, CheckOptions& options) {
 }
 
 void declareRequirements(CLI::App& app, CheckOptions& options) {
-    static const std::map<std::string, Profile> kProfiles{
-        {"bem", Profile::Bem}, {"print", Profile::Print}, {"view", Profile::View}};
-    app.add_option_function<std::string>(
-           "--profile",
-           [&options](const std::string& text) { options.profile = kProfiles.at(text); },
-           "bem: a boundary of a head model (default with --nested); print: a solid (default); "
-           "view: to look at. See below")
-        ->type_name("bem|print|view")
-        ->check(CLI::IsMember(kProfiles).description(""))
+    addChoice<Profile>(
+        app, "--profile", options.profile,
+        {{"bem", Profile::Bem}, {"print", Profile::Print}, {"view", Profile::View}},
+        "bem: a boundary of a head model (default with --nested); print: a solid (default); "
+        "view: to look at. See below")
         ->group(kRequired);
-    addNumber(app, "--min-gap", options.minGapMm, "mm",
+    const NumberRule length{.least = 0, .unit = "mm"};
+    addNumber(app, "--min-gap", options.minGapMm, length,
               "With --nested: smallest gap between neighbours that passes, in any profile "
-              "(default: 0.5, in bem only)",
-              kRequired);
-    addNumber(app, "--min-angle", options.minAngleDeg, "degrees",
-              "Smallest angle of a triangle that passes, in any profile (default: 1, in bem only)",
-              kRequired);
-    addNumber(app, "--max-off", options.maxOffMm, "mm",
+              "(default: 0.5, in bem only)")
+        ->type_name("MM")
+        ->group(kRequired);
+    addNumber(app, "--min-angle", options.minAngleDeg, {.least = 0, .most = 60, .unit = "degrees"},
+              "Smallest angle of a triangle that passes, 0 to 60, in any profile (default: 1, in "
+              "bem only)")
+        ->type_name("DEG")
+        ->group(kRequired);
+    addNumber(app, "--max-off", options.maxOffMm, length,
               "With --iso: largest distance from the isosurface that passes (default: the mean "
-              "within half a voxel)",
-              kRequired);
+              "within half a voxel)")
+        ->type_name("MM")
+        ->group(kRequired);
 }
 
 void declareSelfTest(CLI::App& app, CheckOptions& options) {
@@ -105,19 +86,30 @@ void checkSelfTestAlone(const CLI::App& app) {
 
 void declareOutput(CLI::App& app, CheckOptions& options) {
     constexpr std::int64_t kMaxPairs = 1'000'000'000;
-    app.add_option("--max-pairs", options.maxPairs,
-                   "List up to N pairs of triangles that cross in the report (default: 1000); all "
-                   "are counted")
-        ->type_name("N")
-        ->check(CLI::Range(std::int64_t{0}, kMaxPairs).description(""))
+    addCount(app, "--max-pairs", options.maxPairs, 0, kMaxPairs,
+             "List up to N pairs of triangles that cross in the report (default: 1000); all are "
+             "counted")
         ->group(kOutput);
     declareReportOptions(app, options.report, kOutput);
+}
+
+/// Of the names of what is written: {name} stands for an input of a batch.
+void checkPlaceholders(const CheckOptions& options) {
+    const std::vector<std::string> forRun =
+        options.batch.isAsked() ? std::vector<std::string>{"{name}"} : std::vector<std::string>{};
+    requirePlaceholders("--report", options.report.page, forRun);
+    requirePlaceholders("--pictures", options.report.pictures, forRun);
+    requirePlaceholders("--summary", options.batch.summary, {});
+    requirePlaceholders("--output-dir", options.batch.outputFolder, {});
+    requirePlaceholders("--json", options.common.json, {});
 }
 
 /// What one option alone can't tell.
 void checkCombinations(const CheckOptions& options) {
     const bool findsFiles = !options.batch.list.empty() || !options.batch.bids.empty();
-    if (options.files.empty() && !findsFiles) throw UsageError("FILE is required");
+    if (options.files.empty() && !findsFiles) {
+        throw UsageError("FILE is missing: the surfaces to check");
+    }
     if (options.isNested && options.files.size() < 2 && !findsFiles) {
         throw UsageError("--nested: needs at least two files, from inside to outside");
     }
@@ -152,9 +144,10 @@ Examples:
       a line for each, each in a process of its own; a page checked/summary.html
   adaptiso-check --self-test --report self-test.html
 
-Exit codes: 0 all that is required holds, 1 something does not, 2 wrong usage,
-3 bad input (or no memory or disk left), 4 internal error. A file that can't be
-read does not keep the others from being checked; the exit code is then 3.)";
+Exit codes: 0 all that is required holds, 1 something does not, or there is a
+warning with --strict, 2 wrong usage, 3 bad input (or no memory or disk left),
+4 internal error. A file that can't be read does not keep the others from being
+checked; the exit code is then 3.)";
 
 }  // namespace
 
@@ -169,13 +162,14 @@ void declareCheckOptions(CLI::App& app, CheckOptions& options) {
     declareSelfTest(app, options);
     declareOutput(app, options);
     declareBatchOptions(app, options.batch, "the surfaces in derivatives/adaptiso");
-    declareCommonOptions(app, options.common);
+    declareCommonOptions(app, options.common, "reports are written all the same");
     app.callback([&app, &options] {
         if (options.isSelfTest) {
             checkSelfTestAlone(app);
             return;
         }
         checkCombinations(options);
+        checkPlaceholders(options);
         if (options.batch.isAsked()) keepRunOptions(app, options.batch);
     });
 }

@@ -21,9 +21,8 @@ Isosurface extractIsosurface(const VolumeView& volume, double isovalue) {
     isosurface.mesh = extractSurface(volume, SpanSpaceIndex::build(volume, {}), extract).mesh;
     if (!(surfaceArea(isosurface.mesh) > 0)) {
         const ValueRange range = valueRange(volume);
-        throw InvalidInput("--iso " + formatNumber(isovalue) +
-                           ": the volume has no surface there; its range is " +
-                           formatNumber(range.minimum) + " to " + formatNumber(range.maximum));
+        throw InvalidInput("there is no surface; the range is " + formatShort(range.minimum) +
+                           " to " + formatShort(range.maximum));
     }
     return isosurface;
 }

@@ -7,6 +7,7 @@
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Common/PreprocessingOptions.h"
+#include "Common/Warnings.h"
 
 namespace adaptiso {
 namespace {
@@ -276,7 +277,8 @@ Json optionsJson(const CheckOptions& options) {
             {"minAngleDeg", options.minAngleDeg.value_or(CheckOptions::kDefaultMinAngleDeg)},
             {"maxOffMm", orNull(options.maxOffMm)},
             {"maxPairs", options.maxPairs},
-            {"threads", orNull(options.common.threads)}};
+            {"threads", orNull(options.common.threads)},
+            {"strict", options.common.isStrict}};
 }
 
 }  // namespace
@@ -286,12 +288,13 @@ std::string jsonReport(const CheckRun& run) {
     for (const SurfaceRun& surface : run.surfaces) surfaces.push_back(surfaceJson(surface));
     const Json report{{"schema", "adaptiso-check/1"},
                       {"program", {{"name", "adaptiso-check"}, {"version", programVersion()}}},
-                      {"passed", run.hasPassed()},
+                      {"passed", run.hasPassed() && !failsStrict(run.options.common, run.warnings)},
                       {"options", optionsJson(run.options)},
                       {"volume", volumeJson(run)},
                       {"surfaces", surfaces},
                       {"nesting", nestingJson(run)},
                       {"warnings", run.warnings},
+                      {"failedByWarnings", failsStrict(run.options.common, run.warnings)},
                       {"seconds", secondsJson(run.timer)},
                       {"peakMemoryMb", peakMemoryMb()}};
     // a file's name need not be UTF-8: what is not becomes U+FFFD

@@ -11,8 +11,15 @@
 #include "Common/AtomicOutput.h"
 #include "Common/CommonFrame.h"
 #include "Common/ExitCodes.h"
+#include "Common/ImageOptions.h"
+#include "Common/InputKind.h"
+#include "Common/Json.h"
+#include "Common/Naming.h"
+#include "Common/Numbers.h"
+#include "Common/PreprocessingOptions.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
+#include "Common/Warnings.h"
 #include "Isosurface.h"
 #include "JsonReport.h"
 #include "ReportPage.h"
@@ -87,7 +94,7 @@ private:
     void readImage() {
         if (options_.volume.empty()) return;
         std::optional<ReadVolume> read;
-        stage(kRead, [&] { read = readVolume(options_.volume, options_.read); });
+        stage(kRead, [&] { read = adaptiso::readImage(options_.volume, options_.read); });
         image_ = read->volume.view().geometry();
         run_.volume = VolumeSummary{read->format, *image_};
         if (options_.report.isWanted()) shown_.image = *read;
@@ -95,17 +102,21 @@ private:
         if (!options_.isovalue) return;
         stage(kExtract, [&] {
             const Preprocessed prepared =
-                preprocess(std::move(read->volume), options_.preprocessing);
+                preprocessImage(std::move(read->volume), options_.preprocessing, options_.volume);
             warnOfVolume(prepared.warnings);
-            isosurface_ = extractIsosurface(prepared.volume, *options_.isovalue);
+            isosurface_ =
+                naming("--iso " + formatNumber(*options_.isovalue) + ": " + volumeName(),
+                       [&] { return extractIsosurface(prepared.volume, *options_.isovalue); });
         });
     }
 
     void warnOfVolume(const std::vector<std::string>& warnings) {
         for (const std::string& warning : warnings) {
-            run_.warnings.push_back(options_.volume.filename().string() + ": " + warning);
+            run_.warnings.push_back(volumeName() + ": " + warning);
         }
     }
+
+    std::string volumeName() const { return baseName(options_.volume); }
 
     /// Reads one file and asks the questions of one surface. Points stay as stored, so that what
     /// touches in the file touches here; but voxel indices say nothing of mm and become RAS.
@@ -117,7 +128,8 @@ private:
         try {
             stage(kRead, [&] { readSurface(loaded.mesh, surface); });
         } catch (const Error& error) {
-            tellUnread(surface, error.what());
+            const std::string hint = imageHint(file);
+            tellUnread(surface, hint.empty() ? error.what() : file.string() + ": " + hint);
             return;
         } catch (const std::bad_alloc&) {
             tellUnread(surface, file.string() + ": too large for this machine's memory");
@@ -238,13 +250,6 @@ private:
     std::vector<Loaded> meshes_;
 };
 
-void printWarnings(const CheckRun& run) {
-    if (run.options.common.isQuiet) return;
-    for (const std::string& warning : run.warnings) {
-        printError(kProgram, "warning: " + warning);
-    }
-}
-
 void tellFailed(const std::string& subject, const std::vector<Check>& checks) {
     for (const Check& check : checks) {
         if (!check.breaksProfile()) continue;
@@ -312,10 +317,11 @@ int runCheck(const CheckOptions& options) {
     }
     AtomicOutput::commit(outputs);
     progress.clear();
-    printWarnings(run);
+    printWarnings(kProgram, options.common, run.warnings);
     report(run, json);
     if (run.hasUnreadable()) return kExitBadInput;
-    return run.hasPassed() ? kExitOk : kExitCheckFailed;
+    const int exitCode = run.hasPassed() ? kExitOk : kExitCheckFailed;
+    return strictVerdict(kProgram, options.common, run.warnings, "", exitCode);
 }
 
 }  // namespace adaptiso

@@ -179,6 +179,7 @@ Report makeReport(const CheckRun& run, ShownSurfaces& shown) {
     report.tables.push_back(surfaceTable(run));
     if (!run.nesting.empty()) report.tables.push_back(nestingTable(run));
     tellSpots(run, shown, report);
+    tellStrict(report, run.options.common, run.warnings, "");
     report.notes = run.warnings;
     for (const SurfaceRun& surface : run.surfaces) {
         if (!surface.points || surface.points == CoordinateFrame::Ras) continue;

@@ -1,10 +1,9 @@
 #include "CommandLine.h"
 
-#include <optional>
 #include <string>
 
 #include "Common/ImageOptions.h"
-#include "Common/Numbers.h"
+#include "Common/OptionValues.h"
 
 namespace adaptiso {
 namespace {
@@ -12,23 +11,6 @@ namespace {
 constexpr const char* kDistances = "Distances";
 constexpr const char* kOutput = "Output";
 constexpr const char* kChecks = "Checks (exit code 1 when one fails)";
-
-/// An option that takes a length in mm.
-void addLength(CLI::App& app, const std::string& name, std::optional<double>& target,
-               bool mayBeZero, const std::string& description, const char* group) {
-    app.add_option_function<std::string>(
-           name,
-           [&target, name, mayBeZero](const std::string& text) {
-               target = parseFiniteNumber(text);
-               if (!target || *target < 0 || (!mayBeZero && *target == 0)) {
-                   throw UsageError(name + " " + text + ": must be a number of mm, " +
-                                    (mayBeZero ? "0 or more" : "more than 0"));
-               }
-           },
-           description)
-        ->type_name("MM")
-        ->group(group);
-}
 
 void declareInput(CLI::App& app, CompareOptions& options) {
     app.add_option("A", options.a, "A triangle surface, in any format adaptiso-mesh writes")
@@ -41,11 +23,9 @@ void declareInput(CLI::App& app, CompareOptions& options) {
 
 void declareDistances(CLI::App& app, CompareOptions& options) {
     constexpr std::int64_t kMaxSamples = 1'000'000'000;
-    app.add_option("--samples", options.samples,
-                   "Points laid on a surface, evenly over its area, for each direction (default: "
-                   "200000)")
-        ->type_name("N")
-        ->check(CLI::Range(std::int64_t{1}, kMaxSamples).description(""))
+    addCount(app, "--samples", options.samples, 1, kMaxSamples,
+             "Points laid on a surface, evenly over its area, for each direction (default: "
+             "200000)")
         ->group(kDistances);
     CLI::Option* const symmetric = app.add_flag_callback(
                                           "--symmetric", [&options] { options.isSymmetric = true; },
@@ -55,8 +35,10 @@ void declareDistances(CLI::App& app, CompareOptions& options) {
            "--one-sided", [&options] { options.isSymmetric = false; }, "From A to B only")
         ->excludes(symmetric)
         ->group(kDistances);
-    addLength(app, "--voxel", options.voxelMm, false,
-              "Give distances in voxels of this size as well", kDistances);
+    addNumber(app, "--voxel", options.voxelMm, {.least = 0, .isAbove = true, .unit = "mm"},
+              "Give distances in voxels of this size as well")
+        ->type_name("MM")
+        ->group(kDistances);
     declareVolume(app, options.volume, options.read,
                   "The image that the surfaces were made from: gives distances in its voxels, "
                   "the overlap (Dice) on its grid, and a place to tkRAS and voxel coordinates",
@@ -65,10 +47,14 @@ void declareDistances(CLI::App& app, CompareOptions& options) {
 }
 
 void declareChecks(CLI::App& app, CompareOptions& options) {
-    addLength(app, "--max-mean", options.maxMeanMm, true, "Largest mean distance that passes",
-              kChecks);
-    addLength(app, "--max-hausdorff", options.maxHausdorffMm, true,
-              "Largest maximum distance (Hausdorff) that passes", kChecks);
+    const NumberRule length{.least = 0, .unit = "mm"};
+    addNumber(app, "--max-mean", options.maxMeanMm, length, "Largest mean distance that passes")
+        ->type_name("MM")
+        ->group(kChecks);
+    addNumber(app, "--max-hausdorff", options.maxHausdorffMm, length,
+              "Largest maximum distance (Hausdorff) that passes")
+        ->type_name("MM")
+        ->group(kChecks);
 }
 
 void declareOutput(CLI::App& app, CompareOptions& options) {
@@ -86,8 +72,9 @@ constexpr const char* kFooter = R"(Examples:
   adaptiso-compare lh.pial lh.vtp --colored difference.vtp
   adaptiso-compare new.vtp old.vtp --quiet --max-mean 0.1 --max-hausdorff 1
 
-Exit codes: 0 done, 1 a check failed, 2 wrong usage, 3 bad input (or no memory
-or disk left), 4 internal error. When it is above 1, no file was written.)";
+Exit codes: 0 done, 1 a check failed, or a warning with --strict, 2 wrong usage,
+3 bad input (or no memory or disk left), 4 internal error. When it is above 1,
+no file was written.)";
 
 }  // namespace
 
@@ -102,7 +89,7 @@ void declareCompareOptions(CLI::App& app, CompareOptions& options) {
     declareDistances(app, options);
     declareChecks(app, options);
     declareOutput(app, options);
-    declareCommonOptions(app, options.common);
+    declareCommonOptions(app, options.common, "all files are written all the same");
 }
 
 }  // namespace adaptiso

@@ -4,6 +4,7 @@
 
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
+#include "Common/Warnings.h"
 
 namespace adaptiso {
 namespace {
@@ -30,7 +31,8 @@ Json volumeJson(const CompareRun& run) {
 Json optionsJson(const CompareOptions& options) {
     return {{"samples", options.samples},
             {"symmetric", options.isSymmetric},
-            {"threads", orNull(options.common.threads)}};
+            {"threads", orNull(options.common.threads)},
+            {"strict", options.common.isStrict}};
 }
 
 /// The lengths in another unit of `unitMm`.
@@ -115,6 +117,7 @@ std::string jsonReport(const CompareRun& run) {
                       {"colored", coloredJson(run)},
                       {"checks", checksJson(run.checks)},
                       {"warnings", run.warnings},
+                      {"failedByWarnings", failsStrict(run.options.common, run.warnings)},
                       {"seconds", secondsJson(run.timer)},
                       {"peakMemoryMb", peakMemoryMb()}};
     // a file's name need not be UTF-8: what is not becomes U+FFFD

@@ -10,9 +10,13 @@
 #include "Common/AtomicOutput.h"
 #include "Common/CommonFrame.h"
 #include "Common/ExitCodes.h"
+#include "Common/ImageOptions.h"
+#include "Common/InputKind.h"
+#include "Common/Json.h"
 #include "Common/Numbers.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
+#include "Common/Warnings.h"
 #include "CompareRun.h"
 #include "JsonReport.h"
 #include "ReportPage.h"
@@ -28,6 +32,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kProgram = "adaptiso-compare";
+
 /// The stages of a run, as progress, `seconds` of the report and README.md name them.
 constexpr const char* kRead = "read";
 constexpr const char* kDistance = "distance";
@@ -39,7 +45,8 @@ const MeshFormat& formatOf(const fs::path& path) {
     try {
         return findMeshFormat(path);
     } catch (const InvalidInput& error) {
-        throw UsageError(error.what());
+        const std::string hint = imageHint(path);
+        throw UsageError(hint.empty() ? error.what() : path.string() + ": " + hint);
     }
 }
 
@@ -109,12 +116,12 @@ double meanVoxelSideMm(const ImageGeometry& geometry) {
 void readImage(CompareRun& run) {
     run.voxelMm = run.options.voxelMm;
     if (run.options.volume.empty()) return;
-    ReadVolume read = readVolume(run.options.volume, run.options.read);
+    ReadVolume read = readImage(run.options.volume, run.options.read);
     run.volume = VolumeSummary{read.format, read.volume.view().geometry()};
     run.voxelMm = meanVoxelSideMm(run.volume->geometry);
     if (run.options.report.isWanted()) run.image = read.volume;
     for (const std::string& warning : read.warnings) {
-        run.warnings.push_back(run.options.volume.filename().string() + ": " + warning);
+        run.warnings.push_back(baseName(run.options.volume) + ": " + warning);
     }
 }
 
@@ -140,7 +147,11 @@ CommonFrame readInputs(CompareRun& run, std::array<NamedMesh, 2>& surfaces) {
 void measureOverlap(CompareRun& run, const TriangleMesh& a, const TriangleMesh& b) {
     if (!run.volume) return;
     if (!run.a.volumeMm3 || !run.b.volumeMm3) {
-        run.warnings.push_back("not both surfaces are closed; their overlap is not measured");
+        const bool isAOpen = !run.a.volumeMm3, isBOpen = !run.b.volumeMm3;
+        run.warnings.push_back(
+            (isAOpen ? baseName(run.options.a) : "") + (isAOpen && isBOpen ? " and " : "") +
+            (isBOpen ? baseName(run.options.b) : "") + (isAOpen && isBOpen ? " are" : " is") +
+            " not closed, so the overlap (Dice) is not measured");
         return;
     }
     const ImageGeometry& image = run.volume->geometry;
@@ -150,7 +161,8 @@ void measureOverlap(CompareRun& run, const TriangleMesh& a, const TriangleMesh& 
     overlap.meanBoundaryOffsetMm =
         static_cast<double>(inOne) * image.voxelVolumeMm3() / ((run.a.areaMm2 + run.b.areaMm2) / 2);
     if (overlap.voxels.voxelsEither() == 0) {
-        run.warnings.push_back("no voxel's centre lies inside either surface");
+        run.warnings.push_back(baseName(run.options.volume) +
+                               ": no voxel's centre lies inside either surface");
     }
     run.overlap = overlap;
 }
@@ -205,8 +217,7 @@ void makePage(CompareRun& run, TriangleMesh a, TriangleMesh b, std::vector<Atomi
     shown.a = std::move(a);
     shown.b = std::move(b);
     Report page = makeReport(run, shown);
-    run.timer.time(kReport,
-                   [&] { writeReport(page, "adaptiso-compare", run.options.report, outputs); });
+    run.timer.time(kReport, [&] { writeReport(page, kProgram, run.options.report, outputs); });
 }
 
 std::vector<Check> makeChecks(const CompareRun& run) {
@@ -221,13 +232,6 @@ std::vector<Check> makeChecks(const CompareRun& run) {
     return checks;
 }
 
-void printWarnings(const CompareRun& run) {
-    if (run.options.common.isQuiet) return;
-    for (const std::string& warning : run.warnings) {
-        std::cerr << "adaptiso-compare: warning: " << warning << '\n';
-    }
-}
-
 void report(const CompareRun& run, const std::string& json) {
     if (run.options.common.wantsJsonOnStdout()) {
         std::cout << json;
@@ -237,14 +241,19 @@ void report(const CompareRun& run, const std::string& json) {
     if (!std::cout.flush()) throw FileError("standard output: can't be written");
 }
 
+/// The value of a failed check in as few digits as tell it from the limit.
+std::string digitsApart(const Check& check) {
+    const std::string text = formatShort(check.valueMm);
+    return parseFiniteNumber(text) <= check.limitMm ? formatNumber(check.valueMm) : text;
+}
+
 /// Says on stderr which checks failed.
 int verdict(const CompareRun& run) {
     int code = kExitOk;
     for (const Check& check : run.checks) {
         if (check.hasPassed()) continue;
-        std::cerr << "adaptiso-compare: check failed: " << check.name << ' '
-                  << formatNumber(check.valueMm) << " mm, at most " << formatNumber(check.limitMm)
-                  << " mm\n";
+        printError(kProgram, "check failed: " + check.name + " " + digitsApart(check) +
+                                 " mm, at most " + formatNumber(check.limitMm) + " mm");
         code = kExitCheckFailed;
     }
     return code;
@@ -288,9 +297,9 @@ int runCompare(const CompareOptions& options) {
     }
     AtomicOutput::commit(outputs);
     progress.clear();
-    printWarnings(run);
+    printWarnings(kProgram, options.common, run.warnings);
     report(run, json);
-    return verdict(run);
+    return strictVerdict(kProgram, options.common, run.warnings, "", verdict(run));
 }
 
 }  // namespace adaptiso

@@ -106,6 +106,7 @@ Report makeReport(const CompareRun& run, ShownSurfaces& shown) {
     tellOptions(run, report);
     report.tables = {distanceTable(run), surfaceTable(run)};
     report.notes = run.warnings;
+    tellStrict(report, run.options.common, run.warnings, "");
     if (run.overlap) {
         report.notes.push_back("As solids: Dice " + formatFixed(run.overlap->voxels.dice(), 4) +
                                ", mean offset of the boundary " +

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "Common/Numbers.h"
+#include "Common/OptionValues.h"
 #include "Common/PreprocessingOptions.h"
 #include "adaptiso/MeshIO/Formats.h"
 
@@ -36,9 +36,7 @@ std::vector<IsovalueChoice> parseIsovalues(const std::vector<std::string>& texts
         IsovalueChoice choice;
         if (text != "auto") {
             choice.value = parseFiniteNumber(text);
-            if (!choice.value) {
-                throw UsageError("--iso " + text + ": must be a finite number, or auto");
-            }
+            if (!choice.value) refuseValue("--iso", text, "a finite number, or auto");
         }
         if (std::find(choices.begin(), choices.end(), choice) != choices.end()) {
             throw UsageError("--iso " + text + ": given twice");
@@ -46,14 +44,6 @@ std::vector<IsovalueChoice> parseIsovalues(const std::vector<std::string>& texts
         choices.push_back(choice);
     }
     return choices;
-}
-
-double parseVolume(const std::string& text) {
-    const std::optional<double> volume = parseFiniteNumber(text);
-    if (!volume || *volume < 0) {
-        throw UsageError("--min-volume " + text + ": must be a number of mm3, 0 or more");
-    }
-    return *volume;
 }
 
 /// Of the options that make no surface.
@@ -68,14 +58,29 @@ void checkLookingOnly(const MeshOptions& options) {
     }
 }
 
+/// Of the names of what is written: {name} stands for an input of a batch, {iso} in the surface's
+/// name for the isovalue.
+void checkPlaceholders(const MeshOptions& options) {
+    const std::vector<std::string> forRun{"{name}"}, forSurface{"{iso}", "{name}"};
+    requirePlaceholders("--output", options.output.parent_path(), forRun);
+    requirePlaceholders("--output", options.output.filename(), forSurface);
+    requirePlaceholders("--save-index", options.indexFiles.save, forRun);
+    requirePlaceholders("--report", options.report.page, forRun);
+    requirePlaceholders("--pictures", options.report.pictures, forRun);
+    requirePlaceholders("--summary", options.batch.summary, {});
+    requirePlaceholders("--output-dir", options.batch.outputFolder, {});
+    requirePlaceholders("--json", options.common.json, {});
+}
+
 /// What one option alone can't tell.
 void checkCombinations(const MeshOptions& options) {
     if (options.inputs.empty() && options.batch.list.empty() && options.batch.bids.empty()) {
-        throw UsageError("INPUT is required");
+        throw UsageError("INPUT is missing: the image to make surfaces of");
     }
     checkLookingOnly(options);
     if (options.isovalues.empty() && !options.image.listsSeries && !options.image.tellsInfo) {
-        throw UsageError("--iso is required");
+        throw UsageError(
+            "--iso is missing: a value of the image (--info shows its range), or auto");
     }
     if (options.index.border == Border::Open && options.needsClosedSurfaces()) {
         throw UsageError(
@@ -98,24 +103,6 @@ void checkCombinations(const MeshOptions& options) {
     }
 }
 
-/// An option that takes one of a few words, each standing for a value; `words` in the order of the
-/// help text.
-template <class Value, class Target>
-CLI::Option* addChoice(CLI::App& app, const std::string& name, Target& target,
-                       const std::vector<std::pair<std::string, Value>>& words,
-                       const std::string& description) {
-    std::vector<std::string> names;
-    for (const auto& [word, value] : words) names.push_back(word);
-    const auto choose = [&target, words](const std::string& text) {
-        const auto chosen = std::find_if(words.begin(), words.end(),
-                                         [&](const auto& word) { return word.first == text; });
-        if (chosen != words.end()) target = chosen->second;  // the check has refused all others
-    };
-    return app.add_option_function<std::string>(name, choose, description)
-        ->check(CLI::IsMember(names).description(""))
-        ->type_name(CLI::detail::join(names, "|"));
-}
-
 void declareInput(CLI::App& app, MeshOptions& options) {
     app.add_option(
            "INPUT", options.inputs,
@@ -124,6 +111,27 @@ void declareInput(CLI::App& app, MeshOptions& options) {
         ->type_name("");
     declareImageOptions(app, options.image, kInput);
     declarePreprocessingOptions(app, options.preprocessing, kPreprocessing);
+}
+
+void declareAdaptive(CLI::App& app, AdaptiveOptions& options) {
+    addNumber(app, "--max-error", options.maxErrorMm, {.least = 0, .isAbove = true, .unit = "mm"},
+              "Method adaptive: no point of the surface of mc is farther than MM (a number above "
+              "0) from the mesh, nor the other way round (default, unless a count is given: 0.15 "
+              "of the least distance between planes of voxels)")
+        ->type_name("MM")
+        ->group(kSurface);
+    addCount(app, "--triangles", options.maxTriangles, 0, kAnyCount,
+             "Method adaptive: as near to the surface as N triangles can be")
+        ->group(kSurface);
+    addNumber(app, "--reduction", options.reduction, {.least = 0, .most = 1},
+              "Method adaptive: the share F of mc's triangles to drop, 0 to 1")
+        ->type_name("F")
+        ->group(kSurface);
+    addNumber(app, "--min-angle", options.minAngleDeg, {.least = 0, .most = 40, .unit = "degrees"},
+              "Method adaptive: make no angle below DEG, 0 to 40, at the price of more triangles "
+              "(default: 0)")
+        ->type_name("DEG")
+        ->group(kSurface);
 }
 
 void declareSurface(CLI::App& app, MeshOptions& options) {
@@ -151,30 +159,7 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
                       "asc: adaptive skeleton climbing, rectangular boxes, unmerged; "
                       "mc: marching cubes, every voxel at full resolution")
         ->group(kSurface);
-    app.add_option(
-           "--max-error", options.adaptive.maxErrorMm,
-           "Method adaptive: no point of the surface of mc is farther than MM from the mesh, "
-           "nor the other way round (default, unless a count is given: 0.15 of the least "
-           "distance between planes of voxels)")
-        ->type_name("MM")
-        ->check(CLI::PositiveNumber)
-        ->group(kSurface);
-    app.add_option("--triangles", options.adaptive.maxTriangles,
-                   "Method adaptive: as near to the surface as N triangles can be")
-        ->type_name("N")
-        ->check(CLI::NonNegativeNumber)
-        ->group(kSurface);
-    app.add_option("--reduction", options.adaptive.reduction,
-                   "Method adaptive: the share F of mc's triangles to drop, 0 to 1")
-        ->type_name("F")
-        ->check(CLI::Range(0.0, 1.0))
-        ->group(kSurface);
-    app.add_option("--min-angle", options.adaptive.minAngleDeg,
-                   "Method adaptive: make no angle below DEG, 0 to 40, at the price of more "
-                   "triangles (default: 0)")
-        ->type_name("DEG")
-        ->check(CLI::Range(0.0, 40.0))
-        ->group(kSurface);
+    declareAdaptive(app, options.adaptive);
     app.add_flag("--verify", options.verifies,
                  "Method adaptive: also check the result against the surface of mc, by other "
                  "code than made it: crossings, pieces, genus and sampled distance. Takes long")
@@ -224,12 +209,9 @@ void declarePieces(CLI::App& app, MeshOptions& options) {
     app.add_flag("--fill-cavities", options.selection.fillCavities,
                  "Drop inner surfaces, and all that lies inside them")
         ->group(kPieces);
-    app.add_option_function<std::string>(
-           "--min-volume",
-           [&options](const std::string& text) {
-               options.selection.minVolumeMm3 = parseVolume(text);
-           },
-           "Drop pieces with less than MM3 cubic millimetres of material, fill cavities with less")
+    addNumber(app, "--min-volume", options.selection.minVolumeMm3, {.least = 0, .unit = "mm3"},
+              "Drop pieces with less than MM3 cubic millimetres of material, fill cavities with "
+              "less")
         ->type_name("MM3")
         ->group(kPieces);
     app.add_flag("--largest", options.selection.largestOnly,
@@ -281,9 +263,10 @@ constexpr const char* kFooter = R"(Examples:
   adaptiso-mesh --bids study --iso auto --skip-existing
       each image a run of its own; the second goes on where it was interrupted
 
-Exit codes: 0 done, 1 one or more of many inputs failed, 2 wrong usage, 3 bad
-input (or no memory or disk left), 4 internal error. When it is not 0, no file
-was written (of many inputs: no mesh of those that failed).)";
+Exit codes: 0 done, 1 one or more of many inputs failed, or a warning with
+--strict, 2 wrong usage, 3 bad input (or no memory or disk left), 4 internal
+error. When it is not 0, no file was written (of many inputs: no mesh of those
+that failed; with --strict: none but reports).)";
 
 }  // namespace
 
@@ -300,13 +283,15 @@ void declareMeshOptions(CLI::App& app, MeshOptions& options) {
     declarePieces(app, options);
     declareOutput(app, options);
     declareBatchOptions(app, options.batch, "the T1w images");
-    declareCommonOptions(app, options.common);
+    declareCommonOptions(app, options.common,
+                         "no surface and no index is then written, reports are");
     app.callback([&app, &options] {
         if (!options.inputs.empty()) options.input = options.inputs.front();
         options.indexFiles.givesBlockSize = app.count("--block-size") > 0;
         options.indexFiles.givesBorder = app.count("--border") > 0;
         options.indexFiles.givesSearch = app.count("--search") > 0;
         checkCombinations(options);
+        checkPlaceholders(options);
         if (options.isBatch()) keepRunOptions(app, options.batch);
     });
 }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "Common/Json.h"
+#include "Common/Naming.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/SpanSpace/IndexFile.h"
 
@@ -66,7 +68,10 @@ void checkIndexFile(const MeshOptions& options) {
 
 SpanSpaceIndex prepareIndex(const VolumeView& volume, MeshOptions& options) {
     const fs::path& path = options.indexFiles.load;
-    if (path.empty()) return SpanSpaceIndex::build(volume, options.index);
+    if (path.empty()) {
+        return naming(baseName(options.input),
+                      [&] { return SpanSpaceIndex::build(volume, options.index); });
+    }
     SpanSpaceIndex index = decodeIndex(readBytes(path, volume), volume, path.string());
     requireSame(options, index.options());
     options.index = index.options();

@@ -8,10 +8,12 @@
 #include <numbers>
 
 #include "Common/ExitCodes.h"
+#include "Common/Json.h"
 #include "Common/Numbers.h"
+#include "Common/PreprocessingOptions.h"
 #include "Common/Progress.h"
 #include "Common/ResultOutput.h"
-#include "Common/RunApp.h"
+#include "Common/Warnings.h"
 #include "InfoReport.h"
 #include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -66,7 +68,7 @@ std::vector<std::string> refusalsOf(const ValueSummary& values) {
     if (values.percentiles.empty()) return {"any isovalue: no voxel holds a finite number"};
     const double low = percentile(values, 0), high = percentile(values, 100);
     if (low < high) return {};
-    return {"any isovalue: all voxels hold " + formatNumber(low)};
+    return {"any isovalue: all voxels hold " + formatShort(low)};
 }
 
 /// An error's message without the folders that the input lies in.
@@ -90,13 +92,14 @@ std::optional<DicomSeries> seriesOf(const MeshOptions& options) {
 
 ImageInfo gather(const MeshOptions& options, ProgressLine& progress) {
     progress.show("read");
-    ReadVolume read = readVolume(options.input, options.image.read);
+    ReadVolume read = readImage(options.input, options.image.read);
     ImageInfo info;
     info.format = read.format;
     info.warnings = std::move(read.warnings);
     info.sizeAsRead = read.volume.view().geometry().size;
     if (!options.preprocessing.changesNothing()) progress.show("preprocess");
-    const Preprocessed prepared = preprocess(std::move(read.volume), options.preprocessing);
+    const Preprocessed prepared =
+        preprocessImage(std::move(read.volume), options.preprocessing, options.input);
     info.warnings.insert(info.warnings.end(), prepared.warnings.begin(), prepared.warnings.end());
     const VolumeView& volume = prepared.volume.view();
     info.geometry = volume.geometry();
@@ -143,6 +146,14 @@ ValueSummary summarizeValues(const VolumeView& volume) {
     return values;
 }
 
+std::vector<std::string> namedWarnings(const MeshOptions& options, const ImageInfo& info) {
+    std::vector<std::string> warnings;
+    for (const std::string& warning : info.warnings) {
+        warnings.push_back(baseName(options.input) + ": " + warning);
+    }
+    return warnings;
+}
+
 int runInfo(const MeshOptions& options) {
     const ThreadLimit threads(options.common);
     checkReportFile(options.common, options.input);
@@ -159,12 +170,11 @@ int runInfo(const MeshOptions& options) {
         throw;
     }
     progress.clear();
-    for (const std::string& warning : info.warnings) {
-        if (!options.common.isQuiet) printError("adaptiso-mesh", "warning: " + warning);
-    }
+    const std::vector<std::string> warnings = namedWarnings(options, info);
+    printWarnings("adaptiso-mesh", options.common, warnings);
     deliverReport(options.common, options.input, infoJson(options, info),
                   [&](std::ostream& out) { printInfo(out, options, info); });
-    return kExitOk;
+    return strictVerdict("adaptiso-mesh", options.common, warnings, "", kExitOk);
 }
 
 }  // namespace adaptiso

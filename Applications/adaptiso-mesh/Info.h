@@ -50,8 +50,11 @@ struct ImageInfo {
     std::optional<DicomSeries> series;  ///< with --show-phi, of DICOM
 };
 
+/// The warnings, each with the image's name before it.
+std::vector<std::string> namedWarnings(const MeshOptions& options, const ImageInfo& info);
+
 /// Tells what adaptiso-mesh would read: geometry, values, thresholds.
-/// \return kExitOk
+/// \return kExitOk; kExitCheckFailed with --strict and warnings
 /// \throws Error  as reading and preprocessing do, once the report has been delivered that says so
 int runInfo(const MeshOptions& options);
 

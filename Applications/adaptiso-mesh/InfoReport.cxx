@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <sstream>
 
 #include "Common/CommonOptions.h"
 #include "Common/ImageJson.h"
@@ -11,24 +10,18 @@
 #include "Common/Numbers.h"
 #include "Common/PreprocessingOptions.h"
 #include "Common/RunApp.h"
+#include "Common/Warnings.h"
 
 namespace adaptiso {
 namespace {
 
-/// At most six digits: what a person wants to read.
-std::string shortNumber(double value) {
-    std::ostringstream text;
-    text << (value == 0 ? 0.0 : value);
-    return text.str();
-}
-
 std::string joined(const Vec3& v, const std::string& separator) {
-    return shortNumber(v.x) + separator + shortNumber(v.y) + separator + shortNumber(v.z);
+    return formatShort(v.x) + separator + formatShort(v.y) + separator + formatShort(v.z);
 }
 
 std::string joined(const std::vector<double>& values) {
     std::string text;
-    for (const double value : values) text += (text.empty() ? "" : ", ") + formatNumber(value);
+    for (const double value : values) text += (text.empty() ? "" : ", ") + formatShort(value);
     return text;
 }
 
@@ -62,7 +55,7 @@ void printHistogram(std::ostream& out, const SampleHistogram& histogram, bool is
     };
     if (histogram.below > 0) print("below", histogram.below);
     for (std::size_t row = 0; row < rows.size(); ++row) {
-        print(shortNumber(histogram.edge(row * binsPerRow) + (isInteger ? 0.5 : 0)), rows[row]);
+        print(formatShort(histogram.edge(row * binsPerRow) + (isInteger ? 0.5 : 0)), rows[row]);
     }
     if (histogram.above > 0) print("above", histogram.above);
 }
@@ -90,14 +83,14 @@ void printValues(std::ostream& out, const ValueSummary& values, bool isInteger) 
         out << "not finite  " << formatCount(values.notFinite) << " voxels (NaN or infinity)\n";
     }
     if (values.percentiles.empty()) return;
-    out << "values      " << formatNumber(values.percentiles.front()) << " to "
-        << formatNumber(values.percentiles.back()) << '\n';
+    out << "values      " << formatShort(values.percentiles.front()) << " to "
+        << formatShort(values.percentiles.back()) << '\n';
     out << "percentiles ";
     for (std::size_t n = 1; n + 1 < values.percentiles.size(); ++n) {
         out << (n == 1   ? ""
                 : n == 6 ? "\n            "
                          : ", ")
-            << shortNumber(kPercents[n]) << " %: " << shortNumber(values.percentiles[n]);
+            << formatShort(kPercents[n]) << " %: " << formatShort(values.percentiles[n]);
     }
     out << '\n';
     for (const std::vector<double>& thresholds : values.otsu) {
@@ -170,9 +163,9 @@ void printInfo(std::ostream& out, const MeshOptions& options, const ImageInfo& i
         out << "after       " << preprocessingText(options.preprocessing, info.sizeAsRead) << '\n';
     }
     out << "size        " << size[0] << " x " << size[1] << " x " << size[2] << " voxels, "
-        << toString(info.pixelType) << ", " << shortNumber(bytes / 1e6) << " MB\n";
+        << toString(info.pixelType) << ", " << formatShort(bytes / 1e6) << " MB\n";
     out << "spacing     " << joined(spacing, " x ") << " mm, voxels of "
-        << shortNumber(geometry.voxelVolumeMm3()) << " mm3\n";
+        << formatShort(geometry.voxelVolumeMm3()) << " mm3\n";
     out << "frame       LPS mm: x to the left, y to the back, z up\n";
     out << "origin      " << joined(geometry.originMm, ", ") << " (the first voxel's centre)\n";
     printAxes(out, geometry);
@@ -195,7 +188,9 @@ std::string infoJson(const MeshOptions& options, const ImageInfo& info) {
                  ifRead([&] { return preprocessingJson(options.preprocessing, info.sizeAsRead); })},
                 {"image", ifRead([&] { return imageJson(info); })},
                 {"values", ifRead([&] { return valuesJson(info.values); })},
-                {"refusals", info.refusals}};
+                {"refusals", info.refusals},
+                {"warnings", namedWarnings(options, info)},
+                {"failedByWarnings", failsStrict(options.common, info.warnings)}};
     if (info.series) report["series"] = seriesJson(*info.series);
     return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -54,7 +54,8 @@ Json optionsJson(const MeshOptions& options) {
             {"largest", options.selection.largestOnly},
             {"minVolumeMm3", options.selection.minVolumeMm3},
             {"fillCavities", options.selection.fillCavities},
-            {"threads", orNull(options.common.threads)}};
+            {"threads", orNull(options.common.threads)},
+            {"strict", options.common.isStrict}};
 }
 
 Json indexJson(const IndexSummary& index) {
@@ -141,7 +142,8 @@ Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {
          {{"file", surface.file.filename().string()},
           {"format", surface.format->name},
           {"coordinates", frameWord(surface.frame)},
-          {"bytes", surface.bytes}}}};
+          {"bytes", surface.bytes},
+          {"written", !run.failsStrict()}}}};
 }
 
 }  // namespace
@@ -158,6 +160,8 @@ std::string jsonReport(const MeshRun& run) {
                       {"options", optionsJson(run.options)},
                       {"index", indexJson(run.index)},
                       {"surfaces", surfaces},
+                      {"warnings", run.warnings},
+                      {"failedByWarnings", run.failsStrict()},
                       {"seconds", secondsJson(run.timer)},
                       {"peakMemoryMb", peakMemoryMb()}};
     // a file's name need not be UTF-8: what is not becomes U+FFFD

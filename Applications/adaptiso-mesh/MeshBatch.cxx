@@ -13,7 +13,7 @@ std::string says(const Json& report) {
         if (!text.empty()) text += "; ";
         text += surface.at("output").at("file").get<std::string>() + ", " +
                 formatCount(surface.at("triangles").get<long long>()) + " triangles at " +
-                formatNumber(surface.at("isovalue").get<double>());
+                formatShort(surface.at("isovalue").get<double>());
     }
     return text;
 }
@@ -21,7 +21,8 @@ std::string says(const Json& report) {
 std::vector<std::string> outputs(const Json& report) {
     std::vector<std::string> files;
     for (const Json& surface : report.value("surfaces", Json::array())) {
-        files.push_back(surface.at("output").at("file"));
+        const Json& output = surface.at("output");
+        if (output.value("written", true)) files.push_back(output.at("file"));
     }
     return files;
 }

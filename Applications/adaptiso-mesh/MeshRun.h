@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Common/Resources.h"
+#include "Common/Warnings.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
@@ -71,6 +72,9 @@ struct ShownSurface {
     std::vector<TrianglePair> crossings;  ///< the first
 };
 
+/// What --strict means for the surfaces, where there is a warning.
+inline constexpr const char* kNotWritten = "so no surface was written";
+
 /// One run of the program, for the reports.
 struct MeshRun {
     const MeshOptions& options;
@@ -79,8 +83,11 @@ struct MeshRun {
     IndexSummary index;
     std::vector<SurfaceSummary> surfaces;
     StageTimer timer;
-    std::vector<ShownSurface> shown{};  ///< for the page; empty unless one is wanted
+    std::vector<ShownSurface> shown{};    ///< for the page; empty unless one is wanted
+    std::vector<std::string> warnings{};  ///< all; each names its file
 
+    /// --strict makes the warnings failures: neither surfaces nor index are written.
+    bool failsStrict() const { return adaptiso::failsStrict(options.common, warnings); }
     /// Of the values that the surfaces are made from.
     const ValueRange& range() const { return preprocessed ? preprocessed->range : input.range; }
 };

@@ -6,9 +6,14 @@
 
 #include "Common/AtomicOutput.h"
 #include "Common/ExitCodes.h"
+#include "Common/Json.h"
+#include "Common/Naming.h"
 #include "Common/Numbers.h"
+#include "Common/PreprocessingOptions.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
+#include "Common/UsageWords.h"
+#include "Common/Warnings.h"
 #include "IndexSource.h"
 #include "Info.h"
 #include "JsonReport.h"
@@ -29,6 +34,8 @@ namespace adaptiso {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kProgram = "adaptiso-mesh";
 
 /// The stages of a run, as progress, `seconds` of the report and README.md name them.
 constexpr const char* kRead = "read";
@@ -100,18 +107,23 @@ void checkOutputs(const MeshOptions& options) {
     }
 }
 
+/// The input, as messages name it: without folders.
+std::string inputName(const MeshOptions& options) {
+    const std::string name = baseName(options.input);
+    return name.empty() ? "the image" : name;
+}
+
 std::string rangeText(const MeshRun& run) {
     const ValueRange& range = run.range();
-    const std::string file =
-        run.options.input.filename().empty() ? "the volume" : run.options.input.filename().string();
+    const std::string file = inputName(run.options);
     if (range.minimum > range.maximum) return file + " holds no numbers";
     return "the range of " + file + (run.preprocessed ? ", preprocessed, is " : " is ") +
-           formatNumber(range.minimum) + " to " + formatNumber(range.maximum);
+           formatShort(range.minimum) + " to " + formatShort(range.maximum);
 }
 
 /// \throws InvalidInput when the surface would be empty, or the border of the image alone
 void checkIsovalue(double isovalue, const MeshRun& run) {
-    const std::string name = "--iso " + formatNumber(isovalue);
+    const std::string name = "--iso " + shown(formatNumber(isovalue));
     if (!(isovalue <= run.range().maximum)) {
         throw InvalidInput(name + ": no voxel reaches it; " + rangeText(run));
     }
@@ -125,7 +137,10 @@ void checkIsovalue(double isovalue, const MeshRun& run) {
 std::vector<double> chooseIsovalues(const VolumeView& volume, const MeshRun& run) {
     std::vector<double> isovalues;
     for (const IsovalueChoice& choice : run.options.isovalues) {
-        const double isovalue = choice.isAutomatic() ? otsuThreshold(volume) : *choice.value;
+        const double isovalue = choice.isAutomatic()
+                                    ? naming("--iso auto: " + inputName(run.options),
+                                             [&] { return otsuThreshold(volume); })
+                                    : *choice.value;
         checkIsovalue(isovalue, run);
         if (std::find(isovalues.begin(), isovalues.end(), isovalue) != isovalues.end()) {
             throw InvalidInput("--iso auto: is " + formatNumber(isovalue) +
@@ -146,7 +161,8 @@ Volume prepare(Volume read, MeshRun& run, ProgressLine& progress) {
     if (run.options.preprocessing.changesNothing()) return read;
     progress.show(kPreprocess);
     return run.timer.time(kPreprocess, [&] {
-        Preprocessed done = preprocess(std::move(read), run.options.preprocessing);
+        Preprocessed done =
+            preprocessImage(std::move(read), run.options.preprocessing, run.options.input);
         const VolumeView& view = done.volume.view();
         run.preprocessed = {view.geometry(), view.pixelType(), valueRange(view)};
         run.input.warnings.insert(run.input.warnings.end(), done.warnings.begin(),
@@ -200,7 +216,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         extract.adaptive = options.adaptive;
         extract.computeNormals = summary.format->holdsNormals;
         extract.progress = progress.callback();
-        return extractSurface(volume, index, extract);
+        return naming(inputName(options), [&] { return extractSurface(volume, index, extract); });
     });
     summary.statistics = extraction.statistics;
     if (extraction.mesh.triangles.empty()) {
@@ -275,13 +291,6 @@ IndexSummary keepIndex(const SpanSpaceIndex& index, const VolumeView& volume,
     return summary;
 }
 
-void printWarnings(const MeshRun& run) {
-    if (run.options.common.isQuiet) return;
-    for (const std::string& warning : run.input.warnings) {
-        std::cerr << "adaptiso-mesh: warning: " << warning << '\n';
-    }
-}
-
 void report(const MeshRun& run, const std::string& json) {
     if (run.options.common.wantsJsonOnStdout()) {
         std::cout << json;
@@ -296,7 +305,7 @@ void report(const MeshRun& run, const std::string& json) {
 int runMesh(const MeshOptions& asked) {
     if (asked.isBatch()) return runMeshBatch(asked);
     if (asked.image.listsSeries) {
-        return runSeriesList(asked.input, asked.image, asked.common, "adaptiso-mesh");
+        return runSeriesList(asked.input, asked.image, asked.common, kProgram);
     }
     if (asked.image.tellsInfo) return runInfo(asked);
     MeshOptions options = asked;  // a loaded index brings options of its own
@@ -308,12 +317,15 @@ int runMesh(const MeshOptions& asked) {
 
     progress.show(kRead);
     ReadVolume read =
-        run.timer.time(kRead, [&] { return readVolume(options.input, options.image.read); });
+        run.timer.time(kRead, [&] { return readImage(options.input, options.image.read); });
     run.input = run.timer.time(kRead, [&] { return summarize(read); });
     const Volume prepared = prepare(std::move(read.volume), run, progress);
     const VolumeView& volume = prepared.view();
     progress.clear();
-    printWarnings(run);
+    for (const std::string& warning : run.input.warnings) {
+        run.warnings.push_back(inputName(options) + ": " + warning);
+    }
+    printWarnings(kProgram, options.common, run.warnings);
     const std::vector<double> isovalues =
         run.timer.time(kRead, [&] { return chooseIsovalues(volume, run); });
 
@@ -328,12 +340,12 @@ int runMesh(const MeshOptions& asked) {
     }
     run.index = run.timer.time(
         kWrite, [&] { return keepIndex(index, volume, options.indexFiles, outputs); });
+    if (run.failsStrict()) outputs.clear();
     const PictureFolder pictures(options.report.pictures);
     if (options.report.isWanted()) {
         progress.show(kReport);
         Report page = makeReport(run, volume);
-        run.timer.time(kReport,
-                       [&] { writeReport(page, "adaptiso-mesh", options.report, outputs); });
+        run.timer.time(kReport, [&] { writeReport(page, kProgram, options.report, outputs); });
     }
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
@@ -342,7 +354,7 @@ int runMesh(const MeshOptions& asked) {
     AtomicOutput::commit(outputs);
     progress.clear();
     report(run, json);
-    return kExitOk;
+    return strictVerdict(kProgram, options.common, run.warnings, kNotWritten, kExitOk);
 }
 
 }  // namespace adaptiso

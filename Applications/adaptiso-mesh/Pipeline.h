@@ -54,10 +54,15 @@ struct MeshOptions {
     ReportOptions report;
     CommonOptions common;
 
+    /// The name of an output has a place for an input's.
+    static bool namesInput(const std::filesystem::path& output) {
+        return output.string().find("{name}") != std::string::npos;
+    }
     /// Each input is a run of its own (Batch.h).
     bool isBatch() const {
-        return batch.isAsked() || inputs.size() > 1 ||
-               output.string().find("{name}") != std::string::npos;
+        return batch.isAsked() || inputs.size() > 1 || namesInput(output) ||
+               namesInput(indexFiles.save) || namesInput(report.page) ||
+               namesInput(report.pictures);
     }
     /// Pieces are asked for that only closed surfaces have.
     bool needsClosedSurfaces() const {

@@ -16,9 +16,10 @@ std::string counted(std::int64_t count, const std::string& what) {
     return formatCount(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-void printSurface(std::ostream& out, const SurfaceSummary& surface) {
+void printSurface(std::ostream& out, const SurfaceSummary& surface, bool isWritten) {
     const TopologyReport& topology = surface.topology;
-    out << oneLine(surface.file.string()) << ": isovalue " << formatNumber(surface.isovalue)
+    out << oneLine(surface.file.string()) << (isWritten ? "" : " (not written)") << ": isovalue "
+        << (surface.isAutomatic ? formatShort(surface.isovalue) : formatNumber(surface.isovalue))
         << (surface.isAutomatic ? " (chosen by Otsu's method)" : "") << ", " << surface.format->name
         << ", " << toString(surface.frame) << '\n';
     out << "  " << counted(topology.triangles, "triangle") << ", " << formatCount(topology.vertices)
@@ -56,8 +57,9 @@ void printReport(std::ostream& out, const MeshRun& run) {
             << ": " << size[0] << " x " << size[1] << " x " << size[2] << " voxels, "
             << toString(run.preprocessed->pixelType) << '\n';
     }
-    for (const SurfaceSummary& surface : run.surfaces) printSurface(out, surface);
-    if (!run.index.file.empty() && !run.index.isLoaded) {
+    for (const SurfaceSummary& surface : run.surfaces)
+        printSurface(out, surface, !run.failsStrict());
+    if (!run.index.file.empty() && !run.index.isLoaded && !run.failsStrict()) {
         out << oneLine(run.index.file.string()) << ": index for --index ("
             << toString(run.index.search) << "), " << formatCount(run.index.blocks) << " blocks\n";
     }

@@ -52,11 +52,15 @@ def marked(text):
     return "".join(bold(part) if n % 2 else escaped(part) for n, part in enumerate(parts))
 
 
+def sentence(text):
+    return text if text.endswith((".", "!", "?")) else text + "."
+
+
 def option_entry(option):
     tag = ", ".join(map(bold, option["names"]))
     if option["value"]:
         tag += (" " if tag else "") + italic(option["value"])
-    lines = [".TP", tag, marked(option["description"])]
+    lines = [".TP", tag, marked(sentence(option["description"]))]
     for word, names in (("Needs", option["needs"]), ("Not together with", option["excludes"])):
         if names:
             lines.append(f"{word} " + ", ".join(map(bold, names)) + ".")
@@ -124,7 +128,7 @@ def manual_page(said, programs):
     lines = [f'.TH {escaped(program.upper())} 1 "" "adaptiso {said["version"]}" "User Commands"',
              ".SH NAME", f"{escaped(program)} \\- {escaped(summary[0].lower() + summary[1:].strip())}",
              ".SH SYNOPSIS", synopsis(program, said["options"]),
-             ".SH DESCRIPTION", marked(description)]
+             ".SH DESCRIPTION", marked(sentence(description))]
     lines += option_sections(said["options"]) + footer_sections(said["footer"])
     others = [f"{bold(other)}(1)" for other in programs if other != program]
     lines += [".SH SEE ALSO", ", ".join(others), ".PP",

@@ -128,7 +128,7 @@ class Refusals(CheckTest):
     def test_bad_input(self):
         for pattern, *arguments in (
                 ("missing.nii", "a.off", "--volume", "missing.nii"),
-                ("--iso 7: the volume has no surface", "a.off", "--volume", "i.nii", "--iso", "7"),
+                ("--iso 7: i.nii: there is no surface", "a.off", "--volume", "i.nii", "--iso", "7"),
                 ("a.off", "a.off", "--json", "a.off"),
                 ("no/r.json", "a.off", "--json", "no/r.json")):
             with self.subTest(arguments):

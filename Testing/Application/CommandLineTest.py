@@ -14,7 +14,7 @@ class WrongUsage(ApplicationTest):
 
     def refused(self, pattern, *arguments):
         done = self.assert_fails(USAGE, pattern, *arguments)
-        self.assertIn("--help", done.stderr.splitlines()[1])
+        self.assertIn("--help", done.stderr)
 
     def test_no_arguments(self):
         self.refused("INPUT")
@@ -25,8 +25,8 @@ class WrongUsage(ApplicationTest):
     def test_isovalue_without_a_number(self):
         for text in ("nan", "inf", "-inf", "1e999", "-1e999", "12x", "x", "", " 5", "0x10", "5,6"):
             with self.subTest(text):
-                self.refused(r"--iso .*finite number", "ball.nii", f"--iso={text}" if text else
-                             "--iso", *([] if text else [""]))
+                self.refused(r"--iso.* (finite number|empty)", "ball.nii",
+                             f"--iso={text}")
 
     def test_the_same_isovalue_twice(self):
         self.refused("--iso 100.0: given twice", "ball.nii", "--iso", "100", "--iso", "100.0")

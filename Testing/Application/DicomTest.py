@@ -201,7 +201,7 @@ class DicomImages(ApplicationTest):
 
     def test_iso_is_required_unless_series_are_listed(self):
         self.write_study()
-        self.assert_fails(USAGE, "--iso is required", "study")
+        self.assert_fails(USAGE, "--iso is missing", "study")
 
 
 if __name__ == "__main__":

@@ -216,7 +216,7 @@ class Refused(ApplicationTest):
                               "ball.nii", "--iso", "100", "-o", "b.ply", "--save-index", name)
         self.assert_fails(USAGE, "--save-index b", "ball.nii", "--iso", "100", "--json", "b",
                           "--save-index", "b")
-        self.assert_fails(USAGE, "--save-index excludes --index", "ball.nii", "--iso", "100",
+        self.assert_fails(USAGE, "--save-index and --index: give one of the two", "ball.nii", "--iso", "100",
                           "--index", "a.index", "--save-index", "b.index")
 
     def test_neither_image_nor_index_is_overwritten(self):

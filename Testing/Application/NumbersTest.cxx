@@ -47,6 +47,23 @@ TEST(FormatRounded, GivesTheNearestWholeNumberInGroups) {
     EXPECT_EQ(formatRounded(-0.4), "0");
 }
 
+TEST(FormatShort, HasSixDigitsAndWords) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(formatShort(1.0 / 3), "0.333333");
+    EXPECT_EQ(formatShort(100000), "100000");
+    EXPECT_EQ(formatShort(-0.0), "0");
+    EXPECT_EQ(formatShort(std::numeric_limits<double>::max()), "1.79769e+308");
+    EXPECT_EQ(formatShort(kInfinity), "infinity");
+    EXPECT_EQ(formatShort(-kInfinity), "-infinity");
+    EXPECT_EQ(formatShort(std::numeric_limits<double>::quiet_NaN()), "not a number");
+}
+
+TEST(FormatRounded, KeepsHugeNumbersShort) {
+    EXPECT_EQ(formatRounded(1e30), "1e+30");
+    EXPECT_EQ(formatRounded(std::numeric_limits<double>::infinity()), "infinity");
+    EXPECT_EQ(formatFixed(1e300, 4), "1e+300");
+}
+
 TEST(FormatFixed, KeepsTheDigitsAskedFor) {
     EXPECT_EQ(formatFixed(0.1, 2), "0.10");
     EXPECT_EQ(formatFixed(-1234.5678, 3), "-1234.568");

@@ -171,13 +171,14 @@ class Refusals(ApplicationTest):
             self.refused(USAGE, "--crop .*10:90,:,20:", f"--crop={text}")
 
     def test_ranges_that_leave_the_image(self):
-        self.refused(BAD_INPUT, "20:25 along j: the image has voxels 0:24", "--crop", ":,20:25,:")
+        self.refused(BAD_INPUT, r"--crop :,20:25,:: 20:25 along j: the image has voxels 0:24 \(in.nii",
+                     "--crop", ":,20:25,:")
         self.refused(BAD_INPUT, "20:21 along k: must keep 2", "--crop", ":,:,20:21")
 
     def test_lengths_that_are_none(self):
         for option in ("--smooth", "--resample"):
             for text in ("0", "-1", "nan", "inf", "1mm"):
-                self.refused(USAGE, option + ".*more than 0", f"{option}={text}")
+                self.refused(USAGE, option + ".*above 0, in mm", f"{option}={text}")
 
     def test_lengths_that_do_not_fit(self):
         self.refused(BAD_INPUT, "a quarter of the image's shortest side, 24 mm", "--smooth", "6.1")

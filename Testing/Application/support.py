@@ -139,14 +139,14 @@ class ApplicationTest(unittest.TestCase):
         return json.loads(self.mesh(*arguments, "--json", "-").stdout)
 
     def assert_fails(self, code, pattern, *arguments, **options):
-        """Fails with `code`, with one line on stderr (two for wrong usage) that matches `pattern`,
+        """Fails with `code`, with one line on stderr that matches `pattern`,
         with nothing on stdout, and leaves the folder as it was, to the byte."""
         before = self.contents()
         done = self.run_mesh(*arguments, **options)
         self.assertEqual(done.returncode, code, done.stderr)
         self.assertRegex(done.stderr, pattern)
         lines = done.stderr.splitlines()
-        self.assertEqual(len(lines), 2 if code == USAGE else 1, done.stderr)
+        self.assertEqual(len(lines), 1, done.stderr)
         self.assertTrue(lines[0].startswith("adaptiso-mesh: "), lines[0])
         self.assertEqual(done.stdout, "")
         self.assertEqual(self.contents(), before)

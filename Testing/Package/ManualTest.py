@@ -66,7 +66,9 @@ class Manual(ApplicationTest):
                 page = self.page(program)
                 for option in said(program)["options"]:
                     tag = ", ".join(option["names"]) + " " + option["value"]
-                    self.assertIn(f"{tag.strip()} {words(option['description'])}", page)
+                    text = words(option["description"])
+                    stop = "" if text.endswith(".") else "."
+                    self.assertIn(f"{tag.strip()} {text}{stop}", page)
                 for line in said(program)["footer"].splitlines():
                     # headings become the page's own
                     self.assertIn(words(re.sub(r"^[A-Z][^:.]*:( |$)", "", line)), page)

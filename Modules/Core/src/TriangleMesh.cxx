@@ -26,7 +26,7 @@ double enclosedVolume(const TriangleMesh& mesh) {
 }
 
 BoundingBox boundingBox(const TriangleMesh& mesh) {
-    if (mesh.points.empty()) throw InvalidInput("boundingBox: the mesh has no point");
+    if (mesh.points.empty()) throw InvalidInput("the mesh has no point");
     BoundingBox box{mesh.points.front(), mesh.points.front()};
     for (const Vec3& p : mesh.points) {
         for (int axis = 0; axis < 3; ++axis) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 
@@ -60,15 +61,15 @@ VolumeView::VolumeView(const void* samples, PixelType type, const ImageGeometry&
     : samples_(samples), type_(type), geometry_(geometry) {
     for (const std::int64_t extent : geometry.size) {
         if (extent < 1) {
-            throw InvalidInput("VolumeView: the image has " + std::to_string(extent) +
+            throw InvalidInput("the image has " + std::to_string(extent) +
                                " voxels along an axis, must have at least 1");
         }
     }
     const double volumeMm3 = geometry.voxelVolumeMm3();
     if (!(volumeMm3 > 0) || !std::isfinite(volumeMm3) ||
         !std::isfinite(squaredNorm(geometry.originMm))) {
-        throw InvalidInput("VolumeView: the image's axes span no volume (voxel volume " +
-                           std::to_string(volumeMm3) + " mm3)");
+        throw InvalidInput("the image's axes span no volume (voxel volume " + shortText(volumeMm3) +
+                           " mm3)");
     }
 }
 

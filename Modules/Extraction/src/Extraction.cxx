@@ -52,9 +52,9 @@ Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
         throw InvalidInput("extractSurface: the index was built from another volume");
     }
     if (*std::max_element(size.begin(), size.end()) > detail::EdgeKey::kMaximumExtent) {
-        throw InvalidInput("extractSurface: more than " +
+        throw InvalidInput("the image has more than " +
                            std::to_string(detail::EdgeKey::kMaximumExtent) +
-                           " samples along an axis");
+                           " voxels along an axis; crop or resample it");
     }
     if (options.method == Method::Adaptive) return detail::extractAdaptive(volume, index, options);
     Extraction result = options.method == Method::MarchingCubes

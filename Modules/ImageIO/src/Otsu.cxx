@@ -29,13 +29,13 @@ Spread spreadOf(const VolumeView& volume) {
     const std::vector<double> values = percentiles(volume, kPercents);
     if (values.empty() || !(values[0] < values[3])) {
         throw InvalidInput(
-            "otsuThreshold: all finite samples are equal, or none is finite: "
-            "there is nothing to separate; give an isovalue");
+            "all its finite values are equal, or none is finite, so there is nothing to separate; "
+            "give an isovalue");
     }
     if (!std::isfinite(values[3] - values[0])) {
         throw InvalidInput(
-            "otsuThreshold: the samples span more than a double can hold; give "
-            "an isovalue");
+            "its values span more than the largest number there is here, 1.8e308; give an "
+            "isovalue");
     }
     return {values[0], values[1], values[2], values[3]};
 }

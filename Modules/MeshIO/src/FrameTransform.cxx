@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
@@ -20,8 +21,8 @@ void requireRightAngles(const ImageGeometry& volume) {
     for (int a = 0; a < 3; ++a) {
         const double cosine = dot(normalized(axes[a]), normalized(axes[(a + 1) % 3]));
         if (!(std::abs(cosine) <= kMaxAxisCosine)) {
-            throw InvalidInput("indexToTkRas: the volume's axes are not at right angles (cosine " +
-                               std::to_string(cosine) +
+            throw InvalidInput("the volume's axes are not at right angles (cosine " +
+                               shortText(cosine) +
                                ", at most 0.0001), and tkRAS can't express shear; " +
                                "write RAS, or use the conformed volume's geometry");
         }
@@ -31,13 +32,13 @@ void requireRightAngles(const ImageGeometry& volume) {
 const ImageGeometry& requireVolume(CoordinateFrame frame,
                                    const std::optional<ImageGeometry>& volume) {
     if (!volume) {
-        throw InvalidInput("lpsToFrame: coordinates in the frame '" + std::string(toString(frame)) +
+        throw InvalidInput("coordinates in the frame '" + std::string(toString(frame)) +
                            "' need the geometry of the volume they belong to");
     }
     if (!(volume->voxelVolumeMm3() > 0) || !std::isfinite(volume->voxelVolumeMm3()) ||
         !std::isfinite(squaredNorm(volume->originMm))) {
-        throw InvalidInput("lpsToFrame: the volume's axes span no volume (voxel volume " +
-                           std::to_string(volume->voxelVolumeMm3()) + " mm3)");
+        throw InvalidInput("the volume's axes span no volume (voxel volume " +
+                           shortText(volume->voxelVolumeMm3()) + " mm3)");
     }
     return *volume;
 }
@@ -47,7 +48,7 @@ const ImageGeometry& requireVolume(CoordinateFrame frame,
 AffineTransform indexToTkRas(const ImageGeometry& volume) {
     for (const std::int64_t extent : volume.size) {
         if (extent < 1) {
-            throw InvalidInput("indexToTkRas: the volume has " + std::to_string(extent) +
+            throw InvalidInput("the volume has " + std::to_string(extent) +
                                " voxels along an axis, must have at least 1");
         }
     }

@@ -11,6 +11,7 @@
 #include "ByteSource.h"
 #include "Codecs.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 
 namespace adaptiso {
@@ -70,7 +71,7 @@ std::string findFault(const TriangleMesh& mesh, double limit) {
         for (int axis = 0; axis < 3; ++axis) {
             if (!(std::abs(mesh.points[i][axis]) <= limit)) {
                 return "coordinate " + std::to_string(axis) + " of point " + std::to_string(i) +
-                       " is " + std::to_string(mesh.points[i][axis]) +
+                       " is " + shortText(mesh.points[i][axis]) +
                        ", must be finite and within single precision";
             }
         }
@@ -98,7 +99,7 @@ constexpr double kFloatMax = std::numeric_limits<float>::max();
 void requireNeutralName(const std::string& name) {
     for (const char c : name) {
         if (c <= ' ' || c > '~' || c == '/' || c == '\\' || c == '=') {
-            throw InvalidInput("writeMesh: the volume name " + meshio::printable(name) +
+            throw InvalidInput("the volume name " + meshio::printable(name) +
                                " must be a file name of printable ASCII without folder, space "
                                "or '='");
         }
@@ -108,17 +109,16 @@ void requireNeutralName(const std::string& name) {
 void requireOnePerPoint(const std::vector<PointArray>& arrays, const TriangleMesh& mesh,
                         const MeshFormat& format, const std::string& file) {
     if (!arrays.empty() && format.id != MeshFormatId::VtkXml) {
-        throw InvalidInput("writeMesh: " + file + ": " + std::string(format.name) +
+        throw InvalidInput(file + ": " + std::string(format.name) +
                            " files hold no values at points; write .vtp");
     }
     for (const PointArray& array : arrays) {
         const std::size_t count =
             std::visit([](const auto& values) { return values.size(); }, array.values);
         if (count != mesh.points.size()) {
-            throw InvalidInput("writeMesh: " + file + ": the array " +
-                               meshio::printable(array.name) + " has " + std::to_string(count) +
-                               " values for " + std::to_string(mesh.points.size()) +
-                               " points, must be one each");
+            throw InvalidInput(file + ": the array " + meshio::printable(array.name) + " has " +
+                               std::to_string(count) + " values for " +
+                               std::to_string(mesh.points.size()) + " points, must be one each");
         }
     }
 }
@@ -126,19 +126,28 @@ void requireOnePerPoint(const std::vector<PointArray>& arrays, const TriangleMes
 void requireWritable(const TriangleMesh& mesh, const MeshFormat& format,
                      const MeshWriteOptions& options, const std::string& file) {
     const std::string fault = findFault(mesh, kFloatMax);
-    if (!fault.empty()) throw InvalidInput("writeMesh: " + file + ": the mesh is bad: " + fault);
+    if (!fault.empty()) throw InvalidInput(file + ": the mesh is bad: " + fault);
     const std::size_t most = std::max(mesh.points.size(), mesh.triangles.size());
     if (most > static_cast<std::uint64_t>(format.maxElements)) {
-        throw InvalidInput("writeMesh: " + file + ": " + std::string(format.name) +
-                           " files hold at most " + std::to_string(format.maxElements) +
+        throw InvalidInput(file + ": " + std::string(format.name) + " files hold at most " +
+                           std::to_string(format.maxElements) +
                            " points and triangles, the mesh has " + std::to_string(most));
     }
     if (options.frame == CoordinateFrame::Voxel && !format.holdsVoxelFrame) {
-        throw InvalidInput("writeMesh: " + file + ": " + std::string(format.name) +
+        throw InvalidInput(file + ": " + std::string(format.name) +
                            " files hold mm, not voxel indices; write RAS, LPS or tkRAS");
     }
     if (format.holdsVolumeGeometry) requireNeutralName(options.volumeName);
     requireOnePerPoint(options.pointArrays, mesh, format, file);
+}
+
+TriangleMesh movedTo(const MeshWriteOptions& options, const TriangleMesh& mesh,
+                     const std::string& file) {
+    try {
+        return toFrame(mesh, options.frame, options.volume);
+    } catch (const InvalidInput& error) {
+        throw InvalidInput(file + ": " + error.what());
+    }
 }
 
 /// Scales normals that are not of unit length; the others keep their very bits.
@@ -204,7 +213,7 @@ void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
                const MeshWriteOptions& options) {
     const MeshFormat& format = findMeshFormat(path);
     requireWritable(mesh, format, options, path.string());
-    const TriangleMesh moved = toFrame(mesh, options.frame, options.volume);
+    const TriangleMesh moved = movedTo(options, mesh, path.string());
     requireWritable(moved, format, options, path.string());
 
     errno = 0;

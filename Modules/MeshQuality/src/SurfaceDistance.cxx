@@ -18,7 +18,7 @@ constexpr std::int64_t kGrain = 4096;
 
 /// \throws InvalidInput when the mesh is no surface to measure
 void requireMeasurable(const TriangleMesh& mesh, std::string_view name) {
-    const std::string where = "surfaceDistance: surface " + std::string(name);
+    const std::string where = "surface " + std::string(name);
     const auto pointCount = static_cast<VertexId>(mesh.points.size());
     for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
         for (const VertexId v : mesh.triangles[n]) {

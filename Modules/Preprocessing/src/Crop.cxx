@@ -17,8 +17,8 @@ ImageGeometry croppedGeometry(const ImageGeometry& whole, const CropRanges& rang
         const std::int64_t begin = ranges[axis].first;
         const std::int64_t end = ranges[axis].end.value_or(whole.size[axis]);
         const auto refuse = [&](const std::string& rule) {
-            throw InvalidInput("cropVolume: " + std::to_string(begin) + ":" + std::to_string(end) +
-                               " along " + "ijk"[axis] + ": " + rule);
+            throw InvalidInput(std::to_string(begin) + ":" + std::to_string(end) + " along " +
+                               "ijk"[axis] + ": " + rule);
         };
         if (begin < 0 || end > whole.size[axis]) {
             refuse("the image has voxels 0:" + std::to_string(whole.size[axis]));

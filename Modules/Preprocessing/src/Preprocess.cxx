@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <type_traits>
+#include <utility>
 
 #include "adaptiso/Preprocessing/Smooth.h"
 
@@ -58,16 +59,33 @@ bool leavesImage(const ImageGeometry& grid, const ImageGeometry& image) {
     return false;
 }
 
+/// What a step makes. \throws PreprocessError when it can't be done
+template <class Work>
+Volume take(PreprocessStep step, Work&& work) {
+    try {
+        return std::forward<Work>(work)();
+    } catch (const InvalidInput& error) {
+        throw PreprocessError(step, error.what());
+    }
+}
+
 }  // namespace
 
 Preprocessed preprocess(Volume volume, const PreprocessOptions& options) {
     std::vector<std::string> warnings;
-    if (options.crop) volume = cropVolume(volume, *options.crop);
+    if (options.crop) {
+        volume = take(PreprocessStep::Crop, [&] { return cropVolume(volume, *options.crop); });
+    }
     warnOfBlendedLabels(volume, options, warnings);
-    if (options.smoothSigmaMm) volume = smoothVolume(volume, *options.smoothSigmaMm);
+    if (options.smoothSigmaMm) {
+        volume = take(PreprocessStep::Smooth,
+                      [&] { return smoothVolume(volume, *options.smoothSigmaMm); });
+    }
     if (options.resampleMm) {
         const ImageGeometry before = volume.view().geometry();
-        volume = resampleVolume(volume, *options.resampleMm, options.interpolation);
+        volume = take(PreprocessStep::Resample, [&] {
+            return resampleVolume(volume, *options.resampleMm, options.interpolation);
+        });
         if (leavesImage(volume.view().geometry(), before)) {
             warnings.push_back(
                 "the image's axes are not at right angles; resampling made them so, and filled "

@@ -23,8 +23,8 @@ void requireMemory(const ImageGeometry& grid, std::size_t bytesPerSample, double
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (bytes < memory) return;
     std::ostringstream message;
-    message << "resampleVolume: voxels of " << stepMm << " mm would be " << grid.size[0] << " x "
-            << grid.size[1] << " x " << grid.size[2]
+    message << "voxels of " << stepMm << " mm would be " << grid.size[0] << " x " << grid.size[1]
+            << " x " << grid.size[2]
             << ", more than this machine's memory holds; take larger ones, or crop";
     throw InvalidInput(message.str());
 }
@@ -88,7 +88,7 @@ Volume resampleVolume(const VolumeView& volume, double stepMm, Interpolation int
                              volume.pixelType());
         });
     }
-    detail::requireFinite(volume, "resampleVolume");
+    detail::requireFinite(volume);
     requireMemory(grid, bytesPerPixel(detail::blendedType(volume.pixelType())), stepMm);
     return detail::withBlendedType(volume.pixelType(), [&]<class F>(F) {
         const std::shared_ptr<const F> samples = detail::samplesAs<F>(volume);

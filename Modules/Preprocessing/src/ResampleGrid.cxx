@@ -34,7 +34,7 @@ double halfSpanMm(const ImageGeometry& geometry, const Vec3& axis) {
 
 [[noreturn]] void refuse(double stepMm, const std::string& rule) {
     std::ostringstream message;
-    message << "resampleVolume: voxels of " << stepMm << " mm: " << rule;
+    message << "voxels of " << stepMm << " mm: " << rule;
     throw InvalidInput(message.str());
 }
 

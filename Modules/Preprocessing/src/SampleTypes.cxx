@@ -42,7 +42,7 @@ std::shared_ptr<const F> samplesAs(const VolumeView& volume) {
 template std::shared_ptr<const float> samplesAs(const VolumeView&);
 template std::shared_ptr<const double> samplesAs(const VolumeView&);
 
-void requireFinite(const VolumeView& volume, std::string_view function) {
+void requireFinite(const VolumeView& volume) {
     dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
         if constexpr (std::is_floating_point_v<T>) {
             std::atomic<std::int64_t> odd{0};
@@ -52,7 +52,7 @@ void requireFinite(const VolumeView& volume, std::string_view function) {
                                          [](T sample) { return !std::isfinite(sample); });
                 });
             if (odd == 0) return;
-            throw InvalidInput(std::string(function) + ": " + std::to_string(odd) +
+            throw InvalidInput(std::to_string(odd) +
                                " voxels hold no finite number (NaN or infinity), which blending "
                                "would spread; give them a value first");
         }

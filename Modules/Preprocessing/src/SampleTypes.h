@@ -24,7 +24,7 @@ decltype(auto) withBlendedType(PixelType stored, Function&& f) {
     return f(double{});
 }
 
-/// \throws InvalidInput "<function>: ..." when a sample is NaN or infinite
-void requireFinite(const VolumeView& volume, std::string_view function);
+/// \throws InvalidInput when a sample is NaN or infinite
+void requireFinite(const VolumeView& volume);
 
 }  // namespace adaptiso::detail

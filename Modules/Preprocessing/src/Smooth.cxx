@@ -24,7 +24,7 @@ void requireUsableSigma(const ImageGeometry& geometry, double sigmaMm) {
     }
     if (sigmaMm > 0 && sigmaMm <= shortestMm / 4) return;
     std::ostringstream message;
-    message << "smoothVolume: a standard deviation of " << sigmaMm
+    message << "a standard deviation of " << sigmaMm
             << " mm must be more than 0 and at most a quarter of the image's shortest side, "
             << shortestMm << " mm";
     throw InvalidInput(message.str());
@@ -72,7 +72,7 @@ Volume smoothAs(const VolumeView& volume, const std::vector<detail::LatticeGauss
 
 Volume smoothVolume(const VolumeView& volume, double sigmaMm) {
     requireUsableSigma(volume.geometry(), sigmaMm);
-    detail::requireFinite(volume, "smoothVolume");
+    detail::requireFinite(volume);
     auto gaussians = detail::latticeGaussians(volume.geometry(), sigmaMm);
     if (gaussians.empty()) gaussians.push_back({{1, 0, 0}, 0});  // too narrow to show: a copy
     return detail::withBlendedType(volume.pixelType(),

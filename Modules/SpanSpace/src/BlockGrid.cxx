@@ -22,8 +22,8 @@ BlockGrid BlockGrid::make(const Index3& volumeSize, int blockSize, Border border
         count *= static_cast<double>(grid.blocks[axis]);
     }
     if (count >= 4294967296.0) {
-        throw InvalidInput("BlockGrid: the volume has 2^32 or more blocks of size " +
-                           std::to_string(blockSize) + "; take a larger block size");
+        throw InvalidInput("the image has 2^32 or more blocks of " + std::to_string(blockSize) +
+                           " voxels a side; take a larger block size");
     }
     return grid;
 }

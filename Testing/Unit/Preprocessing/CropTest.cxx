@@ -70,11 +70,11 @@ TEST(Crop, RefusesRangesThatLeaveTheImageOrKeepNoVolume) {
         }
         return "none";
     };
-    EXPECT_EQ(refusal({0, 5}), "cropVolume: 0:5 along j: the image has voxels 0:4");
-    EXPECT_EQ(refusal({-1, 3}), "cropVolume: -1:3 along j: the image has voxels 0:4");
-    EXPECT_EQ(refusal({2, 3}), "cropVolume: 2:3 along j: must keep 2 voxels or more");
-    EXPECT_EQ(refusal({3, 1}), "cropVolume: 3:1 along j: must keep 2 voxels or more");
-    EXPECT_EQ(refusal({9, std::nullopt}), "cropVolume: 9:4 along j: must keep 2 voxels or more");
+    EXPECT_EQ(refusal({0, 5}), "0:5 along j: the image has voxels 0:4");
+    EXPECT_EQ(refusal({-1, 3}), "-1:3 along j: the image has voxels 0:4");
+    EXPECT_EQ(refusal({2, 3}), "2:3 along j: must keep 2 voxels or more");
+    EXPECT_EQ(refusal({3, 1}), "3:1 along j: must keep 2 voxels or more");
+    EXPECT_EQ(refusal({9, std::nullopt}), "9:4 along j: must keep 2 voxels or more");
     EXPECT_EQ(refusal({2, 4}), "none");
 }
 

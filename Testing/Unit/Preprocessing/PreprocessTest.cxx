@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <utility>
+#include <vector>
 
 #include "Grids.h"
 #include "adaptiso/Extraction/Extraction.h"
@@ -69,6 +71,26 @@ TEST(Preprocess, TakesItsStepsInTheStatedOrder) {
     ASSERT_EQ(done.view().geometry(), byHand.view().geometry());
     EXPECT_EQ(std::memcmp(done.view().samples(), byHand.view().samples(), done.view().byteCount()),
               0);
+}
+
+TEST(Preprocess, SaysWhichStepTheVolumeCantTake) {
+    PreprocessOptions crop, smooth, resample;
+    crop.crop = {{{0, 99}, {}, {}}};
+    smooth.smoothSigmaMm = 99;
+    resample.resampleMm = 99;
+    const std::vector<std::pair<PreprocessOptions, PreprocessStep>> cases{
+        {crop, PreprocessStep::Crop},
+        {smooth, PreprocessStep::Smooth},
+        {resample, PreprocessStep::Resample}};
+    for (const auto& [options, step] : cases) {
+        try {
+            preprocess(randomVolume<std::int16_t>({5, 5, 5}, 10, 1), options);
+            ADD_FAILURE() << "nothing was thrown";
+        } catch (const PreprocessError& error) {
+            EXPECT_EQ(error.step(), step);
+            EXPECT_EQ(std::string(error.what()).find("Volume"), std::string::npos) << error.what();
+        }
+    }
 }
 
 TEST(Preprocess, WithoutOptionsGivesTheVolumeBack) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Preprocessing/Crop.h"
 #include "adaptiso/Preprocessing/Resample.h"
@@ -21,6 +22,20 @@ struct PreprocessOptions {
     friend bool operator==(const PreprocessOptions&, const PreprocessOptions&) = default;
 };
 
+enum class PreprocessStep { Crop, Smooth, Resample };
+
+/// The volume can't take a step. The message says why, and names no function.
+class PreprocessError : public InvalidInput {
+public:
+    PreprocessError(PreprocessStep step, const std::string& message)
+        : InvalidInput(message), step_(step) {}
+
+    PreprocessStep step() const { return step_; }
+
+private:
+    PreprocessStep step_;
+};
+
 struct Preprocessed {
     Volume volume;
     std::vector<std::string> warnings;  ///< one line each
@@ -32,7 +47,7 @@ struct Preprocessed {
 /// Warns where blending looks wrong (3 to 100 different whole numbers are labels, most likely), and
 /// of what resampling a sheared image adds around it.
 /// \param volume  given up: its samples go as soon as they are not needed
-/// \throws InvalidInput as the three do
+/// \throws PreprocessError where one of the three throws InvalidInput
 Preprocessed preprocess(Volume volume, const PreprocessOptions& options);
 
 }  // namespace adaptiso

@@ -1,0 +1,75 @@
+#include "Common/OptionValues.h"
+
+#include <charconv>
+
+#include "Common/Numbers.h"
+
+namespace adaptiso {
+namespace {
+
+/// Why `text` is no finite number where that is not plain to see; else empty.
+std::string causeOf(const std::string& text) {
+    double value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [last, error] = std::from_chars(text.data(), end, value);
+    if (error == std::errc::result_out_of_range && last == end) {
+        const std::size_t exponent = text.find_first_of("eE");
+        const bool isTiny = exponent != std::string::npos && text[exponent + 1] == '-';
+        return isTiny ? "is too close to 0 to be told from it"
+                      : "is larger than the largest number there is here, 1.8e308";
+    }
+    std::string withPoint = text;
+    std::replace(withPoint.begin(), withPoint.end(), ',', '.');
+    if (withPoint != text && parseFiniteNumber(withPoint)) {
+        return "decimals follow a point (" + withPoint + ")";
+    }
+    return "";
+}
+
+}  // namespace
+
+std::string toWords(const NumberRule& rule) {
+    std::string text = "a number";
+    if (rule.least && rule.isAbove) text += " above " + formatNumber(*rule.least);
+    if (rule.least && rule.most && !rule.isAbove) {
+        text += " from " + formatNumber(*rule.least) + " to " + formatNumber(*rule.most);
+    } else if (rule.least && !rule.isAbove) {
+        text += ", " + formatNumber(*rule.least) + " or more";
+    } else if (rule.most) {
+        text += ", at most " + formatNumber(*rule.most);
+    }
+    if (!rule.least && !rule.most) text = "a finite number";
+    return rule.unit.empty() ? text : text + ", in " + rule.unit;
+}
+
+void refuseValue(const std::string& option, const std::string& text, const std::string& rule) {
+    const std::string cause = causeOf(text);
+    throw UsageError(option + " " + shown(text) + ": " + cause + (cause.empty() ? "" : "; ") +
+                     "must be " + rule);
+}
+
+double parseNumber(const std::string& option, const std::string& text, const NumberRule& rule) {
+    const std::optional<double> value = parseFiniteNumber(text);
+    const bool isGood = value && (!rule.least || *value >= *rule.least) &&
+                        (!rule.isAbove || *value > *rule.least) &&
+                        (!rule.most || *value <= *rule.most);
+    if (!isGood) refuseValue(option, text, toWords(rule));
+    return *value;
+}
+
+std::int64_t parseCount(const std::string& option, const std::string& text, std::int64_t least,
+                        std::int64_t most) {
+    std::string_view digits = text;
+    if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
+    std::int64_t value = 0;
+    const char* const end = digits.data() + digits.size();
+    const auto [last, error] = std::from_chars(digits.data(), end, value);
+    if (error == std::errc{} && last == end && value >= least && value <= most) return value;
+    const bool isBounded = most < kAnyCount;
+    refuseValue(option, text,
+                "a whole number" +
+                    (isBounded ? " from " + std::to_string(least) + " to " + std::to_string(most)
+                               : ", " + std::to_string(least) + " or more"));
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,268 @@
+#include "Common/UsageWords.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "Common/RunApp.h"
+
+namespace adaptiso {
+namespace {
+
+/// Letters to change, add, drop or swap with their neighbour (optimal string alignment).
+std::size_t editDistance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> before, last, row(b.size() + 1);
+    std::iota(row.begin(), row.end(), 0);
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        before = std::exchange(last, row);
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t change = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            row[j] = std::min({change, last[j] + 1, row[j - 1] + 1});
+            const bool isSwap = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+            if (isSwap) row[j] = std::min(row[j], before[j - 2] + 1);
+        }
+    }
+    return row[b.size()];
+}
+
+/// As far as a slip of the keyboard goes in a word of that length.
+std::size_t farthest(std::size_t length) {
+    return length <= 4 ? 1 : length <= 8 ? 2 : 3;
+}
+
+bool beginsWithOther(std::string_view a, std::string_view b) {
+    constexpr std::size_t kFewest = 3;
+    const auto& [shorter, longer] = std::minmax(
+        a, b, [](std::string_view l, std::string_view r) { return l.size() < r.size(); });
+    return shorter.size() >= kFewest && longer.starts_with(shorter);
+}
+
+std::vector<std::string> longNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options()) {
+        const auto& own = option->get_lnames();
+        names.insert(names.end(), own.begin(), own.end());
+    }
+    return names;
+}
+
+/// The option that goes by `word` ("--json", "-o"), or null.
+const CLI::Option* optionNamed(const CLI::App& app, std::string_view word) {
+    const auto& options = app.get_options();
+    const auto found = std::find_if(options.begin(), options.end(), [&](const CLI::Option* option) {
+        const auto has = [&](const std::vector<std::string>& names, const std::string& dashes) {
+            return std::any_of(names.begin(), names.end(),
+                               [&](const std::string& name) { return dashes + name == word; });
+        };
+        return has(option->get_lnames(), "--") || has(option->get_snames(), "-");
+    });
+    return found == options.end() ? nullptr : *found;
+}
+
+std::string_view beforeEquals(std::string_view word) {
+    return word.substr(0, word.find('='));
+}
+
+bool takesValue(const CLI::Option& option) {
+    return option.get_items_expected_max() > 0;
+}
+
+/// As --help names the value: "MM"; of INPUT and its like the name itself.
+std::string valueName(const CLI::Option& option) {
+    const std::string type = option.get_type_name();
+    return type.empty() ? option.get_name(true) : type;
+}
+
+/// "INPUT", "A and B", "FILE"
+std::string positionals(const CLI::App& app) {
+    std::string text;
+    for (const CLI::Option* option : app.get_options()) {
+        if (!option->get_lnames().empty() || !option->get_snames().empty()) continue;
+        text += (text.empty() ? "" : " and ") + option->get_name(true);
+    }
+    return text;
+}
+
+std::string ofUnexpected(const CLI::App& app) {
+    const std::vector<std::string> words = app.remaining();
+    const auto option = std::find_if(words.begin(), words.end(), [](const std::string& word) {
+        return word.size() > 1 && word[0] == '-';
+    });
+    if (option == words.end()) {
+        const std::string wanted = positionals(app);
+        return shown(words.empty() ? "" : words.front()) + ": is one argument too many; " +
+               app.get_name() +
+               (wanted.empty() ? " takes options only" : " takes " + wanted + " and options");
+    }
+    const std::string_view name = beforeEquals(*option);
+    const std::string_view letters = name.substr(
+        name.find_first_not_of('-') == name.npos ? name.size() : name.find_first_not_of('-'));
+    const auto meant = nearestWord(letters, longNames(app));
+    return shown(name) + ": there is no such option" +
+           (meant ? "; did you mean --" + *meant + "?" : "");
+}
+
+/// "--iso" of "--iso: 1 required V|auto missing", as the parser's messages begin.
+std::string subjectOf(const std::string& message) {
+    return message.substr(0, message.find(": "));
+}
+
+std::string ofMismatch(const CLI::App& app, const std::string& message) {
+    const std::string subject = subjectOf(message);
+    const CLI::Option* const option = optionNamed(app, subject);
+    if (message.find("At Most") != std::string::npos) {
+        const std::string count = message.substr(message.rfind(' ') + 1);
+        return subject + ": is given " + count + " times; give it once";
+    }
+    return subject + ": its value is missing" +
+           (option != nullptr ? "; give " + valueName(*option) : "");
+}
+
+std::string ofConversion(const CLI::App& app, const std::string& message) {
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_name();
+        const bool isFlag = !takesValue(*option);
+        if (isFlag && message.find(name) != std::string::npos) {
+            return name + ": takes no value";
+        }
+        const std::string start = "Could not convert: " + name + " = ";
+        if (!message.starts_with(start)) continue;
+        return name + " " + shown(message.substr(start.size())) + ": must be " +
+               valueName(*option) + ", see --help";
+    }
+    return message;
+}
+
+/// "--vertices: Value 3 not in range 42 to 200000"
+std::string ofValidation(const std::string& message) {
+    const std::string subject = subjectOf(message), start = subject + ": Value ",
+                      middle = " not in range ";
+    const std::size_t at = message.find(middle);
+    if (!message.starts_with(start) || at == std::string::npos) return message;
+    std::string range = message.substr(at + middle.size());
+    const std::size_t dash = range.find(" - ");
+    if (dash != std::string::npos) range.replace(dash, 3, " to ");
+    return subject + " " + shown(message.substr(start.size(), at - start.size())) +
+           ": must be a number from " + range;
+}
+
+/// "A requires B" with another verb between the two.
+std::string withVerb(const std::string& message, const std::string& verb, const std::string& before,
+                     const std::string& after) {
+    const std::size_t at = message.find(verb);
+    if (at == std::string::npos) return message;
+    return message.substr(0, at) + before + message.substr(at + verb.size()) + after;
+}
+
+std::string ofRequired(const CLI::App& app, const std::string& message) {
+    const std::string name = message.substr(0, message.find(' '));
+    return name + " is missing: " + app.get_name() + " takes " + positionals(app);
+}
+
+}  // namespace
+
+std::string shown(std::string_view text) {
+    constexpr std::size_t kMost = 60;
+    std::string cut(text);
+    if (text.size() > kMost) {
+        std::size_t end = kMost;  // not within a character of UTF-8
+        while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
+        cut.resize(end);
+        cut += "...";
+    }
+    const bool isPlain = !cut.empty() && std::all_of(cut.begin(), cut.end(), [](char c) {
+        return static_cast<unsigned char>(c) > ' ' && c != 0x7f;
+    });
+    return isPlain ? cut : "'" + cut + "'";
+}
+
+std::optional<std::string> nearestWord(std::string_view typed,
+                                       const std::vector<std::string>& words) {
+    const std::string* nearest = nullptr;
+    std::size_t least = farthest(typed.size()) + 1;
+    for (const std::string& word : words) {
+        const std::size_t distance = editDistance(typed, word);
+        if (distance >= least || distance >= std::max(typed.size(), word.size())) continue;
+        least = distance;
+        nearest = &word;
+    }
+    if (nearest != nullptr) return *nearest;
+    const auto begun = std::find_if(words.begin(), words.end(), [&](const std::string& word) {
+        return beginsWithOther(typed, word);
+    });
+    if (begun == words.end()) return std::nullopt;
+    return *begun;
+}
+
+std::string suggestion(std::string_view typed, const std::vector<std::string>& words) {
+    const auto meant = nearestWord(typed, words);
+    return meant ? "; did you mean " + *meant + "?" : "";
+}
+
+std::string alternatives(const std::vector<std::string>& words) {
+    std::string text;
+    for (std::size_t n = 0; n < words.size(); ++n) {
+        text += (n == 0 ? "" : n + 1 == words.size() ? " or " : ", ") + words[n];
+    }
+    return text;
+}
+
+void refuseMissingValues(CLI::App& app) {
+    for (CLI::Option* option : app.get_options()) {
+        if (!takesValue(*option)) continue;
+        option->check([&app, option](const std::string& value) -> std::string {
+            if (value.empty()) return "its value is empty; give " + valueName(*option);
+            const bool isOption =
+                value.starts_with("--") && optionNamed(app, beforeEquals(value)) != nullptr;
+            if (!isOption) return "";
+            return "its value is missing; " + value + " is an option";
+        });
+    }
+}
+
+void refuseEmptyAssignments(const CLI::App& app, int argc, const char* const* argv) {
+    for (int n = 1; n < argc; ++n) {
+        const std::string_view word = argv[n];
+        if (word == "--") return;
+        if (!word.starts_with("--") || !word.ends_with('=')) continue;
+        const CLI::Option* const option = optionNamed(app, word.substr(0, word.size() - 1));
+        if (option == nullptr || !takesValue(*option)) continue;
+        throw UsageError(option->get_name() + ": its value is empty; give " + valueName(*option));
+    }
+}
+
+void requirePlaceholders(const std::string& option, const std::filesystem::path& output,
+                         const std::vector<std::string>& known) {
+    const std::string name = output.string();
+    for (std::size_t begin = name.find('{'); begin != std::string::npos;
+         begin = name.find('{', begin + 1)) {
+        const std::size_t end = name.find('}', begin);
+        if (end == std::string::npos) return;
+        const std::string place = name.substr(begin, end + 1 - begin);
+        if (std::find(known.begin(), known.end(), place) != known.end()) continue;
+        throw UsageError(option + " " + shown(name) + ": " + place + " stands for nothing here" +
+                         (known.empty() ? "" : "; there is " + alternatives(known)));
+    }
+}
+
+std::string inWords(const CLI::App& app, const CLI::ParseError& error) {
+    const std::string message = error.what();
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return ofUnexpected(app);
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+        return ofMismatch(app, message);
+    }
+    if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
+        return ofConversion(app, message);
+    }
+    if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return ofValidation(message);
+    if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) return ofRequired(app, message);
+    if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr) {
+        return withVerb(message, " requires ", " needs ", "");
+    }
+    if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr) {
+        return withVerb(message, " excludes ", " and ", ": give one of the two");
+    }
+    return message;
+}
+
+}  // namespace adaptiso

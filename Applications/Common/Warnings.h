@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "Common/CommonOptions.h"
+
+namespace adaptiso {
+
+/// Each warning as a line on stderr, "adaptiso-mesh: warning: ball.nii: ...", unless
+/// --no-warnings is given. --quiet does not silence them.
+void printWarnings(const std::string& program, const CommonOptions& common,
+                   std::span<const std::string> warnings);
+
+/// --strict is given and there are warnings: the run is to end with kExitCheckFailed.
+bool failsStrict(const CommonOptions& common, std::span<const std::string> warnings);
+
+/// What --strict says of warnings, in one line: "--strict: 2 warnings, so no surface was written:
+/// ball.nii: ...; ball.nii: ...".
+/// \param consequence  "so no surface was written"; empty: none
+std::string strictFailure(std::span<const std::string> warnings, const std::string& consequence);
+
+/// Prints strictFailure() on stderr when failsStrict().
+/// \return kExitCheckFailed then, else `exitCode`
+int strictVerdict(const std::string& program, const CommonOptions& common,
+                  std::span<const std::string> warnings, const std::string& consequence,
+                  int exitCode);
+
+}  // namespace adaptiso

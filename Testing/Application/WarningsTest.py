@@ -1,0 +1,155 @@
+"""Warnings: on stderr and in the reports unless --no-warnings is given; failures with --strict."""
+
+import json
+import struct
+import subprocess
+
+from support import (BAD_INPUT, BIN, CHECK_FAILED, OK, ApplicationTest, ball, main, write_nifti)
+from bemSupport import QUICK, LABELS
+from headDefects import icosphere, write_off
+
+CONFLICT = r"ball.nii: .*qform.*sform|ball.nii: .*sform.*qform"
+
+
+def write_conflict(path, image):
+    """A NIfTI file whose qform, moved by 50 mm, contradicts its sform."""
+    write_nifti(path, image)
+    content = bytearray(path.read_bytes())
+    struct.pack_into("<2h", content, 252, 1, 1)
+    struct.pack_into("<3f", content, 268, 50, 0, 0)
+    path.write_bytes(content)
+
+
+class WithWarnings(ApplicationTest):
+    def setUp(self):
+        super().setUp()
+        write_conflict(self.path("ball.nii"), ball(12, 4))
+        write_nifti(self.path("good.nii"), ball(12, 4))
+        write_off(self.path("bare.off"), icosphere(40), None)
+
+    def run_program(self, program, *arguments):
+        return subprocess.run([BIN / program, *map(str, arguments)], cwd=self.folder, text=True,
+                              capture_output=True, timeout=300)
+
+
+class Warnings(WithWarnings):
+    # each: program, arguments that bring about one warning, what it says
+    RUNS = (("adaptiso-mesh", ("ball.nii", "--iso", "100", "-o", "a.vtp"), CONFLICT),
+            ("adaptiso-mesh", ("ball.nii", "--info"), CONFLICT),
+            ("adaptiso-check", ("bare.off", "--volume", "ball.nii"), CONFLICT),
+            ("adaptiso-compare", ("bare.off", "bare.off"),
+             "bare.off and bare.off don't say their coordinate frame"))
+
+    def test_are_told_with_the_files_name_also_when_quiet(self):
+        for program, arguments, pattern in self.RUNS:
+            for quiet in ((), ("--quiet",)):
+                with self.subTest((program, quiet)):
+                    done = self.run_program(program, *arguments, *quiet)
+                    self.assertEqual(done.returncode, OK, done.stderr)
+                    self.assertRegex(done.stderr, f"^{program}: warning: ({pattern})")
+                    self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+                    self.assertEqual(bool(done.stdout), not quiet)
+
+    def test_are_silenced_on_demand_but_stay_in_the_report(self):
+        for program, arguments, pattern in self.RUNS:
+            with self.subTest(program):
+                done = self.run_program(program, *arguments, "--no-warnings", "--json", "-")
+                self.assertEqual((done.returncode, done.stderr), (OK, ""))
+                report = json.loads(done.stdout)
+                self.assertRegex("\n".join(report["warnings"]), pattern)
+                self.assertEqual(report["failedByWarnings"], False)
+
+    def test_fail_a_strict_run_in_one_line_that_says_which(self):
+        for program, arguments, pattern in self.RUNS:
+            with self.subTest(program):
+                done = self.run_program(program, *arguments, "--strict", "--no-warnings", "--json",
+                                        "r.json")
+                self.assertEqual(done.returncode, CHECK_FAILED, done.stderr)
+                self.assertRegex(done.stderr, f"^{program}: --strict: 1 warning.*: ({pattern})")
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+                report = json.loads(self.path("r.json").read_text())
+                self.assertEqual(report["failedByWarnings"], True)
+                self.assertRegex("\n".join(report["warnings"]), pattern)
+
+    def test_strict_without_warnings_changes_nothing(self):
+        self.mesh("good.nii", "--iso", "100", "-o", "a.vtp")
+        done = self.mesh("good.nii", "--iso", "100", "-o", "b.vtp", "--strict")
+        self.assertEqual(done.stderr, "")
+        self.assertEqual(self.path("a.vtp").read_bytes(), self.path("b.vtp").read_bytes())
+
+    def test_strict_writes_reports_and_no_surface(self):
+        self.path("a.vtp").write_text("of an earlier run")
+        done = self.run_mesh("ball.nii", "--iso", "100", "-o", "a.vtp", "--save-index", "index",
+                             "--strict", "--json", "r.json", "--report", "page.html")
+        self.assertEqual(done.returncode, CHECK_FAILED, done.stderr)
+        self.assertRegex(done.stderr.splitlines()[-1], "--strict: 1 warning, so no surface was "
+                                                       "written: ball.nii: ")
+        self.assertIn("a.vtp (not written)", done.stdout)
+        self.assertEqual(self.path("a.vtp").read_text(), "of an earlier run")
+        self.assertEqual(self.names(), ["a.vtp", "ball.nii", "bare.off", "good.nii", "page.html",
+                                        "r.json"])
+        report = json.loads(self.path("r.json").read_text())
+        self.assertEqual(report["surfaces"][0]["output"]["written"], False)
+        self.assertIn("--strict: 1 warning", self.path("page.html").read_text())
+
+    def test_check_is_not_passed_when_strict_fails(self):
+        done = self.run_program("adaptiso-check", "bare.off", "--volume", "ball.nii", "--strict",
+                                "--json", "-")
+        self.assertEqual((done.returncode, json.loads(done.stdout)["passed"]),
+                         (CHECK_FAILED, False))
+
+    def test_of_bad_input_do_not_hide_the_error(self):
+        done = self.run_mesh("ball.nii", "--iso", "99999", "--strict")
+        self.assertEqual(done.returncode, BAD_INPUT)
+        self.assertRegex(done.stderr.splitlines()[-1], "no voxel reaches it")
+
+    def test_strict_head_models_are_reports_alone(self):
+        write_conflict(self.path("seg.nii"), LABELS)
+        model = ("--labels", "seg.nii", "--tissue", "brain=1", "--tissue", "skull=2", "--tissue",
+                 "scalp=3", *QUICK, "-o", "model", "--quiet")
+        done = self.run_program("adaptiso-bem", *model, "--strict")
+        self.assertEqual(done.returncode, CHECK_FAILED, done.stderr)
+        self.assertRegex(done.stderr.splitlines()[-1],
+                         "^adaptiso-bem: --strict: 1 warning, so no model was written: seg.nii: ")
+        self.assertEqual([p.name for p in self.path("model").iterdir()], ["report.json"])
+        report = json.loads((self.path("model") / "report.json").read_text())
+        self.assertEqual((report["model"], report["failedByWarnings"]), (False, True))
+
+
+class Batches(WithWarnings):
+    RUN = ("ball.nii", "good.nii", "--iso", "100", "--output-dir", "out")
+
+    def test_tell_the_warnings_of_every_run(self):
+        for quiet in ((), ("--quiet",)):
+            done = self.mesh(*self.RUN, *quiet)
+            self.assertRegex(done.stderr, f"^adaptiso-mesh: warning: ({CONFLICT})")
+            self.assertEqual(len(done.stderr.splitlines()), 1)
+        again = self.mesh(*self.RUN, "--skip-existing")
+        self.assertEqual(again.stderr, done.stderr)
+        self.assertEqual(self.mesh(*self.RUN, "--no-warnings").stderr, "")
+
+    def test_fail_those_with_warnings_when_strict(self):
+        done = self.run_mesh(*self.RUN, "--strict", "--no-warnings")
+        self.assertEqual((done.returncode, done.stderr), (CHECK_FAILED, ""))
+        self.assertRegex(done.stdout, f"FAILED  ball.nii: --strict: 1 warning: ({CONFLICT})")
+        self.assertRegex(done.stdout, "done    good.nii: good-iso100.vtp")
+        self.assertFalse(self.path("out/ball-iso100.vtp").exists())
+        self.assertTrue(self.path("out/good-iso100.vtp").exists())
+        self.assertIn("--strict: 1 warning", self.path("out/summary.html").read_text())
+
+    def test_keep_what_failed_apart_when_going_on(self):
+        self.mesh(*self.RUN)
+        done = self.run_mesh(*self.RUN, "--strict", "--skip-existing", "--json", "-")
+        rows = [json.loads(line) for line in done.stdout.splitlines()]
+        self.assertEqual([row["passed"] for row in rows], [False, True])
+        self.assertEqual(rows[0]["outputs"], [])
+
+    def test_of_checks_too(self):
+        done = self.run_program("adaptiso-check", "bare.off", "--volume", "ball.nii", "--strict",
+                                "--no-warnings", "--output-dir", "out")
+        self.assertEqual(done.returncode, CHECK_FAILED, done.stderr)
+        self.assertRegex(done.stdout, "FAILED  bare.off: --strict: 1 warning")
+
+
+if __name__ == "__main__":
+    main()
