@@ -39,7 +39,7 @@ int runApp(int argc, const char* const* argv, const Program& program,
 /// into one line on stderr ("name: what is wrong") and an exit code. Nothing is thrown.
 ///
 /// UsageError and what CLI11 refuses: 2, with a hint at --help. InvalidInput, FileError: 3. Too
-/// little memory: 3, since a smaller input or a larger machine mends it. All else: 4.
+/// little memory, too few threads or processes: 3, a larger machine mends it. All else: 4.
 ///
 /// --help-json alone prints the options as JSON (optionsJson()), from which manual pages are made.
 ///

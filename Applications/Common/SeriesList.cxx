@@ -96,6 +96,7 @@ std::string listJson(const std::string& program, const std::string& name,
 
 int runSeriesList(const std::filesystem::path& input, const ImageOptions& options,
                   const CommonOptions& common, const std::string& program) {
+    const ThreadLimit threads(common);
     const DicomListing listing = listSeries(input);
     const std::string name = baseName(input);
     const std::string json =

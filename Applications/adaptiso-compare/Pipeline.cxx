@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iostream>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "Common/ExitCodes.h"
 #include "Common/Numbers.h"
 #include "Common/Progress.h"
+#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "CompareRun.h"
 #include "JsonReport.h"
@@ -228,15 +230,6 @@ void printWarnings(const CompareRun& run) {
     }
 }
 
-void report(const CompareRun& run, const std::string& json) {
-    if (run.options.common.wantsJsonOnStdout()) {
-        std::cout << json;
-    } else if (!run.options.common.isQuiet) {
-        printReport(std::cout, run);
-    }
-    if (!std::cout.flush()) throw FileError("standard output: can't be written");
-}
-
 /// Says on stderr which checks failed.
 int verdict(const CompareRun& run) {
     int code = kExitOk;
@@ -273,11 +266,12 @@ int runCompare(const CompareOptions& options) {
     run.timer.time(kOverlap, [&] { measureOverlap(run, a, b); });
 
     progress.show(kWrite);
+    std::optional<PictureFolder> pictures;  // goes after what lies in it
     std::vector<AtomicOutput> outputs;
     run.timer.time(kWrite, [&] {
         if (!options.colored.empty()) writeColored(run, a, b, common, outputs);
     });
-    const PictureFolder pictures(options.report.pictures);
+    pictures.emplace(options.report.pictures);
     if (options.report.isWanted()) {
         progress.show(kReport);
         makePage(run, std::move(surfaces[0].file.mesh), std::move(surfaces[1].file.mesh), outputs);
@@ -286,10 +280,10 @@ int runCompare(const CompareOptions& options) {
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
         outputs.emplace_back(options.common.json).writeText(json);
     }
-    AtomicOutput::commit(outputs);
     progress.clear();
     printWarnings(run);
-    report(run, json);
+    printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
+    AtomicOutput::commit(outputs);
     return verdict(run);
 }
 

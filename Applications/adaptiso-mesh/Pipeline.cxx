@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <iostream>
+#include <optional>
 #include <utility>
 
 #include "Common/AtomicOutput.h"
 #include "Common/ExitCodes.h"
 #include "Common/Numbers.h"
 #include "Common/Progress.h"
+#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "IndexSource.h"
 #include "Info.h"
@@ -282,15 +284,6 @@ void printWarnings(const MeshRun& run) {
     }
 }
 
-void report(const MeshRun& run, const std::string& json) {
-    if (run.options.common.wantsJsonOnStdout()) {
-        std::cout << json;
-    } else if (!run.options.common.isQuiet) {
-        printReport(std::cout, run);
-    }
-    if (!std::cout.flush()) throw FileError("standard output: can't be written");
-}
-
 }  // namespace
 
 int runMesh(const MeshOptions& asked) {
@@ -321,6 +314,7 @@ int runMesh(const MeshOptions& asked) {
     const SpanSpaceIndex index =
         run.timer.time(kIndex, [&] { return prepareIndex(volume, options); });
 
+    std::optional<PictureFolder> pictures;  // goes after what lies in it
     std::vector<AtomicOutput> outputs;
     for (std::size_t n = 0; n < isovalues.size(); ++n) {
         run.surfaces.push_back(
@@ -328,7 +322,7 @@ int runMesh(const MeshOptions& asked) {
     }
     run.index = run.timer.time(
         kWrite, [&] { return keepIndex(index, volume, options.indexFiles, outputs); });
-    const PictureFolder pictures(options.report.pictures);
+    pictures.emplace(options.report.pictures);
     if (options.report.isWanted()) {
         progress.show(kReport);
         Report page = makeReport(run, volume);
@@ -339,9 +333,9 @@ int runMesh(const MeshOptions& asked) {
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
         outputs.emplace_back(options.common.json).writeText(json);
     }
-    AtomicOutput::commit(outputs);
     progress.clear();
-    report(run, json);
+    printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
+    AtomicOutput::commit(outputs);
     return kExitOk;
 }
 
