@@ -37,6 +37,7 @@ std::string versionText(const std::string& programName) {
 
 struct ThreadLimit::Impl {
     tbb::global_control control;
+    bool isForWant;  ///< there are no more
 };
 
 ThreadLimit::ThreadLimit(const CommonOptions& options) {
@@ -52,9 +53,12 @@ ThreadLimit::ThreadLimit(const CommonOptions& options) {
     } else if (!options.threads) {
         return;
     }
-    impl_.reset(new Impl{{kParallelism, static_cast<std::size_t>(threads)}});
+    impl_.reset(new Impl{{kParallelism, static_cast<std::size_t>(threads)}, threads < asked});
 }
 
-ThreadLimit::~ThreadLimit() = default;
+ThreadLimit::~ThreadLimit() {
+    // at the end of a limit oneTBB starts the threads that it was kept from
+    if (impl_ && impl_->isForWant) (void)impl_.release();
+}
 
 }  // namespace adaptiso
