@@ -62,6 +62,7 @@ public:
         for (std::size_t n = 0; n < items_.size(); ++n) {
             if (!records_[n]) waiting.push_back(n);
         }
+        announce(waiting);
         writePage();
         tellThoseNext();
         runChildren(
@@ -209,6 +210,18 @@ private:
             file.lexically_relative(fs::absolute(plan_.folder()).lexically_normal()).string();
         if (inBase.empty() || inBase.starts_with("..")) return {};
         return file.lexically_relative(fs::absolute(item.folder).lexically_normal()).string();
+    }
+
+    /// What has no record gets one that says that it has not ended: if this batch is killed, nobody
+    /// who builds the page takes what it left for all.
+    void announce(const std::vector<std::size_t>& waiting) const {
+        if (!plan_.keepsRecords()) return;
+        for (const std::size_t n : waiting) {
+            if (!items_[n].folder.empty()) fs::create_directories(items_[n].folder);
+            for (const auto& [file, record] : notFinished(n)) {
+                if (!fs::exists(file)) writeRecord(file, record);
+            }
+        }
     }
 
     std::vector<std::string> start(std::size_t n) {

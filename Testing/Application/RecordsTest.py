@@ -272,7 +272,7 @@ class SummaryPage(RecordsTest):
         self.assertIn("not finished", self.rows()[1])
         self.lines(OK, "out/a.stl", "--output-dir", "out", program=CHECK)
         self.assertEqual(self.rows()[0]["long", "mesh"][0], "not finished")
-        self.assertEqual(self.rows()[1], "1 of 6 failed, 1 not finished")
+        self.assertEqual(self.rows()[1], "1 of 7 failed, 2 not finished")
 
     def test_two_batches_at_once_lose_no_rows(self):
         processes = []
