@@ -35,7 +35,8 @@ void addRecordFiles(const fs::path& folder, bool isDeep, Snapshot& found) {
         struct stat status {};
         if (stat(path.c_str(), &status) != 0) continue;
         constexpr std::int64_t kPerSecond = 1'000'000'000;
-        found[path.lexically_normal()] = {status.st_size, status.st_mtim.tv_sec * kPerSecond + status.st_mtim.tv_nsec};
+        found[path.lexically_normal()] = {
+            status.st_size, status.st_mtim.tv_sec * kPerSecond + status.st_mtim.tv_nsec};
     }
 }
 
