@@ -1,15 +1,14 @@
 #include "Common/AtomicFolder.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
+#include <cstring>
 #include <fstream>
 
+#include "Common/FileReplacement.h"
 #include "Common/Temporaries.h"
+#include "Common/TemporaryNames.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -22,15 +21,6 @@ namespace {
 /// "model" of "model/", so that temporaries lie beside it.
 fs::path withoutSlash(const fs::path& path) {
     return path.has_filename() || !path.has_parent_path() ? path : path.parent_path();
-}
-
-/// Removes a former model: its files are known by name, and nothing else is in it.
-void removeFlatFolder(const fs::path& folder) {
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-        unlink(entry.path().c_str());
-    }
-    rmdir(folder.c_str());
 }
 
 }  // namespace
@@ -65,12 +55,10 @@ AtomicFolder::AtomicFolder(const fs::path& target, std::span<const std::string_v
     : target_(withoutSlash(target)), ownNames_(ownNames.begin(), ownNames.end()) {
     check(target_, ownNames);
     const SignalsWait untilItIsRemembered;
-    do {
-        temporary_ = newTemporaryName(target_);
-        if (mkdir(temporary_.c_str(), 0777) == 0) break;
-        if (errno != EEXIST) throw FileError(target_.string() + ": can't be made: " + reason());
-    } while (true);
-    registrations_.push_back(std::make_unique<Registration>(rememberTemporary(temporary_, true)));
+    const NewTemporary made = makeTemporaryFolder(target_, modeToReplace(target_, 0777), target_);
+    temporary_ = made.path;
+    registrations_.push_back(
+        std::make_unique<Registration>(rememberTemporary(temporary_, true), made.lock));
 }
 
 AtomicFolder::~AtomicFolder() {
@@ -112,24 +100,21 @@ void AtomicFolder::writeText(const std::string& name, const std::string& text) {
 }
 
 void AtomicFolder::commit(std::span<AtomicOutput> outputs) {
-    for (const std::string& name : names_) syncToDisk(temporary_ / name, target_ / name);
+    for (const std::string& name : names_) {
+        keepAttributes(target_ / name, temporary_ / name);
+        syncToDisk(temporary_ / name, target_ / name);
+    }
     syncFolder(temporary_);
     const SignalsWait untilAllAreInPlace;
     const std::vector<std::string_view> own(ownNames_.begin(), ownNames_.end());
     check(target_, own);  // again: it took a while
-    bool isReplaced = false;
-    if (std::rename(temporary_.c_str(), target_.c_str()) != 0) {
-        isReplaced = (errno == ENOTEMPTY || errno == EEXIST) &&
-                     renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(),
-                               RENAME_EXCHANGE) == 0;
-        if (!isReplaced) {
-            throw FileError(target_.string() + ": can't be put in place: " + reason());
-        }
+    Replacements replacements;
+    if (const int why = replacements.replace(temporary_, target_); why != 0) {
+        throw FileError(target_.string() + ": can't be put in place: " + std::strerror(why));
     }
-    for (const auto& registration : registrations_) registration->temporary_.exists.store(false);
-    if (isReplaced) removeFlatFolder(temporary_);
-    syncFolder(folderOf(target_));
     AtomicOutput::commit(outputs);
+    for (const auto& registration : registrations_) registration->temporary_.exists.store(false);
+    replacements.keep();
 }
 
 }  // namespace adaptiso

@@ -51,7 +51,9 @@ public:
     /// \throws FileError
     void writeText(const std::string& name, const std::string& text);
 
-    /// Renames the folder, and `outputs` after it. Signals wait until that is done.
+    /// Renames the folder, and `outputs` after it. Signals wait until that is done. When one can't
+    /// be renamed, all is changed back. A folder that is replaced leaves its mode to the new one,
+    /// files of the same name theirs, as AtomicOutput does.
     /// \pre every file that got a place has been written  \throws FileError
     void commit(std::span<AtomicOutput> outputs = {});
 

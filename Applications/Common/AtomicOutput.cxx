@@ -1,14 +1,14 @@
 #include "Common/AtomicOutput.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <utility>
 
+#include "Common/FileReplacement.h"
 #include "Common/Temporaries.h"
+#include "Common/TemporaryNames.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -62,17 +62,9 @@ void checkNotInput(const fs::path& target, const fs::path& input) {
 AtomicOutput::AtomicOutput(const fs::path& target) : target_(target), final_(resolved(target)) {
     checkOutput(target);
     const SignalsWait untilItIsRemembered;
-    for (;;) {
-        temporary_ = newTemporaryName(final_);
-        const int file = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file >= 0) {
-            close(file);
-            break;
-        }
-        // a machine that shares this folder may have a process of the same number
-        if (errno != EEXIST) throw FileError(target_.string() + ": can't be made: " + reason());
-    }
-    registration_ = std::make_unique<Registration>(rememberTemporary(temporary_, false));
+    const NewTemporary made = makeTemporaryFile(final_, modeToReplace(final_, 0666), target_);
+    temporary_ = made.path;
+    registration_ = std::make_unique<Registration>(rememberTemporary(temporary_, false), made.lock);
 }
 
 AtomicOutput::~AtomicOutput() = default;
@@ -105,13 +97,18 @@ void AtomicOutput::writeBytes(std::span<const std::byte> bytes) {
 
 void AtomicOutput::commit(std::span<AtomicOutput> outputs) {
     const SignalsWait untilAllAreInPlace;
-    for (AtomicOutput& output : outputs) {
-        if (std::rename(output.temporary_.c_str(), output.final_.c_str()) != 0) {
-            throw FileError(output.target_.string() + ": can't be put in place: " + reason());
+    for (const AtomicOutput& output : outputs) checkOutput(output.target_);  // it took a while
+    Replacements replacements;
+    for (const AtomicOutput& output : outputs) {
+        if (const int why = replacements.replace(output.temporary_, output.final_); why != 0) {
+            throw FileError(output.target_.string() +
+                            ": can't be put in place: " + std::strerror(why));
         }
-        output.registration_->temporary_.exists.store(false);
-        syncFolder(folderOf(output.final_));
     }
+    for (const AtomicOutput& output : outputs) {
+        output.registration_->temporary_.exists.store(false);
+    }
+    replacements.keep();
 }
 
 }  // namespace adaptiso

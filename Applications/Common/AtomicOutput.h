@@ -16,10 +16,10 @@ struct Registration;
 
 /// A file that appears under its name only when it is whole.
 ///
-/// It is written to a temporary name in the same folder (".adaptiso-<process>-<n>.part<extension>",
-/// so that writers which look at the extension do as for the real name), forced to disk, then
+/// It is written to a temporary name in the same folder (TemporaryNames.h), forced to disk, then
 /// renamed. The temporary goes when the object does without commit(), and, once
-/// removeOutputsOnSignals() has been called, when a signal ends the program.
+/// removeOutputsOnSignals() has been called, when a signal ends the program. A file that is
+/// replaced leaves its mode, owner and group to the new one (keepAttributes()).
 class AtomicOutput {
 public:
     /// Makes the temporary file. A symbolic link as target is followed, so that the link stays.
@@ -41,7 +41,7 @@ public:
     void writeBytes(std::span<const std::byte> bytes);
     void writeText(const std::string& text);
 
-    /// Renames all of `outputs`. Signals wait until that is done: none of the files or all of them.
+    /// Renames all of `outputs`, or none. Signals wait until that is done.
     /// \pre each has been written \throws FileError when a file can't be renamed
     static void commit(std::span<AtomicOutput> outputs);
 

@@ -18,6 +18,15 @@ struct BatchProgram {
     std::vector<std::filesystem::path> inputs;  ///< of the command line
     bool isOneItem = false;    ///< the inputs, and those of a line of --list, belong together
     bool keepsRecords = true;  ///< also where no folder is named
+    /// Options that name a file that a run reads besides its inputs: "--volume".
+    std::vector<std::string> inputOptions{};
+    /// The option of which each value makes a surface ("--iso"), and the files of the surfaces that
+    /// a run with this --output and these values makes, as far as they can be told before it. The
+    /// n-th of `surfaces` in the run's report tells of the n-th. Empty: a run makes no surface.
+    std::string surfaceOption{};
+    std::function<std::vector<std::filesystem::path>(const std::filesystem::path&,
+                                                     const std::vector<std::string>&)>
+        surfaceFiles{};
     /// Options that name what a run writes: "--output". Relative names go into the item's folder.
     std::vector<std::string> outputOptions;
     /// Given to every run that has no --output; empty: none. With --bids the second.
@@ -36,8 +45,9 @@ struct BatchProgram {
 
 /// Runs the program once for every input, in processes of their own, `batch.jobs` at a time, and
 /// tells of each in a line, in the order of the inputs: as text, or as JSON with --json. A run that
-/// fails or crashes does not keep others from running. A finished run leaves a record in the item's
-/// folder (BatchRecord.h), by which --skip-existing knows it.
+/// fails or crashes does not keep others from running. Every run leaves a record of each surface in
+/// the item's folder (BatchRecord.h), by which --skip-existing knows what need not be made again,
+/// and from which, and those of other batches and programs there, the summary page is built.
 ///
 /// In the values of options {name} stands for the item's name.
 /// \return kExitOk, or kExitCheckFailed when any input failed

@@ -1,12 +1,14 @@
 #include "Common/BatchPlan.h"
 
 #include <algorithm>
+#include <map>
 #include <string_view>
 #include <thread>
 #include <utility>
 
 #include "Common/AtomicOutput.h"
 #include "Common/RunApp.h"
+#include "Common/Sha256.h"
 
 namespace adaptiso {
 namespace {
@@ -44,12 +46,32 @@ BatchPlan::BatchPlan(const BatchProgram& program, const BatchOptions& batch,
     checkOptions();
     findItems();
     requireOwnNames(items_);
+    requireOwnRecords();
     prepareOutputs();
 }
 
 bool BatchPlan::isOutput(const std::string& option) const {
     const std::vector<std::string>& names = program_.outputOptions;
     return std::find(names.begin(), names.end(), option) != names.end();
+}
+
+bool BatchPlan::isInput(const std::string& option) const {
+    const std::vector<std::string>& names = program_.inputOptions;
+    return std::find(names.begin(), names.end(), option) != names.end();
+}
+
+/// Two names may give one, in an --output like {name}{iso}.stl.
+void BatchPlan::requireOwnRecords() const {
+    std::map<fs::path, const BatchItem*> known;
+    for (const BatchItem& item : items_) {
+        for (const PlannedRecord& record : records(item)) {
+            const auto [place, isNew] = known.emplace(record.file, &item);
+            if (isNew) continue;
+            throw InvalidInput(item.inputs.front().string() + " and " +
+                               place->second->inputs.front().string() + ": both would write " +
+                               record.surface.filename().string());
+        }
+    }
 }
 
 void BatchPlan::checkOptions() const {
@@ -142,6 +164,52 @@ std::vector<std::string> BatchPlan::options(const BatchItem& item) const {
     return options;
 }
 
+std::vector<PlannedRecord> BatchPlan::records(const BatchItem& item) const {
+    std::vector<KeptOption> shared;
+    std::vector<std::string> values;
+    for (const std::string& option : batch_.runOptions) {
+        const auto [name, value] = split(option);
+        if (isOutput(name) || isInput(name)) continue;  // their files are looked at
+        if (name == program_.surfaceOption) {
+            values.push_back(value);
+        } else {
+            shared.push_back({name, sha256Of(withName(value, item.name))});
+        }
+    }
+    if (!program_.surfaceFiles || values.empty()) {
+        return {{recordFile(item.folder, item.folder / item.name, program_.name), {}, shared}};
+    }
+    std::vector<PlannedRecord> planned;
+    const std::vector<fs::path> files =
+        program_.surfaceFiles(placed(item, outputPattern()), values);
+    for (std::size_t n = 0; n < files.size(); ++n) {
+        PlannedRecord& record = planned.emplace_back();
+        record.file = recordFile(item.folder, files[n], program_.name);
+        record.surface = files[n];
+        record.options = shared;
+        record.options.push_back({program_.surfaceOption, sha256Of(values[n])});
+    }
+    return planned;
+}
+
+std::vector<fs::path> BatchPlan::inputs(const BatchItem& item) const {
+    std::vector<fs::path> inputs = item.inputs;
+    for (const std::string& option : batch_.runOptions) {
+        const auto [name, value] = split(option);
+        if (isInput(name)) inputs.emplace_back(withName(value, item.name));
+    }
+    return inputs;
+}
+
+std::vector<std::pair<std::string, fs::path>> BatchPlan::extras(const BatchItem& item) const {
+    std::vector<std::pair<std::string, fs::path>> extras;
+    for (const std::string& option : batch_.runOptions) {
+        const auto [name, value] = split(option);
+        if (isOutput(name) && name != "--output") extras.emplace_back(name, placed(item, value));
+    }
+    return extras;
+}
+
 std::vector<std::string> BatchPlan::arguments(const BatchItem& item) const {
     std::vector<std::string> arguments = options(item);
     if (common_.threads) {
@@ -153,14 +221,6 @@ std::vector<std::string> BatchPlan::arguments(const BatchItem& item) const {
     arguments.insert(arguments.end(), {"--quiet", "--no-warnings", "--json=-", "--"});
     for (const fs::path& input : item.inputs) arguments.push_back(input.string());
     return arguments;
-}
-
-fs::path BatchPlan::written(const BatchItem& item, const std::string& option) const {
-    for (const std::string& given : batch_.runOptions) {
-        const auto [name, value] = split(given);
-        if (name == option && fs::exists(placed(item, value))) return placed(item, value);
-    }
-    return {};
 }
 
 }  // namespace adaptiso

@@ -1,63 +1,23 @@
 #include "Common/BatchRecord.h"
 
-#include <sys/stat.h>
-
-#include <cstdint>
+#include <array>
 #include <cstring>
+#include <ctime>
 #include <fstream>
-#include <sstream>
+#include <string_view>
 
 #include "Common/AtomicOutput.h"
 #include "Common/CommonOptions.h"
+#include "Common/Sha256.h"
 
 namespace adaptiso {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kSchema = "adaptiso-batch/1";
-
-/// FNV-1a of 64 bits over texts and what is known of files.
-class Hash {
-public:
-    void add(const std::string& text) {
-        for (const char c : text) add(static_cast<unsigned char>(c));
-        add('\0');
-    }
-    /// Path, size and time of change; a file that is not there is one of size 0.
-    void addFile(const fs::path& path) {
-        struct stat status {};
-        stat(path.c_str(), &status);
-        add(path.string() + " " + std::to_string(status.st_size) + " " +
-            std::to_string(status.st_mtim.tv_sec) + " " + std::to_string(status.st_mtim.tv_nsec));
-    }
-    std::string text() const {
-        std::ostringstream out;
-        out << std::hex;
-        out.width(16);
-        out.fill('0');
-        out << state_;
-        return out.str();
-    }
-
-private:
-    void add(unsigned char byte) {
-        constexpr std::uint64_t kPrime = 0x100000001b3;
-        state_ = (state_ ^ byte) * kPrime;
-    }
-    std::uint64_t state_ = 0xcbf29ce484222325;
-};
-
-/// The files of a DICOM folder, in no order of the file system's.
-std::vector<fs::path> filesIn(const fs::path& folder) {
-    std::vector<fs::path> files;
-    std::error_code error;
-    for (const auto& entry : fs::recursive_directory_iterator(folder, error)) {
-        files.push_back(entry.path());
-    }
-    std::sort(files.begin(), files.end());
-    return files;
-}
+constexpr const char* kLineSchema = "adaptiso-batch/1";
+constexpr const char* kRecordSchema = "adaptiso-record/1";
+constexpr std::string_view kRecordMark = ".adaptiso-", kRecordEnding = ".json";
 
 /// What a child wrote on stderr as one line, without what the reader of a batch's line knows or
 /// should not: the program's and the input's name, the advice after a wrong usage, the inputs'
@@ -81,10 +41,67 @@ std::string errorLine(const BatchItem& item, const std::string& errors,
     return line;
 }
 
+Json recordJson(const KeptRecord& record) {
+    Json json = toJson(record.run, record.program);
+    json["schema"] = kRecordSchema;
+    json["build"] = record.version;
+    json["ended"] = record.hasEnded;
+    json["date"] = record.date;
+    json["says"] = record.says;
+    Json options = Json::array(), inputs = Json::array(), outputs = Json::array();
+    for (const KeptOption& option : record.options) {
+        options.push_back({{"name", option.name}, {"sha256", option.sha256}});
+    }
+    for (const KeptInput& input : record.inputs) {
+        Json kept = toJson(input.file);
+        if (!input.place.empty()) kept["place"] = input.place;
+        inputs.push_back(std::move(kept));
+    }
+    for (const KeptOutput& output : record.outputs) {
+        Json kept = toJson(output.file);
+        kept["option"] = output.option;
+        outputs.push_back(std::move(kept));
+    }
+    json["options"] = std::move(options);
+    json["inputs"] = std::move(inputs);
+    json["keptOutputs"] = std::move(outputs);
+    return json;
+}
+
+/// \throws Json::exception  a key is missing, or its value of another type
+KeptRecord recordFrom(const Json& json) {
+    KeptRecord record;
+    record.program = json.at("program").at("name").get<std::string>();
+    record.version = json.at("build").get<std::string>();
+    record.hasEnded = json.at("ended").get<bool>();
+    record.date = json.at("date").get<std::string>();
+    record.says = json.at("says").get<std::string>();
+    BatchRecord& run = record.run;
+    run.name = json.at("name").get<std::string>();
+    run.files = json.at("files").get<std::vector<std::string>>();
+    if (!json.at("exitCode").is_null()) run.exitCode = json.at("exitCode").get<int>();
+    if (!json.at("signal").is_null()) run.signal = json.at("signal").get<int>();
+    if (!json.at("error").is_null()) run.error = json.at("error").get<std::string>();
+    run.outputs = json.at("outputs").get<std::vector<std::string>>();
+    run.seconds = json.at("seconds").get<double>();
+    run.report = json.at("report");
+    for (const Json& option : json.at("options")) {
+        record.options.push_back(
+            {option.at("name").get<std::string>(), option.at("sha256").get<std::string>()});
+    }
+    for (const Json& input : json.at("inputs")) {
+        record.inputs.push_back({keptFileOf(input), input.value("place", std::string())});
+    }
+    for (const Json& output : json.at("keptOutputs")) {
+        record.outputs.push_back({output.at("option").get<std::string>(), keptFileOf(output)});
+    }
+    return record;
+}
+
 }  // namespace
 
 Json toJson(const BatchRecord& record, const std::string& program) {
-    return {{"schema", kSchema},
+    return {{"schema", kLineSchema},
             {"program", {{"name", program}, {"version", programVersion()}}},
             {"name", record.name},
             {"files", record.files},
@@ -93,6 +110,7 @@ Json toJson(const BatchRecord& record, const std::string& program) {
             {"signal", record.signal != 0 ? Json(record.signal) : Json(nullptr)},
             {"error", record.error.empty() ? Json(nullptr) : Json(record.error)},
             {"earlierRun", record.isOfEarlierRun},
+            {"madeAgain", record.madeAgain.empty() ? Json(nullptr) : Json(record.madeAgain)},
             {"outputs", record.outputs},
             {"seconds", number(record.seconds)},
             {"report", record.report}};
@@ -118,58 +136,60 @@ BatchRecord recordOf(const BatchItem& item, const ChildResult& result, const std
     return record;
 }
 
-fs::path recordFile(const BatchItem& item, const std::string& program) {
-    return item.folder / (item.name + "." + program + ".json");
-}
-
-std::string fingerprint(const BatchItem& item, const std::vector<std::string>& arguments,
-                        const std::string& program) {
-    Hash hash;
-    hash.add(versionText(program));
-    for (const std::string& argument : arguments) hash.add(argument);
-    for (const fs::path& input : item.inputs) {
-        hash.addFile(input);
-        std::error_code error;
-        if (!fs::is_directory(input, error)) continue;
-        for (const fs::path& file : filesIn(input)) hash.addFile(file);
+fs::path recordFile(const fs::path& folder, const fs::path& file, const std::string& program) {
+    constexpr std::size_t kLongestName = 255;
+    constexpr std::size_t kDigits = 12;
+    const std::string ending = "." + program + std::string(kRecordEnding);
+    const std::string name = file.filename().string();
+    const fs::path inFolder = fs::absolute(file).lexically_normal().lexically_relative(
+        fs::absolute(folder.empty() ? fs::path(".") : folder / "").lexically_normal());
+    if (inFolder == file.filename() && name.size() + ending.size() <= kLongestName) {
+        return (folder / (name + ending)).lexically_normal();
     }
-    return hash.text();
+    const std::string sum = "." + sha256Of(inFolder.generic_string()).substr(0, kDigits);
+    const std::size_t room = kLongestName - ending.size() - sum.size();
+    return (folder / (name.substr(0, room) + sum + ending)).lexically_normal();
 }
 
-std::optional<BatchRecord> readRecord(const BatchItem& item, const std::string& program,
-                                      const std::string& fingerprint) {
-    std::ifstream file(recordFile(item, program));
+bool isRecordFile(const fs::path& file) {
+    const std::string name = file.filename().string();
+    return !name.starts_with(".") && name.ends_with(kRecordEnding) &&
+           name.rfind(kRecordMark) != std::string::npos;
+}
+
+std::optional<KeptRecord> readRecord(const fs::path& path, RecordFault& fault) {
+    std::ifstream file(path);
+    fault = RecordFault::Missing;
     if (!file) return std::nullopt;
-    const Json json = Json::parse(file, nullptr, false);
+    fault = RecordFault::Damaged;
     try {
-        if (json.at("schema") != kSchema || json.at("fingerprint") != fingerprint) {
+        const Json json = Json::parse(file);
+        if (json.at("schema") != kRecordSchema) {
+            fault = RecordFault::OfAnotherVersion;
             return std::nullopt;
         }
-        BatchRecord record;
-        record.name = json.at("name");
-        record.files = json.at("files");
-        record.exitCode = json.at("exitCode");
-        record.outputs = json.at("outputs");
-        record.seconds = json.at("seconds");
-        record.report = json.at("report");
-        record.isOfEarlierRun = true;
-        for (const std::string& output : record.outputs) {
-            if (!fs::exists(item.folder / output)) return std::nullopt;
-        }
+        KeptRecord record = recordFrom(json);
+        fault = RecordFault::None;
         return record;
     } catch (const Json::exception&) {
         return std::nullopt;  // no record of ours, or one cut off by hand
     }
 }
 
-void keepRecord(const BatchItem& item, const BatchRecord& record, const std::string& program,
-                const std::string& fingerprint) {
-    Json json = toJson(record, program);
-    json["fingerprint"] = fingerprint;
+void writeRecord(const fs::path& file, const KeptRecord& record) {
     std::vector<AtomicOutput> outputs;
-    outputs.emplace_back(recordFile(item, program))
-        .writeText(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    outputs.emplace_back(file).writeText(
+        recordJson(record).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     AtomicOutput::commit(outputs);
+}
+
+std::string recordDate() {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    std::array<char, 32> text{};
+    const std::size_t length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return {text.data(), length};
 }
 
 }  // namespace adaptiso

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <string_view>
+#include <utility>
 
 #include "Common/CommonOptions.h"
 #include "Common/Numbers.h"
@@ -97,6 +98,23 @@ std::string thumbnail(const SummaryRow& row, const fs::path& page) {
     return "<a href=\"" + linkTo(row.report, page) + "\">" + image + "</a>";
 }
 
+/// The mark and the words of a state.
+std::string_view stateText(RunState state) {
+    switch (state) {
+        case RunState::Failed:
+            return "&#10007;&nbsp;FAILED";
+        case RunState::Changed:
+            return "&#10007;&nbsp;MISSING or CHANGED";
+        case RunState::NotFinished:
+            return "&#10007;&nbsp;not finished";
+        case RunState::NotRun:
+            return "&#10007;&nbsp;not run";
+        case RunState::Done:
+            return "&#10003;&nbsp;done";
+    }
+    return "";
+}
+
 std::string rowText(const SummaryRow& row, const fs::path& page) {
     std::string files;
     for (const fs::path& output : row.outputs) {
@@ -104,33 +122,52 @@ std::string rowText(const SummaryRow& row, const fs::path& page) {
     }
     const std::string report =
         row.report.empty() ? "" : anchor(row.report, "report of " + row.name, page);
-    return std::string("<tr") + (row.hasPassed ? "" : " class=\"bad\"") + "><td class=\"" +
-           (row.hasPassed ? "ok\">&#10003;&nbsp;done" : "failed\">&#10007;&nbsp;FAILED") +
-           (row.isOfEarlierRun ? " (in an earlier run)" : "") + "</td><th scope=\"row\">" +
-           escaped(row.name) + "</th><td>" + escaped(row.file) + "</td><td>" + escaped(row.says) +
-           "</td><td>" + report + (report.empty() || files.empty() ? "" : "<br>") + files +
-           "</td><td>" + thumbnail(row, page) + "</td><td class=\"number\">" +
-           formatFixed(row.seconds, 1) + "</td></tr>\n";
+    const bool isDone = row.state == RunState::Done;
+    return std::string("<tr") + (isDone ? "" : " class=\"bad\"") + "><td class=\"" +
+           (isDone ? "ok" : "failed") + "\">" + std::string(stateText(row.state)) +
+           "</td><th scope=\"row\">" + escaped(row.name) + "</th><td>" + escaped(row.program) +
+           "</td><td>" + escaped(row.file) + "</td><td>" + escaped(row.says) + "</td><td>" +
+           report + (report.empty() || files.empty() ? "" : "<br>") + files + "</td><td>" +
+           thumbnail(row, page) + "</td><td>" + escaped(row.date) + "</td><td class=\"number\">" +
+           (row.seconds > 0 ? formatFixed(row.seconds, 1) : "") + "</td></tr>\n";
+}
+
+/// "2 of 12 failed, 1 missing or changed"; "All 12 done".
+std::string verdictOf(const std::vector<SummaryRow>& rows) {
+    const auto count = [&rows](RunState state) {
+        return std::count_if(rows.begin(), rows.end(),
+                             [state](const SummaryRow& row) { return row.state == state; });
+    };
+    const std::string all = std::to_string(rows.size());
+    std::string text;
+    for (const auto& [state, words] :
+         {std::pair{RunState::Failed, "failed"}, std::pair{RunState::Changed, "missing or changed"},
+          std::pair{RunState::NotFinished, "not finished"},
+          std::pair{RunState::NotRun, "not run"}}) {
+        if (count(state) == 0) continue;
+        text += (text.empty() ? std::to_string(count(state)) + " of " + all
+                              : ", " + std::to_string(count(state))) +
+                " " + words;
+    }
+    return !text.empty() ? text : rows.empty() ? "Nothing was run" : "All " + all + " done";
 }
 
 }  // namespace
 
-std::string summaryPage(const std::string& program, const std::vector<SummaryRow>& rows,
-                        const fs::path& page) {
-    const auto failed = std::count_if(rows.begin(), rows.end(),
-                                      [](const SummaryRow& row) { return !row.hasPassed; });
-    const std::string verdict =
-        failed == 0 ? "All " + std::to_string(rows.size()) + " done"
-                    : std::to_string(failed) + " of " + std::to_string(rows.size()) + " failed";
+std::string summaryPage(const std::vector<SummaryRow>& rows, const fs::path& page) {
+    const bool isDone = !rows.empty() && std::all_of(rows.begin(), rows.end(), [](const auto& row) {
+        return row.state == RunState::Done;
+    });
+    const std::string verdict = verdictOf(rows);
     std::string text =
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-        "<meta name=\"viewport\" content=\"width=device-width\"><title>" +
-        escaped(program) + ": " + verdict + "</title><style>" + std::string(kStyle) +
-        "</style></head><body>\n<h1 class=\"" + (failed == 0 ? "ok" : "failed") + "\">" + verdict +
-        "</h1>\n<p>" + escaped(program) + " " + programVersion() +
-        "</p>\n<table><caption>Inputs, in the order given</caption>\n<thead><tr><th>verdict</th>"
-        "<th>name</th><th>input</th><th>what came of it</th><th>files</th><th>picture</th>"
-        "<th>seconds</th></tr></thead><tbody>\n";
+        "<meta name=\"viewport\" content=\"width=device-width\"><title>adaptiso: " +
+        verdict + "</title><style>" + std::string(kStyle) + "</style></head><body>\n<h1 class=\"" +
+        (isDone ? "ok" : "failed") + "\">" + verdict + "</h1>\n<p>adaptiso " + programVersion() +
+        "</p>\n<table><caption>Every run that has a record in this folder; what needs a look comes "
+        "first</caption>\n<thead><tr><th>verdict</th><th>name</th><th>program</th><th>input</th>"
+        "<th>what came of it</th><th>files</th><th>picture</th><th>date</th><th>seconds</th></tr>"
+        "</thead><tbody>\n";
     for (const SummaryRow& row : rows) text += rowText(row, page);
     return text + "</tbody></table>\n</body></html>\n";
 }

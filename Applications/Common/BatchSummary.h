@@ -6,13 +6,23 @@
 
 namespace adaptiso {
 
+/// How a run stands, the worst first.
+enum class RunState {
+    Failed,       ///< it did, or what it looked at did
+    Changed,      ///< it was done, but what it made or looked at is gone or not the same any more
+    NotFinished,  ///< it has begun, or its record can't be read
+    NotRun,       ///< its input is there, and nothing else
+    Done,
+};
+
 /// One line of the page.
 struct SummaryRow {
+    std::string program;  ///< empty: none has run
     std::string name;
     std::string file;
-    bool hasPassed = false;
-    bool isOfEarlierRun = false;
+    RunState state = RunState::NotRun;
     std::string says;  ///< what came of it, or what is wrong
+    std::string date;  ///< of the run's end; empty: none
     double seconds = 0;
     std::vector<std::filesystem::path> outputs;
     std::filesystem::path report;    ///< a page of --report; empty: none
@@ -22,7 +32,6 @@ struct SummaryRow {
 /// A page of HTML without scripts that lists `rows` in their order, the verdict in words and
 /// colour, with links relative to `page`, and a thumbnail where there is a picture: one of the
 /// row's pictures, or the first that its report holds.
-std::string summaryPage(const std::string& program, const std::vector<SummaryRow>& rows,
-                        const std::filesystem::path& page);
+std::string summaryPage(const std::vector<SummaryRow>& rows, const std::filesystem::path& page);
 
 }  // namespace adaptiso

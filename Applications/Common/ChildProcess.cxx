@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <chrono>
 #include <list>
+#include <system_error>
 #include <utility>
 
 #include "Common/Temporaries.h"
@@ -83,7 +84,7 @@ Child start(std::size_t number, std::vector<std::string> arguments) {
     std::array<Descriptor, 2> out = makePipe(), err = makePipe();
     const pid_t parent = getpid();
     const pid_t process = fork();
-    if (process < 0) failed("fork");
+    if (process < 0) throw std::system_error(errno, std::generic_category(), "fork");
     if (process == 0) becomeProgram(parent, pointers.data(), out[1].get(), err[1].get());
     return {number, process, std::move(out[0]), std::move(err[0])};
 }
@@ -144,9 +145,18 @@ void runChildren(std::size_t count, int jobs,
     signal(SIGCHLD, SIG_DFL);
     std::list<Child> children;
     std::size_t next = 0;
+    std::vector<std::string> waiting;  // arguments of the next; empty: not asked for yet
     while (next < count || !children.empty()) {
         while (next < count && children.size() < static_cast<std::size_t>(jobs)) {
-            children.push_back(start(next, arguments(next)));
+            if (waiting.empty()) waiting = arguments(next);
+            try {
+                children.push_back(start(next, waiting));
+            } catch (const std::system_error&) {
+                // the limit of processes is reached: the end of one of ours makes room
+                if (children.empty()) throw;
+                break;
+            }
+            waiting.clear();
             ++next;
         }
         waitForAny(children);

@@ -24,7 +24,8 @@ struct ChildResult {
 /// \param arguments  of the n-th run, without the program's name
 /// \param finished   called with n and the result, in the order in which the runs end
 /// \pre   no thread of this process runs: it is forked
-/// \throws InternalError  when no process can be started
+/// Where fewer than `jobs` processes can be had at a time, as many as can.
+/// \throws std::system_error  when no process can be started  \throws InternalError
 void runChildren(std::size_t count, int jobs,
                  const std::function<std::vector<std::string>(std::size_t)>& arguments,
                  const std::function<void(std::size_t, ChildResult)>& finished);

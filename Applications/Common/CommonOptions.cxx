@@ -3,9 +3,11 @@
 #include <tbb/global_control.h>
 #include <tbb/version.h>
 
+#include <cstdlib>
 #include <memory>
 
 #include "Common/OptionValues.h"
+#include "Common/Threads.h"
 
 namespace adaptiso {
 
@@ -44,14 +46,28 @@ std::string versionText(const std::string& programName) {
 
 struct ThreadLimit::Impl {
     tbb::global_control control;
+    bool isForWant;  ///< there are no more
 };
 
 ThreadLimit::ThreadLimit(const CommonOptions& options) {
-    if (!options.threads) return;
-    impl_.reset(new Impl{{tbb::global_control::max_allowed_parallelism,
-                          static_cast<std::size_t>(*options.threads)}});
+    constexpr auto kParallelism = tbb::global_control::max_allowed_parallelism;
+    const int asked =
+        options.threads.value_or(static_cast<int>(tbb::global_control::active_value(kParallelism)));
+    const int threads = 1 + startableThreads(asked - 1);
+    if (threads < asked) {
+        // ITK's pool of threads, which it makes in any case, can't go without one; its other way
+        // of running in parallel starts threads when there is work for several
+        setenv("ITK_GLOBAL_DEFAULT_THREADER", "Platform", 1);
+        setenv("ITK_GLOBAL_DEFAULT_NUMBER_OF_THREADS", std::to_string(threads).c_str(), 1);
+    } else if (!options.threads) {
+        return;
+    }
+    impl_.reset(new Impl{{kParallelism, static_cast<std::size_t>(threads)}, threads < asked});
 }
 
-ThreadLimit::~ThreadLimit() = default;
+ThreadLimit::~ThreadLimit() {
+    // at the end of a limit oneTBB starts the threads that it was kept from
+    if (impl_ && impl_->isForWant) (void)impl_.release();
+}
 
 }  // namespace adaptiso

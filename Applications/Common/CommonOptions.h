@@ -29,7 +29,7 @@ std::string programVersion();
 /// Name, version and what libraries it stands on, as --version prints them.
 std::string versionText(const std::string& programName);
 
-/// While one lives, parallel work takes no more threads than asked for.
+/// While one lives, parallel work takes no more threads than asked for and than can be started.
 class ThreadLimit {
 public:
     explicit ThreadLimit(const CommonOptions& options);

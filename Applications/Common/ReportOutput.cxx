@@ -1,6 +1,7 @@
 #include "Common/ReportOutput.h"
 
 #include "Common/Numbers.h"
+#include "Common/Temporaries.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Report/Page.h"
@@ -36,9 +37,11 @@ void checkReportOutputs(const ReportOptions& options, std::span<const fs::path> 
 
 PictureFolder::PictureFolder(const fs::path& folder) : folder_(folder) {
     if (folder.empty()) return;
+    const detail::SignalsWait untilItIsRemembered;
     std::error_code error;
     isMine_ = fs::create_directory(folder, error);
     if (error) throw FileError(folder.string() + ": can't be made: " + error.message());
+    if (isMine_) detail::rememberTemporary(folder, true);  // no signal removes what holds something
 }
 
 PictureFolder::~PictureFolder() {

@@ -1,9 +1,14 @@
 #include "Common/ResultOutput.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <iostream>
 #include <vector>
 
 #include "Common/AtomicOutput.h"
+#include "Common/Temporaries.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -14,20 +19,40 @@ void checkReportFile(const CommonOptions& common, const std::filesystem::path& i
     checkOutput(common.json);
 }
 
-void deliverReport(const CommonOptions& common, const std::filesystem::path& input,
-                   const std::string& json, const std::function<void(std::ostream&)>& printText) {
+void flushResults() {
+    const auto fail = [] {
+        throw FileError("standard output: can't be written: " + detail::reason());
+    };
+    errno = 0;
+    if (!std::cout.flush()) {
+        if (errno == 0) throw FileError("standard output: can't be written");
+        fail();
+    }
+    // some file systems tell only now that there is no room; pipes and terminals can't be forced
+    struct stat status {};
+    const bool isFile = fstat(STDOUT_FILENO, &status) == 0 && S_ISREG(status.st_mode);
+    if (isFile && fsync(STDOUT_FILENO) != 0 && errno != EINVAL && errno != EROFS) fail();
+}
+
+void printResults(const CommonOptions& common, const std::string& json,
+                  const std::function<void(std::ostream&)>& printText) {
     if (common.wantsJsonOnStdout()) {
         std::cout << json;
     } else if (!common.isQuiet) {
         printText(std::cout);
     }
+    flushResults();
+}
+
+void deliverReport(const CommonOptions& common, const std::filesystem::path& input,
+                   const std::string& json, const std::function<void(std::ostream&)>& printText) {
+    std::vector<AtomicOutput> outputs;
     if (common.wantsJson() && !common.wantsJsonOnStdout()) {
         checkReportFile(common, input);
-        std::vector<AtomicOutput> outputs;
         outputs.emplace_back(common.json).writeText(json);
-        AtomicOutput::commit(outputs);
     }
-    if (!std::cout.flush()) throw FileError("standard output: can't be written");
+    printResults(common, json, printText);
+    AtomicOutput::commit(outputs);
 }
 
 }  // namespace adaptiso

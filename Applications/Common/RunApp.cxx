@@ -1,6 +1,10 @@
 #include "Common/RunApp.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cmath>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -8,11 +12,14 @@
 #include <new>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 
 #include "Common/AtomicOutput.h"
 #include "Common/Numbers.h"
 #include "Common/OptionsJson.h"
 #include "Common/Resources.h"
+#include "Common/ResultOutput.h"
+#include "Common/Temporaries.h"
 #include "Common/UsageWords.h"
 #include "adaptiso/ImageIO/MappedInput.h"
 
@@ -35,6 +42,8 @@ void printError(std::string_view programName, std::string_view message) {
 
 namespace adaptiso::detail {
 namespace {
+
+std::string terminatedProgram;
 
 /// Help texts folded to 80 columns; CLI11 2.1 leaves that to the terminal.
 class FoldedHelp : public CLI::Formatter {
@@ -70,6 +79,40 @@ int failUsage(const Program& program, std::string_view message) {
     return fail(program, std::string(message) + " (see " + program.name + " --help)", kExitUsage);
 }
 
+constexpr const char* kNoThreads =
+    "a thread or process could not be started; the limit of processes (ulimit -u) or of memory is "
+    "reached. Raise it, or ask for fewer (--threads, --jobs)";
+
+/// Where threads can't be started any more, oneTBB throws where nothing can catch it.
+void endForWantOfThreads() {
+    try {
+        if (const std::exception_ptr error = std::current_exception())
+            std::rethrow_exception(error);
+    } catch (const std::exception& error) {
+        if (std::strstr(error.what(), "pthread_create") != nullptr) {
+            removeTemporaries();
+            printError(terminatedProgram, kNoThreads);
+            _exit(kExitBadInput);
+        }
+        std::cerr << terminatedProgram << ": internal error (please report it): " << error.what()
+                  << '\n';
+    } catch (...) {
+        printError(terminatedProgram, "internal error (please report it)");
+    }
+    removeTemporaries();
+    _exit(kExitInternalError);
+}
+
+/// A program that is started without one of the standard streams must not take a file that it
+/// opens for it: in the place of a missing stream stands one that can't be written, or has no end.
+void keepStandardStreams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (fcntl(stream, F_GETFD) >= 0) continue;
+        // the lowest number that is free
+        (void)!open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    }
+}
+
 int runParsed(const Program& program, const std::function<int()>& run) {
     try {
         return run();
@@ -86,6 +129,12 @@ int runParsed(const Program& program, const std::function<int()>& run) {
                     "not enough memory (" + formatNumber(std::round(peakMemoryMb())) +
                         " MB were in use); a machine with more of it, or a smaller image, will do",
                     kExitBadInput);
+    } catch (const std::system_error& error) {
+        if (error.code() == std::errc::resource_unavailable_try_again) {
+            return fail(program, kNoThreads, kExitBadInput);
+        }
+        return fail(program, std::string("internal error (please report it): ") + error.what(),
+                    kExitInternalError);
     } catch (const std::exception& error) {
         return fail(program, std::string("internal error (please report it): ") + error.what(),
                     kExitInternalError);
@@ -98,7 +147,10 @@ int runParsed(const Program& program, const std::function<int()>& run) {
 
 int runApp(int argc, const char* const* argv, const Program& program,
            const std::function<void(CLI::App&)>& declare, const std::function<int()>& run) {
+    keepStandardStreams();
     removeOutputsOnSignals();
+    terminatedProgram = program.name;
+    std::set_terminate(endForWantOfThreads);
     endWhenAMappedFileFails(program.name.c_str(), mappedFileAt);
     CLI::App app(program.description, program.name);
     app.formatter(std::make_shared<FoldedHelp>());
@@ -106,14 +158,15 @@ int runApp(int argc, const char* const* argv, const Program& program,
     try {
         declare(app);
         if (argc == 2 && std::string_view(argv[1]) == "--help-json") {
-            std::cout << optionsJson(app) << std::flush;
-            return std::cout ? kExitOk : kExitBadInput;
+            std::cout << optionsJson(app);
+            return runParsed(program, [] { return flushResults(), kExitOk; });
         }
         refuseMissingValues(app);
         refuseEmptyAssignments(app, argc, argv);
         app.parse(argc, argv);
     } catch (const CLI::Success& asked) {
-        return app.exit(asked);  // --help, --version
+        const int code = app.exit(asked);  // --help, --version
+        return runParsed(program, [code] { return flushResults(), code; });
     } catch (const CLI::ParseError& error) {
         return failUsage(program, inWords(app, error));
     } catch (const UsageError& error) {

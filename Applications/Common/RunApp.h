@@ -39,8 +39,8 @@ int runApp(int argc, const char* const* argv, const Program& program,
 /// into one line on stderr ("name: what is wrong") and an exit code. Nothing is thrown.
 ///
 /// UsageError and what CLI11 refuses (in our words: UsageWords.h): 2, with a hint at --help.
-/// InvalidInput, FileError: 3. Too little memory: 3, since a smaller input or a larger machine
-/// mends it. All else: 4.
+/// InvalidInput, FileError: 3. Too little memory, too few threads or processes: 3, since a smaller
+/// input or a larger machine mends it. All else: 4.
 ///
 /// --help-json alone prints the options as JSON (optionsJson()), from which manual pages are made.
 ///

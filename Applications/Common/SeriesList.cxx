@@ -103,6 +103,7 @@ std::vector<std::string> warningsOf(const DicomListing& listing) {
 
 int runSeriesList(const std::filesystem::path& input, const ImageOptions& options,
                   const CommonOptions& common, const std::string& program) {
+    const ThreadLimit threads(common);
     const DicomListing listing = listSeries(input);
     const std::string name = baseName(input);
     const std::string json =

@@ -24,7 +24,9 @@ static_assert(std::atomic<Temporary*>::is_always_lock_free &&
                   std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
               "a signal's handler may use only atomics without locks");
 
-/// Async-signal-safe: unlink and rmdir only.
+}  // namespace
+
+/// unlink and rmdir only.
 void removeTemporaries() {
     for (const Temporary* t = temporaries.load(); t != nullptr; t = t->next) {
         if (!t->exists.load()) continue;
@@ -35,6 +37,8 @@ void removeTemporaries() {
         }
     }
 }
+
+namespace {
 
 /// Async-signal-safe. \pre its handler was installed with SA_NODEFER
 void endBySignal(int signal) {
@@ -97,6 +101,7 @@ Registration::~Registration() {
         }
     }
     temporary_.exists.store(false);
+    if (lock_ >= 0) close(lock_);
 }
 
 SignalsWait::SignalsWait() {
@@ -106,12 +111,6 @@ SignalsWait::SignalsWait() {
 SignalsWait::~SignalsWait() {
     if (--signalsWait > 0) return;
     if (const int signal = postponedSignal.exchange(0); signal != 0) raise(signal);
-}
-
-fs::path newTemporaryName(const fs::path& final) {
-    static std::atomic<int> count{0};
-    return folderOf(final) / (".adaptiso-" + std::to_string(getpid()) + "-" +
-                              std::to_string(count++) + ".part" + final.extension().string());
 }
 
 fs::path folderOf(const fs::path& path) {

@@ -19,14 +19,22 @@ struct Temporary {
 /// Puts `path` on the list. \return its record, which is kept as long as a signal may come
 Temporary& rememberTemporary(const std::filesystem::path& path, bool isFolder);
 
+/// Removes all temporaries that exist, before the program ends at once. Async-signal-safe.
+void removeTemporaries();
+
 /// Removes the file, or the empty folder, when it goes, unless it does not exist any more.
 struct Registration {
-    explicit Registration(Temporary& temporary) : temporary_(temporary) {}
+    /// \param lock  a descriptor to close when it goes; -1: none
+    explicit Registration(Temporary& temporary, int lock = -1)
+        : temporary_(temporary), lock_(lock) {}
     ~Registration();
     Registration(const Registration&) = delete;
     Registration& operator=(const Registration&) = delete;
 
     Temporary& temporary_;
+
+private:
+    int lock_;
 };
 
 /// While one lives, a signal waits: what is done meanwhile is done whole. They may be nested.
@@ -37,10 +45,6 @@ public:
     SignalsWait(const SignalsWait&) = delete;
     SignalsWait& operator=(const SignalsWait&) = delete;
 };
-
-/// The name that a temporary beside `final` gets: ".adaptiso-<process>-<n>.part<extension>", a new
-/// one at every call.
-std::filesystem::path newTemporaryName(const std::filesystem::path& final);
 
 std::filesystem::path folderOf(const std::filesystem::path& path);
 

@@ -12,6 +12,7 @@
 #include "Common/ExitCodes.h"
 #include "Common/Numbers.h"
 #include "Common/Progress.h"
+#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "Inputs.h"
@@ -125,15 +126,6 @@ void warnOfMany(const std::vector<TriangleMesh>& surfaces, BemRun& run) {
                            " vertices in all; MNE warns above 10,000 (--vertices)");
 }
 
-void report(const BemRun& run, const std::string& json) {
-    if (run.options.common.wantsJsonOnStdout()) {
-        std::cout << json;
-    } else if (!run.options.common.isQuiet) {
-        printReport(std::cout, run);
-    }
-    if (!std::cout.flush()) throw FileError("standard output: can't be written");
-}
-
 /// The model's folder, not yet under its name; one that holds nothing when what was written does
 /// not keep the model's promises when read back.
 void fillFolder(const std::vector<TriangleMesh>& surfaces, BemRun& run,
@@ -168,11 +160,11 @@ void show(BemRun& run, const std::vector<TriangleMesh>& shown, std::vector<Atomi
     });
 }
 
-/// Writes the folder (the report and a picture alone when there is no model) and all else, or
-/// nothing.
+/// Writes the folder (the report and a picture alone when there is no model) and all else, and
+/// prints the results, or does nothing of it.
 /// \param shown  what the report shows
-std::string write(const std::vector<TriangleMesh>& surfaces, const std::vector<TriangleMesh>& shown,
-                  BemRun& run) {
+void write(const std::vector<TriangleMesh>& surfaces, const std::vector<TriangleMesh>& shown,
+           BemRun& run, ProgressLine& progress) {
     const BemOptions& options = run.options;
     const PictureFolder pictures(options.report.pictures);
     std::vector<AtomicOutput> outputs;
@@ -185,12 +177,13 @@ std::string write(const std::vector<TriangleMesh>& surfaces, const std::vector<T
     const std::string json = jsonReport(run);
     if (folder) folder->writeText("report.json", json);
     if (hasJsonFile(options)) outputs.emplace_back(options.common.json).writeText(json);
+    progress.clear();
+    printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
     if (folder) {
         folder->commit(outputs);
     } else {
         AtomicOutput::commit(outputs);
     }
-    return json;
 }
 
 }  // namespace
@@ -214,9 +207,7 @@ int runBem(const BemOptions& options) {
     tellWarnings(run, told);
 
     progress.show("write");
-    const std::string json = write(surfaces, surfaces.empty() ? dense : surfaces, run);
-    progress.clear();
-    report(run, json);
+    write(surfaces, surfaces.empty() ? dense : surfaces, run, progress);
     if (run.hasModel()) {
         return strictVerdict("adaptiso-bem", options.common, run.warnings,
                              "so no model was written", kExitOk);

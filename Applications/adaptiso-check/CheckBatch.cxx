@@ -42,6 +42,7 @@ int runCheckBatch(const CheckOptions& options) {
     program.inputs = options.files;
     program.isOneItem = options.isNested;
     program.keepsRecords = false;
+    program.inputOptions = {"--volume"};
     program.outputOptions = {"--report", "--pictures"};
     program.nameOf = [](const std::filesystem::path& file) { return file.filename().string(); };
     program.findInBids = findBidsSurfaces;

@@ -18,6 +18,7 @@
 #include "Common/Numbers.h"
 #include "Common/PreprocessingOptions.h"
 #include "Common/Progress.h"
+#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "Isosurface.h"
@@ -270,16 +271,6 @@ void tellFailed(const CheckRun& run) {
     }
 }
 
-void report(const CheckRun& run, const std::string& json) {
-    if (run.options.common.wantsJsonOnStdout()) {
-        std::cout << json;
-    } else if (!run.options.common.isQuiet) {
-        printReport(std::cout, run);
-    }
-    if (!std::cout.flush()) throw FileError("standard output: can't be written");
-    if (run.options.common.isQuiet || run.options.common.wantsJsonOnStdout()) tellFailed(run);
-}
-
 }  // namespace
 
 bool CheckRun::hasUnreadable() const {
@@ -315,10 +306,11 @@ int runCheck(const CheckOptions& options) {
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
         outputs.emplace_back(options.common.json).writeText(json);
     }
-    AtomicOutput::commit(outputs);
     progress.clear();
     printWarnings(kProgram, options.common, run.warnings);
-    report(run, json);
+    printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
+    AtomicOutput::commit(outputs);
+    if (options.common.isQuiet || options.common.wantsJsonOnStdout()) tellFailed(run);
     if (run.hasUnreadable()) return kExitBadInput;
     const int exitCode = run.hasPassed() ? kExitOk : kExitCheckFailed;
     return strictVerdict(kProgram, options.common, run.warnings, "", exitCode);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iostream>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "Common/Json.h"
 #include "Common/Numbers.h"
 #include "Common/Progress.h"
+#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "CompareRun.h"
@@ -232,15 +234,6 @@ std::vector<Check> makeChecks(const CompareRun& run) {
     return checks;
 }
 
-void report(const CompareRun& run, const std::string& json) {
-    if (run.options.common.wantsJsonOnStdout()) {
-        std::cout << json;
-    } else if (!run.options.common.isQuiet) {
-        printReport(std::cout, run);
-    }
-    if (!std::cout.flush()) throw FileError("standard output: can't be written");
-}
-
 /// The value of a failed check in as few digits as tell it from the limit.
 std::string digitsApart(const Check& check) {
     const std::string text = formatShort(check.valueMm);
@@ -282,11 +275,12 @@ int runCompare(const CompareOptions& options) {
     run.timer.time(kOverlap, [&] { measureOverlap(run, a, b); });
 
     progress.show(kWrite);
+    std::optional<PictureFolder> pictures;  // goes after what lies in it
     std::vector<AtomicOutput> outputs;
     run.timer.time(kWrite, [&] {
         if (!options.colored.empty()) writeColored(run, a, b, common, outputs);
     });
-    const PictureFolder pictures(options.report.pictures);
+    pictures.emplace(options.report.pictures);
     if (options.report.isWanted()) {
         progress.show(kReport);
         makePage(run, std::move(surfaces[0].file.mesh), std::move(surfaces[1].file.mesh), outputs);
@@ -295,10 +289,10 @@ int runCompare(const CompareOptions& options) {
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
         outputs.emplace_back(options.common.json).writeText(json);
     }
-    AtomicOutput::commit(outputs);
     progress.clear();
     printWarnings(kProgram, options.common, run.warnings);
-    report(run, json);
+    printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
+    AtomicOutput::commit(outputs);
     return strictVerdict(kProgram, options.common, run.warnings, "", verdict(run));
 }
 

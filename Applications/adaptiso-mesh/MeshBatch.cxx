@@ -34,6 +34,20 @@ int runMeshBatch(const MeshOptions& options) {
     program.name = "adaptiso-mesh";
     program.inputs = options.inputs;
     program.outputOptions = {"--output", "--save-index", "--report", "--pictures"};
+    program.inputOptions = {"--index"};
+    program.surfaceOption = "--iso";
+    program.surfaceFiles = [&options](const std::filesystem::path& output,
+                                      const std::vector<std::string>&) {
+        MeshOptions named;
+        named.output = output;
+        named.isovalues = options.isovalues;
+        std::vector<std::filesystem::path> files;
+        for (const IsovalueChoice& choice : options.isovalues) {
+            files.push_back(
+                outputPath(named, choice.isAutomatic() ? "auto" : formatNumber(*choice.value)));
+        }
+        return files;
+    };
     program.defaultOutput = "{name}-iso{iso}.vtp";
     program.defaultBidsOutput = "{name}_desc-iso{iso}_mesh.vtp";
     program.nameOf = inputStem;

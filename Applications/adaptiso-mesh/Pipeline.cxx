@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <optional>
 #include <utility>
 
 #include "Common/AtomicOutput.h"
@@ -11,6 +12,7 @@
 #include "Common/Numbers.h"
 #include "Common/PreprocessingOptions.h"
 #include "Common/Progress.h"
+#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
 #include "Common/Warnings.h"
@@ -291,15 +293,6 @@ IndexSummary keepIndex(const SpanSpaceIndex& index, const VolumeView& volume,
     return summary;
 }
 
-void report(const MeshRun& run, const std::string& json) {
-    if (run.options.common.wantsJsonOnStdout()) {
-        std::cout << json;
-    } else if (!run.options.common.isQuiet) {
-        printReport(std::cout, run);
-    }
-    if (!std::cout.flush()) throw FileError("standard output: can't be written");
-}
-
 }  // namespace
 
 int runMesh(const MeshOptions& asked) {
@@ -333,6 +326,7 @@ int runMesh(const MeshOptions& asked) {
     const SpanSpaceIndex index =
         run.timer.time(kIndex, [&] { return prepareIndex(volume, options); });
 
+    std::optional<PictureFolder> pictures;  // goes after what lies in it
     std::vector<AtomicOutput> outputs;
     for (std::size_t n = 0; n < isovalues.size(); ++n) {
         run.surfaces.push_back(
@@ -341,7 +335,7 @@ int runMesh(const MeshOptions& asked) {
     run.index = run.timer.time(
         kWrite, [&] { return keepIndex(index, volume, options.indexFiles, outputs); });
     if (run.failsStrict()) outputs.clear();
-    const PictureFolder pictures(options.report.pictures);
+    pictures.emplace(options.report.pictures);
     if (options.report.isWanted()) {
         progress.show(kReport);
         Report page = makeReport(run, volume);
@@ -351,9 +345,9 @@ int runMesh(const MeshOptions& asked) {
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
         outputs.emplace_back(options.common.json).writeText(json);
     }
-    AtomicOutput::commit(outputs);
     progress.clear();
-    report(run, json);
+    printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
+    AtomicOutput::commit(outputs);
     return strictVerdict(kProgram, options.common, run.warnings, kNotWritten, kExitOk);
 }
 

@@ -106,6 +106,37 @@ TEST_F(AtomicFolderTest, ReplacesItsOwnKindAndNothingElse) {
     EXPECT_THROW(AtomicFolder(target, kOwn), FileError);
 }
 
+TEST_F(AtomicFolderTest, ComesBackWhenAnOutputCanNotBePutInPlace) {
+    const fs::path target = folder_ / "model";
+    fs::create_directory(target);
+    put(target / "a.txt", "old");
+    {
+        AtomicFolder model(target, kOwn);
+        model.writeText("b.txt", "new");
+        std::vector<AtomicOutput> outputs;
+        outputs.emplace_back(folder_ / "c.txt").writeText("new");
+        fs::remove(outputs[0].temporary());
+        EXPECT_THROW(model.commit(outputs), FileError);
+        EXPECT_EQ(names(target), Names{"a.txt"});
+    }
+    EXPECT_EQ(names(folder_), Names{"model"});
+    EXPECT_EQ(text(target / "a.txt"), "old");
+}
+
+TEST_F(AtomicFolderTest, KeepsTheModesOfWhatItReplaces) {
+    const fs::path target = folder_ / "model";
+    fs::create_directory(target);
+    put(target / "a.txt", "old");
+    fs::permissions(target, static_cast<fs::perms>(0750));
+    fs::permissions(target / "a.txt", static_cast<fs::perms>(0600));
+    AtomicFolder model(target, kOwn);
+    model.writeText("a.txt", "new");
+    model.writeText("b.txt", "new");
+    model.commit();
+    EXPECT_EQ(static_cast<unsigned>(fs::status(target).permissions()), 0750U);
+    EXPECT_EQ(static_cast<unsigned>(fs::status(target / "a.txt").permissions()), 0600U);
+}
+
 TEST_F(AtomicFolderTest, LooksAgainBeforeItReplaces) {
     const fs::path target = folder_ / "model";
     AtomicFolder model(target, {});

@@ -1,6 +1,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -121,6 +122,80 @@ TEST_F(AtomicOutputTest, ASignalRemovesTheTemporaryAndEndsTheProcess) {
         },
         ::testing::KilledBySignal(SIGTERM), "");
     EXPECT_EQ(names(), Names{});
+}
+
+TEST_F(AtomicOutputTest, OfSeveralThatCanNotAllBePutInPlaceNoneIs) {
+    std::ofstream(folder_ / "a.txt") << "old";
+    std::vector<AtomicOutput> outputs;
+    outputs.emplace_back(folder_ / "a.txt").writeText("new");
+    outputs.emplace_back(folder_ / "b.txt").writeText("new");
+    outputs.emplace_back(folder_ / "c.txt").writeText("new");
+    fs::remove(outputs[2].temporary());
+    EXPECT_THROW(AtomicOutput::commit(outputs), FileError);
+    EXPECT_EQ(text(folder_ / "a.txt"), "old");
+    EXPECT_FALSE(fs::exists(folder_ / "b.txt"));
+    outputs.clear();
+    EXPECT_EQ(names(), Names{"a.txt"});
+}
+
+TEST_F(AtomicOutputTest, LooksAgainBeforeItReplaces) {
+    std::vector<AtomicOutput> outputs;
+    outputs.emplace_back(folder_ / "a.txt").writeText("new");
+    fs::create_directory(folder_ / "a.txt");
+    EXPECT_THROW(AtomicOutput::commit(outputs), FileError);
+    EXPECT_TRUE(fs::is_directory(folder_ / "a.txt"));
+}
+
+TEST_F(AtomicOutputTest, KeepsTheModeOfTheFileReplaced) {
+    const fs::path target = folder_ / "a.txt";
+    for (const unsigned mode : {0600U, 0640U, 0664U, 0755U, 0666U}) {
+        std::ofstream(target) << "old";
+        fs::permissions(target, static_cast<fs::perms>(mode));
+        std::vector<AtomicOutput> outputs;
+        outputs.emplace_back(target).writeText("new");
+        // nobody else reads what nobody else may read when it is in place
+        const auto others = fs::perms::group_all | fs::perms::others_all;
+        EXPECT_EQ(fs::status(outputs[0].temporary()).permissions() & others, fs::perms::none);
+        AtomicOutput::commit(outputs);
+        EXPECT_EQ(static_cast<unsigned>(fs::status(target).permissions()), mode);
+        EXPECT_EQ(text(target), "new");
+    }
+}
+
+TEST_F(AtomicOutputTest, KeepsTheModeOfTheFileThatALinkLeadsTo) {
+    std::ofstream(folder_ / "real.txt") << "old";
+    fs::permissions(folder_ / "real.txt", static_cast<fs::perms>(0600));
+    fs::create_symlink("real.txt", folder_ / "link.txt");
+    std::vector<AtomicOutput> outputs;
+    outputs.emplace_back(folder_ / "link.txt").writeText("new");
+    AtomicOutput::commit(outputs);
+    EXPECT_TRUE(fs::is_symlink(folder_ / "link.txt"));
+    EXPECT_EQ(static_cast<unsigned>(fs::status(folder_ / "real.txt").permissions()), 0600U);
+}
+
+TEST_F(AtomicOutputTest, KeepsOwnerAndGroupWherePermitted) {
+    if (getuid() != 0) GTEST_SKIP() << "only root may give files away";
+    constexpr unsigned kOwner = 1234, kGroup = 2345;
+    const fs::path target = folder_ / "a.txt";
+    std::ofstream(target) << "old";
+    ASSERT_EQ(chown(target.c_str(), kOwner, kGroup), 0);
+    std::vector<AtomicOutput> outputs;
+    outputs.emplace_back(target).writeText("new");
+    AtomicOutput::commit(outputs);
+    struct stat status {};
+    ASSERT_EQ(stat(target.c_str(), &status), 0);
+    EXPECT_EQ(status.st_uid, kOwner);
+    EXPECT_EQ(status.st_gid, kGroup);
+}
+
+TEST_F(AtomicOutputTest, OtherHardLinksKeepTheOldFile) {
+    std::ofstream(folder_ / "a.txt") << "old";
+    fs::create_hard_link(folder_ / "a.txt", folder_ / "b.txt");
+    std::vector<AtomicOutput> outputs;
+    outputs.emplace_back(folder_ / "a.txt").writeText("new");
+    AtomicOutput::commit(outputs);
+    EXPECT_EQ(text(folder_ / "a.txt"), "new");
+    EXPECT_EQ(text(folder_ / "b.txt"), "old");
 }
 
 const char* everywhere(const void*) noexcept {

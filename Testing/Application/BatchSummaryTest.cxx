@@ -22,9 +22,7 @@ protected:
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    std::string page() const {
-        return summaryPage("adaptiso-mesh", {row_}, folder_ / "summary.html");
-    }
+    std::string page() const { return summaryPage({row_}, folder_ / "summary.html"); }
     void write(const std::string& name, const std::string& text) const {
         fs::create_directories((folder_ / name).parent_path());
         std::ofstream(folder_ / name) << text;
@@ -64,9 +62,18 @@ TEST_F(BatchSummaryTest, HasNoPictureWhereTheReportHasNone) {
 }
 
 TEST_F(BatchSummaryTest, SaysTheVerdictInWords) {
+    row_.state = RunState::Failed;
     EXPECT_NE(page().find("1 of 1 failed"), std::string::npos);
-    row_.hasPassed = true;
+    row_.state = RunState::Done;
     EXPECT_NE(page().find("All 1 done"), std::string::npos);
+    row_.state = RunState::NotRun;
+    SummaryRow gone = row_, half = row_;
+    gone.state = RunState::Changed;
+    half.state = RunState::NotFinished;
+    const std::string text = summaryPage({row_, gone, half}, folder_ / "summary.html");
+    EXPECT_NE(text.find("1 of 3 missing or changed, 1 not finished, 1 not run"), std::string::npos);
+    EXPECT_EQ(text.find("class=\"ok\""), std::string::npos);
+    EXPECT_EQ(summaryPage({}, folder_ / "summary.html").find("done"), std::string::npos);
 }
 
 }  // namespace

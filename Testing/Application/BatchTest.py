@@ -167,14 +167,14 @@ class GoingOn(BatchTest):
         self.assertEqual(self.path("out/a.stl").stat().st_mtime_ns, before)
 
     def test_goes_by_the_record_and_not_by_files(self):
-        self.path("out/a.adaptiso-mesh.json").unlink()
+        self.path("out/a.stl.adaptiso-mesh.json").unlink()
         self.path("out/a.stl").write_text("half a fi")
         self.assertEqual(self.again(), [False, True])
         self.assertGreater(self.path("out/a.stl").stat().st_size, 100)
 
     def test_takes_no_record_for_a_missing_surface_or_a_damaged_record(self):
         self.path("out/a.stl").unlink()
-        record = self.path("out/b.adaptiso-mesh.json")
+        record = self.path("out/b.stl.adaptiso-mesh.json")
         record.write_text(record.read_text()[:-20])
         self.assertEqual(self.again(), [False, False])
 

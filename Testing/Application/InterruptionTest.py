@@ -9,7 +9,9 @@ import time
 import unittest
 from pathlib import Path
 
-from support import BAD_INPUT, MESH, ApplicationTest, ball, main, noise, write_nifti
+from support import BAD_INPUT, BIN, MESH, OK, ApplicationTest, ball, main, noise, write_nifti
+from BemSurfacesTest import RADII, globe
+from headDefects import write_off
 
 
 class Signals(ApplicationTest):
@@ -68,6 +70,153 @@ class Signals(ApplicationTest):
         process.communicate(timeout=300)
         self.assertEqual(process.returncode, 0)
         self.assertEqual(len(list(self.path("out").iterdir())), 2)
+
+
+class AllPrograms(ApplicationTest):
+    """A command of each program that writes files, with a report on stdout."""
+
+    def setUp(self):
+        super().setUp()
+        write_nifti(self.path("ball.nii"), ball(24, 9))
+        self.mesh("ball.nii", "--iso", "100", "-o", "ball.vtp")
+        for n, radius in enumerate(RADII):
+            write_off(self.path(f"s{n}.off"), globe(radius), None)
+        self.path("out").mkdir()
+        self.commands = {
+            "adaptiso-mesh": ("ball.nii", "--iso", "100", "--iso", "90", "-o", "out/{iso}.vtp"),
+            "adaptiso-check": ("ball.vtp", "--report", "out/page.html", "--pictures", "out/p"),
+            "adaptiso-compare": ("ball.vtp", "ball.vtp", "--colored", "out/colored.vtp"),
+            "adaptiso-bem": ("--surfaces", "s0.off", "s1.off", "s2.off", "-o", "out/model")}
+
+    def run_program(self, program, *arguments, **options):
+        return subprocess.run([str(BIN / program), *self.commands[program], *arguments],
+                              cwd=self.folder, text=True, stderr=subprocess.PIPE, timeout=300,
+                              **options)
+
+
+class NoResults(AllPrograms):
+    """Results that can't be told take the files with them."""
+
+    def assert_nothing_made(self, done, before):
+        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+        self.assertRegex(done.stderr.splitlines()[-1], r"^adaptiso-\w+: standard output: can't be written")
+        self.assert_as_before(before)
+
+    def assert_as_before(self, before):
+        self.assertEqual(self.contents(), before)
+        self.assertEqual(list(self.path("out").iterdir()), [])
+
+    def test_a_full_disk_behind_stdout(self):
+        before = self.contents()
+        for program in self.commands:
+            for json in ((), ("--json", "-"), ("--json", "out/report.json")):
+                with self.subTest(program + str(json)), open("/dev/full", "w") as full:
+                    self.assert_nothing_made(self.run_program(program, *json, stdout=full), before)
+
+    def test_a_stdout_that_is_closed(self):
+        before = self.contents()
+        for program in self.commands:
+            with self.subTest(program):
+                done = self.run_program(program, "--json", "-", preexec_fn=lambda: os.close(1))
+                self.assert_nothing_made(done, before)
+
+    def test_a_pipe_that_nobody_reads(self):
+        before = self.contents()
+        for program in self.commands:
+            # Python's children ignore no SIGPIPE unless told to
+            for ignores, code in ((False, -signal.SIGPIPE), (True, BAD_INPUT)):
+                with self.subTest(f"{program}, SIGPIPE ignored: {ignores}"):
+                    reader, writer = os.pipe()
+                    os.close(reader)
+                    done = self.run_program(program, "--json", "-", stdout=writer,
+                                            restore_signals=not ignores)
+                    os.close(writer)
+                    self.assertEqual(done.returncode, code, done.stderr)
+                    self.assert_as_before(before)
+
+    def test_quiet_runs_need_no_stdout(self):
+        for program in self.commands:
+            with self.subTest(program):
+                done = self.run_program(program, "--quiet", preexec_fn=lambda: os.close(1))
+                self.assertEqual(done.returncode, OK, done.stderr)
+                self.assertNotEqual(list(self.path("out").iterdir()), [])
+
+    def test_help_and_version(self):
+        for program in self.commands:
+            for option in ("--help", "--version", "--help-json"):
+                with self.subTest(program + option), open("/dev/full", "w") as full:
+                    done = subprocess.run([str(BIN / program), option], stdout=full, text=True,
+                                          stderr=subprocess.PIPE, timeout=60)
+                    self.assertEqual(done.returncode, BAD_INPUT)
+                    self.assertEqual(len(done.stderr.splitlines()), 1)
+
+    def test_a_listing_without_stdout_leaves_no_json(self):
+        before = self.contents()
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([MESH, "ball.nii", "--info", "--json", "out/info.json"],
+                                  cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assert_nothing_made(done, before)
+
+
+class NoThreads(AllPrograms):
+    """A limit of processes, which counts threads too, that is reached."""
+
+    NOBODY = 65534
+
+    def setUp(self):
+        super().setUp()
+        self.folder.chmod(0o777)
+        self.path("out").chmod(0o777)
+
+    def limit(self):
+        """What a user has who has no process left; root has no limit."""
+        resource.setrlimit(resource.RLIMIT_NPROC, (0, 0))
+        if os.geteuid() == 0:
+            os.setgid(self.NOBODY)
+            os.setuid(self.NOBODY)
+
+    def test_one_does(self):
+        for program in self.commands:
+            with self.subTest(program):
+                done = self.run_program(program, stdout=subprocess.PIPE, preexec_fn=self.limit)
+                self.assertEqual(done.returncode, OK, done.stderr)
+                self.assertNotIn("thread", done.stderr)
+
+    def test_makes_the_same_bytes(self):
+        self.run_program("adaptiso-mesh", stdout=subprocess.DEVNULL, preexec_fn=self.limit)
+        self.mesh(*self.commands["adaptiso-mesh"][:-1], "with-{iso}.vtp")
+        for iso in (90, 100):
+            self.assertEqual(self.path(f"out/{iso}.vtp").read_bytes(),
+                             self.path(f"with-{iso}.vtp").read_bytes())
+
+    def test_itk_too(self):
+        for more in (("--smooth", "1"), ("--resample", "2")):
+            with self.subTest(more):
+                done = self.run_mesh("ball.nii", "--iso", "100", *more, "-o", "out/smooth.vtp",
+                                     preexec_fn=self.limit)
+                self.assertEqual(done.returncode, OK, done.stderr)
+
+    def test_a_decoder_that_can_not_be_started_is_one_line(self):
+        self.path("scan.nrrd").write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\n"
+                                           b"encoding: ascii\nspace: RAS\nspace directions: (1,0,0) "
+                                           b"(0,1,0) (0,0,1)\n\n0 0 0 0 9 9 9 9\n")
+        before = self.contents()
+        done = self.run_mesh("scan.nrrd", "--iso", "5", "-o", "out/scan.vtp", preexec_fn=self.limit)
+        if done.returncode != OK:  # OK: this kind is read without a process of its own
+            self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+            self.assertRegex(done.stderr, r"^adaptiso-mesh: scan.nrrd: can't be read: no process [^\n]*\n$")
+            self.assertEqual(self.contents(), before)
+
+    def test_a_batch_is_one_line(self):
+        for program, files in (("adaptiso-mesh", ("ball.nii", "--iso", "100")),
+                               ("adaptiso-check", ("ball.vtp",))):
+            with self.subTest(program):
+                done = subprocess.run([str(BIN / program), *files, "--output-dir", "out"],
+                                      cwd=self.folder, text=True, stdout=subprocess.PIPE,
+                                      stderr=subprocess.PIPE, timeout=300, preexec_fn=self.limit)
+                self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+                self.assertRegex(done.stderr, r"^adaptiso-\w+: [^\n]*ulimit -u[^\n]*\n$")
+                self.assertEqual(list(self.path("out").glob("*.vtp")), [])
 
 
 class NoRoom(ApplicationTest):

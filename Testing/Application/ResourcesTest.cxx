@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <thread>
 #include <vector>
 
 #include "Common/Resources.h"
+#include "Common/Threads.h"
 
 namespace adaptiso {
 namespace {
@@ -33,6 +36,26 @@ TEST(PeakMemory, GrowsWithWhatIsUsed) {
     const std::vector<char> block(100'000'000, 'x');
     EXPECT_GE(peakMemoryMb(), block.back() == 'x' ? 100 : 0);
     EXPECT_GE(peakMemoryMb(), before);
+}
+
+TEST(StartableThreads, AreAllThatAreAskedForWhereNothingLimitsThem) {
+    EXPECT_EQ(startableThreads(0), 0);
+    EXPECT_EQ(startableThreads(3), 3);
+}
+
+/// "Death" in the name: googletest runs it first, while there is one thread.
+TEST(StartableThreadsDeathTest, AreNoneAtTheLimitOfProcesses) {
+    EXPECT_EXIT(
+        {
+            constexpr uid_t kNobody = 65534;
+            const rlimit none = {};
+            // root has no limit
+            if (setrlimit(RLIMIT_NPROC, &none) != 0 || (getuid() == 0 && setuid(kNobody) != 0)) {
+                _exit(2);
+            }
+            _exit(startableThreads(3) == 0 ? 0 : 1);
+        },
+        ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace
