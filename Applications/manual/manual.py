@@ -48,15 +48,20 @@ def italic(text):
 
 def marked(text):
     """Names of options in bold."""
-    parts = re.split(r"((?<![\w-])--?[a-z][a-z-]*)", text)
+    parts = re.split(r"((?<![\w-])--?[a-z][a-z0-9-]*)", text)
     return "".join(bold(part) if n % 2 else escaped(part) for n, part in enumerate(parts))
+
+
+def sentence(text):
+    """`text` as a page of prose has it: with a full stop."""
+    return text if text.endswith((".", ":", "!", "?")) else text + "."
 
 
 def option_entry(option):
     tag = ", ".join(map(bold, option["names"]))
     if option["value"]:
         tag += (" " if tag else "") + italic(option["value"])
-    lines = [".TP", tag, marked(option["description"])]
+    lines = [".TP", tag, marked(sentence(option["description"]))]
     for word, names in (("Needs", option["needs"]), ("Not together with", option["excludes"])):
         if names:
             lines.append(f"{word} " + ", ".join(map(bold, names)) + ".")
