@@ -291,6 +291,7 @@ std::string jsonReport(const CheckRun& run) {
                       {"volume", volumeJson(run)},
                       {"surfaces", surfaces},
                       {"nesting", nestingJson(run)},
+                      {"plausibility", notesJson(run.notes)},
                       {"warnings", run.warnings},
                       {"seconds", secondsJson(run.timer)},
                       {"peakMemoryMb", peakMemoryMb()}};
