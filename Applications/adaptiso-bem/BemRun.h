@@ -10,6 +10,7 @@
 #include "Common/Resources.h"
 #include "Common/Warnings.h"
 #include "Pipeline.h"
+#include "adaptiso-check/HeadNotes.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/HeadModel/Finding.h"
 #include "adaptiso/HeadModel/NestSurfaces.h"
@@ -63,7 +64,8 @@ struct BemRun {
     std::vector<BemSurface> surfaces;
     std::vector<NestedGap> gaps;
     std::vector<BemCheck> checks;
-    std::vector<Finding> findings;  ///< why there is no model; points in LPS mm
+    std::vector<ToldNote> plausibility;  ///< what is unusual of adults' heads
+    std::vector<Finding> findings;       ///< why there is no model; points in LPS mm
     std::vector<std::pair<std::string, std::uintmax_t>> files;  ///< of the folder
     std::vector<std::filesystem::path> subjectFiles;
     StageTimer timer{};

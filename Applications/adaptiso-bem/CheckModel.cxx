@@ -121,4 +121,21 @@ void checkModel(const std::vector<TriangleMesh>& surfaces, BemRun& run, Progress
     });
 }
 
+void askWhatIsUsual(const std::vector<TriangleMesh>& surfaces, BemRun& run,
+                    ProgressLine& progress) {
+    progress.show("check");
+    run.timer.time("check", [&] {
+        PlausibilityOptions asked;
+        asked.image = run.image;
+        const AffineTransform toRas = lpsToFrame(CoordinateFrame::Ras, {});
+        for (HeadNote& note : judgePlausibility(surfaces, asked)) {
+            std::string subject = nameOf(note.surface);
+            if (note.next) subject += " in " + nameOf(*note.next);
+            ToldNote told{std::move(note), std::move(subject), CoordinateFrame::Ras, {}};
+            for (const Vec3& p : told.note.pointsMm) told.placesMm.push_back(toRas(p));
+            run.plausibility.push_back(std::move(told));
+        }
+    });
+}
+
 }  // namespace adaptiso

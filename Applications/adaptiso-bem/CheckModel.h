@@ -38,6 +38,10 @@ std::vector<Check> askOfSurface(const TriangleMesh& surface);
 /// becomes a finding of the run. Fills what the report says of the surfaces and gaps.
 void checkModel(const std::vector<TriangleMesh>& surfaces, BemRun& run, ProgressLine& progress);
 
+/// Asks what is usual of head models (judgePlausibility); nothing fails by it. Fills the run's
+/// plausibility, with places told in scanner RAS.
+void askWhatIsUsual(const std::vector<TriangleMesh>& surfaces, BemRun& run, ProgressLine& progress);
+
 /// Reads the model's files back from `folder` and asks them the same once more: rounding to what a
 /// format can hold must not break a promise, and every file must lead back to the surfaces.
 /// What is not kept becomes a finding of the run.

@@ -66,13 +66,16 @@ void addTissue(TissueLabels& tissues, const std::string& text) {
     }
 }
 
-void addLength(CLI::App& app, const std::string& name, double& target,
+void addLength(CLI::App& app, const std::string& name, double& target, double mostMm,
                const std::string& description, const char* group) {
     app.add_option_function<std::string>(
            name,
-           [&target, name](const std::string& text) {
-               target = numbers(name, text, ',', 1, 1, "a number of mm, 0 or more")[0];
-               if (target < 0) throw UsageError(name + " " + text + ": must be 0 mm or more");
+           [&target, mostMm, name](const std::string& text) {
+               const std::string rule = "0 to " + formatNumber(mostMm) + " mm";
+               target = numbers(name, text, ',', 1, 1, rule)[0];
+               if (target < 0 || target > mostMm) {
+                   throw UsageError(name + " " + text + ": must be " + rule);
+               }
            },
            description)
         ->type_name("MM")
@@ -148,32 +151,37 @@ void declareHead(CLI::App& app, BemOptions& options) {
                    numbers("--min-gap", text, ',', 1, 2, "one or two numbers of mm: SKULL,SCALP");
                head.minSkullMm = gaps.front();
                head.minScalpMm = gaps.back();
-               if (!(head.minSkullMm >= CheckOptions::kDefaultMinGapMm) ||
-                   !(head.minScalpMm >= CheckOptions::kDefaultMinGapMm)) {
-                   throw UsageError("--min-gap " + text + ": must be " +
-                                    formatNumber(CheckOptions::kDefaultMinGapMm) +
-                                    " mm or more, as adaptiso-check wants it");
+               constexpr double kLeast = CheckOptions::kDefaultMinGapMm, kMost = 20;
+               if (!(std::min(head.minSkullMm, head.minScalpMm) >= kLeast) ||
+                   !(std::max(head.minSkullMm, head.minScalpMm) <= kMost)) {
+                   throw UsageError("--min-gap " + text + ": must be " + formatNumber(kLeast) +
+                                    " mm or more, as adaptiso-check wants it, and at most " +
+                                    formatNumber(kMost));
                }
            },
            "Least thickness of skull and scalp, guaranteed (default: 2,2)")
         ->type_name("MM[,MM]")
         ->group(kHead);
-    addLength(app, "--csf", head.csfMm, "T1: from the brain mask to the inner skull (default: 2)",
-              kHead);
-    addLength(app, "--skull", head.skullMm,
+    addLength(app, "--csf", head.csfMm, 20,
+              "T1: from the brain mask to the inner skull (default: 2)", kHead);
+    addLength(app, "--skull", head.skullMm, 200,
               "T1: thickness of the skull where the image does not show it (default: 6)", kHead);
-    addLength(app, "--max-skull", head.maxSkullMm,
+    addLength(app, "--max-skull", head.maxSkullMm, 200,
               "Bone farther than this from the inner skull (face, neck) counts as scalp (default: "
               "20)",
               kHead);
     addNumber(app, "--skull-hu", head.skullHu, "HU", "CT: isovalue of bone (default: 300)", kHead);
     addNumber(app, "--skin-hu", head.skinHu, "HU", "CT: isovalue of skin (default: -300)", kHead);
-    addLength(app, "--closing", head.closingMm,
+    addLength(app, "--closing", head.closingMm, 30,
               "Gaps and canals narrower than twice this are closed (default: 10)", kHead);
-    addLength(app, "--smoothing", head.smoothingMm,
+    addLength(app, "--smoothing", head.smoothingMm, 10,
               "Standard deviation of the Gaussian that boundaries are smoothed with (default: 1.5)",
               kHead);
-    addLength(app, "--voxel", head.stepMm,
+    addLength(app, "--cut-necks", head.cutNecksMm, 20,
+              "Cut off what of the inner skull a ball of this radius can't enter and that reaches "
+              "more than 10 mm, as leaks down a foramen do (default: 8; 0: cut nothing)",
+              kHead);
+    addLength(app, "--voxel", head.stepMm, 5,
               "Side of the voxels that the head is worked on (default: the image's own if they are "
               "cubes of 0.7 to 1.5 mm, else 1)",
               kHead);
@@ -297,6 +305,11 @@ void checkCombinations(const BemOptions& options) {
     require(
         options.t1.empty() || (head.skullMm >= head.minSkullMm && head.skullMm <= head.maxSkullMm),
         "--skull must lie between --min-gap and --max-skull");
+    constexpr double kAirHu = -1000, kSoftTissueHu = 40;
+    require(options.ct.empty() || (head.skinHu > kAirHu && head.skinHu < head.skullHu &&
+                                   head.skullHu > kSoftTissueHu),
+            "--skin-hu must lie above air (-1000 HU) and below --skull-hu, and that above soft "
+            "tissue (40 HU)");
     require(options.isDryRun || !options.output.empty(), "-o DIR is needed (or --dry-run)");
     require(options.subject.empty() == options.subjectsDir.empty(),
             "--subjects-dir and --subject need each other");

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "Common/CommonFrame.h"
+#include "adaptiso/Core/Errors.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -30,9 +31,19 @@ ReadVolume readMainImage(const fs::path& path, const std::string& role, BemRun& 
     return read;
 }
 
+/// The boundaries that `make` finds; what is wrong with the image is told with option and file.
 template <class Make>
-HeadBoundaries timed(BemRun& run, const Make& make) {
-    return run.timer.time("boundaries", make);
+HeadBoundaries timed(BemRun& run, const std::string& option, const fs::path& path,
+                     const Make& make) {
+    try {
+        return run.timer.time("boundaries", make);
+    } catch (const InvalidInput& error) {
+        const std::string what = error.what();
+        const bool isOfMask = what.starts_with("the brain mask");
+        throw InvalidInput((isOfMask ? "--brain-mask " + run.options.brainMask.string()
+                                     : option + " " + path.string()) +
+                           ": " + what);
+    }
 }
 
 HeadBoundaries fromT1(BemRun& run, const BoundaryOptions& boundaries) {
@@ -40,11 +51,13 @@ HeadBoundaries fromT1(BemRun& run, const BoundaryOptions& boundaries) {
     const ReadVolume t1 =
         run.timer.time("read", [&] { return readMainImage(options.t1, "t1", run); });
     if (options.brainMask.empty()) {
-        return timed(run, [&] { return boundariesFromT1(t1.volume, std::nullopt, boundaries); });
+        return timed(run, "--t1", options.t1,
+                     [&] { return boundariesFromT1(t1.volume, std::nullopt, boundaries); });
     }
     const ReadVolume mask =
         run.timer.time("read", [&] { return readImage(options.brainMask, "brain mask", run); });
-    return timed(run, [&] { return boundariesFromT1(t1.volume, mask.volume.view(), boundaries); });
+    return timed(run, "--t1", options.t1,
+                 [&] { return boundariesFromT1(t1.volume, mask.volume.view(), boundaries); });
 }
 
 HeadBoundaries fromProbabilities(BemRun& run, const BoundaryOptions& boundaries) {
@@ -56,7 +69,8 @@ HeadBoundaries fromProbabilities(BemRun& run, const BoundaryOptions& boundaries)
     });
     std::vector<VolumeView> views;
     for (const ReadVolume& map : maps) views.push_back(map.volume.view());
-    return timed(run, [&] { return boundariesFromProbabilities(views, boundaries); });
+    return timed(run, "--probabilities", run.options.probabilities.front(),
+                 [&] { return boundariesFromProbabilities(views, boundaries); });
 }
 
 }  // namespace
@@ -72,14 +86,16 @@ HeadBoundaries boundariesFromImages(BemRun& run, ProgressLine& progress) {
     } else if (run.source == "labels") {
         const ReadVolume labels =
             run.timer.time("read", [&] { return readMainImage(options.labels, "labels", run); });
-        result = timed(
-            run, [&] { return boundariesFromLabels(labels.volume, options.tissues, boundaries); });
+        result = timed(run, "--labels", options.labels, [&] {
+            return boundariesFromLabels(labels.volume, options.tissues, boundaries);
+        });
     } else if (run.source == "probabilities") {
         result = fromProbabilities(run, boundaries);
     } else {
         const ReadVolume ct =
             run.timer.time("read", [&] { return readMainImage(options.ct, "ct", run); });
-        result = timed(run, [&] { return boundariesFromCt(ct.volume, boundaries); });
+        result =
+            timed(run, "--ct", options.ct, [&] { return boundariesFromCt(ct.volume, boundaries); });
     }
     run.notes = result.notes;
     run.warnings.insert(run.warnings.end(), result.warnings.begin(), result.warnings.end());

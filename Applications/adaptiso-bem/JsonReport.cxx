@@ -35,6 +35,7 @@ Json optionsJson(const BemOptions& options) {
             {"minGapMm", {b.minSkullMm, b.minScalpMm}},
             {"smoothingMm", b.smoothingMm},
             {"closingMm", b.closingMm},
+            {"cutNecksMm", b.cutNecksMm},
             {"voxelMm", b.stepMm > 0 ? Json(b.stepMm) : Json(nullptr)},
             {"csfMm", b.csfMm},
             {"skullMm", b.skullMm},
@@ -81,6 +82,15 @@ Json surfaceJson(std::size_t n, const BemSurface& surface) {
               {"maximumMm", number(surface.move.maximumMm)}}}};
 }
 
+/// As all points of this report.
+std::vector<ToldNote> inLps(std::vector<ToldNote> notes) {
+    for (ToldNote& told : notes) {
+        told.frame = CoordinateFrame::Lps;
+        told.placesMm = told.note.pointsMm;
+    }
+    return notes;
+}
+
 Json gapJson(const NestedGap& gap) {
     return {{"mm", number(gap.mm)},
             {"innerPointMm", vector(gap.innerPointMm)},
@@ -120,6 +130,7 @@ std::string jsonReport(const BemRun& run) {
                       {"surfaces", surfaces},
                       {"gaps", gaps},
                       {"checks", checks},
+                      {"plausibility", notesJson(inLps(run.plausibility))},
                       {"findings", findings},
                       {"output",
                        {{"files", files},

@@ -24,6 +24,29 @@ std::string conductivityTuple(const BemRun& run) {
            formatNumber(c.scalp) + ")";
 }
 
+/// From the model to the gain matrix.
+std::string openMeegText(bool isMeg, const std::string& frame, const std::string& unit) {
+    std::string text =
+        "\nOpenMEEG (not in Debian; openmeeg.github.io), in this folder, as far as the gain "
+        "matrix:\n```sh\n"
+        "om_check_geom -g model.geom\n"
+        "om_assemble -HM model.geom model.cond hm.mat\n"
+        "om_minverser hm.mat hm_inv.mat\n"
+        "om_assemble -DSM model.geom model.cond dipoles.txt dsm.mat\n";
+    text += isMeg ? "om_assemble -H2MM model.geom model.cond squids.txt h2mm.mat\n"
+                    "om_assemble -DS2MM dipoles.txt squids.txt ds2mm.mat\n"
+                    "om_gain -MEG hm_inv.mat dsm.mat h2mm.mat ds2mm.mat gain.mat\n"
+                  : "om_assemble -H2EM model.geom model.cond electrodes.txt h2em.mat\n"
+                    "om_gain -EEG hm_inv.mat dsm.mat h2em.mat gain.mat\n";
+    text += "```\n`dipoles.txt` has a line `x y z ox oy oz` for each dipole (place, orientation), ";
+    text += isMeg ? "`squids.txt` one `x y z ox oy oz` for each sensor"
+                  : "`electrodes.txt` one `x y z` for each electrode";
+    return text + "; all in " + frame + ", " + unit +
+           ". `gain.mat` has a row for each sensor and a column for each dipole.\n\nTriangles and "
+           "normals of `*.tri` point outward. OpenMEEG takes either orientation; \"Global "
+           "reorientation of interface\" is no fault.\n";
+}
+
 }  // namespace
 
 std::string modelReadme(const BemRun& run) {
@@ -54,11 +77,7 @@ std::string modelReadme(const BemRun& run) {
         "ico=None, conductivity=" +
         conductivityTuple(run) +
         ", subjects_dir='SUBJECTS_DIR')\nbem = mne.make_bem_solution(model)\n```\n";
-    text +=
-        "\nOpenMEEG (not in Debian; openmeeg.github.io), in this folder:\n```sh\nom_check_geom -g "
-        "model.geom\nom_assemble -HM "
-        "model.geom model.cond model.hm\nom_minverser model.hm model.hm_inv\n```\n";
-    return text;
+    return text + openMeegText(isOne, frameText(run), unit);
 }
 
 }  // namespace adaptiso

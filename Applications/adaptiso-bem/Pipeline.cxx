@@ -191,7 +191,7 @@ void write(const std::vector<TriangleMesh>& surfaces, const std::vector<Triangle
 int runBem(const BemOptions& options) {
     const ThreadLimit threads(options.common);
     ProgressLine progress(options.common.isQuiet);
-    BemRun run{options, {}, {}, {}, sourceOf(options), {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    BemRun run{options, {}, {}, {}, sourceOf(options), {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
     checkOutputs(options);
 
     const std::vector<TriangleMesh> dense = firstSurfaces(run, progress);
@@ -202,6 +202,7 @@ int runBem(const BemOptions& options) {
     std::vector<TriangleMesh> surfaces;
     if (run.hasModel()) surfaces = remeshAndNest(dense, run, progress);
     if (run.hasModel()) checkModel(surfaces, run, progress);
+    if (run.hasModel()) askWhatIsUsual(surfaces, run, progress);
     warnOfMany(surfaces, run);
     progress.clear();
     tellWarnings(run, told);

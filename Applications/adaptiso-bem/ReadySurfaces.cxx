@@ -9,6 +9,7 @@
 #include "Common/Numbers.h"
 #include "Inputs.h"
 #include "SurfaceSteps.h"
+#include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
@@ -162,8 +163,13 @@ std::vector<TriangleMesh> readySurfaces(BemRun& run, ProgressLine& progress) {
     run.surfaces.clear();
     BoundaryOptions boundaries = run.options.boundaries;
     boundaries.progress = progress.callback();
-    HeadBoundaries mended =
-        run.timer.time("boundaries", [&] { return boundariesFromSurfaces(surfaces, boundaries); });
+    HeadBoundaries mended;
+    try {
+        mended = run.timer.time("boundaries",
+                                [&] { return boundariesFromSurfaces(surfaces, boundaries); });
+    } catch (const InvalidInput& error) {
+        throw InvalidInput(std::string("--surfaces: ") + error.what());
+    }
     run.notes.insert(run.notes.end(), mended.notes.begin(), mended.notes.end());
     return extractSurfaces(mended, run, progress);
 }

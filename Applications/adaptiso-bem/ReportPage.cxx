@@ -30,6 +30,12 @@ void tellVerdict(const BemRun& run, Report& report) {
             (run.gaps.empty() ? "."
                               : "; they lie in each other with the gaps asked "
                                 "for.");
+        const std::int64_t notes = notedCount(run.plausibility);
+        if (notes > 0) {
+            report.headline += " " + formatCount(notes) +
+                               (notes == 1 ? " thing is" : " things are") +
+                               " unusual of a head model: worth a look.";
+        }
     } else {
         report.verdict = ReportVerdict::Failed;
         report.headline = "No model could be guaranteed: " + failureText(run);
@@ -143,6 +149,7 @@ Report makeReport(const BemRun& run, const std::vector<TriangleMesh>& surfaces) 
     tellOptions(run, report);
     tellChecks(run, report);
     tellSpots(run, report);
+    addNotes(run.plausibility, report);
     if (!run.checks.empty()) report.tables.push_back(surfaceTable(run));
     if (!run.files.empty()) report.tables.push_back(fileTable(run));
     report.notes = run.warnings;

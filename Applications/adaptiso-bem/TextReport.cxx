@@ -48,13 +48,25 @@ void printReport(std::ostream& out, const BemRun& run) {
                                       [](const BemCheck& check) { return check.isPassed; });
     if (!run.checks.empty()) {
         out << formatCount(passed) << " of " << formatCount(std::ssize(run.checks))
-            << " checks passed\n";
+            << " checks passed";
+        const std::int64_t noted = notedCount(run.plausibility);
+        if (noted > 0) {
+            out << "; " << formatCount(noted) << " of " << formatCount(std::ssize(run.plausibility))
+                << " questions of plausibility noted (places in mm RAS):";
+        }
+        out << '\n';
+        for (const ToldNote& told : run.plausibility) {
+            if (!told.note.isNoted) continue;
+            out << "  noted: " << told.subject << ": " << told.note.name << ": "
+                << told.note.finding << placeText(told) << '\n';
+        }
     }
     if (run.options.isDryRun) {
         out << "nothing written (--dry-run)\n";
     } else {
-        out << run.options.output.string() << (run.hasModel() && !run.failsStrict() ? ": the model" : ": the report only")
-            << '\n';
+        const bool holdsModel = run.hasModel() && !run.failsStrict();
+        out << run.options.output.string()
+            << (holdsModel ? ": holds the head model" : ": holds the report only") << '\n';
         for (const auto& path : run.subjectFiles) out << path.string() << '\n';
     }
     out << formatFixed(run.timer.total(), 1) << " s (";

@@ -7,6 +7,7 @@
 
 #include "Checks.h"
 #include "Common/Resources.h"
+#include "HeadNotes.h"
 #include "Pipeline.h"
 #include "SurfaceFacts.h"
 #include "adaptiso/Core/ImageGeometry.h"
@@ -55,6 +56,7 @@ struct CheckRun {
     std::vector<NestingRun> nesting;
     std::optional<CoordinateFrame> nestingFrame;  ///< of the points in nesting; none: not known
     AffineTransform toNestingFrame;               ///< from that in which it was measured
+    std::vector<ToldNote> notes;  ///< of head models: what is unusual, asked by the profile bem
     std::vector<std::string> warnings;
     StageTimer timer;
 

@@ -304,6 +304,9 @@ std::string relationText(const NestingReport& report, const std::string& inner,
                              ": a dent of that, or an edge between vertices, goes through";
         case NestingRelation::Swapped:
             return "swapped order: " + outer + " lies inside " + inner;
+        case NestingRelation::Identical:
+            return "identical: " + inner + " and " + outer +
+                   " are the same surface; is one file given twice?";
         case NestingRelation::Apart:
             return "apart: " + inner + " lies wholly outside " + outer;
         case NestingRelation::Mixed:
@@ -375,10 +378,12 @@ std::vector<Check> judgeNesting(const NestingReport& report, const std::string& 
                                   inner + " and " + std::to_string(report.gap.triangleB) + " of " +
                                   outer;
     const bool meet = report.crossingPairs > 0;
+    const bool areIdentical = report.relation == NestingRelation::Identical;
     add(kNoCrossing, !meet,
-        meet ? counted(report.crossingPairs, "pair", "pairs") +
-                   " of triangles cross or touch; first: " + triangles + where
-             : "");
+        areIdentical ? "they lie on each other everywhere"
+        : meet       ? counted(report.crossingPairs, "pair", "pairs") +
+                     " of triangles cross or touch; first: " + triangles + where
+               : "");
     add(kNested, report.isStrictlyNested(), relationText(report, inner, outer));
     if (report.gap.triangleA < 0) {
         checks.push_back(makeCheck(kMinGap, Outcome::Undecided,
@@ -387,8 +392,10 @@ std::vector<Check> judgeNesting(const NestingReport& report, const std::string& 
         const double limit = options.minGapMm.value_or(CheckOptions::kDefaultMinGapMm);
         const bool holds = report.gap.nearest.distanceMm >= limit;
         add(kMinGap, holds,
-            "smallest " + formatFixed(report.gap.nearest.distanceMm, 3) + " mm" + where +
-                (holds ? "" : ", must be at least " + formatNumber(limit) + " mm"));
+            areIdentical
+                ? "none: the two are the same surface"
+                : "smallest " + formatFixed(report.gap.nearest.distanceMm, 3) + " mm" + where +
+                      (holds ? "" : ", must be at least " + formatNumber(limit) + " mm"));
     }
     checks.back().isRequired |= options.minGapMm.has_value();
     return checks;

@@ -293,6 +293,7 @@ std::string jsonReport(const CheckRun& run) {
                       {"volume", volumeJson(run)},
                       {"surfaces", surfaces},
                       {"nesting", nestingJson(run)},
+                      {"plausibility", notesJson(run.notes)},
                       {"warnings", run.warnings},
                       {"failedByWarnings", failsStrict(run.options.common, run.warnings)},
                       {"seconds", secondsJson(run.timer)},

@@ -41,6 +41,7 @@ constexpr const char* kExtract = "extract";
 constexpr const char* kCheck = "check";
 constexpr const char* kNesting = "nesting";
 constexpr const char* kIsosurface = "isosurface";
+constexpr const char* kPlausibility = "plausibility";
 
 constexpr const char* kReport = "report";
 
@@ -65,12 +66,14 @@ public:
             checkFile(file);
             // surfaces that lie in each other are needed together, others one at a time
             if (options_.isNested) continue;
+            askWhatIsUsual();
             measureDeviations();
             keepForReport();
             meshes_.clear();
         }
         if (options_.isNested) {
             checkNested();
+            askWhatIsUsual();
             measureDeviations();
             keepForReport();
         }
@@ -211,6 +214,33 @@ private:
             judgeNesting(pair.report, inner.mesh.path.filename().string(),
                          outer.mesh.path.filename().string(), run_.toNestingFrame, options_);
     }
+
+    /// Of a boundary of a head model, or of all of them.
+    void askWhatIsUsual() {
+        if (options_.profileInUse() != Profile::Bem || meshes_.empty()) return;
+        stage(kPlausibility, [&] {
+            std::vector<NamedMesh> meshes;
+            for (const Loaded& loaded : meshes_) meshes.push_back(loaded.mesh);
+            const CommonFrame common = bringToOneFrame(meshes, image_);
+            const AffineTransform toFrame = lpsToFrame(common.frame, common.volume);
+            std::vector<TriangleMesh> surfaces;
+            for (NamedMesh& mesh : meshes) surfaces.push_back(std::move(mesh.file.mesh));
+            PlausibilityOptions asked;
+            asked.areNested = options_.isNested;
+            asked.areHeadLayers = options_.isNested && surfaces.size() == 3;
+            // in a stand-in's tkRAS nothing says where the image is
+            if (common.frame == CoordinateFrame::Ras) asked.image = image_;
+            for (HeadNote& note : judgePlausibility(surfaces, asked)) {
+                std::string subject = nameOf(meshes_[note.surface]);
+                if (note.next) subject += " in " + nameOf(meshes_[*note.next]);
+                ToldNote told{std::move(note), std::move(subject), common.frame, {}};
+                for (const Vec3& p : told.note.pointsMm) told.placesMm.push_back(toFrame(p));
+                run_.notes.push_back(std::move(told));
+            }
+        });
+    }
+
+    static std::string nameOf(const Loaded& loaded) { return loaded.mesh.path.filename().string(); }
 
     void measureDeviations() {
         if (!isosurface_ || meshes_.empty()) return;

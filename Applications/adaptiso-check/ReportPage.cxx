@@ -52,6 +52,12 @@ void tellVerdict(const CheckRun& run, Report& report) {
     report.verdict = run.hasPassed() ? ReportVerdict::Passed : ReportVerdict::Failed;
     if (run.hasPassed()) {
         report.headline = "Everything that the profile \"" + profile + "\" requires holds.";
+        const std::int64_t notes = notedCount(run.notes);
+        if (notes > 0) {
+            report.headline += " " + formatCount(notes) +
+                               (notes == 1 ? " thing is" : " things are") +
+                               " unusual of a head model: worth a look.";
+        }
         return;
     }
     if (failures > 0) {
@@ -173,6 +179,7 @@ Report makeReport(const CheckRun& run, ShownSurfaces& shown) {
     for (const SurfaceRun& surface : run.surfaces) {
         addChecks(baseName(surface.file), surface.checks, report);
     }
+    addNotes(run.notes, report);
     tellVerdict(run, report);
     tellInputs(run, report);
     tellOptions(run, report);

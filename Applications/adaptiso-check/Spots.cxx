@@ -175,7 +175,10 @@ std::vector<ReportSpot> spotsOf(const NestingRun& pair, const std::string& inner
         for (std::size_t n = 0; n < std::min(report.pairs.size(), kMostMembers); ++n) {
             clusters.add(middleOf(inner, report.pairs[n][0]));
         }
-        clusters.tell(names + " cross", check->isRequired, spots);
+        clusters.tell(
+            names + (report.relation == NestingRelation::Identical ? " are the same surface"
+                                                                   : " cross"),
+            check->isRequired, spots);
     }
     if (const Check* check = failed(pair.checks, "strictlyNested");
         check && report.firstNotInside >= 0) {

@@ -100,6 +100,11 @@ void printReport(std::ostream& out, const CheckRun& run) {
         printChecks(out, pair.checks);
         printVerdict(out, pair.checks, run);
     }
+    if (!run.notes.empty()) {
+        out << "plausibility (" << toString(run.notes.front().frame)
+            << "; what is unusual of adults' heads is noted, and may be right)\n";
+        printNotes(out, run.notes);
+    }
     out << formatFixed(run.timer.total(), 2) << " s (";
     std::string_view separator;
     for (const auto& [stage, seconds] : run.timer.stages()) {

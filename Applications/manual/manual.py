@@ -48,12 +48,13 @@ def italic(text):
 
 def marked(text):
     """Names of options in bold."""
-    parts = re.split(r"((?<![\w-])--?[a-z][a-z-]*)", text)
+    parts = re.split(r"((?<![\w-])--?[a-z][a-z0-9-]*)", text)
     return "".join(bold(part) if n % 2 else escaped(part) for n, part in enumerate(parts))
 
 
 def sentence(text):
-    return text if text.endswith((".", "!", "?")) else text + "."
+    """`text` as a page of prose has it: with a full stop."""
+    return text if text.endswith((".", ":", "!", "?")) else text + "."
 
 
 def option_entry(option):

@@ -9,7 +9,8 @@ import unittest
 from pathlib import Path
 
 from support import BAD_INPUT, CHECK_FAILED, OK, USAGE, Image, main, write_nifti
-from bemSupport import BEM, CHECK, NAMES, QUICK, RADII, README, BemTest, head, read_tri, volume
+from bemSupport import (BEM, CHECK, NAMES, QUICK, RADII, README, STEP, BemTest, head, read_tri,
+                        volume)
 from headDefects import DEFECTS, good, write_off
 
 
@@ -257,6 +258,68 @@ class Output(BemTest):
         self.assertEqual((done.stdout, done.stderr), ("", ""))
 
 
+def finer(arguments):
+    """With as many vertices as show a narrow part."""
+    return ["642" if argument == "162" else argument for argument in arguments]
+
+
+class Plausibility(BemTest):
+    def test_is_told_in_report_and_text(self):
+        done = self.bem(*self.labels(), "-o", "model")
+        notes = {(note["name"], note["of"]): note for note in self.report()["plausibility"]}
+        self.assertEqual({name for name, _ in notes},
+                         {"necks", "notCutFlat", "edgesInProportion", "innerSkullVolume",
+                          "skullThickness", "scalpThickness", "edgesAgainstGap", "vertexCounts"})
+        # 60 mm: 905 cm3, a child's
+        volume = notes["innerSkullVolume", "inner_skull"]
+        self.assertEqual(volume["outcome"], "noted")
+        self.assertRegex(volume["finding"], r"^(8[5-9]|90)\d cm3; adults have 950 to 1900 cm3$")
+        noted = [note for note in notes.values() if note["outcome"] == "noted"]
+        self.assertRegex(done.stdout, rf"\n\d+ of \d+ checks passed; {len(noted)} of {len(notes)} "
+                                      "questions of plausibility noted")
+        self.assertIn("\n  noted: inner_skull: volume of the inner skull: ", done.stdout)
+        self.assertRegex(done.stdout, "\nmodel: holds the head model\n")
+
+    def test_a_cut_head_is_noted_with_its_place(self):
+        # the image ends at z = -66, where the outer skull does; the skin would reach 6 mm lower
+        arguments = finer(self.labels(image=head(n=44, origin=(-86, -86, -64))))
+        self.bem(*arguments, "-o", "model")
+        flat, = [note for note in self.report()["plausibility"]
+                 if (note["name"], note["of"]) == ("notCutFlat", "outer_skin")]
+        self.assertEqual((flat["outcome"], flat["pointsIn"]), ("noted", "lps"))
+        self.assertRegex(flat["finding"], r"^\d+ of 642 vertices .* on the image's lower face")
+        self.assertAlmostEqual(flat["pointsMm"][0][2], -68, delta=3)  # the least scalp below
+
+
+class Necks(BemTest):
+    """A tube 12 mm wide that leaves the inner skull by 25 mm."""
+
+    def tongue_mm(self, *arguments):
+        image = head()
+        samples, n = bytearray(image.samples), 44
+        for k in range(n):
+            for j in range(n):
+                for i in range(n):
+                    x, y, z = (STEP * (v - (n - 1) / 2) for v in (i, j, k))
+                    if math.hypot(x - 2, y - 2) <= 6 and -85 <= z < 0:
+                        samples[i + n * (j + n * k)] = 1
+        image = Image(image.size, "B", bytes(samples), image.spacing, image.origin)
+        self.bem(*finer(self.labels(image=image)), "-o", "model", "--force", "--meg", *arguments)
+        points, _ = read_tri(self.path("model/inner_skull.tri"))
+        return -60 - min(point[2] for point in points)
+
+    def test_are_cut_unless_told_otherwise(self):
+        self.assertGreater(self.tongue_mm("--cut-necks", "0"), 15)
+        self.assertEqual([note for note in self.report()["notes"] if "neck" in note], [])
+        neck = self.report()["plausibility"][0]
+        self.assertEqual((neck["name"], neck["outcome"]), ("necks", "noted"))
+        # a stub, half a voxel of 4 mm and what voxels of 3 mm add
+        self.assertLess(self.tongue_mm(), 6)
+        self.assertEqual(self.report()["options"]["cutNecksMm"], 8)
+        self.assertRegex(" ".join(self.report()["notes"]), "inner skull: a neck of .* was cut off")
+        self.assertEqual(self.report()["plausibility"][0]["outcome"], "passed")
+
+
 class BadInput(BemTest):
     def test_usage(self):
         write_nifti(self.path("a.nii"), Image((2, 2, 2), "B", bytes(8)))
@@ -283,8 +346,13 @@ class BadInput(BemTest):
             "above 0 and at most 10": ("--t1", "a.nii", "-o", "m", "--conductivity", "0.3,0,0.3"),
             "--max-skull must be more": ("--t1", "a.nii", "-o", "m", "--max-skull", "1"),
             "--skull must lie between": ("--t1", "a.nii", "-o", "m", "--skull", "30"),
-            "0 mm or more": ("--t1", "a.nii", "-o", "m", "--csf", "-1"),
+            "0 to 20 mm": ("--t1", "a.nii", "-o", "m", "--csf", "-1"),
             "--vertices": ("--t1", "a.nii", "-o", "m", "--vertices", "3"),
+            "--cut-necks 21: must be 0 to 20 mm": ("--t1", "a.nii", "-o", "m", "--cut-necks", "21"),
+            "--smoothing 11: must be 0 to 10 mm": ("--t1", "a.nii", "-o", "m", "--smoothing", "11"),
+            "--skin-hu must lie above air": ("--ct", "a.nii", "-o", "m", "--skin-hu", "400"),
+            "--conductivity 1,2,30: a conductivity of 30 S/m":
+                ("--t1", "a.nii", "-o", "m", "--conductivity", "1,2,30"),
         }
         for pattern, arguments in cases.items():
             with self.subTest(pattern):
@@ -292,12 +360,17 @@ class BadInput(BemTest):
 
     def test_images_without_a_head(self):
         write_nifti(self.path("flat.nii"), Image((20, 20, 20), "B", bytes(8000)))
-        self.fails(BAD_INPUT, "there is no head", "--t1", "flat.nii", "-o", "m")
+        self.fails(BAD_INPUT, r"^adaptiso-bem: --t1 flat\.nii: all samples are equal; there is no "
+                              "head", "--t1", "flat.nii", "-o", "m")
         self.fails(BAD_INPUT, "no label of the tissue brain", "--labels", "flat.nii", "--preset",
                    "charm", "-o", "m")
-        self.fails(BAD_INPUT, "nothing in the head is above", "--ct", "flat.nii", "-o", "m")
+        self.fails(BAD_INPUT, r"^adaptiso-bem: --ct flat\.nii: the samples lie in 0 to 0 and are "
+                              "not in Hounsfield units", "--ct", "flat.nii", "-o", "m")
         self.fails(BAD_INPUT, "there are 1 maps", "--probabilities", "flat.nii", "-o", "m")
         self.fails(BAD_INPUT, r"missing\.nii", "--t1", "missing.nii", "-o", "m")
+        self.fails(BAD_INPUT, r"^adaptiso-bem: --labels seg\.nii: label 2 is named twice",
+                   *self.labels(), "--tissue", "brain=2", "-o", "m")
+        self.path("seg.nii").unlink()
         self.fails(BAD_INPUT, r"missing\.stl", "--surfaces", "missing.stl", "--meg", "-o", "m")
 
 

@@ -170,7 +170,7 @@ def documented_keys():
     return keys
 
 
-LISTS = re.compile(r"(surfaces|nesting\.pairs|\.checks|\.examples|\.components)$")
+LISTS = re.compile(r"(surfaces|plausibility|nesting\.pairs|\.checks|\.examples|\.components)$")
 LEAVES = re.compile(r"\.(minAngleDeg|aspectRatio|edgeMm|isosurface)$")
 
 

@@ -3,11 +3,12 @@ mricron-data; exits 77 (skipped) without them."""
 
 import importlib.util
 import json
+import re
 import sys
 from pathlib import Path
 
 from documents import run, script
-from support import ApplicationTest, main
+from support import SOURCE, ApplicationTest, main
 
 SCANS = Path("/usr/share/mricron/templates")
 
@@ -21,6 +22,23 @@ class Tutorial(ApplicationTest):
         self.assertRegex(done.stdout, r"electrodes are [0-7]\.\d mm off the skin")
         self.assertRegex(done.stdout, r"leadfield of 94 electrodes and \d{3} dipoles")
         self.look_at_leadfield()
+        self.look_at_page(done.stdout)
+
+    def look_at_page(self, printed):
+        """What the page says is printed is, but for digits; its pictures are there and small."""
+        page = (SOURCE / "Documentation" / "Tutorial.md").read_text()
+        blank = re.compile(r"[\d,.]+")
+        lines = {blank.sub("0", line) for line in printed.splitlines()}
+        blocks = re.findall(r"\nprints\n\n```\n(.*?)```", page, re.DOTALL)
+        self.assertEqual(len(blocks), 2)
+        for line in "".join(blocks).splitlines():
+            if not re.match(r"[\d.]+ s \(", line):  # seconds of some stages may round to nothing
+                self.assertIn(blank.sub("0", line), lines)
+        pictures = re.findall(r"!\[[^]]+\]\((\S+?)\)", page)
+        self.assertEqual(len(pictures), 2)
+        for picture in pictures:
+            self.assertLess((SOURCE / "Documentation" / picture).stat().st_size, 150_000)
+        self.assertIn("All ", self.path("ch2-model.html").read_text())
 
     def look_at_leadfield(self):
         import mne

@@ -304,7 +304,7 @@ Mask carvedBall(const Mask& kept, const std::vector<float>& priority, Mask hull,
 
 std::int64_t makeBall(std::vector<float>& part, const Index3& size) {
     const Mask inside = above(part, kFractionIsovalue);
-    if (voxelsIn(inside) == 0) throw InvalidInput("makeBall: the solid is empty");
+    if (voxelsIn(inside) == 0) throw InvalidInput("the solid is empty");
     const Mask whole = filled(largestComponent(inside, size), size);
     takeSides(part, whole);
     const MaskTopology topology = maskTopology(whole, size);

@@ -18,7 +18,7 @@ void checkConductivities(const ConductivityModel& model) {
     constexpr double kMost = 10;
     for (const double value : {model.brain, model.skull, model.scalp}) {
         if (std::isfinite(value) && value > 0 && value <= kMost) continue;
-        throw InvalidInput("checkConductivities: " + headmodel::shortNumber(value) +
+        throw InvalidInput("a conductivity of " + headmodel::shortNumber(value) +
                            " S/m, must be above 0 and at most 10");
     }
 }

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "FinishBoundaries.h"
+#include "Necks.h"
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
 
@@ -38,8 +39,8 @@ Mask brainCavity(const Mask& head, const Mask& bone, const ImageGeometry& grid) 
     const Mask core = largestComponent(eroded(room, grid, kCavityMm), grid.size);
     if (voxelsIn(core) == 0) {
         throw InvalidInput(
-            "boundariesFromCt: no room for a brain inside of the bone; is skullHu "
-            "right?");
+            "no room for a brain inside of the bone; is the isovalue of "
+            "bone right?");
     }
     const Mask large = both(dilated(core, grid, kCavityMm), room);
     // not out through a foramen and back along the bone's outside
@@ -51,22 +52,33 @@ Mask brainCavity(const Mask& head, const Mask& bone, const ImageGeometry& grid) 
     return filled(closed(cavity, grid, kCornerMm), grid.size);
 }
 
+/// In Hounsfield units air has -1000, and there is air around and in every head.
+void requireHounsfield(const FloatImage& image, const BoundaryOptions& options) {
+    const auto [least, most] = std::minmax_element(image.values.begin(), image.values.end());
+    if (*least < options.skinHu) return;
+    throw InvalidInput("the samples lie in " + shortNumber(*least) + " to " + shortNumber(*most) +
+                       " and are not in Hounsfield units: air has -1000, and nothing lies below " +
+                       shortNumber(options.skinHu) +
+                       "; give the CT as it was reconstructed, not a window of it, with its "
+                       "rescale slope and intercept");
+}
+
 }  // namespace
 
 HeadBoundaries boundariesFromCt(const VolumeView& ct, const BoundaryOptions& options) {
     checkOptions(options);
     if (!(options.skinHu < options.skullHu) || !(options.skinHu > kAirHu) ||
         !(options.skullHu > kSoftTissueHu)) {
-        throw InvalidInput("boundariesFromCt: skin at " + shortNumber(options.skinHu) +
-                           " HU and bone at " + shortNumber(options.skullHu) +
+        throw InvalidInput("skin at " + shortNumber(options.skinHu) + " HU and bone at " +
+                           shortNumber(options.skullHu) +
                            " HU; must be above air (-1000) and above soft tissue (40)");
     }
     tell(options, "head", 0);
     const FloatImage image = toFloat(ct, static_cast<float>(kAirHu));
+    requireHounsfield(image, options);
     Index3 first, last;
     if (!boundingIndices(image, options.skinHu, first, last)) {
-        throw InvalidInput("boundariesFromCt: nothing is above " + shortNumber(options.skinHu) +
-                           " HU");
+        throw InvalidInput("nothing is above " + shortNumber(options.skinHu) + " HU");
     }
     RawBoundaries raw;
     raw.grid = workingGrid(image.geometry, first, last, options.stepMm,
@@ -80,15 +92,16 @@ HeadBoundaries boundariesFromCt(const VolumeView& ct, const BoundaryOptions& opt
     const Mask head = filledAtBorder(closed(solid, grid, options.closingMm), faces, grid.size);
     const Mask bone = both(head, above(hu, options.skullHu));
     if (voxelsIn(bone) == 0) {
-        throw InvalidInput("boundariesFromCt: nothing in the head is above " +
-                           shortNumber(options.skullHu) + " HU");
+        throw InvalidInput("nothing in the head is above " + shortNumber(options.skullHu) + " HU");
     }
     tell(options, "skull", 0);
-    const Mask cavity = brainCavity(head, bone, grid);
+    Mask cavity = brainCavity(head, bone, grid);
     // the cavity is what is darker than bone: its level is approached from above
     const double brightBone = 2 * options.skullHu - kSoftTissueHu;
     raw.parts.push_back(partByLevel(cavity, hu, options.skullHu, brightBone, faces, grid));
+    cutNecks(raw, options);
     if (!options.innerSkullOnly) {
+        cavity = above(raw.parts[0], kFractionIsovalue);
         Mask skull = closed(largestComponent(bone, grid.size), grid, kBoneSeamMm);
         for (std::size_t n = 0; n < skull.size(); ++n) skull[n] |= cavity[n];
         skull = both(filled(skull, grid.size), head);

@@ -75,8 +75,8 @@ double marginMm(const BoundaryOptions& options) {
 void checkOptions(const BoundaryOptions& options) {
     const auto require = [](bool isGood, const char* name, double value, const char* rule) {
         if (isGood) return;
-        throw InvalidInput(std::string("HeadModel: ") + name + " is " + shortNumber(value) +
-                           " mm, must be " + rule);
+        throw InvalidInput(std::string("") + name + " is " + shortNumber(value) + " mm, must be " +
+                           rule);
     };
     const auto requireUpTo = [&](const char* name, double value, double most) {
         require(value >= 0 && value <= most, name, value, ("0 to " + shortNumber(most)).c_str());
@@ -87,6 +87,7 @@ void checkOptions(const BoundaryOptions& options) {
     requireUpTo("minSkullMm", options.minSkullMm, 20);
     requireUpTo("minScalpMm", options.minScalpMm, 20);
     requireUpTo("csfMm", options.csfMm, 20);
+    requireUpTo("cutNecksMm", options.cutNecksMm, 20);
     require(options.maxSkullMm > options.minSkullMm && options.maxSkullMm <= 200, "maxSkullMm",
             options.maxSkullMm, "more than minSkullMm and at most 200");
 }

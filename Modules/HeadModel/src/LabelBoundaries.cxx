@@ -5,6 +5,7 @@
 #include <string>
 
 #include "FinishBoundaries.h"
+#include "Necks.h"
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
 
@@ -63,12 +64,12 @@ void requireOrder(const std::vector<FloatImage>& enclosed, const RawBoundaries& 
         }
         const std::string tissue = kTissue[n], within = kTissue[n - 1];
         if (inner > 0.5 * all) {
-            throw InvalidInput("HeadModel: most of the " + tissue + " lies inside the " + within +
+            throw InvalidInput("most of the " + tissue + " lies inside the " + within +
                                "; are the tissues named in the right order?");
         }
         if (own < 0.5 * all) {
-            throw InvalidInput("HeadModel: most of the " + tissue + " hangs together with no " +
-                               within + "; are the tissues named in the right order?");
+            throw InvalidInput("most of the " + tissue + " hangs together with no " + within +
+                               "; are the tissues named in the right order?");
         }
     }
 }
@@ -77,7 +78,7 @@ HeadBoundaries boundariesFrom(const std::vector<FloatImage>& enclosed, BoundaryO
     const ImageGeometry& image = enclosed.front().geometry;
     Index3 first, last;
     if (!boundingIndices(enclosed.back(), kFractionIsovalue, first, last)) {
-        throw InvalidInput("HeadModel: the head is empty");
+        throw InvalidInput("the head is empty");
     }
     RawBoundaries raw;
     raw.grid = workingGrid(image, first, last, options.stepMm, marginMm(options));
@@ -90,6 +91,7 @@ HeadBoundaries boundariesFrom(const std::vector<FloatImage>& enclosed, BoundaryO
                     isSkin ? options.closingMm : std::min(kSeamMm, options.closingMm)));
     }
     requireOrder(enclosed, raw);
+    cutNecks(raw, options);
     if (raw.parts.size() == kHeadSurfaceCount) limitOuterSkull(raw, options);
     options.smoothingMm = sigmaFor(image, options);
     return finished(std::move(raw), options);
@@ -100,8 +102,7 @@ void requireDistinct(const TissueLabels& tissues) {
     for (const auto* list : {&tissues.brain, &tissues.skull, &tissues.scalp}) {
         for (const std::int64_t label : *list) {
             if (!seen.insert(label).second) {
-                throw InvalidInput("boundariesFromLabels: label " + std::to_string(label) +
-                                   " is named twice");
+                throw InvalidInput("label " + std::to_string(label) + " is named twice");
             }
         }
     }
@@ -111,8 +112,7 @@ void requireSome(const FloatImage& more, const FloatImage* less, const char* tis
     for (std::size_t n = 0; n < more.values.size(); ++n) {
         if (more.values[n] > (less != nullptr ? less->values[n] : 0.0f)) return;
     }
-    throw InvalidInput(
-        std::string("boundariesFromLabels: the image holds no label of the tissue ") + tissue);
+    throw InvalidInput(std::string("the image holds no label of the tissue ") + tissue);
 }
 
 }  // namespace
@@ -160,15 +160,15 @@ HeadBoundaries boundariesFromProbabilities(std::span<const VolumeView> maps,
     constexpr std::size_t kBrainMaps = 3, kMaps = 5;
     const std::size_t needed = options.innerSkullOnly ? kBrainMaps : kMaps;
     if (maps.size() < needed) {
-        throw InvalidInput("boundariesFromProbabilities: there are " + std::to_string(maps.size()) +
-                           " maps, must be " + std::to_string(needed) +
+        throw InvalidInput("there are " + std::to_string(maps.size()) + " maps, must be " +
+                           std::to_string(needed) +
                            " or more (c1 grey, c2 white, c3 CSF, c4 "
                            "skull, c5 scalp)");
     }
     double full = 1;
     for (std::size_t n = 0; n < needed; ++n) {
         if (maps[n].geometry() != maps[0].geometry()) {
-            throw InvalidInput("boundariesFromProbabilities: map " + std::to_string(n + 1) +
+            throw InvalidInput("map " + std::to_string(n + 1) +
                                " is on another grid than the first");
         }
         full = std::max(full, valueRange(maps[n]).maximum);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "FinishBoundaries.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 
@@ -124,7 +125,7 @@ bool boundingIndices(const FloatImage& image, double threshold, Index3& first, I
 
 ImageGeometry workingGrid(const ImageGeometry& image, const Index3& first, const Index3& last,
                           double stepMm, double marginMm) {
-    if (!(stepMm >= 0)) throw InvalidInput("workingGrid: the step is negative, must be >= 0 mm");
+    if (!(stepMm >= 0)) throw InvalidInput("the step is negative, must be >= 0 mm");
     const bool isOwn = hasCubicVoxels(image, stepMm);
     const double step = isOwn ? image.spacingMm().x : stepMm > 0 ? stepMm : kUsualStepMm;
     ImageGeometry grid;
@@ -158,8 +159,9 @@ ImageGeometry workingGrid(const ImageGeometry& image, const Index3& first, const
         voxels *= static_cast<double>(grid.size[a]);
     }
     if (voxels > static_cast<double>(1 << 29)) {
-        throw InvalidInput("workingGrid: " + std::to_string(voxels) +
-                           " voxels are too many; give a larger step");
+        throw InvalidInput("voxels of " + shortNumber(step) + " mm: the head would take " +
+                           std::to_string(std::llround(voxels / 1e6)) +
+                           " million of them, at most 536 million can be; they must be larger");
     }
     grid.originMm = corner + grid.indexToPhysical * start;
     return grid;

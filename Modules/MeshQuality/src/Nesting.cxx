@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "ExactTriangle.h"
@@ -10,6 +11,7 @@
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/MeshQuality/Duplicates.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
 
 namespace adaptiso {
@@ -17,13 +19,41 @@ namespace {
 
 constexpr std::int64_t kGrain = 4096;
 
+/// The mesh with each triangle once, where all of it is there twice and so has no inside by the
+/// even-odd rule; none where it is not.
+std::optional<TriangleMesh> singleOf(const TriangleMesh& mesh) {
+    const DuplicateReport duplicates =
+        findDuplicates(mesh, {.maxExamples = std::ssize(mesh.triangles)});
+    if (mesh.triangles.empty() || 2 * duplicates.triangleCount != std::ssize(mesh.triangles)) {
+        return std::nullopt;
+    }
+    TriangleMesh result;
+    result.points = mesh.points;
+    auto next = duplicates.triangles.begin();
+    for (std::int64_t n = 0; n < std::ssize(mesh.triangles); ++n) {
+        if (next != duplicates.triangles.end() && *next == n) {
+            ++next;
+        } else {
+            result.triangles.push_back(mesh.triangles[n]);
+        }
+    }
+    return result;
+}
+
 /// One of the two surfaces, ready to be asked.
 struct Surface {
     explicit Surface(const TriangleMesh& m)
-        : mesh(m), tree(m), inside(m, tree), meetsOther(m.triangles.size()) {}
+        : mesh(m),
+          tree(m),
+          single(singleOf(m)),
+          singleTree(single ? std::make_optional<AabbTree>(*single) : std::nullopt),
+          inside(single ? *single : m, single ? *singleTree : tree),
+          meetsOther(m.triangles.size()) {}
 
     const TriangleMesh& mesh;
     AabbTree tree;
+    std::optional<TriangleMesh> single;  ///< of a doubled surface
+    std::optional<AabbTree> singleTree;
     InsideTest inside;
     std::vector<std::uint8_t> meetsOther;  ///< by triangle
 };
@@ -134,6 +164,24 @@ double farthestOutMm(const Surface& surface, const Surface& other,
     return squared.empty() ? 0 : std::sqrt(*std::max_element(squared.begin(), squared.end()));
 }
 
+/// Both have the same triangles at the same places, whatever their numbers.
+bool areIdentical(const TriangleMesh& a, const TriangleMesh& b) {
+    const auto singles = [](const TriangleMesh& mesh) {
+        return std::ssize(mesh.triangles) - findDuplicates(mesh, {.maxExamples = 0}).triangleCount;
+    };
+    if (singles(a) != singles(b)) return false;
+    TriangleMesh both = a;
+    both.normals.clear();
+    both.points.insert(both.points.end(), b.points.begin(), b.points.end());
+    const std::int64_t offset = std::ssize(a.points);
+    for (const auto& [i, j, k] : b.triangles) {
+        both.triangles.push_back({static_cast<VertexId>(i + offset),
+                                  static_cast<VertexId>(j + offset),
+                                  static_cast<VertexId>(k + offset)});
+    }
+    return singles(both) == singles(a);
+}
+
 NestingRelation relationOf(const NestingReport& report) {
     if (report.innerVertices == 0 || report.outerVertices == 0) return NestingRelation::Unknown;
     if (report.crossingPairs > 0) return NestingRelation::Crossing;
@@ -156,6 +204,8 @@ std::string_view toString(NestingRelation relation) {
             return "nested";
         case NestingRelation::Crossing:
             return "crossing";
+        case NestingRelation::Identical:
+            return "identical";
         case NestingRelation::Swapped:
             return "swapped";
         case NestingRelation::Apart:
@@ -199,6 +249,9 @@ NestingReport checkNesting(const TriangleMesh& innerMesh, const TriangleMesh& ou
     report.outerVerticesInside = ofOuter.inside;
 
     report.relation = relationOf(report);
+    if (report.relation == NestingRelation::Crossing && areIdentical(innerMesh, outerMesh)) {
+        report.relation = NestingRelation::Identical;
+    }
     if (report.crossingPairs > 0) {
         const auto& [a, b] = report.pairs.front();
         report.gap = {triangleDistance(cornersOf(innerMesh, a), cornersOf(outerMesh, b)), a, b};

@@ -134,6 +134,33 @@ TEST(BoundariesFromT1, RefuseAMaskThatIsNoBrainsOrLiesElsewhere) {
     expectRefused([&] { tryMask(sphere({33, -4, 8}, 66)); }, "in the same space?");
 }
 
+TEST(BoundariesFromT1, RefuseASkullStrippedImageByName) {
+    const LargeHead head;
+    std::vector<float> t1 = headT1(head.shapes, 2, head.geometry);
+    const std::vector<float> inner = partInside(head.shapes.innerSkull, head.geometry);
+    for (std::size_t n = 0; n < t1.size(); ++n) t1[n] *= inner[n];
+    const VolumeView stripped(t1.data(), head.geometry);
+    BoundaryOptions options;
+    options.stepMm = 3;
+    const std::string message = "no skull or skin around the brain (a skull-stripped T1)";
+    expectRefused([&] { boundariesFromT1(stripped, std::nullopt, options); }, message);
+    // also with itself as the mask: there is no skin to find
+    expectRefused([&] { boundariesFromT1(stripped, stripped, options); }, message);
+}
+
+TEST(BoundariesFromCt, RefuseGreyValuesThatAreNotHounsfieldUnits) {
+    const LargeHead head;
+    std::vector<float> ct = headCt(head.shapes, head.geometry);
+    for (float& value : ct) value = 255.0f * (value + 1000) / 2000;  // -1000 to 1000: 0 to 255
+    BoundaryOptions options;
+    options.stepMm = 3;
+    expectRefused(
+        [&] {
+            boundariesFromCt({ct.data(), head.geometry}, options);
+        },
+        "the samples lie in 0 to 255 and are not in Hounsfield units");
+}
+
 TEST(BoundariesFromT1, TellWhenTheSkullIsHardlySeen) {
     const LargeHead head;
     // no dark band at all: the skull as bright as the brain

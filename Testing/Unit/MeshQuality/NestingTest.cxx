@@ -184,7 +184,27 @@ TEST(Nesting, TouchingIsCrossing) {
         EXPECT_EQ(report.pairs.size(), 2u);
         EXPECT_EQ(report.gap.nearest.distanceMm, 0);
     }
-    EXPECT_EQ(checkNesting(outer, outer).relation, Crossing);
+}
+
+TEST(Nesting, TheSameSurfaceIsIdenticalWhateverItsNumbers) {
+    const TriangleMesh sphere = icosphere(2, {}, 80);
+    EXPECT_EQ(checkNesting(sphere, sphere).relation, Identical);
+    TriangleMesh renumbered = sphere;
+    std::reverse(renumbered.points.begin(), renumbered.points.end());
+    const auto last = static_cast<VertexId>(sphere.points.size()) - 1;
+    for (Triangle& t : renumbered.triangles) t = {last - t[1], last - t[0], last - t[2]};
+    std::reverse(renumbered.triangles.begin(), renumbered.triangles.end());
+    EXPECT_EQ(checkNesting(sphere, renumbered).relation, Identical);
+    renumbered.points[3] = 1.1 * renumbered.points[3];
+    EXPECT_EQ(checkNesting(sphere, renumbered).relation, Crossing);
+}
+
+TEST(Nesting, ASurfaceThatIsThereTwiceHasTheInsideOfOne) {
+    const TriangleMesh inner = icosphere(2, {}, 80), outer = icosphere(2, {}, 92);
+    const TriangleMesh twice = merged({outer, outer});
+    EXPECT_EQ(checkNesting(inner, twice).relation, Nested);
+    EXPECT_EQ(checkNesting(merged({inner, inner}), outer).relation, Nested);
+    EXPECT_EQ(checkNesting(outer, twice).relation, Identical);
 }
 
 TEST(Nesting, ApartAndMixed) {

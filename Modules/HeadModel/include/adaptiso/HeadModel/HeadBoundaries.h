@@ -37,6 +37,11 @@ struct BoundaryOptions {
     double minSkullMm = 2;   ///< least thickness of the skull; thinner places are pushed outwards
     double minScalpMm = 2;   ///< the same for the scalp
     double maxSkullMm = 20;  ///< bone farther from the inner skull (face, neck) counts as scalp
+    /// Necks of the inner skull, as leaks down a foramen are, that a ball of this radius (mm) can't
+    /// enter and that reach more than 10 mm are cut off. Wider than any foramen but the foramen
+    /// magnum (jugular: 10 x 17 mm), narrower than the lobes' poles. 0: nothing is cut. Surfaces
+    /// are not cut: boundariesFromSurfaces() makes them anew as they are.
+    double cutNecksMm = 8;
 
     double csfMm = 2;      ///< T1: from a brain mask out to the inner skull
     double skullMm = 6;    ///< T1: thickness where the image does not show the skull

@@ -12,14 +12,15 @@ namespace adaptiso {
 
 /// How two surfaces lie to each other.
 enum class NestingRelation {
-    Nested,    ///< the inner one lies strictly inside the outer one
-    Crossing,  ///< they cross or touch
-    Swapped,   ///< the outer one lies strictly inside the inner one
-    Apart,     ///< each lies outside the other
-    Mixed,     ///< they don't meet, but pieces of them lie on different sides
-    Unknown    ///< one has no triangle
+    Nested,     ///< the inner one lies strictly inside the outer one
+    Crossing,   ///< they cross or touch
+    Identical,  ///< the same triangles at the same places
+    Swapped,    ///< the outer one lies strictly inside the inner one
+    Apart,      ///< each lies outside the other
+    Mixed,      ///< they don't meet, but pieces of them lie on different sides
+    Unknown     ///< one has no triangle
 };
-/// "nested", "crossing", "swapped", "apart", "mixed", "unknown"
+/// "nested", "crossing", "identical", "swapped", "apart", "mixed", "unknown"
 std::string_view toString(NestingRelation relation);
 
 struct NestingOptions {
@@ -44,10 +45,11 @@ struct NestingReport {
 /// Whether `inner` lies strictly inside `outer`, and how far from it.
 ///
 /// All of it is exact (trianglesMeet, InsideTest) but for distances, which are rounded. Inside is
-/// by the even-odd rule. Where the surfaces don't meet, vertices that hang together lie on one
-/// side, so one of them is asked; where one surface is open, each of the other's is asked, as
-/// InsideTest says. Meshes may be broken: triangles with a corner that is not finite are left out,
-/// triangles without area meet nothing. \pre triangles name points that are there, options.maxPairs
+/// by the even-odd rule; a surface that is there twice as a whole, which has no inside by it,
+/// counts once. Where the surfaces don't meet, vertices that hang together lie on one side, so one
+/// of them is asked; where one surface is open, each of the other's is asked, as InsideTest says.
+/// Meshes may be broken: triangles with a corner that is not finite are left out, triangles without
+/// area meet nothing. \pre triangles name points that are there, options.maxPairs
 /// >= 0 \throws InvalidInput otherwise Cost: O(T log T), in parallel; two AabbTrees of memory.
 NestingReport checkNesting(const TriangleMesh& inner, const TriangleMesh& outer,
                            const NestingOptions& options = {});

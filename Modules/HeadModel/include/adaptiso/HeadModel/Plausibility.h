@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/TriangleMesh.h"
+
+namespace adaptiso {
+
+/// What is usual of adults' heads and of meshes for boundary elements. What lies outside may be
+/// right: it is noted, and nothing fails.
+struct UsualHead {
+    /// Inside of the inner skull, cm3: the means of 49 adults, women 1289 (SD 111), men 1469 (SD
+    /// 102) [Matsumae1996], and three to four standard deviations.
+    static constexpr double kLeastInnerSkullCm3 = 950, kMostInnerSkullCm3 = 1900;
+    /// Median thickness over the upper half, mm. Adults' skulls have 6 at the temples to 10 at the
+    /// forehead on average [Calisan2021]: half of the least to 2 mm above the most. No survey of
+    /// whole scalps is known to us; sphere models take 5 [Naess2017]; wide around these.
+    static constexpr double kLeastSkullMm = 3, kMostSkullMm = 12;
+    static constexpr double kLeastScalpMm = 2, kMostScalpMm = 15;
+
+    static constexpr double kNeckBallMm = 8;       ///< as BoundaryOptions::cutNecksMm
+    static constexpr double kFlatAreaShare = .01;  ///< of the surface, on one plane
+    /// A vertex's edges, by the length of those round it: 1 where triangles are equilateral.
+    static constexpr double kMostEdgeRatio = 3;
+    /// Edges at a vertex by its gap to the next surface, and the share of vertices above it.
+    static constexpr double kMostEdgesPerGap = 2, kEdgesPerGapShare = .05;
+    static constexpr double kMostVertexRatio = 3;  ///< between neighbours
+};
+
+/// One question about what is usual, and the answer.
+struct HeadNote {
+    std::string_view key;             ///< "necks"
+    std::string_view name;            ///< for people: "no narrow neck"
+    std::size_t surface = 0;          ///< number of the surface asked about
+    std::optional<std::size_t> next;  ///< and of its neighbour, where it is about both
+    bool isNoted = false;             ///< unusual: worth a look
+    std::string finding;              ///< what was measured, against what
+    std::vector<Vec3> pointsMm{};     ///< where to look; in the surfaces' frame
+};
+
+struct PlausibilityOptions {
+    bool areNested = true;      ///< they lie in each other, the innermost first
+    bool areHeadLayers = true;  ///< inner skull (alone, or with outer skull and skin)
+    /// The image that they were made from, in the surfaces' frame (LPS): how much lies on its
+    /// faces. Without: how much lies on one plane across an axis.
+    std::optional<ImageGeometry> image;
+};
+
+/// Asks what is usual of a head model: no necks (the innermost, when nested), not cut flat, edges
+/// in proportion (each); volume of the inner skull and thickness of skull and scalp (head layers,
+/// nested), edges against the gap and numbers of vertices (nested neighbours).
+///
+/// Up is +z, as in RAS, LPS and tkRAS. What can't be measured of a surface (it is open, not finite,
+/// not of a head's size) is not asked. Triangles may name points that aren't there.
+/// \param surfaces  mm
+/// Cost: about a second for a head, most of it for necks (voxels of 1 mm).
+std::vector<HeadNote> judgePlausibility(std::span<const TriangleMesh> surfaces,
+                                        const PlausibilityOptions& options = {});
+
+}  // namespace adaptiso

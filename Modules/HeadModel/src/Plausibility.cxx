@@ -1,0 +1,414 @@
+#include "adaptiso/HeadModel/Plausibility.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "Necks.h"
+#include "Voxelized.h"
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/MeshQuality/Topology.h"
+
+namespace adaptiso {
+
+using namespace headmodel;
+
+namespace {
+
+constexpr std::size_t kMostPlaces = 5;
+constexpr double kClosingMm = 10;  ///< of necks: as BoundaryOptions::closingMm
+
+std::string fixed(double value, int digits) {
+    std::array<char, 48> text;
+    std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+    return text.data();
+}
+
+std::string percent(double share) {
+    return fixed(100 * share, share < 0.1 ? 1 : 0) + " %";
+}
+
+/// Without triangles that have no place, and without normals.
+TriangleMesh finiteOf(const TriangleMesh& mesh) {
+    TriangleMesh result;
+    result.points = mesh.points;
+    const auto count = std::ssize(mesh.points);
+    for (const Triangle& t : mesh.triangles) {
+        const bool isGood = std::all_of(t.begin(), t.end(), [&](VertexId v) {
+            return v >= 0 && v < count && std::isfinite(squaredNorm(mesh.points[v]));
+        });
+        if (isGood) result.triangles.push_back(t);
+    }
+    return result;
+}
+
+double areaOf(const TriangleMesh& mesh, const Triangle& t) {
+    const Vec3 &a = mesh.points[t[0]], &b = mesh.points[t[1]], &c = mesh.points[t[2]];
+    return norm(cross(b - a, c - a)) / 2;
+}
+
+Vec3 normalOf(const TriangleMesh& mesh, const Triangle& t) {
+    const Vec3 &a = mesh.points[t[0]], &b = mesh.points[t[1]], &c = mesh.points[t[2]];
+    return cross(b - a, c - a);
+}
+
+double medianOf(std::vector<double> values) {
+    const auto middle = values.begin() + std::ssize(values) / 2;
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// A surface as it is asked about.
+struct Asked {
+    TriangleMesh mesh;
+    std::vector<VertexId> used;  ///< vertices that triangles name, ascending
+    std::vector<double> edgeMm;  ///< by vertex: mean of its edges; 0 where not used
+    double areaMm2 = 0;
+    std::optional<double> volumeMm3;  ///< none unless it is closed
+    BoundingBox box;                  ///< of the used vertices
+    bool isOfHeadSize = false;
+
+    explicit Asked(const TriangleMesh& given) : mesh(finiteOf(given)), edgeMm(given.points.size()) {
+        std::vector<int> count(mesh.points.size());
+        for (const Triangle& t : mesh.triangles) {
+            areaMm2 += areaOf(mesh, t);
+            for (int n = 0; n < 3; ++n) {
+                const VertexId a = t[n], b = t[(n + 1) % 3];
+                const double mm = norm(mesh.points[a] - mesh.points[b]);
+                for (const VertexId v : {a, b}) {
+                    edgeMm[v] += mm;
+                    ++count[v];
+                }
+            }
+        }
+        for (std::size_t v = 0; v < count.size(); ++v) {
+            if (count[v] == 0) continue;
+            used.push_back(static_cast<VertexId>(v));
+            edgeMm[v] /= count[v];
+        }
+        if (used.empty()) return;
+        box = {mesh.points[used.front()], mesh.points[used.front()]};
+        for (const VertexId v : used) {
+            for (int a = 0; a < 3; ++a) {
+                box.minimum[a] = std::min(box.minimum[a], mesh.points[v][a]);
+                box.maximum[a] = std::max(box.maximum[a], mesh.points[v][a]);
+            }
+        }
+        isOfHeadSize = true;
+        for (int a = 0; a < 3; ++a) {
+            const double extent = box.maximum[a] - box.minimum[a];
+            isOfHeadSize = isOfHeadSize && extent >= 50 && extent <= 500;
+        }
+        if (checkTopology(mesh, {.maxExamplesPerDefect = 0}).isWatertight()) {
+            volumeMm3 = std::abs(enclosedVolume(mesh));
+        }
+    }
+};
+
+class Questions {
+public:
+    Questions(const std::vector<Asked>& surfaces, const PlausibilityOptions& options)
+        : surfaces_(surfaces), options_(options) {}
+
+    std::vector<HeadNote> ask() && {
+        for (std::size_t n = 0; n < surfaces_.size(); ++n) {
+            const Asked& surface = surfaces_[n];
+            if (surface.used.empty() || !surface.isOfHeadSize) continue;
+            if (n == 0 && options_.areNested) askNecks();
+            askFlat(n);
+            askProportion(n);
+            if (n == 0 && options_.areHeadLayers && surface.volumeMm3) askVolume();
+        }
+        for (std::size_t n = 0; options_.areNested && n + 1 < surfaces_.size(); ++n) {
+            if (surfaces_[n].used.empty() || surfaces_[n + 1].used.empty()) continue;
+            if (!surfaces_[n].isOfHeadSize || !surfaces_[n + 1].isOfHeadSize) continue;
+            askLayer(n);
+            askVertexCounts(n);
+        }
+        return std::move(notes_);
+    }
+
+private:
+    HeadNote& add(std::string_view key, std::string_view name, std::size_t surface, bool isNoted,
+                  std::string finding) {
+        notes_.push_back({key, name, surface, {}, isNoted, std::move(finding)});
+        return notes_.back();
+    }
+
+    void askNecks() {
+        const Asked& surface = surfaces_.front();
+        if (!surface.volumeMm3) return;
+        // room for the closing, and no voxel of the solid at the grid's border
+        const double room = kClosingMm + 4;
+        ImageGeometry grid;
+        grid.indexToPhysical = Mat3::diagonal(1, 1, 1);
+        for (int a = 0; a < 3; ++a) {
+            grid.originMm[a] = surface.box.minimum[a] - room;
+            grid.size[a] = static_cast<std::int64_t>(std::ceil(surface.box.maximum[a] -
+                                                               surface.box.minimum[a] + 2 * room)) +
+                           1;
+        }
+        const std::vector<Neck> necks =
+            findNecks(largestComponent(voxelized(surface.mesh, grid), grid.size), grid,
+                      UsualHead::kNeckBallMm, kClosingMm);
+        const std::string ball = "narrower than " + fixed(2 * UsualHead::kNeckBallMm, 0) + " mm";
+        std::string finding =
+            "no part " + ball + " reaches farther than " + fixed(kNeckReachMm, 0) + " mm";
+        if (!necks.empty()) {
+            finding = (necks.size() == 1 ? "a part " : std::to_string(necks.size()) + " parts ") +
+                      ball + (necks.size() == 1 ? " reaches " : " reach up to ") +
+                      fixed(necks.front().reachMm, 0) + " mm, " +
+                      fixed(necks.front().mm3 / 1000, 1) + " cm3: a leak down a foramen?";
+        }
+        HeadNote& note = add("necks", "no narrow neck", 0, !necks.empty(), finding);
+        for (std::size_t n = 0; n < std::min(necks.size(), kMostPlaces); ++n) {
+            note.pointsMm.push_back(necks[n].tipMm);
+        }
+    }
+
+    /// What of a surface lies on one plane.
+    struct Flat {
+        double areaMm2 = 0;
+        std::vector<VertexId> vertices;
+        Vec3 middleMm;
+        std::string where;
+    };
+
+    /// The part of a surface within `reachMm` of a plane, in triangles along it to 10 degrees.
+    static Flat onPlane(const Asked& surface, const Vec3& normal, double levelMm, double reachMm) {
+        Flat flat;
+        std::vector<bool> isOn(surface.mesh.points.size());
+        for (const Triangle& t : surface.mesh.triangles) {
+            const Vec3 direction = normalOf(surface.mesh, t);
+            if (std::abs(dot(direction, normal)) < 0.985 * norm(direction)) continue;
+            const bool isNear = std::all_of(t.begin(), t.end(), [&](VertexId v) {
+                return std::abs(dot(surface.mesh.points[v], normal) - levelMm) <= reachMm;
+            });
+            if (!isNear) continue;
+            const double area = areaOf(surface.mesh, t);
+            flat.areaMm2 += area;
+            for (const VertexId v : t) {
+                isOn[v] = true;
+                flat.middleMm += area / 3 * surface.mesh.points[v];
+            }
+        }
+        if (flat.areaMm2 > 0) flat.middleMm = 1 / flat.areaMm2 * flat.middleMm;
+        for (const VertexId v : surface.used) {
+            if (isOn[v]) flat.vertices.push_back(v);
+        }
+        return flat;
+    }
+
+    /// The image's six faces. Smoothing and fitting leave a cut within about a voxel of them.
+    std::vector<Flat> onFaces(const Asked& surface) const {
+        std::vector<Flat> flats;
+        const ImageGeometry& image = *options_.image;
+        for (int a = 0; a < 3; ++a) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            const auto& axes = image.indexToPhysical.column;
+            const Vec3 across = cross(axes[b], axes[c]);
+            const Vec3 normal = 1 / norm(across) * across;
+            for (int end = 0; end < 2; ++end) {
+                Vec3 index;
+                index[a] = end == 0 ? -0.5 : static_cast<double>(image.size[a]) - 0.5;
+                const double level = dot(image.toPhysical(index), normal);
+                const double voxel = std::abs(dot(axes[a], normal));
+                flats.push_back(onPlane(surface, normal, level, std::max(1.0, voxel) + 0.5));
+                flats.back().where =
+                    "on the image's " +
+                    faceName((end == 0) == (dot(axes[a], normal) > 0) ? -1.0 * normal : normal) +
+                    " face: the head is cut there";
+            }
+        }
+        return flats;
+    }
+
+    /// Of a face by the direction (LPS) that it faces to.
+    static std::string faceName(const Vec3& outward) {
+        constexpr std::array<std::array<const char*, 2>, 3> kNames{
+            {{"right", "left"}, {"front", "back"}, {"lower", "upper"}}};
+        int axis = 0;
+        for (int a = 1; a < 3; ++a) {
+            if (std::abs(outward[a]) > std::abs(outward[axis])) axis = a;
+        }
+        return kNames[axis][outward[axis] > 0 ? 1 : 0];
+    }
+
+    /// Planes across the axes: those at the ends of the bounding box, where a cut by an image lies.
+    static std::vector<Flat> onEnds(const Asked& surface) {
+        constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
+        constexpr double kReachMm = 0.5;
+        std::vector<Flat> flats;
+        for (int a = 0; a < 3; ++a) {
+            for (const double end : {surface.box.minimum[a], surface.box.maximum[a]}) {
+                Vec3 normal;
+                normal[a] = 1;
+                // the cap's rim may bulge beyond it: the plane of its vertices, not of the last one
+                std::vector<double> near;
+                for (const VertexId v : surface.used) {
+                    const double mm = surface.mesh.points[v][a];
+                    if (std::abs(mm - end) <= 2 * kReachMm) near.push_back(mm);
+                }
+                const double level = medianOf(near);
+                flats.push_back(onPlane(surface, normal, level, kReachMm));
+                flats.back().where = std::string("on one plane across ") + kAxes[a] +
+                                     ": cut by the edge of an image?";
+            }
+        }
+        return flats;
+    }
+
+    void askFlat(std::size_t n) {
+        const Asked& surface = surfaces_[n];
+        std::vector<Flat> flats = options_.image ? onFaces(surface) : onEnds(surface);
+        std::erase_if(flats, [&](const Flat& flat) {
+            return flat.areaMm2 < UsualHead::kFlatAreaShare * surface.areaMm2;
+        });
+        std::string finding;
+        for (const Flat& flat : flats) {
+            finding += (finding.empty() ? "" : "; ") + std::to_string(flat.vertices.size()) +
+                       " of " + std::to_string(surface.used.size()) + " vertices (" +
+                       percent(flat.areaMm2 / surface.areaMm2) + " of the area, " +
+                       fixed(flat.areaMm2 / 100, 0) + " cm2) lie " + flat.where;
+        }
+        HeadNote& note = add("notCutFlat", "not cut flat", n, !flats.empty(), finding);
+        for (const Flat& flat : flats) note.pointsMm.push_back(flat.middleMm);
+    }
+
+    /// A vertex that was pulled away has long edges, and those across from it are as ever.
+    void askProportion(std::size_t n) {
+        const Asked& surface = surfaces_[n];
+        const auto& points = surface.mesh.points;
+        std::vector<double> across(points.size());
+        std::vector<int> count(points.size());
+        for (const Triangle& t : surface.mesh.triangles) {
+            for (int k = 0; k < 3; ++k) {
+                across[t[k]] += norm(points[t[(k + 1) % 3]] - points[t[(k + 2) % 3]]);
+                ++count[t[k]];
+            }
+        }
+        std::vector<std::pair<double, VertexId>> bad;
+        for (const VertexId v : surface.used) {
+            const double ratio = surface.edgeMm[v] * count[v] / across[v];
+            if (ratio > UsualHead::kMostEdgeRatio) bad.emplace_back(-ratio, v);
+        }
+        std::sort(bad.begin(), bad.end());
+        std::string finding;
+        if (!bad.empty()) {
+            const VertexId worst = bad.front().second;
+            finding = (bad.size() == 1 ? "1 vertex stands"
+                                       : std::to_string(bad.size()) + " vertices stand") +
+                      " out: edges of " + fixed(surface.edgeMm[worst], 1) +
+                      " mm where those round it have " + fixed(across[worst] / count[worst], 1) +
+                      " mm";
+        }
+        HeadNote& note = add("edgesInProportion", "edges in proportion", n, !bad.empty(), finding);
+        for (std::size_t k = 0; k < std::min(bad.size(), kMostPlaces); ++k) {
+            note.pointsMm.push_back(points[bad[k].second]);
+        }
+    }
+
+    void askVolume() {
+        const double cm3 = *surfaces_.front().volumeMm3 / 1000;
+        const bool isNoted =
+            cm3 < UsualHead::kLeastInnerSkullCm3 || cm3 > UsualHead::kMostInnerSkullCm3;
+        add("innerSkullVolume", "volume of the inner skull", 0, isNoted,
+            fixed(cm3, 0) + " cm3" + (isNoted ? "; adults have " : ", of adults' ") +
+                fixed(UsualHead::kLeastInnerSkullCm3, 0) + " to " +
+                fixed(UsualHead::kMostInnerSkullCm3, 0) + " cm3");
+    }
+
+    /// Thickness of the layer between two neighbours, and edges against it.
+    void askLayer(std::size_t n) {
+        const Asked &inner = surfaces_[n], &outer = surfaces_[n + 1];
+        const AabbTree tree(outer.mesh);
+        std::vector<double> gap(inner.used.size());
+        parallelForPieces(std::ssize(gap), 256, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t k = begin; k < end; ++k) {
+                gap[k] = std::sqrt(
+                    tree.closestPoint(inner.mesh.points[inner.used[k]]).squaredDistanceMm2);
+            }
+        });
+        if (options_.areHeadLayers && surfaces_.size() == 3) askThickness(n, gap);
+
+        std::vector<std::pair<double, VertexId>> coarse;
+        for (std::size_t k = 0; k < gap.size(); ++k) {
+            const double ratio = inner.edgeMm[inner.used[k]] / gap[k];
+            if (ratio > UsualHead::kMostEdgesPerGap) coarse.emplace_back(-ratio, inner.used[k]);
+        }
+        std::sort(coarse.begin(), coarse.end());
+        const double share = static_cast<double>(coarse.size()) / static_cast<double>(gap.size());
+        const bool isNoted = share > UsualHead::kEdgesPerGapShare;
+        std::string finding = "edges longer than " + fixed(UsualHead::kMostEdgesPerGap, 0) +
+                              " gaps at " + percent(share) + " of the vertices";
+        if (!coarse.empty()) finding += ", up to " + fixed(-coarse.front().first, 1);
+        if (isNoted) finding += ": the layer is not resolved there; more vertices are";
+        HeadNote& note = add("edgesAgainstGap", "edges against the gap", n, isNoted, finding);
+        note.next = n + 1;
+        if (isNoted) note.pointsMm.push_back(inner.mesh.points[coarse.front().second]);
+    }
+
+    void askThickness(std::size_t n, const std::vector<double>& gap) {
+        const Asked& inner = surfaces_[n];
+        const double middle = (inner.box.minimum.z + inner.box.maximum.z) / 2;
+        std::vector<double> upper;
+        std::size_t thinnest = 0, thickest = 0;
+        bool isFirst = true;
+        for (std::size_t k = 0; k < gap.size(); ++k) {
+            if (inner.mesh.points[inner.used[k]].z < middle) continue;
+            upper.push_back(gap[k]);
+            if (isFirst || gap[k] < gap[thinnest]) thinnest = k;
+            if (isFirst || gap[k] > gap[thickest]) thickest = k;
+            isFirst = false;
+        }
+        if (upper.empty()) return;
+        const double least = n == 0 ? UsualHead::kLeastSkullMm : UsualHead::kLeastScalpMm;
+        const double most = n == 0 ? UsualHead::kMostSkullMm : UsualHead::kMostScalpMm;
+        const double median = medianOf(upper);
+        const bool isThin = median<least, isThick = median> most;
+        std::string finding = "median " + fixed(median, 1) + " mm over the upper half (" +
+                              fixed(gap[thinnest], 1) + " to " + fixed(gap[thickest], 1) + "), ";
+        finding += (isThin || isThick ? "adults have " : "of adults' ") + fixed(least, 0) + " to " +
+                   fixed(most, 0) + " mm";
+        HeadNote& note =
+            n == 0 ? add("skullThickness", "thickness of the skull", n, isThin || isThick, finding)
+                   : add("scalpThickness", "thickness of the scalp", n, isThin || isThick, finding);
+        note.next = n + 1;
+        if (isThin || isThick) {
+            note.pointsMm.push_back(inner.mesh.points[inner.used[isThin ? thinnest : thickest]]);
+        }
+    }
+
+    void askVertexCounts(std::size_t n) {
+        const auto a = static_cast<double>(surfaces_[n].used.size());
+        const auto b = static_cast<double>(surfaces_[n + 1].used.size());
+        const double ratio = std::max(a, b) / std::min(a, b);
+        const bool isNoted = ratio > UsualHead::kMostVertexRatio;
+        std::string finding = fixed(a, 0) + " and " + fixed(b, 0) + " vertices";
+        if (isNoted) {
+            finding += ": one has " + fixed(ratio, 1) +
+                       " times as many; the coarser one says how good the model is";
+        }
+        HeadNote& note = add("vertexCounts", "numbers of vertices match", n, isNoted, finding);
+        note.next = n + 1;
+    }
+
+    const std::vector<Asked>& surfaces_;
+    const PlausibilityOptions& options_;
+    std::vector<HeadNote> notes_;
+};
+
+}  // namespace
+
+std::vector<HeadNote> judgePlausibility(std::span<const TriangleMesh> surfaces,
+                                        const PlausibilityOptions& options) {
+    std::vector<Asked> asked;
+    for (const TriangleMesh& surface : surfaces) asked.emplace_back(surface);
+    return Questions(asked, options).ask();
+}
+
+}  // namespace adaptiso
