@@ -9,6 +9,7 @@
 #include "Payload.h"
 #include "Scene.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Report/Coarser.h"
 
 namespace adaptiso {
 namespace {
@@ -70,17 +71,15 @@ Json pointJson(const Vec3& p) {
 
 /// The scene as the viewer gets it: no more triangles than it can show with ease.
 Scene forViewer(const Scene& scene, const PageOptions& options, std::vector<std::string>& notes) {
-    std::int64_t triangles = 0;
+    std::vector<std::int64_t> counts;
     for (const SceneSurface& surface : scene.surfaces) {
-        triangles += std::ssize(surface.mesh.triangles);
+        counts.push_back(surface.mesh.triangleCount());
     }
-    if (triangles <= options.maxTriangles) return scene;
+    const std::vector<std::int64_t> shares = shareTriangles(counts, options.maxTriangles);
+    if (shares == counts) return scene;
     Scene result = scene;
-    for (SceneSurface& surface : result.surfaces) {
-        const double share =
-            static_cast<double>(surface.mesh.triangles.size()) / static_cast<double>(triangles);
-        surface = coarser(
-            surface, static_cast<std::int64_t>(share * static_cast<double>(options.maxTriangles)));
+    for (std::size_t n = 0; n < counts.size(); ++n) {
+        result.surfaces[n] = coarser(scene.surfaces[n], shares[n]);
     }
     notes.push_back(
         "The viewer shows the surfaces coarser than they are, to stay quick and small; "
@@ -131,7 +130,7 @@ std::string htmlPage(const Report& report, const std::vector<Picture>& pictures,
     std::vector<std::string> notes = report.notes;
     bool showsViewer = false;
     for (const SceneSurface& surface : scene.surfaces) {
-        showsViewer = showsViewer || !surface.mesh.triangles.empty();
+        showsViewer = showsViewer || !surface.mesh.isEmpty();
     }
     if (showsViewer && !hasViewer()) {
         notes.push_back(

@@ -26,7 +26,8 @@ std::string blankNifti(const BoundingBox& box);
 /// colours where the surface has values. RAS.
 std::string mz3Of(const SceneSurface& surface);
 
-/// The surface with at most `maxTriangles`, by vtkQuadricClustering where it has more.
+/// The surface with at most `maxTriangles`: see coarserMesh(). A vertex has the mean of the values
+/// of those that it stands for.
 SceneSurface coarser(const SceneSurface& surface, std::int64_t maxTriangles);
 
 }  // namespace adaptiso
