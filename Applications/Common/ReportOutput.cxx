@@ -1,7 +1,12 @@
 #include "Common/ReportOutput.h"
 
+#include <exception>
+#include <new>
+
 #include "Common/CommonOptions.h"
+#include "Common/ExitCodes.h"
 #include "Common/Numbers.h"
+#include "Common/RunApp.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Report/Page.h"
 
@@ -19,9 +24,17 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, const std::stri
                    "Write the report's pictures alone, as PNG files, into the folder DIR")
         ->type_name("DIR")
         ->group(group);
+    app.add_flag(
+           "--deface-report", options.leavesOutFaces,
+           "Leave the face out of the page and the pictures: what lies in front of and below the "
+           "brain, of the image and of the surfaces")
+        ->group(group);
 }
 
 void checkReportOutputs(const ReportOptions& options, std::span<const fs::path> inputs) {
+    if (options.leavesOutFaces && !options.isWanted()) {
+        throw UsageError("--deface-report: needs --report or --pictures");
+    }
     if (!options.page.empty()) {
         for (const fs::path& input : inputs) checkNotInput(options.page, input);
         checkOutput(options.page);
@@ -46,11 +59,15 @@ PictureFolder::~PictureFolder() {
     if (isMine_) fs::remove(folder_, error);  // refuses a folder that holds something
 }
 
-std::vector<Picture> writeReport(Report& report, const std::string& program,
-                                 const ReportOptions& options, std::vector<AtomicOutput>& outputs) {
+namespace {
+
+std::vector<Picture> writePictures(Report report, const std::string& program,
+                                   const ReportOptions& options,
+                                   std::vector<AtomicOutput>& outputs) {
     report.program = program;
     report.version = programVersion();
     report.date = reportDate();
+    report.leavesOutFaces = options.leavesOutFaces;
     std::vector<Picture> pictures = drawPictures(report);
     if (!options.pictures.empty()) {
         for (const Picture& picture : pictures) {
@@ -61,6 +78,34 @@ std::vector<Picture> writeReport(Report& report, const std::string& program,
         outputs.emplace_back(options.page).writeText(htmlPage(report, pictures));
     }
     return pictures;
+}
+
+}  // namespace
+
+ReportResult writeReport(const std::function<Report()>& make, const std::string& program,
+                         const ReportOptions& options, std::vector<AtomicOutput>& outputs) {
+    ReportResult result;
+    const std::size_t before = outputs.size();
+    try {
+        result.folder = std::make_unique<PictureFolder>(options.pictures);
+        result.pictures = writePictures(make(), program, options, outputs);
+        return result;
+    } catch (const std::bad_alloc&) {
+        result.failure = "not enough memory";
+    } catch (const std::exception& error) {
+        result.failure = error.what();
+    }
+    while (outputs.size() > before) outputs.pop_back();
+    result.pictures.clear();
+    result.folder.reset();
+    return result;
+}
+
+int tellReportFailure(const std::string& program, const std::string& written,
+                      const std::string& failure, int code) {
+    if (failure.empty()) return code;
+    printError(program, written + "; the report failed: " + failure);
+    return code == kExitOk ? kExitCheckFailed : code;
 }
 
 std::vector<ReportFact> imageFacts(const std::string& name, const std::string& format,

@@ -67,6 +67,7 @@ struct BemRun {
     std::vector<std::filesystem::path> subjectFiles;
     StageTimer timer{};
     std::optional<ReadVolume> shownImage{};  ///< for the report; none unless one is wanted
+    std::string reportFailure{};             ///< why there is no page; empty: nothing failed
 
     bool hasModel() const { return findings.empty(); }
 };

@@ -57,6 +57,7 @@ struct CheckRun {
     AffineTransform toNestingFrame;               ///< from that in which it was measured
     std::vector<std::string> warnings;
     StageTimer timer;
+    std::string reportFailure;  ///< why there is no page; empty: nothing failed
 
     bool hasPassed() const;  ///< all that is required holds, of all files
     bool hasUnreadable() const;

@@ -292,6 +292,7 @@ std::string jsonReport(const CheckRun& run) {
                       {"surfaces", surfaces},
                       {"nesting", nestingJson(run)},
                       {"warnings", run.warnings},
+                      {"reportFailure", reportFailureJson(run.reportFailure)},
                       {"seconds", secondsJson(run.timer)},
                       {"peakMemoryMb", peakMemoryMb()}};
     // a file's name need not be UTF-8: what is not becomes U+FFFD

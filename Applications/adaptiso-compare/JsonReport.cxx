@@ -115,6 +115,7 @@ std::string jsonReport(const CompareRun& run) {
                       {"colored", coloredJson(run)},
                       {"checks", checksJson(run.checks)},
                       {"warnings", run.warnings},
+                      {"reportFailure", reportFailureJson(run.reportFailure)},
                       {"seconds", secondsJson(run.timer)},
                       {"peakMemoryMb", peakMemoryMb()}};
     // a file's name need not be UTF-8: what is not becomes U+FFFD

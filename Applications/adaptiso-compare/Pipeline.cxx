@@ -35,6 +35,8 @@ constexpr const char* kOverlap = "overlap";
 constexpr const char* kWrite = "write";
 constexpr const char* kReport = "report";
 
+constexpr const char* kProgram = "adaptiso-compare";
+
 const MeshFormat& formatOf(const fs::path& path) {
     try {
         return findMeshFormat(path);
@@ -197,16 +199,14 @@ void writeColored(CompareRun& run, const TriangleMesh& a, const TriangleMesh& b,
     run.colored = colored;
 }
 
-/// Writes the page and the pictures under their temporary names.
-void makePage(CompareRun& run, TriangleMesh a, TriangleMesh b, std::vector<AtomicOutput>& outputs) {
+/// What the page and the pictures show.
+Report describe(const CompareRun& run, TriangleMesh a, TriangleMesh b) {
     ShownSurfaces shown;
     shown.aToBMm = vertexDistancesMm(a, b);
     if (run.options.isSymmetric) shown.bToAMm = vertexDistancesMm(b, a);
     shown.a = std::move(a);
     shown.b = std::move(b);
-    Report page = makeReport(run, shown);
-    run.timer.time(kReport,
-                   [&] { writeReport(page, "adaptiso-compare", run.options.report, outputs); });
+    return makeReport(run, shown);
 }
 
 std::vector<Check> makeChecks(const CompareRun& run) {
@@ -277,10 +277,18 @@ int runCompare(const CompareOptions& options) {
     run.timer.time(kWrite, [&] {
         if (!options.colored.empty()) writeColored(run, a, b, common, outputs);
     });
-    const PictureFolder pictures(options.report.pictures);
+    ReportResult page;  // its folder goes, if empty, when all is in place
     if (options.report.isWanted()) {
         progress.show(kReport);
-        makePage(run, std::move(surfaces[0].file.mesh), std::move(surfaces[1].file.mesh), outputs);
+        page = run.timer.time(kReport, [&] {
+            return writeReport(
+                [&] {
+                    return describe(run, std::move(surfaces[0].file.mesh),
+                                    std::move(surfaces[1].file.mesh));
+                },
+                kProgram, options.report, outputs);
+        });
+        run.reportFailure = page.failure;
     }
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
@@ -290,7 +298,9 @@ int runCompare(const CompareOptions& options) {
     progress.clear();
     printWarnings(run);
     report(run, json);
-    return verdict(run);
+    const std::string written = options.colored.empty() ? "the distances are measured"
+                                                        : options.colored.string() + " is written";
+    return tellReportFailure(kProgram, written, page.failure, verdict(run));
 }
 
 }  // namespace adaptiso

@@ -158,6 +158,7 @@ std::string jsonReport(const MeshRun& run) {
                       {"options", optionsJson(run.options)},
                       {"index", indexJson(run.index)},
                       {"surfaces", surfaces},
+                      {"reportFailure", reportFailureJson(run.reportFailure)},
                       {"seconds", secondsJson(run.timer)},
                       {"peakMemoryMb", peakMemoryMb()}};
     // a file's name need not be UTF-8: what is not becomes U+FFFD

@@ -80,6 +80,7 @@ struct MeshRun {
     std::vector<SurfaceSummary> surfaces;
     StageTimer timer;
     std::vector<ShownSurface> shown{};  ///< for the page; empty unless one is wanted
+    std::string reportFailure{};        ///< why there is no page; empty: nothing failed
 
     /// Of the values that the surfaces are made from.
     const ValueRange& range() const { return preprocessed ? preprocessed->range : input.range; }

@@ -282,6 +282,16 @@ void printWarnings(const MeshRun& run) {
     }
 }
 
+/// "brain-100.ply and brain-120.ply are written"
+std::string writtenText(const MeshRun& run) {
+    std::string text;
+    for (std::size_t n = 0; n < run.surfaces.size(); ++n) {
+        text += n == 0 ? "" : n + 1 == run.surfaces.size() ? " and " : ", ";
+        text += run.surfaces[n].file.string();
+    }
+    return text + (run.surfaces.size() == 1 ? " is written" : " are written");
+}
+
 void report(const MeshRun& run, const std::string& json) {
     if (run.options.common.wantsJsonOnStdout()) {
         std::cout << json;
@@ -328,12 +338,14 @@ int runMesh(const MeshOptions& asked) {
     }
     run.index = run.timer.time(
         kWrite, [&] { return keepIndex(index, volume, options.indexFiles, outputs); });
-    const PictureFolder pictures(options.report.pictures);
+    ReportResult page;  // its folder goes, if empty, when all is in place
     if (options.report.isWanted()) {
         progress.show(kReport);
-        Report page = makeReport(run, volume);
-        run.timer.time(kReport,
-                       [&] { writeReport(page, "adaptiso-mesh", options.report, outputs); });
+        page = run.timer.time(kReport, [&] {
+            return writeReport([&] { return makeReport(run, volume); }, "adaptiso-mesh",
+                               options.report, outputs);
+        });
+        run.reportFailure = page.failure;
     }
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
@@ -342,7 +354,7 @@ int runMesh(const MeshOptions& asked) {
     AtomicOutput::commit(outputs);
     progress.clear();
     report(run, json);
-    return kExitOk;
+    return tellReportFailure("adaptiso-mesh", writtenText(run), page.failure, kExitOk);
 }
 
 }  // namespace adaptiso

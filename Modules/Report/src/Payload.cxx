@@ -163,7 +163,7 @@ std::string gzip(std::string_view bytes) {
     return packed;
 }
 
-std::string niftiOf(const VolumeView& volume, std::int64_t maxVoxels) {
+std::string niftiOf(const VolumeView& volume, std::int64_t maxVoxels, const FaceCut* face) {
     const Index3 block = blockSize(volume.geometry(), maxVoxels);
     const ImageGeometry geometry = blockGeometry(volume.geometry(), block);
     const ValueRange window = greyWindow(volume);
@@ -174,6 +174,9 @@ std::string niftiOf(const VolumeView& volume, std::int64_t maxVoxels) {
             for (std::int64_t n = begin; n < end; ++n) {
                 const Index3 first{n % geometry.size[0] * block[0],
                                    n % layer / geometry.size[0] * block[1], n / layer * block[2]};
+                const Vec3 index{double(n % geometry.size[0]), double(n % layer / geometry.size[0]),
+                                 double(n / layer)};
+                if (face && face->hides(lpsToRas(geometry.toPhysical(index)))) continue;
                 samples[static_cast<std::size_t>(n)] =
                     greyOf(blockMean(view, first, block), window);
             }

@@ -16,8 +16,9 @@ std::string gzip(std::string_view bytes);
 
 /// The image as a NIfTI-1 file of 8 bits a sample, black to white as greyWindow() says: with at
 /// most `maxVoxels` samples, means of blocks of the image's where that has more. RAS; the header
-/// holds geometry alone.
-std::string niftiOf(const VolumeView& volume, std::int64_t maxVoxels);
+/// holds geometry alone. Black where `face` (if not null) hides the middle of a block.
+std::string niftiOf(const VolumeView& volume, std::int64_t maxVoxels,
+                    const FaceCut* face = nullptr);
 
 /// A black image that holds `box` (RAS) and a little more.
 std::string blankNifti(const BoundingBox& box);

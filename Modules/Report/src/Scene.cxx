@@ -51,6 +51,28 @@ Vec3 between(const Vec3& a, const Vec3& b, int axis, double atMm) {
 
 }  // namespace
 
+bool Scene::hasTriangles() const {
+    return std::any_of(surfaces.begin(), surfaces.end(),
+                       [](const SceneSurface& surface) { return !surface.mesh.isEmpty(); });
+}
+
+namespace {
+
+void leaveOutFace(const Report& report, Scene& scene) {
+    std::vector<SceneMesh> meshes;
+    for (const SceneSurface& surface : scene.surfaces) meshes.push_back(surface.mesh);
+    scene.face = std::make_shared<const FaceCut>(report, meshes);
+    for (std::size_t n = 0; n < meshes.size(); ++n) {
+        if (report.surfaces[n].isWithinSkull) continue;
+        scene.surfaces[n].mesh.leaveOut([&](const Triangle& t) {
+            return std::any_of(t.begin(), t.end(),
+                               [&](VertexId v) { return scene.face->hides(meshes[n].point(v)); });
+        });
+    }
+}
+
+}  // namespace
+
 Scene makeScene(const Report& report) {
     Scene scene;
     double largest = 0;  // NaN never is
@@ -70,6 +92,7 @@ Scene makeScene(const Report& report) {
             scene.spots.push_back({spot.what, lpsToRas(spot.pointMm), spot.isFailure});
         }
     }
+    if (report.leavesOutFaces) leaveOutFace(report, scene);
     scene.box = boxOf(scene, report);
     return scene;
 }

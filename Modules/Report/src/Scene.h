@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "Face.h"
 #include "SceneMesh.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Report/Report.h"
@@ -34,9 +35,11 @@ struct SceneSpot {
 struct Scene {
     std::vector<SceneSurface> surfaces;
     std::vector<SceneSpot> spots;
-    BoundingBox box;  ///< of all surfaces; of the image when there is none
+    BoundingBox box;                        ///< of all surfaces; of the image when there is none
+    std::shared_ptr<const FaceCut> face{};  ///< what is left out; none: nothing
 
     bool isEmpty() const { return surfaces.empty(); }
+    bool hasTriangles() const;
 };
 
 /// Looks at the report's surfaces, so the report must outlive the scene.
