@@ -95,6 +95,13 @@ ReportResult writeReport(const std::function<Report()>& make, const std::string&
     } catch (const std::exception& error) {
         result.failure = error.what();
     }
+    // JSON tells it too, and holds no folders
+    for (const fs::path& path : {options.page, options.pictures}) {
+        const std::string folder = path.parent_path().string() + "/";
+        const std::size_t at = result.failure.find(folder);
+        if (!path.has_parent_path() || at == std::string::npos) continue;
+        result.failure.erase(at, folder.size());
+    }
     while (outputs.size() > before) outputs.pop_back();
     result.pictures.clear();
     result.folder.reset();
