@@ -17,11 +17,12 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kStyle = R"(
 body{font:16px/1.4 sans-serif;margin:2em auto;max-width:70em;padding:0 1em;color:#111;background:#fff}
-table{border-collapse:collapse;width:100%}
+table{border-collapse:collapse;width:100%;min-width:44em}
+.scroll{overflow-x:auto}.scroll:focus-visible{outline:3px solid #4c9aff}
 th,td{border-bottom:1px solid #bbb;padding:.4em .6em;text-align:left;vertical-align:top}
 .ok{color:#00532c;font-weight:bold}.failed{color:#a00000;font-weight:bold}
 tr.bad{background:#fff0f0}img{max-width:160px;max-height:120px}td.number{text-align:right}
-@media print{@page{size:A4;margin:15mm}body{margin:0;font-size:11px}tr{break-inside:avoid}}
+@media print{@page{size:A4;margin:15mm}body{margin:0;font-size:11px}tr{break-inside:avoid}.scroll{overflow:visible}table{min-width:0}}
 )";
 
 std::string escaped(std::string_view text) {
@@ -162,14 +163,16 @@ std::string summaryPage(const std::vector<SummaryRow>& rows, const fs::path& pag
     std::string text =
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
         "<meta name=\"viewport\" content=\"width=device-width\"><title>adaptiso: " +
-        verdict + "</title><style>" + std::string(kStyle) + "</style></head><body>\n<h1 class=\"" +
-        (isDone ? "ok" : "failed") + "\">" + verdict + "</h1>\n<p>adaptiso " + programVersion() +
-        "</p>\n<table><caption>Every run that has a record in this folder; what needs a look comes "
+        verdict + "</title><style>" + std::string(kStyle) +
+        "</style></head><body><main>\n<h1 class=\"" + (isDone ? "ok" : "failed") + "\">" + verdict +
+        "</h1>\n<p>adaptiso " + programVersion() +
+        "</p>\n<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Runs\">"
+        "<table><caption>Every run that has a record in this folder; what needs a look comes "
         "first</caption>\n<thead><tr><th>verdict</th><th>name</th><th>program</th><th>input</th>"
         "<th>what came of it</th><th>files</th><th>picture</th><th>date</th><th>seconds</th></tr>"
         "</thead><tbody>\n";
     for (const SummaryRow& row : rows) text += rowText(row, page);
-    return text + "</tbody></table>\n</body></html>\n";
+    return text + "</tbody></table></div>\n</main></body></html>\n";
 }
 
 }  // namespace adaptiso

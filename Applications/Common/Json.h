@@ -53,6 +53,11 @@ inline std::string_view frameWord(CoordinateFrame frame) {
     throw InternalError("frameWord: unknown coordinate frame");
 }
 
+/// `reportFailure`: why there is no page, though one is asked for; null when nothing failed.
+inline Json reportFailureJson(const std::string& failure) {
+    return failure.empty() ? Json(nullptr) : Json(failure);
+}
+
 /// `seconds` of a report: every stage, and their total.
 inline Json secondsJson(const StageTimer& timer) {
     Json seconds = Json::object();

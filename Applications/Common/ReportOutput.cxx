@@ -1,6 +1,11 @@
 #include "Common/ReportOutput.h"
 
+#include <exception>
+#include <new>
+
+#include "Common/ExitCodes.h"
 #include "Common/Numbers.h"
+#include "Common/RunApp.h"
 #include "Common/Temporaries.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Errors.h"
@@ -20,9 +25,17 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, const std::stri
                    "Write the report's pictures alone, as PNG files, into the folder DIR")
         ->type_name("DIR")
         ->group(group);
+    app.add_flag(
+           "--deface-report", options.leavesOutFaces,
+           "Leave the face out of the page and the pictures: what lies in front of and below the "
+           "brain, of the image and of the surfaces")
+        ->group(group);
 }
 
 void checkReportOutputs(const ReportOptions& options, std::span<const fs::path> inputs) {
+    if (options.leavesOutFaces && !options.isWanted()) {
+        throw UsageError("--deface-report: needs --report or --pictures");
+    }
     if (!options.page.empty()) {
         for (const fs::path& input : inputs) checkNotInput(options.page, input);
         checkOutput(options.page);
@@ -49,11 +62,15 @@ PictureFolder::~PictureFolder() {
     if (isMine_) fs::remove(folder_, error);  // refuses a folder that holds something
 }
 
-std::vector<Picture> writeReport(Report& report, const std::string& program,
-                                 const ReportOptions& options, std::vector<AtomicOutput>& outputs) {
+namespace {
+
+std::vector<Picture> writePictures(Report report, const std::string& program,
+                                   const ReportOptions& options,
+                                   std::vector<AtomicOutput>& outputs) {
     report.program = program;
     report.version = programVersion();
     report.date = reportDate();
+    report.leavesOutFaces = options.leavesOutFaces;
     std::vector<Picture> pictures = drawPictures(report);
     if (!options.pictures.empty()) {
         for (const Picture& picture : pictures) {
@@ -64,6 +81,41 @@ std::vector<Picture> writeReport(Report& report, const std::string& program,
         outputs.emplace_back(options.page).writeText(htmlPage(report, pictures));
     }
     return pictures;
+}
+
+}  // namespace
+
+ReportResult writeReport(const std::function<Report()>& make, const std::string& program,
+                         const ReportOptions& options, std::vector<AtomicOutput>& outputs) {
+    ReportResult result;
+    const std::size_t before = outputs.size();
+    try {
+        result.folder = std::make_unique<PictureFolder>(options.pictures);
+        result.pictures = writePictures(make(), program, options, outputs);
+        return result;
+    } catch (const std::bad_alloc&) {
+        result.failure = "not enough memory";
+    } catch (const std::exception& error) {
+        result.failure = error.what();
+    }
+    // JSON tells it too, and holds no folders
+    for (const fs::path& path : {options.page, options.pictures}) {
+        const std::string folder = path.parent_path().string() + "/";
+        const std::size_t at = result.failure.find(folder);
+        if (!path.has_parent_path() || at == std::string::npos) continue;
+        result.failure.erase(at, folder.size());
+    }
+    while (outputs.size() > before) outputs.pop_back();
+    result.pictures.clear();
+    result.folder.reset();
+    return result;
+}
+
+int tellReportFailure(const std::string& program, const std::string& written,
+                      const std::string& failure, int code) {
+    if (failure.empty()) return code;
+    printError(program, written + "; the report failed: " + failure);
+    return code == kExitOk ? kExitCheckFailed : code;
 }
 
 void tellStrict(Report& report, const CommonOptions& common, std::span<const std::string> warnings,

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,11 +21,12 @@ namespace adaptiso {
 struct ReportOptions {
     std::filesystem::path page;      ///< an HTML file; empty: none
     std::filesystem::path pictures;  ///< a folder of PNG files; empty: none
+    bool leavesOutFaces = false;
 
     bool isWanted() const { return !page.empty() || !pictures.empty(); }
 };
 
-/// Adds --report and --pictures.
+/// Adds --report, --pictures and --deface-report.
 void declareReportOptions(CLI::App& app, ReportOptions& options, const std::string& group);
 
 /// Everything about these outputs that can be told before an input is read.
@@ -46,12 +49,26 @@ private:
     bool isMine_ = false;
 };
 
-/// Draws the pictures and writes them, and the page, under temporary names: what of them is asked
-/// for. Program, version and date are filled in. The folder of --pictures must be there
-/// (PictureFolder).
-/// \return the pictures  \throws FileError
-std::vector<Picture> writeReport(Report& report, const std::string& program,
-                                 const ReportOptions& options, std::vector<AtomicOutput>& outputs);
+/// What became of the page and the pictures.
+struct ReportResult {
+    std::vector<Picture> pictures;
+    std::unique_ptr<PictureFolder> folder;  ///< to be kept until all outputs are in place
+    std::string failure;  ///< why there is neither page nor pictures; empty: nothing failed
+};
+
+/// Makes the report, draws the pictures and writes them, and the page, under temporary names: what
+/// of them is asked for. Program, version and date are filled in.
+///
+/// A page costs no surface: what goes wrong (no memory, no disk, a fault in the drawing) is told,
+/// not thrown, and `outputs` then are those that came.
+ReportResult writeReport(const std::function<Report()>& make, const std::string& program,
+                         const ReportOptions& options, std::vector<AtomicOutput>& outputs);
+
+/// Tells on stderr that the report failed, and what is there all the same.
+/// \param written  "brain.ply is written", "the checks are done"
+/// \return `code`, or kExitCheckFailed in place of 0; `code` when nothing failed
+int tellReportFailure(const std::string& program, const std::string& written,
+                      const std::string& failure, int code);
 
 /// Where --strict and warnings make a run fail, the page says so.
 /// \param consequence  as strictFailure() takes it

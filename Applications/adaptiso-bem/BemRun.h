@@ -70,6 +70,7 @@ struct BemRun {
     std::vector<std::filesystem::path> subjectFiles;
     StageTimer timer{};
     std::optional<ReadVolume> shownImage{};  ///< for the report; none unless one is wanted
+    std::string reportFailure{};             ///< why there is no page; empty: nothing failed
 
     bool hasModel() const { return findings.empty(); }
     /// --strict makes the warnings failures: of the model only the report is written.

@@ -345,8 +345,7 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
     declareHead(app, options);
     declareSurfaces(app, options);
     declareOutput(app, options);
-    declareCommonOptions(app, options.common,
-                         "of the model only the report is then written");
+    declareCommonOptions(app, options.common, "of the model only the report is then written");
     app.callback([&options] { checkCombinations(options); });
 }
 

@@ -138,6 +138,7 @@ std::string jsonReport(const BemRun& run) {
                         {"freesurferFrame", run.tkRasVolume ? "tkras" : "ras"},
                         {"coordinates", frameWord(options.frame)},
                         {"openmeegUnit", options.unit == OpenMeegUnit::Metres ? "m" : "mm"}}},
+                      {"reportFailure", reportFailureJson(run.reportFailure)},
                       {"seconds", secondsJson(run.timer)},
                       {"peakMemoryMb", peakMemoryMb()}};
     // a file's name need not be UTF-8: what is not becomes U+FFFD

@@ -144,20 +144,23 @@ void fillFolder(const std::vector<TriangleMesh>& surfaces, BemRun& run,
 /// Shows the run as asked for. Where there is no model and places are known where it failed, a
 /// picture of them goes into the model's folder in its stead.
 /// \param folder  none with --dry-run
-void show(BemRun& run, const std::vector<TriangleMesh>& shown, std::vector<AtomicOutput>& outputs,
-          std::optional<AtomicFolder>& folder) {
+/// \return the folder of pictures, to be kept until all is in place
+std::unique_ptr<PictureFolder> show(BemRun& run, const std::vector<TriangleMesh>& shown,
+                                    std::vector<AtomicOutput>& outputs,
+                                    std::optional<AtomicFolder>& folder) {
     const bool showsFailure = folder && !run.hasModel();
     const ReportOptions& asked = run.options.report;
-    if (!asked.isWanted() && !showsFailure) return;
-    Report page = makeReport(run, shown);
-    if (!asked.isWanted() && page.spots.empty()) return;
-    run.timer.time("report", [&] {
-        for (const Picture& picture : writeReport(page, "adaptiso-bem", asked, outputs)) {
-            if (showsFailure && picture.name == "spots.png") {
-                folder->writeText(picture.name, picture.png);
-            }
-        }
+    if (!asked.isWanted() && !(showsFailure && !run.findings.empty())) return nullptr;
+    ReportResult page = run.timer.time("report", [&] {
+        return writeReport([&] { return makeReport(run, shown); }, "adaptiso-bem", asked, outputs);
     });
+    for (const Picture& picture : page.pictures) {
+        if (showsFailure && picture.name == "spots.png") {
+            folder->writeText(picture.name, picture.png);
+        }
+    }
+    run.reportFailure = page.failure;
+    return std::move(page.folder);
 }
 
 /// Writes the folder (the report and a picture alone when there is no model) and all else, and
@@ -166,14 +169,13 @@ void show(BemRun& run, const std::vector<TriangleMesh>& shown, std::vector<Atomi
 void write(const std::vector<TriangleMesh>& surfaces, const std::vector<TriangleMesh>& shown,
            BemRun& run, ProgressLine& progress) {
     const BemOptions& options = run.options;
-    const PictureFolder pictures(options.report.pictures);
     std::vector<AtomicOutput> outputs;
     std::optional<AtomicFolder> folder;
     if (!options.isDryRun) {
         fillFolder(surfaces, run, folder);
         if (run.hasModel() && !run.failsStrict()) outputs = writeSubject(surfaces, run);
     }
-    show(run, shown, outputs, folder);
+    const std::unique_ptr<PictureFolder> pictures = show(run, shown, outputs, folder);
     const std::string json = jsonReport(run);
     if (folder) folder->writeText("report.json", json);
     if (hasJsonFile(options)) outputs.emplace_back(options.common.json).writeText(json);
@@ -209,12 +211,15 @@ int runBem(const BemOptions& options) {
 
     progress.show("write");
     write(surfaces, surfaces.empty() ? dense : surfaces, run, progress);
+    const std::string written =
+        options.isDryRun ? "all is done" : options.output.string() + " is written";
     if (run.hasModel()) {
-        return strictVerdict("adaptiso-bem", options.common, run.warnings,
-                             "so no model was written", kExitOk);
+        const int code = strictVerdict("adaptiso-bem", options.common, run.warnings,
+                                       "so no model was written", kExitOk);
+        return tellReportFailure("adaptiso-bem", written, run.reportFailure, code);
     }
     printError("adaptiso-bem", "no model: " + failureText(run));
-    return kExitCheckFailed;
+    return tellReportFailure("adaptiso-bem", written, run.reportFailure, kExitCheckFailed);
 }
 
 }  // namespace adaptiso

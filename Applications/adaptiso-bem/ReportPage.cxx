@@ -162,6 +162,8 @@ Report makeReport(const BemRun& run, const std::vector<TriangleMesh>& surfaces) 
     }
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
         report.surfaces.push_back({nameOf(n), surfaces[n]});
+        report.surfaces.back().isWithinSkull =
+            static_cast<HeadSurface>(n) == HeadSurface::InnerSkull && run.source != "surfaces";
     }
     if (run.shownImage) {
         report.volume = ReportVolume{run.inputs.front().role, run.shownImage->volume.view()};

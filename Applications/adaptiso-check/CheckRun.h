@@ -59,6 +59,7 @@ struct CheckRun {
     std::vector<ToldNote> notes;  ///< of head models: what is unusual, asked by the profile bem
     std::vector<std::string> warnings;
     StageTimer timer;
+    std::string reportFailure;  ///< why there is no page; empty: nothing failed
 
     bool hasPassed() const;  ///< all that is required holds, of all files
     bool hasUnreadable() const;

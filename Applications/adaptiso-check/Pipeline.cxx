@@ -259,11 +259,12 @@ private:
         });
     }
 
-    /// Copies of the meshes, in one frame; as checked where theirs says nothing of the image.
+    /// The meshes, in one frame; as checked where theirs says nothing of the image. They are not
+    /// needed any more.
     void keepForReport() {
         if (!options_.report.isWanted()) return;
         std::vector<NamedMesh> meshes;
-        for (const Loaded& loaded : meshes_) meshes.push_back(loaded.mesh);
+        for (Loaded& loaded : meshes_) meshes.push_back(std::move(loaded.mesh));
         const CommonFrame common = bringToOneFrame(meshes, image_);
         shown_.frame = common.frame;
         shown_.notes.insert(shown_.notes.end(), common.warnings.begin(), common.warnings.end());
@@ -325,12 +326,15 @@ int runCheck(const CheckOptions& options) {
     Checker checker(options, progress);
     CheckRun run = checker.check();
 
-    const PictureFolder pictures(options.report.pictures);
+    ReportResult page;  // its folder goes, if empty, after what lies in it
     std::vector<AtomicOutput> outputs;
     if (options.report.isWanted()) {
         progress.show(kReport);
-        Report page = makeReport(run, checker.shown());
-        run.timer.time(kReport, [&] { writeReport(page, kProgram, options.report, outputs); });
+        page = run.timer.time(kReport, [&] {
+            return writeReport([&] { return makeReport(run, checker.shown()); }, kProgram,
+                               options.report, outputs);
+        });
+        run.reportFailure = page.failure;
     }
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
@@ -341,9 +345,11 @@ int runCheck(const CheckOptions& options) {
     printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
     AtomicOutput::commit(outputs);
     if (options.common.isQuiet || options.common.wantsJsonOnStdout()) tellFailed(run);
-    if (run.hasUnreadable()) return kExitBadInput;
-    const int exitCode = run.hasPassed() ? kExitOk : kExitCheckFailed;
-    return strictVerdict(kProgram, options.common, run.warnings, "", exitCode);
+    int code = run.hasUnreadable() ? kExitBadInput : run.hasPassed() ? kExitOk : kExitCheckFailed;
+    if (!run.hasUnreadable()) {
+        code = strictVerdict(kProgram, options.common, run.warnings, "", code);
+    }
+    return tellReportFailure(kProgram, "the checks are done", page.failure, code);
 }
 
 }  // namespace adaptiso

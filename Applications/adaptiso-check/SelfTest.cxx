@@ -1,12 +1,13 @@
 #include "SelfTest.h"
 
-#include <iostream>
+#include <ostream>
 #include <vector>
 
 #include "Common/AtomicOutput.h"
 #include "Common/ExitCodes.h"
 #include "Common/Progress.h"
 #include "Common/ReportOutput.h"
+#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "SelfTestCases.h"
 #include "SelfTestReport.h"
@@ -40,25 +41,24 @@ int runSelfTest(const CheckOptions& options) {
     const selftest::Machine machine = selftest::thisMachine();
     const std::string date = reportDate();
 
-    const PictureFolder pictures(options.report.pictures);
+    ReportResult page;  // its folder goes, if empty, after what lies in it
     std::vector<AtomicOutput> outputs;
     if (options.report.isWanted()) {
         progress.show("report");
-        Report page = selftest::reportPage(test, machine);
-        timer.time("report", [&] { writeReport(page, kProgram, options.report, outputs); });
+        page = timer.time("report", [&] {
+            return writeReport([&] { return selftest::reportPage(test, machine); }, kProgram,
+                               options.report, outputs);
+        });
     }
     const std::string json = selftest::jsonText(test, machine, date, timer);
     if (hasJsonFile) outputs.emplace_back(options.common.json).writeText(json);
-    AtomicOutput::commit(outputs);
     progress.clear();
-    if (options.common.wantsJsonOnStdout()) {
-        std::cout << json;
-    } else if (!options.common.isQuiet) {
-        selftest::printText(std::cout, test, machine, date, timer);
-    }
-    if (!std::cout.flush()) throw FileError("standard output: can't be written");
+    printResults(options.common, json,
+                 [&](std::ostream& out) { selftest::printText(out, test, machine, date, timer); });
+    AtomicOutput::commit(outputs);
     if (options.common.isQuiet || options.common.wantsJsonOnStdout()) tellFailures(test);
-    return test.hasPassed() ? kExitOk : kExitCheckFailed;
+    const int code = test.hasPassed() ? kExitOk : kExitCheckFailed;
+    return tellReportFailure(kProgram, "the self-test is done", page.failure, code);
 }
 
 }  // namespace adaptiso

@@ -75,6 +75,7 @@ struct CompareRun {
     std::vector<std::string> warnings;
     StageTimer timer;
     std::optional<Volume> image;  ///< for the page; none unless one is wanted
+    std::string reportFailure;    ///< why there is no page; empty: nothing failed
 };
 
 }  // namespace adaptiso

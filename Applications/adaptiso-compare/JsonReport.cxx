@@ -118,6 +118,7 @@ std::string jsonReport(const CompareRun& run) {
                       {"checks", checksJson(run.checks)},
                       {"warnings", run.warnings},
                       {"failedByWarnings", failsStrict(run.options.common, run.warnings)},
+                      {"reportFailure", reportFailureJson(run.reportFailure)},
                       {"seconds", secondsJson(run.timer)},
                       {"peakMemoryMb", peakMemoryMb()}};
     // a file's name need not be UTF-8: what is not becomes U+FFFD

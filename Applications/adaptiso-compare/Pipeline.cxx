@@ -211,15 +211,14 @@ void writeColored(CompareRun& run, const TriangleMesh& a, const TriangleMesh& b,
     run.colored = colored;
 }
 
-/// Writes the page and the pictures under their temporary names.
-void makePage(CompareRun& run, TriangleMesh a, TriangleMesh b, std::vector<AtomicOutput>& outputs) {
+/// What the page and the pictures show.
+Report describe(const CompareRun& run, TriangleMesh a, TriangleMesh b) {
     ShownSurfaces shown;
     shown.aToBMm = vertexDistancesMm(a, b);
     if (run.options.isSymmetric) shown.bToAMm = vertexDistancesMm(b, a);
     shown.a = std::move(a);
     shown.b = std::move(b);
-    Report page = makeReport(run, shown);
-    run.timer.time(kReport, [&] { writeReport(page, kProgram, run.options.report, outputs); });
+    return makeReport(run, shown);
 }
 
 std::vector<Check> makeChecks(const CompareRun& run) {
@@ -275,15 +274,22 @@ int runCompare(const CompareOptions& options) {
     run.timer.time(kOverlap, [&] { measureOverlap(run, a, b); });
 
     progress.show(kWrite);
-    std::optional<PictureFolder> pictures;  // goes after what lies in it
+    ReportResult page;  // its folder goes, if empty, after what lies in it
     std::vector<AtomicOutput> outputs;
     run.timer.time(kWrite, [&] {
         if (!options.colored.empty()) writeColored(run, a, b, common, outputs);
     });
-    pictures.emplace(options.report.pictures);
     if (options.report.isWanted()) {
         progress.show(kReport);
-        makePage(run, std::move(surfaces[0].file.mesh), std::move(surfaces[1].file.mesh), outputs);
+        page = run.timer.time(kReport, [&] {
+            return writeReport(
+                [&] {
+                    return describe(run, std::move(surfaces[0].file.mesh),
+                                    std::move(surfaces[1].file.mesh));
+                },
+                kProgram, options.report, outputs);
+        });
+        run.reportFailure = page.failure;
     }
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
@@ -293,7 +299,10 @@ int runCompare(const CompareOptions& options) {
     printWarnings(kProgram, options.common, run.warnings);
     printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
     AtomicOutput::commit(outputs);
-    return strictVerdict(kProgram, options.common, run.warnings, "", verdict(run));
+    const std::string written = options.colored.empty() ? "the distances are measured"
+                                                        : options.colored.string() + " is written";
+    const int code = strictVerdict(kProgram, options.common, run.warnings, "", verdict(run));
+    return tellReportFailure(kProgram, written, page.failure, code);
 }
 
 }  // namespace adaptiso

@@ -129,6 +129,8 @@ Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {
         {"errorBoundMm", orNull(statistics.errorBoundMm)},
         {"verifiedSamples", surface.verification ? Json(surface.verification->samples) : Json()},
         {"verifiedMaxMm", surface.verification ? number(surface.verification->maxMm) : Json()},
+        {"wantedTriangles", orNull(statistics.wantedTriangles)},
+        {"countMet", orNull(surface.countMet())},
         {"triangles", topology.triangles},
         {"vertices", topology.vertices},
         {"marchingCubesTriangles", statistics.marchingCubesTriangles},
@@ -162,6 +164,7 @@ std::string jsonReport(const MeshRun& run) {
                       {"surfaces", surfaces},
                       {"warnings", run.warnings},
                       {"failedByWarnings", run.failsStrict()},
+                      {"reportFailure", reportFailureJson(run.reportFailure)},
                       {"seconds", secondsJson(run.timer)},
                       {"peakMemoryMb", peakMemoryMb()}};
     // a file's name need not be UTF-8: what is not becomes U+FFFD

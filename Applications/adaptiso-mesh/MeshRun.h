@@ -54,8 +54,9 @@ struct Verification {
 struct SurfaceSummary {
     double isovalue = 0;
     bool isAutomatic = false;
-    ExtractionStatistics statistics;  ///< of the whole surface, before pieces were dropped
-    TopologyReport topology;          ///< of what was written
+    ExtractionStatistics statistics;      ///< of the whole surface, before pieces were dropped
+    std::int64_t extractedTriangles = 0;  ///< likewise
+    TopologyReport topology;              ///< of what was written
     double areaMm2 = 0;
     std::optional<double> volumeMm3;            ///< none of an open surface
     std::optional<std::int64_t> crossingPairs;  ///< 0 of Method::Adaptive; none when not asked for
@@ -64,6 +65,12 @@ struct SurfaceSummary {
     const MeshFormat* format = nullptr;
     CoordinateFrame frame{};
     std::uintmax_t bytes = 0;
+
+    /// The count of --triangles or --reduction was met; none when none was asked for.
+    std::optional<bool> countMet() const {
+        if (!statistics.wantedTriangles) return std::nullopt;
+        return extractedTriangles <= *statistics.wantedTriangles;
+    }
 };
 
 /// A surface to show.
@@ -85,6 +92,7 @@ struct MeshRun {
     StageTimer timer;
     std::vector<ShownSurface> shown{};    ///< for the page; empty unless one is wanted
     std::vector<std::string> warnings{};  ///< all; each names its file
+    std::string reportFailure{};          ///< why there is no page; empty: nothing failed
 
     /// --strict makes the warnings failures: neither surfaces nor index are written.
     bool failsStrict() const { return adaptiso::failsStrict(options.common, warnings); }

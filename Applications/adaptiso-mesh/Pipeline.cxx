@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "Common/AtomicOutput.h"
@@ -221,6 +222,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         return naming(inputName(options), [&] { return extractSurface(volume, index, extract); });
     });
     summary.statistics = extraction.statistics;
+    summary.extractedTriangles = std::ssize(extraction.mesh.triangles);
     if (extraction.mesh.triangles.empty()) {
         throw InvalidInput("--iso " + formatNumber(isovalue) +
                            ": the surface is empty; no two neighbouring voxels lie on both sides");
@@ -293,6 +295,33 @@ IndexSummary keepIndex(const SpanSpaceIndex& index, const VolumeView& volume,
     return summary;
 }
 
+/// Where a count could not be met. With --max-error as well the bound may end it before: that was
+/// asked for.
+void warnOfCounts(MeshRun& run) {
+    const std::size_t told = run.warnings.size();
+    for (const SurfaceSummary& surface : run.surfaces) {
+        if (surface.countMet().value_or(true) || run.options.adaptive.maxErrorMm) continue;
+        const bool isOpen = run.options.index.border == Border::Open;
+        run.warnings.push_back(
+            surface.file.filename().string() + ": has " + formatCount(surface.extractedTriangles) +
+            " triangles, not " + formatCount(*surface.statistics.wantedTriangles) +
+            " as asked for: these are the fewest reached with all its pieces and "
+            "holes" +
+            (isOpen ? " and its open border" : ""));
+    }
+    printWarnings(kProgram, run.options.common, std::span(run.warnings).subspan(told));
+}
+
+/// "brain-100.ply and brain-120.ply are written"
+std::string writtenText(const MeshRun& run) {
+    std::string text;
+    for (std::size_t n = 0; n < run.surfaces.size(); ++n) {
+        text += n == 0 ? "" : n + 1 == run.surfaces.size() ? " and " : ", ";
+        text += run.surfaces[n].file.string();
+    }
+    return text + (run.surfaces.size() == 1 ? " is written" : " are written");
+}
+
 }  // namespace
 
 int runMesh(const MeshOptions& asked) {
@@ -326,20 +355,23 @@ int runMesh(const MeshOptions& asked) {
     const SpanSpaceIndex index =
         run.timer.time(kIndex, [&] { return prepareIndex(volume, options); });
 
-    std::optional<PictureFolder> pictures;  // goes after what lies in it
+    ReportResult page;  // its folder goes, if empty, after what lies in it
     std::vector<AtomicOutput> outputs;
     for (std::size_t n = 0; n < isovalues.size(); ++n) {
         run.surfaces.push_back(
             makeSurface(volume, index, isovalues[n], options.isovalues[n], run, progress, outputs));
     }
+    warnOfCounts(run);
     run.index = run.timer.time(
         kWrite, [&] { return keepIndex(index, volume, options.indexFiles, outputs); });
     if (run.failsStrict()) outputs.clear();
-    pictures.emplace(options.report.pictures);
     if (options.report.isWanted()) {
         progress.show(kReport);
-        Report page = makeReport(run, volume);
-        run.timer.time(kReport, [&] { writeReport(page, kProgram, options.report, outputs); });
+        page = run.timer.time(kReport, [&] {
+            return writeReport([&] { return makeReport(run, volume); }, kProgram, options.report,
+                               outputs);
+        });
+        run.reportFailure = page.failure;
     }
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
@@ -348,7 +380,10 @@ int runMesh(const MeshOptions& asked) {
     progress.clear();
     printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
     AtomicOutput::commit(outputs);
-    return strictVerdict(kProgram, options.common, run.warnings, kNotWritten, kExitOk);
+    const int code = strictVerdict(kProgram, options.common, run.warnings, kNotWritten, kExitOk);
+    return tellReportFailure(kProgram,
+                             run.failsStrict() ? "no surface is written" : writtenText(run),
+                             page.failure, code);
 }
 
 }  // namespace adaptiso

@@ -16,7 +16,8 @@ std::string counted(std::int64_t count, const std::string& what) {
     return formatCount(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-void printSurface(std::ostream& out, const SurfaceSummary& surface, bool isWritten) {
+void printSurface(std::ostream& out, const MeshRun& run, const SurfaceSummary& surface) {
+    const bool isWritten = !run.failsStrict();
     const TopologyReport& topology = surface.topology;
     out << oneLine(surface.file.string()) << (isWritten ? "" : " (not written)") << ": isovalue "
         << (surface.isAutomatic ? formatShort(surface.isovalue) : formatNumber(surface.isovalue))
@@ -43,6 +44,13 @@ void printSurface(std::ostream& out, const SurfaceSummary& surface, bool isWritt
         }
         out << ")\n";
     }
+    if (!surface.countMet().value_or(true)) {
+        out << "  " << formatCount(*surface.statistics.wantedTriangles)
+            << " triangles were asked for; the "
+            << (run.options.adaptive.maxErrorMm ? "bound of --max-error"
+                                                : "surface, with all its pieces and holes,")
+            << " does not allow as few\n";
+    }
     if (surface.crossingPairs) {
         out << "  " << counted(*surface.crossingPairs, "pair") << " of triangles cross\n";
     }
@@ -57,8 +65,7 @@ void printReport(std::ostream& out, const MeshRun& run) {
             << ": " << size[0] << " x " << size[1] << " x " << size[2] << " voxels, "
             << toString(run.preprocessed->pixelType) << '\n';
     }
-    for (const SurfaceSummary& surface : run.surfaces)
-        printSurface(out, surface, !run.failsStrict());
+    for (const SurfaceSummary& surface : run.surfaces) printSurface(out, run, surface);
     if (!run.index.file.empty() && !run.index.isLoaded && !run.failsStrict()) {
         out << oneLine(run.index.file.string()) << ": index for --index ("
             << toString(run.index.search) << "), " << formatCount(run.index.blocks) << " blocks\n";

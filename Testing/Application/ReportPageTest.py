@@ -1,15 +1,18 @@
 """Report pages: what they hold, and what people see of them in a browser."""
 
 import html.parser
+import json
 import math
 import os
 import re
+import resource
 import subprocess
 import unittest
 from pathlib import Path
 
 import browser
-from support import BAD_INPUT, BIN, CHECK_FAILED, OK, ApplicationTest, ball, write_nifti
+from support import (BAD_INPUT, BIN, CHECK_FAILED, MESH, OK, USAGE, ApplicationTest, ball, noise,
+                     write_nifti)
 from headDefects import icosphere, write_off
 
 CHECK = str(BIN / "adaptiso-check")
@@ -284,6 +287,55 @@ class EveryProgram(ReportTest):
                          self.path("pictures/spots.png").read_bytes())
 
 
+class Failures(ReportTest):
+    """A report that can't be written costs nothing else."""
+
+    def limited(self, *arguments):
+        # in bytes: between the surface and the page, which holds the viewer's script
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))
+        return subprocess.run([*map(str, arguments), "--json", "run.json", "--report", "page.html",
+                               "--pictures", "pictures"], cwd=self.folder, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=300,
+                              preexec_fn=limit)
+
+    def test_the_surface_stays(self):
+        self.mesh("ball.nii", "--iso", "100", "--quiet", "-o", "known.off")
+        done = self.limited(MESH, "ball.nii", "--iso", "100", "--quiet", "-o", "made.off")
+        self.assertEqual(done.returncode, CHECK_FAILED, done.stderr)
+        self.assertRegex(done.stderr, r"made\.off is written; the report failed: \S+: can't be written")
+        self.assertEqual(self.path("made.off").read_bytes(), self.path("known.off").read_bytes())
+        self.assertFalse(self.path("page.html").exists())
+        self.assertFalse(self.path("pictures").exists())
+        self.assertIn("can't be written",
+                      json.loads(self.path("run.json").read_text())["reportFailure"])
+
+    def test_the_checks_stay(self):
+        done = self.limited(CHECK, "sound.off")
+        self.assertEqual(done.returncode, CHECK_FAILED, done.stderr)
+        self.assertIn("the checks are done; the report failed", done.stderr)
+        self.assertIn("can't be written",
+                      json.loads(self.path("run.json").read_text())["reportFailure"])
+
+    def test_deface_needs_a_report(self):
+        self.check("sound.off", "--deface-report", code=USAGE)
+
+
+class Memory(ReportTest):
+    def peak(self, *arguments):
+        """Bytes that a run of adaptiso-mesh has resident at most."""
+        run = subprocess.Popen([MESH, *map(str, arguments)], cwd=self.folder)
+        _, status, usage = os.wait4(run.pid, 0)
+        run.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(run.returncode, OK)
+        return usage.ru_maxrss * 1024
+
+    def test_a_report_of_a_large_surface_takes_at_most_300_mb_more(self):
+        write_nifti(self.path("noise.nii"), noise(64))  # more than a million triangles
+        run = ("noise.nii", "--iso", "128", "--method", "mc", "--no-check-crossings", "--quiet", "-o",
+               "noise.ply")
+        self.assertLess(self.peak(*run, "--report", "page.html") - self.peak(*run), 300e6)
+
+
 class InTheBrowser(ReportTest):
     """What a person sees, in headless Chromium."""
 
@@ -390,6 +442,19 @@ class InTheBrowser(ReportTest):
         for n in changed:
             self.assertGreaterEqual(n // 40, 19)
             self.assertGreaterEqual(n % 40, 19)
+
+    def test_serves_everybody_at_every_width(self):
+        if not os.environ.get("ADAPTISO_AXE_SCRIPT"):
+            self.skipTest("needs axe-core, which CMake fetches")
+        axe = Path(os.environ["ADAPTISO_AXE_SCRIPT"]).read_text()
+        self.show_hole()
+        self.addCleanup(self.browser.resize, 1280, 1700)
+        for width in (360, 768, 1440):
+            self.browser.resize(width)
+            self.assertEqual(self.browser.violations(axe), [], width)
+            # nothing but tables and pictures is wider than the screen, and those scroll
+            self.assertLessEqual(
+                self.browser.run("return document.documentElement.scrollWidth"), width)
 
     def test_looks_as_it_did(self):
         """Loosely: fonts and drivers differ. ADAPTISO_KEEP_SCREENSHOT=1 makes a new one."""

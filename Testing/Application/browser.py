@@ -60,6 +60,19 @@ class Browser:
             time.sleep(0.2)
         raise TimeoutError("the viewer is neither ready nor missing after 240 s")
 
+    def resize(self, width, height=1200):
+        """The page's own width; windows of Chromium are never as narrow as a phone."""
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+            "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600})
+
+    def violations(self, axe):
+        """What axe-core (its script) finds wrong: rule and the first element, for each."""
+        self.run(axe)
+        return self.driver.execute_async_script("""
+            const done = arguments[0];
+            axe.run(document, { resultTypes: ["violations"] }).then((result) => done(
+                result.violations.map((v) => `${v.id}: ${v.nodes[0].html.slice(0, 200)}`)));""")
+
     def run(self, script, *arguments):
         return self.driver.execute_script(script, *arguments)
 

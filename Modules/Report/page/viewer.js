@@ -141,7 +141,7 @@ void main() {
       }
       const context = layer.getContext("2d");
       context.clearRect(0, 0, layer.width, layer.height);
-      context.lineWidth = 1.5 * (shown.width / shown.clientWidth);
+      const pixel = shown.width / shown.clientWidth;
       const middle = this.crosshair();
       for (const tile of this.nv.screenSlices) {
         if (!(tile.axCorSag in AXES) || !(tile.fovMM?.length > 1)) continue;
@@ -153,16 +153,23 @@ void main() {
         context.beginPath();
         context.rect(left, top, width, height);
         context.clip();
-        for (const surface of this.surfaces) {
-          if (!surface.isShown) continue;
-          const points = this.cutOf(surface, axis, middle[axis]);
-          context.strokeStyle = `rgb(${surface.color.join(" ")})`;
-          context.beginPath();
+        const outlines = this.surfaces.filter((surface) => surface.isShown).map((surface) => {
+          const points = this.cutOf(surface, axis, middle[axis]), path = new Path2D();
           for (let n = 0; n + 5 < points.length; n += 6) {
-            context.moveTo(toX(points[n + across]), toY(points[n + up]));
-            context.lineTo(toX(points[n + 3 + across]), toY(points[n + 3 + up]));
+            path.moveTo(toX(points[n + across]), toY(points[n + up]));
+            path.lineTo(toX(points[n + 3 + across]), toY(points[n + 3 + up]));
           }
-          context.stroke();
+          return { path, color: `rgb(${surface.color.join(" ")})` };
+        });
+        // on bright tissue a line is seen by its dark rim; all rims lie under all lines
+        context.lineCap = "round";
+        context.strokeStyle = "black";
+        context.lineWidth = 3.5 * pixel;
+        for (const { path } of outlines) context.stroke(path);
+        context.lineWidth = 1.5 * pixel;
+        for (const { path, color } of outlines) {
+          context.strokeStyle = color;
+          context.stroke(path);
         }
         context.restore();
       }

@@ -124,6 +124,22 @@ void Canvas::text(Pixel base, const std::string& text, double size, ReportColor 
     cairo_new_path(context_.get());
 }
 
+void Canvas::label(Pixel base, const std::string& text, double size, Anchor anchor) {
+    constexpr double kRim = 3.5;
+    setFont(size, true);
+    cairo_text_extents_t extents;
+    cairo_text_extents(context_.get(), text.c_str(), &extents);
+    const double part = anchor == Anchor::Left ? 0 : anchor == Anchor::Middle ? 0.5 : 1;
+    cairo_move_to(context_.get(), base.x - part * extents.x_advance, base.y);
+    cairo_text_path(context_.get(), text.c_str());
+    cairo_set_line_width(context_.get(), kRim);
+    cairo_set_line_join(context_.get(), CAIRO_LINE_JOIN_ROUND);
+    setColor(kBlack);
+    cairo_stroke_preserve(context_.get());
+    setColor(kWhite);
+    cairo_fill(context_.get());
+}
+
 void Canvas::clip(Pixel corner, double width, double height) {
     cairo_save(context_.get());
     cairo_rectangle(context_.get(), corner.x, corner.y, width, height);

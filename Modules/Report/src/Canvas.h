@@ -41,6 +41,9 @@ public:
     void text(Pixel base, const std::string& text, double size, ReportColor color,
               Anchor anchor = Anchor::Left, bool isBold = false);
 
+    /// A white text with a dark rim, to be read on any ground.
+    void label(Pixel base, const std::string& text, double size, Anchor anchor = Anchor::Left);
+
     double textWidth(const std::string& text, double size);
 
     /// What is drawn until restore() stays inside the rectangle.

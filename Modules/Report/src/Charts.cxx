@@ -35,33 +35,35 @@ double tickStep(double range) {
     return 10 * power;
 }
 
-std::vector<double> triangleAreas(const TriangleMesh& mesh) {
+std::vector<double> triangleAreas(const SceneMesh& mesh) {
     std::vector<double> areas;
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3 vector = areaVector2(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
+    areas.reserve(static_cast<std::size_t>(mesh.triangleCount()));
+    mesh.forEachTriangle([&](const Triangle& t) {
+        const Vec3 vector = areaVector2(mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2]));
         areas.push_back(0.5 * norm(vector));
-    }
+    });
     return areas;
 }
 
 /// Degrees; 0 where an edge has no length.
-std::vector<double> smallestAngles(const TriangleMesh& mesh) {
+std::vector<double> smallestAngles(const SceneMesh& mesh) {
     std::vector<double> angles;
-    for (const Triangle& t : mesh.triangles) {
+    angles.reserve(static_cast<std::size_t>(mesh.triangleCount()));
+    mesh.forEachTriangle([&](const Triangle& t) {
         double smallest = std::numbers::pi;
         for (int n = 0; n < 3; ++n) {
-            const Vec3& p = mesh.points[t[n]];
-            const Vec3 a = mesh.points[t[(n + 1) % 3]] - p, b = mesh.points[t[(n + 2) % 3]] - p;
+            const Vec3 p = mesh.point(t[n]);
+            const Vec3 a = mesh.point(t[(n + 1) % 3]) - p, b = mesh.point(t[(n + 2) % 3]) - p;
             smallest = std::min(smallest, std::atan2(norm(cross(a, b)), dot(a, b)));
         }
         angles.push_back(smallest * 180 / std::numbers::pi);
-    }
+    });
     return angles;
 }
 
 /// From 0 (or the least, below it) to where all but one in 200 lie.
-std::pair<double, double> axisRange(const Panel& panel) {
-    std::vector<double> values = panel.values;
+std::pair<double, double> axisRange(Panel& panel) {
+    std::vector<double>& values = panel.values;  // in any order: of a large surface a copy is dear
     const auto nth =
         values.begin() + static_cast<std::ptrdiff_t>(0.995 * double(values.size() - 1));
     std::nth_element(values.begin(), nth, values.end());
@@ -84,7 +86,7 @@ void drawAxis(Canvas& canvas, const Panel& panel, Pixel corner, double width, do
     canvas.text({corner.x + width, bottom + 38}, panel.unit, 13, kInk, Anchor::Right);
 }
 
-void drawPanel(Canvas& canvas, const Panel& panel, Pixel corner, double width, double height) {
+void drawPanel(Canvas& canvas, Panel panel, Pixel corner, double width, double height) {
     const std::pair<double, double> range = axisRange(panel);
     const auto [least, end] = range;
     std::vector<double> counts(kBins);
@@ -100,9 +102,9 @@ void drawPanel(Canvas& canvas, const Panel& panel, Pixel corner, double width, d
     const double top = corner.y + 46, bottom = corner.y + height - 46;
     const double most = *std::max_element(counts.begin(), counts.end());
     canvas.text({corner.x, corner.y + 18}, panel.title, 15, kInk, Anchor::Left, true);
-    std::vector<double> sorted = panel.values;
-    const auto middle = sorted.begin() + std::ssize(sorted) / 2;
-    std::nth_element(sorted.begin(), middle, sorted.end());
+    std::vector<double>& values = panel.values;
+    const auto middle = values.begin() + std::ssize(values) / 2;
+    std::nth_element(values.begin(), middle, values.end());
     const auto [low, high] = std::minmax_element(panel.values.begin(), panel.values.end());
     canvas.text({corner.x, corner.y + 37},
                 "smallest " + shortNumber(*low) + ", median " + shortNumber(*middle) +
@@ -126,23 +128,24 @@ ReportColor onPaper(ReportColor color) {
 
 std::optional<Picture> trianglePicture(const Scene& scene) {
     constexpr int kWidth = 460, kHeight = 250, kMargin = 20;
-    std::vector<Panel> panels;
+    const auto rows =
+        std::count_if(scene.surfaces.begin(), scene.surfaces.end(),
+                      [](const SceneSurface& surface) { return !surface.mesh.isEmpty(); });
+    if (rows == 0) return std::nullopt;
+    Canvas canvas(2 * (kWidth + kMargin) + kMargin,
+                  static_cast<int>(rows) * (kHeight + kMargin) + kMargin, kWhite);
+    Pixel corner{kMargin, kMargin};
     for (const SceneSurface& surface : scene.surfaces) {
-        if (surface.mesh.triangles.empty()) continue;
+        if (surface.mesh.isEmpty()) continue;
         const ReportColor color = onPaper(surface.color);
-        panels.push_back(
-            {surface.name + ": area of triangles", "mm²", triangleAreas(surface.mesh), color});
-        panels.push_back({surface.name + ": smallest angle of triangles", "degrees",
-                          smallestAngles(surface.mesh), color, 60.0});
-    }
-    if (panels.empty()) return std::nullopt;
-    const int rows = static_cast<int>(panels.size() / 2);
-    Canvas canvas(2 * (kWidth + kMargin) + kMargin, rows * (kHeight + kMargin) + kMargin, kWhite);
-    for (std::size_t n = 0; n < panels.size(); ++n) {
-        drawPanel(canvas, panels[n],
-                  {double(kMargin) + double(n % 2) * (kWidth + kMargin),
-                   double(kMargin) + double(n / 2) * (kHeight + kMargin)},
-                  kWidth, kHeight);
+        drawPanel(canvas,
+                  {surface.name + ": area of triangles", "mm²", triangleAreas(surface.mesh), color},
+                  corner, kWidth, kHeight);
+        drawPanel(canvas,
+                  {surface.name + ": smallest angle of triangles", "degrees",
+                   smallestAngles(surface.mesh), color, 60.0},
+                  {corner.x + kWidth + kMargin, corner.y}, kWidth, kHeight);
+        corner.y += kHeight + kMargin;
     }
     return Picture{"triangles.png",
                    "Size and shape of the triangles",
@@ -161,7 +164,7 @@ std::optional<Picture> histogramPicture(const Report& report, std::size_t n) {
                  [](double v) { return std::isfinite(v); });
     if (panel.values.empty()) return std::nullopt;
     Canvas canvas(kWidth + 2 * kMargin, kHeight + 2 * kMargin, kWhite);
-    drawPanel(canvas, panel, {kMargin, kMargin}, kWidth, kHeight);
+    drawPanel(canvas, std::move(panel), {kMargin, kMargin}, kWidth, kHeight);
     return Picture{"histogram-" + std::to_string(n + 1) + ".png",
                    histogram.title,
                    "Histogram: " + histogram.title + ", in " + histogram.unit + ".",

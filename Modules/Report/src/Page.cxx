@@ -9,17 +9,21 @@
 #include "Payload.h"
 #include "Scene.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Report/Coarser.h"
 
 namespace adaptiso {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Values = std::map<std::string_view, std::string>;
+using Values = std::map<std::string_view, std::string_view>;
 
 /// `pattern` with every {{NAME}} replaced by its value; values are taken as they are.
 /// \throws InternalError  a name that has no value
 std::string fill(std::string_view pattern, const Values& values) {
     std::string text;
+    std::size_t length = pattern.size();
+    for (const auto& [name, value] : values) length += value.size();
+    text.reserve(length);
     for (std::size_t at = 0; at < pattern.size();) {
         const std::size_t open = pattern.find("{{", at);
         text += pattern.substr(at, open - at);
@@ -70,17 +74,15 @@ Json pointJson(const Vec3& p) {
 
 /// The scene as the viewer gets it: no more triangles than it can show with ease.
 Scene forViewer(const Scene& scene, const PageOptions& options, std::vector<std::string>& notes) {
-    std::int64_t triangles = 0;
+    std::vector<std::int64_t> counts;
     for (const SceneSurface& surface : scene.surfaces) {
-        triangles += std::ssize(surface.mesh.triangles);
+        counts.push_back(surface.mesh.triangleCount());
     }
-    if (triangles <= options.maxTriangles) return scene;
+    const std::vector<std::int64_t> shares = shareTriangles(counts, options.maxTriangles);
+    if (shares == counts) return scene;
     Scene result = scene;
-    for (SceneSurface& surface : result.surfaces) {
-        const double share =
-            static_cast<double>(surface.mesh.triangles.size()) / static_cast<double>(triangles);
-        surface = coarser(
-            surface, static_cast<std::int64_t>(share * static_cast<double>(options.maxTriangles)));
+    for (std::size_t n = 0; n < counts.size(); ++n) {
+        result.surfaces[n] = coarser(scene.surfaces[n], shares[n]);
     }
     notes.push_back(
         "The viewer shows the surfaces coarser than they are, to stay quick and small; "
@@ -92,7 +94,7 @@ std::string viewerData(const Report& report, const Scene& scene, const PageOptio
                        std::vector<std::string>& notes) {
     const Scene shown = forViewer(scene, options, notes);
     Json surfaces = Json::array(), spots = Json::array();
-    std::string elements;
+    std::string elements;  // tens of MB: added to, not copied
     for (std::size_t n = 0; n < shown.surfaces.size(); ++n) {
         const SceneSurface& surface = shown.surfaces[n];
         // those around the first are seen through
@@ -109,14 +111,19 @@ std::string viewerData(const Report& report, const Scene& scene, const PageOptio
         {"start", pointJson(shown.spots.empty() ? middle : shown.spots.front().pointMm)},
         {"hasImage", report.volume.has_value()}};
     const std::string image =
-        report.volume ? niftiOf(report.volume->view, options.maxVoxels) : blankNifti(scene.box);
-    return dataElement("data", "application/json", jsonText(data)) +
-           dataElement("volume", "text/plain", base64(gzip(image))) + elements;
+        report.volume ? niftiOf(report.volume->view, options.maxVoxels, scene.face.get())
+                      : blankNifti(scene.box);
+    elements += dataElement("data", "application/json", jsonText(data));
+    elements += dataElement("volume", "text/plain", base64(gzip(image)));
+    return elements;
 }
 
-std::string viewerScripts() {
-    return "<script>\n" + std::string(embedded::niivueJs()) + "\n</script>\n<script>\n" +
-           std::string(embedded::viewerJs()) + "</script>\n";
+void addViewerScripts(std::string& html) {
+    html += "<script>\n";
+    html += embedded::niivueJs();
+    html += "\n</script>\n<script>\n";
+    html += embedded::viewerJs();
+    html += "</script>\n";
 }
 
 }  // namespace
@@ -129,40 +136,50 @@ std::string htmlPage(const Report& report, const std::vector<Picture>& pictures,
                      const PageOptions& options) {
     const Scene scene = makeScene(report);
     std::vector<std::string> notes = report.notes;
-    bool showsViewer = false;
-    for (const SceneSurface& surface : scene.surfaces) {
-        showsViewer = showsViewer || !surface.mesh.triangles.empty();
-    }
+    bool showsViewer = scene.hasTriangles();
     if (showsViewer && !hasViewer()) {
         notes.push_back(
             "This program was built without the interactive viewer (niivue); the "
             "pictures show the same surfaces.");
         showsViewer = false;
     }
-    const std::string scripts =
-        showsViewer ? viewerData(report, scene, options, notes) + viewerScripts() : "";
+    std::string scripts;
+    if (showsViewer) {
+        scripts = viewerData(report, scene, options, notes);
+        addViewerScripts(scripts);
+    }
     const VerdictWords words = wordsOf(report.verdict);
     const std::string licenses = "<details><summary>Licences of the viewer</summary><pre>" +
                                  escaped(std::string(embedded::licenses())) + "</pre></details>";
-    return fill(embedded::pageHtml(),
-                {{"GENERATOR", escaped(report.program + " " + report.version)},
-                 {"VERDICT_CLASS", words.style},
-                 {"VERDICT_SIGN", words.sign},
-                 {"VERDICT_WORD", words.word},
-                 {"TITLE", escaped(report.title)},
-                 {"HEADLINE", escaped(report.headline)},
-                 {"DATE", escaped(report.date)},
-                 {"FRAME", escaped(report.frame)},
-                 {"STYLE", std::string(embedded::styleCss())},
-                 {"FACTS", factsHtml(report)},
-                 {"VIEWER", showsViewer ? std::string(embedded::viewerHtml()) : ""},
-                 {"SPOTS", spotsHtml(scene, showsViewer)},
-                 {"CHECKS", checksHtml(report)},
-                 {"TABLES", tablesHtml(report)},
-                 {"PICTURES", picturesHtml(pictures)},
-                 {"NOTES", notesHtml(notes)},
-                 {"LICENSES", showsViewer ? licenses : ""},
-                 {"SCRIPTS", scripts}});
+    const std::string scale = scaleHtml(scene);
+    const std::string viewer = showsViewer ? fill(embedded::viewerHtml(), {{"SCALE", scale}}) : "";
+    const std::string generator = escaped(report.program + " " + report.version),
+                      title = escaped(report.title), headline = escaped(report.headline),
+                      date = escaped(report.date), frame = escaped(report.frame),
+                      failures = failuresHtml(report), facts = factsHtml(report),
+                      face = faceHtml(report, scene), spots = spotsHtml(scene, showsViewer),
+                      checks = checksHtml(report), tables = tablesHtml(report),
+                      drawn = picturesHtml(pictures), told = notesHtml(notes);
+    return fill(embedded::pageHtml(), {{"GENERATOR", generator},
+                                       {"VERDICT_CLASS", words.style},
+                                       {"VERDICT_SIGN", words.sign},
+                                       {"VERDICT_WORD", words.word},
+                                       {"TITLE", title},
+                                       {"HEADLINE", headline},
+                                       {"FAILURES", failures},
+                                       {"DATE", date},
+                                       {"FRAME", frame},
+                                       {"STYLE", embedded::styleCss()},
+                                       {"FACTS", facts},
+                                       {"FACE", face},
+                                       {"VIEWER", viewer},
+                                       {"SPOTS", spots},
+                                       {"CHECKS", checks},
+                                       {"TABLES", tables},
+                                       {"PICTURES", drawn},
+                                       {"NOTES", told},
+                                       {"LICENSES", showsViewer ? std::string_view(licenses) : ""},
+                                       {"SCRIPTS", scripts}});
 }
 
 }  // namespace adaptiso

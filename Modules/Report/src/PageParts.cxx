@@ -1,6 +1,7 @@
 #include "PageParts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -51,18 +52,17 @@ std::string checkRow(const ReportCheck& check) {
            "</td><td>" + escaped(check.finding) + "</td></tr>\n";
 }
 
-std::string checkTable(const std::vector<const ReportCheck*>& checks) {
+std::string checkTable(const std::string& label, const std::vector<const ReportCheck*>& checks) {
     std::string html =
-        "<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">Result</th><th scope=\"col\">"
+        "<table>\n<thead><tr><th scope=\"col\">Result</th><th scope=\"col\">"
         "Question</th><th scope=\"col\">Of</th><th "
         "scope=\"col\">Found</th></tr></thead>\n<tbody>\n";
     for (const ReportCheck* check : checks) html += checkRow(*check);
-    return html + "</tbody>\n</table></div>\n";
+    return scrollable(label, html + "</tbody>\n</table>");
 }
 
 std::string tableHtml(const ReportTable& table) {
-    std::string html =
-        "<h3>" + escaped(table.title) + "</h3>\n<div class=\"scroll\"><table>\n<thead><tr>";
+    std::string html = "<table>\n<thead><tr>";
     for (const std::string& column : table.columns) {
         html += "<th scope=\"col\">" + escaped(column) + "</th>";
     }
@@ -75,7 +75,8 @@ std::string tableHtml(const ReportTable& table) {
         }
         html += "</tr>\n";
     }
-    return html + "</tbody>\n</table></div>\n";
+    return "<h3>" + escaped(table.title) + "</h3>\n" +
+           scrollable("Table: " + table.title, html + "</tbody>\n</table>");
 }
 
 }  // namespace
@@ -113,6 +114,89 @@ std::string escaped(const std::string& text) {
     return html;
 }
 
+std::string scrollable(const std::string& label, const std::string& html) {
+    return "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" + escaped(label) +
+           "\">" + html + "</div>\n";
+}
+
+std::string failuresHtml(const Report& report) {
+    constexpr std::size_t kNamed = 3;
+    std::string html;
+    std::size_t failed = 0;
+    for (const ReportCheck& check : report.checks) {
+        if (check.outcome != ReportOutcome::Failed || ++failed > kNamed) continue;
+        html += "<li><strong>" + escaped(check.name) + "</strong>: " + escaped(check.subject) +
+                (check.finding.empty() ? "" : ", " + escaped(check.finding)) + "</li>\n";
+    }
+    if (failed == 0) return "";
+    if (failed > kNamed) {
+        html +=
+            "<li><a href=\"#checks\">and " + std::to_string(failed - kNamed) + " more</a></li>\n";
+    }
+    return "<ul class=\"failures\" aria-label=\"What failed\">\n" + html + "</ul>\n";
+}
+
+std::string faceHtml(const Report& report, const Scene& scene) {
+    if (scene.surfaces.empty() && !report.volume) return "";
+    const std::string begin = "<p class=\"face\"><strong>Faces.</strong> ";
+    if (scene.face && scene.face->hidesAll()) {
+        return begin +
+               "Left out (<code>--deface-report</code>). Where the face lies could not be told, "
+               "since " +
+               escaped(scene.face->reason()) +
+               ": neither the image nor a surface is shown that may hold it.</p>\n";
+    }
+    if (scene.face) {
+        return begin +
+               "Left out (<code>--deface-report</code>): of the image and of the surfaces "
+               "nothing is shown below a plane that begins " +
+               std::to_string(std::lround(scene.face->belowTopMm())) +
+               " mm under the top of the head at the forehead and falls backwards, but the brain "
+               "where "
+               "its skull is known. Surfaces end there; that is no hole in them. Ears may be seen "
+               "in "
+               "part.</p>\n";
+    }
+    return begin +
+           "Where the image or a surface holds a whole "
+           "head, "
+           "this page shows its face, in slices and in 3-D: share it as you would share the scan, "
+           "or "
+           "make it with <code>--deface-report</code>.</p>\n";
+}
+
+std::string scaleHtml(const Scene& scene) {
+    const auto withValues =
+        std::find_if(scene.surfaces.begin(), scene.surfaces.end(),
+                     [](const SceneSurface& surface) { return !surface.valuesMm.empty(); });
+    if (withValues == scene.surfaces.end()) return "";
+    const double most = withValues->largestValueMm;
+    const auto text = [](double mm) {
+        char digits[32];
+        std::snprintf(digits, sizeof digits, mm < 0.1 && mm > 0 ? "%.4f" : "%.2f", mm);
+        return std::string(digits);
+    };
+    std::string stops;
+    constexpr int kStops = 10;
+    for (int n = 0; n < kStops; ++n) {
+        const ReportColor c = viridis(n / double(kStops - 1));
+        stops += ", rgb(" + std::to_string(c[0]) + " " + std::to_string(c[1]) + " " +
+                 std::to_string(c[2]) + ")";
+    }
+    std::string html =
+        "<div class=\"scale\" role=\"img\" aria-label=\"Colours of the 3-D view: distance "
+        "from 0 mm, violet, to " +
+        text(most) +
+        " mm, yellow\"><span class=\"unit\">mm</span><span class=\"bar\" "
+        "style=\"background: linear-gradient(to top" +
+        stops + ")\"></span>";
+    for (int tick = 4; tick >= 0; --tick) {
+        html += "<span class=\"tick\" style=\"bottom: " + std::to_string(25 * tick) + "%\">" +
+                text(most * tick / 4) + "</span>";
+    }
+    return html + "</div>\n";
+}
+
 std::string factsHtml(const Report& report) {
     std::vector<ReportFact> how = report.options;
     how.push_back({"Made by", report.program + " " + report.version + ", " + report.date});
@@ -124,7 +208,7 @@ std::string spotsHtml(const Scene& scene, bool hasViewer) {
     std::string html =
         "<section aria-labelledby=\"spots-title\">\n<h2 id=\"spots-title\">Where to look</h2>\n";
     if (hasViewer) html += "<p>A click moves the crosshair of the viewer below to the place.</p>\n";
-    html += "<ol class=\"spots\">\n";
+    html += "<ol class=\"spots\" tabindex=\"0\" aria-label=\"Places to look at\">\n";
     for (std::size_t n = 0; n < scene.spots.size(); ++n) {
         const SceneSpot& spot = scene.spots[n];
         const std::string where = "<span class=\"where\">(" + pointText(spot.pointMm) + ")</span>";
@@ -141,6 +225,23 @@ std::string spotsHtml(const Scene& scene, bool hasViewer) {
     return html + "</ol>\n</section>\n";
 }
 
+namespace {
+
+/// "58 checks hold, 2 are undecided"
+std::string summaryOf(const std::vector<const ReportCheck*>& checks) {
+    const auto held = std::count_if(checks.begin(), checks.end(), [](const ReportCheck* check) {
+        return check->outcome == ReportOutcome::Passed;
+    });
+    const auto other = std::ssize(checks) - held;
+    std::string text = std::to_string(held) + (held == 1 ? " check holds" : " checks hold");
+    if (other > 0) {
+        text += ", " + std::to_string(other) + (other == 1 ? " is" : " are") + " undecided";
+    }
+    return text;
+}
+
+}  // namespace
+
 std::string checksHtml(const Report& report) {
     if (report.checks.empty()) return "<div id=\"checks\"></div>\n";
     std::vector<const ReportCheck*> first, rest;
@@ -155,11 +256,10 @@ std::string checksHtml(const Report& report) {
     std::string html =
         "<section id=\"checks\" aria-labelledby=\"checks-title\">\n<h2 "
         "id=\"checks-title\">Checks</h2>\n";
-    if (!first.empty()) html += checkTable(first);
+    if (!first.empty()) html += checkTable("Checks that failed or are noted", first);
     if (!rest.empty()) {
-        html += "<details" + std::string(first.empty() ? " open" : "") + "><summary>" +
-                std::to_string(rest.size()) + (first.empty() ? " checks" : " more checks") +
-                "</summary>\n" + checkTable(rest) + "</details>\n";
+        html += "<details><summary>" + summaryOf(rest) + "</summary>\n" +
+                checkTable("Checks that hold", rest) + "</details>\n";
     }
     return html + "</section>\n";
 }
@@ -178,10 +278,12 @@ std::string picturesHtml(const std::vector<Picture>& pictures) {
         "<section aria-labelledby=\"pictures-title\">\n<h2 "
         "id=\"pictures-title\">Pictures</h2>\n";
     for (const Picture& picture : pictures) {
-        html += "<figure><img alt=\"" + escaped(picture.altText) + "\" width=\"" +
-                std::to_string(picture.width) + "\" height=\"" + std::to_string(picture.height) +
-                "\" src=\"data:image/png;base64," + base64(picture.png) + "\"><figcaption>" +
-                escaped(picture.title) + "</figcaption></figure>\n";
+        html +=
+            "<figure><div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Picture: " +
+            escaped(picture.title) + "\"><img alt=\"" + escaped(picture.altText) + "\" width=\"" +
+            std::to_string(picture.width) + "\" height=\"" + std::to_string(picture.height) +
+            "\" src=\"data:image/png;base64," + base64(picture.png) + "\"></div><figcaption>" +
+            escaped(picture.title) + "</figcaption></figure>\n";
     }
     return html + "</section>\n";
 }

@@ -13,7 +13,17 @@ namespace adaptiso {
 /// U+FFFD, and so do control characters.
 std::string escaped(const std::string& text);
 
+/// `html`, which may be wider than the page, in a part that scrolls sideways, with keys too.
+/// \param label  what it is, for people who hear the page
+std::string scrollable(const std::string& label, const std::string& html);
+
+/// Which of the required checks failed, for the banner: the first three by name.
+std::string failuresHtml(const Report& report);
 std::string factsHtml(const Report& report);
+/// One line on what the page shows of a face. Empty where nothing is shown.
+std::string faceHtml(const Report& report, const Scene& scene);
+/// The colour bar of the viewer. Empty where no surface has values.
+std::string scaleHtml(const Scene& scene);
 /// The places to look at: buttons where there is a viewer to move, else text.
 std::string spotsHtml(const Scene& scene, bool hasViewer);
 std::string checksHtml(const Report& report);

@@ -163,7 +163,7 @@ std::string gzip(std::string_view bytes) {
     return packed;
 }
 
-std::string niftiOf(const VolumeView& volume, std::int64_t maxVoxels) {
+std::string niftiOf(const VolumeView& volume, std::int64_t maxVoxels, const FaceCut* face) {
     const Index3 block = blockSize(volume.geometry(), maxVoxels);
     const ImageGeometry geometry = blockGeometry(volume.geometry(), block);
     const ValueRange window = greyWindow(volume);
@@ -174,6 +174,9 @@ std::string niftiOf(const VolumeView& volume, std::int64_t maxVoxels) {
             for (std::int64_t n = begin; n < end; ++n) {
                 const Index3 first{n % geometry.size[0] * block[0],
                                    n % layer / geometry.size[0] * block[1], n / layer * block[2]};
+                const Vec3 index{double(n % geometry.size[0]), double(n % layer / geometry.size[0]),
+                                 double(n / layer)};
+                if (face && face->hides(lpsToRas(geometry.toPhysical(index)))) continue;
                 samples[static_cast<std::size_t>(n)] =
                     greyOf(blockMean(view, first, block), window);
             }
@@ -199,29 +202,29 @@ std::string blankNifti(const BoundingBox& box) {
 
 std::string mz3Of(const SceneSurface& surface) {
     constexpr std::uint16_t kFaces = 1, kVertices = 2, kColors = 4;
-    const TriangleMesh& mesh = surface.mesh;
-    std::vector<std::int32_t> newNumber(mesh.points.size(), -1);
+    const SceneMesh& mesh = surface.mesh;
+    std::vector<std::int32_t> newNumber(static_cast<std::size_t>(mesh.pointCount()), -1);
     std::vector<VertexId> used;
-    for (const Triangle& t : mesh.triangles) {
+    mesh.forEachTriangle([&](const Triangle& t) {
         for (const VertexId v : t) {
             if (newNumber[v] >= 0) continue;
             newNumber[v] = static_cast<std::int32_t>(used.size());
             used.push_back(v);
         }
-    }
+    });
     const bool hasColors = !surface.valuesMm.empty();
     std::string bytes;
     append<std::uint16_t>(bytes, 0x5A4D);
     append<std::uint16_t>(bytes, kFaces | kVertices | (hasColors ? kColors : 0));
-    append<std::uint32_t>(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
+    append<std::uint32_t>(bytes, static_cast<std::uint32_t>(mesh.triangleCount()));
     append<std::uint32_t>(bytes, static_cast<std::uint32_t>(used.size()));
     append<std::uint32_t>(bytes, 0);
-    for (const Triangle& t : mesh.triangles) {
+    mesh.forEachTriangle([&](const Triangle& t) {
         for (const VertexId v : t) append<std::int32_t>(bytes, newNumber[v]);
-    }
+    });
     for (const VertexId v : used) {
         for (int axis = 0; axis < 3; ++axis) {
-            append<float>(bytes, static_cast<float>(mesh.points[v][axis]));
+            append<float>(bytes, static_cast<float>(mesh.point(v)[axis]));
         }
     }
     for (const VertexId v : hasColors ? used : std::vector<VertexId>{}) {

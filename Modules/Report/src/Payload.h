@@ -16,8 +16,9 @@ std::string gzip(std::string_view bytes);
 
 /// The image as a NIfTI-1 file of 8 bits a sample, black to white as greyWindow() says: with at
 /// most `maxVoxels` samples, means of blocks of the image's where that has more. RAS; the header
-/// holds geometry alone.
-std::string niftiOf(const VolumeView& volume, std::int64_t maxVoxels);
+/// holds geometry alone. Black where `face` (if not null) hides the middle of a block.
+std::string niftiOf(const VolumeView& volume, std::int64_t maxVoxels,
+                    const FaceCut* face = nullptr);
 
 /// A black image that holds `box` (RAS) and a little more.
 std::string blankNifti(const BoundingBox& box);
@@ -26,7 +27,8 @@ std::string blankNifti(const BoundingBox& box);
 /// colours where the surface has values. RAS.
 std::string mz3Of(const SceneSurface& surface);
 
-/// The surface with at most `maxTriangles`, by vtkQuadricClustering where it has more.
+/// The surface with at most `maxTriangles`: see coarserMesh(). A vertex has the mean of the values
+/// of those that it stands for.
 SceneSurface coarser(const SceneSurface& surface, std::int64_t maxTriangles);
 
 }  // namespace adaptiso

@@ -13,7 +13,7 @@ std::vector<Picture> drawPictures(const Report& report) {
         if (picture) pictures.push_back(std::move(*picture));
     };
     const Scene scene = makeScene(report);
-    if (!scene.isEmpty()) {
+    if (!scene.isEmpty() && (!scene.face || scene.hasTriangles())) {
         add(spotPicture(report, scene));
         for (const int axis : {2, 1, 0}) add(contourPicture(report, scene, axis));
         for (std::size_t n = 0; n < scene.surfaces.size(); ++n) add(sixSidesPicture(scene, n));

@@ -11,21 +11,6 @@ bool isFinite(const Vec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-/// Points keep their numbers; triangles that can't be drawn go.
-TriangleMesh drawable(const TriangleMesh& mesh) {
-    TriangleMesh result;
-    result.points.reserve(mesh.points.size());
-    for (const Vec3& p : mesh.points) result.points.push_back(lpsToRas(p));
-    const auto count = static_cast<VertexId>(mesh.points.size());
-    std::copy_if(mesh.triangles.begin(), mesh.triangles.end(), std::back_inserter(result.triangles),
-                 [&](const Triangle& t) {
-                     return std::all_of(t.begin(), t.end(), [&](VertexId v) {
-                         return v >= 0 && v < count && isFinite(mesh.points[v]);
-                     });
-                 });
-    return result;
-}
-
 void extend(BoundingBox& box, const Vec3& p) {
     for (int axis = 0; axis < 3; ++axis) {
         box.minimum[axis] = std::min(box.minimum[axis], p[axis]);
@@ -46,9 +31,10 @@ BoundingBox boxOf(const Scene& scene, const Report& report) {
     constexpr double kFar = std::numeric_limits<double>::infinity();
     BoundingBox box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
     for (const SceneSurface& surface : scene.surfaces) {
-        for (const Triangle& t : surface.mesh.triangles) {
-            for (const VertexId v : t) extend(box, surface.mesh.points[v]);
-        }
+        if (surface.mesh.isEmpty()) continue;
+        const BoundingBox own = boxOf(surface.mesh);
+        extend(box, own.minimum);
+        extend(box, own.maximum);
     }
     if (box.minimum.x > box.maximum.x && report.volume) {
         extendByImage(box, report.volume->view.geometry());
@@ -65,6 +51,28 @@ Vec3 between(const Vec3& a, const Vec3& b, int axis, double atMm) {
 
 }  // namespace
 
+bool Scene::hasTriangles() const {
+    return std::any_of(surfaces.begin(), surfaces.end(),
+                       [](const SceneSurface& surface) { return !surface.mesh.isEmpty(); });
+}
+
+namespace {
+
+void leaveOutFace(const Report& report, Scene& scene) {
+    std::vector<SceneMesh> meshes;
+    for (const SceneSurface& surface : scene.surfaces) meshes.push_back(surface.mesh);
+    scene.face = std::make_shared<const FaceCut>(report, meshes);
+    for (std::size_t n = 0; n < meshes.size(); ++n) {
+        if (report.surfaces[n].isWithinSkull) continue;
+        scene.surfaces[n].mesh.leaveOut([&](const Triangle& t) {
+            return std::any_of(t.begin(), t.end(),
+                               [&](VertexId v) { return scene.face->hides(meshes[n].point(v)); });
+        });
+    }
+}
+
+}  // namespace
+
 Scene makeScene(const Report& report) {
     Scene scene;
     double largest = 0;  // NaN never is
@@ -72,7 +80,7 @@ Scene makeScene(const Report& report) {
         SceneSurface surface;
         surface.name = given.name;
         surface.color = surfaceColor(scene.surfaces.size());
-        surface.mesh = drawable(given.mesh);
+        surface.mesh = SceneMesh::of(given.mesh);
         surface.triangles = std::ssize(given.mesh.triangles);
         if (given.valuesMm.size() == given.mesh.points.size()) surface.valuesMm = given.valuesMm;
         for (const double value : surface.valuesMm) largest = std::max(largest, value);
@@ -84,14 +92,15 @@ Scene makeScene(const Report& report) {
             scene.spots.push_back({spot.what, lpsToRas(spot.pointMm), spot.isFailure});
         }
     }
+    if (report.leavesOutFaces) leaveOutFace(report, scene);
     scene.box = boxOf(scene, report);
     return scene;
 }
 
-std::vector<Segment> cutByPlane(const TriangleMesh& mesh, int axis, double atMm) {
+std::vector<Segment> cutByPlane(const SceneMesh& mesh, int axis, double atMm) {
     std::vector<Segment> segments;
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3 corners[3]{mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
+    mesh.forEachTriangle([&](const Triangle& t) {
+        const Vec3 corners[3]{mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2])};
         Segment segment;
         std::size_t found = 0;
         for (int n = 0; n < 3; ++n) {
@@ -100,7 +109,7 @@ std::vector<Segment> cutByPlane(const TriangleMesh& mesh, int axis, double atMm)
             segment[found++] = between(a, b, axis, atMm);
         }
         if (found == 2) segments.push_back(segment);
-    }
+    });
     return segments;
 }
 

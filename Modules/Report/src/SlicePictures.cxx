@@ -11,10 +11,11 @@
 namespace adaptiso {
 namespace {
 
-constexpr int kColumns = 6, kRows = 2;
-constexpr int kTile = 250;  // pixels, the longer side of a tile
+constexpr int kColumns = 4, kRows = 3;
+constexpr int kTile = 270;  // pixels, the longer side of a tile
 constexpr int kGap = 4;
-constexpr int kHead = 34;  // room for the legend above
+constexpr int kHead = 34;      // room for the legend above
+constexpr double kLabel = 14;  // of what is written on slices
 constexpr std::size_t kMostSpots = 6;
 
 std::string millimetres(double value) {
@@ -46,11 +47,10 @@ void drawLegend(Canvas& canvas, const Scene& scene, double y) {
 
 void drawSides(Canvas& canvas, Pixel corner, const SlicePlane& plane) {
     const SliceSides sides = sidesOf(plane.axis);
-    const double middle = corner.y + plane.height / 2.0 + 4;
-    canvas.text({corner.x + 4, middle}, sides.left, 12, kFaint);
-    canvas.text({corner.x + plane.width - 4, middle}, sides.right, 12, kFaint, Anchor::Right);
-    canvas.text({corner.x + plane.width / 2.0, corner.y + 13}, sides.top, 12, kFaint,
-                Anchor::Middle);
+    const double middle = corner.y + plane.height / 2.0 + 5;
+    canvas.label({corner.x + 5, middle}, sides.left, kLabel);
+    canvas.label({corner.x + plane.width - 5, middle}, sides.right, kLabel, Anchor::Right);
+    canvas.label({corner.x + plane.width / 2.0, corner.y + 16}, sides.top, kLabel, Anchor::Middle);
 }
 
 std::string contourAlt(const Scene& scene, int axis, bool hasImage) {
@@ -93,8 +93,8 @@ Picture contourPicture(const Report& report, const Scene& scene, int axis) {
         drawSlice(canvas, corner, plane, scene, backdrop.volume, backdrop.window, 1.6);
         drawSides(canvas, corner, plane);
         const std::string axisName(1, "xyz"[axis]);
-        canvas.text({corner.x + 5, corner.y + plane.height - 6},
-                    axisName + " = " + millimetres(plane.atMm), 12, kFaint);
+        canvas.label({corner.x + 6, corner.y + plane.height - 8},
+                     axisName + " = " + millimetres(plane.atMm), kLabel);
     }
     const std::string name = sliceName(axis);
     return {"contours-" + name + ".png",

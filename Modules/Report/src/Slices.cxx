@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace adaptiso {
 namespace {
@@ -78,7 +79,7 @@ SliceSides sidesOf(int axis) {
 }
 
 std::vector<std::uint8_t> sampleSlice(const VolumeView& volume, const ValueRange& window,
-                                      const SlicePlane& plane) {
+                                      const SlicePlane& plane, const FaceCut* face) {
     std::vector<std::uint8_t> grey(static_cast<std::size_t>(plane.width) * plane.height);
     const ImageGeometry& geometry = volume.geometry();
     Vec3 corner, right, down;  // RAS is LPS turned by half about z, so is its own inverse
@@ -94,6 +95,7 @@ std::vector<std::uint8_t> sampleSlice(const VolumeView& volume, const ValueRange
         std::size_t n = 0;
         for (int y = 0; y < plane.height; ++y) {
             for (int x = 0; x < plane.width; ++x, ++n) {
+                if (face && face->hides(corner + double(x) * right + double(y) * down)) continue;
                 const auto value = interpolate(view, start + double(x) * stepX + double(y) * stepY);
                 if (value) grey[n] = greyOf(*value, window);
             }
@@ -107,17 +109,23 @@ void drawSlice(Canvas& canvas, Pixel corner, const SlicePlane& plane, const Scen
     canvas.clip(corner, plane.width, plane.height);
     if (volume) {
         canvas.image(static_cast<int>(corner.x), static_cast<int>(corner.y), plane.width,
-                     plane.height, sampleSlice(*volume, window, plane));
+                     plane.height, sampleSlice(*volume, window, plane, scene.face.get()));
     } else {
         canvas.rectangle(corner, plane.width, plane.height, kBlack);
     }
+    std::vector<std::vector<std::pair<Pixel, Pixel>>> outlines;
     for (const SceneSurface& surface : scene.surfaces) {
-        std::vector<std::pair<Pixel, Pixel>> lines;
+        auto& lines = outlines.emplace_back();
         for (const Segment& segment : cutByPlane(surface.mesh, plane.axis, plane.atMm)) {
             const Pixel a = plane.toPixel(segment[0]), b = plane.toPixel(segment[1]);
             lines.push_back({{corner.x + a.x, corner.y + a.y}, {corner.x + b.x, corner.y + b.y}});
         }
-        canvas.segments(lines, surface.color, lineWidth);
+    }
+    // yellow on bright tissue is seen by its dark rim; all rims lie under all lines
+    constexpr double kRim = 2;
+    for (const auto& lines : outlines) canvas.segments(lines, kBlack, lineWidth + kRim);
+    for (std::size_t n = 0; n < outlines.size(); ++n) {
+        canvas.segments(outlines[n], scene.surfaces[n].color, lineWidth);
     }
     canvas.restore();
 }

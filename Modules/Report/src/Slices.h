@@ -43,9 +43,10 @@ struct SliceSides {
 };
 SliceSides sidesOf(int axis);
 
-/// The image on the plane, row by row: by trilinear interpolation, black outside.
+/// The image on the plane, row by row: by trilinear interpolation, black outside and where `face`
+/// (if not null) hides it.
 std::vector<std::uint8_t> sampleSlice(const VolumeView& volume, const ValueRange& window,
-                                      const SlicePlane& plane);
+                                      const SlicePlane& plane, const FaceCut* face = nullptr);
 
 /// Draws the slice with its upper left corner at `corner`: the image, if there is one, and where
 /// the surfaces cut the plane.

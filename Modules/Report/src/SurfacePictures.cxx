@@ -33,12 +33,8 @@ void drawColorBar(Canvas& canvas, double left, double largestMm) {
 }
 
 BoundingBox boxOf(const SceneSurface& surface, const BoundingBox& otherwise) {
-    if (surface.mesh.triangles.empty()) return otherwise;
-    TriangleMesh used;  // points that no triangle uses don't count, they may be anything
-    for (const Triangle& t : surface.mesh.triangles) {
-        for (const VertexId v : t) used.points.push_back(surface.mesh.points[v]);
-    }
-    return boundingBox(used);
+    // points that no triangle uses don't count, they may be anything
+    return surface.mesh.isEmpty() ? otherwise : boxOf(surface.mesh);
 }
 
 }  // namespace
@@ -53,8 +49,9 @@ Picture sixSidesPicture(const Scene& scene, std::size_t n) {
     canvas.text({40, 26}, surface.name, 16, kInk, Anchor::Left, true);
 
     std::array<Rendering, 6> renderings;
+    const VertexNormals normals = vertexNormals(surface.mesh);
     parallelForPieces(6, 1, [&](std::int64_t begin, std::int64_t) {
-        renderings[begin] = render(surface, box, sixViews()[begin], kSize);
+        renderings[begin] = render(surface, normals, box, sixViews()[begin], kSize);
     });
     const double toleranceMm = 0.02 * norm(box.maximum - box.minimum);
     for (int side = 0; side < 6; ++side) {

@@ -18,20 +18,13 @@ struct Corner {
     double value;
 };
 
-std::vector<Vec3> vertexNormals(const TriangleMesh& mesh) {
-    std::vector<Vec3> normals(mesh.points.size());
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3 area = areaVector2(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
-        for (const VertexId v : t) normals[v] += area;
-    }
-    return normals;
-}
-
 /// The picture before it is averaged down.
 class Raster {
 public:
-    Raster(const SceneSurface& surface, const BoundingBox& box, const View& view, int size)
+    Raster(const SceneSurface& surface, const VertexNormals& normals, const BoundingBox& box,
+           const View& view, int size)
         : surface_(surface),
+          normals_(normals),
           view_(view),
           right_(view.right()),
           size_(size * kFiner),
@@ -44,11 +37,9 @@ public:
     }
 
     void draw() {
-        const std::vector<Vec3> normals = vertexNormals(surface_.mesh);
         drawsEdges_ = meanTrianglePixels() > 60;
-        for (const Triangle& t : surface_.mesh.triangles) {
-            drawTriangle(corner(t[0], normals), corner(t[1], normals), corner(t[2], normals));
-        }
+        surface_.mesh.forEachTriangle(
+            [&](const Triangle& t) { drawTriangle(corner(t[0]), corner(t[1]), corner(t[2])); });
     }
 
     Rendering finish() const {
@@ -60,16 +51,16 @@ public:
     }
 
 private:
-    Corner corner(VertexId v, const std::vector<Vec3>& normals) const {
-        const Vec3 p = surface_.mesh.points[v] - middle_;
+    Corner corner(VertexId v) const {
+        const Vec3 p = surface_.mesh.point(v) - middle_;
         return {size_ / 2.0 + dot(p, right_) / mmPerPixel_,
                 size_ / 2.0 - dot(p, view_.up) / mmPerPixel_, dot(p, view_.toViewer),
-                normalized(normals[v]), surface_.valuesMm.empty() ? 0 : surface_.valuesMm[v]};
+                toVec3(normals_[v]), surface_.valuesMm.empty() ? 0 : surface_.valuesMm[v]};
     }
 
     double meanTrianglePixels() const {
         const auto count =
-            static_cast<double>(std::max<std::size_t>(surface_.mesh.triangles.size(), 1));
+            static_cast<double>(std::max<std::int64_t>(surface_.mesh.triangleCount(), 1));
         return surfaceArea(surface_.mesh) / count / (mmPerPixel_ * mmPerPixel_);
     }
 
@@ -140,6 +131,7 @@ private:
     }
 
     const SceneSurface& surface_;
+    const VertexNormals& normals_;
     const View& view_;
     Vec3 right_;
     int size_;
@@ -177,8 +169,23 @@ bool Rendering::isSeen(const Vec3& p, const View& view, double toleranceMm) cons
     return std::abs(seen - depth) <= toleranceMm;
 }
 
-Rendering render(const SceneSurface& surface, const BoundingBox& box, const View& view, int size) {
-    Raster raster(surface, box, view, size);
+VertexNormals vertexNormals(const SceneMesh& mesh) {
+    std::vector<Normal> normals(static_cast<std::size_t>(mesh.pointCount()));
+    mesh.forEachTriangle([&](const Triangle& t) {
+        const Vec3 area = areaVector2(mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2]));
+        for (const VertexId v : t) {
+            normals[v].x += static_cast<float>(area.x);
+            normals[v].y += static_cast<float>(area.y);
+            normals[v].z += static_cast<float>(area.z);
+        }
+    });
+    for (Normal& normal : normals) normal = toNormal(toVec3(normal));
+    return normals;
+}
+
+Rendering render(const SceneSurface& surface, const VertexNormals& normals, const BoundingBox& box,
+                 const View& view, int size) {
+    Raster raster(surface, normals, box, view, size);
     raster.draw();
     return raster.finish();
 }

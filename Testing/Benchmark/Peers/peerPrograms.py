@@ -10,10 +10,10 @@ ERRORS = (0.1, 0.25, 0.5, 1.0)  # voxels
 class Volume:
     """A volume as the programs read it, with its reference surfaces."""
 
-    def __init__(self, name, image, isovalue, triangles, asked=None, low=None, high=None):
+    def __init__(self, name, image, isovalue, triangles, asked, low=None, high=None):
         self.name, self.image, self.isovalue = name, image, isovalue
         self.triangles = triangles  # the count at which all are compared
-        self.asked = asked  # the whole isovalue that `isovalue` was moved off, if any
+        self.asked = asked  # the whole isovalue that `isovalue` was moved off
         self.low, self.high = low, high
 
 
@@ -22,7 +22,7 @@ def volumes(top):
     return [
         Volume("engine", data / "engine.nii.gz", 50.5, 49693, asked=50),
         Volume("teapot", data / "teapot.nii.gz", 50.5, 43351, asked=50),
-        Volume("ch2bet", "/usr/share/mricron/templates/ch2bet.nii.gz", 90.5, 256954,
+        Volume("ch2bet", "/usr/share/mricron/templates/ch2bet.nii.gz", 90.5, 256954, asked=90,
                low=(12, 13, 1), high=(168, 201, 156)),
     ]
 
@@ -81,7 +81,7 @@ class Bench:
         facts = self.call("peerVolume", "scan", volume.image, *crop, "-o",
                           self.path(volume, "volume"), "--iso", volume.isovalue)
         for border in ("open", "closed"):
-            for isovalue in {volume.isovalue, volume.asked or volume.isovalue}:
+            for isovalue in (volume.isovalue, volume.asked):
                 made = self.run(volume, ours("mc", border, isovalue=isovalue, border_=border),
                                 self.reference(volume, border, isovalue))
                 if border == "open" and isovalue == volume.isovalue:

@@ -64,10 +64,11 @@ def compare(bench, arguments, volume, facts):
             *decimators(bench, volume.triangles)]
     if bench.has("peerOpenVdb"):
         rows.append(peers.openvdb(adaptivity_for(bench, volume, volume.triangles)))
-    rows.append(peers.ours("adaptive", border, triangles=volume.triangles, border_=border))
-    if volume.asked:
-        rows.append(peers.ours("adaptive", border, f"adaptive, at {volume.asked}",
-                               isovalue=volume.asked, triangles=volume.triangles, border_=border))
+    # also where many samples equal the isovalue, and closed, as users have it by default
+    for each in dict.fromkeys((border, "open", "closed")):
+        rows.append(peers.ours("adaptive", each, triangles=volume.triangles, border_=each))
+        rows.append(peers.ours("adaptive", each, f"adaptive, at {volume.asked}",
+                               isovalue=volume.asked, triangles=volume.triangles, border_=each))
     rows += [peers.ours(m, border, border_=border) for m in ("mc", "boxes", "asc")]
     return bench.rows(volume, rows, arguments.repeats, tell=tell)
 

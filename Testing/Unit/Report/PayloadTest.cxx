@@ -1,13 +1,28 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <numbers>
 
 #include "Payload.h"
 #include "Support/AnalyticVolumes.h"
 #include "Support/Meshes.h"
-#include "adaptiso/Core/AabbTree.h"
+#include "Support/OperatorNew.h"
+#include "adaptiso/Report/Coarser.h"
+
+namespace {
+std::atomic<std::size_t> largestBlock{0};  ///< that was asked for, bytes
+}  // namespace
+
+void* adaptiso::testing::memoryForNew(std::size_t byteCount) noexcept {
+    std::size_t known = largestBlock;
+    while (byteCount > known && !largestBlock.compare_exchange_weak(known, byteCount)) {
+    }
+    return std::malloc(byteCount > 0 ? byteCount : 1);
+}
 
 namespace adaptiso {
 namespace {
@@ -46,11 +61,17 @@ Vec3 rasOf(const std::string& nifti, const Vec3& index) {
     return p;
 }
 
-SceneSurface surfaceOf(const TriangleMesh& mesh, std::vector<double> values = {}) {
+/// A surface in a scene, with what it looks at.
+struct Shown {
+    explicit Shown(const TriangleMesh& mesh, std::vector<double> values = {}) {
+        report.surfaces.push_back({"surface", mesh, std::move(values)});
+        scene = makeScene(report);
+    }
+    const SceneSurface& surface() const { return scene.surfaces.front(); }
+
     Report report;
-    report.surfaces.push_back({"surface", mesh, std::move(values)});
-    return makeScene(report).surfaces.front();
-}
+    Scene scene;
+};
 
 TEST(Base64, IsThatOfRfc4648) {
     EXPECT_EQ(base64(""), "");
@@ -119,7 +140,7 @@ TEST(Mz3, HoldsTheTrianglesAndWhatTheyUse) {
     TriangleMesh mesh = testing::cubeMesh({1, 2, 3}, {4, 5, 6});
     mesh.points.insert(mesh.points.begin(), Vec3{99, 99, 99});  // that nothing uses
     for (Triangle& t : mesh.triangles) t = {t[0] + 1, t[1] + 1, t[2] + 1};
-    const std::string bytes = mz3Of(surfaceOf(mesh));
+    const std::string bytes = mz3Of(Shown(mesh).surface());
     EXPECT_EQ(bytes.substr(0, 2), "MZ");
     EXPECT_EQ(get<std::uint16_t>(bytes, 2), 3);
     EXPECT_EQ(get<std::uint32_t>(bytes, 4), 12u);
@@ -134,7 +155,7 @@ TEST(Mz3, HoldsTheTrianglesAndWhatTheyUse) {
 }
 
 TEST(Mz3, ValuesBecomeColors) {
-    const std::string bytes = mz3Of(surfaceOf(testing::cubeMesh(), {0, 1, 2, 3, 4, 5, 6, 7}));
+    const std::string bytes = mz3Of(Shown(testing::cubeMesh(), {0, 1, 2, 3, 4, 5, 6, 7}).surface());
     EXPECT_EQ(get<std::uint16_t>(bytes, 2), 7);
     EXPECT_EQ(bytes.size(), 16u + 12 * 12 + 8 * 12 + 8 * 4);
     EXPECT_EQ(static_cast<std::uint8_t>(bytes.back()), 255);  // opaque
@@ -144,20 +165,47 @@ TEST(Coarser, KeepsTheLimitAndTheShape) {
     const TriangleMesh fine = testing::icosphere(6, {}, 50);  // 81,920 triangles
     std::vector<double> heights;
     for (const Vec3& p : fine.points) heights.push_back(p.z + 50);
-    const SceneSurface coarse = coarser(surfaceOf(fine, heights), 5000);
-    EXPECT_LE(coarse.mesh.triangles.size(), 5000u);
-    EXPECT_GE(coarse.mesh.triangles.size(), 2000u);
-    ASSERT_EQ(coarse.valuesMm.size(), coarse.mesh.points.size());
-    for (std::size_t n = 0; n < coarse.mesh.points.size(); ++n) {
-        // clusters of 100 mm / 35 cells: a vertex stays within its own
-        EXPECT_NEAR(norm(coarse.mesh.points[n]), 50, 1);
-        EXPECT_NEAR(coarse.valuesMm[n], coarse.mesh.points[n].z + 50, 2);
+    const Shown shown(fine, heights);
+    const SceneSurface coarse = coarser(shown.surface(), 5000);
+    EXPECT_LE(coarse.mesh.triangleCount(), 5000);
+    EXPECT_GE(coarse.mesh.triangleCount(), 4000);
+    ASSERT_EQ(std::ssize(coarse.valuesMm), coarse.mesh.pointCount());
+    for (VertexId v = 0; v < coarse.mesh.pointCount(); ++v) {
+        // cells of 4.5 mm: planes there leave the sphere by 4.5^2 / (8 x 50) = 0.05 mm
+        EXPECT_NEAR(norm(coarse.mesh.point(v)), 50, 0.1);
+        EXPECT_NEAR(coarse.valuesMm[v], coarse.mesh.point(v).z + 50, 2);
     }
+    // as much area as chords of that length leave: 0.3 %
+    EXPECT_NEAR(surfaceArea(coarse.mesh), 4 * std::numbers::pi * 50 * 50, 100);
 }
 
 TEST(Coarser, LeavesSmallSurfacesAlone) {
-    const SceneSurface cube = surfaceOf(testing::cubeMesh());
-    EXPECT_EQ(coarser(cube, 12).mesh, cube.mesh);
+    const TriangleMesh cube = testing::cubeMesh();
+    EXPECT_EQ(coarserMesh(cube, 12), cube);
+}
+
+TEST(Coarser, KeepsNoEmptyCells) {
+    const TriangleMesh fine = testing::icosphere(7, {}, 50);  // 327,680 triangles
+    largestBlock = 0;
+    const TriangleMesh coarse = coarserMesh(fine, 200'000);
+    EXPECT_GT(coarse.triangles.size(), 150'000u);
+    // 100,000 clusters of 112 bytes; all cells of the box would be 10^7
+    EXPECT_LT(largestBlock, 20'000'000u);
+}
+
+TEST(Coarser, AnythingBecomesSomething) {
+    TriangleMesh point;  // a thousand triangles without extent
+    point.points.assign(3, {1, 1, 1});
+    point.triangles.assign(1000, {0, 1, 2});
+    EXPECT_TRUE(coarserMesh(point, 10).triangles.empty());
+    EXPECT_LE(coarserMesh(testing::icosphere(4), 1).triangles.size(), 1u);
+    EXPECT_TRUE(coarserMesh(testing::icosphere(4), 0).triangles.empty());
+}
+
+TEST(ShareTriangles, LeavesSmallSurfacesWhole) {
+    EXPECT_EQ(shareTriangles({50, 1000, 2000}, 550), (std::vector<std::int64_t>{50, 250, 250}));
+    EXPECT_EQ(shareTriangles({50, 60}, 550), (std::vector<std::int64_t>{50, 60}));
+    EXPECT_TRUE(shareTriangles({}, 550).empty());
 }
 
 }  // namespace

@@ -21,12 +21,25 @@ double lengthOf(const std::vector<Segment>& segments) {
 
 SceneSurface asSeen(const TriangleMesh& mesh) {
     Report report;
-    report.surfaces.push_back({"surface", mesh});
-    return makeScene(report).surfaces.front();
+    report.surfaces.push_back({"surface", {}});
+    SceneSurface surface = makeScene(report).surfaces.front();
+    surface.mesh = SceneMesh(mesh);
+    return surface;
+}
+
+/// `ras` in a scene.
+SceneMesh drawn(TriangleMesh ras) {
+    for (Vec3& p : ras.points) p = lpsToRas(p);
+    return SceneMesh(std::move(ras));
+}
+
+Rendering renderAlone(const SceneSurface& surface, const BoundingBox& box, const View& view,
+                      int size) {
+    return render(surface, vertexNormals(surface.mesh), box, view, size);
 }
 
 TEST(CutByPlane, CubeGivesItsPerimeter) {
-    const TriangleMesh cube = testing::cubeMesh({0, 0, 0}, {2, 3, 5});
+    const SceneMesh cube = drawn(testing::cubeMesh({0, 0, 0}, {2, 3, 5}));
     // sums of a few lengths: some ulps
     EXPECT_NEAR(lengthOf(cutByPlane(cube, 2, 1.7)), 2 * (2 + 3), 1e-12);
     EXPECT_NEAR(lengthOf(cutByPlane(cube, 1, 1.7)), 2 * (2 + 5), 1e-12);
@@ -34,14 +47,14 @@ TEST(CutByPlane, CubeGivesItsPerimeter) {
 }
 
 TEST(CutByPlane, PlaneThroughCornersCountsThemAsAbove) {
-    const TriangleMesh cube = testing::cubeMesh({0, 0, 0}, {1, 1, 1});
+    const SceneMesh cube = drawn(testing::cubeMesh({0, 0, 0}, {1, 1, 1}));
     EXPECT_TRUE(cutByPlane(cube, 2, 0).empty());  // the whole cube is above
     EXPECT_NEAR(lengthOf(cutByPlane(cube, 2, 1)), 4, 1e-12);
     EXPECT_TRUE(cutByPlane(cube, 2, 1.5).empty());
 }
 
 TEST(CutByPlane, SphereGivesCircleOfTheRightRadius) {
-    const TriangleMesh sphere = testing::icosphere(5, {}, 10);
+    const SceneMesh sphere = drawn(testing::icosphere(5, {}, 10));
     const double circle = 2 * std::numbers::pi * std::sqrt(100.0 - 36.0);
     // chords of a sphere of 20,480 triangles: edges of 0.35 mm, so 0.002 mm inside
     EXPECT_NEAR(lengthOf(cutByPlane(sphere, 1, 6)), circle, 0.002 * circle);
@@ -53,9 +66,11 @@ TEST(Scene, LeavesOutWhatCannotBeDrawn) {
     mesh.triangles.push_back({0, 1, 8});
     mesh.triangles.push_back({0, 1, 99});
     mesh.triangles.push_back({-1, 1, 2});
-    const SceneSurface surface = asSeen(mesh);
-    EXPECT_EQ(surface.mesh.triangles.size(), 12u);
-    EXPECT_EQ(surface.triangles, 15);
+    Report report;
+    report.surfaces.push_back({"surface", mesh});
+    const Scene scene = makeScene(report);
+    EXPECT_EQ(scene.surfaces.front().mesh.triangleCount(), 12);
+    EXPECT_EQ(scene.surfaces.front().triangles, 15);
 }
 
 TEST(Scene, TurnsLpsToRas) {
@@ -136,7 +151,7 @@ TEST(Renderer, SphereFillsACircle) {
     const SceneSurface sphere = asSeen(testing::icosphere(5, {}, 10));
     const BoundingBox box{{-10, -10, -10}, {10, 10, 10}};
     for (const View& view : sixViews()) {
-        const Rendering seen = render(sphere, box, view, 200);
+        const Rendering seen = renderAlone(sphere, box, view, 200);
         double pixels = 0;
         for (const double depth : seen.depthMm) pixels += std::isfinite(depth);
         const double radius = 10 / seen.mmPerPixel;
@@ -151,7 +166,7 @@ TEST(Renderer, ShowsTheInsideInRed) {
     TriangleMesh mesh = testing::icosphere(3, {}, 10);
     flipOrientation(mesh);
     const SceneSurface inside = asSeen(mesh);
-    const Rendering seen = render(inside, {{-10, -10, -10}, {10, 10, 10}}, sixViews()[0], 100);
+    const Rendering seen = renderAlone(inside, {{-10, -10, -10}, {10, 10, 10}}, sixViews()[0], 100);
     const ReportColor middle = seen.colors[50 * 100 + 50];
     EXPECT_GT(middle[0], 2 * middle[1]);
     EXPECT_GT(middle[0], 2 * middle[2]);
@@ -160,7 +175,7 @@ TEST(Renderer, ShowsTheInsideInRed) {
 TEST(Renderer, KnowsWhatIsHidden) {
     const SceneSurface sphere = asSeen(testing::icosphere(4, {}, 10));
     const View& front = sixViews()[0];
-    const Rendering seen = render(sphere, {{-10, -10, -10}, {10, 10, 10}}, front, 200);
+    const Rendering seen = renderAlone(sphere, {{-10, -10, -10}, {10, 10, 10}}, front, 200);
     EXPECT_TRUE(seen.isSeen({0, 10, 0}, front, 0.5));    // the nose
     EXPECT_FALSE(seen.isSeen({0, -10, 0}, front, 0.5));  // the back of the head
     EXPECT_FALSE(seen.isSeen({50, 10, 0}, front, 0.5));  // not in the picture

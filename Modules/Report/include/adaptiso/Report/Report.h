@@ -57,6 +57,8 @@ struct ReportSurface {
     /// A length for every vertex, to be shown in colour; empty: none.
     /// All surfaces share one scale.
     std::vector<double> valuesMm{};
+    /// Closed and around the brain alone: neither it nor what it holds shows a face.
+    bool isWithinSkull = false;
 };
 
 /// The image that the surfaces belong to. The samples must live as long as the report.
@@ -90,6 +92,11 @@ struct Report {
     std::optional<ReportVolume> volume;
     std::vector<ReportHistogram> histograms;  ///< besides those of the triangles' size and angle
     std::vector<std::pair<std::string, double>> stageSeconds;
+    /// Neither page nor pictures show the image and the surfaces where the face may lie: below a
+    /// plane that begins 45 mm below the top of an adult's head at the forehead, half way to the
+    /// brows, and falls backwards by 42 degrees. Where the top of a head is not found they show
+    /// neither at all.
+    bool leavesOutFaces = false;
 };
 
 /// Now, in UTC: "2026-11-21 09:20 UTC"; the time that SOURCE_DATE_EPOCH says, where it is set.

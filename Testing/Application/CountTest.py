@@ -1,0 +1,70 @@
+"""--triangles and --reduction: met, or told that they can't be."""
+
+import json
+import unittest
+
+from support import CHECK_FAILED, OK, SOURCE, ApplicationTest, ball, from_function, main, write_nifti
+from pathlib import Path
+
+BRAIN = Path("/usr/share/mricron/templates/ch2bet.nii.gz")
+
+
+class Count(ApplicationTest):
+    def surface(self, *arguments):
+        done = self.run_mesh(*arguments, "--json", "report.json")
+        report = json.loads(self.path("report.json").read_text())
+        return done, report, report["surfaces"][0]
+
+    # many samples equal the isovalue, sheets lie less than a voxel apart, and the border is closed
+    @unittest.skipUnless(BRAIN.exists(), "needs mricron-data")
+    def test_is_met_on_a_brain_at_whole_isovalues(self):
+        for isovalue, count in ((100, 200000), (100, 230974), (110, 200000)):
+            with self.subTest((isovalue, count)):
+                done, _, surface = self.surface(BRAIN, "--iso", isovalue, "--triangles", count,
+                                                "-o", "brain.vtp")
+                self.assertEqual(done.returncode, OK, done.stderr)
+                self.assertEqual(done.stderr, "")
+                self.assertTrue(surface["countMet"])
+                self.assertLessEqual(surface["triangles"], count)
+                self.assertGreater(surface["triangles"], 0.999 * count)
+                self.assertEqual(surface["soundness"]["crossingPairs"], 0)
+
+    def test_that_pieces_do_not_allow_is_told_with_the_fewest(self):
+        # 27 single voxels, four triangles each
+        write_nifti(self.path("dots.nii"),
+                    from_function(15, "B", lambda x, y, z:
+                                  100 * (x % 5 == 0 and y % 5 == 0 and z % 5 == 0)))
+        for wanted in (("--triangles", 3), ("--reduction", 1)):
+            done, report, surface = self.surface("dots.nii", "--iso", 50, *wanted, "-o", "dots.vtp")
+            self.assertEqual(done.returncode, OK, done.stderr)
+            self.assertIs(surface["countMet"], False)
+            self.assertEqual(surface["triangles"], 108)
+            self.assertLess(surface["errorBoundMm"], 5)
+            self.assertRegex(done.stderr, r"^adaptiso-mesh: warning: dots.vtp: has 108 triangles, "
+                                          r"not \d as asked for: [^\n]*fewest[^\n]*\n$")
+            self.assertEqual(len(report["warnings"]), 1)
+            self.assertIn("does not allow as few", done.stdout)
+            self.assertNotRegex(done.stdout, r"inf|nan|\d{20}")
+
+    def test_that_pieces_do_not_allow_fails_a_strict_run(self):
+        write_nifti(self.path("ball.nii"), ball())
+        done, _, _ = self.surface("ball.nii", "--iso", 100, "--triangles", 2, "--strict",
+                                  "-o", "ball.vtp")
+        self.assertEqual(done.returncode, CHECK_FAILED)
+        self.assertFalse(self.path("ball.vtp").exists())
+
+    def test_that_the_bound_does_not_allow_is_no_warning(self):
+        write_nifti(self.path("ball.nii"), ball())
+        done, _, surface = self.surface("ball.nii", "--iso", 100, "--triangles", 10,
+                                        "--max-error", 0.05, "-o", "ball.vtp")
+        self.assertEqual((done.returncode, done.stderr), (OK, ""))
+        self.assertIs(surface["countMet"], False)
+        self.assertEqual(surface["wantedTriangles"], 10)
+        self.assertIn("bound of --max-error does not allow as few", done.stdout)
+        done, _, surface = self.surface("ball.nii", "--iso", 100, "-o", "ball.vtp")
+        self.assertIsNone(surface["countMet"])
+        self.assertIsNone(surface["wantedTriangles"])
+
+
+if __name__ == "__main__":
+    main()
