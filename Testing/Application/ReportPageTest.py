@@ -75,6 +75,20 @@ class ReportTest(ApplicationTest):
         self.check(*arguments, "--report", "page.html", "--quiet", code=code, **options)
         return Page(self.path("page.html").read_text())
 
+    def run_program(self, name, *arguments, code=OK):
+        done = subprocess.run([str(BIN / name), *map(str, arguments), "--quiet", "--report",
+                               "page.html", "--pictures", "pictures"], cwd=self.folder, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=300)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return Page(self.path("page.html").read_text())
+
+    def write_spheres(self, *radii):
+        names = []
+        for radius in radii:
+            names.append(f"r{radius}.off")
+            write_off(self.path(names[-1]), icosphere(radius))
+        return names
+
     def make_hole(self):
         """Takes the triangles round the rightmost vertex away. The middle of the hole, RAS mm."""
         points, faces = read_off(self.path("sound.off"))
@@ -204,13 +218,6 @@ class Files(ReportTest):
 class EveryProgram(ReportTest):
     """Each makes a page that says what it is about."""
 
-    def run_program(self, name, *arguments, code=OK):
-        done = subprocess.run([str(BIN / name), *map(str, arguments), "--quiet", "--report",
-                               "page.html", "--pictures", "pictures"], cwd=self.folder, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=300)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return Page(self.path("page.html").read_text())
-
     def pictures(self):
         return {p.name for p in self.path("pictures").iterdir()}
 
@@ -256,13 +263,6 @@ class EveryProgram(ReportTest):
         self.assertTrue(any("colours tell the distance" in i["alt"] for i in page.all("img")))
         page = self.run_program("adaptiso-compare", "smaller.off", "sound.off")
         self.assertIn("● DONE", page.text())
-
-    def write_spheres(self, *radii):
-        names = []
-        for radius in radii:
-            names.append(f"r{radius}.off")
-            write_off(self.path(names[-1]), icosphere(radius))
-        return names
 
     def test_bem(self):
         names = self.write_spheres(60, 66, 74)
@@ -447,14 +447,33 @@ class InTheBrowser(ReportTest):
         if not os.environ.get("ADAPTISO_AXE_SCRIPT"):
             self.skipTest("needs axe-core, which CMake fetches")
         axe = Path(os.environ["ADAPTISO_AXE_SCRIPT"]).read_text()
-        self.show_hole()
         self.addCleanup(self.browser.resize, 1280, 1700)
-        for width in (360, 768, 1440):
-            self.browser.resize(width)
-            self.assertEqual(self.browser.violations(axe), [], width)
-            # nothing but tables and pictures is wider than the screen, and those scroll
-            self.assertLessEqual(
-                self.browser.run("return document.documentElement.scrollWidth"), width)
+        for name in self.make_every_page():
+            self.browser.open(self.path(name))
+            for width in (360, 768, 1440):
+                with self.subTest((name, width)):
+                    self.browser.resize(width)
+                    self.assertEqual(self.browser.violations(axe), [])
+                    # nothing but tables and pictures is wider than the screen, and those scroll
+                    self.assertLessEqual(
+                        self.browser.run("return document.documentElement.scrollWidth"), width)
+
+    def make_every_page(self):
+        """One of each program, of a failure too, and a batch's summary."""
+        self.make_hole()
+        self.mesh("ball.nii", "--iso", "120", "--method", "mc", "-o", "smaller.off")
+        made = []
+        for program, *arguments, code in (
+                ("adaptiso-mesh", "ball.nii", "--iso", 100, "--iso", 150, "-o", "{iso}.ply", OK),
+                ("adaptiso-check", "open.off", "--volume", "ball.nii", CHECK_FAILED),
+                ("adaptiso-compare", "smaller.off", "sound.off", "--volume", "ball.nii",
+                 "--max-mean", 1, CHECK_FAILED),
+                ("adaptiso-bem", "--surfaces", *self.write_spheres(60, 66, 74), "-o", "model", OK)):
+            self.run_program(program, *arguments, code=code)
+            made.append(program + ".html")
+            self.path("page.html").rename(self.path(made[-1]))
+        self.run_mesh("ball.nii", "absent.nii", "--iso", 100, "--output-dir", "batch")
+        return [*made, "batch/summary.html"]
 
     def test_looks_as_it_did(self):
         """Loosely: fonts and drivers differ. ADAPTISO_KEEP_SCREENSHOT=1 makes a new one."""

@@ -10,7 +10,7 @@ from headDefects import write_off
 
 # what a user can't know: functions, C++ and CLI11's words, numbers of a hundred digits
 INSIDES = re.compile(
-    r"\b[a-z]+[A-Z]\w*: |\bBlockGrid|\bVolumeView|std::|lexical|POSITIVE|NONNEGATIVE|\bTEXT\b|"
+    r"\b(?!tkRAS)[a-z]+[A-Z]\w*: |\bBlockGrid|\bVolumeView|std::|lexical|POSITIVE|NONNEGATIVE|\bTEXT\b|"
     r"\bFLOAT\b|\bUINT\b|Could not|not in range|At Most|At Least|\d required|excludes|requires |"
     r"not expected|\d{61}|\bnan mm|\binf mm|basic_string|vector::")
 
@@ -135,7 +135,7 @@ WRONG = [
      ("--nested", "a.off", "a.off", "--min-gap", "x")),
     (USAGE, "--vertices 3: must be a number from 42 to 200000", BEM,
      ("--t1", "ball.nii", "-o", "m", "--vertices", "3")),
-    (USAGE, "--vertices many: must be N", BEM,
+    (USAGE, "--vertices many: must be a number from 42 to 200000", BEM,
      ("--t1", "ball.nii", "-o", "m", "--vertices", "many")),
     # words
     (USAGE, "--method adptive: must be adaptive, boxes, dmc, asc or mc; did you mean adaptive", MESH,
