@@ -54,7 +54,7 @@ def marked(text):
 
 def sentence(text):
     """`text` as a page of prose has it: with a full stop."""
-    return text if text.endswith((".", ":", "!", "?")) else text + "."
+    return text if text.endswith((".", "!", "?")) else text + "."
 
 
 def option_entry(option):
