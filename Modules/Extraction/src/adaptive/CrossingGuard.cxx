@@ -28,24 +28,25 @@ CrossingGuard::CrossingGuard(const Patch& patch, const PatchTopology& topology,
 /// Those whose samples know of no other sheet near them; of those without samples, those between
 /// three such ones.
 std::vector<std::uint8_t> CrossingGuard::trianglesInSingleSheets() const {
-    enum : std::uint8_t { kUnknown, kSingle, kOther };
-    std::vector<std::uint8_t> sheet(patch_.triangles.size(), kUnknown);
+    enum class Sheet : std::uint8_t { Unknown, Single, Other };
+    std::vector<Sheet> sheet(patch_.triangles.size(), Sheet::Unknown);
     for (std::size_t s = 0; s < patch_.samples.size(); ++s) {
-        std::uint8_t& known = sheet[patch_.sampleTriangle[s]];
+        Sheet& known = sheet[patch_.sampleTriangle[s]];
         if (!patch_.samples[s].isAlone()) {
-            known = kOther;
-        } else if (known == kUnknown) {
-            known = kSingle;
+            known = Sheet::Other;
+        } else if (known == Sheet::Unknown) {
+            known = Sheet::Single;
         }
     }
     std::vector<std::uint8_t> isSingle(sheet.size());
     for (std::uint32_t t = 0; t < sheet.size(); ++t) {
-        isSingle[t] = static_cast<std::uint8_t>(sheet[t] == kSingle);
-        if (sheet[t] != kUnknown || t >= patch_.ownTriangles) continue;
+        isSingle[t] = static_cast<std::uint8_t>(sheet[t] == Sheet::Single);
+        if (sheet[t] != Sheet::Unknown || t >= patch_.ownTriangles) continue;
         bool isBetween = true;
         for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
             const std::uint32_t twin = topology_.twin(h);
-            isBetween = isBetween && twin != PatchTopology::kNone && sheet[twin / 3] == kSingle;
+            isBetween =
+                isBetween && twin != PatchTopology::kNone && sheet[twin / 3] == Sheet::Single;
         }
         isSingle[t] = static_cast<std::uint8_t>(isBetween);
     }
