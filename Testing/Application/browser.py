@@ -42,7 +42,7 @@ class Browser:
         options.binary_location = CHROMIUM
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         self.driver = webdriver.Chrome(options=options, service=Service(DRIVER))
-        self.driver.set_script_timeout(60)
+        self.driver.set_script_timeout(240)
         self.driver.set_page_load_timeout(240)
 
     def close(self):
