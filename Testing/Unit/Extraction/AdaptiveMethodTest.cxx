@@ -479,9 +479,9 @@ TEST(CrossingProof, FindsTrianglesThatCross) {
     TriangleMesh mesh;
     mesh.points = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {5, 5, 1}};
     mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
-    EXPECT_EQ(detail::crossingPlaces(mesh).size(), 2U);
+    EXPECT_EQ(detail::crossingTriangles(mesh).size(), 2U);
     mesh.points[3] = {1, 1, 0.5};
-    EXPECT_TRUE(detail::crossingPlaces(mesh).empty());
+    EXPECT_TRUE(detail::crossingTriangles(mesh).empty());
 }
 
 TEST(NearTriangle, TellsWhatTheDistanceTells) {

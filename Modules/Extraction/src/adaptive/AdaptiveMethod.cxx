@@ -8,11 +8,34 @@
 #include "CrossingProof.h"
 #include "ErrorBound.h"
 #include "Simplification.h"
+#include "SurfaceMender.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {
 namespace {
+
+/// Drops vertices without a triangle.
+void dropUnusedVertices(TriangleMesh& mesh) {
+    constexpr VertexId kUnused = -1;
+    std::vector<VertexId> number(mesh.points.size(), kUnused);
+    for (const auto& t : mesh.triangles) {
+        for (const VertexId v : t) number[v] = 0;
+    }
+    VertexId used = 0;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+        if (number[v] == kUnused) continue;
+        number[v] = used++;
+        mesh.points[number[v]] = mesh.points[v];
+        mesh.normals[number[v]] = mesh.normals[v];
+    }
+    if (used == std::ssize(mesh.points)) return;
+    mesh.points.resize(used);
+    mesh.normals.resize(used);
+    for (auto& t : mesh.triangles) {
+        for (VertexId& v : t) v = number[v];
+    }
+}
 
 TriangleMesh toMesh(const SimplifiedSurface& surface, const ImageGeometry& geometry,
                     const MetricFrame& frame, const LatticeSampler& sampler) {
@@ -34,6 +57,7 @@ TriangleMesh toMesh(const SimplifiedSurface& surface, const ImageGeometry& geome
         mesh.triangles.push_back(isMirrored ? adaptiso::Triangle{id(0), id(2), id(1)}
                                             : adaptiso::Triangle{id(0), id(1), id(2)});
     }
+    dropUnusedVertices(mesh);
     completeNormals(mesh);
     return mesh;
 }
@@ -58,10 +82,9 @@ public:
         SimplifiedSurface surface;
         for (int run = 0; run < kMostRuns; ++run) {
             report(run, 0);
-            unfitted_ = {};
             surface = simplify(std::move(surface));
             report(run, 0.6);
-            ErrorBound error = proof_.prove(surface);
+            ErrorBound error = proveAndMend(surface);
             if (isBeyond(error)) {
                 tighten(error);
                 if (run >= kFirstFreeze) {
@@ -71,19 +94,27 @@ public:
                 }
                 continue;
             }
-            if (!wanted_.isGiven()) error = fit(surface, error);
             report(run, 1);
             Extraction result;
             result.mesh = toMesh(surface, geometry_, frame_, sampler_);
-            std::vector<Vec3> crossings = indicesOf(crossingPlaces(result.mesh));
-            if (!crossings.empty() && undoFits(crossings, surface)) {
-                error = proveFitted(surface);
+            std::vector<std::int64_t> crossing = crossingTriangles(result.mesh);
+            for (int mend = 0; mend < kMostMends && !crossing.empty(); ++mend) {
+                const std::vector<Vec3> places = placesOf(crossing, result.mesh);
+                if (!(mend == 0 && undoFits(places, surface)) &&
+                    (wanted_.isGiven() || !mendCrossings(surface, crossing))) {
+                    break;
+                }
+                error = proveAndMend(surface);
                 result.mesh = toMesh(surface, geometry_, frame_, sampler_);
-                crossings = indicesOf(crossingPlaces(result.mesh));
+                crossing = crossingTriangles(result.mesh);
             }
-            if (!crossings.empty()) {
-                proveAround(crossings);
-                if (run >= kFirstFreeze) freeze(crossings, run);
+            if (!crossing.empty() || isBeyond(error)) {
+                std::vector<Vec3> places = placesOf(crossing, result.mesh);
+                if (isBeyond(error)) tighten(error);
+                if (!crossing.empty()) proveAround(places);
+                const std::vector<Vec3> beyond = indicesOf(error);
+                places.insert(places.end(), beyond.begin(), beyond.end());
+                if (run >= kFirstFreeze) freeze(places, run);
                 continue;
             }
             if (!options_.computeNormals) result.mesh.normals = {};
@@ -96,13 +127,15 @@ public:
     }
 
 private:
-    static constexpr int kMostRuns = 16, kMostMends = 6, kMostUndos = 6, kMostCrossedRuns = 3;
+    static constexpr int kMostRuns = 16, kMostMends = 6, kMostCrossedRuns = 3, kMostIdleMends = 2;
     /// What fails from this run on stays at full resolution, twice as far around with every run:
     /// in the last one all of it, if need be.
     static constexpr int kFirstFreeze = 6;
     /// Vertices are fitted within this part of the allowed distance, or no farther than they were:
     /// then few places are lost.
     static constexpr double kFitDistance = 0.75;
+    /// Mending that leaves more than this part of the places beyond the bound, twice, has stalled.
+    static constexpr double kMended = 0.8;
     /// Runs that leave more than this part of the places beyond the bound lead nowhere.
     static constexpr double kStalled = 0.25;
     /// Up to this distance (of the least one between planes of samples) single sheets are certain
@@ -116,47 +149,36 @@ private:
     /// farther.
     static constexpr double kSlackVoxels = 0.05, kSlackPart = 0.3;
 
-    /// The surface before its vertices were fitted.
-    struct Unfitted {
-        std::vector<Vec3> points;
-        ErrorBound proved;
-    };
-
     bool isBeyond(const ErrorBound& error) const { return boundMm_ && error.largestMm > *boundMm_; }
 
-    /// Moves vertices to where they serve the mean distance best, if what is proved stays true.
-    /// \return what is proved of the surface then
-    ErrorBound fit(SimplifiedSurface& surface, const ErrorBound& proved) {
-        PatchLimits closer = limits();
-        closer.maxFittedMm = kFitDistance * closer.maxDistanceMm;
-        unfitted_ = {surface.points, proved};
-        Simplification(sampler_, bricks_, frame_, tight_, closer).fit(surface);
-        return proveFitted(surface);
-    }
-
-    /// Where the bound is lost vertices go back to where they were.
-    ErrorBound proveFitted(SimplifiedSurface& surface) {
-        for (int undo = 0; undo < kMostUndos; ++undo) {
-            ErrorBound error = proof_.prove(surface);
-            if (!isBeyond(error)) return error;
-            if (!undoFits(indicesOf(error), surface)) break;
+    /// What is proved of the surface, after places beyond the bound were mended.
+    ErrorBound proveAndMend(SimplifiedSurface& surface) {
+        ErrorBound error = proof_.prove(surface);
+        if (wanted_.isGiven() || !isBeyond(error)) return error;
+        SurfaceMender mender(surface, frame_, *boundMm_);
+        for (int idle = 0; isBeyond(error) && idle < kMostIdleMends;) {
+            const std::size_t before = error.beyondLimit.size();
+            if (mender.mendDistances(error.beyondLimit) == 0) break;
+            error = proof_.prove(surface);
+            const bool isLess = static_cast<double>(error.beyondLimit.size()) <
+                                kMended * static_cast<double>(before);
+            idle = isLess ? 0 : idle + 1;
         }
-        surface.points = unfitted_.points;
-        return unfitted_.proved;
+        return error;
     }
 
     /// \param places  continuous sample indices
     /// \return false when no vertex was fitted there
     bool undoFits(const std::vector<Vec3>& places, SimplifiedSurface& surface) const {
-        if (unfitted_.points.empty()) return false;
+        if (unfitted_.empty()) return false;
         TightPlaces around;
         around.add(places);
         bool isUndone = false;
         for (std::size_t s = 0; s < surface.samples.size(); ++s) {
             if (!around.has(frame_, surface.samples[s])) continue;
             for (const std::uint64_t v : surface.triangles[surface.sampleTriangle[s]]) {
-                if (surface.points[v] == unfitted_.points[v]) continue;
-                surface.points[v] = unfitted_.points[v];
+                if (v >= unfitted_.size() || surface.points[v] == unfitted_[v]) continue;
+                surface.points[v] = unfitted_[v];
                 isUndone = true;
             }
         }
@@ -165,21 +187,34 @@ private:
 
     std::vector<Vec3> indicesOf(const ErrorBound& error) const {
         std::vector<Vec3> indices;
-        for (const Vec3& place : error.beyondLimit) indices.push_back(frame_.toIndex(place));
+        for (const PlaceBeyond& place : error.beyondLimit) {
+            indices.push_back(frame_.toIndex(place.point()));
+        }
         return indices;
     }
-    /// \param places  in physical space
-    std::vector<Vec3> indicesOf(std::vector<Vec3> places) const {
-        for (Vec3& place : places) place = geometry_.toIndex(place);
+    /// The middles of some triangles, as continuous sample indices.
+    std::vector<Vec3> placesOf(const std::vector<std::int64_t>& triangles,
+                               const TriangleMesh& mesh) const {
+        std::vector<Vec3> places;
+        for (const std::int64_t t : triangles) {
+            const auto& [a, b, c] = mesh.triangles[t];
+            places.push_back(
+                geometry_.toIndex((1.0 / 3) * (mesh.points[a] + mesh.points[b] + mesh.points[c])));
+        }
         return places;
     }
 
-    /// Goes on with more proved: from halfway, and when that does not help from the beginning.
+    bool mendCrossings(SimplifiedSurface& surface,
+                       const std::vector<std::int64_t>& crossing) const {
+        return SurfaceMender(surface, frame_, *boundMm_).mendCrossings(crossing) > 0;
+    }
+
+    /// Begins anew with more proved.
     /// \param crossings  continuous sample indices
     void proveAround(const std::vector<Vec3>& crossings) {
         tight_.addCrossings(crossings);
         if (++crossedRuns_ == kMostCrossedRuns) provesAll_ = true;
-        if (crossedRuns_ > 1) halfway_.reset();
+        halfway_.reset();
     }
 
     void freeze(const std::vector<Vec3>& places, int run) {
@@ -243,10 +278,22 @@ private:
         return limits;
     }
 
+    /// Moves vertices to where they serve the mean distance best.
+    void fit(SimplifiedSurface& surface) const {
+        PatchLimits closer = limits();
+        closer.maxFittedMm = kFitDistance * closer.maxDistanceMm;
+        Simplification(sampler_, bricks_, frame_, tight_, closer).fit(surface);
+    }
+
     /// \param last  of the run before
     SimplifiedSurface simplify(SimplifiedSurface last) {
         Simplification simplification(sampler_, bricks_, frame_, tight_, limits());
-        if (!wanted_.isGiven()) return simplification.toLimits(std::move(last), halfway_);
+        if (!wanted_.isGiven()) {
+            SimplifiedSurface surface = simplification.toLimits(std::move(last), halfway_);
+            unfitted_ = surface.points;
+            fit(surface);
+            return surface;
+        }
         if (boundMm_) return simplification.toCount(wanted_, 0);
         // without a bound the count goes before closeness
         const Index3& size = geometry_.size;
@@ -267,7 +314,7 @@ private:
     TightPlaces tight_;
     std::optional<Halfway> halfway_;
     ErrorProof proof_;
-    Unfitted unfitted_;
+    std::vector<Vec3> unfitted_;                          ///< vertices before they were fitted
     double beyond_ = std::numeric_limits<double>::max();  ///< places after the last run
     int crossedRuns_ = 0;                                 ///< that left triangles that cross
     bool provesAll_ = false;                              ///< every star, everywhere

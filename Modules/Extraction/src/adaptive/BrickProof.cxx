@@ -196,7 +196,10 @@ void BrickProof::proveFinePart(const Corners& piece, const std::array<std::uint3
         reachMm = std::max(reachMm, std::sqrt(nearest));
     }
     collectWithin(reachMm, piece);
-    include(piece, fromFine_, PlaceBeyond::kNone);
+    const std::optional<FarPoint> far = include(piece, fromFine_);
+    if (!far) return;
+    const std::uint64_t t = far->hasNearest ? within_[far->nearest] : PlaceBeyond::kNone;
+    result_.beyondLimit.push_back({far->onOther, far->point, t, true});
 }
 
 /// The triangles that share corners with those that stand for a fine triangle's corners.
@@ -218,15 +221,19 @@ void BrickProof::collectWithin(double distanceMm, const Corners& piece) {
     constexpr int kFew = 30;  // searches by which a tree of all triangles is not worth its time
     std::vector<Corners>& nearby = fromFine_.nearby();
     nearby.clear();
+    within_.clear();
+    const auto add = [&](std::uint64_t t) {
+        nearby.push_back(lookup_.cornersOf(t));
+        within_.push_back(t);
+    };
     if (++searches_ > kFew || !lookup_.ofBrickHasAllWithin(distanceMm)) {
-        lookup_.forEachNear(piece, distanceMm, [&](const Corners& c) { nearby.push_back(c); });
+        lookup_.forEachNear(piece, distanceMm, add);
         return;
     }
     CornerBox box = boxOf(piece);
     box.widen(distanceMm);
     for (const std::uint64_t t : lookup_.ofBrick(brick_)) {
-        const Corners corners = lookup_.cornersOf(t);
-        if (boxOf(corners).overlaps(box)) nearby.push_back(corners);
+        if (boxOf(lookup_.cornersOf(t)).overlaps(box)) add(t);
     }
 }
 
@@ -301,27 +308,29 @@ void BrickProof::proveLeaf(const Corners& piece, const CornerBox& box) {
         if (!near_.empty() || reach > kCells) break;
     }
     use();
-    include(piece, toFine_, triangle_);
+    const std::optional<FarPoint> far = include(piece, toFine_);
+    if (far) result_.beyondLimit.push_back({far->point, far->onOther, triangle_, false});
 }
 
-/// \param triangle  of the simplified surface that the piece is a part of, or none
-void BrickProof::include(const Corners& piece, PieceBound& bound, std::uint64_t triangle) {
+/// \return a point of the piece, where that could not be shown to lie within the limit
+std::optional<FarPoint> BrickProof::include(const Corners& piece, PieceBound& bound) {
     PieceBound atMost(limitMm_);
     const double limit = atMost.squaredBound();
     const PieceBound before = bound.withoutNearby();
     bound.include(piece);
-    if (bound.squaredBound() <= limit) return;
+    if (bound.squaredBound() <= limit) return {};
     // it grew by more than it had to: try the limit itself
     atMost.nearby() = bound.nearby();
     const double reached = bound.boundMm();
     atMost.include(piece);
     if (atMost.squaredBound() <= limit) {
         bound = atMost.withoutNearby();
-        return;
+        return {};
     }
     result_.farthestMm = std::max(result_.farthestMm, reached);
+    const FarPoint far = atMost.farthest();
     bound = before;
-    result_.beyondLimit.push_back({(1.0 / 3) * (piece[0] + piece[1] + piece[2]), triangle});
+    return far;
 }
 
 /// In cells, seen from the brick's first.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,12 +16,16 @@
 
 namespace adaptiso::detail {
 
-/// A place where one of the two surfaces lies beyond the limit.
+/// A place where one of the two surfaces lies beyond the limit. Points in the metric frame.
 struct PlaceBeyond {
     static constexpr std::uint64_t kNone = ~std::uint64_t{0};
 
-    Vec3 point;              ///< metric frame
-    std::uint64_t triangle;  ///< of the simplified surface; kNone: it is a place of the other one
+    Vec3 onSimplified, onFine;       ///< one of them is the place, the other the nearest point
+    std::uint64_t triangle = kNone;  ///< of the simplified surface; kNone where none was near
+    bool isOfFine = false;           ///< the place is one of the full-resolution surface
+
+    const Vec3& point() const { return isOfFine ? onFine : onSimplified; }
+    double squaredDistance() const { return squaredNorm(onSimplified - onFine); }
 };
 
 /// What is proved of the surfaces within a brick.
@@ -82,7 +87,7 @@ private:
                double squaredDistance, int steps);
     void proveSmall(const Corners& piece);
     void proveLeaf(const Corners& piece, const CornerBox& box);
-    void include(const Corners& piece, PieceBound& bound, std::uint64_t triangle);
+    std::optional<FarPoint> include(const Corners& piece, PieceBound& bound);
 
     CornerBox latticeBox(const Corners& piece) const;
     std::uint32_t nearestFine(const Vec3& p);
@@ -116,6 +121,7 @@ private:
     SurfaceWalk walk_;
     std::vector<std::uint32_t> near_;
     std::vector<VertexId> around_;
+    std::vector<std::uint64_t> within_;  ///< the triangles that collectWithin() found
     std::vector<std::pair<double, std::uint32_t>> ranked_;
 };
 

@@ -117,7 +117,7 @@ bool areClear(const TriangleMesh& mesh, const Fans& fans, std::int64_t a, std::i
 
 }  // namespace
 
-std::vector<Vec3> crossingPlaces(const TriangleMesh& mesh) {
+std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh) {
     if (mesh.triangles.empty()) return {};
     constexpr std::int64_t kPiece = 1024;
     const AabbTree tree(mesh);
@@ -129,19 +129,18 @@ std::vector<Vec3> crossingPlaces(const TriangleMesh& mesh) {
         const Triangle& c = mesh.triangles[t];
         return Corners{mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]};
     };
-    std::vector<std::vector<Vec3>> places((count + kPiece - 1) / kPiece);
+    std::vector<std::vector<std::int64_t>> crossing((count + kPiece - 1) / kPiece);
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
         tree.forEachOverlappingPair(begin, end, [&](std::int64_t a, std::int64_t b) {
             if (areClear(mesh, fans, a, b, gap)) return;
-            const Corners first = cornersOf(a), second = cornersOf(b);
-            if (!trianglesCross(first, second)) return;
-            for (const Corners& c : {first, second}) {
-                places[begin / kPiece].push_back((1.0 / 3) * (c[0] + c[1] + c[2]));
-            }
+            if (!trianglesCross(cornersOf(a), cornersOf(b))) return;
+            crossing[begin / kPiece].insert(crossing[begin / kPiece].end(), {a, b});
         });
     });
-    std::vector<Vec3> all;
-    for (const auto& some : places) all.insert(all.end(), some.begin(), some.end());
+    std::vector<std::int64_t> all;
+    for (const auto& some : crossing) all.insert(all.end(), some.begin(), some.end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
 }
 

@@ -92,7 +92,7 @@ ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
     }
     ErrorBound bound;
     bound.largestMm = std::max(provedMm_, farthestMm);
-    for (const PlaceBeyond& place : beyond) bound.beyondLimit.push_back(place.point);
+    bound.beyondLimit = beyond;
     known_.clear();
     if (!(provedArea >= (1 - 1e-9) * areaOf(lookup, scope))) {
         includeFarPieces(surface, lookup, bound);
@@ -130,14 +130,15 @@ void ErrorProof::includeFarPieces(const SimplifiedSurface& surface, const Surfac
         const double mm = kRounding * std::sqrt(largest[t]);
         bound.largestMm = std::max(bound.largestMm, mm);
         const Corners c = lookup.cornersOf(t);
-        if (mm > limitMm_) bound.beyondLimit.push_back((1.0 / 3) * (c[0] + c[1] + c[2]));
+        const Vec3 middle = (1.0 / 3) * (c[0] + c[1] + c[2]);
+        if (mm > limitMm_) bound.beyondLimit.push_back({middle, middle, t, false});
     }
 }
 
 void ErrorProof::remember(const SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond) {
     std::vector<bool> isBeyond(lookup.triangleCount(), false);
     for (const PlaceBeyond& place : beyond) {
-        if (place.triangle != PlaceBeyond::kNone) isBeyond[place.triangle] = true;
+        if (!place.isOfFine) isBeyond[place.triangle] = true;
     }
     for (std::uint64_t t = 0; t < lookup.triangleCount(); ++t) {
         if (!isBeyond[t]) known_.push_back(lookup.cornersOf(t));
@@ -171,7 +172,7 @@ ProofScope ErrorProof::scopeOf(const SurfaceLookup& lookup) const {
         if (isStillThere[i] == 0) markAround(known_[i], limitMm_, scope);
     }
     for (const PlaceBeyond& place : beyond_) {
-        markAround({place.point, place.point, place.point}, 0, scope);
+        markAround({place.point(), place.point(), place.point()}, 0, scope);
     }
     return scope;
 }

@@ -14,7 +14,7 @@ struct ErrorBound {
     /// No point of the full-resolution surface is farther from the simplified one, and none of the
     /// latter from the former.
     double largestMm = 0;
-    std::vector<Vec3> beyondLimit;  ///< places, metric frame
+    std::vector<PlaceBeyond> beyondLimit;
 };
 
 /// Proves bounds by going over both surfaces brick by brick, the full-resolution one made anew.

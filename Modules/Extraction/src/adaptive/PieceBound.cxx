@@ -46,9 +46,17 @@ bool PieceBound::isWithin(const Piece& piece, int depth) const {
     return true;
 }
 
+void PieceBound::noteFarthest(const Corner& corner) {
+    farthest_ = {corner.point, corner.point, corner.nearest, !nearby_.empty()};
+    if (nearby_.empty()) return;
+    const Corners& t = nearby_[corner.nearest];
+    farthest_.onOther = closestPointOnTriangle(corner.point, t[0], t[1], t[2]);
+}
+
 void PieceBound::include(const Corners& piece) {
     if (nearby_.empty()) {
         enough_ = kInfinity;
+        noteFarthest({(1.0 / 3) * (piece[0] + piece[1] + piece[2]), 0, kInfinity});
         return;
     }
     include(Piece{newCornerAt(piece[0]), newCornerAt(piece[1]), newCornerAt(piece[2])}, kManyCuts);
@@ -81,7 +89,9 @@ void PieceBound::includeUncut(const Corners& piece) {
         }
         best = std::min(best, farthest);
     }
-    enough_ = std::max(enough_, best);
+    if (best <= enough_) return;
+    enough_ = best;
+    noteFarthest(cornerAt((1.0 / 3) * (piece[0] + piece[1] + piece[2])));
 }
 
 PieceBound::Corner PieceBound::cornerAt(const Vec3& point) const {
@@ -96,7 +106,10 @@ PieceBound::Corner PieceBound::cornerAt(const Vec3& point) const {
 /// A corner as far away as the bound so far, or farther: no bound can be tighter than that.
 PieceBound::Corner PieceBound::newCornerAt(const Vec3& point) {
     const Corner corner = cornerAt(point);
-    if (corner.squared > enough_) enough_ = kSlack * corner.squared;
+    if (corner.squared > enough_) {
+        enough_ = kSlack * corner.squared;
+        noteFarthest(corner);
+    }
     return corner;
 }
 

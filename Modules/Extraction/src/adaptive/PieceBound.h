@@ -7,6 +7,13 @@
 
 namespace adaptiso::detail {
 
+/// A point and the nearest one on another surface's triangles.
+struct FarPoint {
+    Vec3 point, onOther;
+    std::size_t nearest = 0;  ///< of those triangles
+    bool hasNearest = false;
+};
+
 /// Bounds the distance of a triangle's points to a surface, given the surface's triangles nearby.
 ///
 /// A piece lies within d of the surface if its corners lie within d of one and the same triangle
@@ -30,6 +37,9 @@ public:
     /// The piece lies within the bound so far of this triangle.
     bool isWithin(const Corners& piece, const Corners& triangle) const;
 
+    /// Where the bound had to grow last; beside a nearest point of the surface.
+    const FarPoint& farthest() const { return farthest_; }
+
     /// The bound so far alone.
     PieceBound withoutNearby() const { return PieceBound(boundMm()); }
 
@@ -50,6 +60,7 @@ private:
     };
 
     Corner cornerAt(const Vec3& point) const;
+    void noteFarthest(const Corner& corner);
     Corner newCornerAt(const Vec3& point);
     Corner between(const Corner& a, const Corner& b) const;
     Parts partsOf(const Piece& piece) const;
@@ -59,6 +70,7 @@ private:
 
     std::vector<Corners> nearby_;
     double enough_;  ///< the bound so far, squared
+    FarPoint farthest_;
 };
 
 double squaredDistanceToTriangle(const Vec3& p, const Corners& triangle);

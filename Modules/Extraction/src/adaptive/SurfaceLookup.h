@@ -36,12 +36,13 @@ public:
     }
     const adaptiso::Triangle& triangle(std::uint64_t t) const { return mesh_.triangles[t]; }
     const Vec3& point(VertexId v) const { return mesh_.points[v]; }
-    /// Calls f(corners) for all triangles that may lie within a distance of a piece.
+    /// Calls f(t) for all triangles that may lie within a distance of a piece.
     template <class F>
     void forEachNear(const Corners& piece, double distanceMm, const F& f) const {
         CornerBox box = boxOf(piece);
         box.widen(distanceMm);
-        tree().forEachOverlap({box.low, box.high}, [&](std::int64_t t) { f(cornersOf(t)); });
+        tree().forEachOverlap({box.low, box.high},
+                              [&](std::int64_t t) { f(static_cast<std::uint64_t>(t)); });
     }
     const WalkableSurface<VertexId>& walkable() const { return walkable_; }
     std::span<const std::uint64_t> ofBrick(std::int64_t b) const { return ofBrick_[b]; }

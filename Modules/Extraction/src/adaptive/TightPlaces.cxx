@@ -44,7 +44,7 @@ bool TightPlaces::isFrozen(const Vec3& index) const {
 
 /// How often the square is halved.
 std::uint8_t TightPlaces::tightnessAt(const Index3& cube) const {
-    constexpr std::array<std::uint8_t, 5> kHalvings{0, 1, 5, 14, 40};
+    constexpr std::array<std::uint8_t, 4> kHalvings{0, 5, 14, 40};
     const auto at = tightness_.find(cube);
     return at == tightness_.end() ? 0 : kHalvings[std::min(at->second, kHalvings.size() - 1)];
 }
