@@ -159,7 +159,7 @@ private:
         for (int idle = 0; isBeyond(error) && idle < kMostIdleMends;) {
             const std::size_t before = error.beyondLimit.size();
             if (mender.mendDistances(error.beyondLimit) == 0) break;
-            error = proof_.prove(surface);
+            error = proof_.proveAgain(surface, mender.takeChanges());
             const bool isLess = static_cast<double>(error.beyondLimit.size()) <
                                 kMended * static_cast<double>(before);
             idle = isLess ? 0 : idle + 1;

@@ -72,14 +72,24 @@ ErrorProof::ErrorProof(const LatticeSampler& sampler, const Bricks& bricks,
 
 ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
     const SurfaceLookup lookup(surface, bricks_, frame_);
-    const ProofScope scope = scopeOf(lookup);
-    if (known_.empty()) provedMm_ = 0;
-    // bounds are as tight as the largest sample's distance; below a hundredth of a voxel none cares
-    const double enough = std::min(
+    // bounds are as tight as the largest sample's distance, or as a hundredth of a voxel
+    enoughMm_ = std::min(
         limitMm_, std::max(largestSampleDistance(surface, lookup), 0.01 * frame_.narrowestMm()));
+    return prove(surface, lookup, scopeOf(lookup));
+}
+
+ErrorBound ErrorProof::proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes) {
+    if (last_.empty()) return prove(surface);
+    const SurfaceLookup lookup(surface, bricks_, frame_);
+    return prove(surface, lookup, scopeOf(lookup, changes));
+}
+
+ErrorBound ErrorProof::prove(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
+                             const ProofScope& scope) {
+    if (last_.empty()) provedMm_ = 0;
     std::vector<BrickBound> results(bricks_.count());
     tbb::enumerable_thread_specific<BrickProof> proofs(
-        [&] { return BrickProof(surface, lookup, sampler_, scope, enough, limitMm_); });
+        [&] { return BrickProof(surface, lookup, sampler_, scope, enoughMm_, limitMm_); });
     parallelForPieces(bricks_.count(), 1,
                       [&](std::int64_t b, std::int64_t) { results[b] = proofs.local().prove(b); });
     double provedArea = 0, farthestMm = 0;
@@ -93,7 +103,7 @@ ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
     ErrorBound bound;
     bound.largestMm = std::max(provedMm_, farthestMm);
     bound.beyondLimit = beyond;
-    known_.clear();
+    last_.clear();
     if (!(provedArea >= (1 - 1e-9) * areaOf(lookup, scope))) {
         includeFarPieces(surface, lookup, bound);
     } else if (limitMm_ < std::numeric_limits<double>::max()) {
@@ -136,14 +146,12 @@ void ErrorProof::includeFarPieces(const SimplifiedSurface& surface, const Surfac
 }
 
 void ErrorProof::remember(const SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond) {
-    std::vector<bool> isBeyond(lookup.triangleCount(), false);
+    last_.resize(lookup.triangleCount());
+    for (std::uint64_t t = 0; t < last_.size(); ++t) last_[t] = lookup.cornersOf(t);
+    isWithin_.assign(last_.size(), 1);
     for (const PlaceBeyond& place : beyond) {
-        if (!place.isOfFine) isBeyond[place.triangle] = true;
+        if (!place.isOfFine) isWithin_[place.triangle] = 0;
     }
-    for (std::uint64_t t = 0; t < lookup.triangleCount(); ++t) {
-        if (!isBeyond[t]) known_.push_back(lookup.cornersOf(t));
-    }
-    tbb::parallel_sort(known_.begin(), known_.end(), isBefore);
     beyond_ = std::move(beyond);
 }
 
@@ -151,30 +159,55 @@ void ErrorProof::remember(const SurfaceLookup& lookup, std::vector<PlaceBeyond> 
 /// went and where it lay beyond the limit.
 ProofScope ErrorProof::scopeOf(const SurfaceLookup& lookup) const {
     ProofScope scope;
-    if (known_.empty()) return scope;
+    if (last_.empty()) return scope;
+    std::vector<Corners> known;
+    for (std::size_t t = 0; t < last_.size(); ++t) {
+        if (isWithin_[t] != 0) known.push_back(last_[t]);
+    }
+    tbb::parallel_sort(known.begin(), known.end(), isBefore);
     const auto count = static_cast<std::int64_t>(lookup.triangleCount());
     scope.isKnown.assign(count, 0);
     scope.blocks.assign(bricks_.grid().blockCount(), false);
-    std::vector<std::uint8_t> isStillThere(known_.size(), 0);
+    std::vector<std::uint8_t> isStillThere(known.size(), 0);
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t t = begin; t < end; ++t) {
             const Corners corners = lookup.cornersOf(t);
-            const auto at = std::lower_bound(known_.begin(), known_.end(), corners, isBefore);
-            if (at == known_.end() || *at != corners) continue;
-            isStillThere[at - known_.begin()] = 1;
+            const auto at = std::lower_bound(known.begin(), known.end(), corners, isBefore);
+            if (at == known.end() || *at != corners) continue;
+            isStillThere[at - known.begin()] = 1;
             scope.isKnown[t] = 1;
         }
     });
     for (std::int64_t t = 0; t < count; ++t) {
         if (scope.isKnown[t] == 0) markAround(lookup.cornersOf(t), limitMm_, scope);
     }
-    for (std::size_t i = 0; i < known_.size(); ++i) {
-        if (isStillThere[i] == 0) markAround(known_[i], limitMm_, scope);
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        if (isStillThere[i] == 0) markAround(known[i], limitMm_, scope);
     }
+    markBeyond(scope);
+    return scope;
+}
+
+ProofScope ErrorProof::scopeOf(const SurfaceLookup& lookup, const SurfaceChanges& changes) const {
+    ProofScope scope;
+    scope.isKnown = isWithin_;
+    scope.isKnown.resize(lookup.triangleCount(), 0);
+    scope.blocks.assign(bricks_.grid().blockCount(), false);
+    for (const std::uint64_t t : changes.triangles) {
+        if (t < scope.isKnown.size()) scope.isKnown[t] = 0;
+    }
+    for (std::uint64_t t = 0; t < scope.isKnown.size(); ++t) {
+        if (scope.isKnown[t] == 0) markAround(lookup.cornersOf(t), limitMm_, scope);
+    }
+    for (const Corners& corners : changes.before) markAround(corners, limitMm_, scope);
+    markBeyond(scope);
+    return scope;
+}
+
+void ErrorProof::markBeyond(ProofScope& scope) const {
     for (const PlaceBeyond& place : beyond_) {
         markAround({place.point(), place.point(), place.point()}, 0, scope);
     }
-    return scope;
 }
 
 /// Marks the blocks that reach within a distance of a triangle.

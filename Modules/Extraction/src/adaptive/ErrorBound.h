@@ -32,10 +32,17 @@ public:
     /// What was proved of the last surface is not proved again.
     ErrorBound prove(const SimplifiedSurface& surface);
 
+    /// The same of the last surface after some changes.
+    ErrorBound proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes);
+
 private:
     ProofScope scopeOf(const SurfaceLookup& lookup) const;
+    ProofScope scopeOf(const SurfaceLookup& lookup, const SurfaceChanges& changes) const;
+    ErrorBound prove(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
+                     const ProofScope& scope);
     void includeFarPieces(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
                           ErrorBound& bound) const;
+    void markBeyond(ProofScope& scope) const;
     void markAround(const Corners& triangle, double distanceMm, ProofScope& scope) const;
     void remember(const SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond);
 
@@ -43,9 +50,12 @@ private:
     const Bricks& bricks_;
     const MetricFrame& frame_;
     double limitMm_;
-    double provedMm_ = 0;              ///< so far, of what lies within the limit
-    std::vector<Corners> known_;       ///< triangles of the last surface within it, ascending
-    std::vector<PlaceBeyond> beyond_;  ///< of the last surface
+    double enoughMm_ = 0;  ///< no bound need be tighter
+    double provedMm_ = 0;  ///< so far, of what lies within the limit
+    // of the last surface; empty where not all of it was proved
+    std::vector<Corners> last_;           ///< its triangles
+    std::vector<std::uint8_t> isWithin_;  ///< the limit, each triangle
+    std::vector<PlaceBeyond> beyond_;
 };
 
 }  // namespace adaptiso::detail

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "../Certificate.h"
 #include "Patch.h"
 
 namespace adaptiso::detail {
@@ -35,6 +36,12 @@ struct SimplifiedSurface : SurfaceState {
     std::int64_t tableTriangles = 0;  ///< of it, were no loop filled from its middle
 
     SurfaceState& state() { return *this; }
+};
+
+/// What was changed of a surface.
+struct SurfaceChanges {
+    std::vector<std::uint64_t> triangles;  ///< that are new or changed, or got another number
+    std::vector<Corners> before;           ///< of triangles that changed or went
 };
 
 /// The costs of a round's collapses, patch by patch in the order they were made.

@@ -40,6 +40,8 @@ constexpr double kFlat = 1e-5;
 /// Side of the cubes by which near triangles are found, in voxels.
 constexpr double kCube = 2;
 
+constexpr std::size_t kSlots = std::size_t{1} << 16;
+
 std::array<double, 3> barycentric(const Vec3& p, const Corners& t) {
     const Vec3 area2 = areaVector2(t[0], t[1], t[2]);
     const double whole = squaredNorm(area2);
@@ -122,6 +124,7 @@ void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
     parent_.clear();
     samplesOf_.clear();
     inCube_.clear();
+    mayHaveCube_.assign(kSlots, false);
     std::vector<bool> isTrackedVertex(surface_.points.size()), isNear(surface_.triangles.size());
     for (const PlaceBeyond& place : places) {
         for (const std::uint64_t v : surface_.triangles[place.triangle]) isTrackedVertex[v] = true;
@@ -129,15 +132,18 @@ void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
     for (std::uint64_t t = 0; t < isNear.size(); ++t) {
         for (const std::uint64_t v : surface_.triangles[t]) {
             if (!isTrackedVertex[v]) continue;
-            around_[v];
+            around_[v].push_back(t);
             isNear[t] = true;
         }
         if (!isNear[t]) continue;
         CornerBox box = boxOf(cornersOf(t));
         box.widen(cubeMm_ / 2);  // new vertices lie beside the triangle
-        forEachCube(box, [&](const Index3& cube) { inCube_[cube]; });
+        forEachCube(box, [&](const Index3& cube) {
+            inCube_[cube];
+            mayHaveCube_[hashSlot(cube)] = true;
+        });
     }
-    for (std::uint64_t t = 0; t < isNear.size(); ++t) track(t);
+    for (std::uint64_t t = 0; t < isNear.size(); ++t) trackCubes(t);
     for (std::uint64_t s = 0; s < surface_.sampleTriangle.size(); ++s) {
         const std::uint64_t t = surface_.sampleTriangle[s];
         if (isNear[t]) samplesOf_[t].push_back(s);
@@ -219,6 +225,7 @@ bool SurfaceMender::moveVertex(std::uint64_t vertex, const Vec3& step) {
         if (!facesAs(now, before)) return false;
     }
     if (!isSound(moved, around)) return false;
+    for (const std::uint64_t t : around) note(t);
     surface_.points[vertex] = surface_.points[vertex] + step;
     for (const std::uint64_t t : Numbers(around)) replace(t, surface_.triangles[t]);
     return true;
@@ -237,6 +244,8 @@ bool SurfaceMender::splitEdge(std::uint64_t triangle, int corner, const Vec3& po
         !facesAs(parts[3], second) || !isSound(parts, {triangle, twin})) {
         return false;
     }
+    note(triangle);
+    note(twin);
     const std::uint64_t v = addVertex(point);
     replace(triangle, {a, v, c});
     replace(twin, {b, v, d});
@@ -256,6 +265,7 @@ bool SurfaceMender::splitTriangle(std::uint64_t triangle, const Vec3& point) {
         !isSound(parts, {triangle})) {
         return false;
     }
+    note(triangle);
     const std::uint64_t v = addVertex(point);
     replace(triangle, {a, b, v});
     const std::uint64_t second = addTriangle({b, c, v}, triangle),
@@ -284,6 +294,8 @@ bool SurfaceMender::turnEdge(std::uint64_t triangle, int corner, const PlaceBeyo
     });
     if (!isNearer || !facesAlike || !isSound(parts, {triangle, twin})) return false;
     turned_.insert({std::min(a, b), std::max(a, b)});
+    note(triangle);
+    note(twin);
     replace(triangle, {a, d, c});
     replace(twin, {d, b, c});
     handOver({triangle, twin}, {triangle, twin});
@@ -320,6 +332,7 @@ bool SurfaceMender::collapseEdge(std::uint64_t triangle, int corner, const Place
             !isSound(parts, replaced)) {
             continue;
         }
+        for (const std::uint64_t t : replaced) note(t);
         surface_.points[a] = target;
         Numbers kept;
         for (const std::uint64_t t : replaced) {
@@ -372,6 +385,7 @@ void SurfaceMender::removeGone() {
         if (t != last) {
             surface_.triangles[t] = surface_.triangles[last];
             renumbered[last] = t;
+            changes_.triangles.push_back(t);
         }
         surface_.triangles.pop_back();
     }
@@ -484,6 +498,7 @@ std::uint64_t SurfaceMender::addVertex(const Vec3& point) {
 std::uint64_t SurfaceMender::addTriangle(const Triangle& triangle, std::uint64_t parent) {
     const std::uint64_t number = surface_.triangles.size();
     surface_.triangles.push_back(triangle);
+    changes_.triangles.push_back(number);
     track(number);
     const auto older = parent_.find(parent);
     const std::uint64_t oldest = older == parent_.end() ? parent : older->second;
@@ -501,13 +516,29 @@ void SurfaceMender::replace(std::uint64_t number, const Triangle& triangle) {
     track(number);
 }
 
+std::size_t SurfaceMender::hashSlot(const Index3& cube) {
+    const auto at = [&](int a) { return static_cast<std::size_t>(cube[a]); };
+    return (at(0) * 73856093 ^ at(1) * 19349663 ^ at(2) * 83492791) % kSlots;
+}
+
+/// The triangle is about to change.
+void SurfaceMender::note(std::uint64_t triangle) {
+    changes_.triangles.push_back(triangle);
+    changes_.before.push_back(cornersOf(triangle));
+}
+
 /// Lists a triangle with its vertices and its cubes.
 void SurfaceMender::track(std::uint64_t triangle) {
     for (const std::uint64_t v : surface_.triangles[triangle]) {
         const auto around = around_.find(v);
         if (around != around_.end()) around->second.push_back(triangle);
     }
+    trackCubes(triangle);
+}
+
+void SurfaceMender::trackCubes(std::uint64_t triangle) {
     forEachCube(boxOf(cornersOf(triangle)), [&](const Index3& cube) {
+        if (!mayHaveCube_[hashSlot(cube)]) return;
         const auto in = inCube_.find(cube);
         if (in != inCube_.end()) in->second.push_back(triangle);
     });

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "BrickProof.h"
@@ -32,6 +33,9 @@ public:
     /// Changes triangles that cross others until they don't, where that can be done.
     /// \return how many were changed
     std::size_t mendCrossings(const std::vector<std::int64_t>& triangles);
+
+    /// Since the last call of this function.
+    SurfaceChanges takeChanges() { return std::exchange(changes_, {}); }
 
 private:
     using Triangle = SurfaceState::Triangle;
@@ -74,6 +78,9 @@ private:
     std::uint64_t addTriangle(const Triangle& triangle, std::uint64_t parent);
     void replace(std::uint64_t number, const Triangle& triangle);
     void track(std::uint64_t triangle);
+    void trackCubes(std::uint64_t triangle);
+    static std::size_t hashSlot(const Index3& cube);
+    void note(std::uint64_t triangle);
     void handOver(const Numbers& from, const Numbers& to);
     template <class F>
     void forEachCube(const CornerBox& box, const F& f) const;
@@ -82,6 +89,8 @@ private:
     double squaredLimit_, cubeMm_;
     double leastCosine_ = 0;                         ///< between the normals before and after
     std::set<std::array<std::uint64_t, 2>> turned_;  ///< edges that were: they do not come back
+
+    SurfaceChanges changes_;
 
     // of one call
     Numbers gone_;                                       ///< triangles that collapsed
@@ -92,6 +101,7 @@ private:
     /// Triangles whose boxes overlap a cube, for the cubes that a change may reach into. Some have
     /// changed since.
     std::map<Index3, Numbers> inCube_;
+    std::vector<bool> mayHaveCube_;  ///< by hashSlot(): most cubes are not in inCube_
 };
 
 }  // namespace adaptiso::detail
