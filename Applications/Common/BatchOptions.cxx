@@ -1,5 +1,6 @@
 #include "Common/BatchOptions.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <string_view>

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "Common/CliNames.h"
 #include "Common/CommonOptions.h"
 
 namespace adaptiso {

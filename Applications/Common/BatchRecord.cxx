@@ -1,5 +1,6 @@
 #include "Common/BatchRecord.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <ctime>

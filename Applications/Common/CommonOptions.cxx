@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 #include <tbb/version.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <memory>
 

@@ -25,19 +25,6 @@ void copyAccessList(const fs::path& from, const fs::path& to) {
     if (size > 0) setxattr(to.c_str(), kName, list.data(), static_cast<std::size_t>(size), 0);
 }
 
-/// A file, or a folder without folders.
-void removeOld(const fs::path& path) {
-    std::error_code error;
-    if (fs::is_directory(fs::symlink_status(path, error))) {
-        for (const auto& entry : fs::directory_iterator(path, error)) {
-            unlink(entry.path().c_str());
-        }
-        rmdir(path.c_str());
-    } else {
-        unlink(path.c_str());
-    }
-}
-
 bool exchange(const fs::path& a, const fs::path& b) {
     return renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
 }
@@ -117,7 +104,7 @@ int Replacements::replace(const fs::path& temporary, const fs::path& final) {
 
 void Replacements::keep() {
     for (const Done& done : done_) {
-        if (!done.old.empty()) removeOld(done.old);
+        if (!done.old.empty()) removeTemporary(done.old);
         syncFolder(folderOf(done.final));
     }
     done_.clear();

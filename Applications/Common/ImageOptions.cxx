@@ -1,10 +1,12 @@
 #include "Common/ImageOptions.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "Common/InputKind.h"
 #include "Common/OptionValues.h"
 #include "Common/RunApp.h"
+#include "Common/UsageWords.h"
 
 namespace adaptiso {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 
+#include "Common/CliNames.h"
 #include "Common/CommonOptions.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 

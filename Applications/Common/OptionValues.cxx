@@ -1,8 +1,14 @@
 #include "Common/OptionValues.h"
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
+#include <string_view>
+#include <system_error>
 
 #include "Common/Numbers.h"
+#include "Common/RunApp.h"
+#include "Common/UsageWords.h"
 
 namespace adaptiso {
 namespace {
@@ -70,6 +76,28 @@ std::int64_t parseCount(const std::string& option, const std::string& text, std:
                 "a whole number" +
                     (isBounded ? " from " + std::to_string(least) + " to " + std::to_string(most)
                                : ", " + std::to_string(least) + " or more"));
+}
+
+std::size_t parseChoice(const std::string& option, const std::string& text,
+                        const std::vector<std::string>& words) {
+    const auto chosen = std::find(words.begin(), words.end(), text);
+    if (chosen == words.end()) {
+        throw UsageError(option + " " + shown(text) + ": must be " + alternatives(words) +
+                         suggestion(text, words));
+    }
+    return static_cast<std::size_t>(chosen - words.begin());
+}
+
+std::string choiceName(const std::vector<std::string>& words) {
+    return CLI::detail::join(words, "|");
+}
+
+CLI::Option* addValue(CLI::App& app, const std::string& name, const std::string& valueName,
+                      const std::function<void(const std::string&)>& take,
+                      const std::string& description) {
+    CLI::Option* const option = app.add_option_function<std::string>(name, take, description);
+    if (!valueName.empty()) option->type_name(valueName);
+    return option;
 }
 
 }  // namespace adaptiso

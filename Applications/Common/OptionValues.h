@@ -1,15 +1,14 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "Common/RunApp.h"
-#include "Common/UsageWords.h"
+#include "Common/CliNames.h"
 
 namespace adaptiso {
 
@@ -40,12 +39,18 @@ std::int64_t parseCount(const std::string& option, const std::string& text, std:
 
 inline constexpr std::int64_t kAnyCount = std::int64_t{1} << 53;
 
+/// An option whose value is given to `take` as typed.
+/// \param valueName  what --help calls the value; empty: TEXT
+CLI::Option* addValue(CLI::App& app, const std::string& name, const std::string& valueName,
+                      const std::function<void(const std::string&)>& take,
+                      const std::string& description);
+
 /// An option that takes a number. \param target  a double, or an optional one
 template <class Target>
 CLI::Option* addNumber(CLI::App& app, const std::string& name, Target& target,
                        const NumberRule& rule, const std::string& description) {
-    return app.add_option_function<std::string>(
-        name,
+    return addValue(
+        app, name, "",
         [&target, name, rule](const std::string& text) { target = parseNumber(name, text, rule); },
         description);
 }
@@ -62,8 +67,15 @@ CLI::Option* addCount(CLI::App& app, const std::string& name, Target& target, st
             target = static_cast<Target>(value);
         }
     };
-    return app.add_option_function<std::string>(name, set, description)->type_name("N");
+    return addValue(app, name, "N", set, description);
 }
+
+/// The place in `words` of the value of an option. \throws UsageError
+std::size_t parseChoice(const std::string& option, const std::string& text,
+                        const std::vector<std::string>& words);
+
+/// "adaptive|boxes|mc", as --help names the value of an option that takes one of these words
+std::string choiceName(const std::vector<std::string>& words);
 
 /// An option that takes one of a few words, each standing for a value; `words` in the order of the
 /// help text.
@@ -74,16 +86,9 @@ CLI::Option* addChoice(CLI::App& app, const std::string& name, Target& target,
     std::vector<std::string> names;
     for (const auto& [word, value] : words) names.push_back(word);
     const auto choose = [&target, words, names, name](const std::string& text) {
-        const auto chosen = std::find_if(words.begin(), words.end(),
-                                         [&](const auto& word) { return word.first == text; });
-        if (chosen == words.end()) {
-            throw UsageError(name + " " + shown(text) + ": must be " + alternatives(names) +
-                             suggestion(text, names));
-        }
-        target = chosen->second;
+        target = words[parseChoice(name, text, names)].second;
     };
-    return app.add_option_function<std::string>(name, choose, description)
-        ->type_name(CLI::detail::join(names, "|"));
+    return addValue(app, name, choiceName(names), choose, description);
 }
 
 }  // namespace adaptiso

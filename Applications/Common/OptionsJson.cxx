@@ -1,5 +1,6 @@
 #include "Common/OptionsJson.h"
 
+#include <CLI/CLI.hpp>
 #include <set>
 
 #include "Common/CommonOptions.h"

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
+
+#include "Common/CliNames.h"
 
 namespace adaptiso {
 

@@ -1,5 +1,6 @@
 #include "Common/PreprocessingOptions.h"
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <string_view>
 #include <utility>
@@ -7,6 +8,8 @@
 
 #include "Common/Numbers.h"
 #include "Common/OptionValues.h"
+#include "Common/RunApp.h"
+#include "Common/UsageWords.h"
 
 namespace adaptiso {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 
+#include "Common/CliNames.h"
 #include "Common/Json.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Preprocessing/Preprocess.h"

@@ -1,5 +1,6 @@
 #include "Common/ReportOutput.h"
 
+#include <CLI/CLI.hpp>
 #include <exception>
 #include <new>
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "Common/AtomicOutput.h"
+#include "Common/CliNames.h"
 #include "Common/CommonOptions.h"
 #include "Common/Resources.h"
 #include "adaptiso/Core/ImageGeometry.h"

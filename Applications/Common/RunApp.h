@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <string_view>
 
+#include "Common/CliNames.h"
 #include "Common/ExitCodes.h"
 #include "adaptiso/Core/Errors.h"
 

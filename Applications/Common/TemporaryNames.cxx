@@ -146,19 +146,6 @@ bool isOld(const fs::path& path) {
     return lstat(path.c_str(), &status) == 0 && status.st_ctime + kSeconds < std::time(nullptr);
 }
 
-/// A file, or a folder without folders.
-void removeTemporary(const fs::path& path) {
-    std::error_code error;
-    if (fs::is_directory(fs::symlink_status(path, error))) {
-        for (const auto& entry : fs::directory_iterator(path, error)) {
-            unlink(entry.path().c_str());
-        }
-        rmdir(path.c_str());
-    } else {
-        unlink(path.c_str());
-    }
-}
-
 void removeIfLeft(const fs::path& path, const Owner& self) {
     const std::optional<ParsedName> name = parse(path.filename().string());
     if (!name || !name->owner.isKnown()) return;
@@ -221,6 +208,18 @@ NewTemporary makeTemporary(const fs::path& final, const fs::path& target, const 
 }
 
 }  // namespace
+
+void removeTemporary(const fs::path& path) {
+    std::error_code error;
+    if (fs::is_directory(fs::symlink_status(path, error))) {
+        for (const auto& entry : fs::directory_iterator(path, error)) {
+            unlink(entry.path().c_str());
+        }
+        rmdir(path.c_str());
+    } else {
+        unlink(path.c_str());
+    }
+}
 
 void removeLeftTemporaries(const fs::path& folder) {
     const Owner& self = thisProcess();

@@ -27,6 +27,9 @@ NewTemporary makeTemporaryFolder(const std::filesystem::path& final, unsigned mo
 /// A name of the kind above that nothing has yet, without lock.
 std::filesystem::path newTemporaryName(const std::filesystem::path& final);
 
+/// Removes a file, or a folder without folders in it; what can't be removed stays.
+void removeTemporary(const std::filesystem::path& path);
+
 /// Removes the temporaries in `folder` whose process has surely ended: one of this boot and PID
 /// namespace that runs no more; one of another namespace, or of an earlier boot of this machine,
 /// whose lock nobody keeps. All others stay, those of other machines among them.

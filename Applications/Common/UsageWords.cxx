@@ -1,5 +1,6 @@
 #include "Common/UsageWords.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <numeric>
 

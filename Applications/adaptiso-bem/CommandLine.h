@@ -1,7 +1,6 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
+#include "Common/CliNames.h"
 #include "Common/RunApp.h"
 #include "Pipeline.h"
 

@@ -1,11 +1,13 @@
 #include "CommandLine.h"
 
+#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "Common/ImageOptions.h"
 #include "Common/OptionValues.h"
 #include "Common/PreprocessingOptions.h"
+#include "Common/UsageWords.h"
 
 namespace adaptiso {
 namespace {

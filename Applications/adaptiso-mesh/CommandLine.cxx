@@ -1,5 +1,6 @@
 #include "CommandLine.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "Common/Numbers.h"
 #include "Common/OptionValues.h"
 #include "Common/PreprocessingOptions.h"
+#include "Common/UsageWords.h"
 #include "adaptiso/MeshIO/Formats.h"
 
 namespace adaptiso {

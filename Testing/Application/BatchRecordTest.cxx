@@ -6,30 +6,14 @@
 
 #include "Common/BatchRecord.h"
 #include "Common/BatchRows.h"
+#include "FolderTest.h"
 
 namespace adaptiso {
 namespace {
 
 namespace fs = std::filesystem;
 
-class BatchRecordTest : public ::testing::Test {
-protected:
-    void SetUp() override {
-        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::path(::testing::TempDir()) / ("BatchRecord-" + std::string(test->name()));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path put(const std::string& name, const std::string& content) const {
-        fs::create_directories((folder_ / name).parent_path());
-        std::ofstream(folder_ / name) << content;
-        return folder_ / name;
-    }
-
-    fs::path folder_;
-};
+class BatchRecordTest : public FolderTest {};
 
 KeptRecord recordOfRun(const std::string& program) {
     KeptRecord record{program, program + " 1.0"};

@@ -116,7 +116,7 @@ class Spheres(ClientTest):
         save(self.path("seg.nii.gz"), labels, self.AFFINE)
         self.bem("--labels", "seg.nii.gz", "--tissue", "brain=3", "--tissue", "skull=2", "--tissue",
                  "scalp=1", "--vertices", 642, "-o", "binary")
-        self.accepted("binary")
+        self.accepted("binary", solve=False)  # potentials() solves it
         self.assert_good("binary", 0.4)  # flat caps of a binary sphere lie up to half a voxel off
 
     def test_partial_volume(self):
@@ -127,7 +127,7 @@ class Spheres(ClientTest):
             save(self.path(f"c{n + 1}.nii.gz"), part.astype(np.float32), self.AFFINE)
         self.bem("--probabilities", *(f"c{n}.nii.gz" for n in range(1, 6)), "--vertices", 642, "-o",
                  "partial")
-        self.accepted("partial")
+        self.accepted("partial", solve=False)  # potentials() solves it
         self.assert_good("partial", 0.1)
 
 
@@ -212,8 +212,7 @@ class RealHead(ClientTest):
         points = voxels @ brain.affine[:3, :3].T + brain.affine[:3, 3]
         surfaces = {name: scanner_points(self.path(folder) / f"{name}.surf") for name in NAMES}
         inner, triangles = surfaces["inner_skull"]
-        inside = np.array([winding(p, inner, triangles) > 0.5 for p in points])
-        self.assertGreater(inside.mean(), 0.99)
+        self.assertGreater((windings(points, inner, triangles) > 0).mean(), 0.99)
         for direction in ((0, 0, 1), (1, 0, 0.3), (-1, 0, 0.3), (0, -1, 0.3), (0, 1, 0.3)):
             reach = [exit_distance(np.array([0, -17, 20.0]), np.array(direction), *surfaces[name])
                      for name in NAMES]
@@ -223,13 +222,26 @@ class RealHead(ClientTest):
             self.assertLess(reach[2] - reach[1], 25)
 
 
-def winding(point, vertices, triangles):
-    a, b, c = (vertices[triangles[:, n]] - point for n in range(3))
-    la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
-    determinant = np.einsum("ij,ij->i", a, np.cross(b, c))
-    below = (la * lb * lc + np.einsum("ij,ij->i", a, b) * lc + np.einsum("ij,ij->i", b, c) * la +
-             np.einsum("ij,ij->i", c, a) * lb)
-    return np.arctan2(determinant, below).sum() / (2 * np.pi)
+def windings(points, vertices, triangles):
+    """How often a closed surface goes round each point: what leaves by it along x, less what comes
+    in. Rays are moved by an irrational part of a micrometre, so that none meets an edge."""
+    order = np.argsort(points[:, 1])
+    x, y, z = points[order].T
+    y, z = y + 1e-6 * np.sqrt(2), z + 1e-6 * np.sqrt(3)
+    found = np.zeros(len(points), int)
+    for a, b, c in vertices[triangles]:
+        low, high = np.searchsorted(y, (min(a[1], b[1], c[1]), max(a[1], b[1], c[1])))
+        turn = (b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1])
+        if low == high or turn == 0:
+            continue
+        near = slice(low, high)
+        at_b = ((y[near] - a[1]) * (c[2] - a[2]) - (z[near] - a[2]) * (c[1] - a[1])) / turn
+        at_c = ((b[1] - a[1]) * (z[near] - a[2]) - (b[2] - a[2]) * (y[near] - a[1])) / turn
+        beyond = a[0] + at_b * (b[0] - a[0]) + at_c * (c[0] - a[0]) > x[near]
+        found[near] += ((at_b >= 0) & (at_c >= 0) & (at_b + at_c <= 1) & beyond) * int(np.sign(turn))
+    result = np.empty_like(found)
+    result[order] = found
+    return result
 
 
 def exit_distance(start, direction, vertices, triangles):

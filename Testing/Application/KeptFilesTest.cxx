@@ -7,6 +7,7 @@
 
 #include "Common/KeptFiles.h"
 #include "Common/Sha256.h"
+#include "FolderTest.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -14,24 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class KeptFilesTest : public ::testing::Test {
-protected:
-    void SetUp() override {
-        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::path(::testing::TempDir()) / ("KeptFiles-" + std::string(test->name()));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path put(const std::string& name, const std::string& content) const {
-        fs::create_directories((folder_ / name).parent_path());
-        std::ofstream(folder_ / name) << content;
-        return folder_ / name;
-    }
-
-    fs::path folder_;
-};
+class KeptFilesTest : public FolderTest {};
 
 // FIPS 180-4's examples, as sha256sum prints them
 constexpr const char* kOfNothing =

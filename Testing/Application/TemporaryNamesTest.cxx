@@ -11,30 +11,14 @@
 #include "Common/AtomicFolder.h"
 #include "Common/AtomicOutput.h"
 #include "Common/TemporaryNames.h"
+#include "FolderTest.h"
 
 namespace adaptiso {
 namespace {
 
 namespace fs = std::filesystem;
 
-class TemporaryNamesTest : public ::testing::Test {
-protected:
-    void SetUp() override {
-        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::path(::testing::TempDir()) / ("TemporaryNames-" + std::string(test->name()));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path put(const std::string& name, const std::string& content) const {
-        fs::create_directories((folder_ / name).parent_path());
-        std::ofstream(folder_ / name) << content;
-        return folder_ / name;
-    }
-
-    fs::path folder_;
-};
+class TemporaryNamesTest : public FolderTest {};
 
 /// Makes temporaries in a process that ends as by SIGKILL, with what is written so far.
 /// \return the name of the first  \pre no thread runs

@@ -1,6 +1,7 @@
 #include "BoxCases.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 

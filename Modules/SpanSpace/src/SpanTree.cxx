@@ -1,7 +1,5 @@
 #include "SpanTree.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -17,7 +15,7 @@ constexpr std::int64_t kParallelBuild = 1 << 14;  // below, a task costs more th
 template <class Left, class Right>
 void inParallelIfLarge(std::int64_t size, const Left& left, const Right& right) {
     if (size > kParallelBuild) {
-        tbb::parallel_invoke(left, right);
+        parallelInvoke(left, right);
     } else {
         left();
         right();

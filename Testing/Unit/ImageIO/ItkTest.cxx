@@ -3,6 +3,8 @@
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
 
+#include <algorithm>
+
 #include "Fixtures.h"
 #include "adaptiso/ImageIO/ItkImageAdaptor.h"
 #include "adaptiso/ImageIO/ItkMeshAdaptor.h"
