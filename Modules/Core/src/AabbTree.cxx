@@ -82,12 +82,13 @@ Vec3 closestPointOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
 }
 
 double squaredDistance(const Vec3& p, const BoundingBox& box) {
-    double sum = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double d = std::max({box.minimum[axis] - p[axis], 0.0, p[axis] - box.maximum[axis]});
-        sum += d * d;
-    }
-    return sum;
+    const auto beyond = [](double low, double at, double high) {
+        return std::max(std::max(low - at, 0.0), at - high);
+    };
+    const double dx = beyond(box.minimum.x, p.x, box.maximum.x);
+    const double dy = beyond(box.minimum.y, p.y, box.maximum.y);
+    const double dz = beyond(box.minimum.z, p.z, box.maximum.z);
+    return dx * dx + dy * dy + dz * dz;
 }
 
 /// A triangle while the tree is built.

@@ -195,13 +195,14 @@ private:
 constexpr std::array<double, 4> kBands{2, 4, 8, 16};
 
 /// The smallest erosion that is a ball; at worst the deepest voxel.
-Mask ballWithin(const std::vector<float>& depth, const Index3& size) {
+Mask ballWithin(const Mask& whole, const std::vector<float>& depth, const ImageGeometry& unitGrid) {
     for (const double band : kBands) {
         Mask core = above(depth, band);
-        if (isBall(core, size)) return core;
+        if (isBall(core, unitGrid.size)) return core;
     }
-    Mask core(depth.size(), 0);
-    core[std::max_element(depth.begin(), depth.end()) - depth.begin()] = 1;
+    const std::vector<float> all = depthMm(whole, unitGrid, DepthBand::inside());
+    Mask core(whole.size(), 0);
+    core[std::max_element(all.begin(), all.end()) - all.begin()] = 1;
     return core;
 }
 
@@ -312,8 +313,8 @@ std::int64_t makeBall(std::vector<float>& part, const Index3& size) {
 
     ImageGeometry unitGrid;
     unitGrid.size = size;
-    const std::vector<float> depth = depthMm(whole, unitGrid);
-    const Mask cut = grownBall(whole, part, ballWithin(depth, size), size);
+    const std::vector<float> depth = depthMm(whole, unitGrid, DepthBand::within(kBands.back() + 1));
+    const Mask cut = grownBall(whole, part, ballWithin(whole, depth, unitGrid), size);
     const Mask wrapped = carvedBall(whole, part, ballAround(depth, size), size);
     const std::int64_t cutVoxels = differences(cut, whole);
     const std::int64_t wrappedVoxels = differences(wrapped, whole);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace adaptiso {
 
@@ -59,6 +60,49 @@ TriangleMesh EditMesh::toMesh() const {
         mesh.triangles.push_back({number[from_[h]], number[from_[h + 1]], number[from_[h + 2]]});
     }
     return mesh;
+}
+
+std::vector<VertexId> EditMesh::compact() {
+    // the last of the free ones are used first; a split takes two triangles
+    const auto keepLast = [](auto& free, std::int64_t most) {
+        free.erase(free.begin(), free.end() - std::min<std::int64_t>(most, std::ssize(free)));
+    };
+    keepLast(freeVertices_, vertexCount_);
+    keepLast(freeTriangles_, 2 * vertexCount_);
+    std::vector<VertexId> newVertex(out_.size(), -1), former;
+    for (const VertexId v : freeVertices_) newVertex[v] = 0;
+    for (VertexId v = 0; v < vertexSlots(); ++v) {
+        if (!isVertexAlive(v) && newVertex[v] < 0) continue;
+        newVertex[v] = std::ssize(former);
+        former.push_back(v);
+    }
+    std::vector<HalfEdge> newFirst(from_.size() / 3, -1), formerFirst;
+    for (const HalfEdge first : freeTriangles_) newFirst[first / 3] = 0;
+    for (HalfEdge first = 0; first < halfEdgeSlots(); first += 3) {
+        if (!isAlive(first) && newFirst[first / 3] < 0) continue;
+        newFirst[first / 3] = 3 * std::ssize(formerFirst);
+        formerFirst.push_back(first);
+    }
+    const auto newHalfEdge = [&](HalfEdge h) { return newFirst[h / 3] + h % 3; };
+
+    EditMesh result;
+    result.vertexCount_ = vertexCount_;
+    for (const VertexId v : former) {
+        result.out_.push_back(isVertexAlive(v) ? newHalfEdge(out_[v]) : -1);
+        result.points_.push_back(points_[v]);
+    }
+    for (const HalfEdge first : formerFirst) {
+        for (HalfEdge h = first; h < first + 3; ++h) {
+            result.from_.push_back(isAlive(h) ? newVertex[from_[h]] : -1);
+            result.twin_.push_back(isAlive(h) ? newHalfEdge(twin_[h]) : -1);
+        }
+    }
+    for (const VertexId v : freeVertices_) result.freeVertices_.push_back(newVertex[v]);
+    for (const HalfEdge first : freeTriangles_) {
+        result.freeTriangles_.push_back(newFirst[first / 3]);
+    }
+    *this = std::move(result);
+    return former;
 }
 
 std::int64_t EditMesh::valence(VertexId v) const {

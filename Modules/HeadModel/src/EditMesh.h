@@ -27,6 +27,10 @@ public:
     std::int64_t vertexCount() const { return vertexCount_; }      ///< alive
     std::int64_t vertexSlots() const { return std::ssize(out_); }  ///< alive and dead
     std::int64_t halfEdgeSlots() const { return std::ssize(from_); }
+    /// Renumbers in the same order without dead vertices and triangles, but for those that as many
+    /// splits as there are vertices alive would use next: edits go on as they would have.
+    /// \return  the former number of every vertex slot
+    std::vector<VertexId> compact();
     bool isVertexAlive(VertexId v) const { return out_[v] >= 0; }
     bool isAlive(HalfEdge h) const { return from_[h] >= 0; }
     /// One of the two half-edges of an edge: for loops over edges.
@@ -77,6 +81,7 @@ public:
     void collapse(HalfEdge h);
 
 private:
+    EditMesh() = default;
     void join(HalfEdge a, HalfEdge b) {
         twin_[a] = b;
         twin_[b] = a;

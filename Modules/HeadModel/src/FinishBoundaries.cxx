@@ -50,7 +50,7 @@ std::vector<float> settled(std::vector<float> part, const ImageGeometry& grid, d
                            const std::string& name, std::vector<std::string>& notes) {
     std::int64_t changed = 0;
     for (int round = 0; round < kMostRounds; ++round) {
-        part = smoothed(part, grid, sigmaMm);
+        part = smoothed(std::move(part), grid, sigmaMm);
         requireClearOfBorder(part, grid, name);
         const std::int64_t now = makeBall(part, grid.size);
         changed += now;
@@ -103,9 +103,11 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
         std::vector<float>& part = raw.parts[n];
         if (n > 0) {
             // smoothing takes a little off the wall's outside, and distances are of voxels
-            const std::vector<float> inner =
-                depthMm(above(result.solids[n - 1].part, kFractionIsovalue), raw.grid);
-            growTo(part, inner, gaps[n - 1] + step / 2, step);
+            const double offset = gaps[n - 1] + step / 2;
+            growTo(part,
+                   depthMm(above(result.solids[n - 1].part, kFractionIsovalue), raw.grid,
+                           {step, offset + step}),
+                   offset, step);
         }
         part = settled(std::move(part), raw.grid, options.smoothingMm, nameOf(n), result.notes);
         result.solids.push_back({raw.grid, std::move(part)});
@@ -115,21 +117,27 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
 
 void limitOuterSkull(RawBoundaries& raw, const BoundaryOptions& options) {
     const double step = stepMm(raw.grid);
-    const std::vector<float> inner = depthMm(above(raw.parts[0], kFractionIsovalue), raw.grid);
-    const std::vector<float> skin = depthMm(above(raw.parts[2], kFractionIsovalue), raw.grid);
+    const std::vector<float> inner = depthMm(above(raw.parts[0], kFractionIsovalue), raw.grid,
+                                             {step, options.maxSkullMm + step});
+    const std::vector<float> skin = depthMm(above(raw.parts[2], kFractionIsovalue), raw.grid,
+                                            {options.minScalpMm + step, step});
     std::vector<float>& part = raw.parts[1];
-    for (std::size_t n = 0; n < part.size(); ++n) {
-        part[n] = std::min({part[n], partAtDepth(inner[n] + options.maxSkullMm, step),
-                            partAtDepth(skin[n] - options.minScalpMm, step)});
-    }
+    forVoxels(part, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) {
+            part[n] = std::min({part[n], partAtDepth(inner[n] + options.maxSkullMm, step),
+                                partAtDepth(skin[n] - options.minScalpMm, step)});
+        }
+    });
     growTo(part, inner, options.minSkullMm, step);
 }
 
 void growTo(std::vector<float>& part, const std::vector<float>& depth, double offsetMm,
             double step) {
-    for (std::size_t n = 0; n < part.size(); ++n) {
-        part[n] = std::max(part[n], partAtDepth(depth[n] + offsetMm, step));
-    }
+    forVoxels(part, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) {
+            part[n] = std::max(part[n], partAtDepth(depth[n] + offsetMm, step));
+        }
+    });
 }
 
 void tell(const BoundaryOptions& options, const char* stage, double fraction) {

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <vector>
 
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/HeadModel/FractionField.h"
 
 namespace adaptiso::headmodel {
@@ -14,15 +18,25 @@ using Mask = std::vector<std::uint8_t>;
 /// Side of the cubic voxels of a working grid, mm.
 double stepMm(const ImageGeometry& grid);
 
-/// `values` convolved with a Gaussian of standard deviation sigmaMm (itk's recursive filter, the
-/// border repeated). Below a third of a voxel nothing is done: the samples can't hold it.
-std::vector<float> smoothed(const std::vector<float>& values, const ImageGeometry& grid,
-                            double sigmaMm);
+/// `values` convolved with a Gaussian of standard deviation sigmaMm, the border repeated, by ITK's
+/// recursive filter. Below a third of a voxel nothing is done: the samples can't hold it.
+/// \pre four voxels or more along each axis
+std::vector<float> smoothed(std::vector<float> values, const ImageGeometry& grid, double sigmaMm);
+
+/// How far from a mask's surface depths are wanted, mm; what is beyond has the band's end.
+struct DepthBand {
+    double insideMm = std::numeric_limits<double>::infinity();
+    double outsideMm = std::numeric_limits<double>::infinity();
+
+    static DepthBand within(double mm) { return {mm, mm}; }
+    static DepthBand inside() { return {std::numeric_limits<double>::infinity(), 0}; }
+};
 
 /// Depth below the mask's surface, mm: positive inside, negative outside. Exact Euclidean distance
-/// to the nearest voxel of the other side, less half a voxel. An empty mask is infinitely far, a
-/// full one infinitely deep. Cost: O(voxels), in parallel.
-std::vector<float> depthMm(const Mask& mask, const ImageGeometry& grid);
+/// to the nearest voxel of the other side, less half a voxel, as far as `band`: beyond it the depth
+/// is band.insideMm or -band.outsideMm. An empty mask is that far, a full one that deep.
+/// Cost: O(voxels * band in voxels) at most, in parallel.
+std::vector<float> depthMm(const Mask& mask, const ImageGeometry& grid, const DepthBand& band = {});
 
 /// Morphology with balls, radii in mm. An erosion is what the same dilation of the outside leaves,
 /// so that closing and opening change no set that the ball has rolled over. The grid's border does
@@ -46,6 +60,12 @@ void forEachBorderVoxel(const Index3& size, const Visit& visit) {
     }
 }
 
+/// Calls body(begin, end) for pieces of all voxels of a volume, in parallel.
+template <class Values, class Body>
+void forVoxels(const Values& volume, const Body& body) {
+    parallelForPieces(std::ssize(volume), 1 << 18, body);
+}
+
 /// value >= threshold.
 Mask above(const std::vector<float>& values, double threshold);
 
@@ -64,7 +84,9 @@ Mask componentsWith(const Mask& seeds, const Mask& mask, const Index3& size);
 Mask filled(const Mask& mask, const Index3& size);
 
 /// 0.5 at depth 0, 1 from half a voxel inside on, 0 from half a voxel outside on.
-float partAtDepth(double depthMm, double stepMm);
+inline float partAtDepth(double depthMm, double stepMm) {
+    return static_cast<float>(std::clamp(0.5 + depthMm / stepMm, 0.0, 1.0));
+}
 
 /// `mask` as parts of voxels, with its surface where the image says: within a voxel of the mask's
 /// surface the part is 0.5 where value == level and falls to 0 at `low`, as far as that agrees with

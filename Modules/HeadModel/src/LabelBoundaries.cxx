@@ -30,7 +30,7 @@ std::vector<float> solidOf(const FloatImage& indicator, const ImageGeometry& gri
     std::vector<float> part = resampled(indicator, grid, 0);
     const Mask raw = largestComponent(above(part, kFractionIsovalue), grid.size);
     const Mask solid = filledAtBorder(closed(raw, grid, closingMm), faces, grid.size);
-    const std::vector<float> reach = depthMm(raw, grid);
+    const std::vector<float> reach = depthMm(raw, grid, DepthBand::within(2 * stepMm(grid)));
     for (std::size_t n = 0; n < part.size(); ++n) {
         if (solid[n] != 0 && raw[n] == 0) part[n] = 1;
         // what was not taken: other pieces, and parts of voxels beside them

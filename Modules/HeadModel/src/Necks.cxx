@@ -110,7 +110,7 @@ void takeOut(const Mask& cut, const ImageGeometry& grid, std::vector<float>& par
         if (cut[n] != 0) left[n] = 0;
     }
     left = largestComponent(left, grid.size);
-    const std::vector<float> depth = depthMm(left, grid);
+    const std::vector<float> depth = depthMm(left, grid, DepthBand::within(2 * stepMm(grid)));
     for (std::size_t n = 0; n < part.size(); ++n) {
         const bool isGone = solid[n] != 0 && left[n] == 0;
         if (isGone || (left[n] == 0 && depth[n] < -1.5 * stepMm(grid))) part[n] = 0;

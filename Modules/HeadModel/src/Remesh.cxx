@@ -212,8 +212,10 @@ std::int64_t startOver(RemeshTarget& target, Remesher& remesher, const RemeshOpt
         remesher.readSizes();
     } else {
         remesher.coarsen(kCoarse * options.vertices);
+        remesher.compact();
     }
     makeIsotropic(remesher, options.vertices, rounds);
+    remesher.compact();
     return options.vertices > 0 ? options.vertices
                                 : std::max<std::int64_t>(12, remesher.verticesWanted());
 }

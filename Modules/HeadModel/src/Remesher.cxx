@@ -163,6 +163,17 @@ void Remesher::coarsen(std::int64_t vertices) {
     }
 }
 
+void Remesher::compact() {
+    const std::vector<VertexId> former = mesh_.compact();
+    const auto pick = [&](auto& values) {
+        for (std::size_t v = 0; v < former.size(); ++v) values[v] = values[former[v]];
+        values.resize(former.size());
+    };
+    pick(sizesMm_);
+    pick(normals_);
+    pick(triangles_);
+}
+
 void Remesher::splitLongEdges(std::int64_t mostVertices) {
     const HalfEdge end = mesh_.halfEdgeSlots();  // new edges are short enough
     for (HalfEdge h = 0; h < end && vertexCount() < mostVertices; ++h) {

@@ -31,6 +31,9 @@ public:
     /// Collapses ever longer edges until at most `vertices` are left or nothing can go. Vertices
     /// stay where they are.
     void coarsen(std::int64_t vertices);
+    /// Leaves out what collapses have freed: loops over all numbers take time. Results stay as
+    /// they would have been.
+    void compact();
     /// Up to `mostVertices` in all.
     void splitLongEdges(std::int64_t mostVertices);
     void collapseShortEdges();

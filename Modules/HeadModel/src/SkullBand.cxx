@@ -149,27 +149,53 @@ struct Search {
     }
 };
 
+std::vector<Search::Answer> search(const std::vector<Ray>& rays, const std::vector<float>& t1,
+                                   const ImageGeometry& grid, const std::vector<float>& skin,
+                                   const HeadLevels& levels, const BoundaryOptions& options) {
+    const double step = stepMm(grid);
+    // a ray asks for the side alone; between corners of both sides no depth is above two voxels
+    const std::vector<float> skinDepth =
+        depthMm(above(skin, kFractionIsovalue), grid, DepthBand::within(3 * step));
+    const Search search{t1, skinDepth, grid.size, step, levels, options};
+    std::vector<Search::Answer> answers(rays.size());
+    parallelForPieces(std::ssize(rays), 1024, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) answers[n] = search.along(rays[n]);
+    });
+    return answers;
+}
+
+/// Takes away what is off by more than kOutlierMm.
+void dropOutliers(const std::vector<Ray>& rays, const std::vector<float>& thickness,
+                  std::vector<Search::Answer>& answers) {
+    for (std::size_t n = 0; n < rays.size(); ++n) {
+        std::optional<double>& mm = answers[n].thicknessMm;
+        if (mm && std::abs(thickness[rays[n].voxel] - static_cast<float>(*mm)) > kOutlierMm) {
+            mm.reset();
+        }
+    }
+}
+
 /// Thickness everywhere near the surface, from what the rays say.
 std::vector<float> spread(const std::vector<Ray>& rays, const std::vector<Search::Answer>& answers,
-                          const ImageGeometry& grid, double usualMm,
-                          const std::vector<float>* former) {
+                          const ImageGeometry& grid, double usualMm) {
     std::vector<float> weight(static_cast<std::size_t>(grid.voxelCount()), 0), sum = weight;
     for (std::size_t n = 0; n < rays.size(); ++n) {
         const std::int64_t voxel = rays[n].voxel;
         if (!answers[n].thicknessMm) continue;
         const auto mm = static_cast<float>(*answers[n].thicknessMm);
-        if (former != nullptr && std::abs((*former)[voxel] - mm) > kOutlierMm) continue;
         weight[voxel] = 1;
         sum[voxel] = mm;
     }
-    weight = smoothed(weight, grid, kSpreadMm);
-    sum = smoothed(sum, grid, kSpreadMm);
+    weight = smoothed(std::move(weight), grid, kSpreadMm);
+    sum = smoothed(std::move(sum), grid, kSpreadMm);
     const auto usual = static_cast<float>(usualMm);
-    for (std::size_t n = 0; n < sum.size(); ++n) {
-        // a recursive filter's tails swing by a little around zero
-        const float w = std::max(weight[n], 0.0f);
-        sum[n] = (std::max(sum[n], 0.0f) + kPriorWeight * usual) / (w + kPriorWeight);
-    }
+    forVoxels(sum, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) {
+            // a recursive filter's tails swing by a little around zero
+            const float w = std::max(weight[n], 0.0f);
+            sum[n] = (std::max(sum[n], 0.0f) + kPriorWeight * usual) / (w + kPriorWeight);
+        }
+    });
     return sum;
 }
 
@@ -179,13 +205,8 @@ SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
                         const std::vector<float>& innerSkull, const std::vector<float>& skin,
                         const HeadLevels& levels, const BoundaryOptions& options) {
     const double step = stepMm(grid);
-    const std::vector<float> skinDepth = depthMm(above(skin, kFractionIsovalue), grid);
     const std::vector<Ray> rays = raysFrom(innerSkull, grid.size);
-    const Search search{t1, skinDepth, grid.size, step, levels, options};
-    std::vector<Search::Answer> answers(rays.size());
-    parallelForPieces(std::ssize(rays), 1024, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t n = begin; n < end; ++n) answers[n] = search.along(rays[n]);
-    });
+    std::vector<Search::Answer> answers = search(rays, t1, grid, skin, levels, options);
 
     SkullBand band;
     std::vector<double> seen;
@@ -199,14 +220,16 @@ SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
         band.medianThicknessMm = seen[seen.size() / 2];
         band.seenFraction = static_cast<double>(seen.size()) / static_cast<double>(towardsScalp);
     }
-    const std::vector<float> first = spread(rays, answers, grid, options.skullMm, nullptr);
-    const std::vector<float> thickness = spread(rays, answers, grid, options.skullMm, &first);
+    dropOutliers(rays, spread(rays, answers, grid, options.skullMm), answers);
+    const std::vector<float> thickness = spread(rays, answers, grid, options.skullMm);
 
-    const std::vector<float> inner = depthMm(above(innerSkull, kFractionIsovalue), grid);
-    band.outerSkull.resize(thickness.size());
-    for (std::size_t n = 0; n < thickness.size(); ++n) {
-        band.outerSkull[n] = partAtDepth(inner[n] + thickness[n], step);
-    }
+    const double most = *std::max_element(thickness.begin(), thickness.end());
+    band.outerSkull = depthMm(above(innerSkull, kFractionIsovalue), grid, {step, most + step});
+    forVoxels(thickness, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) {
+            band.outerSkull[n] = partAtDepth(band.outerSkull[n] + thickness[n], step);
+        }
+    });
     return band;
 }
 

@@ -65,7 +65,7 @@ std::vector<float> partOf(const TriangleMesh& surface, const ImageGeometry& grid
         throw InvalidInput("a surface encloses nothing");
     }
     const double step = stepMm(grid);
-    const std::vector<float> depth = depthMm(inside, grid);
+    const std::vector<float> depth = depthMm(inside, grid, DepthBand::within(3 * step));
     const AabbTree tree(outward);
     std::vector<float> part(depth.size());
     parallelForPieces(std::ssize(depth), 1 << 14, [&](std::int64_t begin, std::int64_t end) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "FinishBoundaries.h"
 #include "Necks.h"
@@ -63,6 +64,13 @@ Mask ballAround(std::int64_t voxel, const ImageGeometry& grid, double radiusMm) 
     Mask seed(static_cast<std::size_t>(grid.voxelCount()), 0);
     seed[voxel] = 1;
     return dilated(seed, grid, radiusMm);
+}
+
+/// Depth inside of a mask that keeps clear of the grid's border: the border is nearer to its middle
+/// than the band.
+std::vector<float> depthInHeadMm(const Mask& mask, const ImageGeometry& grid) {
+    const std::int64_t least = *std::min_element(grid.size.begin(), grid.size.end());
+    return depthMm(mask, grid, {(static_cast<double>(least) / 2 + 1) * stepMm(grid), 0});
 }
 
 std::int64_t deepestVoxel(const std::vector<float>& depth) {
@@ -133,7 +141,7 @@ Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
     head.faces = imageFaces(image.geometry, head.grid);
 
     const Mask roughMask = headMask(head, rough, options.closingMm);
-    const std::vector<float> depth = depthMm(roughMask, head.grid);
+    const std::vector<float> depth = depthInHeadMm(roughMask, head.grid);
     const std::int64_t middle = deepestVoxel(depth);
     if (!(depth[middle] >= 40)) {
         throw InvalidInput("the largest object is " +
@@ -151,13 +159,16 @@ double cm3Of(const Mask& mask, const ImageGeometry& grid) {
     return static_cast<double>(voxelsIn(mask)) * std::pow(stepMm(grid), 3) / 1000;
 }
 
-/// How deep every voxel lies below the skin; the image's border is none.
+/// How far below the skin anybody asks for.
+constexpr double kMostBelowSkinMm = 16;
+
+/// How deep every voxel lies below the skin, up to kMostBelowSkinMm; the image's border is none.
 std::vector<float> belowSkinMm(const Head& head) {
     Mask headAndBeyond = head.mask;
     for (std::size_t n = 0; n < headAndBeyond.size(); ++n) {
         if (head.faces[n] == 0) headAndBeyond[n] = 1;
     }
-    return depthMm(headAndBeyond, head.grid);
+    return depthMm(headAndBeyond, head.grid, {kMostBelowSkinMm + 1, 0});
 }
 
 /// The part of `brain` that lies nearer to the skin than `mm`, or outside of it.
@@ -199,7 +210,7 @@ void requirePlausibleMask(const Mask& brain, const Head& head) {
 /// nowhere near its surface is the dark of bone. A whole head shows bone on a fifth of the voxels
 /// 6 to 16 mm below its skin (ch2: 31 %), a brain on sulci alone (ch2bet: 3 %).
 void requireSkull(const Head& head) {
-    constexpr double kLeastMm = 6, kMostMm = 16, kLeastDark = 0.1;
+    constexpr double kLeastMm = 6, kMostMm = kMostBelowSkinMm, kLeastDark = 0.1;
     if (cm3Of(head.mask, head.grid) > kMostBrainCm3) return;
     const std::vector<float> below = belowSkinMm(head);
     const double bone = head.levels.air + 0.5 * (head.levels.tissue - head.levels.air);
@@ -226,7 +237,7 @@ Mask withoutTongues(const Mask& brain, const Head& head) {
 
 /// The brain by thresholds and morphology.
 Mask guessedBrain(const Head& head) {
-    const std::vector<float> depth = depthMm(head.mask, head.grid);
+    const std::vector<float> depth = depthInHeadMm(head.mask, head.grid);
     const double span = head.levels.tissue - head.levels.air;
     Mask tissue(head.t1.size());
     for (std::size_t n = 0; n < tissue.size(); ++n) {
@@ -274,14 +285,17 @@ std::vector<float> innerSkullPart(const Mask& brain, const Head& head,
     const Mask whole = filledAtBorder(
         closed(largestComponent(brain, head.grid.size), head.grid, options.closingMm), head.faces,
         head.grid.size);
-    const std::vector<float> depth = depthMm(whole, head.grid);
-    const std::vector<float> below = depthMm(head.mask, head.grid);
-    std::vector<float> part(depth.size());
-    for (std::size_t n = 0; n < part.size(); ++n) {
-        const float grown = partAtDepth(depth[n] + options.csfMm, step);
-        const double room = below[n] - options.minSkullMm - options.minScalpMm;
-        part[n] = std::max(partAtDepth(depth[n], step), std::min(grown, partAtDepth(room, step)));
-    }
+    const double wall = options.minSkullMm + options.minScalpMm;
+    std::vector<float> part = depthMm(whole, head.grid, {step, options.csfMm + step});
+    const std::vector<float> below = depthMm(head.mask, head.grid, {wall + step, step});
+    forVoxels(part, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) {
+            const float grown = partAtDepth(part[n] + options.csfMm, step);
+            const double room = below[n] - options.minSkullMm - options.minScalpMm;
+            part[n] =
+                std::max(partAtDepth(part[n], step), std::min(grown, partAtDepth(room, step)));
+        }
+    });
     return part;
 }
 
@@ -295,7 +309,7 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<Volume
                            " mm, must be minSkullMm to maxSkullMm");
     }
     tell(options, "head", 0);
-    const Head head = findHead(t1, options);
+    Head head = findHead(t1, options);
     requireSkull(head);
     RawBoundaries raw;
     raw.grid = head.grid;
@@ -312,7 +326,7 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<Volume
     cutNecks(raw, options);
     if (!options.innerSkullOnly) {
         tell(options, "skull", 0);
-        const std::vector<float> skin =
+        std::vector<float> skin =
             partByLevel(head.mask, head.t1, head.skinLevel, head.levels.air, head.faces, head.grid);
         SkullBand band = findSkullBand(head.t1, head.grid,
                                        smoothed(raw.parts[0], head.grid, options.smoothingMm), skin,
@@ -329,7 +343,8 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<Volume
                                    "wrong, or the image be too noisy; look at the result");
         }
         raw.parts.push_back(std::move(band.outerSkull));
-        raw.parts.push_back(skin);
+        raw.parts.push_back(std::move(skin));
+        head = {};  // a whole head's worth of memory
         limitOuterSkull(raw, options);
     }
     return finished(std::move(raw), options);

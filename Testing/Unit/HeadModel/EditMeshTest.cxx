@@ -44,6 +44,37 @@ TEST(EditMesh, SplitAddsOneVertexTwoTrianglesAndNoVolume) {
     expectSound(result);
 }
 
+TEST(EditMesh, GoesOnAfterCompactingAsItWouldHave) {
+    EditMesh mesh(icosphere(3));
+    const auto collapseSome = [](EditMesh& edited, int oneIn) {
+        for (HalfEdge h = 0; h < edited.halfEdgeSlots(); h += oneIn) {
+            if (edited.isAlive(h) && edited.canCollapse(h)) edited.collapse(h);
+        }
+    };
+    collapseSome(mesh, 4);
+    EditMesh compacted = mesh;
+    const std::vector<VertexId> former = compacted.compact();
+    EXPECT_EQ(compacted.toMesh(), mesh.toMesh());
+    EXPECT_EQ(compacted.vertexCount(), mesh.vertexCount());
+    EXPECT_LT(compacted.vertexSlots(), mesh.vertexSlots());
+    ASSERT_EQ(std::ssize(former), compacted.vertexSlots());
+    for (VertexId v = 0; v < compacted.vertexSlots(); ++v) {
+        ASSERT_EQ(compacted.isVertexAlive(v), mesh.isVertexAlive(former[v]));
+        if (!compacted.isVertexAlive(v)) continue;
+        ASSERT_EQ(compacted.point(v), mesh.point(former[v]));
+    }
+    for (EditMesh* edited : {&mesh, &compacted}) {
+        std::int64_t wanted = edited->vertexCount() / 2;
+        for (HalfEdge h = 0; h < edited->halfEdgeSlots() && wanted > 0; ++h) {
+            if (!edited->isFirst(h)) continue;
+            edited->split(h, 0.5 * (edited->point(edited->from(h)) + edited->point(edited->to(h))));
+            --wanted;
+        }
+    }
+    EXPECT_EQ(compacted.toMesh(), mesh.toMesh());
+    expectSound(compacted.toMesh());
+}
+
 TEST(EditMesh, CollapseUndoesASplit) {
     EditMesh mesh(icosphere(1));
     const TriangleMesh before = mesh.toMesh();

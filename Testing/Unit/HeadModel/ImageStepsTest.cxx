@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -36,6 +37,42 @@ TEST(DepthMm, IsTheDistanceToTheNearestVoxelOfTheOtherSide) {
             }
             const double expected = (mask[a] != 0 ? 1 : -1) * 1.5 * (nearest - 0.5);
             ASSERT_NEAR(depth[a], expected, 1e-5);  // float
+        }
+    }
+}
+
+TEST(DepthMm, IsTheSameWithinABandAndItsEndBeyond) {
+    const Index3 size{31, 37, 29};
+    const ImageGeometry grid = obliqueGeometry(size, {1.5, 1.5, 1.5});
+    // few voxels make deep places, many make none; bands of 16 and of 32 bits
+    for (const int oneIn : {3, 300, 9000}) {
+        const Mask mask = randomMask(size, 11 + oneIn, oneIn);
+        const std::vector<float> depth = depthMm(mask, grid);
+        for (const DepthBand& band :
+             {DepthBand::within(4), DepthBand{1.5, 20}, DepthBand{40, 0}, DepthBand::within(300)}) {
+            std::vector<float> expected = depth;
+            for (float& mm : expected) {
+                mm = std::clamp(mm, -static_cast<float>(band.outsideMm),
+                                static_cast<float>(band.insideMm));
+            }
+            EXPECT_EQ(depthMm(mask, grid, band), expected) << oneIn << " " << band.insideMm;
+        }
+    }
+}
+
+TEST(Morphology, IsWhatDepthsSay) {
+    const Index3 size{31, 37, 29};
+    const ImageGeometry grid = obliqueGeometry(size, {0.7, 0.7, 0.7});
+    for (const int oneIn : {3, 300, 9000}) {
+        const Mask mask = randomMask(size, 5 + oneIn, oneIn);
+        Mask outside(mask.size());
+        for (std::size_t n = 0; n < mask.size(); ++n) outside[n] = mask[n] ^ 1;
+        // the last is farther than any two voxels of the grid are
+        for (const double radius : {0.1, 0.35, 1.05, 3.0, 7.7, 60.0}) {
+            EXPECT_EQ(dilated(mask, grid, radius), above(depthMm(mask, grid), -radius)) << radius;
+            Mask expected = dilated(outside, grid, radius);
+            for (std::uint8_t& voxel : expected) voxel ^= 1;
+            EXPECT_EQ(eroded(mask, grid, radius), expected) << radius;
         }
     }
 }
@@ -100,6 +137,25 @@ TEST(Components, LargestFilledAndReached) {
     Mask corner(mask.size(), 0);
     corner[1 + 30 * (1 + 30 * 1)] = 1;
     EXPECT_EQ(componentsWith(corner, mask, size), corner);
+}
+
+TEST(Components, OfThoseEquallyGoodTheFirst) {
+    const Index3 size{9, 9, 9};
+    Mask mask(9 * 9 * 9, 0);
+    const auto at = [&](int i, int j, int k) -> std::uint8_t& { return mask[i + 9 * (j + 9 * k)]; };
+    // a fork whose prongs join behind, and an L of as many voxels with a larger box
+    at(1, 1, 1) = at(3, 1, 1) = at(1, 2, 1) = at(2, 2, 1) = at(3, 2, 1) = 1;
+    const Mask fork = mask;
+    at(5, 5, 5) = at(5, 6, 5) = at(5, 7, 5) = at(5, 7, 6) = at(6, 7, 6) = 1;
+    EXPECT_EQ(largestComponent(mask, size), fork);
+    Mask ell = mask;
+    for (std::size_t n = 0; n < mask.size(); ++n) ell[n] ^= fork[n];
+    EXPECT_EQ(widestComponent(mask, size), ell);
+    EXPECT_EQ(componentsWith(ell, mask, size), ell);
+    // touching by an edge is not hanging together
+    at(4, 3, 1) = 1;
+    EXPECT_EQ(largestComponent(mask, size), fork);
+    EXPECT_EQ(largestComponent(Mask(mask.size(), 0), size), Mask(mask.size(), 0));
 }
 
 TEST(Smoothed, MovesASphereBySigmaSquaredOverItsRadius) {

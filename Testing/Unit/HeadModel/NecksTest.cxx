@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,11 @@ struct HeadWith {
         for (const float part : partInside(brain, geometry)) mask.push_back(part >= 0.5 ? 1 : 0);
         return boundariesFromT1({t1.data(), geometry}, VolumeView(mask.data(), geometry), options);
     }
+    /// Nobody says where the brain is.
+    HeadBoundaries byGuess() const {
+        const std::vector<float> t1 = headT1(shapes, 2, geometry);
+        return boundariesFromT1({t1.data(), geometry}, std::nullopt, options);
+    }
     /// The same head with nothing cut, of which only the inner skull is asked.
     HeadWith uncut() const {
         HeadWith head = *this;
@@ -117,6 +123,16 @@ TEST(CutNecks, ATongueOfABrainMask) {
     EXPECT_GE(tongueMm(before.solids[0]), 22);
     EXPECT_LE(tongueMm(after.solids[0]), kNoTongueMm);
     EXPECT_LE(tongueMm(after.solids[1]), kNoTongueMm + 8);
+}
+
+TEST(CutNecks, AGuessedBrainHasNoTongue) {
+    // as bright as the brain, with CSF and bone around: what thresholds follow out of the head
+    for (const double radiusMm : {4.0, 7.0}) {
+        HeadWith head = headWithForamen(radiusMm);
+        head.shapes.outerSkull =
+            both(head.shapes.outerSkull, tube(kMiddle, kForamen - Vec3{0, 0, 29}, radiusMm + 4));
+        EXPECT_LE(tongueMm(head.byGuess().solids[0]), kNoTongueMm) << radiusMm;
+    }
 }
 
 TEST(CutNecks, FollowThePlaceAndLengthOfABentNeck) {
