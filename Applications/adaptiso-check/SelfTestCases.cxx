@@ -9,12 +9,10 @@
 #include <optional>
 #include <utility>
 
-#include "Checks.h"
 #include "Common/AtomicFolder.h"
 #include "Common/CommonOptions.h"
 #include "Common/RunApp.h"
 #include "SelfTestPhantoms.h"
-#include "SurfaceFacts.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -23,6 +21,8 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
+#include "adaptiso/Pipeline/Checks.h"
+#include "adaptiso/Pipeline/SurfaceFacts.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
 namespace adaptiso::selftest {
