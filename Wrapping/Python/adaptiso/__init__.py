@@ -32,6 +32,5 @@ if hasattr(_os, "register_at_fork"):
                          after_in_parent=_adaptiso.after_fork_in_parent,
                          after_in_child=_adaptiso.after_fork_in_child)
 
-for _name in ("Error", "InternalError"):
-    globals()[_name].__module__ = "adaptiso"
-del _name
+Error.__module__ = InternalError.__module__ = "adaptiso"
+InternalError.__doc__ = "A promise of the library is broken: a bug of adaptiso, not of the input."

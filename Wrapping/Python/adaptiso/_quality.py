@@ -37,6 +37,7 @@ class Check:
 
     @property
     def passed(self) -> bool:
+        """All that is required holds."""
         return bool(self.report["passed"])
 
     def _judged(self) -> "List[tuple[str, Dict[str, Any]]]":
@@ -48,11 +49,13 @@ class Check:
 
     @property
     def failed(self) -> List[str]:
+        """Names of what is required and does not hold."""
         return [f"{subject}: {name}" if subject else str(name)
                 for subject, judged in self._judged() for name in judged["failed"]]
 
     @property
     def findings(self) -> List[str]:
+        """The same in words, with the place."""
         return [(f"{subject}: " if subject else "") + f"{check['name']}: {check['finding']}"
                 for subject, judged in self._judged() for check in judged["checks"]
                 if check["name"] in judged["failed"]]
@@ -87,22 +90,27 @@ class Comparison:
 
     @property
     def mean(self) -> float:
+        """Mean distance, mm."""
         return self._of("meanMm")
 
     @property
     def rms(self) -> float:
+        """Root mean square distance, mm."""
         return self._of("rmsMm")
 
     @property
     def p95(self) -> float:
+        """The distance, mm, that 95 % of the points do not exceed."""
         return self._of("p95Mm")
 
     @property
     def p99(self) -> float:
+        """The distance, mm, that 99 % of the points do not exceed."""
         return self._of("p99Mm")
 
     @property
     def max(self) -> float:
+        """The largest distance, mm: the Hausdorff distance."""
         return self._of("maxMm")
 
     def __repr__(self) -> str:
