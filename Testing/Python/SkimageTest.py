@@ -52,8 +52,7 @@ class TheirTests(unittest.TestCase):
 
 class Agreement(unittest.TestCase):
     def setUp(self):
-        # no sample at the levels, which float32 holds exactly (theirs are rounded to it), and no
-        # ambiguous cell
+        # no sample at the levels, no ambiguous cell
         self.volume = (ellipsoid(6, 10, 7, levelset=True) + 0.0123).astype(np.float32)
 
     def both(self, **options):
@@ -114,7 +113,8 @@ class Agreement(unittest.TestCase):
     def match(self, ours, theirs):
         """For each of our vertices the one of theirs at the same place."""
         distances, near = cKDTree(theirs).query(ours)
-        self.assertLess(distances.max(), 2e-5)  # float32 places up to 70
+        # ours stay a thousandth of a step (2.5 at most) away from samples; float32 places up to 70
+        self.assertLess(distances.max(), 2.5 * 0.001 + 2e-5)
         self.assertEqual(len(np.unique(near)), len(theirs))
         return near
 

@@ -254,6 +254,10 @@ def _look_at(array: Array) -> bool:
             return True
         if not array.flags.writeable:
             return False
+        try:
+            array.flags.writeable = True  # refused where it could not be set back, as of pickled ones
+        except ValueError:
+            return False
         array.flags.writeable = False
         _lookers[key] = 1
         return True

@@ -27,6 +27,7 @@
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/Pipeline/CheckJson.h"
 #include "adaptiso/Pipeline/Checks.h"
+#include "adaptiso/Pipeline/DistanceJson.h"
 #include "adaptiso/Pipeline/FinishSurface.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 

@@ -4,15 +4,14 @@
 
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshQuality/Nesting.h"
-#include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/Pipeline/Checks.h"
 #include "adaptiso/Pipeline/Json.h"
 #include "adaptiso/Pipeline/SurfaceFacts.h"
 
 namespace adaptiso {
 
-/// Parts of the reports adaptiso-check/1 and adaptiso-compare/1, as the programs' README.md
-/// describe them, for the programs and for those who ask the same without them. A number that is
+/// Parts of the report adaptiso-check/1, as adaptiso-check's README.md
+/// describes it, for the program and for those who ask the same without it. A number that is
 /// not known, or not finite, is null.
 
 /// passed, failed, checks
@@ -25,8 +24,5 @@ Json factsJson(const SurfaceFacts& facts);
 /// \param toFrame  takes points of the report to the frame to tell them in
 Json nestingJson(const NestingReport& report, const std::vector<Check>& checks,
                  const AffineTransform& toFrame);
-
-/// An entry of adaptiso-compare's `distances`, in millimetres. \param toFrame  likewise
-Json distanceJson(const DistanceStatistics& distances, const AffineTransform& toFrame);
 
 }  // namespace adaptiso
