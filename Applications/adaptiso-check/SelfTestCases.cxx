@@ -170,7 +170,7 @@ private:
 
     /// That adaptiso-check finds nothing wrong with a surface of so many pieces and handles.
     void addSound(TriangleMesh mesh, int pieces, int genus) {
-        const CheckOptions options;
+        const CheckRules options;
         const SurfaceFacts facts =
             measureSurface(mesh, sizeLimitsOf(options.profileInUse()), options.maxPairs);
         addCount("checks failed", 0,
@@ -299,7 +299,7 @@ private:
     void findDefects() {
         const TriangleMesh ball = plainBall();
         const TriangleMesh ring = faultless(torus({0, 0, 0}, 24, 10));
-        CheckOptions options;
+        CheckRules options;
         options.profile = Profile::Bem;
         about("ball without a defect", [&] {
             TriangleMesh mesh = ball;
