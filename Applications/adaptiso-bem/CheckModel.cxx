@@ -10,8 +10,8 @@ std::string nameOf(std::size_t n) {
     return std::string(toString(static_cast<HeadSurface>(n)));
 }
 
-CheckOptions bemRules(std::optional<double> minGapMm = std::nullopt) {
-    CheckOptions rules;
+CheckRules bemRules(std::optional<double> minGapMm = std::nullopt) {
+    CheckRules rules;
     rules.profile = Profile::Bem;
     rules.minGapMm = minGapMm;
     rules.maxPairs = 1;

@@ -7,7 +7,7 @@
 
 #include "BemRun.h"
 #include "Common/Progress.h"
-#include "adaptiso-check/Checks.h"
+#include "adaptiso/Pipeline/Checks.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 

@@ -152,7 +152,7 @@ void declareHead(CLI::App& app, BemOptions& options) {
                    numbers("--min-gap", text, ',', 1, 2, "one or two numbers of mm: SKULL,SCALP");
                head.minSkullMm = gaps.front();
                head.minScalpMm = gaps.back();
-               constexpr double kLeast = CheckOptions::kDefaultMinGapMm, kMost = 20;
+               constexpr double kLeast = CheckRules::kDefaultMinGapMm, kMost = 20;
                if (!(std::min(head.minSkullMm, head.minScalpMm) >= kLeast) ||
                    !(std::max(head.minSkullMm, head.minScalpMm) <= kMost)) {
                    throw UsageError("--min-gap " + text + ": must be " + formatNumber(kLeast) +

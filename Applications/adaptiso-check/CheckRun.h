@@ -5,17 +5,17 @@
 #include <string>
 #include <vector>
 
-#include "Checks.h"
 #include "Common/Resources.h"
 #include "HeadNotes.h"
 #include "Pipeline.h"
-#include "SurfaceFacts.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
+#include "adaptiso/Pipeline/Checks.h"
+#include "adaptiso/Pipeline/SurfaceFacts.h"
 
 namespace adaptiso {
 

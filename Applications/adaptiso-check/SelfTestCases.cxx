@@ -9,12 +9,10 @@
 #include <optional>
 #include <utility>
 
-#include "Checks.h"
 #include "Common/AtomicFolder.h"
 #include "Common/CommonOptions.h"
 #include "Common/RunApp.h"
 #include "SelfTestPhantoms.h"
-#include "SurfaceFacts.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -23,6 +21,8 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
+#include "adaptiso/Pipeline/Checks.h"
+#include "adaptiso/Pipeline/SurfaceFacts.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
 namespace adaptiso::selftest {
@@ -170,7 +170,7 @@ private:
 
     /// That adaptiso-check finds nothing wrong with a surface of so many pieces and handles.
     void addSound(TriangleMesh mesh, int pieces, int genus) {
-        const CheckOptions options;
+        const CheckRules options;
         const SurfaceFacts facts =
             measureSurface(mesh, sizeLimitsOf(options.profileInUse()), options.maxPairs);
         addCount("checks failed", 0,
@@ -299,7 +299,7 @@ private:
     void findDefects() {
         const TriangleMesh ball = plainBall();
         const TriangleMesh ring = faultless(torus({0, 0, 0}, 24, 10));
-        CheckOptions options;
+        CheckRules options;
         options.profile = Profile::Bem;
         about("ball without a defect", [&] {
             TriangleMesh mesh = ball;

@@ -5,6 +5,7 @@
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Common/Warnings.h"
+#include "adaptiso/Pipeline/DistanceJson.h"
 
 namespace adaptiso {
 namespace {
@@ -46,17 +47,10 @@ Json lengthsJson(const DistanceStatistics& distances, double unitMm) {
 
 Json distancesJson(const CompareRun& run, const DistanceStatistics& distances) {
     if (distances.samples == 0) return nullptr;
-    return {{"samples", distances.samples},
-            {"meanMm", number(distances.meanMm)},
-            {"rmsMm", number(distances.rmsMm)},
-            {"p95Mm", number(distances.p95Mm)},
-            {"p99Mm", number(distances.p99Mm)},
-            {"maxMm", number(distances.maxMm)},
-            {"maxPointMm", vector(run.toFrame(distances.maxPointMm))},
-            {"meanNormalDeviationDeg", number(distances.meanNormalDeviationDeg)},
-            {"p95NormalDeviationDeg", number(distances.p95NormalDeviationDeg)},
-            {"inVoxels", run.voxelMm ? lengthsJson(distances, *run.voxelMm) : Json(nullptr)},
-            {"percentOfDiagonal", lengthsJson(distances, run.b.diagonalMm / 100)}};
+    Json json = distanceJson(distances, run.toFrame);
+    json["inVoxels"] = run.voxelMm ? lengthsJson(distances, *run.voxelMm) : Json(nullptr);
+    json["percentOfDiagonal"] = lengthsJson(distances, run.b.diagonalMm / 100);
+    return json;
 }
 
 /// A less B, and in per cent of B.

@@ -5,7 +5,6 @@
 #include <iomanip>
 
 #include "Common/CommonOptions.h"
-#include "Common/ImageJson.h"
 #include "Common/Json.h"
 #include "Common/Numbers.h"
 #include "Common/PreprocessingOptions.h"

@@ -11,10 +11,9 @@
 #include "Pipeline.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
-#include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
-#include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/Pipeline/FinishSurface.h"
 
 namespace adaptiso {
 
@@ -44,33 +43,12 @@ struct IndexSummary {
     bool isLoaded = false;
 };
 
-/// What --verify has found.
-struct Verification {
-    std::int64_t samples = 0;  ///< points at which distances were measured, both ways
-    double maxMm = 0;          ///< the largest of them
-};
-
 /// What is known of one surface once it has been written.
-struct SurfaceSummary {
-    double isovalue = 0;
-    bool isAutomatic = false;
-    ExtractionStatistics statistics;      ///< of the whole surface, before pieces were dropped
-    std::int64_t extractedTriangles = 0;  ///< likewise
-    TopologyReport topology;              ///< of what was written
-    double areaMm2 = 0;
-    std::optional<double> volumeMm3;            ///< none of an open surface
-    std::optional<std::int64_t> crossingPairs;  ///< 0 of Method::Adaptive; none when not asked for
-    std::optional<Verification> verification;   ///< none when not asked for
+struct SurfaceSummary : SurfaceRecord {
     std::filesystem::path file;
     const MeshFormat* format = nullptr;
     CoordinateFrame frame{};
     std::uintmax_t bytes = 0;
-
-    /// The count of --triangles or --reduction was met; none when none was asked for.
-    std::optional<bool> countMet() const {
-        if (!statistics.wantedTriangles) return std::nullopt;
-        return extractedTriangles <= *statistics.wantedTriangles;
-    }
 };
 
 /// A surface to show.

@@ -1,6 +1,7 @@
 #include "Pipeline.h"
 
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <optional>
 #include <span>
@@ -30,7 +31,6 @@
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
-#include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/SpanSpace/IndexFile.h"
 
 namespace adaptiso {
@@ -40,15 +40,13 @@ namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "adaptiso-mesh";
 
-/// The stages of a run, as progress, `seconds` of the report and README.md name them.
+/// The stages of a run, as progress, `seconds` of the report and README.md name them, beside those
+/// of finishSurface().
 constexpr const char* kRead = "read";
 constexpr const char* kPreprocess = "preprocess";
 constexpr const char* kIndex = "index";
 constexpr const char* kExtract = "extract";
 constexpr const char* kVerify = "verify";
-constexpr const char* kPieces = "pieces";
-constexpr const char* kCheck = "check";
-constexpr const char* kCrossings = "crossings";
 constexpr const char* kWrite = "write";
 constexpr const char* kReport = "report";
 
@@ -127,12 +125,8 @@ std::string rangeText(const MeshRun& run) {
 /// \throws InvalidInput when the surface would be empty, or the border of the image alone
 void checkIsovalue(double isovalue, const MeshRun& run) {
     const std::string name = "--iso " + shown(formatNumber(isovalue));
-    if (!(isovalue <= run.range().maximum)) {
-        throw InvalidInput(name + ": no voxel reaches it; " + rangeText(run));
-    }
-    if (isovalue <= run.range().minimum) {
-        throw InvalidInput(name + ": every voxel reaches it, so there is no surface; " +
-                           rangeText(run));
+    if (const auto fault = isovalueFault(isovalue, run.range())) {
+        throw InvalidInput(name + ": " + *fault + "; " + rangeText(run));
     }
 }
 
@@ -174,28 +168,15 @@ Volume prepare(Volume read, MeshRun& run, ProgressLine& progress) {
     });
 }
 
-/// The output's promise, kept or nothing is written: no defect; with an open border no defect but
-/// open edges.
-void requireSound(const TopologyReport& topology, Border border) {
-    std::string faults;
-    for (int n = 0; n < kTopologyDefectCount; ++n) {
-        const auto defect = static_cast<TopologyDefect>(n);
-        if (topology.count(defect) == 0) continue;
-        if (border == Border::Open && defect == TopologyDefect::BoundaryEdge) continue;
-        faults += (faults.empty() ? "" : ", ") + std::string(toString(defect)) + ": " +
-                  std::to_string(topology.count(defect));
-    }
-    if (!faults.empty()) throw InternalError("the surface is not sound (" + faults + ")");
-}
-
 /// \throws InvalidInput when nothing is left
-TriangleMesh keepPieces(const TriangleMesh& mesh, const ComponentSelection& selection) {
-    TriangleMesh kept = selectComponents(mesh, selection);
-    if (kept.triangles.empty()) {
-        throw InvalidInput("--min-volume " + formatNumber(selection.minVolumeMm3) +
-                           ": no piece of the surface has as much");
+FinishedSurface finishPieces(TriangleMesh mesh, const FinishOptions& options,
+                             SurfaceRecord& record) {
+    try {
+        return finishSurface(std::move(mesh), options, record);
+    } catch (const NothingLeft& error) {
+        throw InvalidInput("--min-volume " + formatNumber(options.selection.minVolumeMm3) + ": " +
+                           error.what());
     }
-    return kept;
 }
 
 /// Makes one surface and writes it under its temporary name.
@@ -211,12 +192,8 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     summary.frame = frameOf(options, *summary.format);
 
     Extraction extraction = run.timer.time(kExtract, [&] {
-        ExtractionOptions extract;
+        ExtractionOptions extract = options.extraction();
         extract.isovalue = isovalue;
-        extract.method = options.method;
-        extract.adjustVertices = options.adjustVertices;
-        extract.mergeWithinBlocks = options.mergeWithinBlocks;
-        extract.adaptive = options.adaptive;
         extract.computeNormals = summary.format->holdsNormals;
         extract.progress = progress.callback();
         return naming(inputName(options), [&] { return extractSurface(volume, index, extract); });
@@ -234,32 +211,18 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
             run.timer.time(kVerify, [&] { return verify(volume, index, isovalue, extraction); });
     }
 
-    TriangleMesh mesh = std::move(extraction.mesh);
-    if (!options.selection.keepsAll()) {
-        progress.show(kPieces);
-        mesh = run.timer.time(kPieces, [&] { return keepPieces(mesh, options.selection); });
-    }
-
-    progress.show(kCheck);
-    run.timer.time(kCheck, [&] {
-        summary.topology = checkTopology(mesh);
-        requireSound(summary.topology, options.index.border);
-        summary.areaMm2 = surfaceArea(mesh);
-        if (summary.topology.isClosed()) summary.volumeMm3 = enclosedVolume(mesh);
-    });
-
     const bool isShown = options.report.isWanted();
-    ShownSurface shown;
-    if (options.method == Method::Adaptive) {
-        summary.crossingPairs = 0;  // proved
-    } else if (options.checksCrossings) {
-        progress.show(kCrossings);
-        SelfIntersections crossings = run.timer.time(kCrossings, [&] {
-            return findSelfIntersections(mesh, {.maxPairs = isShown ? kMaxShownPairs : 0});
-        });
-        summary.crossingPairs = crossings.pairCount;
-        shown.crossings = std::move(crossings.pairs);
-    }
+    FinishOptions finish;
+    finish.selection = options.selection;
+    finish.method = options.method;
+    finish.border = options.index.border;
+    finish.countsCrossings = options.checksCrossings;
+    finish.maxCrossingPairs = isShown ? kMaxShownPairs : 0;
+    finish.runStage = [&](std::string_view stage, const std::function<void()>& work) {
+        progress.show(stage);
+        run.timer.time(stage, work);
+    };
+    FinishedSurface finished = finishPieces(std::move(extraction.mesh), finish, summary);
 
     progress.show(kWrite);
     run.timer.time(kWrite, [&] {
@@ -268,12 +231,11 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         write.frame = summary.frame;
         // tkRAS and voxel indices are those of the image that the user has
         write.volume = frameVolume(summary.frame, run.input.geometry);
-        output.write([&](const fs::path& path) { writeMesh(mesh, path, write); });
+        output.write([&](const fs::path& path) { writeMesh(finished.mesh, path, write); });
         summary.bytes = fs::file_size(output.temporary());
     });
     if (isShown) {
-        shown.mesh = std::move(mesh);
-        run.shown.push_back(std::move(shown));
+        run.shown.push_back({std::move(finished.mesh), std::move(finished.crossings)});
     }
     return summary;
 }

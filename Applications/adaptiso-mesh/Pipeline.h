@@ -64,6 +64,15 @@ struct MeshOptions {
                namesInput(indexFiles.save) || namesInput(report.page) ||
                namesInput(report.pictures);
     }
+    /// Of every surface, but for the isovalue, normals and progress.
+    ExtractionOptions extraction() const {
+        ExtractionOptions options;
+        options.method = method;
+        options.adjustVertices = adjustVertices;
+        options.mergeWithinBlocks = mergeWithinBlocks;
+        options.adaptive = adaptive;
+        return options;
+    }
     /// Pieces are asked for that only closed surfaces have.
     bool needsClosedSurfaces() const {
         return selection.fillCavities || selection.minVolumeMm3 > 0;

@@ -5,6 +5,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 from support import SOURCE, ApplicationTest, ball, main, write_nifti
@@ -22,6 +23,9 @@ def output(*command, **options):
     if done.returncode != 0:
         raise AssertionError(f"{command}: exit code {done.returncode}\n{done.stdout[-4000:]}")
     return done.stdout
+
+
+PYTHON_MINOR = sys.version_info.minor  # tests are run by the Python that the package is for
 
 
 class Packages(ApplicationTest):
@@ -43,7 +47,7 @@ class Packages(ApplicationTest):
 
     # making packages takes a while: one test looks at them from all sides
     def test_packages_are_whole_and_work_from_a_clean_prefix(self):
-        self.assertEqual(sorted(self.debs), ["adaptiso", "libadaptiso-dev"])
+        self.assertEqual(sorted(self.debs), ["adaptiso", "libadaptiso-dev", "python3-adaptiso"])
         self.look_at_fields()
         self.look_at_files()
         self.ask_lintian()
@@ -52,6 +56,7 @@ class Packages(ApplicationTest):
         self.pack_again()
         self.use_programs()
         self.use_library()
+        self.use_python()
 
     def look_at_fields(self):
         for package in self.debs:
@@ -61,6 +66,10 @@ class Packages(ApplicationTest):
             self.assertIn(library, needed)
         self.assertNotIn("-dev", needed)
         self.assertIn("libtbb-dev", self.field("libadaptiso-dev", "Depends"))
+        python = self.field("python3-adaptiso", "Depends")
+        self.assertIn(f"python3 (>= 3.{PYTHON_MINOR})", python)
+        for needed in (f"python3 (<< 3.{PYTHON_MINOR + 1})", "python3-numpy", "libtbb12"):
+            self.assertIn(needed, python)
 
     def look_at_files(self):
         files = {str(path.relative_to(self.prefix)) for path in self.prefix.rglob("*")
@@ -160,6 +169,21 @@ class Packages(ApplicationTest):
         done = output(self.path("build") / "meshScan", "ball.nii", "own.ply", cwd=self.folder)
         self.assertRegex(done, r"^\d+ triangles at \d")
         output(self.prefix / "usr/bin/adaptiso-check", "own.ply", cwd=self.folder)
+
+    def use_python(self):
+        """import adaptiso from the unpacked package, and the same mesh as the program's."""
+        package = self.prefix / "usr/lib/python3/dist-packages"
+        script = """
+import adaptiso, sys
+mesh = adaptiso.surface("ball.nii", 100)
+mesh.save("python.stl")
+print(adaptiso.__version__, adaptiso.__file__)
+"""
+        version, file = output("/usr/bin/python3", "-B", "-c", script, cwd=self.folder,
+                               env={"PYTHONPATH": str(package), "LANG": "C.UTF-8"}).split()
+        self.assertEqual(version, VERSION)
+        self.assertEqual(file, str(package / "adaptiso" / "__init__.py"))
+        self.assertEqual(self.path("python.stl").read_bytes(), self.path("ball.stl").read_bytes())
 
 
 if __name__ == "__main__":

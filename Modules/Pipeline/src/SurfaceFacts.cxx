@@ -1,4 +1,4 @@
-#include "SurfaceFacts.h"
+#include "adaptiso/Pipeline/SurfaceFacts.h"
 
 #include <algorithm>
 #include <limits>

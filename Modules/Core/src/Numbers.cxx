@@ -1,4 +1,4 @@
-#include "Common/Numbers.h"
+#include "adaptiso/Core/Numbers.h"
 
 #include <array>
 #include <charconv>

@@ -1,12 +1,24 @@
-#pragma once
+#include "adaptiso/Pipeline/Json.h"
 
-#include "Common/Json.h"
-#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
 
-/// An image's place, as the reports have it: sizeVoxels, spacingMm, originMm, direction (LPS mm).
-inline Json geometryJson(const ImageGeometry& geometry) {
+std::string_view frameWord(CoordinateFrame frame) {
+    switch (frame) {
+        case CoordinateFrame::Ras:
+            return "ras";
+        case CoordinateFrame::Lps:
+            return "lps";
+        case CoordinateFrame::TkRas:
+            return "tkras";
+        case CoordinateFrame::Voxel:
+            return "voxel";
+    }
+    throw InternalError("frameWord: unknown coordinate frame");
+}
+
+Json geometryJson(const ImageGeometry& geometry) {
     Json directions = Json::array();  // rows, as ITK and NRRD users know them
     Mat3 direction;
     for (int axis = 0; axis < 3; ++axis) {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "Common/Numbers.h"
+#include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
 namespace {

@@ -1,11 +1,11 @@
-#include "Checks.h"
+#include "adaptiso/Pipeline/Checks.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
-#include "Common/Numbers.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
 namespace {
@@ -29,7 +29,7 @@ struct Rule {
     }
 };
 
-// README.md and --help say the same in words.
+// adaptiso-check's README.md and --help say the same in words.
 constexpr Rule kFinite{"finiteCoordinates", "finite coordinates", true, true, true};
 constexpr Rule kIndices{"indicesInRange", "indices in range", true, true, true};
 constexpr Rule kClosed{"closed", "closed", true, true, false};
@@ -75,8 +75,8 @@ std::string named(const TopologyExample& example) {
 /// Asks the questions of one surface.
 class SurfaceJudge {
 public:
-    SurfaceJudge(const SurfaceFacts& facts, const CheckOptions& options)
-        : facts_(facts), options_(options) {}
+    SurfaceJudge(const SurfaceFacts& facts, const CheckRules& rules)
+        : facts_(facts), rules_(rules) {}
 
     std::vector<Check> judge() && {
         judgeTopology();
@@ -88,7 +88,7 @@ public:
 
 private:
     void add(const Rule& rule, Outcome outcome, std::string finding) {
-        checks_.push_back({rule.key, rule.name, rule.isRequiredBy(options_.profileInUse()), outcome,
+        checks_.push_back({rule.key, rule.name, rule.isRequiredBy(rules_.profileInUse()), outcome,
                            std::move(finding)});
     }
     void add(const Rule& rule, bool holds, std::string finding) {
@@ -247,7 +247,7 @@ private:
         if (facts_.shape.triangles == 0) {
             return add(kMinAngle, Outcome::Undecided, "there is no triangle to measure");
         }
-        const double limit = options_.minAngleDeg.value_or(CheckOptions::kDefaultMinAngleDeg);
+        const double limit = rules_.minAngleDeg.value_or(CheckRules::kDefaultMinAngleDeg);
         const bool holds = angles.minimum >= limit;
         std::string finding = formatFixed(angles.minimum, 2) + " degrees";
         if (!holds) {
@@ -255,7 +255,7 @@ private:
                        ", must be at least " + formatNumber(limit);
         }
         add(kMinAngle, holds, finding);
-        checks_.back().isRequired |= options_.minAngleDeg.has_value();
+        checks_.back().isRequired |= rules_.minAngleDeg.has_value();
     }
 
     void judgeSizeInMm() {
@@ -276,13 +276,13 @@ private:
     }
 
     const SurfaceFacts& facts_;
-    const CheckOptions& options_;
+    const CheckRules& rules_;
     std::vector<Check> checks_;
 };
 
 Check makeCheck(const Rule& rule, Outcome outcome, const std::string& finding,
-                const CheckOptions& options) {
-    return {rule.key, rule.name, rule.isRequiredBy(options.profileInUse()), outcome, finding};
+                const CheckRules& rules) {
+    return {rule.key, rule.name, rule.isRequiredBy(rules.profileInUse()), outcome, finding};
 }
 
 std::string outsideText(const NestingReport& report, const std::string& inner,
@@ -344,34 +344,34 @@ bool allHold(const std::vector<Check>& checks) {
                         [](const Check& check) { return check.breaksProfile(); });
 }
 
-std::vector<Check> judgeSurface(const SurfaceFacts& facts, const CheckOptions& options) {
-    return SurfaceJudge(facts, options).judge();
+std::vector<Check> judgeSurface(const SurfaceFacts& facts, const CheckRules& rules) {
+    return SurfaceJudge(facts, rules).judge();
 }
 
 Check judgeDeviation(const std::optional<DistanceStatistics>& deviation, double voxelMm,
-                     const CheckOptions& options) {
+                     const CheckRules& rules) {
     if (!deviation) {
-        return makeCheck(kDeviation, Outcome::Failed, "there is no area to measure", options);
+        return makeCheck(kDeviation, Outcome::Failed, "there is no area to measure", rules);
     }
     const bool holds =
-        options.maxOffMm ? deviation->maxMm <= *options.maxOffMm : deviation->meanMm <= voxelMm / 2;
+        rules.maxOffMm ? deviation->maxMm <= *rules.maxOffMm : deviation->meanMm <= voxelMm / 2;
     std::string finding = "off by " + formatFixed(deviation->meanMm, 3) + " mm on the mean, " +
                           formatFixed(deviation->maxMm, 3) + " mm at most";
     if (!holds) {
-        finding += options.maxOffMm ? ", must be at most " + formatNumber(*options.maxOffMm) + " mm"
-                                    : ", the mean must be at most half a voxel of " +
-                                          formatFixed(voxelMm, 3) + " mm";
+        finding += rules.maxOffMm ? ", must be at most " + formatNumber(*rules.maxOffMm) + " mm"
+                                  : ", the mean must be at most half a voxel of " +
+                                        formatFixed(voxelMm, 3) + " mm";
     }
-    return makeCheck(kDeviation, holds ? Outcome::Passed : Outcome::Failed, finding, options);
+    return makeCheck(kDeviation, holds ? Outcome::Passed : Outcome::Failed, finding, rules);
 }
 
 std::vector<Check> judgeNesting(const NestingReport& report, const std::string& inner,
                                 const std::string& outer, const AffineTransform& toFrame,
-                                const CheckOptions& options) {
+                                const CheckRules& rules) {
     std::vector<Check> checks;
     const auto add = [&](const Rule& rule, bool holds, const std::string& finding) {
         checks.push_back(
-            makeCheck(rule, holds ? Outcome::Passed : Outcome::Failed, finding, options));
+            makeCheck(rule, holds ? Outcome::Passed : Outcome::Failed, finding, rules));
     };
     const std::string where = " at " + at(toFrame(report.gap.nearest.pointA));
     const std::string triangles = "triangles " + std::to_string(report.gap.triangleA) + " of " +
@@ -386,10 +386,10 @@ std::vector<Check> judgeNesting(const NestingReport& report, const std::string& 
                : "");
     add(kNested, report.isStrictlyNested(), relationText(report, inner, outer));
     if (report.gap.triangleA < 0) {
-        checks.push_back(makeCheck(kMinGap, Outcome::Undecided,
-                                   "a surface has no triangle to measure", options));
+        checks.push_back(
+            makeCheck(kMinGap, Outcome::Undecided, "a surface has no triangle to measure", rules));
     } else {
-        const double limit = options.minGapMm.value_or(CheckOptions::kDefaultMinGapMm);
+        const double limit = rules.minGapMm.value_or(CheckRules::kDefaultMinGapMm);
         const bool holds = report.gap.nearest.distanceMm >= limit;
         add(kMinGap, holds,
             areIdentical
@@ -397,7 +397,7 @@ std::vector<Check> judgeNesting(const NestingReport& report, const std::string& 
                 : "smallest " + formatFixed(report.gap.nearest.distanceMm, 3) + " mm" + where +
                       (holds ? "" : ", must be at least " + formatNumber(limit) + " mm"));
     }
-    checks.back().isRequired |= options.minGapMm.has_value();
+    checks.back().isRequired |= rules.minGapMm.has_value();
     return checks;
 }
 

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+
+#include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
+
+namespace adaptiso {
+
+/// Keeps keys in the order they are written, as the programs' READMEs list them.
+using Json = nlohmann::ordered_json;
+
+/// JSON has no NaN and no infinity: they become null.
+inline Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+inline Json vector(const Vec3& v) {
+    return {number(v.x), number(v.y), number(v.z)};
+}
+
+template <class T>
+Json orNull(const std::optional<T>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
+/// "ras", "lps", "tkras", "voxel": as --coordinates and the Python module take it.
+std::string_view frameWord(CoordinateFrame frame);
+
+/// An image's place, as the reports have it: sizeVoxels, spacingMm, originMm, direction (LPS mm).
+Json geometryJson(const ImageGeometry& geometry);
+
+}  // namespace adaptiso

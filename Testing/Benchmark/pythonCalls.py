@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""What the Python package costs beside C++: the overhead of a call, four threads on four volumes, and
+the peak memory of a call. For people; run it on a machine that does nothing else.
+
+    PYTHONPATH=build/release/python Testing/Benchmark/pythonCalls.py
+"""
+
+import concurrent.futures
+import re
+import statistics
+import subprocess
+import sys
+import time
+
+import adaptiso
+import numpy as np
+
+
+def seconds(work, repeats):
+    """Median, and the least, of wall-clock seconds."""
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - start)
+    return statistics.median(times), min(times)
+
+
+def ball(n, center):
+    index = np.indices((n, n, n), dtype=np.float32, sparse=True)
+    return np.asfortranarray(-np.sqrt(sum((x - center) ** 2 for x in index)))
+
+
+def call_overhead():
+    """A call on 16^3 less the seconds that C++ reports of its own work."""
+    volume = ball(16, 7.5)
+    for method in ("mc", "adaptive"):
+        overheads, totals = [], []
+        for _ in range(300):
+            start = time.perf_counter()
+            mesh = adaptiso.surface(volume, -5, method=method, threads=1)
+            total = time.perf_counter() - start
+            totals.append(total)
+            overheads.append(total - mesh.report["seconds"]["total"])
+        print(f"call on 16^3, {method}: {1e3 * statistics.median(totals):.3f} ms, of that not in "
+              f"C++ {1e3 * statistics.median(overheads):.3f} ms (least {1e3 * min(overheads):.3f})")
+
+
+def four_threads():
+    volumes = [ball(96, 47 + n) for n in range(4)]
+
+    def make(volume):
+        return adaptiso.surface(volume, -35, threads=1)
+
+    def by_threads():
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:
+            list(pool.map(make, volumes))
+
+    one, _ = seconds(lambda: [make(volume) for volume in volumes], 5)
+    four, _ = seconds(by_threads, 5)
+    print(f"four volumes of 96^3: one after the other {one:.2f} s, four threads {four:.2f} s: "
+          f"{one / four:.2f} x")
+
+
+PEAK = r"""
+import re, sys, adaptiso, numpy as np
+def peak():
+    return int(re.search(r"VmHWM:\s+(\d+) kB", open("/proc/self/status").read())[1]) * 1024
+order, method = sys.argv[1:]
+index = np.indices((256, 256, 256), dtype=np.float32, sparse=True)
+volume = np.array(sum((x - 127.5) ** 2 for x in index), np.float32, order=order)
+adaptiso.surface(np.asfortranarray(volume[:8, :8, :8]), volume[4, 4, 4], threads=1)
+open("/proc/self/clear_refs", "w").write("5")
+before = peak()
+mesh = adaptiso.surface(volume, 60 ** 2.0, method=method, threads=1)
+print(peak() - before, mesh._data.bytes, volume.nbytes)
+"""
+
+
+def peak_memory():
+    for method in ("mc", "boxes", "adaptive"):
+        for order in "FC":
+            done = subprocess.run([sys.executable, "-c", PEAK, order, method], text=True,
+                                  check=True, capture_output=True)
+            taken, mesh, volume = (int(number) / 1e6 for number in done.stdout.split())
+            print(f"peak of a call on 256^3 float32 ({volume:.0f} MB), {order} order, {method}: "
+                  f"{taken:.1f} MB above the volume, for a mesh of {mesh:.1f} MB "
+                  f"((volume + call) / (volume + mesh) = {(volume + taken) / (volume + mesh):.3f})")
+
+
+if __name__ == "__main__":
+    call_overhead()
+    peak_memory()
+    four_threads()

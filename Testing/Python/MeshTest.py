@@ -1,0 +1,207 @@
+"""Meshes: files and back, pickles, and what other packages make of them. Label client for those."""
+
+import copy
+import gc
+import pickle
+import unittest
+from pathlib import Path
+
+import adaptiso
+import numpy as np
+from support import InFolder, ball, needs, place
+
+LIA = np.array([[-1, 0, 0, 13], [0, 0, 1, -9], [0, -1, 0, 15], [0, 0, 0, 1.0]])
+
+
+def sphere(**options):
+    return adaptiso.surface(ball((24, 24, 24)), -8, **options)
+
+
+class Values(unittest.TestCase):
+    def test_repr_tells_triangles_bound_and_frame(self):
+        text = repr(sphere(max_error=0.1))
+        self.assertRegex(text, r"^<adaptiso.Mesh of [\d,]+ triangles, [\d,]+ vertices, "
+                               r"within 0\.\d+ mm, RAS mm>$")
+        self.assertNotIn("within", repr(sphere(method="mc")))
+
+    def test_pickles_are_whole(self):
+        mesh = sphere()
+        for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+            again = pickle.loads(pickle.dumps(mesh, protocol))
+            self.assertEqual(again, mesh)
+            self.assertEqual(again.report, mesh.report)
+            self.assertEqual(again.error_bound, mesh.error_bound)
+        np.testing.assert_array_equal(again.to_nibabel_freesurfer()[0],
+                                      mesh.to_nibabel_freesurfer()[0])
+
+    def test_copies_are_equal(self):
+        mesh = sphere()
+        self.assertEqual(copy.copy(mesh), mesh)
+        self.assertEqual(copy.deepcopy(mesh), mesh)
+        self.assertNotEqual(mesh, sphere(method="mc"))
+
+    def test_own_arrays_make_a_mesh_and_are_copied(self):
+        points = np.array([[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]], np.float32)
+        mesh = adaptiso.Mesh(points, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+        points[:] = 7
+        self.assertAlmostEqual(mesh.volume, 9**3 / 6)
+        self.assertEqual(mesh.report, {})
+        self.assertIsNone(mesh.error_bound)
+
+    def test_arrays_that_are_no_mesh_are_refused(self):
+        points, faces = np.eye(3), [[0, 1, 2]]
+        for arguments in ((points[:, :2], faces), (points, [[0, 1]]), (points, [[0, 1, 3]]),
+                          (points, [[0, 1, -1]]), (points * np.inf, faces), ("abc", faces),
+                          (points, [[0.0, 1, 2]]), (points, faces, np.eye(2)),
+                          (points, faces, np.ones((2, 3))), (points * 1e308 * 10, faces),
+                          (points, np.array([[0, 1, 2**63]], np.uint64)), (None, None),
+                          ([[1, 2, 3], [4, 5]], faces), (points.astype(complex), faces)):
+            with np.errstate(all="ignore"), self.assertRaises(adaptiso.Error) as caught:
+                adaptiso.Mesh(*arguments)
+            self.assertNotIn("\n", str(caught.exception))
+
+
+class Files(InFolder):
+    def test_what_is_saved_comes_back(self):
+        mesh = adaptiso.surface(np.asfortranarray(ball((24, 24, 24))), -8, affine=LIA)
+        for extension, atol in ((".vtp", 0), (".vtk", 0), (".ply", 0), (".obj", 1e-7),
+                                (".off", 1e-7), (".gii", 4e-6), (".surf", 4e-6)):
+            file = self.folder / ("a" + extension)
+            mesh.save(file)
+            again = adaptiso.load(file)
+            # nine digits, or 24 bits, of less than 64 mm; tkRAS goes by a matrix and back
+            np.testing.assert_allclose(again.vertices, mesh.vertices, rtol=0, atol=atol)
+            np.testing.assert_array_equal(again.faces, mesh.faces)
+            self.assertEqual(again.frame, "ras")
+
+    def test_a_frame_that_is_not_told_is_warned_of(self):
+        sphere().save(self.folder / "a.tri")
+        with self.assertLogs("adaptiso", "WARNING") as logs:
+            adaptiso.load(self.folder / "a.tri")
+        self.assertIn("a.tri: does not say its coordinate frame", logs.output[0])
+
+    @needs("nibabel")
+    def test_tkras_without_its_volume_stays_tkras_until_the_volume_is_given(self):
+        import nibabel
+        mesh = adaptiso.surface(np.asfortranarray(ball((24, 24, 24))), -8, affine=LIA)
+        coordinates, faces, _ = mesh.to_nibabel_freesurfer()
+        nibabel.freesurfer.write_geometry(self.folder / "lh.pial", coordinates, faces)
+        loose = adaptiso.load(self.folder / "lh.pial")
+        self.assertEqual(loose.frame, "tkras")
+        self.assertIn("tkRAS", repr(loose))
+        image = nibabel.Nifti1Image(np.zeros((24, 24, 24), np.uint8), LIA)
+        placed = adaptiso.load(self.folder / "lh.pial", volume=image)
+        self.assertEqual(placed.frame, "ras")
+        np.testing.assert_allclose(placed.vertices, mesh.vertices, atol=4e-6)  # float32
+        with self.assertRaisesRegex(adaptiso.Error, "tkras"):
+            adaptiso.compare(loose, mesh)
+        loose.save(self.folder / "again.pial")
+        np.testing.assert_array_equal(
+            nibabel.freesurfer.read_geometry(self.folder / "again.pial")[0],
+            nibabel.freesurfer.read_geometry(self.folder / "lh.pial")[0])
+
+    def test_a_file_is_whole_or_not_there(self):
+        mesh = sphere()
+        file = self.folder / "a.ply"
+        mesh.save(file)
+        before = file.read_bytes()
+        for path, frame in ((file, "scanner"), (self.folder / "a.xyz", None),
+                            (self.folder / "b.surf", "voxel"), (self.folder / "no" / "a.ply", None),
+                            (self.folder, None), ("", None), (3, None)):
+            with self.assertRaises(adaptiso.Error) as caught:
+                mesh.save(path, frame)
+            self.assertNotIn("\n", str(caught.exception))
+        with self.assertRaisesRegex(adaptiso.Error, "does not know its image"):
+            adaptiso.Mesh(mesh.vertices, mesh.faces).save(self.folder / "a.surf")
+        self.assertEqual(file.read_bytes(), before)
+        self.assertEqual([entry.name for entry in self.folder.iterdir()], ["a.ply"])
+
+    def test_a_link_stays_a_link(self):
+        (self.folder / "link.ply").symlink_to(self.folder / "real.ply")
+        sphere().save(self.folder / "link.ply")
+        self.assertTrue((self.folder / "link.ply").is_symlink())
+        self.assertGreater((self.folder / "real.ply").stat().st_size, 1000)
+
+    def test_files_that_are_no_surface_are_refused(self):
+        (self.folder / "a.ply").write_text("no surface")
+        for path in (self.folder / "a.ply", self.folder / "none.ply", self.folder, "x.png", 3, ""):
+            with self.assertRaises(adaptiso.Error) as caught:
+                adaptiso.load(path)
+            self.assertNotIn("\n", str(caught.exception))
+
+
+class Clients(InFolder):
+    """What other packages make of the meshes."""
+
+    @needs("vtkmodules")
+    def test_vtk_takes_the_arrays_and_keeps_them(self):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkFiltersCore import vtkMassProperties
+        mesh = sphere()
+        volume = mesh.volume
+        data = mesh.to_vtk()
+        np.testing.assert_array_equal(vtk_to_numpy(data.GetPoints().GetData()), mesh.vertices)
+        self.assertTrue(np.shares_memory(vtk_to_numpy(data.GetPoints().GetData()), mesh.vertices))
+        del mesh
+        gc.collect()
+        properties = vtkMassProperties()
+        properties.SetInputData(data)
+        self.assertAlmostEqual(properties.GetVolume() / volume, 1, places=6)  # its own formula
+        normals = vtk_to_numpy(data.GetPointData().GetNormals())
+        np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-6)
+
+    @needs("pyvista")
+    def test_pyvista_takes_the_mesh(self):
+        mesh = sphere()
+        data = mesh.to_pyvista()
+        self.assertEqual(data.n_cells, len(mesh.faces))
+        self.assertTrue(data.is_manifold)
+
+    @needs("trimesh")
+    def test_trimesh_takes_the_mesh(self):
+        mesh = sphere()
+        data = mesh.to_trimesh()
+        self.assertTrue(data.is_watertight)
+        self.assertAlmostEqual(data.volume / mesh.volume, 1, places=9)
+        self.assertTrue(adaptiso.check(data))
+
+    @needs("nibabel")
+    def test_nibabel_writes_and_reads_the_gifti(self):
+        import nibabel
+        mesh = sphere()
+        nibabel.save(mesh.to_gifti(), self.folder / "a.gii")
+        points, faces = nibabel.load(self.folder / "a.gii").agg_data(("pointset", "triangle"))
+        np.testing.assert_array_equal(points, mesh.vertices.astype(np.float32))
+        np.testing.assert_array_equal(faces, mesh.faces)
+        self.assertEqual(adaptiso.load(self.folder / "a.gii").frame, "ras")
+
+    @needs("nibabel")
+    def test_nibabel_s_freesurfer_surface_lies_where_the_image_does(self):
+        import nibabel
+        for affine in (LIA, np.diag([1.0, 1, 1, 1]), np.diag([-2.0, 1.5, 1, 1])):
+            volume = np.asfortranarray(ball((24, 24, 24), affine=affine))
+            mesh = adaptiso.surface(volume, -8, affine=affine)
+            nibabel.freesurfer.write_geometry(self.folder / "lh.white", *mesh_and_info(mesh))
+            ours = adaptiso.load(self.folder / "lh.white")
+            self.assertEqual(ours.frame, "ras")
+            np.testing.assert_allclose(ours.vertices, mesh.vertices, atol=1e-5)  # float32
+            self.assertGreater(ours.volume, 0)
+
+    @needs("mne")
+    def test_mne_reads_the_surface_and_finds_it_complete(self):
+        import mne
+        mesh = adaptiso.surface(np.asfortranarray(ball((60, 60, 60))), -26, affine=np.diag(
+            [3.0, 3, 3, 1]) @ LIA, max_error=1)
+        mesh.save(self.folder / "inner_skull.surf")
+        points, faces = mne.read_surface(self.folder / "inner_skull.surf")
+        self.assertEqual(len(points), len(mesh.vertices))
+        np.testing.assert_array_equal(faces, mesh.faces)
+
+
+def mesh_and_info(mesh):
+    coordinates, faces, info = mesh.to_nibabel_freesurfer()
+    return coordinates, faces, None, info
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

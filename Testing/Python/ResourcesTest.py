@@ -1,0 +1,149 @@
+"""What calls cost: memory, references; and that they survive fork()."""
+
+import gc
+import multiprocessing
+import os
+import subprocess
+import sys
+import threading
+import unittest
+
+import adaptiso
+import numpy as np
+from support import ball
+
+
+def in_child(script):
+    """Runs a script in a fresh interpreter. \\return its stdout"""
+    done = subprocess.run([sys.executable, "-c", script], text=True, capture_output=True)
+    if done.returncode != 0:
+        raise AssertionError(done.stderr)
+    return done.stdout
+
+
+PEAK = """
+import re
+def peak():
+    return int(re.search(r"VmHWM:\\s+(\\d+) kB", open("/proc/self/status").read())[1]) * 1024
+def reset():
+    open("/proc/self/clear_refs", "w").write("5")
+"""
+
+
+class Memory(unittest.TestCase):
+    def test_samples_are_copied_neither_in_nor_out(self):
+        """By marching cubes of a small sphere in a large volume, in C order as in Fortran order."""
+        for order in "FC":
+            taken, mesh, volume = map(int, in_child(PEAK + f"""
+import adaptiso, numpy as np
+index = np.indices((200, 200, 200), dtype=np.float32, sparse=True)
+volume = np.array(sum((x - 99.5) ** 2 for x in index), np.float32, order="{order}")
+adaptiso.surface(np.asfortranarray(volume[:8, :8, :8]), volume[4, 4, 4], threads=1)
+reset()
+before = peak()
+mesh = adaptiso.surface(volume, 25 ** 2.0, method="mc", threads=1)
+print(peak() - before, mesh._data.bytes, volume.nbytes)
+""").split())
+            # the mesh as it grows and its check (2.2 meshes, measured); the index holds 20 bytes for
+            # every 64 samples, 0.08 of the volume
+            self.assertLess(taken, 3 * mesh + 0.15 * volume, order)
+            self.assertLess(taken, 0.75 * volume, order)  # any copy would show
+
+
+class References(unittest.TestCase):
+    def test_ten_thousand_calls_leave_nothing_behind(self):
+        out = in_child("""
+import adaptiso, gc, numpy as np, sys
+volume = np.zeros((4, 4, 4), np.float32)
+volume[1:3, 1:3, 1:3] = 1
+points, faces = np.eye(3) * 9, np.array([[0, 1, 2]])
+def resident():
+    return int(open("/proc/self/statm").read().split()[1]) * 4096
+def once():
+    mesh = adaptiso.surface(volume, 0.5, method="mc", threads=1,
+                            progress=lambda stage, done: None)
+    mesh.vertices, mesh.faces, mesh.normals, mesh.error_bound, mesh.affine if 0 else None
+    adaptiso.Mesh(points, faces)
+    try:
+        adaptiso.surface(volume, 5, threads=1)
+    except adaptiso.Error:
+        pass
+for n in range(500):
+    once()
+gc.collect()
+before = resident(), sys.getrefcount(volume), sys.getrefcount(None), len(gc.get_objects())
+for n in range(10000):
+    once()
+gc.collect()
+after = resident(), sys.getrefcount(volume), sys.getrefcount(None), len(gc.get_objects())
+print(*(b - a for a, b in zip(before, after)))
+""")
+        grown, references, nones, objects = map(int, out.split())
+        # 10,000 leaked meshes of 24 points and 44 triangles alone would be 16 MB
+        self.assertLess(grown, 3e6)
+        self.assertEqual(references, 0)
+        self.assertLess(abs(nones), 50)  # of the interpreter's own
+        self.assertLess(objects, 50)
+
+    def test_reports_and_errors_of_progress_are_freed(self):
+        class Value:
+            pass
+
+        value = Value()
+
+        def stop(stage, done):
+            raise RuntimeError(value)
+
+        count = sys.getrefcount(value)
+        for _ in range(100):
+            with self.assertRaises(RuntimeError):
+                adaptiso.surface(ball(), -8, progress=stop)
+        gc.collect()
+        self.assertLessEqual(sys.getrefcount(value), count)
+
+
+class Forks(unittest.TestCase):
+    """After a parent that has used threads."""
+
+    def child(self, work):
+        """Runs `work` in a forked child. \\return its exit code"""
+        pid = os.fork()
+        if pid == 0:
+            code = 1
+            try:
+                code = 0 if work() else 2
+            finally:
+                os._exit(code)
+        return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+
+    def test_a_child_and_its_parent_both_go_on(self):
+        volume = ball((40, 40, 40))
+        truth = adaptiso.surface(volume, -15)
+        for _ in range(3):
+            self.assertEqual(self.child(lambda: adaptiso.surface(volume, -15) == truth), 0)
+            self.assertEqual(adaptiso.surface(volume, -15), truth)
+
+    def test_a_child_of_a_fork_during_a_call_goes_on(self):
+        noise = np.asfortranarray(np.random.default_rng(1).normal(size=(60, 60, 60)))
+        volume = ball((40, 40, 40))
+        truth = adaptiso.surface(volume, -15)
+        started = threading.Event()
+        thread = threading.Thread(target=adaptiso.surface, args=(noise, 0.0), kwargs=dict(
+            method="boxes", progress=lambda stage, done: started.set()))
+        thread.start()
+        started.wait()
+        try:
+            self.assertEqual(self.child(lambda: adaptiso.surface(volume, -15) == truth), 0)
+        finally:
+            thread.join()
+        self.assertEqual(adaptiso.surface(volume, -15), truth)
+
+    def test_a_pool_of_processes_works(self):
+        volumes = [ball((24, 24, 24), (10 + n, 11.5, 11.5)) for n in range(4)]
+        with multiprocessing.get_context("fork").Pool(2) as pool:
+            meshes = pool.starmap(adaptiso.surface, [(volume, -7) for volume in volumes])
+        self.assertEqual(meshes, [adaptiso.surface(volume, -7) for volume in volumes])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

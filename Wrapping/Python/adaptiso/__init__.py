@@ -1,0 +1,36 @@
+"""Adaptive, watertight isosurfaces from MRI and CT scans.
+
+>>> import adaptiso
+>>> mesh = adaptiso.surface("/usr/share/mricron/templates/ch2bet.nii.gz", 100, method="boxes")
+>>> mesh.vertices.dtype, mesh.faces.dtype
+(dtype('float64'), dtype('int64'))
+
+Points are in scanner RAS millimetres. What can't be used raises `adaptiso.Error`, a ValueError
+whose message is one line. C++ works without the interpreter's lock, so threads run side by side;
+Ctrl+C ends a call. Nothing is printed: warnings go to the logger "adaptiso".
+"""
+
+import logging as _logging
+import os as _os
+
+from . import _adaptiso
+from ._adaptiso import Error, InternalError, __version__
+from ._images import Image, read
+from ._marching_cubes import marching_cubes
+from ._mesh import Mesh, load
+from ._quality import Check, Comparison, check, check_nested, compare
+from ._surface import Index, surface
+
+__all__ = ["Check", "Comparison", "Error", "Image", "Index", "InternalError", "Mesh", "check",
+           "check_nested", "compare", "load", "marching_cubes", "read", "surface", "__version__"]
+
+# who wants to see the warnings says so by logging's own means
+_logging.getLogger("adaptiso").addHandler(_logging.NullHandler())
+
+if hasattr(_os, "register_at_fork"):
+    _os.register_at_fork(before=_adaptiso.before_fork,
+                         after_in_parent=_adaptiso.after_fork_in_parent,
+                         after_in_child=_adaptiso.after_fork_in_child)
+
+Error.__module__ = InternalError.__module__ = "adaptiso"
+InternalError.__doc__ = "A promise of the library is broken: a bug of adaptiso, not of the input."

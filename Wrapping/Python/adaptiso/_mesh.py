@@ -1,0 +1,357 @@
+"""Triangle meshes: arrays that C++ owns, files, and other packages' meshes."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import logging
+import os
+import uuid
+from typing import Any, Dict, Optional, Tuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _adaptiso
+from ._adaptiso import Error
+from ._arguments import is_path, path as checked_path, shown, word
+from ._images import affine_of, base_name, read
+
+logger = logging.getLogger("adaptiso")
+
+Vertices = npt.NDArray[np.float64]
+Faces = npt.NDArray[np.int64]
+
+FRAMES = ("ras", "lps", "tkras", "voxel")
+
+
+class Mesh:
+    """A triangle surface in scanner RAS millimetres.
+
+    What `surface`, `Index.surface` and `load` return; of arrays of one's own ``Mesh(vertices,
+    faces)`` makes one. Nothing of it changes, so threads may share it, and copies are not needed.
+
+    Parameters
+    ----------
+    vertices : array_like of shape (n, 3)
+        mm; copied.
+    faces : array_like of integers of shape (m, 3)
+        Rows of `vertices`, counter-clockwise seen from outside; copied.
+    normals : array_like of shape (n, 3), optional
+        Unit vectors that point outside.
+
+    Attributes
+    ----------
+    frame : str
+        "ras"; "tkras" for a FreeSurfer surface whose volume is not known.
+
+    Raises
+    ------
+    Error
+        Shapes that don't fit, vertices that are not finite, faces that name none.
+
+    Examples
+    --------
+    >>> import adaptiso
+    >>> mesh = adaptiso.Mesh([[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]],
+    ...                      [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+    >>> mesh
+    <adaptiso.Mesh of 4 triangles, 4 vertices, RAS mm>
+    >>> mesh.volume
+    121.5
+    """
+
+    __slots__ = ("_data", "_normals", "_report", "__weakref__")
+
+    def __init__(self, vertices: Any, faces: Any, normals: Any = None) -> None:
+        self._data = _adaptiso.MeshData.from_arrays(
+            _table("vertices", vertices, np.float64), _table("faces", faces, np.int64),
+            None if normals is None else _table("normals", normals, np.float32))
+        self._normals: Optional[Vertices] = None
+        self._report: Optional[Dict[str, Any]] = None
+
+    @classmethod
+    def _of(cls, data: _adaptiso.MeshData) -> "Mesh":
+        mesh = cls.__new__(cls)
+        mesh._data = data
+        mesh._normals = None
+        mesh._report = None
+        return mesh
+
+    @property
+    def vertices(self) -> Vertices:
+        """float64, shape (n, 3), mm: a read-only view of the mesh's own memory."""
+        return self._data.vertices
+
+    @property
+    def faces(self) -> Faces:
+        """int64, shape (m, 3), rows of `vertices`: a read-only view of the mesh's own memory."""
+        return self._data.faces
+
+    @property
+    def normals(self) -> Vertices:
+        """float64, shape (n, 3), unit vectors that point outside; shape (0, 3) where the mesh has
+        none. Read-only; kept in single precision and converted the first time."""
+        if self._normals is None:
+            normals = self._data.normals.astype(np.float64)
+            normals.flags.writeable = False
+            self._normals = normals
+        return self._normals
+
+    @property
+    def error_bound(self) -> Optional[float]:
+        """Proved: no point of the mesh lies farther (mm) from the surface of marching cubes, nor
+        that surface from the mesh. None of meshes that the method "adaptive" has not made."""
+        return self._data.error_bound
+
+    @property
+    def report(self) -> Dict[str, Any]:
+        """How the mesh was made, and that it is sound: the report adaptiso-mesh/1, as
+        ``adaptiso-mesh --json`` writes it. Empty of meshes that were not made from an image."""
+        if self._report is None:
+            text = self._data.report
+            self._report = json.loads(text) if text else {}
+        return self._report
+
+    @property
+    def frame(self) -> str:
+        """The frame of `vertices`."""
+        return self._data.frame
+
+    @property
+    def area(self) -> float:
+        """mm2."""
+        return self._data.area
+
+    @property
+    def volume(self) -> float:
+        """mm3 that a closed mesh encloses; below 0 where it is inside out."""
+        return self._data.volume
+
+    @property
+    def is_closed(self) -> bool:
+        """Every edge belongs to two triangles or more."""
+        edges = np.sort(self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        return len(edges) == 0 or bool(np.unique(edges, axis=0, return_counts=True)[1].min() > 1)
+
+    def save(self, path: Any, frame: Optional[str] = None) -> None:
+        """Write the mesh: .vtp, .vtk, .ply, .stl, .obj, .off, .gii, FreeSurfer's, or .tri.
+
+        The file is whole or not there, and the same as the program adaptiso-mesh writes.
+
+        Parameters
+        ----------
+        path : str or path
+            The extension chooses the format.
+        frame : {"ras", "lps", "tkras", "voxel"}, optional
+            Of the points written. Default: "tkras" for FreeSurfer's formats, else "ras".
+
+        Raises
+        ------
+        Error
+            An unknown extension, a frame that the format can't hold or that needs an image that
+            the mesh does not know, a file that can't be written.
+        """
+        name = os.path.realpath(checked_path("path", path))
+        if frame is not None:
+            word("frame", frame, FRAMES)
+        if os.path.exists(name) and not os.path.isfile(name):
+            raise Error(f"{name}: is no regular file; give another name")
+        folder, file = os.path.split(name)
+        stem, extension = os.path.splitext(file)
+        temporary = os.path.join(folder, f".{stem[:80]}-{uuid.uuid4().hex}{extension}")
+        try:
+            self._data.write(temporary, frame)
+            os.replace(temporary, name)
+        except BaseException as error:
+            with contextlib.suppress(OSError):
+                os.unlink(temporary)
+            if isinstance(error, Error):
+                raise Error(str(error).replace(temporary, name)) from None
+            if isinstance(error, OSError):
+                raise Error(f"{name}: can't be written: {error.strerror}") from None
+            raise
+
+    def to_vtk(self) -> Any:
+        """The mesh as a vtkPolyData, in RAS mm; shares the vertices' memory.
+
+        Needs Debian's python3-vtk9, or VTK from elsewhere."""
+        from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+        from vtkmodules.vtkCommonCore import vtkPoints
+        from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+        points = vtkPoints()
+        points.SetData(numpy_to_vtk(self.vertices))
+        cells = vtkCellArray()
+        # copies: a vtkCellArray shares such arrays' memory without keeping what owns it
+        cells.SetData(numpy_to_vtkIdTypeArray(np.arange(0, 3 * len(self.faces) + 1, 3), deep=1),
+                      numpy_to_vtkIdTypeArray(self.faces.ravel(), deep=1))
+        mesh = vtkPolyData()
+        mesh.SetPoints(points)
+        mesh.SetPolys(cells)
+        if len(self._data.normals):
+            normals = numpy_to_vtk(self._data.normals)
+            normals.SetName("Normals")
+            mesh.GetPointData().SetNormals(normals)
+        return mesh
+
+    def to_pyvista(self) -> Any:
+        """The mesh as a pyvista.PolyData, in RAS mm. Needs PyVista."""
+        import pyvista
+        return pyvista.PolyData(self.to_vtk())
+
+    def to_trimesh(self) -> Any:
+        """The mesh as a trimesh.Trimesh, in RAS mm, vertices in the same order. Needs trimesh."""
+        import trimesh
+        normals = self.normals if len(self._data.normals) else None
+        return trimesh.Trimesh(vertices=self.vertices, faces=self.faces, vertex_normals=normals,
+                               process=False)
+
+    def to_gifti(self) -> Any:
+        """The mesh as nibabel's GiftiImage, scanner RAS mm, single precision as GIFTI has it.
+
+        Needs nibabel."""
+        from nibabel import gifti
+        points = gifti.GiftiDataArray(
+            self.vertices.astype(np.float32), intent="NIFTI_INTENT_POINTSET",
+            datatype="NIFTI_TYPE_FLOAT32",
+            coordsys=gifti.GiftiCoordSystem("NIFTI_XFORM_SCANNER_ANAT", "NIFTI_XFORM_SCANNER_ANAT"))
+        triangles = gifti.GiftiDataArray(
+            self.faces.astype(np.int32), intent="NIFTI_INTENT_TRIANGLE",
+            datatype="NIFTI_TYPE_INT32")
+        return gifti.GiftiImage(darrays=[points, triangles])
+
+    def to_nibabel_freesurfer(self) -> Tuple[Vertices, npt.NDArray[np.int32], Dict[str, Any]]:
+        """(coords, faces, volume_info) as nibabel.freesurfer.write_geometry takes and
+        read_geometry gives them: tkRAS mm of the image, as FreeSurfer and MNE have surfaces.
+
+        Raises
+        ------
+        Error
+            The mesh does not know its image.
+        """
+        if self._data.frame_volume is None:
+            raise Error("the mesh does not know its image, so there is no tkRAS")
+        shape, affine = self._data.frame_volume
+        data = self._data if self.frame == "tkras" else self._data.in_frame("tkras")
+        step = np.linalg.norm(affine[:3, :3], axis=0)
+        centre = affine[:3, :3] @ (np.array(shape) / 2) + affine[:3, 3]
+        directions = affine[:3, :3] / step
+        info = {"head": np.array([2, 0, 20]), "valid": "1  # volume info valid",
+                "filename": "unknown", "volume": np.array(shape), "voxelsize": step,
+                "xras": directions[:, 0], "yras": directions[:, 1], "zras": directions[:, 2],
+                "cras": centre}
+        return data.vertices.copy(), data.faces.astype(np.int32), info
+
+    def __repr__(self) -> str:
+        bound = self.error_bound
+        told = "" if bound is None else f", within {bound:.4g} mm"
+        frame = {"ras": "RAS mm", "tkras": "tkRAS mm", "lps": "LPS mm"}.get(self.frame, self.frame)
+        return (f"<adaptiso.Mesh of {len(self.faces):,} triangles, {len(self.vertices):,} "
+                f"vertices{told}, {frame}>")
+
+    def __eq__(self, other: object) -> bool:
+        """The same vertices, faces and normals in the same frame."""
+        if not isinstance(other, Mesh):
+            return NotImplemented
+        return (self.frame == other.frame and np.array_equal(self.faces, other.faces)
+                and np.array_equal(self.vertices, other.vertices)
+                and np.array_equal(self._data.normals, other._data.normals))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        data = self._data
+        normals = data.normals if len(data.normals) else None
+        return _unpickled, (data.vertices, data.faces, normals, data.frame, data.shape, data.affine,
+                            data.error_bound, data.report)
+
+    def __copy__(self) -> "Mesh":
+        return self
+
+    def __deepcopy__(self, memo: Any) -> "Mesh":
+        return self
+
+
+def load(path: Any, *, volume: Any = None) -> Mesh:
+    """Read a surface file, in any of the formats that `Mesh.save` writes.
+
+    Points come in scanner RAS mm, by what the file says of its frame. A FreeSurfer surface without
+    a footer stays in tkRAS (``mesh.frame == "tkras"``) unless `volume` is given; a file that does
+    not say its frame is taken for RAS, and the logger "adaptiso" says so.
+
+    Parameters
+    ----------
+    path : str or path
+    volume : path, nibabel image or Image, optional
+        The image that tkRAS and voxel indices refer to.
+
+    Raises
+    ------
+    Error
+        The file is missing, damaged, of an unknown format, or in voxels without `volume`.
+    """
+    name = checked_path("path", path)
+    shape, affine = (None, None) if volume is None else _geometry_of(volume)
+    data, assumed = _adaptiso.read_mesh(name, shape, affine, False)
+    if assumed:
+        logger.warning("%s: %s", base_name(name), assumed)
+    return Mesh._of(data)
+
+
+def mesh_data_of(value: Any, keeps_faults: bool) -> _adaptiso.MeshData:
+    """A mesh, (vertices, faces), a file's name, or an object with vertices and faces (trimesh's)."""
+    if isinstance(value, Mesh):
+        return value._data
+    if is_path(value):
+        if not keeps_faults:
+            return load(value)._data
+        return _adaptiso.read_mesh(checked_path("mesh", value), None, None, True)[0]
+    if isinstance(value, (tuple, list)) and len(value) == 2:
+        vertices, faces = value
+    elif hasattr(value, "vertices") and hasattr(value, "faces"):
+        vertices, faces = value.vertices, value.faces
+    else:
+        raise Error(f"mesh {shown(value)}: must be a Mesh, (vertices, faces), or a file's name")
+    return _adaptiso.MeshData.from_arrays(_table("vertices", vertices, np.float64),
+                                          _table("faces", faces, np.int64),
+                                          keeps_faults=keeps_faults)
+
+
+def _geometry_of(volume: Any) -> Tuple[Any, Any]:
+    if is_path(volume):
+        volume = read(volume)
+    array = getattr(volume, "array", None)
+    shape = getattr(volume, "shape", None) if array is None else array.shape
+    if shape is None or not hasattr(volume, "affine") or len(shape) < 3:
+        raise Error(f"volume {shown(volume)}: must be an image file, a nibabel image or "
+                    "adaptiso.Image")
+    return [int(n) for n in shape[:3]], affine_of(volume.affine)
+
+
+def _table(name: str, value: Any, dtype: Any) -> Any:
+    """Rows of three numbers. \\raises Error"""
+    try:
+        table = np.asarray(value)
+    except (TypeError, ValueError, OverflowError):
+        raise Error(f"{name} {shown(value)}: must have the shape (n, 3)") from None
+    if table.size == 0 and table.ndim < 2:
+        table = np.empty((0, 3), dtype)
+    if table.ndim != 2 or table.shape[1] != 3:
+        raise Error(f"{name}: has the shape {table.shape}, must have (n, 3)")
+    kinds = "iu" if dtype is np.int64 else "iuf"
+    if table.dtype.kind not in kinds:
+        kind = "whole numbers" if dtype is np.int64 else "numbers"
+        raise Error(f"{name}: holds {table.dtype}, must hold {kind}")
+    if dtype is np.int64 and table.dtype == np.uint64 and table.size and table.max() > 2**62:
+        raise Error(f"{name}: holds numbers that are too large")
+    with np.errstate(over="ignore"):
+        return np.ascontiguousarray(table, dtype)
+
+
+def _unpickled(vertices: Any, faces: Any, normals: Any, frame: str, shape: Any, affine: Any,
+               error_bound: Optional[float], report: str) -> Mesh:
+    data = _adaptiso.MeshData.from_arrays(vertices, faces, normals, frame,
+                                          None if shape is None else list(shape), affine)
+    data.error_bound = error_bound
+    data.report = report
+    return Mesh._of(data)

@@ -1,0 +1,272 @@
+"""Whether meshes are sound, lie in each other, and how far apart they are."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Dict, List, Optional, Sequence
+
+from . import _adaptiso
+from ._adaptiso import Error
+from ._arguments import (Progress, count, flag, is_path, optional_number, path as checked_path,
+                         progress as checked_progress, shown, threads as checked_threads, word)
+from ._images import base_name
+from ._mesh import Mesh, mesh_data_of
+
+PROFILES = ("bem", "print", "view")
+
+
+class Check:
+    """What `check` and `check_nested` found; true when all that is required holds.
+
+    Attributes
+    ----------
+    passed : bool
+    failed : list of str
+        Names of what is required and does not hold; of nested surfaces "inner_skull: closed".
+    findings : list of str
+        The same in words, with the place.
+    report : dict
+        Everything, as ``adaptiso-check --json`` has it: of one surface an entry of its
+        ``surfaces``, of nested ones ``surfaces`` and ``nesting``.
+    """
+
+    __slots__ = ("report",)
+
+    def __init__(self, report: Dict[str, Any]) -> None:
+        self.report = report
+
+    @property
+    def passed(self) -> bool:
+        """All that is required holds."""
+        return bool(self.report["passed"])
+
+    def _judged(self) -> "List[tuple[str, Dict[str, Any]]]":
+        if "surfaces" not in self.report:
+            return [("", self.report)]
+        pairs = self.report["nesting"]["pairs"]
+        return ([(surface["name"], surface) for surface in self.report["surfaces"]]
+                + [(f"{pair['inner']} in {pair['outer']}", pair) for pair in pairs])
+
+    @property
+    def failed(self) -> List[str]:
+        """Names of what is required and does not hold."""
+        return [f"{subject}: {name}" if subject else str(name)
+                for subject, judged in self._judged() for name in judged["failed"]]
+
+    @property
+    def findings(self) -> List[str]:
+        """The same in words, with the place."""
+        return [(f"{subject}: " if subject else "") + f"{check['name']}: {check['finding']}"
+                for subject, judged in self._judged() for check in judged["checks"]
+                if check["name"] in judged["failed"]]
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+    def __repr__(self) -> str:
+        if self.passed:
+            return "<adaptiso.Check: passed>"
+        return f"<adaptiso.Check: failed: {', '.join(self.failed)}>"
+
+
+class Comparison:
+    """The distance between two surfaces, both ways together, mm.
+
+    Attributes
+    ----------
+    mean, rms, p95, p99, max : float
+        Of points spread evenly over both; `max` is the Hausdorff distance.
+    report : dict
+        ``a``, ``b`` and ``distances`` as ``adaptiso-compare --json`` has them.
+    """
+
+    __slots__ = ("report",)
+
+    def __init__(self, report: Dict[str, Any]) -> None:
+        self.report = report
+
+    def _of(self, key: str) -> float:
+        return float(self.report["distances"]["combined"][key])
+
+    @property
+    def mean(self) -> float:
+        """Mean distance, mm."""
+        return self._of("meanMm")
+
+    @property
+    def rms(self) -> float:
+        """Root mean square distance, mm."""
+        return self._of("rmsMm")
+
+    @property
+    def p95(self) -> float:
+        """The distance, mm, that 95 % of the points do not exceed."""
+        return self._of("p95Mm")
+
+    @property
+    def p99(self) -> float:
+        """The distance, mm, that 99 % of the points do not exceed."""
+        return self._of("p99Mm")
+
+    @property
+    def max(self) -> float:
+        """The largest distance, mm: the Hausdorff distance."""
+        return self._of("maxMm")
+
+    def __repr__(self) -> str:
+        return (f"<adaptiso.Comparison: mean {self.mean:.4g} mm, 95 % {self.p95:.4g} mm, "
+                f"max {self.max:.4g} mm>")
+
+
+def check(mesh: Any, profile: str = "print", *, min_angle: Optional[float] = None,
+          max_pairs: int = 1000, threads: int = 0) -> Check:
+    """Check whether a surface is sound: closed, manifold, oriented, without crossing triangles, of
+    a plausible size.
+
+    Parameters
+    ----------
+    mesh : Mesh, (vertices, faces), path, or an object with vertices and faces
+        mm, in any frame; may be broken in any way.
+    profile : {"bem", "print", "view"}
+        What the surface is for, which says what is required of it.
+    min_angle : float, optional
+        Required smallest angle, degrees, 0 to 60.
+    max_pairs : int
+        Pairs of crossing triangles to list; all are counted.
+    threads : int
+        0: as many as the machine has.
+
+    Returns
+    -------
+    Check
+
+    Examples
+    --------
+    >>> import adaptiso
+    >>> faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
+    >>> points = [[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]]
+    >>> adaptiso.check((points, faces))
+    <adaptiso.Check: passed>
+    >>> adaptiso.check((points, faces[:3])).failed
+    ['closed']
+    """
+    text = _adaptiso.check(mesh_data_of(mesh, keeps_faults=True),
+                           word("profile", profile, PROFILES), _min_angle(min_angle),
+                           count("max_pairs", max_pairs), checked_threads(threads))
+    return Check(json.loads(text))
+
+
+def check_nested(meshes: Sequence[Any], profile: str = "bem", *, min_gap: Optional[float] = None,
+                 min_angle: Optional[float] = None, max_pairs: int = 1000,
+                 names: Optional[Sequence[str]] = None, threads: int = 0) -> Check:
+    """Check surfaces that lie in each other, and each of them.
+
+    Parameters
+    ----------
+    meshes : sequence of what `check` takes
+        From inside out; all in one frame.
+    profile, min_angle, max_pairs, threads
+        As for `check`.
+    min_gap : float, optional
+        Required distance of neighbours, mm; default 0.5, required of "bem" only.
+    names : sequence of str, optional
+        What findings call them; default the files' names, or "surface 1" and so on.
+
+    Returns
+    -------
+    Check
+
+    Raises
+    ------
+    Error
+        Fewer than two surfaces, or frames that differ.
+
+    Examples
+    --------
+    >>> import adaptiso, numpy as np
+    >>> i, j, k = np.indices((32, 32, 32))
+    >>> ball = -np.sqrt((i - 15.5) ** 2 + (j - 15.5) ** 2 + (k - 15.5) ** 2)
+    >>> inner, outer = adaptiso.surface(ball, -8), adaptiso.surface(ball, -12)
+    >>> adaptiso.check_nested([inner, outer], "print")
+    <adaptiso.Check: passed>
+    >>> adaptiso.check_nested([outer, inner], "print").failed
+    ['surface 1 in surface 2: strictlyNested']
+    """
+    if isinstance(meshes, (str, bytes, Mesh)) or not hasattr(meshes, "__iter__"):
+        raise Error(f"meshes {shown(meshes)}: must be a sequence of surfaces, from inside out")
+    surfaces = list(meshes)
+    if len(surfaces) < 2:
+        raise Error(f"meshes: are {len(surfaces)}, must be two or more")
+    told = _names(surfaces, names)
+    data = [mesh_data_of(mesh, keeps_faults=not is_path(mesh)) for mesh in surfaces]
+    _require_one_frame(data, told)
+    text = _adaptiso.check_nested(
+        data, told, word("profile", profile, PROFILES),
+        optional_number("min_gap", min_gap, "a number from 0, in mm", lambda value: value >= 0),
+        _min_angle(min_angle), count("max_pairs", max_pairs), checked_threads(threads))
+    return Check(json.loads(text))
+
+
+def compare(a: Any, b: Any, *, samples: int = 200000, symmetric: bool = True, threads: int = 0,
+            progress: Optional[Progress] = None) -> Comparison:
+    """Measure how far apart two surfaces lie.
+
+    Parameters
+    ----------
+    a, b : Mesh, (vertices, faces), path, or an object with vertices and faces
+        mm, in one frame.
+    samples : int
+        Points spread over a surface, for each direction.
+    symmetric : bool
+        From b to a too.
+    threads : int
+        0: as many as the machine has.
+    progress : callable, optional
+        As for `surface`.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    Error
+        A surface without area, or frames that differ.
+
+    Examples
+    --------
+    >>> import adaptiso, numpy as np
+    >>> i, j, k = np.indices((32, 32, 32))
+    >>> ball = -np.sqrt((i - 15.5) ** 2 + (j - 15.5) ** 2 + (k - 15.5) ** 2)
+    >>> two = adaptiso.compare(adaptiso.surface(ball, -8), adaptiso.surface(ball, -9))
+    >>> round(two.mean, 1)
+    1.0
+    """
+    data = [mesh_data_of(mesh, keeps_faults=False) for mesh in (a, b)]
+    _require_one_frame(data, ["a", "b"])
+    text = _adaptiso.compare(data[0], data[1], count("samples", samples, 1, 10**9),
+                             flag("symmetric", symmetric), checked_threads(threads),
+                             checked_progress(progress))
+    return Comparison(json.loads(text))
+
+
+def _min_angle(value: Any) -> Optional[float]:
+    return optional_number("min_angle", value, "a number from 0 to 60, in degrees",
+                           lambda angle: 0 <= angle <= 60)
+
+
+def _names(surfaces: Sequence[Any], names: Optional[Sequence[str]]) -> List[str]:
+    if names is None:
+        return [base_name(checked_path("mesh", mesh)) if is_path(mesh) else f"surface {n + 1}"
+                for n, mesh in enumerate(surfaces)]
+    told = [] if isinstance(names, str) else list(names)
+    if len(told) != len(surfaces) or not all(isinstance(name, str) for name in told):
+        raise Error(f"names {shown(names)}: must be one text for each surface")
+    return told
+
+
+def _require_one_frame(data: Sequence[_adaptiso.MeshData], names: Sequence[str]) -> None:
+    for mesh, name in zip(data, names):
+        if mesh.frame != data[0].frame:
+            raise Error(f"{names[0]} is in {data[0].frame} and {name} in {mesh.frame}; load the "
+                        "one in tkras with volume=")

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <array>
+#include <optional>
+
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Core/Volume.h"
+
+namespace adaptiso::python {
+
+namespace py = pybind11;
+
+/// The geometry that a matrix of voxel indices to scanner RAS mm gives, as nibabel's affine is.
+/// \param affine  4 x 4 floats  \throws InvalidInput  not finite, not affine, singular
+ImageGeometry geometryFromAffine(const Index3& size, const py::array_t<double>& affine);
+
+/// Voxel indices to scanner RAS mm, 4 x 4.
+py::array_t<double> affineOf(const ImageGeometry& geometry);
+
+/// The samples of an array, where they lie. The array is kept.
+struct ArrayVolume {
+    py::array samples;
+    VolumeView view;         ///< i fastest, whatever the user's order of axes is
+    ImageGeometry geometry;  ///< of the user's axes
+    std::optional<ValueRange> range{};
+
+    /// \param samples  3-D, of a type that PixelType has, in native byte order; in Fortran order
+    ///                 and tightly packed
+    /// \param affine   of the axes of `samples`; `userAffine` of the user's, who has `userShape`
+    static ArrayVolume make(const py::array& samples, const py::array_t<double>& affine,
+                            const Index3& userShape, const py::array_t<double>& userAffine);
+
+    /// Computed once, without the interpreter's lock.
+    const ValueRange& valueRange(int threads);
+};
+
+/// The samples that `volume` holds as an array, which keeps them: i, j, k, in Fortran order,
+/// read-only.
+py::array toArray(const Volume& volume);
+
+}  // namespace adaptiso::python

@@ -1,0 +1,235 @@
+#include "MeshData.h"
+
+#include <cmath>
+
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/Pipeline/SurfaceJson.h"
+
+namespace adaptiso::python {
+namespace {
+
+constexpr const char* kProgramName = "adaptiso (Python)";
+
+/// LPS to RAS and back: both axes turn, so triangles stay as they are.
+void turnXY(TriangleMesh& mesh) {
+    for (Vec3& p : mesh.points) {
+        p.x = -p.x;
+        p.y = -p.y;
+    }
+    for (Normal& n : mesh.normals) {
+        n.x = -n.x;
+        n.y = -n.y;
+    }
+}
+
+Json originJson(const SurfaceHistory& history, const ImageGeometry& image) {
+    const ImageOrigin& origin = history.origin;
+    Json json{{"file", origin.file.empty() ? Json(nullptr) : Json(origin.file)}};
+    json.update(imageJson(origin.format, image, history.pixelType, history.range, origin.warnings));
+    return json;
+}
+
+Json optionsJson(const SurfaceHistory& history) {
+    Json json = surfaceOptionsJson(history.extraction, history.index, history.selection);
+    json["threads"] = history.threads > 0 ? Json(history.threads) : Json(nullptr);
+    json["strict"] = false;
+    return json;
+}
+
+Json timesJson(const SurfaceHistory& history) {
+    Json json = Json::object();
+    double total = 0;
+    for (const auto& [stage, seconds] : history.seconds) {
+        json[stage] = seconds;
+        total += seconds;
+    }
+    json["total"] = total;
+    return json;
+}
+
+std::string reportOf(const SurfaceHistory& history, const ImageGeometry& image) {
+    Json surface = surfaceJson(history.record, history.extraction.method, history.index.blockSize);
+    surface["output"] = nullptr;
+    std::vector<std::string> warnings;
+    for (const std::string& warning : history.origin.warnings) {
+        warnings.push_back((history.origin.file.empty() ? "the image" : history.origin.file) +
+                           ": " + warning);
+    }
+    const Json report{{"schema", "adaptiso-mesh/1"},
+                      {"program", {{"name", kProgramName}, {"version", ADAPTISO_VERSION}}},
+                      {"input", originJson(history, image)},
+                      {"preprocessing", nullptr},
+                      {"options", optionsJson(history)},
+                      {"index",
+                       {{"search", toString(history.index.search)},
+                        {"memoryBytes", history.indexBytes},
+                        {"source", "built"},
+                        {"file", nullptr},
+                        {"fileBytes", nullptr}}},
+                      {"surfaces", Json::array({surface})},
+                      {"warnings", warnings},
+                      {"failedByWarnings", false},
+                      {"reportFailure", nullptr},
+                      {"seconds", timesJson(history)},
+                      {"peakMemoryMb", history.peakMemoryMb}};
+    return report.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+void requireRows(const py::array& array, const char* name) {
+    if (array.ndim() != 2 || array.shape(1) != 3) {
+        throw InvalidInput(std::string(name) + ": must have the shape (n, 3)");
+    }
+}
+
+template <class Row, class Value>
+std::vector<Row> rowsOf(const py::array_t<Value, py::array::c_style>& array) {
+    std::vector<Row> rows(static_cast<std::size_t>(array.shape(0)));
+    const auto table = array.template unchecked<2>();
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+        const auto row = static_cast<py::ssize_t>(n);
+        rows[n] = Row{table(row, 0), table(row, 1), table(row, 2)};
+    }
+    return rows;
+}
+
+void requireFaultless(const TriangleMesh& mesh) {
+    for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+        if (!std::isfinite(squaredNorm(mesh.points[n]))) {
+            throw InvalidInput("vertices: row " + std::to_string(n) +
+                               " is not finite, or too large");
+        }
+    }
+    const auto count = static_cast<VertexId>(mesh.points.size());
+    for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
+        for (const VertexId v : mesh.triangles[n]) {
+            if (v >= 0 && v < count) continue;
+            throw InvalidInput("faces: row " + std::to_string(n) + " names vertex " +
+                               std::to_string(v) + ", there are " + std::to_string(count));
+        }
+    }
+}
+
+bool needsVolume(CoordinateFrame frame) {
+    return frame == CoordinateFrame::TkRas || frame == CoordinateFrame::Voxel;
+}
+
+}  // namespace
+
+std::shared_ptr<MeshData> MeshData::fromLps(TriangleMesh mesh, std::optional<ImageGeometry> image,
+                                            std::optional<SurfaceHistory> history) {
+    auto data = std::make_shared<MeshData>();
+    data->mesh_ = std::move(mesh);
+    turnXY(data->mesh_);
+    data->image_ = std::move(image);
+    data->history_ = std::move(history);
+    if (data->history_) data->errorBoundMm_ = data->history_->record.statistics.errorBoundMm;
+    return data;
+}
+
+std::shared_ptr<MeshData> MeshData::fromArrays(
+    const py::array_t<double, py::array::c_style>& points,
+    const py::array_t<std::int64_t, py::array::c_style>& faces,
+    const std::optional<py::array_t<float, py::array::c_style>>& normals, CoordinateFrame frame,
+    std::optional<ImageGeometry> image, bool keepsFaults) {
+    requireRows(points, "vertices");
+    requireRows(faces, "faces");
+    auto data = std::make_shared<MeshData>();
+    data->mesh_.points = rowsOf<Vec3>(points);
+    data->mesh_.triangles = rowsOf<Triangle>(faces);
+    if (normals) {
+        requireRows(*normals, "normals");
+        if (normals->shape(0) != points.shape(0)) {
+            throw InvalidInput("normals: must be as many as vertices");
+        }
+        data->mesh_.normals = rowsOf<Normal>(*normals);
+    }
+    if (!keepsFaults) requireFaultless(data->mesh_);
+    data->frame_ = frame;
+    data->image_ = std::move(image);
+    return data;
+}
+
+TriangleMesh MeshData::lps() const {
+    TriangleMesh mesh{mesh_.points, {}, mesh_.triangles};
+    turnXY(mesh);
+    return mesh;
+}
+
+std::string MeshData::report() {
+    if (!report_.empty() || !history_) return report_;
+    SurfaceHistory history = *history_;
+    if (!history.record.crossingPairs) {
+        const py::gil_scoped_release unlocked;
+        history.record.crossingPairs = findSelfIntersections(mesh_, {.maxPairs = 0}).pairCount;
+    }
+    report_ = reportOf(history, *image_);
+    return report_;
+}
+
+void MeshData::write(const std::string& path, std::optional<CoordinateFrame> frame) const {
+    const MeshFormat& format = findMeshFormat(path);
+    MeshWriteOptions options;
+    options.frame =
+        frame.value_or(frame_ == CoordinateFrame::TkRas ? frame_ : defaultFrame(format));
+    if (options.frame == CoordinateFrame::Voxel && !format.holdsVoxelFrame) {
+        throw InvalidInput("frame voxel: " + std::string(format.name) + " holds points in mm only");
+    }
+    if (frame_ == CoordinateFrame::TkRas && !image_) {
+        if (options.frame != CoordinateFrame::TkRas) {
+            throw InvalidInput(
+                "the mesh is in tkRAS of a volume that is not known; load it with volume=");
+        }
+        // any volume's tkRAS will do to write it as it is: that of a conformed one
+        const ImageGeometry standIn = conformedGeometry({{256, 256, 256}, {-128, -128, -128}, {}});
+        options.volume = standIn;
+        writeMesh(fromFrame(mesh_, CoordinateFrame::TkRas, standIn), path, options);
+        return;
+    }
+    if (needsVolume(options.frame)) {
+        if (!image_) {
+            throw InvalidInput("frame " + std::string(frameWord(options.frame)) +
+                               ": the mesh does not know its image; give the frame ras or lps");
+        }
+        options.volume = frameVolume(options.frame, *image_);
+    }
+    if (frame_ == CoordinateFrame::TkRas) {
+        writeMesh(fromFrame(mesh_, frame_, frameVolume(frame_, *image_)), path, options);
+        return;
+    }
+    TriangleMesh lps = mesh_;
+    turnXY(lps);
+    writeMesh(lps, path, options);
+}
+
+std::pair<std::shared_ptr<MeshData>, std::string> readMeshData(
+    const std::string& path, const std::optional<ImageGeometry>& image, bool keepsFaults) {
+    MeshFile file = readMesh(path, {.keepsFaults = keepsFaults});
+    std::string assumed;
+    if (!file.frame) {
+        if (!keepsFaults) assumed = "does not say its coordinate frame; taken for RAS mm";
+        file.frame = CoordinateFrame::Ras;
+    }
+    if (!file.volume && image && needsVolume(*file.frame)) {
+        file.volume = frameVolume(*file.frame, *image);
+    }
+    if (*file.frame == CoordinateFrame::Voxel && !file.volume) {
+        throw InvalidInput(path + ": is in voxel indices, which says nothing of mm; give volume=");
+    }
+    const bool isLoose = *file.frame == CoordinateFrame::TkRas && !file.volume;
+    const bool isKept = isLoose || (keepsFaults && *file.frame != CoordinateFrame::Voxel);
+    auto data = isKept ? std::make_shared<MeshData>()
+                       : MeshData::fromLps(fromFrame(file.mesh, *file.frame, file.volume),
+                                           std::nullopt, std::nullopt);
+    if (isKept) *data = MeshData::asStored(std::move(file.mesh), *file.frame);
+    if (image) {
+        data->setImage(*image);
+    } else if (file.volume && !isKept) {
+        data->setImage(*file.volume);
+    }
+    return {data, assumed};
+}
+
+}  // namespace adaptiso::python

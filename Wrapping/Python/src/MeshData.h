@@ -1,0 +1,105 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Core/Volume.h"
+#include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/Pipeline/FinishSurface.h"
+#include "adaptiso/SpanSpace/SpanSpaceIndex.h"
+
+namespace adaptiso::python {
+
+namespace py = pybind11;
+
+/// Where an image came from, as a report tells it.
+struct ImageOrigin {
+    std::string file;    ///< without folders; empty: an array
+    std::string format;  ///< "NIfTI-1", "array", ...
+    std::vector<std::string> warnings;
+};
+
+/// How a surface was made: what the program's JSON report is written from.
+struct SurfaceHistory {
+    SurfaceRecord record;
+    ExtractionOptions extraction;  ///< without its callback
+    IndexOptions index;
+    std::size_t indexBytes = 0;
+    ComponentSelection selection;
+    ImageOrigin origin;
+    PixelType pixelType{};
+    ValueRange range{};
+    int threads = 0;
+    std::vector<std::pair<std::string, double>> seconds;
+    double peakMemoryMb = 0;
+};
+
+/// A mesh whose arrays Python looks at. Points are in scanner RAS mm (or in `frame`): LPS with the
+/// signs of x and y turned in place, which gives the very same numbers back when it is turned
+/// again.
+class MeshData {
+public:
+    /// \param mesh  LPS mm
+    static std::shared_ptr<MeshData> fromLps(TriangleMesh mesh, std::optional<ImageGeometry> image,
+                                             std::optional<SurfaceHistory> history);
+
+    /// \param points   n x 3 \param faces  m x 3 \param normals  n x 3 or none; all are copied
+    /// \param frame    of the points, "ras" or "tkras"
+    /// \param image    that tkRAS and voxel indices refer to, or none
+    /// \throws InvalidInput  shapes; unless `keepsFaults`: not finite, faces out of range
+    static std::shared_ptr<MeshData> fromArrays(
+        const py::array_t<double, py::array::c_style>& points,
+        const py::array_t<std::int64_t, py::array::c_style>& faces,
+        const std::optional<py::array_t<float, py::array::c_style>>& normals, CoordinateFrame frame,
+        std::optional<ImageGeometry> image, bool keepsFaults);
+
+    /// Points as they are, in `frame`.
+    static MeshData asStored(TriangleMesh mesh, CoordinateFrame frame) {
+        MeshData data;
+        data.mesh_ = std::move(mesh);
+        data.frame_ = frame;
+        return data;
+    }
+
+    const TriangleMesh& mesh() const { return mesh_; }
+    /// The surface with x and y turned, without normals: LPS mm of one in RAS.
+    TriangleMesh lps() const;
+    CoordinateFrame frame() const { return frame_; }
+    const std::optional<ImageGeometry>& image() const { return image_; }
+    void setImage(const ImageGeometry& image) { image_ = image; }
+    std::optional<double> errorBoundMm() const { return errorBoundMm_; }
+    void setErrorBoundMm(std::optional<double> bound) { errorBoundMm_ = bound; }
+
+    /// The report adaptiso-mesh/1, or "" of a mesh that was not made from an image.
+    std::string report();
+    void setReport(std::string report) { report_ = std::move(report); }
+
+    /// Writes a file in place, in `frame` or in the format's own.
+    void write(const std::string& path, std::optional<CoordinateFrame> frame) const;
+
+private:
+    TriangleMesh mesh_;
+    CoordinateFrame frame_ = CoordinateFrame::Ras;
+    std::optional<ImageGeometry> image_;
+    std::optional<double> errorBoundMm_;
+    std::optional<SurfaceHistory> history_;
+    std::string report_;
+};
+
+/// Reads a surface file: points in scanner RAS mm where the file says how to get there, else in the
+/// frame that it says, else as stored.
+/// \param image        that tkRAS and voxel indices refer to, or none
+/// \param keepsFaults  points as stored, with all that is wrong
+/// \return the mesh, and what had to be assumed (empty: nothing)
+std::pair<std::shared_ptr<MeshData>, std::string> readMeshData(
+    const std::string& path, const std::optional<ImageGeometry>& image, bool keepsFaults);
+
+}  // namespace adaptiso::python
