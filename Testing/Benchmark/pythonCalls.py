@@ -68,11 +68,11 @@ def peak():
     return int(re.search(r"VmHWM:\s+(\d+) kB", open("/proc/self/status").read())[1]) * 1024
 order, method = sys.argv[1:]
 index = np.indices((256, 256, 256), dtype=np.float32, sparse=True)
-volume = np.array(sum((x - 127.5) ** 2 for x in index), np.float32, order=order)
+volume = np.array(-sum((x - 127.5) ** 2 for x in index), np.float32, order=order)
 adaptiso.surface(np.asfortranarray(volume[:8, :8, :8]), volume[4, 4, 4], threads=1)
 open("/proc/self/clear_refs", "w").write("5")
 before = peak()
-mesh = adaptiso.surface(volume, 60 ** 2.0, method=method, threads=1)
+mesh = adaptiso.surface(volume, -(60 ** 2.0), method=method, threads=1)
 print(peak() - before, mesh._data.bytes, volume.nbytes)
 """
 

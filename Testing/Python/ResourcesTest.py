@@ -37,11 +37,11 @@ class Memory(unittest.TestCase):
             taken, mesh, volume = map(int, in_child(PEAK + f"""
 import adaptiso, numpy as np
 index = np.indices((200, 200, 200), dtype=np.float32, sparse=True)
-volume = np.array(sum((x - 99.5) ** 2 for x in index), np.float32, order="{order}")
+volume = np.array(-sum((x - 99.5) ** 2 for x in index), np.float32, order="{order}")
 adaptiso.surface(np.asfortranarray(volume[:8, :8, :8]), volume[4, 4, 4], threads=1)
 reset()
 before = peak()
-mesh = adaptiso.surface(volume, 25 ** 2.0, method="mc", threads=1)
+mesh = adaptiso.surface(volume, -(50 ** 2.0), method="mc", threads=1)
 print(peak() - before, mesh._data.bytes, volume.nbytes)
 """).split())
             # the mesh as it grows and its check (2.2 meshes, measured); the index holds 20 bytes for
