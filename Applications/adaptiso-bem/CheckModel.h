@@ -7,9 +7,9 @@
 
 #include "BemRun.h"
 #include "Common/Progress.h"
-#include "adaptiso/Pipeline/Checks.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/Pipeline/Checks.h"
 
 namespace adaptiso {
 
