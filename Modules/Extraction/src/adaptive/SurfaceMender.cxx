@@ -355,7 +355,7 @@ bool SurfaceMender::collapseEdge(std::uint64_t triangle, int corner, const Place
     return false;
 }
 
-/// Merging the edge's ends leaves a manifold (link condition), and none of them stays where it is.
+/// Merging the edge's ends leaves a manifold (link condition), and both may move.
 bool SurfaceMender::mayMerge(const Edge& edge) const {
     std::set<std::uint64_t> besideFirst, besideSecond;
     for (const auto& [vertex, beside] :
@@ -372,7 +372,10 @@ bool SurfaceMender::mayMerge(const Edge& edge) const {
     std::set_intersection(besideFirst.begin(), besideFirst.end(), besideSecond.begin(),
                           besideSecond.end(), std::back_inserter(common));
     // both ends, and the two corners across the edge
-    return common.size() == 4 && besideFirst.size() + besideSecond.size() > 9;
+    constexpr std::size_t kShared = 4;
+    // each end with its neighbours: four vertices in all would be a tetrahedron, which goes flat
+    constexpr std::size_t kLeast = 10;
+    return common.size() == kShared && besideFirst.size() + besideSecond.size() >= kLeast;
 }
 
 /// Gives the numbers of triangles that are gone to the last ones.

@@ -19,8 +19,11 @@ namespace adaptiso::detail {
 /// surface there by a new vertex, as greedy insertion refines terrains [Garland1995].
 ///
 /// The triangle of the place is split in three; beside an edge the edge is split, with the two
-/// triangles at it; beside a vertex that moves. Where all of them would fold the surface the edge
-/// is turned. No change makes triangles cross, or takes a sample beyond the bound.
+/// triangles at it; beside a vertex that moves. Where none of these is allowed the edge gets the
+/// other diagonal, or an edge of the triangle is collapsed. A change is allowed if no triangle
+/// turns too far, none crosses another, and no sample is taken beyond the bound.
+///
+/// Vertices keep their numbers; those that collapses leave without a triangle stay in the list.
 class SurfaceMender {
 public:
     /// \param limitMm  the bound
