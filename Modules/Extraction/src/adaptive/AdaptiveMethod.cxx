@@ -1,16 +1,16 @@
-#include "AdaptiveMethod.h"
+#include "adaptive/AdaptiveMethod.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "../MeshRepair.h"
-#include "CrossingProof.h"
-#include "ErrorBound.h"
-#include "Simplification.h"
-#include "SurfaceMender.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptive/mending/SurfaceMender.h"
+#include "adaptive/proof/CrossingProof.h"
+#include "adaptive/proof/ErrorBound.h"
+#include "adaptive/rounds/Simplification.h"
+#include "filling/MeshRepair.h"
 
 namespace adaptiso::detail {
 namespace {
