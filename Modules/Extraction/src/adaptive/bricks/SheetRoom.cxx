@@ -6,11 +6,10 @@
 #include <cstddef>
 
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
 namespace {
-
-constexpr float kOtherCosine = 0.3F;
 
 struct Place {
     std::array<float, 3> point, normal;
@@ -68,7 +67,7 @@ public:
                         squared += d * d;
                         cosine += other.normal[a] * own.normal[a];
                     }
-                    most = cosine < kOtherCosine ? std::min(most, squared) : most;
+                    most = cosine < kOtherSheetCosine ? std::min(most, squared) : most;
                 }
             }
         }

@@ -4,15 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "adaptive/Parameters.h"
+
 namespace adaptiso::detail {
 namespace {
-
-/// Least cosine between a triangle's normal and the star's mean normal before the change; or else
-/// between it and the triangle's own before.
-constexpr double kLeastCosine = 0.3, kLeastOwnCosine = 0.6;
-
-/// Twice the area over the squared longest side: below it a triangle counts as flat.
-constexpr double kFlat = 1e-5;
 
 /// The largest squared cosine of a triangle's corners from its squared sides and 4 area^2: that of
 /// its sharpest corner, between the two longer sides.
@@ -55,10 +50,10 @@ bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& change
         w.a22 = squaredNorm(w.e2);
         w.inverse = 1 / squared;
         const double third = w.a11 + w.a22 - 2 * w.a12;
-        if (!(area2 > kFlat * std::max({w.a11, w.a22, third}))) return false;
+        if (!(area2 > kFlatTriangle * std::max({w.a11, w.a22, third}))) return false;
         const double upright = dot(after, normal);
-        if (upright < kLeastCosine * area2 &&
-            dot(after, before[i]) < kLeastOwnCosine * area2 * norm(before[i])) {
+        if (upright < kStarCosine * area2 &&
+            dot(after, before[i]) < kOwnCosine * area2 * norm(before[i])) {
             return false;
         }
         if (!(upright > 0) || !(dot(before[i], normal) > 0)) changed.isGraph = false;

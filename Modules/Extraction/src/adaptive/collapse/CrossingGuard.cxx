@@ -4,14 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "adaptive/Parameters.h"
+
 namespace adaptiso::detail {
 namespace {
-
-/// Side of the grid's cubes, in voxels: about the size of triangles that are not fine ones.
-constexpr double kCube = 2;
-
-/// Room that proofs leave, as a part of the distance between sample planes.
-constexpr double kGap = 1e-4;
 
 constexpr std::uint32_t kNoEntry = 0xFFFFFFFF;
 
@@ -22,8 +18,8 @@ CrossingGuard::CrossingGuard(const Patch& patch, const PatchTopology& topology,
     : patch_(patch),
       topology_(topology),
       looksEverywhere_(looksEverywhere),
-      gapMm_(kGap * frame.narrowestMm()),
-      cubeMm_(kCube * frame.voxelMm()) {}
+      gapMm_(kProofGap * frame.narrowestMm()),
+      cubeMm_(kNearCube * frame.voxelMm()) {}
 
 /// Those whose samples know of no other sheet near them; of those without samples, those between
 /// three such ones.
@@ -178,8 +174,6 @@ bool CrossingGuard::crossesNothing(const ChangedStar& changed) {
 /// direction all are upright and go round the vertex once.
 /// \pre the star's old triangles carry the stamp, and no others
 bool CrossingGuard::fanIsClear(const ChangedStar& changed, int at) const {
-    constexpr int kMost = 24;
-    constexpr double kLeastCosine = 0.02;
     const Star& star = changed.star;
     const std::uint32_t r = star.ring[at];
     if (!topology_.isMovable(r)) return false;
@@ -187,7 +181,7 @@ bool CrossingGuard::fanIsClear(const ChangedStar& changed, int at) const {
     struct Sector {
         Vec3 from, to, area2;
     };
-    std::array<Sector, kMost> sectors;
+    std::array<Sector, kFanMost> sectors;
     int count = 0;
     Vec3 axis;
     const auto add = [&](const Vec3& from, const Vec3& to) {
@@ -204,13 +198,13 @@ bool CrossingGuard::fanIsClear(const ChangedStar& changed, int at) const {
     do {
         const std::uint32_t inwards = PatchTopology::previous(h);
         if (stamp_[h / 3] != now_) {
-            if (count == kMost) return false;
+            if (count == kFanMost) return false;
             add(patch_.points[topology_.to(h)] - centre,
                 patch_.points[topology_.from(inwards)] - centre);
         }
         h = topology_.twin(inwards);
     } while (h != begin);
-    const double least = kLeastCosine * norm(axis);
+    const double least = kFanCosine * norm(axis);
     for (int i = 0; i < count; ++i) {
         const Sector& s = sectors[i];
         const double upright = dot(s.area2, axis);

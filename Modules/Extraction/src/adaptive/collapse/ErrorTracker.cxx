@@ -6,15 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "adaptive/Parameters.h"
+
 namespace adaptiso::detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// A star may come this part of the way to other sheets without a proof that it meets none, unless
-/// they are nearer than kNarrow (in the least distance between planes of samples): two stars that
-/// come towards each other still pass, and what lies between samples strays little more than they.
-constexpr double kUsableRoom = 0.4, kNarrow = 0.6;
 
 /// Squared distance from q to the segment from the origin to e.
 double squaredDistanceToSegment(const Vec3& q, const Vec3& e) {
@@ -68,7 +65,7 @@ ErrorTracker::ErrorTracker(Patch& patch, const MetricFrame& frame)
     for (int room = 0; room < kRooms; ++room) {
         const double voxels = static_cast<double>(room) / SheetRoom::kParts,
                      mm = kUsableRoom * voxels * frame.narrowestMm();
-        squaredRoom_[room] = voxels < kNarrow ? -1 : mm * mm;
+        squaredRoom_[room] = voxels < kNarrowRoom ? -1 : mm * mm;
     }
     squaredRoom_[SheetRoom::kAlone] = kInfinity;
     for (auto s = static_cast<std::uint32_t>(patch.samples.size()); s-- > 0;) {
@@ -192,8 +189,6 @@ const Sample& ErrorTracker::sampleNearest(const Vec3& p) const {
 
 /// The way back: a sharp edge may pass between the samples of a rounder surface.
 bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, double maxDistanceMm) const {
-    constexpr double kSharpCosine = 0.95, kSpacing = 0.5;
-    constexpr int kMostSteps = 16;
     const int n = changed.star.count;
     const auto normal = [&](int i) {
         const ChangedStar::Wedge& w = changed.wedge[i];
@@ -202,12 +197,13 @@ bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, double maxDistanceM
     Vec3 before = normal(n - 1);
     for (int i = 0; i < n; ++i) {
         const Vec3 after = normal(i);
-        const bool isSharp = dot(before, after) < kSharpCosine;
+        const bool isSharp = dot(before, after) < kRidgeCosine;
         before = after;
         if (!isSharp) continue;
         const Vec3& spoke = changed.wedge[i].e1;
         const int steps =
-            std::min(kMostSteps, 1 + static_cast<int>(norm(spoke) / (kSpacing * sampleSpacingMm_)));
+            std::min(kRidgeMostSteps,
+                     1 + static_cast<int>(norm(spoke) / (kRidgeSpacing * sampleSpacingMm_)));
         for (int k = 1; k < steps; ++k) {
             const Vec3 p = changed.vertex + static_cast<double>(k) / steps * spoke;
             const Sample& nearest = sampleNearest(p);

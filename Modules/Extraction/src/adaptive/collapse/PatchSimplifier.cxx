@@ -3,18 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adaptive/Parameters.h"
+
 namespace adaptiso::detail {
-namespace {
-
-/// On a flat part all places are as good to the quadrics: shorter edges go first.
-constexpr double kLengthWeight = 1e-6;
-
-/// How much the quadric counts beside the samples when a vertex is fitted, and how stiff the fit
-/// is. Chosen by the mean distance on engine, teapot and ch2bet (Benchmarks.md).
-constexpr double kQuadricWeight = 0.5, kFitStiffness = 0.05;
-
-}  // namespace
-
 PatchSimplifier::PatchSimplifier(Patch& patch, const MetricFrame& frame, const PatchLimits& limits)
     : patch_(patch),
       frame_(frame),

@@ -8,37 +8,10 @@
 
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
 namespace {
-
-/// By its barycentric coordinates a place lies beside a vertex, or beside an edge.
-constexpr double kAtVertex = 0.9, kAtEdge = 0.12;
-
-/// The surface has left a place when it is farther from it than this part of the place's distance.
-constexpr double kLeft = 0.1;
-
-/// A vertex is put on the full-resolution surface, or else this part of the way to it: the shorter
-/// the way, the less the triangles turn.
-constexpr std::array kSteps{1.0, 0.6, 0.35};
-
-/// Least cosine between the normals of a triangle before and after: first; where that allows
-/// nothing.
-constexpr std::array kLeastCosines{0.3, -0.3};
-
-/// Where nothing else is allowed the vertex that has most of the place's weight moves, if it has
-/// more than this, by these parts of the way.
-constexpr double kMostWeight = 0.4;
-constexpr std::array kSmallSteps{0.6, 0.35, 0.15};
-
-/// An edge is turned where that leaves less than this part of the distance.
-constexpr double kNearer = 0.5;
-
-/// Twice the area over the squared longest side: below it a triangle counts as flat.
-constexpr double kFlat = 1e-5;
-
-/// Side of the cubes by which near triangles are found, in voxels.
-constexpr double kCube = 2;
 
 constexpr std::size_t kSlots = std::size_t{1} << 16;
 
@@ -63,7 +36,7 @@ bool contains(const std::vector<std::uint64_t>& numbers, std::uint64_t number) {
 }  // namespace
 
 SurfaceMender::SurfaceMender(SimplifiedSurface& surface, const MetricFrame& frame, double limitMm)
-    : surface_(surface), squaredLimit_(limitMm * limitMm), cubeMm_(kCube * frame.voxelMm()) {}
+    : surface_(surface), squaredLimit_(limitMm * limitMm), cubeMm_(kNearCube * frame.voxelMm()) {}
 
 std::size_t SurfaceMender::mendDistances(std::vector<PlaceBeyond> places) {
     std::erase_if(places, [](const PlaceBeyond& p) { return p.triangle == PlaceBeyond::kNone; });
@@ -105,7 +78,7 @@ bool SurfaceMender::mendCrossing(std::uint64_t triangle) {
                 {closestPointOnTriangle(p, corners[0], corners[1], corners[2]), p, triangle, true});
         }
     }
-    for (const double leastCosine : kLeastCosines) {
+    for (const double leastCosine : kMendCosines) {
         leastCosine_ = leastCosine;
         for (const PlaceBeyond& place : places) {
             if (insert(place, triangle, barycentric(place.onSimplified, corners))) return true;
@@ -156,7 +129,7 @@ bool SurfaceMender::mendPlace(const PlaceBeyond& place) {
     const std::array<double, 3> at = barycentric(place.onSimplified, cornersOf(t));
     const auto largest = std::max_element(at.begin(), at.end()) - at.begin(),
                least = std::min_element(at.begin(), at.end()) - at.begin();
-    for (const double leastCosine : kLeastCosines) {
+    for (const double leastCosine : kMendCosines) {
         leastCosine_ = leastCosine;
         if (insert(place, t, at)) return true;
         const auto besideLeast = static_cast<int>(least + 1) % 3;
@@ -165,10 +138,10 @@ bool SurfaceMender::mendPlace(const PlaceBeyond& place) {
     for (int corner = 0; corner < 3; ++corner) {
         if (collapseEdge(t, corner, place)) return true;
     }
-    if (at[largest] < kMostWeight) return false;
+    if (at[largest] < kMoveWeight) return false;
     const std::uint64_t vertex = surface_.triangles[t][largest];
     const Vec3 whole = 1 / at[largest] * (place.onFine - place.onSimplified);
-    return std::any_of(kSmallSteps.begin(), kSmallSteps.end(),
+    return std::any_of(kMoveSteps.begin(), kMoveSteps.end(),
                        [&](double part) { return moveVertex(vertex, part * whole); });
 }
 
@@ -178,7 +151,7 @@ bool SurfaceMender::insert(const PlaceBeyond& place, std::uint64_t triangle,
     const auto largest = std::max_element(at.begin(), at.end()) - at.begin(),
                least = std::min_element(at.begin(), at.end()) - at.begin();
     const Vec3 whole = place.onFine - place.onSimplified;
-    for (const double part : kSteps) {
+    for (const double part : kMendSteps) {
         const Vec3 target = place.onSimplified + part * whole;
         if (at[largest] > kAtVertex &&
             moveVertex(surface_.triangles[triangle][largest], part * whole)) {
@@ -206,7 +179,7 @@ std::uint64_t SurfaceMender::partAt(const PlaceBeyond& place) const {
             best = t;
         }
     }
-    return least > kLeft * kLeft * place.squaredDistance() ? kNone : best;
+    return least > kLeftPlace * kLeftPlace * place.squaredDistance() ? kNone : best;
 }
 
 bool SurfaceMender::moveVertex(std::uint64_t vertex, const Vec3& step) {
@@ -288,7 +261,7 @@ bool SurfaceMender::turnEdge(std::uint64_t triangle, int corner, const PlaceBeyo
     const Corners first = cornersOf(triangle), second = cornersOf(twin);
     const std::vector<Corners> parts{{at[a], at[d], at[c]}, {at[d], at[b], at[c]}};
     const bool isNearer = squaredDistanceToNearest(place.onFine, parts) <=
-                          kNearer * kNearer * place.squaredDistance();
+                          kTurnLeaves * kTurnLeaves * place.squaredDistance();
     const bool facesAlike = std::all_of(parts.begin(), parts.end(), [&](const Corners& part) {
         return facesAs(part, first) || facesAs(part, second);
     });
@@ -406,7 +379,7 @@ bool SurfaceMender::facesAs(const Corners& now, const Corners& before) const {
                old = areaVector2(before[0], before[1], before[2]);
     const double longest = std::max(
         {squaredNorm(now[1] - now[0]), squaredNorm(now[2] - now[1]), squaredNorm(now[0] - now[2])});
-    return norm(area2) > kFlat * longest &&
+    return norm(area2) > kFlatTriangle * longest &&
            dot(area2, old) > leastCosine_ * norm(area2) * norm(old);
 }
 

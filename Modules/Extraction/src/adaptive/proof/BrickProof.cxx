@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "adaptive/Parameters.h"
+
 namespace adaptiso::detail {
 namespace {
 
@@ -16,14 +18,6 @@ std::size_t cellSlot(int x, int y, int z) {
     constexpr int kHalo = BrickMesher::kHalo;
     return static_cast<std::size_t>(x + kHalo + kCells * (y + kHalo + kCells * (z + kHalo)));
 }
-
-/// How many triangles a walk may visit: for a fine triangle; for one of the simplified surface, by
-/// how many voxels' faces would cover it.
-constexpr int kStepsOfFine = 40, kFewSteps = 100;
-constexpr double kStepsPerFace = 20, kManySteps = 1e6;
-
-/// From this bound on, in voxels, few pieces need cuts.
-constexpr double kLoose = 0.2;
 
 }  // namespace
 
@@ -218,7 +212,6 @@ void BrickProof::collectAround(const std::array<std::uint32_t, 3>& fine) {
 
 /// The triangles that may lie within a distance of a part of a fine triangle.
 void BrickProof::collectWithin(double distanceMm, const Corners& piece) {
-    constexpr int kFew = 30;  // searches by which a tree of all triangles is not worth its time
     std::vector<Corners>& nearby = fromFine_.nearby();
     nearby.clear();
     within_.clear();
@@ -226,7 +219,7 @@ void BrickProof::collectWithin(double distanceMm, const Corners& piece) {
         nearby.push_back(lookup_.cornersOf(t));
         within_.push_back(t);
     };
-    if (++searches_ > kFew || !lookup_.ofBrickHasAllWithin(distanceMm)) {
+    if (++searches_ > kSearches || !lookup_.ofBrickHasAllWithin(distanceMm)) {
         lookup_.forEachNear(piece, distanceMm, add);
         return;
     }
@@ -277,7 +270,7 @@ void BrickProof::proveWhole(const Corners& piece, std::uint32_t start, double ar
 template <class Index>
 void BrickProof::cover(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
                        double squaredDistance, int steps) {
-    const double loose = kLoose * frame_.voxelMm();
+    const double loose = kLooseBound * frame_.voxelMm();
     if (squaredDistance > loose * loose) {
         walk_.coverLoosely(piece, surface, start, squaredDistance, steps);
     } else {
@@ -382,19 +375,19 @@ void BrickProof::collectNear(const CornerBox& box, double reach) {
     }
 }
 
-/// Of the fine triangles near a piece, keeps the few whose middles are nearest: they mostly do.
+/// Of the fine triangles near a piece, keeps the few whose middles are nearest: nearly every piece
+/// lies near one of them.
 void BrickProof::keepNearest(const Corners& piece) {
-    constexpr std::size_t kFew = 6;
-    if (near_.size() <= kFew) return;
+    if (near_.size() <= kNearestFine) return;
     const Vec3 middle = piece[0] + piece[1] + piece[2];
     ranked_.clear();
     for (const std::uint32_t t : near_) {
         const Corners c = walkable_.cornersOf(t);
         ranked_.emplace_back(squaredNorm(c[0] + c[1] + c[2] - middle), t);
     }
-    std::partial_sort(ranked_.begin(), ranked_.begin() + kFew, ranked_.end());
-    near_.resize(kFew);
-    for (std::size_t i = 0; i < kFew; ++i) near_[i] = ranked_[i].second;
+    std::partial_sort(ranked_.begin(), ranked_.begin() + kNearestFine, ranked_.end());
+    near_.resize(kNearestFine);
+    for (std::size_t i = 0; i < kNearestFine; ++i) near_[i] = ranked_[i].second;
 }
 
 }  // namespace adaptiso::detail

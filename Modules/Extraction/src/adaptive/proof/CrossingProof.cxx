@@ -11,6 +11,7 @@
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -43,10 +44,8 @@ private:
 
     /// Seen along one direction all are upright and go round the vertex once.
     bool prove(std::int64_t v) {
-        constexpr std::int64_t kMost = 24;
-        constexpr double kLeastCosine = 0.02;
         const std::int64_t count = begin_[v + 1] - begin_[v];
-        if (count < 3 || count > kMost) return false;
+        if (count < 3 || count > kFanMost) return false;
         const std::span<Sector> sectors(around_.data() + begin_[v],
                                         static_cast<std::size_t>(count));
         for (std::int64_t i = 1; i < count; ++i) {  // into one ring
@@ -57,7 +56,7 @@ private:
             std::swap(sectors[i], *next);
         }
         if (sectors.back()[1] != sectors.front()[0]) return false;
-        std::array<Vec3, kMost> spoke, area2;
+        std::array<Vec3, kFanMost> spoke, area2;
         Vec3 axis;
         for (std::int64_t i = 0; i < count; ++i) {
             spoke[i] = mesh_.points[sectors[i][0]] - mesh_.points[v];
@@ -68,7 +67,7 @@ private:
         }
         const Vec3 across =
             std::abs(axis.x) < std::abs(axis.y) ? cross(axis, {1, 0, 0}) : cross(axis, {0, 1, 0});
-        const double least = kLeastCosine * norm(axis);
+        const double least = kFanCosine * norm(axis);
         int rounds = 0;  // how often the sectors pass the direction from which `across` grows
         for (std::int64_t i = 0; i < count; ++i) {
             const double upright = dot(area2[i], axis);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -116,9 +117,8 @@ ErrorBound ErrorProof::prove(const SimplifiedSurface& surface, const SurfaceLook
 /// points of the full-resolution surface: loosely.
 void ErrorProof::includeFarPieces(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
                                   ErrorBound& bound) const {
-    constexpr std::size_t kPoints = 4096;
     std::vector<Vec3> points;
-    const std::size_t step = 1 + surface.samples.size() / kPoints;
+    const std::size_t step = 1 + surface.samples.size() / kFarSamples;
     for (std::size_t s = 0; s < surface.samples.size(); s += step) {
         points.push_back(surface.samples[s].point());
     }

@@ -3,17 +3,12 @@
 #include <limits>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Cuts of a piece, one after the other, at most: to try, and to be sure.
-constexpr int kFewCuts = 3, kManyCuts = 8;
-
-/// A bound that must grow grows by 1 % more (of the distance): so it need not grow too often.
-constexpr double kSlack = 1.0201;
 
 }  // namespace
 
@@ -107,7 +102,7 @@ PieceBound::Corner PieceBound::cornerAt(const Vec3& point) const {
 PieceBound::Corner PieceBound::newCornerAt(const Vec3& point) {
     const Corner corner = cornerAt(point);
     if (corner.squared > enough_) {
-        enough_ = kSlack * corner.squared;
+        enough_ = kBoundGrowth * corner.squared;
         noteFarthest(corner);
     }
     return corner;
@@ -115,10 +110,9 @@ PieceBound::Corner PieceBound::newCornerAt(const Vec3& point) {
 
 /// The corner on the edge from a to b that is as far from a's triangle as from b's.
 PieceBound::Corner PieceBound::between(const Corner& a, const Corner& b) const {
-    constexpr int kHalvings = 10;
     double low = 0, high = 1;
     Corner middle{a.point, a.nearest, a.squared};
-    for (int i = 0; i < kHalvings; ++i) {
+    for (int i = 0; i < kCutHalvings; ++i) {
         const double t = 0.5 * (low + high);
         middle.point = a.point + t * (b.point - a.point);
         const double toA = squaredDistanceToTriangle(middle.point, nearby_[a.nearest]),

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "Certificate.h"
+#include "adaptive/Parameters.h"
 #include "adaptive/mesh/HalfEdges.h"
 #include "adaptive/proof/NearTriangle.h"
 
@@ -131,10 +132,6 @@ public:
     }
 
 private:
-    /// Parts whose longest side is less than kSmall times the distance are not quartered again;
-    /// those above kLarge times are without a look at what they lie over.
-    static constexpr double kSmall = 2, kLarge = 6;
-
     template <class Index>
     void quarter(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
                  double squaredDistance, int steps) {
@@ -142,12 +139,12 @@ private:
         const double longest =
             std::max({squaredNorm(b - a), squaredNorm(c - b), squaredNorm(a - c)});
         Index t = start;
-        if (longest <= kLarge * kLarge * squaredDistance) {
+        if (longest <= kLargeQuarter * kLargeQuarter * squaredDistance) {
             t = under((1.0 / 3) * (a + b + c), surface, start);
             const Corners corners = surface.cornersOf(t);
             if (NearTriangle(corners, squaredDistance).has(piece)) return;
         }
-        if (longest <= kSmall * kSmall * squaredDistance) {
+        if (longest <= kSmallQuarter * kSmallQuarter * squaredDistance) {
             walk(ConvexPiece(piece), surface, t, squaredDistance, steps);
             return;
         }
@@ -161,9 +158,8 @@ private:
     /// The triangle that a point lies over, or one on the way there.
     template <class Index>
     static Index under(const Vec3& p, const WalkableSurface<Index>& surface, Index t) {
-        constexpr int kMostSteps = 16;
         Index last = WalkableSurface<Index>::kNone;
-        for (int step = 0; step < kMostSteps; ++step) {
+        for (int step = 0; step < kStepsUnder; ++step) {
             const int side = sideTowards(p, surface.cornersOf(t));
             if (side < 0) break;
             const Index next = surface.across(t, side);

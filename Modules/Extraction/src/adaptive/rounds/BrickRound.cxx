@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -93,12 +94,11 @@ void takeOver(Patch& patch, BrickSurface& brick) {
 /// could pass unseen.
 void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas,
                 const std::vector<std::uint8_t>& room, Patch& patch) {
-    constexpr double kLeastCosine = 0.94;  // 20 degrees
     for (std::uint32_t t = 0; t < fine.triangles.size(); ++t) {
         const auto& v = fine.triangles[t];
         const Vec3 a = normalized(areas[v[0]]), b = normalized(areas[v[1]]),
                    c = normalized(areas[v[2]]);
-        if (std::min({dot(a, b), dot(b, c), dot(c, a)}) > kLeastCosine) continue;
+        if (std::min({dot(a, b), dot(b, c), dot(c, a)}) > kBentCosine) continue;
         const Vec3 &p = patch.points[v[0]], &q = patch.points[v[1]], &r = patch.points[v[2]];
         Sample& middle = patch.samples.emplace_back();
         middle.setPoint((1.0 / 3) * (p + q + r));
@@ -111,28 +111,26 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas,
 /// Half of the cells are crossed, and nearly all of the surface has other parts of it near: there
 /// is nothing flat to simplify, and each change would take long to prove.
 bool isNoise(const FineSurface& fine) {
-    constexpr double kMost = 0.05, kLeastCrossed = 0.5;
     if (static_cast<double>(fine.cells.size()) <
-        kLeastCrossed * static_cast<double>(fine.cellsSeen)) {
+        kNoiseCrossed * static_cast<double>(fine.cellsSeen)) {
         return false;
     }
     const auto single = std::count_if(fine.vertices.begin(), fine.vertices.end(),
                                       [](const FineVertex& v) { return v.isSingleSheet; });
-    return static_cast<double>(single) < kMost * static_cast<double>(fine.vertices.size());
+    return static_cast<double>(single) < kNoiseSingle * static_cast<double>(fine.vertices.size());
 }
 
 /// Vertices whose triangles all lie in one plane: their area vectors add up to their area.
 /// \return nothing where they are few
 std::vector<std::uint8_t> flatVertices(const Patch& patch, const std::vector<Vec3>& areas) {
-    constexpr double kFlat = 1e-9, kFew = 0.05;
     std::vector<std::uint8_t> isFlat(areas.size());
     std::size_t count = 0;
     for (std::size_t v = 0; v < areas.size(); ++v) {
         const double area2 = 2 * patch.quadrics[v].weight();
-        isFlat[v] = static_cast<std::uint8_t>(norm(areas[v]) >= (1 - kFlat) * area2);
+        isFlat[v] = static_cast<std::uint8_t>(norm(areas[v]) >= (1 - kFlatPart) * area2);
         count += isFlat[v];
     }
-    if (static_cast<double>(count) < kFew * static_cast<double>(isFlat.size())) return {};
+    if (static_cast<double>(count) < kFewFlat * static_cast<double>(isFlat.size())) return {};
     return isFlat;
 }
 

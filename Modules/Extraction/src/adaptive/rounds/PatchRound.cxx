@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -58,13 +59,12 @@ PatchRound::PatchRound(SimplifiedSurface& surface, const PatchCut& cut, const Me
     : surface_(surface), frame_(frame), groups_(surface, cut, frame) {}
 
 PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
-    constexpr std::size_t kFewest = 16, kEvery = 8;  // of fewer all are tried; of more every eighth
     std::vector<std::size_t> all, some;
     for (std::size_t n = 0; n < groups_.count(); ++n) {
         if (!groups_.isIdle(n)) all.push_back(n);
     }
     const std::size_t every =
-        triesAll ? 1 : std::clamp<std::size_t>(all.size() / kFewest, 1, kEvery);
+        triesAll ? 1 : std::clamp<std::size_t>(all.size() / kTrialFewest, 1, kTrialEvery);
     double triangles = 0, tried = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const auto count = static_cast<double>(groups_.triangleCount(all[i]));

@@ -4,39 +4,10 @@
 #include <array>
 #include <limits>
 
+#include "adaptive/Parameters.h"
+
 namespace adaptiso::detail {
 namespace {
-
-/// Cost limits, in voxels to the fourth: of the bricks' round, and above which there is none.
-constexpr double kFirstCost = 1e-3, kLastCost = 10;
-
-/// Of the first rounds of toLimits().
-constexpr std::array kCosts{3e-3, 1.8e-2, 0.108, 0.648, 3.888};
-
-/// Up to halfway costs stay below this part of the square of the allowed distance, and distances
-/// below this part of it.
-constexpr double kHalfway = 2, kEarlyDistance = 0.25;
-
-/// Where the allowed distance grows on the way to a count, costs start anew from here.
-constexpr double kCostAfterDistance = 0.01;
-
-/// A round that leaves more than this part of the triangles was hardly worth it.
-constexpr double kWorthwhile = 0.99;
-
-/// Above this part of the wanted count a round is not thought to lead below it.
-constexpr double kFar = 1.6;
-
-/// Above this cost cubes are twice as large as bricks: else too much would straddle them. Small
-/// ones stay in a processor's cache.
-constexpr double kCoarse = 0.13;
-
-/// Up to this part of the wanted count the rest is dealt out by size: the patches' costs hardly
-/// differ.
-constexpr double kLanding = 1.05;
-
-/// Where some patches tell for all, it is landed on this part of the wanted collapses, so that it
-/// does not become more of them.
-constexpr double kAim = 0.95;
 
 /// How much the limit of cost may grow in a round: the more the farther the wanted count is.
 double costStep(std::int64_t triangles, std::int64_t target) {
@@ -58,7 +29,7 @@ Simplification::Simplification(const LatticeSampler& sampler, const Bricks& bric
 /// Cuts in turn, so that what straddles one cut lies within the next, also where their cubes grow.
 PatchCut Simplification::nextCut() {
     ++rounds_;
-    const bool isFine = limits_.maxCost <= kCoarse * costUnit_;
+    const bool isFine = limits_.maxCost <= kCoarseCost * costUnit_;
     const std::int64_t side = isFine ? Brick::kSide : std::int64_t{2} * Brick::kSide,
                        shift = isFine ? 0 : Brick::kSide / 4;
     return {side, shift + (rounds_ % 2 == 1 ? side / 2 : 0)};
@@ -72,11 +43,11 @@ void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
 
 Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
     const double distanceMm = limits_.maxDistanceMm, voxel = frame_.voxelMm();
-    const double mostCost = kHalfway * voxel * voxel * distanceMm * distanceMm;
-    limits_.maxDistanceMm *= kEarlyDistance;
+    const double mostCost = kHalfwayCost * voxel * voxel * distanceMm * distanceMm;
+    limits_.maxDistanceMm *= kHalfwayDistance;
     limits_.maxCost = kFirstCost * costUnit_;
     surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
-    for (const double cost : kCosts) {
+    for (const double cost : kBoundCosts) {
         if (cost * costUnit_ > mostCost) break;
         roundUpTo(cost * costUnit_, surface);
     }
@@ -103,7 +74,7 @@ SimplifiedSurface Simplification::toLimits(SimplifiedSurface last,
     } else {
         halfway = toHalfway(surface);
     }
-    for (const double cost : kCosts) {
+    for (const double cost : kBoundCosts) {
         if (cost * costUnit_ > limits_.maxCost) roundUpTo(cost * costUnit_, surface);
     }
     for (int idle = 0; idle < 2;) {
@@ -127,11 +98,11 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
     work.mostCollapses = wanted;
     PatchRound round(surface, nextCut(), frame_);
     bool isLanding = false;
-    if (times < kLanding || isTied_) {
+    if (times < kNearCount || isTied_) {
         work.fits = true;
-    } else if (times <= kFar) {  // from afar not reached but by a cost far too high
+    } else if (times <= kFarFromCount) {  // from afar not reached but by a cost far too high
         const PatchTrial trial = round.tryOut(limits_, triesAll_);
-        const double part = trial.share < 1 ? kAim * trial.share : 1;
+        const double part = trial.share < 1 ? kTrialAim * trial.share : 1;
         const auto most = static_cast<std::int64_t>(part * static_cast<double>(wanted));
         if (trial.collapses() > most) {
             work.limits.maxCost = costLimitFor(trial.costs, most);

@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "adaptive/Parameters.h"
+
 namespace adaptiso::detail {
 
 Index3 TightPlaces::cubeAt(const Vec3& place, int level) {
-    const double side = std::ldexp(kCube, level);
+    const double side = std::ldexp(kTightCube, level);
     Index3 cube;
     for (int a = 0; a < 3; ++a) cube[a] = static_cast<std::int64_t>(std::floor(place[a] / side));
     return cube;
@@ -44,7 +46,6 @@ bool TightPlaces::isFrozen(const Vec3& index) const {
 
 /// How often the square is halved.
 std::uint8_t TightPlaces::tightnessAt(const Index3& cube) const {
-    constexpr std::array<std::uint8_t, 4> kHalvings{0, 5, 14, 40};
     const auto at = tightness_.find(cube);
     return at == tightness_.end() ? 0 : kHalvings[std::min(at->second, kHalvings.size() - 1)];
 }

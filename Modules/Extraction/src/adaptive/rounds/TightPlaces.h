@@ -37,7 +37,6 @@ public:
     void apply(const MetricFrame& frame, std::vector<Sample>& samples) const;
 
 private:
-    static constexpr double kCube = 1.5;  ///< voxels
     static Index3 cubeAt(const Vec3& place, int level = 0);
     static std::set<Index3> cubesAround(const std::vector<Vec3>& places, int level = 0);
     std::uint8_t tightnessAt(const Index3& cube) const;
