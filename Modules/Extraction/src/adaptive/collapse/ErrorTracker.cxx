@@ -56,6 +56,14 @@ double tightened(double distanceMm, const Sample& sample) {
 
 }  // namespace
 
+void SampleAssignment::clear() {
+    moves.clear();
+    for (auto& along : position) along.clear();
+    sumOfSquares = largestSquare = 0;
+    leastRoom = SheetRoom::kAlone;
+    isCrowded = false;
+}
+
 ErrorTracker::ErrorTracker(Patch& patch, const MetricFrame& frame)
     : patch_(patch),
       sampleSpacingMm_(frame.voxelMm()),
@@ -87,12 +95,12 @@ bool ErrorTracker::forEachTriangle(const Star& star, const F& f) const {
     return true;
 }
 
-ErrorTracker::Move ErrorTracker::nearest(const ChangedStar& changed, std::uint32_t sample,
-                                         int start, double& squaredDistance) const {
+SampleAssignment::Move ErrorTracker::nearest(const ChangedStar& changed, std::uint32_t sample,
+                                             int start, double& squaredDistance) const {
     // downhill from wedge to wedge, one way round
     const Vec3 q = patch_.samples[sample].point() - changed.vertex;
     const int n = changed.star.count;
-    Move best{sample, start};
+    SampleAssignment::Move best{sample, start};
     squaredDistance = kInfinity;
     int direction = 0;
     for (int tries = 0, i = start; tries < n; ++tries) {
@@ -107,72 +115,72 @@ ErrorTracker::Move ErrorTracker::nearest(const ChangedStar& changed, std::uint32
     return best;
 }
 
-bool ErrorTracker::measure(const ChangedStar& unchanged) {
-    sumOfSquares_ = largestSquare_ = 0;
-    return forEachTriangle(unchanged.star, [&](std::uint32_t triangle, int wedge) {
+std::optional<StarFit> ErrorTracker::measure(const ChangedStar& unchanged) const {
+    StarFit fit;
+    const bool isLoose = forEachTriangle(unchanged.star, [&](std::uint32_t triangle, int wedge) {
         for (std::uint32_t s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
             const Sample& sample = patch_.samples[s];
             if (sample.tightness > 0) return false;
             const double squared =
                 distanceTo(unchanged.wedge[wedge], sample.point() - unchanged.vertex).squared;
-            sumOfSquares_ += squared;
-            largestSquare_ = std::max(largestSquare_, squared);
+            fit.sumOfSquares += squared;
+            fit.largestSquare = std::max(fit.largestSquare, squared);
         }
         return true;
     });
+    return isLoose ? std::optional(fit) : std::nullopt;
 }
 
-bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm) {
+bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm,
+                          SampleAssignment& result) const {
     const double most = maxDistanceMm * maxDistanceMm;
-    moves_.clear();
-    for (auto& along : movedAlong_) along.clear();
-    sumOfSquares_ = largestSquare_ = 0;
-    isCrowded_ = false;
-    leastRoom_ = SheetRoom::kAlone;
+    result.clear();
     std::uint8_t roomUnseen = SheetRoom::kAlone;
     const bool isNear = forEachTriangle(changed.star, [&](std::uint32_t triangle, int wedge) {
         roomUnseen = std::min(roomUnseen, triangleRoom_[triangle]);
         for (std::uint32_t s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
             double squared = 0;
-            const Move move = nearest(changed, s, wedge, squared);
+            const SampleAssignment::Move move = nearest(changed, s, wedge, squared);
             const Sample& sample = patch_.samples[s];
-            leastRoom_ = std::min(leastRoom_, sample.room);
-            if (squared > squaredRoom_[sample.room]) isCrowded_ = true;
+            result.leastRoom = std::min(result.leastRoom, sample.room);
+            if (squared > squaredRoom_[sample.room]) result.isCrowded = true;
             if (!(squared <=
                   (sample.tightness == 0 ? most : std::ldexp(most, -sample.tightness)))) {
                 return false;
             }
-            sumOfSquares_ += squared;
-            largestSquare_ = std::max(largestSquare_, squared);
-            moves_.push_back(move);
-            for (int a = 0; a < 3; ++a) movedAlong_[a].push_back(sample.position[a]);
+            result.sumOfSquares += squared;
+            result.largestSquare = std::max(result.largestSquare, squared);
+            result.moves.push_back(move);
+            for (int a = 0; a < 3; ++a) result.position[a].push_back(sample.position[a]);
         }
         return true;
     });
-    leastRoom_ = std::min(leastRoom_, roomUnseen);
+    result.leastRoom = std::min(result.leastRoom, roomUnseen);
     if (!isNear) return false;
-    if (moves_.empty()) {
-        isCrowded_ = leastRoom_ != SheetRoom::kAlone;
+    if (result.moves.empty()) {
+        result.isCrowded = result.leastRoom != SheetRoom::kAlone;
         return true;
     }
-    const Sample& nearest = sampleNearest(changed.vertex);
+    const Sample& nearest = sampleNearest(changed.vertex, result);
     const double height = heightOver(nearest, changed.vertex);
-    if (height * height > squaredRoom_[std::min(nearest.room, roomUnseen)]) isCrowded_ = true;
-    return tightened(height, nearest) <= maxDistanceMm && ridgesAreNear(changed, maxDistanceMm);
+    if (height * height > squaredRoom_[std::min(nearest.room, roomUnseen)]) result.isCrowded = true;
+    return tightened(height, nearest) <= maxDistanceMm &&
+           ridgesAreNear(changed, result, maxDistanceMm);
 }
 
-/// Of the samples of the last assign(), but for differences of a ten-thousandth.
-const Sample& ErrorTracker::sampleNearest(const Vec3& p) const {
+/// Of the samples that are handed over, but for differences of a ten-thousandth.
+const Sample& ErrorTracker::sampleNearest(const Vec3& p, const SampleAssignment& assignment) const {
     // a number of 32 bits for each, by which the compiler takes several at once: the square, as
     // floats that are not negative sort by their bits, with the place in its last bits
     constexpr std::int32_t kPlaces = 1 << 10;
     const std::array<float, 3> q = Sample::positionOf(p);
-    const auto count = static_cast<std::int32_t>(moves_.size());
+    const auto count = static_cast<std::int32_t>(assignment.moves.size());
     std::int32_t at = 0, least = std::numeric_limits<std::int32_t>::max();
     for (std::int32_t begin = 0; begin < count; begin += kPlaces) {
         const std::int32_t here = std::min(kPlaces, count - begin);
-        const float *xs = movedAlong_[0].data() + begin, *ys = movedAlong_[1].data() + begin,
-                    *zs = movedAlong_[2].data() + begin;
+        const float *xs = assignment.position[0].data() + begin,
+                    *ys = assignment.position[1].data() + begin,
+                    *zs = assignment.position[2].data() + begin;
         std::int32_t best = std::numeric_limits<std::int32_t>::max();
         for (std::int32_t i = 0; i < here; ++i) {
             const float x = xs[i] - q[0], y = ys[i] - q[1], z = zs[i] - q[2];
@@ -184,11 +192,12 @@ const Sample& ErrorTracker::sampleNearest(const Vec3& p) const {
             at = begin + (best & (kPlaces - 1));
         }
     }
-    return patch_.samples[moves_[at].sample];
+    return patch_.samples[assignment.moves[at].sample];
 }
 
 /// The way back: a sharp edge may pass between the samples of a rounder surface.
-bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, double maxDistanceMm) const {
+bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, const SampleAssignment& assignment,
+                                 double maxDistanceMm) const {
     const int n = changed.star.count;
     const auto normal = [&](int i) {
         const ChangedStar::Wedge& w = changed.wedge[i];
@@ -206,7 +215,7 @@ bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, double maxDistanceM
                      1 + static_cast<int>(norm(spoke) / (kRidgeSpacing * sampleSpacingMm_)));
         for (int k = 1; k < steps; ++k) {
             const Vec3 p = changed.vertex + static_cast<double>(k) / steps * spoke;
-            const Sample& nearest = sampleNearest(p);
+            const Sample& nearest = sampleNearest(p, assignment);
             if (tightened(heightOver(nearest, p), nearest) > maxDistanceMm) {
                 return false;
             }
@@ -215,20 +224,21 @@ bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, double maxDistanceM
     return true;
 }
 
-void ErrorTracker::commit(const ChangedStar& changed) {
+void ErrorTracker::commit(const ChangedStar& changed, const SampleAssignment& assignment) {
     forEachTriangle(changed.star, [&](std::uint32_t triangle, int) {
         firstSample_[triangle] = kNone;
         return true;
     });
-    for (const Move& move : moves_) {
+    for (const SampleAssignment::Move& move : assignment.moves) {
         const std::uint32_t t = changed.star.triangle[move.wedge];
         nextSample_[move.sample] = firstSample_[t];
         firstSample_[t] = move.sample;
         patch_.sampleTriangle[move.sample] = t;
     }
-    for (int i = 0; i < changed.star.count; ++i) {  // what lies around it tells
+    // a triangle without samples has the room of those around it
+    for (int i = 0; i < changed.star.count; ++i) {
         const std::uint32_t t = changed.star.triangle[i];
-        if (firstSample_[t] == kNone) triangleRoom_[t] = leastRoom_;
+        if (firstSample_[t] == kNone) triangleRoom_[t] = assignment.leastRoom;
     }
 }
 

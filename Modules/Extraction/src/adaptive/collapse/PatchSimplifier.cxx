@@ -38,10 +38,8 @@ void PatchSimplifier::setState(std::uint32_t v, Patch::State state) {
 }
 
 /// What lies around the changed star may be tried again.
-void PatchSimplifier::markChanged() {
-    for (int i = 0; i < changed_.star.count; ++i) {
-        setState(changed_.star.ring[i], Patch::State::Open);
-    }
+void PatchSimplifier::markChanged(const Star& star) {
+    for (int i = 0; i < star.count; ++i) setState(star.ring[i], Patch::State::Open);
 }
 
 bool PatchSimplifier::isStale(const Candidate& c) const {
@@ -49,21 +47,48 @@ bool PatchSimplifier::isStale(const Candidate& c) const {
            !topology_.isMovable(c.b);
 }
 
-/// \pre changed_ has the edge's star \return false when it must not be collapsed
-bool PatchSimplifier::collapse(std::uint32_t halfEdge) {
-    const std::uint32_t a = topology_.from(halfEdge), b = topology_.to(halfEdge);
-    const Vec3 place = bestPlace(a, b).point;
-    if (!staysNear(place) || !crossesNothing()) return false;
-    topology_.collapse(halfEdge, changed_.star);
-    errors_.commit(changed_);
-    guard_.commit(changed_, errors_.isInSingleSheet());
-    markChanged();
-    setState(a, Patch::State::Open);
-    patch_.points[a] = place;
-    patch_.quadrics[a] += patch_.quadrics[b];
-    ++changes_[a];
-    ++changes_[b];
-    return true;
+const PatchSimplifier::Change* PatchSimplifier::evaluateCollapse(std::uint32_t halfEdge) {
+    Change& change = change_;
+    if (!topology_.starOfEdge(halfEdge, change.star.star)) return nullptr;
+    change.vertex = topology_.from(halfEdge);
+    change.halfEdge = halfEdge;
+    change.star.vertex = bestPlace(change.vertex, topology_.to(halfEdge)).point;
+    return staysNear(change) && crossesNothing(change) ? &change : nullptr;
+}
+
+const PatchSimplifier::Change* PatchSimplifier::evaluateFit(std::uint32_t vertex) {
+    Change& change = change_;
+    if (!topology_.starOf(vertex, change.star.star)) return nullptr;
+    change.vertex = vertex;
+    change.halfEdge = PatchTopology::kNone;
+    change.star.vertex = patch_.points[vertex];
+    if (!shapeStar(patch_, limits_.shape, change.star)) return nullptr;
+    const std::optional<StarFit> before = errors_.measure(change.star);
+    if (!before) return nullptr;
+    const Quadric& quadric = patch_.quadrics[vertex];
+    const double mostError = quadric.weight() * limits_.maxDistanceMm * limits_.maxDistanceMm,
+                 farthest =
+                     std::max(before->largestSquare, limits_.maxFittedMm * limits_.maxFittedMm);
+    change.star.vertex = fittedPlace(change.star, quadric);
+    const bool isBetter = quadric.at(change.star.vertex) <= mostError && staysNear(change) &&
+                          change.samples.sumOfSquares < before->sumOfSquares &&
+                          change.samples.largestSquare <= farthest;
+    return isBetter && crossesNothing(change) ? &change : nullptr;
+}
+
+void PatchSimplifier::apply(const Change& change) {
+    if (change.halfEdge != PatchTopology::kNone) {
+        const std::uint32_t other = topology_.to(change.halfEdge);
+        topology_.collapse(change.halfEdge, change.star.star);
+        markChanged(change.star.star);
+        setState(change.vertex, Patch::State::Open);
+        patch_.quadrics[change.vertex] += patch_.quadrics[other];
+        ++changes_[change.vertex];
+        ++changes_[other];
+    }
+    errors_.commit(change.star, change.samples);
+    guard_.commit(change.star, change.samples.isInSingleSheet());
+    patch_.points[change.vertex] = change.star.vertex;
 }
 
 void PatchSimplifier::settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, int largestSide,
@@ -80,7 +105,9 @@ void PatchSimplifier::settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, i
             const std::uint32_t a = topology_.from(h), b = topology_.to(h);
             if (isFlat[a] == 0 || isFlat[b] == 0 || !mayChange(a) || !mayChange(b)) continue;
             if (boxAt(a, side) != boxAt(b, side)) continue;
-            if (!topology_.starOfEdge(h, changed_.star) || !collapse(h)) continue;
+            const Change* change = evaluateCollapse(h);
+            if (change == nullptr) continue;
+            apply(*change);
             if (costs != nullptr) costs->push_back(0);
         }
     }
@@ -105,8 +132,10 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
         const Candidate best = queue_.front();
         std::pop_heap(queue_.begin(), queue_.end(), IsLater());
         queue_.pop_back();
-        if (isStale(best) || !topology_.starOfEdge(best.halfEdge, changed_.star)) continue;
-        if (!collapse(best.halfEdge)) continue;
+        if (isStale(best)) continue;
+        const Change* change = evaluateCollapse(best.halfEdge);
+        if (change == nullptr) continue;
+        apply(*change);
         ++made;
         if (costs != nullptr) costs->push_back(best.cost);
         const std::uint32_t begin = topology_.leaving(best.a);
@@ -124,16 +153,16 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
     queue_.clear();
 }
 
-/// With its vertex at p the star has the shape asked for and lies near its samples.
-bool PatchSimplifier::staysNear(const Vec3& p) {
-    changed_.vertex = p;
-    return isInBox(p) && shapeStar(patch_, limits_.shape, changed_) &&
-           errors_.assign(changed_, limits_.maxDistanceMm);
+/// The star has the shape asked for and lies near its samples.
+bool PatchSimplifier::staysNear(Change& change) const {
+    return isInBox(change.star.vertex) && shapeStar(patch_, limits_.shape, change.star) &&
+           errors_.assign(change.star, limits_.maxDistanceMm, change.samples);
 }
 
 /// \pre staysNear() was true
-bool PatchSimplifier::crossesNothing() {
-    return !guard_.needsProof(changed_, errors_.isCrowded()) || guard_.crossesNothing(changed_);
+bool PatchSimplifier::crossesNothing(const Change& change) {
+    return !guard_.needsProof(change.star, change.samples.isCrowded) ||
+           guard_.crossesNothing(change.star);
 }
 
 bool PatchSimplifier::isInBox(const Vec3& p) const {
@@ -146,45 +175,29 @@ bool PatchSimplifier::isInBox(const Vec3& p) const {
 
 void PatchSimplifier::fitVertices() {
     for (std::uint32_t v = 0; v < patch_.points.size(); ++v) {
-        if (!mayChange(v) || patch_.states[v] == Patch::State::Fitted ||
-            !topology_.starOf(v, changed_.star)) {
-            continue;
-        }
+        if (!mayChange(v) || patch_.states[v] == Patch::State::Fitted) continue;
+        // one with too many triangles is not fitted, and stays as it is
+        const Change* change = evaluateFit(v);
         patch_.states[v] = Patch::State::Fitted;
-        changed_.vertex = patch_.points[v];
-        if (!shapeStar(patch_, limits_.shape, changed_) || !errors_.measure(changed_)) continue;
-        const double before = errors_.sumOfSquares();
-        const double farthest =
-            std::max(errors_.largestSquare(), limits_.maxFittedMm * limits_.maxFittedMm);
-        const Vec3 place = fittedPlace(v);
-        const Quadric& q = patch_.quadrics[v];
-        const double most = q.weight() * limits_.maxDistanceMm * limits_.maxDistanceMm;
-        if (!(q.at(place) <= most) || !staysNear(place) || !(errors_.sumOfSquares() < before) ||
-            errors_.largestSquare() > farthest || !crossesNothing()) {
-            continue;
-        }
-        errors_.commit(changed_);
-        guard_.commit(changed_, errors_.isInSingleSheet());
-        patch_.points[v] = place;
+        if (change != nullptr) apply(*change);
     }
 }
 
-/// \pre changed_ is the vertex's star, shaped for its present place
-Vec3 PatchSimplifier::fittedPlace(std::uint32_t v) const {
+/// \param star  a vertex's, shaped for its present place \param own  the vertex's quadric
+Vec3 PatchSimplifier::fittedPlace(const ChangedStar& star, const Quadric& own) const {
     // a sample's distance is linear in the vertex's step d: n . (s - q) - w n . d, w the weight of
     // the vertex at the sample's foot q; a sample stands for a voxel's face of surface
     const double scale = kQuadricWeight / (frame_.voxelMm() * frame_.voxelMm());
-    const Quadric& own = patch_.quadrics[v];
     Quadric sum;
     sum.xx = scale * own.xx, sum.xy = scale * own.xy, sum.xz = scale * own.xz;
     sum.yy = scale * own.yy, sum.yz = scale * own.yz, sum.zz = scale * own.zz;
-    sum.b = scale * (own.timesA(changed_.vertex) + own.b);
-    for (int i = 0; i < changed_.star.count; ++i) {
-        const ChangedStar::Wedge& w = changed_.wedge[i];
+    sum.b = scale * (own.timesA(star.vertex) + own.b);
+    for (int i = 0; i < star.star.count; ++i) {
+        const ChangedStar::Wedge& w = star.wedge[i];
         const Vec3 normal = std::sqrt(w.inverse) * cross(w.e1, w.e2);
-        for (std::uint32_t s = errors_.first(changed_.star.triangle[i]); s != ErrorTracker::kNone;
+        for (std::uint32_t s = errors_.first(star.star.triangle[i]); s != ErrorTracker::kNone;
              s = errors_.next(s)) {
-            const Vec3 d = patch_.samples[s].point() - changed_.vertex;
+            const Vec3 d = patch_.samples[s].point() - star.vertex;
             const double d1 = dot(d, w.e1), d2 = dot(d, w.e2);
             const double u = std::clamp((w.a22 * d1 - w.a12 * d2) * w.inverse, 0.0, 1.0),
                          t = std::clamp((w.a11 * d2 - w.a12 * d1) * w.inverse, 0.0, 1.0);
@@ -194,7 +207,7 @@ Vec3 PatchSimplifier::fittedPlace(std::uint32_t v) const {
             sum.b += -dot(normal, d) * g;
         }
     }
-    return changed_.vertex + minimize(sum, {}, kFitStiffness).point;
+    return star.vertex + minimize(sum, {}, kFitStiffness).point;
 }
 
 }  // namespace adaptiso::detail

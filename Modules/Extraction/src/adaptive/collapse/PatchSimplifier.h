@@ -57,20 +57,37 @@ private:
         }
     };
 
+    /// A change that nothing refuses: all that apply() needs. An edge is collapsed into the vertex
+    /// it starts from, or a vertex moves.
+    struct Change {
+        ChangedStar star;
+        SampleAssignment samples;
+        std::uint32_t vertex = 0;
+        std::uint32_t halfEdge = PatchTopology::kNone;  ///< that is collapsed, if one is
+    };
+
     bool mayChange(std::uint32_t v) const {
         return topology_.isMovable(v) && patch_.states[v] != Patch::State::Final;
     }
     void setState(std::uint32_t v, Patch::State state);
-    void markChanged();
+    void markChanged(const Star& star);
     QuadricMinimum bestPlace(std::uint32_t a, std::uint32_t b) const;
     /// \param leastCost  of the collapse; it is not proposed below
     void propose(std::uint32_t halfEdge, double leastCost);
-    bool collapse(std::uint32_t halfEdge);
     bool isStale(const Candidate& candidate) const;
-    bool staysNear(const Vec3& p);
-    bool crossesNothing();
+
+    /// What collapsing the edge would do; null when it must not be. Valid until the next
+    /// evaluation: its memory, 5 kB and the samples, is used again.
+    const Change* evaluateCollapse(std::uint32_t halfEdge);
+    /// What moving the vertex to where its triangles fit the samples would do; null when that must
+    /// not be, or is no better. As above.
+    const Change* evaluateFit(std::uint32_t vertex);
+    void apply(const Change& change);
+
+    bool staysNear(Change& change) const;
+    bool crossesNothing(const Change& change);
     bool isInBox(const Vec3& p) const;
-    Vec3 fittedPlace(std::uint32_t v) const;
+    Vec3 fittedPlace(const ChangedStar& star, const Quadric& own) const;
 
     Patch& patch_;
     const MetricFrame& frame_;
@@ -80,7 +97,7 @@ private:
     CrossingGuard guard_;
     std::vector<std::uint32_t> changes_;  ///< of each vertex
     std::vector<Candidate> queue_;        ///< a heap
-    ChangedStar changed_;
+    Change change_;                       ///< the one that is evaluated
 };
 
 }  // namespace adaptiso::detail
