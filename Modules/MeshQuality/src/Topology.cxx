@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "adaptiso/Core/DisjointSets.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso {
@@ -383,21 +384,13 @@ std::string_view toString(TopologyDefect defect) {
 }
 
 std::vector<VertexId> findComponentRoots(const TriangleMesh& mesh) {
-    std::vector<VertexId> parent(mesh.points.size());
-    std::iota(parent.begin(), parent.end(), VertexId{0});
-    const auto root = [&](VertexId v) {
-        while (parent[v] != v) v = parent[v] = parent[parent[v]];
-        return v;
-    };
+    DisjointSets sets(std::ssize(mesh.points));
     for (const Triangle& t : mesh.triangles) {
         if (!isConnecting(mesh, t)) continue;
-        for (int side = 0; side < 2; ++side) {
-            const VertexId a = root(t[side]), b = root(t[side + 1]);
-            parent[std::max(a, b)] = std::min(a, b);
-        }
+        sets.join(t[0], t[1]);
+        sets.join(t[1], t[2]);
     }
-    for (VertexId& p : parent) p = parent[p];  // a parent is smaller, so it is a root by now
-    return parent;
+    return std::move(sets).names();
 }
 
 std::optional<std::int64_t> SurfaceComponent::genus() const {

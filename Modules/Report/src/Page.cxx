@@ -9,6 +9,7 @@
 #include "Payload.h"
 #include "Scene.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/Report/Coarser.h"
 
 namespace adaptiso {
@@ -100,8 +101,8 @@ std::string viewerData(const Report& report, const Scene& scene, const PageOptio
         // those around the first are seen through
         surfaces.push_back(
             {{"name", surface.name}, {"color", surface.color}, {"opacity", n == 0 ? 1.0 : 0.35}});
-        elements +=
-            dataElement("surface-" + std::to_string(n), "text/plain", base64(gzip(mz3Of(surface))));
+        elements += dataElement("surface-" + std::to_string(n), "text/plain",
+                                encodeBase64(gzip(mz3Of(surface))));
     }
     for (const SceneSpot& spot : shown.spots) spots.push_back(pointJson(spot.pointMm));
     const Vec3 middle = 0.5 * (scene.box.minimum + scene.box.maximum);
@@ -114,7 +115,7 @@ std::string viewerData(const Report& report, const Scene& scene, const PageOptio
         report.volume ? niftiOf(report.volume->view, options.maxVoxels, scene.face.get())
                       : blankNifti(scene.box);
     elements += dataElement("data", "application/json", jsonText(data));
-    elements += dataElement("volume", "text/plain", base64(gzip(image)));
+    elements += dataElement("volume", "text/plain", encodeBase64(gzip(image)));
     return elements;
 }
 
@@ -128,7 +129,7 @@ void addViewerScripts(std::string& html) {
 
 /// As addViewerScripts(), with niivue's script packed: a third of its size.
 std::string packedViewerScripts() {
-    static const std::string packed = base64(gzip(embedded::niivueJs()));
+    static const std::string packed = encodeBase64(gzip(embedded::niivueJs()));
     return dataElement("niivue", "text/plain", packed) +
            dataElement("viewer-code", "text/plain", std::string(embedded::viewerJs())) +
            "<script>\n" + std::string(embedded::unpackJs()) + "</script>\n";
@@ -136,7 +137,7 @@ std::string packedViewerScripts() {
 
 std::string imageElement(const Picture& picture, const std::string& style) {
     return "<img alt=\"" + escaped(picture.altText) + "\" style=\"" + style +
-           "\" src=\"data:image/png;base64," + base64(picture.png) + "\">\n";
+           "\" src=\"data:image/png;base64," + encodeBase64(picture.png) + "\">\n";
 }
 
 }  // namespace
