@@ -56,7 +56,7 @@ Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
         if (state == Patch::State::Tried) state = Patch::State::Open;
     }
     limits_.maxDistanceMm = distanceMm;
-    return {surface, rounds_, limits_.maxCost};
+    return {surface.state(), rounds_, limits_.maxCost};
 }
 
 void Simplification::goOnFrom(const Halfway& halfway, SimplifiedSurface& surface) {
