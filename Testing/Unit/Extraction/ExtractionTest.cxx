@@ -54,6 +54,28 @@ TEST(Extraction, RefusesAnIndexOfAnotherVolume) {
     EXPECT_THROW(extractSurface(small.volume, index, {}), InvalidInput);
 }
 
+TEST(Extraction, RefusesVoxelsThatAreNeedles) {
+    for (const double thinMm : {1e-3, 1e-7}) {
+        ImageGeometry geometry;
+        geometry.size = {4, 4, 4};
+        geometry.indexToPhysical = Mat3::diagonal(thinMm, 2, 1);
+        std::vector<float> samples(64, 0.0F);
+        samples[21] = 1;
+        const Volume volume = Volume::fromSamples(samples, geometry);
+        const SpanSpaceIndex index = SpanSpaceIndex::build(volume, {});
+        ExtractionOptions options;
+        options.isovalue = 0.5;
+        options.method = Method::MarchingCubes;
+        EXPECT_FALSE(extractSurface(volume, index, options).mesh.triangles.empty());
+        options.method = Method::Adaptive;
+        if (thinMm < 1e-4) {
+            EXPECT_THROW(extractSurface(volume, index, options), InvalidInput);
+        } else {
+            expectSound(extractSurface(volume, index, options).mesh);
+        }
+    }
+}
+
 TEST(Extraction, RefusesAnIsovalueThatIsNoNumber) {
     const HardVolume hard = hardVolume(1, 5);
     const SpanSpaceIndex index = SpanSpaceIndex::build(hard.volume, {});
