@@ -104,6 +104,8 @@ def marching_cubes(volume: Any, level: Optional[float] = None, *, spacing: Any =
 def _checked(volume: Any, spacing: Any, step_size: Any) -> Tuple[Array, Array, int]:
     if not isinstance(volume, np.ndarray) or volume.ndim != 3:
         raise Error("Input volume should be a 3D numpy array.")
+    if volume.dtype.kind not in "biuf":
+        raise Error(f"volume: samples of type {volume.dtype} can't be used")
     if min(volume.shape) < 2:
         raise Error("Input array must be at least 2x2x2.")
     try:
