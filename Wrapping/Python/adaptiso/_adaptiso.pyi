@@ -80,7 +80,8 @@ def make_bem(source: str, images: Sequence[ArrayVolume], brain_mask: Optional[Ar
              cut_necks: float, voxel: float, conductivity: Sequence[float], threads: int,
              progress: Optional[Any]) -> HeadModelData: ...
 def build_index(volume: ArrayVolume, border: str, threads: int) -> ArrayIndex: ...
-def make_surface(volume: ArrayVolume, index: ArrayIndex, level: Optional[float], method: str,
+def make_surface(volume: ArrayVolume, index: Optional[ArrayIndex], border: str,
+                 level: Optional[float], method: str,
                  max_error: Optional[float], triangles: Optional[int],
                  reduction: Optional[float], min_angle: float, largest: bool, min_volume: float,
                  fill_cavities: bool, threads: int, progress: Optional[Any], file: str,

@@ -138,10 +138,9 @@ def _extracted(samples: Array, isovalue: float) -> Triangles:
     """Vertices (in steps along the axes), faces with the smaller samples outside, normals."""
     prepared = samples_of(samples, None)
     with read_only(prepared.user):
-        index = _adaptiso.build_index(prepared.volume, "open", 0)
         try:
-            mesh = _adaptiso.make_surface(prepared.volume, index, isovalue, "mc", None, None, None,
-                                          0.0, False, 0.0, False, 0, None, "", "", [])
+            mesh = _adaptiso.make_surface(prepared.volume, None, "open", isovalue, "mc", None, None,
+                                          None, 0.0, False, 0.0, False, 0, None, "", "", [])
         except _adaptiso.InternalError:
             raise
         except Error as error:

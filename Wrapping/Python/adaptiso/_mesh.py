@@ -107,7 +107,7 @@ class Mesh:
     @property
     def report(self) -> Dict[str, Any]:
         """How the mesh was made, and that it is sound: the report adaptiso-mesh/1, as
-        ``adaptiso-mesh --json`` writes it. Empty of meshes that were not made from an image."""
+        ``adaptiso-mesh --json`` writes it (of `surface`, with ``--search linear``). Empty of meshes that were not made from an image."""
         if self._report is None:
             text = self._data.report
             self._report = json.loads(text) if text else {}

@@ -79,10 +79,8 @@ struct ArrayIndex {
     double seconds = 0;
 };
 
-std::shared_ptr<ArrayIndex> buildIndex(const ArrayVolume& volume, const std::string& border,
+std::shared_ptr<ArrayIndex> buildIndex(const ArrayVolume& volume, const IndexOptions& options,
                                        int threads) {
-    IndexOptions options;
-    options.border = borderOf(border);
     const auto start = std::chrono::steady_clock::now();
     std::shared_ptr<ArrayIndex> built;
     runUnlocked(threads, [&] {
@@ -154,19 +152,25 @@ double levelOf(const SurfaceRequest& request, const VolumeView& volume, const Va
 }
 
 /// Makes a surface as adaptiso-mesh does, from the samples on.
-std::shared_ptr<MeshData> makeSurface(ArrayVolume& volume, const ArrayIndex& built,
-                                      const SurfaceRequest& request, const ImageOrigin& origin,
-                                      py::object progress) {
+/// \param built  an index, or null: a look at every block, which for one level is quicker than a
+///               tree and a third of its size, and is gone when the surface is there
+std::shared_ptr<MeshData> makeSurface(ArrayVolume& volume, std::shared_ptr<const ArrayIndex> built,
+                                      const std::string& border, const SurfaceRequest& request,
+                                      const ImageOrigin& origin, py::object progress) {
     SurfaceHistory history;
     history.extraction = request.extraction();
-    history.index = built.index.options();
-    history.indexBytes = built.index.memoryBytes();
-    history.selection = request.selection(history.index.border);
+    history.selection = request.selection(borderOf(border));
+    if (!built) {
+        built = buildIndex(volume, {.border = borderOf(border), .search = BlockSearchKind::Linear},
+                           request.threads);
+    }
+    history.index = built->index.options();
+    history.indexBytes = built->index.memoryBytes();
     history.origin = origin;
     history.pixelType = volume.view.pixelType();
     history.range = volume.valueRange(request.threads);
     history.threads = request.threads;
-    history.seconds.emplace_back("index", built.seconds);
+    history.seconds.emplace_back("index", built->seconds);
 
     Watcher watcher(std::move(progress));
     TriangleMesh mesh;
@@ -178,7 +182,8 @@ std::shared_ptr<MeshData> makeSurface(ArrayVolume& volume, const ArrayIndex& bui
         ExtractionOptions options = history.extraction;
         options.isovalue = record.isovalue;
         options.progress = watcher.callback();
-        Extraction extraction = extractSurface(volume.view, built.index, options);
+        Extraction extraction = extractSurface(volume.view, built->index, options);
+        built.reset();
         history.seconds.emplace_back("extract", secondsSince(start));
         record.statistics = extraction.statistics;
         record.extractedTriangles = std::ssize(extraction.mesh.triangles);
@@ -438,22 +443,26 @@ void declareSurfaces(py::module_& module) {
             "blocks", [](const ArrayIndex& self) { return self.index.grid().blockCount(); })
         .def_property_readonly("memory_bytes",
                                [](const ArrayIndex& self) { return self.index.memoryBytes(); });
-    module.def("build_index", &buildIndex, py::arg("volume"), py::arg("border"),
-               py::arg("threads"));
+    module.def(
+        "build_index",
+        [](const ArrayVolume& volume, const std::string& border, int threads) {
+            return buildIndex(volume, {.border = borderOf(border)}, threads);
+        },
+        py::arg("volume"), py::arg("border"), py::arg("threads"));
     module.def(
         "make_surface",
-        [](ArrayVolume& volume, const ArrayIndex& index, std::optional<double> level,
-           const std::string& method, std::optional<double> maxError,
+        [](ArrayVolume& volume, const std::shared_ptr<ArrayIndex>& index, const std::string& border,
+           std::optional<double> level, const std::string& method, std::optional<double> maxError,
            std::optional<std::int64_t> triangles, std::optional<double> reduction, double minAngle,
            bool largest, double minVolume, bool fillCavities, int threads, py::object progress,
            const std::string& file, const std::string& format,
            const std::vector<std::string>& warnings) {
-            return makeSurface(volume, index,
+            return makeSurface(volume, index, border,
                                {level, method, maxError, triangles, reduction, minAngle, largest,
                                 minVolume, fillCavities, threads},
                                {file, format, warnings}, std::move(progress));
         },
-        py::arg("volume"), py::arg("index"), py::arg("level"), py::arg("method"),
+        py::arg("volume"), py::arg("index"), py::arg("border"), py::arg("level"), py::arg("method"),
         py::arg("max_error"), py::arg("triangles"), py::arg("reduction"), py::arg("min_angle"),
         py::arg("largest"), py::arg("min_volume"), py::arg("fill_cavities"), py::arg("threads"),
         py::arg("progress"), py::arg("file"), py::arg("format"), py::arg("warnings"));
