@@ -23,7 +23,6 @@
 #include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/ImageIO/Otsu.h"
-#include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/ImageIO/SampleStatistics.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
@@ -31,6 +30,9 @@
 #include "adaptiso/Pipeline/DistanceJson.h"
 #include "adaptiso/Pipeline/FinishSurface.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
+#ifdef ADAPTISO_PYTHON_READERS
+#include "adaptiso/ImageIO/ReadVolume.h"
+#endif
 
 namespace adaptiso::python {
 namespace {
@@ -285,6 +287,7 @@ std::string compareMeshes(const MeshData& a, const MeshData& b, std::int64_t sam
     return text;
 }
 
+#ifdef ADAPTISO_PYTHON_READERS
 py::tuple readImage(const std::string& path, std::optional<std::string> series,
                     std::optional<std::int64_t> volumeIndex, bool resampleSlices) {
     ReadOptions options;
@@ -296,6 +299,7 @@ py::tuple readImage(const std::string& path, std::optional<std::string> series,
     return py::make_tuple(toArray(read->volume), affineOf(read->volume.view().geometry()),
                           read->format, read->warnings);
 }
+#endif
 
 /// Rows of three numbers that `owner` keeps; nobody may write to them.
 template <class Value, class Row>
@@ -469,8 +473,10 @@ void declareSurfaces(py::module_& module) {
 }
 
 void declareFilesAndChecks(py::module_& module) {
+#ifdef ADAPTISO_PYTHON_READERS
     module.def("read_image", &readImage, py::arg("path"), py::arg("series"),
                py::arg("volume_index"), py::arg("resample_slices"));
+#endif
     module.def(
         "read_mesh",
         [](const std::string& path, const std::optional<std::vector<std::int64_t>>& shape,
