@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import os
 import sys
 import threading
 import weakref
@@ -107,6 +108,8 @@ def _read_by_nibabel(name: str, volume_index: Optional[int], wants_dicom: bool) 
     """What `read` gives in a package that was built without readers (ADAPTISO_PYTHON_READERS)."""
     if wants_dicom:
         raise Error(f"{name}: DICOM is not read by this build of adaptiso")
+    if not os.path.exists(name):
+        raise Error(f"{name}: there is no such file")
     try:
         import nibabel
     except ImportError:
