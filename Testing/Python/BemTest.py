@@ -226,6 +226,7 @@ class Failures(unittest.TestCase):
                 {"labels": labels, "tissues": TISSUES, "vertices": 3},
                 {"labels": labels, "tissues": TISSUES, "vertices": [162, 162]},
                 {"labels": labels, "tissues": TISSUES, "edge_length": (5, 3)},
+                {"labels": labels, "tissues": TISSUES, "edge_length": (0.01, 0.02)},
                 {"labels": labels, "tissues": TISSUES, "min_gap": 0.1},
                 {"labels": labels, "tissues": TISSUES, "conductivity": (1, 2)},
                 {"labels": labels, "tissues": TISSUES, "conductivity": (0.3, -1, 0.3)},

@@ -48,6 +48,7 @@ class WithoutReaders(InFolder):
             np.testing.assert_array_equal(theirs.array, ours.array)
             self.assertEqual(theirs.array.dtype, ours.array.dtype)
             np.testing.assert_allclose(theirs.affine, ours.affine, atol=1e-5)  # float32 in the file
+            self.assertEqual(theirs.format, ours.format)
             self.assertTrue(theirs.array.flags.f_contiguous)
             self.assertFalse(theirs.array.flags.writeable)
 

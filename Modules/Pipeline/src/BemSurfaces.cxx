@@ -1,7 +1,9 @@
 #include "adaptiso/Pipeline/BemSurfaces.h"
 
+#include <cmath>
 #include <utility>
 
+#include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/Pipeline/BemChecks.h"
@@ -10,6 +12,7 @@ namespace adaptiso {
 namespace {
 
 constexpr std::int64_t kDefaultVertices = 2562;
+constexpr std::int64_t kMostVertices = 200'000;  // no solver takes as many
 constexpr double kFitMm = 0.5;
 /// Files keep floats: a gap must not fall short by their rounding (3e-5 mm at 500 mm).
 constexpr double kRoundingMm = 1e-4;
@@ -26,6 +29,18 @@ RemeshOptions remeshOptions(const BemModel& model, const std::vector<TriangleMes
     if (n > 0) remesh.neighbours.push_back(&dense[n - 1]);
     if (n + 1 < dense.size()) remesh.neighbours.push_back(&dense[n + 1]);
     return remesh;
+}
+
+/// Edges in a wrong unit ask for billions of triangles. \throws InvalidInput
+void requireFewVertices(const TriangleMesh& mesh, const BemModelOptions& options, std::size_t n) {
+    if (!options.edgeLengthMm || options.verticesOf(n)) return;
+    // equilateral triangles, two a vertex, with the longest edges allowed
+    const double longestMm = options.edgeLengthMm->maximumMm;
+    const double least = surfaceArea(mesh) / (std::sqrt(3.0) / 2 * longestMm * longestMm);
+    if (least <= kMostVertices) return;
+    throw InvalidInput("edges of at most " + formatShort(longestMm) + " mm make more than " +
+                       formatCount(kMostVertices) + " vertices of " + bemSurfaceName(n) +
+                       "; they must be longer");
 }
 
 /// Ready surfaces keep their triangles unless others are asked for.
@@ -47,6 +62,7 @@ std::vector<TriangleMesh> remeshed(const std::vector<TriangleMesh>& dense, BemMo
                 hooks.progress("remesh",
                                static_cast<double>(n) / static_cast<double>(dense.size()));
             }
+            requireFewVertices(dense[n], model.options, n);
             Remeshed result = remeshForBem(dense[n], remeshOptions(model, dense, n));
             model.surfaces[n].remesh = result.statistics;
             for (Finding& finding : result.findings) {

@@ -92,6 +92,36 @@ TEST(Page, ViewerGetsNoMoreThanItCanShow) {
     EXPECT_FALSE(holds(htmlPage(example(), {}), "coarser than they are"));
 }
 
+TEST(Notebook, HasAPictureAndWhereItCanAViewerThatReachesNothing) {
+    const std::string html = notebookHtml(example(), {"p.png", "A title", "An alt", "PNG", 3, 4});
+    EXPECT_TRUE(holds(html, "alt=\"An alt\""));
+    EXPECT_TRUE(holds(html, "src=\"data:image/png;base64,UE5H\""));
+    EXPECT_TRUE(holds(html, "<p>Check of a.stl</p>"));
+    EXPECT_EQ(holds(html, "sandbox=\"allow-scripts\""), hasViewer());
+    EXPECT_EQ(holds(html, "default-src &#39;none&#39;"), hasViewer());
+    EXPECT_FALSE(holds(html, "<script"));  // all scripts are in the frame
+}
+
+TEST(Notebook, TextsAreTextsWhateverTheyHold) {
+    Report report = example();
+    const std::string evil = "</iframe></script><script>alert('1')</script>\"{{STYLE}}\xff";
+    report.title = report.surfaces[0].name = evil;
+    const std::string html = notebookHtml(report, {"p.png", evil, evil, "", 1, 1});
+    EXPECT_FALSE(holds(html, "<script"));
+    EXPECT_EQ(html.find("</iframe>"), html.rfind("</iframe>"));  // the frame's own end
+    if (!hasViewer()) return;
+    const std::size_t begin = html.find("srcdoc="), end = html.find("</iframe>");
+    EXPECT_FALSE(holds(html.substr(begin, end - begin), "&lt;script&gt;alert"));
+}
+
+TEST(Notebook, SaysThatItShowsLess) {
+    if (!hasViewer()) GTEST_SKIP() << "built without niivue";
+    PageOptions options;
+    options.maxTriangles = 100;
+    EXPECT_TRUE(holds(notebookHtml(example(), {}, options), "coarser than they are"));
+    EXPECT_FALSE(holds(notebookHtml(example(), {}), "coarser than they are"));
+}
+
 TEST(ReportDate, IsThatOfSourceDateEpoch) {
     setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
     EXPECT_EQ(reportDate(), "2023-11-14 22:13 UTC");

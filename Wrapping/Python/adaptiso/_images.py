@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import os
 import sys
 import threading
 import weakref
@@ -24,6 +25,8 @@ Affine = npt.NDArray[np.float64]
 
 #: Types of samples that are used as they are; others are converted.
 _NATIVE = frozenset("u1 i1 u2 i2 u4 i4 u8 i8 f4 f8".split())
+#: nibabel's classes, by the names of our own readers.
+_FORMATS = {"Nifti1Image": "NIfTI-1", "Nifti2Image": "NIfTI-2", "MGHImage": "MGH"}
 #: GDCM's switches are global: one DICOM at a time.
 _reading = threading.Lock()
 
@@ -107,6 +110,8 @@ def _read_by_nibabel(name: str, volume_index: Optional[int], wants_dicom: bool) 
     """What `read` gives in a package that was built without readers (ADAPTISO_PYTHON_READERS)."""
     if wants_dicom:
         raise Error(f"{name}: DICOM is not read by this build of adaptiso")
+    if not os.path.exists(name):
+        raise Error(f"{name}: there is no such file")
     try:
         import nibabel
     except ImportError:
@@ -131,7 +136,8 @@ def _read_by_nibabel(name: str, volume_index: Optional[int], wants_dicom: bool) 
         raise Error(f"{name}: {' '.join(str(error).split())}") from None
     array = np.array(array, array.dtype.newbyteorder("="), order="F")
     array.flags.writeable = False
-    return Image(array, affine, [], type(image).__name__)
+    kind = type(image).__name__
+    return Image(array, affine, [], _FORMATS.get(kind, kind))
 
 
 def base_name(file: str) -> str:

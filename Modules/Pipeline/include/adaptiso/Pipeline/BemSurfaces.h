@@ -31,6 +31,7 @@ std::vector<TriangleMesh> mendSurfaces(std::vector<TriangleMesh> surfaces, BemMo
 /// the gaps asked for ("nest"), checked by adaptiso-check's own code ("check"). Fills the model's
 /// meshes, surfaces, gaps, checks, plausibility and findings, and warns of too many vertices.
 /// The same input gives the same bytes, whatever the number of threads.
+/// \throws InvalidInput  edge lengths that ask for more than 200,000 vertices of a surface
 void finishBemModel(std::vector<TriangleMesh> dense, BemModel& model, const BemHooks& hooks);
 
 }  // namespace adaptiso
