@@ -152,7 +152,7 @@ private:
         options.isovalue = isovalue;
         options.method = method;
         options.computeNormals = false;
-        return extractSurface(volume, SpanSpaceIndex::build(volume, {}), options).mesh;
+        return extractSurface(volume, options).mesh;
     }
 
     TriangleMesh writtenAndRead(const TriangleMesh& mesh, const std::string& ending) {

@@ -68,8 +68,8 @@ struct MeshOptions {
     ExtractionOptions extraction() const {
         ExtractionOptions options;
         options.method = method;
-        options.adjustVertices = adjustVertices;
-        options.mergeWithinBlocks = mergeWithinBlocks;
+        options.discretized.adjustVertices = adjustVertices;
+        options.discretized.mergeWithinBlocks = mergeWithinBlocks;
         options.adaptive = adaptive;
         return options;
     }

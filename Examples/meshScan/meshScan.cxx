@@ -7,7 +7,6 @@
 #include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/MeshFile.h"
-#include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
 int main(int argc, char** argv) {
     if (argc != 3) {
@@ -17,11 +16,9 @@ int main(int argc, char** argv) {
     try {
         const adaptiso::ReadVolume scan = adaptiso::readVolume(argv[1]);
         const adaptiso::VolumeView& volume = scan.volume.view();
-        const auto index = adaptiso::SpanSpaceIndex::build(volume, {});
-
         adaptiso::ExtractionOptions options;
         options.isovalue = adaptiso::otsuThreshold(volume);
-        const adaptiso::TriangleMesh all = adaptiso::extractSurface(volume, index, options).mesh;
+        const adaptiso::TriangleMesh all = adaptiso::extractSurface(volume, options).mesh;
         const adaptiso::TriangleMesh mesh = adaptiso::selectComponents(all, {.largestOnly = true});
 
         adaptiso::writeMesh(mesh, argv[2]);  // scanner RAS, the format by the name

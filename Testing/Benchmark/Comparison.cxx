@@ -58,8 +58,8 @@ Extraction extract(const Input& input, const Candidate& candidate, const SpanSpa
     options.isovalue = input.options.isovalue;
     options.method = candidate.method.value();
     options.computeNormals = candidate.computeNormals;
-    options.mergeWithinBlocks = candidate.mergeWithinBlocks;
-    options.adjustVertices = candidate.adjustVertices;
+    options.discretized.mergeWithinBlocks = candidate.mergeWithinBlocks;
+    options.discretized.adjustVertices = candidate.adjustVertices;
     return extractSurface(input.volume, index, options);
 }
 

@@ -30,12 +30,13 @@ std::string_view toString(Method method) {
 
 namespace {
 
-/// \throws InvalidInput when `isSet`, an option of discretized marching cubes, meets another method
-void requireDmc(bool isSet, const char* option, Method method) {
-    if (isSet && method != Method::DiscretizedMarchingCubes) {
-        throw InvalidInput(std::string("extractSurface: ") + option + " is set for the method " +
-                           std::string(toString(method)) + ", must be dmc");
-    }
+/// \throws InvalidInput when options of a method are set that is not the one chosen
+template <class Options>
+void requireMethod(const Options& options, const char* name, Method needed, Method method) {
+    if (options == Options{} || method == needed) return;
+    throw InvalidInput(std::string("extractSurface: options.") + name + " is set for the method " +
+                       std::string(toString(method)) + ", must be " +
+                       std::string(toString(needed)));
 }
 
 }  // namespace
@@ -46,8 +47,9 @@ Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
         throw InvalidInput("extractSurface: the isovalue is not a finite number");
     }
     const Index3& size = volume.geometry().size;
-    requireDmc(options.adjustVertices, "adjustVertices", options.method);
-    requireDmc(options.mergeWithinBlocks, "mergeWithinBlocks", options.method);
+    requireMethod(options.discretized, "discretized", Method::DiscretizedMarchingCubes,
+                  options.method);
+    requireMethod(options.adaptive, "adaptive", Method::Adaptive, options.method);
     if (index.grid().volumeSize != size || index.pixelType() != volume.pixelType()) {
         throw InvalidInput("extractSurface: the index was built from another volume");
     }
@@ -62,6 +64,13 @@ Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
                             : detail::extractBoxes(volume, index, options);
     if (!options.computeNormals) result.mesh.normals = {};
     return result;
+}
+
+Extraction extractSurface(const VolumeView& volume, const ExtractionOptions& options,
+                          Border border) {
+    IndexOptions indexed;
+    indexed.border = border;
+    return extractSurface(volume, SpanSpaceIndex::build(volume, indexed), options);
 }
 
 }  // namespace adaptiso

@@ -74,8 +74,8 @@ Json imageJson(const std::string& format, const ImageGeometry& geometry, PixelTy
 Json surfaceOptionsJson(const ExtractionOptions& extraction, const IndexOptions& index,
                         const ComponentSelection& selection) {
     return {{"method", toString(extraction.method)},
-            {"adjustVertices", extraction.adjustVertices},
-            {"mergeWithinBlocks", extraction.mergeWithinBlocks},
+            {"adjustVertices", extraction.discretized.adjustVertices},
+            {"mergeWithinBlocks", extraction.discretized.mergeWithinBlocks},
             {"maxErrorMm", orNull(extraction.adaptive.maxErrorMm)},
             {"maxTriangles", orNull(extraction.adaptive.maxTriangles)},
             {"reduction", orNull(extraction.adaptive.reduction)},

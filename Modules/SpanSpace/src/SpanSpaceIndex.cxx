@@ -74,9 +74,9 @@ BlockQuery SpanSpaceIndex::blocksAt(double isovalue) const {
     BlockQuery query;
     std::visit(
         [&]<class T>(const std::unique_ptr<const detail::BlockSearch<T>>& search) {
-            const InsideTest<T> inside(isovalue);
-            if (inside.kind == InsideTest<T>::Kind::None) return;
-            if (inside.kind == InsideTest<T>::Kind::All) {
+            const IsovalueTest<T> inside(isovalue);
+            if (inside.kind == IsovalueTest<T>::Kind::None) return;
+            if (inside.kind == IsovalueTest<T>::Kind::All) {
                 query.blocks = blocksAtBorder(impl_->grid);
                 return;
             }

@@ -279,10 +279,10 @@ std::string describe(std::uint64_t seed, const AdaptiveCase& adaptive) {
         SpanSpaceIndex::build(volume, {adaptive.blockSize, adaptive.border});
     ExtractionOptions options;
     options.isovalue = adaptive.isovalue;
-    options.adaptive = adaptive.options;
     options.method = Method::MarchingCubes;
     const Extraction full = extractSurface(volume, index, options);
     options.method = Method::Adaptive;
+    options.adaptive = adaptive.options;
     Extraction ours;
     try {
         ours = extractSurface(volume, index, options);

@@ -54,6 +54,29 @@ TEST(Extraction, RefusesAnIndexOfAnotherVolume) {
     EXPECT_THROW(extractSurface(small.volume, index, {}), InvalidInput);
 }
 
+TEST(Extraction, MakesAnIndexOfItsOwnForOneIsovalue) {
+    const HardVolume hard = hardVolume(3, 9);
+    for (const Border border : {Border::Closed, Border::Open}) {
+        ExtractionOptions options;
+        options.isovalue = hard.isovalue;
+        const Extraction byItself = extractSurface(hard.volume, options, border);
+        ASSERT_FALSE(byItself.mesh.triangles.empty());
+        EXPECT_EQ(byItself.mesh,
+                  extractFrom(hard.volume, hard.isovalue, Method::Adaptive, 4, border).mesh);
+    }
+}
+
+TEST(Extraction, RefusesOptionsOfAMethodThatIsNotChosen) {
+    const HardVolume hard = hardVolume(3, 6);
+    ExtractionOptions options;
+    options.method = Method::MarchingCubes;
+    options.adaptive.reduction = 0.5;
+    EXPECT_THROW(extractSurface(hard.volume, options), InvalidInput);
+    options.method = Method::Adaptive;
+    options.discretized.adjustVertices = true;
+    EXPECT_THROW(extractSurface(hard.volume, options), InvalidInput);
+}
+
 TEST(Extraction, RefusesAnIsovalueThatIsNoNumber) {
     const HardVolume hard = hardVolume(1, 5);
     const SpanSpaceIndex index = SpanSpaceIndex::build(hard.volume, {});

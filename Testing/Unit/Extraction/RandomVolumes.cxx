@@ -71,8 +71,8 @@ Extraction extractFrom(const VolumeView& volume, double isovalue, const MethodCh
     ExtractionOptions options;
     options.isovalue = isovalue;
     options.method = choice.method;
-    options.adjustVertices = choice.adjustVertices;
-    options.mergeWithinBlocks = choice.mergeWithinBlocks;
+    options.discretized.adjustVertices = choice.adjustVertices;
+    options.discretized.mergeWithinBlocks = choice.mergeWithinBlocks;
     return extractSurface(volume, SpanSpaceIndex::build(volume, {blockSize, border}), options);
 }
 

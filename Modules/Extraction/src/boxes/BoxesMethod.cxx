@@ -25,7 +25,7 @@ Extraction extract(const VolumeView& volume, ActiveBlocks active,
     } else {
         BoxSurface<N, Id> surface = makeBoxSurface<N, Id>(
             *sampler, std::move(active), isDmc ? Division::Unit : Division::Simple,
-            options.mergeWithinBlocks ? MergeReach::Block : MergeReach::Surface);
+            options.discretized.mergeWithinBlocks ? MergeReach::Block : MergeReach::Surface);
         result.statistics.boxes = surface.boxCounts;
         result.statistics.boxesChangingTopology = surface.boxesChangingTopology;
         result.statistics.marchingCubesTriangles = surface.marchingCubesTriangles;
@@ -33,8 +33,9 @@ Extraction extract(const VolumeView& volume, ActiveBlocks active,
         loops = makeSurfaceLoops<N, Id>(std::move(surface));
     }
     report(0.7);
-    const VertexPlacement placement =
-        isDmc && !options.adjustVertices ? VertexPlacement::Midpoint : VertexPlacement::Crossing;
+    const VertexPlacement placement = isDmc && !options.discretized.adjustVertices
+                                          ? VertexPlacement::Midpoint
+                                          : VertexPlacement::Crossing;
     result.mesh = fillLoops(std::move(loops), *sampler, volume.geometry(), grid.offset, placement,
                             result.statistics.edgesSplit);
     report(1);

@@ -170,7 +170,7 @@ private:
     }
 
     TypedVolumeView<T> volume_;
-    InsideTest<T> inside_;
+    IsovalueTest<T> inside_;
     double isovalue_;
     bool closed_;
     Mat3 gradientToPhysical_;

@@ -11,7 +11,7 @@ namespace adaptiso {
 /// For integers the isovalue is rounded up, for floats to the next one not below it, so that one
 /// comparison of native values decides, without converting samples.
 template <class T>
-struct InsideTest {
+struct IsovalueTest {
     enum class Kind {
         Some,  ///< compare with `threshold`
         All,   ///< every value of the type reaches the isovalue
@@ -21,7 +21,7 @@ struct InsideTest {
     T threshold{};
 
     /// \pre isovalue is finite
-    explicit InsideTest(double isovalue) {
+    explicit IsovalueTest(double isovalue) {
         if constexpr (std::is_floating_point_v<T>) {
             threshold = static_cast<T>(isovalue);
             if (static_cast<double>(threshold) < isovalue) {

@@ -41,18 +41,25 @@ struct AdaptiveOptions {
     friend bool operator==(const AdaptiveOptions&, const AdaptiveOptions&) = default;
 };
 
+/// Of Method::DiscretizedMarchingCubes.
+struct DiscretizedOptions {
+    /// Put the vertices at the crossings, as the other methods do, instead of at the midpoints of
+    /// their lattice edges.
+    bool adjustVertices = false;
+    /// Merge facets with those of the same block of the index alone. More triangles, the same
+    /// surface; with blocks of 8 cells the thesis's counts.
+    bool mergeWithinBlocks = false;
+
+    friend bool operator==(const DiscretizedOptions&, const DiscretizedOptions&) = default;
+};
+
 struct ExtractionOptions {
     double isovalue = 0;  ///< inside means sample >= isovalue
     Method method = Method::Adaptive;
-    /// Of discretized marching cubes: put the vertices at the crossings, as the other methods do,
-    /// instead of at the midpoints of their lattice edges.
-    bool adjustVertices = false;
-    /// Of discretized marching cubes: merge facets with those of the same block of the index alone.
-    /// More triangles, the same surface; with blocks of 8 cells the thesis's counts.
-    bool mergeWithinBlocks = false;
-    AdaptiveOptions adaptive;
-    bool computeNormals = true;  ///< central differences of the volume, in physical space
-    ProgressCallback progress;   ///< called as the work goes on; may be empty
+    AdaptiveOptions adaptive;        ///< of Method::Adaptive
+    DiscretizedOptions discretized;  ///< of Method::DiscretizedMarchingCubes
+    bool computeNormals = true;      ///< central differences of the volume, in physical space
+    ProgressCallback progress;       ///< called as the work goes on; may be empty
 };
 
 /// Simple boxes of one size that the surface passes through.
@@ -95,10 +102,16 @@ struct Extraction {
 /// \return       a closed oriented 2-manifold without degenerate triangles or unused vertices;
 ///               with Border::Open it is open at the volume's border and nowhere else. Empty when
 ///               no sample, or (open border) no edge of the grid, reaches the isovalue.
-/// \pre  index.grid() and pixelType() fit the volume; isovalue is finite; adjustVertices and
-///       mergeWithinBlocks only with DiscretizedMarchingCubes    \throws InvalidInput otherwise
+/// \pre  index.grid() and pixelType() fit the volume; isovalue is finite; the options of a method
+///       that is not chosen are as they come              \throws InvalidInput otherwise
 /// The same input gives the same bytes, whatever the number of threads.
 Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
                           const ExtractionOptions& options);
+
+/// As above, with an index of its own: for one isovalue of a volume. Who wants several builds the
+/// index once.
+/// \param border  closed: the surface is closed where the inside reaches the volume's border
+Extraction extractSurface(const VolumeView& volume, const ExtractionOptions& options,
+                          Border border = Border::Closed);
 
 }  // namespace adaptiso
