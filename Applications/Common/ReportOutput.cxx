@@ -5,7 +5,6 @@
 #include <new>
 
 #include "Common/ExitCodes.h"
-#include "Common/Numbers.h"
 #include "Common/RunApp.h"
 #include "Common/Temporaries.h"
 #include "Common/Warnings.h"
@@ -126,16 +125,6 @@ void tellStrict(Report& report, const CommonOptions& common, std::span<const std
     const bool hasFailed = report.verdict == ReportVerdict::Failed;
     report.headline = hasFailed ? report.headline + " " + text : text;
     report.verdict = ReportVerdict::Failed;
-}
-
-std::vector<ReportFact> imageFacts(const std::string& name, const std::string& format,
-                                   const ImageGeometry& geometry) {
-    const Vec3 spacing = geometry.spacingMm();
-    const auto mm = [](double value) { return formatNumber(std::stod(formatFixed(value, 4))); };
-    return {{"Image", name + " (" + format + ")"},
-            {"Voxels", std::to_string(geometry.size[0]) + " × " + std::to_string(geometry.size[1]) +
-                           " × " + std::to_string(geometry.size[2])},
-            {"Voxel size", mm(spacing.x) + " × " + mm(spacing.y) + " × " + mm(spacing.z) + " mm"}};
 }
 
 }  // namespace adaptiso

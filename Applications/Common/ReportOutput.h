@@ -11,7 +11,7 @@
 #include "Common/CliNames.h"
 #include "Common/CommonOptions.h"
 #include "Common/Resources.h"
-#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Pipeline/ImageFacts.h"  // IWYU pragma: export
 #include "adaptiso/Report/Pictures.h"
 #include "adaptiso/Report/Report.h"
 
@@ -74,9 +74,5 @@ int tellReportFailure(const std::string& program, const std::string& written,
 /// \param consequence  as strictFailure() takes it
 void tellStrict(Report& report, const CommonOptions& common, std::span<const std::string> warnings,
                 const std::string& consequence);
-
-/// Size, voxel and format of an image, in words.
-std::vector<ReportFact> imageFacts(const std::string& name, const std::string& format,
-                                   const ImageGeometry& geometry);
 
 }  // namespace adaptiso

@@ -9,7 +9,7 @@
 
 #include "Common/ImageOptions.h"
 #include "Common/Numbers.h"
-#include "adaptiso-check/Pipeline.h"
+#include "adaptiso/Pipeline/Checks.h"
 
 namespace adaptiso {
 namespace {
@@ -143,7 +143,7 @@ void declareInput(CLI::App& app, BemOptions& options) {
 }
 
 void declareHead(CLI::App& app, BemOptions& options) {
-    BoundaryOptions& head = options.boundaries;
+    BoundaryOptions& head = options.model.boundaries;
     app.add_flag("--meg", head.innerSkullOnly, "The inner skull alone")->group(kHead);
     app.add_option_function<std::string>(
            "--min-gap",
@@ -190,7 +190,7 @@ void declareHead(CLI::App& app, BemOptions& options) {
 
 void declareSurfaces(CLI::App& app, BemOptions& options) {
     constexpr std::int64_t kMostVertices = 200'000;
-    app.add_option("--vertices", options.vertices,
+    app.add_option("--vertices", options.model.vertices,
                    "Vertices of each surface, evenly spread: 642, 1281, 2562 or any number "
                    "(default: 2562); or one number for each surface, inside out: N,N,N")
         ->type_name("N[,N,N]")
@@ -206,7 +206,7 @@ void declareSurfaces(CLI::App& app, BemOptions& options) {
                if (!(range[0] > 0) || !(range[0] <= range[1])) {
                    throw UsageError("--edge-length " + text + ": must be 0 < MIN <= MAX");
                }
-               options.edgeLengthMm = EdgeLengthRange{range[0], range[1]};
+               options.model.edgeLengthMm = EdgeLengthRange{range[0], range[1]};
            },
            "Adaptive: edges of MIN mm where a surface bends or another is near, up to MAX mm; with "
            "--vertices lengths are scaled to reach that number")
@@ -217,9 +217,9 @@ void declareSurfaces(CLI::App& app, BemOptions& options) {
            [&options](const std::string& text) {
                const std::vector<double> values = numbers(
                    "--conductivity", text, ',', 3, 3, "three numbers: BRAIN,SKULL,SCALP in S/m");
-               options.conductivities = {values[0], values[1], values[2]};
+               options.model.conductivities = {values[0], values[1], values[2]};
                try {
-                   checkConductivities(options.conductivities);
+                   checkConductivities(options.model.conductivities);
                } catch (const InvalidInput& error) {
                    throw UsageError("--conductivity " + text + ": " + error.what());
                }
@@ -248,7 +248,7 @@ void declareOutput(CLI::App& app, BemOptions& options) {
     app.add_option_function<std::string>(
            "--units",
            [&options](const std::string& unit) {
-               options.unit = unit == "m" ? OpenMeegUnit::Metres : OpenMeegUnit::Millimetres;
+               options.files.unit = unit == "m" ? OpenMeegUnit::Metres : OpenMeegUnit::Millimetres;
            },
            "Unit of OpenMEEG's .tri files: mm (default) or m (potentials in volts)")
         ->type_name("mm|m")
@@ -257,17 +257,17 @@ void declareOutput(CLI::App& app, BemOptions& options) {
     app.add_option_function<std::string>(
            "--coordinates",
            [&options](const std::string& frame) {
-               options.frame = frame == "lps"     ? CoordinateFrame::Lps
-                               : frame == "tkras" ? CoordinateFrame::TkRas
-                                                  : CoordinateFrame::Ras;
+               options.files.frame = frame == "lps"     ? CoordinateFrame::Lps
+                                     : frame == "tkras" ? CoordinateFrame::TkRas
+                                                        : CoordinateFrame::Ras;
            },
            "Frame of all files but FreeSurfer's, which are in tkRAS: scanner RAS (default), "
            "scanner LPS, or tkRAS")
         ->type_name("ras|lps|tkras")
         ->check(CLI::IsMember({"ras", "lps", "tkras"}).description(""))
         ->group(kOutput);
-    app.add_flag("--gifti", options.writesGifti, "Write .gii files too")->group(kOutput);
-    app.add_flag("--vtp", options.writesVtp, "Write .vtp files too")->group(kOutput);
+    app.add_flag("--gifti", options.files.writesGifti, "Write .gii files too")->group(kOutput);
+    app.add_flag("--vtp", options.files.writesVtp, "Write .vtp files too")->group(kOutput);
     app.add_flag("--dry-run", options.isDryRun,
                  "Do and check everything, write nothing but the reports asked for by name")
         ->group(kOutput);
@@ -290,18 +290,20 @@ void checkCombinations(const BemOptions& options) {
     const bool namesTissues = !options.tissues.brain.empty() || options.tissues.othersAreBrain;
     require(options.labels.empty() || namesTissues,
             "--labels needs --preset, or --tissue brain=..., skull=... and scalp=...");
-    require(options.labels.empty() || options.boundaries.innerSkullOnly ||
+    require(options.labels.empty() || options.model.boundaries.innerSkullOnly ||
                 (!options.tissues.skull.empty() && !options.tissues.scalp.empty()),
             "--labels needs --tissue skull=... and scalp=... as well (or --meg)");
     require(!options.labels.empty() ||
                 (!namesTissues && options.tissues.skull.empty() && options.tissues.scalp.empty()),
             "--tissue and --preset need --labels");
-    require(options.surfaces.empty() || options.surfaces.size() == options.surfaceCount(),
-            "--surfaces needs " + std::to_string(options.surfaceCount()) + " files, inside out");
-    require(options.vertices.size() <= 1 || options.vertices.size() == options.surfaceCount(),
-            "--vertices: must be one number, or " + std::to_string(options.surfaceCount()) +
+    require(
+        options.surfaces.empty() || options.surfaces.size() == options.model.surfaceCount(),
+        "--surfaces needs " + std::to_string(options.model.surfaceCount()) + " files, inside out");
+    require(options.model.vertices.size() <= 1 ||
+                options.model.vertices.size() == options.model.surfaceCount(),
+            "--vertices: must be one number, or " + std::to_string(options.model.surfaceCount()) +
                 " with commas between them");
-    const BoundaryOptions& head = options.boundaries;
+    const BoundaryOptions& head = options.model.boundaries;
     require(head.maxSkullMm > head.minSkullMm, "--max-skull must be more than --min-gap");
     require(
         options.t1.empty() || (head.skullMm >= head.minSkullMm && head.skullMm <= head.maxSkullMm),

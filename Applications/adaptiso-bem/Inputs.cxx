@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "Common/CommonFrame.h"
+#include "Common/Json.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
@@ -16,9 +17,9 @@ namespace fs = std::filesystem;
 ReadVolume readImage(const fs::path& path, const std::string& role, BemRun& run,
                      const ReadOptions& options = {}) {
     ReadVolume read = readVolume(path, options);
-    run.inputs.push_back({path, role, read.format});
+    run.model.inputs.push_back({baseName(path), role, read.format});
     for (const std::string& warning : read.warnings) {
-        run.warnings.push_back(path.filename().string() + ": " + warning);
+        run.model.warnings.push_back(path.filename().string() + ": " + warning);
     }
     return read;
 }
@@ -26,7 +27,7 @@ ReadVolume readImage(const fs::path& path, const std::string& role, BemRun& run,
 /// As readImage(), and the surfaces' frame is this image's.
 ReadVolume readMainImage(const fs::path& path, const std::string& role, BemRun& run) {
     ReadVolume read = readImage(path, role, run, run.options.read);
-    run.image = read.volume.view().geometry();
+    run.model.image = read.volume.view().geometry();
     if (run.options.report.isWanted() && !run.shownImage) run.shownImage = read;
     return read;
 }
@@ -77,19 +78,19 @@ HeadBoundaries fromProbabilities(BemRun& run, const BoundaryOptions& boundaries)
 
 HeadBoundaries boundariesFromImages(BemRun& run, ProgressLine& progress) {
     const BemOptions& options = run.options;
-    BoundaryOptions boundaries = options.boundaries;
+    BoundaryOptions boundaries = options.model.boundaries;
     boundaries.progress = progress.callback();
     progress.show("read");
     HeadBoundaries result;
-    if (run.source == "t1") {
+    if (run.model.source == "t1") {
         result = fromT1(run, boundaries);
-    } else if (run.source == "labels") {
+    } else if (run.model.source == "labels") {
         const ReadVolume labels =
             run.timer.time("read", [&] { return readMainImage(options.labels, "labels", run); });
         result = timed(run, "--labels", options.labels, [&] {
             return boundariesFromLabels(labels.volume, options.tissues, boundaries);
         });
-    } else if (run.source == "probabilities") {
+    } else if (run.model.source == "probabilities") {
         result = fromProbabilities(run, boundaries);
     } else {
         const ReadVolume ct =
@@ -97,8 +98,6 @@ HeadBoundaries boundariesFromImages(BemRun& run, ProgressLine& progress) {
         result =
             timed(run, "--ct", options.ct, [&] { return boundariesFromCt(ct.volume, boundaries); });
     }
-    run.notes = result.notes;
-    run.warnings.insert(run.warnings.end(), result.warnings.begin(), result.warnings.end());
     return result;
 }
 
@@ -108,13 +107,16 @@ std::vector<TriangleMesh> readSurfaces(BemRun& run) {
     std::vector<NamedMesh> files;
     for (const fs::path& path : options.surfaces) {
         files.push_back({path, readMesh(path, {.keepsFaults = true})});
-        run.inputs.push_back({path, "surface", std::string(findMeshFormat(path).name)});
+        run.model.inputs.push_back(
+            {baseName(path), "surface", std::string(findMeshFormat(path).name)});
         const MeshFile& file = files.back().file;
-        if (file.frame == CoordinateFrame::TkRas && !run.tkRasVolume) run.tkRasVolume = file.volume;
+        if (file.frame == CoordinateFrame::TkRas && !run.model.tkRasVolume)
+            run.model.tkRasVolume = file.volume;
     }
-    const CommonFrame common = bringToOneFrame(files, run.image);
-    if (common.frame == CoordinateFrame::TkRas) run.tkRasVolume = common.volume;
-    run.warnings.insert(run.warnings.end(), common.warnings.begin(), common.warnings.end());
+    const CommonFrame common = bringToOneFrame(files, run.model.image);
+    if (common.frame == CoordinateFrame::TkRas) run.model.tkRasVolume = common.volume;
+    run.model.warnings.insert(run.model.warnings.end(), common.warnings.begin(),
+                              common.warnings.end());
     std::vector<TriangleMesh> surfaces;
     for (NamedMesh& named : files) {
         surfaces.push_back(std::move(named.file.mesh));
@@ -129,13 +131,14 @@ void chooseTkRas(BemRun& run) {
         const fs::path orig = options.subjectsDir / options.subject / "mri" / "orig.mgz";
         std::error_code error;
         if (fs::is_regular_file(orig, error)) {
-            run.tkRasVolume = readVolume(orig).volume.view().geometry();
-            run.tkRasName = "orig.mgz";
+            run.model.tkRasVolume = readVolume(orig).volume.view().geometry();
+            run.model.tkRasName = "orig.mgz";
             return;
         }
-        run.warnings.push_back("the subject has no mri/orig.mgz; tkRAS is that of the input");
+        run.model.warnings.push_back("the subject has no mri/orig.mgz; tkRAS is that of the input");
     }
-    if (run.image) run.tkRasVolume = frameVolume(CoordinateFrame::TkRas, *run.image);
+    if (run.model.image)
+        run.model.tkRasVolume = frameVolume(CoordinateFrame::TkRas, *run.model.image);
 }
 
 }  // namespace adaptiso

@@ -9,8 +9,8 @@
 
 namespace adaptiso {
 
-/// Reads the images asked for and finds the head's boundaries in them. Fills the run's inputs,
-/// warnings, notes and image.
+/// Reads the images asked for and finds the head's boundaries in them. Fills the model's inputs,
+/// warnings of reading, and image.
 /// \throws FileError, InvalidInput
 HeadBoundaries boundariesFromImages(BemRun& run, ProgressLine& progress);
 

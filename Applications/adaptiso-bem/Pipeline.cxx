@@ -7,21 +7,19 @@
 #include <utility>
 
 #include "BemRun.h"
-#include "CheckModel.h"
 #include "Common/AtomicFolder.h"
 #include "Common/ExitCodes.h"
-#include "Common/Numbers.h"
+#include "Common/Naming.h"
 #include "Common/Progress.h"
 #include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "Inputs.h"
 #include "JsonReport.h"
-#include "ModelFiles.h"
-#include "ReadySurfaces.h"
-#include "ReportPage.h"
-#include "SurfaceSteps.h"
 #include "TextReport.h"
+#include "adaptiso/HeadModel/ExportFreeSurfer.h"
+#include "adaptiso/Pipeline/BemReport.h"
+#include "adaptiso/Pipeline/BemSurfaces.h"
 
 namespace adaptiso {
 namespace {
@@ -52,7 +50,18 @@ bool hasJsonFile(const BemOptions& options) {
 
 /// The folder's own names when it may be replaced.
 std::vector<std::string_view> replaceable(const BemOptions& options) {
-    return options.mayReplace ? modelFileNames() : std::vector<std::string_view>{};
+    return options.mayReplace ? bemFileNames() : std::vector<std::string_view>{};
+}
+
+/// Where --subject's surfaces go: SUBJECTS_DIR/SUBJECT/bem/<surface>.surf, one a surface.
+std::vector<fs::path> subjectPaths(const BemOptions& options) {
+    std::vector<fs::path> paths;
+    if (options.subject.empty()) return paths;
+    const fs::path folder = options.subjectsDir / options.subject / "bem";
+    for (std::size_t n = 0; n < options.model.surfaceCount(); ++n) {
+        paths.push_back(folder / bemFileName(n, ".surf"));
+    }
+    return paths;
 }
 
 void checkSubject(const BemOptions& options) {
@@ -104,55 +113,77 @@ void checkOutputs(const BemOptions& options) {
 }
 
 /// What the images or the surfaces given lead to, dense or as it came.
-std::vector<TriangleMesh> firstSurfaces(BemRun& run, ProgressLine& progress) {
-    if (run.source != "surfaces") {
-        return extractSurfaces(boundariesFromImages(run, progress), run, progress);
+std::vector<TriangleMesh> firstSurfaces(BemRun& run, const BemHooks& hooks,
+                                        ProgressLine& progress) {
+    if (run.model.source != "surfaces") {
+        return extractSurfaces(boundariesFromImages(run, progress), run.model, hooks);
     }
-    return readySurfaces(run, progress);
+    progress.show("read");
+    std::vector<TriangleMesh> surfaces = run.timer.time("read", [&] { return readSurfaces(run); });
+    return naming("--surfaces",
+                  [&] { return mendSurfaces(std::move(surfaces), run.model, hooks); });
 }
 
 /// Those from number `first` on.
 void tellWarnings(const BemRun& run, std::size_t first = 0) {
-    printWarnings("adaptiso-bem", run.options.common, std::span(run.warnings).subspan(first));
+    printWarnings("adaptiso-bem", run.options.common, std::span(run.model.warnings).subspan(first));
 }
 
-/// Solvers take the square of the number of vertices in memory, the cube in time.
-void warnOfMany(const std::vector<TriangleMesh>& surfaces, BemRun& run) {
-    constexpr std::int64_t kMany = 10'000;
-    std::int64_t vertices = 0;
-    for (const TriangleMesh& surface : surfaces) vertices += std::ssize(surface.points);
-    if (vertices <= kMany) return;
-    run.warnings.push_back(formatCount(vertices) +
-                           " vertices in all; MNE warns above 10,000 (--vertices)");
+/// The FreeSurfer surfaces once more, for the subject's own folder.
+std::vector<AtomicOutput> writeSubject(BemRun& run) {
+    const BemModel& model = run.model;
+    std::vector<AtomicOutput> outputs;
+    run.subjectFiles = subjectPaths(run.options);
+    for (std::size_t n = 0; n < run.subjectFiles.size(); ++n) {
+        outputs.emplace_back(run.subjectFiles[n]).write([&](const fs::path& path) {
+            writeFreeSurferSurface(model.meshes[n], path, model.tkRasVolume, model.tkRasName);
+        });
+    }
+    return outputs;
 }
 
 /// The model's folder, not yet under its name; one that holds nothing when what was written does
 /// not keep the model's promises when read back.
-void fillFolder(const std::vector<TriangleMesh>& surfaces, BemRun& run,
-                std::optional<AtomicFolder>& folder) {
+void fillFolder(BemRun& run, std::optional<AtomicFolder>& folder) {
     const BemOptions& options = run.options;
     folder.emplace(options.output, replaceable(options));
-    if (!run.hasModel() || run.failsStrict()) return;
-    run.timer.time("write", [&] { writeModel(surfaces, run, *folder); });
-    run.timer.time("check", [&] { checkFiles(folder->path(), surfaces, run); });
-    if (run.hasModel()) return;
+    if (!run.model.hasModel() || run.failsStrict()) return;
+    run.timer.time("write", [&] {
+        folder->fill([&] {
+            writeBemFiles(run.model, options.files, "adaptiso-bem " + programVersion(),
+                          [&](const std::string& name) { return folder->place(name); });
+        });
+        run.files = folder->files();
+    });
+    run.timer.time("check", [&] { checkBemFiles(folder->path(), options.files, run.model); });
+    if (run.model.hasModel()) return;
     run.files.clear();
     folder.reset();
     folder.emplace(options.output, replaceable(options));
+}
+
+Report makeReport(const BemRun& run) {
+    Report report = bemReport(run.model, run.files);
+    tellStrict(report, run.options.common, run.model.warnings, "so no model was written");
+    if (run.options.isDryRun) report.notes.push_back("Nothing else was written (--dry-run).");
+    if (run.shownImage) {
+        report.volume = ReportVolume{run.model.inputs.front().role, run.shownImage->volume.view()};
+    }
+    report.stageSeconds = run.timer.stages();
+    return report;
 }
 
 /// Shows the run as asked for. Where there is no model and places are known where it failed, a
 /// picture of them goes into the model's folder in its stead.
 /// \param folder  none with --dry-run
 /// \return the folder of pictures, to be kept until all is in place
-std::unique_ptr<PictureFolder> show(BemRun& run, const std::vector<TriangleMesh>& shown,
-                                    std::vector<AtomicOutput>& outputs,
+std::unique_ptr<PictureFolder> show(BemRun& run, std::vector<AtomicOutput>& outputs,
                                     std::optional<AtomicFolder>& folder) {
-    const bool showsFailure = folder && !run.hasModel();
+    const bool showsFailure = folder && !run.model.hasModel();
     const ReportOptions& asked = run.options.report;
-    if (!asked.isWanted() && !(showsFailure && !run.findings.empty())) return nullptr;
+    if (!asked.isWanted() && !(showsFailure && !run.model.findings.empty())) return nullptr;
     ReportResult page = run.timer.time("report", [&] {
-        return writeReport([&] { return makeReport(run, shown); }, "adaptiso-bem", asked, outputs);
+        return writeReport([&] { return makeReport(run); }, "adaptiso-bem", asked, outputs);
     });
     for (const Picture& picture : page.pictures) {
         if (showsFailure && picture.name == "spots.png") {
@@ -165,17 +196,15 @@ std::unique_ptr<PictureFolder> show(BemRun& run, const std::vector<TriangleMesh>
 
 /// Writes the folder (the report and a picture alone when there is no model) and all else, and
 /// prints the results, or does nothing of it.
-/// \param shown  what the report shows
-void write(const std::vector<TriangleMesh>& surfaces, const std::vector<TriangleMesh>& shown,
-           BemRun& run, ProgressLine& progress) {
+void write(BemRun& run, ProgressLine& progress) {
     const BemOptions& options = run.options;
     std::vector<AtomicOutput> outputs;
     std::optional<AtomicFolder> folder;
     if (!options.isDryRun) {
-        fillFolder(surfaces, run, folder);
-        if (run.hasModel() && !run.failsStrict()) outputs = writeSubject(surfaces, run);
+        fillFolder(run, folder);
+        if (run.model.hasModel() && !run.failsStrict()) outputs = writeSubject(run);
     }
-    const std::unique_ptr<PictureFolder> pictures = show(run, shown, outputs, folder);
+    const std::unique_ptr<PictureFolder> pictures = show(run, outputs, folder);
     const std::string json = jsonReport(run);
     if (folder) folder->writeText("report.json", json);
     if (hasJsonFile(options)) outputs.emplace_back(options.common.json).writeText(json);
@@ -193,32 +222,35 @@ void write(const std::vector<TriangleMesh>& surfaces, const std::vector<Triangle
 int runBem(const BemOptions& options) {
     const ThreadLimit threads(options.common);
     ProgressLine progress(options.common.isQuiet);
-    BemRun run{options, {}, {}, {}, sourceOf(options), {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    BemRun run{options, {}};
+    run.model.options = options.model;
+    run.model.source = sourceOf(options);
     checkOutputs(options);
 
-    const std::vector<TriangleMesh> dense = firstSurfaces(run, progress);
+    const BemHooks hooks{[&](std::string_view stage, const std::function<void()>& work) {
+                             progress.show(stage);
+                             run.timer.time(stage, work);
+                         },
+                         progress.callback()};
+    std::vector<TriangleMesh> dense = firstSurfaces(run, hooks, progress);
     chooseTkRas(run);
     progress.clear();
     tellWarnings(run);
-    const std::size_t told = run.warnings.size();
-    std::vector<TriangleMesh> surfaces;
-    if (run.hasModel()) surfaces = remeshAndNest(dense, run, progress);
-    if (run.hasModel()) checkModel(surfaces, run, progress);
-    if (run.hasModel()) askWhatIsUsual(surfaces, run, progress);
-    warnOfMany(surfaces, run);
+    const std::size_t told = run.model.warnings.size();
+    finishBemModel(std::move(dense), run.model, hooks);
     progress.clear();
     tellWarnings(run, told);
 
     progress.show("write");
-    write(surfaces, surfaces.empty() ? dense : surfaces, run, progress);
+    write(run, progress);
     const std::string written =
         options.isDryRun ? "all is done" : options.output.string() + " is written";
-    if (run.hasModel()) {
-        const int code = strictVerdict("adaptiso-bem", options.common, run.warnings,
+    if (run.model.hasModel()) {
+        const int code = strictVerdict("adaptiso-bem", options.common, run.model.warnings,
                                        "so no model was written", kExitOk);
         return tellReportFailure("adaptiso-bem", written, run.reportFailure, code);
     }
-    printError("adaptiso-bem", "no model: " + failureText(run));
+    printError("adaptiso-bem", "no model: " + run.model.failureText());
     return tellReportFailure("adaptiso-bem", written, run.reportFailure, kExitCheckFailed);
 }
 

@@ -25,37 +25,30 @@ void printSurface(std::ostream& out, std::size_t n, const BemSurface& surface) {
 
 }  // namespace
 
-std::string failureText(const BemRun& run) {
-    std::string text = run.findings.front().what + " at " + rasText(run.findings.front().pointMm);
-    if (run.findings.size() > 1) {
-        text += " (and " + formatCount(std::ssize(run.findings) - 1) + " more)";
-    }
-    return text;
-}
-
 void printReport(std::ostream& out, const BemRun& run) {
-    for (std::size_t n = 0; n < run.surfaces.size() && !run.checks.empty(); ++n) {
-        printSurface(out, n, run.surfaces[n]);
+    for (std::size_t n = 0; n < run.model.surfaces.size() && !run.model.checks.empty(); ++n) {
+        printSurface(out, n, run.model.surfaces[n]);
     }
-    for (std::size_t n = 0; n < run.gaps.size(); ++n) {
+    for (std::size_t n = 0; n < run.model.gaps.size(); ++n) {
         out << toString(static_cast<HeadSurface>(n)) << " to "
             << toString(static_cast<HeadSurface>(n + 1)) << ": at least "
-            << formatFixed(run.gaps[n].mm, 2) << " mm, at " << rasText(run.gaps[n].innerPointMm)
-            << '\n';
+            << formatFixed(run.model.gaps[n].mm, 2) << " mm, at "
+            << rasText(run.model.gaps[n].innerPointMm) << '\n';
     }
-    for (const std::string& note : run.notes) out << "  " << note << '\n';
-    const auto passed = std::count_if(run.checks.begin(), run.checks.end(),
+    for (const std::string& note : run.model.notes) out << "  " << note << '\n';
+    const auto passed = std::count_if(run.model.checks.begin(), run.model.checks.end(),
                                       [](const BemCheck& check) { return check.isPassed; });
-    if (!run.checks.empty()) {
-        out << formatCount(passed) << " of " << formatCount(std::ssize(run.checks))
+    if (!run.model.checks.empty()) {
+        out << formatCount(passed) << " of " << formatCount(std::ssize(run.model.checks))
             << " checks passed";
-        const std::int64_t noted = notedCount(run.plausibility);
+        const std::int64_t noted = notedCount(run.model.plausibility);
         if (noted > 0) {
-            out << "; " << formatCount(noted) << " of " << formatCount(std::ssize(run.plausibility))
+            out << "; " << formatCount(noted) << " of "
+                << formatCount(std::ssize(run.model.plausibility))
                 << " questions of plausibility noted (places in mm RAS):";
         }
         out << '\n';
-        for (const ToldNote& told : run.plausibility) {
+        for (const ToldNote& told : run.model.plausibility) {
             if (!told.note.isNoted) continue;
             out << "  noted: " << told.subject << ": " << told.note.name << ": "
                 << told.note.finding << placeText(told) << '\n';
@@ -64,7 +57,7 @@ void printReport(std::ostream& out, const BemRun& run) {
     if (run.options.isDryRun) {
         out << "nothing written (--dry-run)\n";
     } else {
-        const bool holdsModel = run.hasModel() && !run.failsStrict();
+        const bool holdsModel = run.model.hasModel() && !run.failsStrict();
         out << run.options.output.string()
             << (holdsModel ? ": holds the head model" : ": holds the report only") << '\n';
         for (const auto& path : run.subjectFiles) out << path.string() << '\n';

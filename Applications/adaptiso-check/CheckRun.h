@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "Common/Resources.h"
-#include "HeadNotes.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -15,6 +14,7 @@
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/Pipeline/Checks.h"
+#include "adaptiso/Pipeline/HeadNotes.h"
 #include "adaptiso/Pipeline/SurfaceFacts.h"
 
 namespace adaptiso {

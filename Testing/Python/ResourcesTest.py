@@ -32,8 +32,8 @@ def reset():
 
 class Memory(unittest.TestCase):
     def test_samples_are_copied_neither_in_nor_out(self):
-        """By marching cubes of a small sphere in a large volume, in C order as in Fortran order."""
-        for order in "FC":
+        """By marching cubes of a sphere, in C order as in Fortran order."""
+        for order, radius in (("F", 50), ("C", 50), ("F", 20)):
             taken, mesh, volume = map(int, in_child(PEAK + f"""
 import adaptiso, numpy as np
 index = np.indices((200, 200, 200), dtype=np.float32, sparse=True)
@@ -41,13 +41,14 @@ volume = np.array(-sum((x - 99.5) ** 2 for x in index), np.float32, order="{orde
 adaptiso.surface(np.asfortranarray(volume[:8, :8, :8]), volume[4, 4, 4], threads=1)
 reset()
 before = peak()
-mesh = adaptiso.surface(volume, -(50 ** 2.0), method="mc", threads=1)
+mesh = adaptiso.surface(volume, -({radius} ** 2.0), method="mc", threads=1)
 print(peak() - before, mesh._data.bytes, volume.nbytes)
 """).split())
-            # the mesh as it grows and its check (2.2 meshes, measured); the index holds 20 bytes for
-            # every 64 samples, 0.08 of the volume
-            self.assertLess(taken, 3 * mesh + 0.15 * volume, order)
-            self.assertLess(taken, 0.75 * volume, order)  # any copy would show
+            # the mesh and the ranges of all blocks (8 bytes for 64 samples, 0.03 of the volume), then
+            # the mesh and its check (1.7 meshes, measured)
+            self.assertLess(taken, 1.8 * mesh + 0.035 * volume, order)
+            if radius == 20:
+                self.assertLess(volume + taken, 1.05 * (volume + mesh), order)
 
 
 class References(unittest.TestCase):

@@ -310,6 +310,15 @@ class BadInput(unittest.TestCase):
                 continue
             self.refuse("affine", ball(), -8, affine=affine)
 
+    def test_voxels_that_are_needles(self):
+        """They would take hours; found by arguments made up."""
+        needle = np.diag([1e-7, 2, 1, 1])
+        self.refuse("a voxel is 2 mm long and 1e-07 mm thin", ball(), -8, affine=needle, max_error=3)
+        flat = np.array([[1, 1, 0, 0], [0, 1e-7, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+        self.refuse("a voxel is 1 mm long", ball(), -8, affine=flat)
+        self.assertTrue(adaptiso.surface(ball(), -8, affine=needle, method="mc").is_closed)
+        self.assertTrue(adaptiso.surface(ball(), -8, affine=np.diag([1e-3, 2, 1, 1])).is_closed)
+
     def test_options(self):
         for option, values in {
                 "max_error": (0, -1, "0.1", float("nan"), float("inf"), [1], True),

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "adaptiso/Core/Buckets.h"
+#include "adaptiso/Core/DisjointSets.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -22,14 +24,6 @@ struct Piece {
     BoundingBox box{};
     std::vector<std::int64_t> triangles;
 };
-
-VertexId rootOf(std::vector<VertexId>& parent, VertexId vertex) {
-    while (parent[vertex] != vertex) {
-        parent[vertex] = parent[parent[vertex]];
-        vertex = parent[vertex];
-    }
-    return vertex;
-}
 
 /// An edge that is not used once in each direction leaves the surface open.
 bool hasOpenEdge(const TriangleMesh& mesh) {
@@ -122,8 +116,7 @@ public:
                       (corners[0].z + corners[1].z + corners[2].z) / 3};
         std::vector<Winding> windings;
         const std::int64_t cell = q.x / cellSize_ + side_ * (q.y / cellSize_);
-        for (std::int64_t n = cellStart_[cell]; n < cellStart_[cell + 1]; ++n) {
-            const std::int64_t other = cellTriangles_[n];
+        for (const std::int64_t other : cells_.of(static_cast<std::size_t>(cell))) {
             const std::int64_t component = labels.ofVertex[mesh_.triangles[other][0]];
             if (!matters(component)) continue;
             const int sign = crossing(snapped(other), q);
@@ -169,16 +162,11 @@ private:
 
     void fillCells() {
         const std::int64_t count = std::ssize(mesh_.triangles);
-        cellStart_.assign(side_ * side_ + 1, 0);
-        for (std::int64_t t = 0; t < count; ++t) {
-            forCellsOf(t, [&](std::int64_t cell) { ++cellStart_[cell + 1]; });
-        }
-        std::partial_sum(cellStart_.begin(), cellStart_.end(), cellStart_.begin());
-        cellTriangles_.resize(cellStart_.back());
-        std::vector<std::int64_t> next = cellStart_;
-        for (std::int64_t t = 0; t < count; ++t) {
-            forCellsOf(t, [&](std::int64_t cell) { cellTriangles_[next[cell]++] = t; });
-        }
+        cells_.assign(static_cast<std::size_t>(side_ * side_), [&](const auto& give) {
+            for (std::int64_t t = 0; t < count; ++t) {
+                forCellsOf(t, [&](std::int64_t cell) { give(static_cast<std::size_t>(cell), t); });
+            }
+        });
     }
 
     /// Twice the signed area of a, b, q in the plane; exact.
@@ -217,8 +205,7 @@ private:
     double scale_ = 1;
     std::int64_t side_ = 1;
     std::int64_t cellSize_ = 1;
-    std::vector<std::int64_t> cellStart_;
-    std::vector<std::int64_t> cellTriangles_;
+    Buckets<std::int64_t> cells_;  ///< triangles over each
 };
 
 bool contains(const BoundingBox& outer, const BoundingBox& inner) {
@@ -382,19 +369,14 @@ TriangleMesh keepComponents(const TriangleMesh& mesh, const ComponentLabels& lab
 }  // namespace
 
 ComponentLabels labelComponents(const TriangleMesh& mesh) {
-    std::vector<VertexId> parent(mesh.points.size());
-    std::iota(parent.begin(), parent.end(), VertexId{0});
-    for (const Triangle& t : mesh.triangles) {
-        for (int corner = 1; corner < 3; ++corner) {
-            const VertexId a = rootOf(parent, t[0]);
-            const VertexId b = rootOf(parent, t[corner]);
-            // the smaller number becomes the root, so that numbering follows the vertices
-            parent[std::max(a, b)] = std::min(a, b);
-        }
+    DisjointSets sets(std::ssize(mesh.points));
+    for (const auto& [a, b, c] : mesh.triangles) {
+        sets.join(a, b);
+        sets.join(a, c);
     }
     ComponentLabels labels{std::vector<std::int64_t>(mesh.points.size()), 0};
     for (VertexId vertex = 0; vertex < std::ssize(mesh.points); ++vertex) {
-        const VertexId root = rootOf(parent, vertex);
+        const VertexId root = sets.find(vertex);
         labels.ofVertex[vertex] = root == vertex ? labels.count++ : labels.ofVertex[root];
     }
     return labels;

@@ -5,7 +5,9 @@
 #include <string>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptive/AdaptiveMethod.h"
+#include "adaptive/mesh/MetricFrame.h"
 #include "boxes/BoxesMethod.h"
 #include "cells/MarchingCubes.h"
 #include "loops/SurfaceLoops.h"
@@ -39,6 +41,20 @@ void requireMethod(const Options& options, const char* name, Method needed, Meth
                        std::string(toString(needed)));
 }
 
+/// Voxels that are needles: finding what may cross what, over their length by their width, takes
+/// for ever. Scans have 300 at most (0.1 mm in planes 30 mm apart).
+void requireNoNeedles(const ImageGeometry& geometry) {
+    constexpr double kMost = 10'000;
+    const Vec3 spacingMm = geometry.spacingMm();
+    const double longestMm = std::max({spacingMm.x, spacingMm.y, spacingMm.z});
+    const double planesMm = detail::MetricFrame(geometry).narrowestMm();
+    if (longestMm <= kMost * planesMm) return;
+    throw InvalidInput("a voxel is " + formatShort(longestMm) + " mm long and " +
+                       formatShort(planesMm) +
+                       " mm thin; the method adaptive takes voxels up to 10,000 times as "
+                       "long as thin, mc takes any");
+}
+
 }  // namespace
 
 Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
@@ -58,7 +74,10 @@ Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
                            std::to_string(detail::EdgeKey::kMaximumExtent) +
                            " voxels along an axis; crop or resample it");
     }
-    if (options.method == Method::Adaptive) return detail::extractAdaptive(volume, index, options);
+    if (options.method == Method::Adaptive) {
+        requireNoNeedles(volume.geometry());
+        return detail::extractAdaptive(volume, index, options);
+    }
     Extraction result = options.method == Method::MarchingCubes
                             ? detail::extractMarchingCubes(volume, index, options)
                             : detail::extractBoxes(volume, index, options);

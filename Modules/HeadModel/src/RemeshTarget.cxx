@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "adaptiso/Core/Parallel.h"
 
@@ -57,20 +56,20 @@ bool solve(std::array<Row, 6>& m) {
 RemeshTarget::RemeshTarget(const TriangleMesh& surface)
     : surface_(surface),
       tree_(surface),
-      first_(surface.points.size() + 1),
-      around_(3 * surface.triangles.size()),
+      around_(surface.points.size(),
+              [&](const auto& give) {
+                  for (std::int64_t t = 0; t < std::ssize(surface.triangles); ++t) {
+                      for (const VertexId v : surface.triangles[t]) {
+                          give(static_cast<std::size_t>(v), t);
+                      }
+                  }
+              }),
       areaMm2_(surface.points.size()),
       normals_(surface.points.size()) {
-    for (const Triangle& t : surface.triangles) {
-        for (const VertexId v : t) ++first_[v + 1];
-    }
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    std::vector<std::int64_t> end(first_.begin(), first_.end() - 1);
     for (std::int64_t t = 0; t < std::ssize(surface.triangles); ++t) {
         const auto& [a, b, c] = surface.triangles[t];
         const Vec3 area2 = areaVector2(surface.points[a], surface.points[b], surface.points[c]);
         for (const VertexId v : surface.triangles[t]) {
-            around_[end[v]++] = t;
             areaMm2_[v] += norm(area2) / 6;
             normals_[v] += area2;
         }
@@ -103,7 +102,8 @@ Landing RemeshTarget::project(const Vec3& p, std::int64_t hint) const {
 }
 
 Landing RemeshTarget::atVertex(VertexId v) const {
-    return {surface_.points[v], around_[first_[v]], normals_[v], sizeAt(v)};
+    return {surface_.points[v], around_.of(static_cast<std::size_t>(v)).front(), normals_[v],
+            sizeAt(v)};
 }
 
 std::vector<VertexId> RemeshTarget::facingWithin(const Landing& at, double radiusMm) const {

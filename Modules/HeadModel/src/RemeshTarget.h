@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
 namespace adaptiso {
@@ -48,7 +49,7 @@ public:
 
     /// Numbers of the triangles that have v as a corner.
     std::span<const std::int64_t> trianglesAround(VertexId v) const {
-        return {around_.data() + first_[v], around_.data() + first_[v + 1]};
+        return around_.of(static_cast<std::size_t>(v));
     }
 
 private:
@@ -58,9 +59,8 @@ private:
 
     const TriangleMesh& surface_;
     AabbTree tree_;
-    std::vector<std::int64_t> first_;   ///< where the triangles of each vertex start
-    std::vector<std::int64_t> around_;  ///< in here
-    std::vector<double> areaMm2_;       ///< a third of the triangles of each vertex
+    Buckets<std::int64_t> around_;  ///< the triangles of each vertex
+    std::vector<double> areaMm2_;   ///< a third of the triangles of each vertex
     std::vector<Vec3> normals_;
     std::vector<double> sizesMm_;
 };

@@ -11,6 +11,7 @@
 #include "Codecs.h"
 #include "Packing.h"
 #include "Xml.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 
 namespace adaptiso::meshio {

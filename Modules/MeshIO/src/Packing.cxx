@@ -38,23 +38,6 @@ uInt nextPiece(std::string_view& bytes, z_stream& stream) {
 
 }  // namespace
 
-std::string encodeBase64(std::string_view bytes) {
-    std::string text;
-    text.reserve(base64Length(bytes.size()));
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t group = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const char byte = i + k < bytes.size() ? bytes[i + k] : '\0';
-            group = group << 8 | static_cast<unsigned char>(byte);
-        }
-        for (std::size_t k = 0; k < 4; ++k) {
-            const bool isPadding = i + k > bytes.size();
-            text += isPadding ? '=' : kAlphabet[group >> (18 - 6 * k) & 63];
-        }
-    }
-    return text;
-}
-
 std::string decodeBase64(std::string_view text) {
     std::string bytes;
     bytes.reserve(text.size() / 4 * 3 + 3);

@@ -7,8 +7,6 @@
 
 namespace adaptiso::meshio {
 
-std::string encodeBase64(std::string_view bytes);
-
 /// Bytes that `text` spells; white space in it is passed over, decoding stops at padding.
 /// Damage at any other character.
 std::string decodeBase64(std::string_view text);

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <string>
 
 #include "ExactTriangle.h"
 #include "RequireIndices.h"
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/DisjointSets.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/Duplicates.h"
@@ -85,13 +85,8 @@ std::vector<TrianglePair> findMeetingPairs(const Surface& inner, const Surface& 
 /// a triangle with finite corners.
 std::vector<VertexId> findSpokesmen(const Surface& surface, const Surface& other) {
     const TriangleMesh& mesh = surface.mesh;
-    std::vector<VertexId> parent(mesh.points.size());
-    std::iota(parent.begin(), parent.end(), VertexId{0});
+    DisjointSets sets(std::ssize(mesh.points));
     std::vector<bool> isUsed(mesh.points.size());
-    const auto root = [&](VertexId v) {
-        while (parent[v] != v) v = parent[v] = parent[parent[v]];
-        return v;
-    };
     for (std::int64_t n = 0; n < std::ssize(mesh.triangles); ++n) {
         const Corners corners = cornersOf(mesh, n);
         if (!areFinite(corners)) continue;
@@ -100,15 +95,14 @@ std::vector<VertexId> findSpokesmen(const Surface& surface, const Surface& other
         // a triangle without area meets nothing, wherever it lies
         const bool joins = other.inside.isClosed() && surface.meetsOther[n] == 0;
         if (!joins || axisWithArea(corners) < 0) continue;
-        for (int side = 0; side < 2; ++side) {
-            const VertexId a = root(t[side]), b = root(t[side + 1]);
-            parent[std::max(a, b)] = std::min(a, b);
-        }
+        sets.join(t[0], t[1]);
+        sets.join(t[1], t[2]);
     }
-    for (std::size_t v = 0; v < parent.size(); ++v) {
-        parent[v] = isUsed[v] ? parent[parent[v]] : -1;  // a parent is smaller: a root by now
+    std::vector<VertexId> spokesmen = std::move(sets).names();
+    for (std::size_t v = 0; v < spokesmen.size(); ++v) {
+        if (!isUsed[v]) spokesmen[v] = -1;
     }
-    return parent;
+    return spokesmen;
 }
 
 /// The side of every vertex; of those not used, Outside.

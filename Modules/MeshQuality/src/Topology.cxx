@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
+#include "adaptiso/Core/DisjointSets.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso {
@@ -42,13 +44,17 @@ bool isDegenerate(const TriangleMesh& mesh, const Triangle& t) {
 
 /// The triangles round every vertex: those of vertex v are triangle[first[v]] ... in ascending
 /// order, up to triangle[first[v + 1]].
+/// \tparam Number  std::uint32_t where three times the triangles fit: the lists are then half as
+///                 large, and they are most of what checking a mesh takes
+template <class Number>
 struct VertexTriangles {
-    std::vector<std::int64_t> first;
-    std::vector<std::int64_t> triangle;
+    std::vector<Number> first;
+    std::vector<Number> triangle;
 };
 
-VertexTriangles collectVertexTriangles(const TriangleMesh& mesh) {
-    VertexTriangles result;
+template <class Number>
+VertexTriangles<Number> collectVertexTriangles(const TriangleMesh& mesh) {
+    VertexTriangles<Number> result;
     result.first.assign(mesh.points.size() + 2, 0);
     // Counted two places on and filled one place on, so that filling leaves `first` right.
     for (const Triangle& t : mesh.triangles) {
@@ -60,7 +66,7 @@ VertexTriangles collectVertexTriangles(const TriangleMesh& mesh) {
     for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
         if (!isConnecting(mesh, mesh.triangles[n])) continue;
         for (const VertexId v : mesh.triangles[n]) {
-            result.triangle[result.first[v + 1]++] = static_cast<std::int64_t>(n);
+            result.triangle[result.first[v + 1]++] = static_cast<Number>(n);
         }
     }
     result.first.pop_back();
@@ -79,9 +85,10 @@ struct VertexFacts {
 };
 
 /// Looks at the star of one vertex after the other; keeps its buffers.
+template <class Number>
 class StarInspector {
 public:
-    StarInspector(const TriangleMesh& mesh, const VertexTriangles& around)
+    StarInspector(const TriangleMesh& mesh, const VertexTriangles<Number>& around)
         : mesh_(mesh), around_(around) {}
 
     /// Calls onDefect(defect, triangle or -1, vertices) for each defect counted at `v`.
@@ -113,15 +120,15 @@ private:
     void gather(VertexId v) {
         triangles_.clear();
         spokes_.clear();
-        for (std::int64_t n = around_.first[v]; n < around_.first[v + 1]; ++n) {
-            const Triangle& t = mesh_.triangles[around_.triangle[n]];
+        for (Number n = around_.first[v]; n < around_.first[v + 1]; ++n) {
+            const std::int64_t triangle = around_.triangle[n];
+            const Triangle& t = mesh_.triangles[triangle];
             const int corner = t[0] == v ? 0 : t[1] == v ? 1 : 2;
             const VertexId next = t[(corner + 1) % 3], last = t[(corner + 2) % 3];
             const auto place = static_cast<std::int32_t>(triangles_.size());
             spokes_.push_back({next, place, true});
             spokes_.push_back({last, place, false});
-            triangles_.push_back(
-                {around_.triangle[n], std::min(next, last), std::max(next, last), place});
+            triangles_.push_back({triangle, std::min(next, last), std::max(next, last), place});
         }
         std::sort(spokes_.begin(), spokes_.end(), [](const Spoke& a, const Spoke& b) {
             return std::pair(a.rim, a.triangle) < std::pair(b.rim, b.triangle);
@@ -183,12 +190,14 @@ private:
     }
 
     const TriangleMesh& mesh_;
-    const VertexTriangles& around_;
+    const VertexTriangles<Number>& around_;
     std::vector<StarTriangle> triangles_;
     std::vector<Spoke> spokes_;
 };
 
-std::vector<VertexFacts> inspectVertices(const TriangleMesh& mesh, const VertexTriangles& around) {
+template <class Number>
+std::vector<VertexFacts> inspectVertices(const TriangleMesh& mesh,
+                                         const VertexTriangles<Number>& around) {
     const auto count = static_cast<std::int64_t>(mesh.points.size());
     std::vector<VertexFacts> facts(mesh.points.size());
     parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -241,7 +250,8 @@ private:
     std::array<int, kTopologyDefectCount> kept_{};
 };
 
-void recordVertexDefects(const TriangleMesh& mesh, const VertexTriangles& around,
+template <class Number>
+void recordVertexDefects(const TriangleMesh& mesh, const VertexTriangles<Number>& around,
                          const std::vector<VertexFacts>& facts, DefectRecorder& recorder) {
     StarInspector inspector(mesh, around);
     const auto keep = [&](TopologyDefect defect, std::int64_t triangle, const Triangle& vertices) {
@@ -265,7 +275,8 @@ void recordVertexDefects(const TriangleMesh& mesh, const VertexTriangles& around
     }
 }
 
-void recordPointDefects(const TriangleMesh& mesh, const VertexTriangles& around,
+template <class Number>
+void recordPointDefects(const TriangleMesh& mesh, const std::vector<Number>& first,
                         DefectRecorder& recorder) {
     // A vertex that only a triangle with a repeated index names is used, if to no purpose.
     std::vector<bool> isNamed(mesh.points.size());
@@ -277,7 +288,7 @@ void recordPointDefects(const TriangleMesh& mesh, const VertexTriangles& around,
     }
     for (std::size_t n = 0; n < mesh.points.size(); ++n) {
         const Triangle where{static_cast<VertexId>(n), -1, -1};
-        if (around.first[n] == around.first[n + 1] && !isNamed[n]) {
+        if (first[n] == first[n + 1] && !isNamed[n]) {
             recorder.add(TopologyDefect::UnusedVertex, -1, where);
         }
         if (!isFinite(mesh.points[n])) recorder.add(TopologyDefect::NonFiniteVertex, -1, where);
@@ -296,14 +307,15 @@ void recordTriangleDefects(const TriangleMesh& mesh, DefectRecorder& recorder) {
     }
 }
 
+template <class Number>
 std::vector<SurfaceComponent> measureComponents(const TriangleMesh& mesh,
-                                                const VertexTriangles& around,
+                                                const std::vector<Number>& first,
                                                 const std::vector<VertexFacts>& facts) {
     std::vector<VertexId> component = findComponentRoots(mesh);
     std::vector<SurfaceComponent> components;
     for (std::size_t n = 0; n < facts.size(); ++n) {
         const auto v = static_cast<VertexId>(n);
-        if (around.first[v] == around.first[v + 1]) continue;
+        if (first[v] == first[v + 1]) continue;
         // Labels become component numbers as we pass: a root comes before the rest of its piece.
         if (component[v] == v) {
             component[v] = static_cast<std::int64_t>(components.size());
@@ -330,6 +342,19 @@ std::vector<SurfaceComponent> measureComponents(const TriangleMesh& mesh,
         piece.signedVolumeMm3 += dot(a - apex, area2) / 6;
     }
     return components;
+}
+
+template <class Number>
+void inspect(const TriangleMesh& mesh, const TopologyOptions& options, TopologyReport& report) {
+    VertexTriangles<Number> around = collectVertexTriangles<Number>(mesh);
+    const std::vector<VertexFacts> facts = inspectVertices(mesh, around);
+
+    DefectRecorder recorder(mesh, options, report);
+    recordVertexDefects(mesh, around, facts, recorder);
+    around.triangle = {};  // before components take as much
+    recordPointDefects(mesh, around.first, recorder);
+    recordTriangleDefects(mesh, recorder);
+    report.components = measureComponents(mesh, around.first, facts);
 }
 
 }  // namespace
@@ -359,21 +384,13 @@ std::string_view toString(TopologyDefect defect) {
 }
 
 std::vector<VertexId> findComponentRoots(const TriangleMesh& mesh) {
-    std::vector<VertexId> parent(mesh.points.size());
-    std::iota(parent.begin(), parent.end(), VertexId{0});
-    const auto root = [&](VertexId v) {
-        while (parent[v] != v) v = parent[v] = parent[parent[v]];
-        return v;
-    };
+    DisjointSets sets(std::ssize(mesh.points));
     for (const Triangle& t : mesh.triangles) {
         if (!isConnecting(mesh, t)) continue;
-        for (int side = 0; side < 2; ++side) {
-            const VertexId a = root(t[side]), b = root(t[side + 1]);
-            parent[std::max(a, b)] = std::min(a, b);
-        }
+        sets.join(t[0], t[1]);
+        sets.join(t[1], t[2]);
     }
-    for (VertexId& p : parent) p = parent[p];  // a parent is smaller, so it is a root by now
-    return parent;
+    return std::move(sets).names();
 }
 
 std::optional<std::int64_t> SurfaceComponent::genus() const {
@@ -400,15 +417,11 @@ TopologyReport checkTopology(const TriangleMesh& mesh, const TopologyOptions& op
     report.vertices = static_cast<std::int64_t>(mesh.points.size());
     report.triangles = static_cast<std::int64_t>(mesh.triangles.size());
 
-    const VertexTriangles around = collectVertexTriangles(mesh);
-    const std::vector<VertexFacts> facts = inspectVertices(mesh, around);
-
-    DefectRecorder recorder(mesh, options, report);
-    recordVertexDefects(mesh, around, facts, recorder);
-    recordPointDefects(mesh, around, recorder);
-    recordTriangleDefects(mesh, recorder);
-
-    report.components = measureComponents(mesh, around, facts);
+    if (mesh.triangles.size() <= std::numeric_limits<std::uint32_t>::max() / 3) {
+        inspect<std::uint32_t>(mesh, options, report);
+    } else {
+        inspect<std::uint64_t>(mesh, options, report);
+    }
     for (const SurfaceComponent& component : report.components) report.edges += component.edges;
     return report;
 }

@@ -9,6 +9,7 @@
 #include "Payload.h"
 #include "Scene.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/Report/Coarser.h"
 
 namespace adaptiso {
@@ -100,8 +101,8 @@ std::string viewerData(const Report& report, const Scene& scene, const PageOptio
         // those around the first are seen through
         surfaces.push_back(
             {{"name", surface.name}, {"color", surface.color}, {"opacity", n == 0 ? 1.0 : 0.35}});
-        elements +=
-            dataElement("surface-" + std::to_string(n), "text/plain", base64(gzip(mz3Of(surface))));
+        elements += dataElement("surface-" + std::to_string(n), "text/plain",
+                                encodeBase64(gzip(mz3Of(surface))));
     }
     for (const SceneSpot& spot : shown.spots) spots.push_back(pointJson(spot.pointMm));
     const Vec3 middle = 0.5 * (scene.box.minimum + scene.box.maximum);
@@ -114,7 +115,7 @@ std::string viewerData(const Report& report, const Scene& scene, const PageOptio
         report.volume ? niftiOf(report.volume->view, options.maxVoxels, scene.face.get())
                       : blankNifti(scene.box);
     elements += dataElement("data", "application/json", jsonText(data));
-    elements += dataElement("volume", "text/plain", base64(gzip(image)));
+    elements += dataElement("volume", "text/plain", encodeBase64(gzip(image)));
     return elements;
 }
 
@@ -124,6 +125,19 @@ void addViewerScripts(std::string& html) {
     html += "\n</script>\n<script>\n";
     html += embedded::viewerJs();
     html += "</script>\n";
+}
+
+/// As addViewerScripts(), with niivue's script packed: a third of its size.
+std::string packedViewerScripts() {
+    static const std::string packed = encodeBase64(gzip(embedded::niivueJs()));
+    return dataElement("niivue", "text/plain", packed) +
+           dataElement("viewer-code", "text/plain", std::string(embedded::viewerJs())) +
+           "<script>\n" + std::string(embedded::unpackJs()) + "</script>\n";
+}
+
+std::string imageElement(const Picture& picture, const std::string& style) {
+    return "<img alt=\"" + escaped(picture.altText) + "\" style=\"" + style +
+           "\" src=\"data:image/png;base64," + encodeBase64(picture.png) + "\">\n";
 }
 
 }  // namespace
@@ -180,6 +194,33 @@ std::string htmlPage(const Report& report, const std::vector<Picture>& pictures,
                                        {"NOTES", told},
                                        {"LICENSES", showsViewer ? std::string_view(licenses) : ""},
                                        {"SCRIPTS", scripts}});
+}
+
+std::string notebookHtml(const Report& report, const Picture& picture, const PageOptions& options) {
+    const Scene scene = makeScene(report);
+    std::vector<std::string> notes;
+    std::string html = "<div style=\"max-width: 1020px\">\n";
+    if (scene.hasTriangles() && hasViewer()) {
+        const std::string scripts =
+            viewerData(report, scene, options, notes) + packedViewerScripts();
+        const std::string scale = scaleHtml(scene), title = escaped(report.title);
+        const std::string viewer = fill(embedded::viewerHtml(), {{"SCALE", scale}});
+        const std::string page = fill(embedded::notebookHtml(), {{"TITLE", title},
+                                                                 {"STYLE", embedded::styleCss()},
+                                                                 {"VIEWER", viewer},
+                                                                 {"SCRIPTS", scripts}});
+        constexpr const char* kWhole =
+            "position: absolute; top: 0; left: 0; width: 100%; height: 100%; ";
+        html += "<div style=\"position: relative; height: 500px; background: #fff\">\n" +
+                imageElement(picture, std::string(kWhole) + "object-fit: contain") +
+                "<iframe title=\"" + title + "\" sandbox=\"allow-scripts\" style=\"" + kWhole +
+                "border: 0\" srcdoc=\"" + escaped(page) + "\"></iframe>\n</div>\n";
+    } else {
+        html += imageElement(picture, "max-width: 100%");
+    }
+    html += "<p>" + escaped(report.title);
+    for (const std::string& note : notes) html += ". " + escaped(note);
+    return html + "</p>\n</div>\n";
 }
 
 }  // namespace adaptiso

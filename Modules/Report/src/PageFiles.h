@@ -6,8 +6,10 @@
 namespace adaptiso::embedded {
 
 std::string_view pageHtml();
+std::string_view notebookHtml();
 std::string_view viewerHtml();
 std::string_view styleCss();
+std::string_view unpackJs();
 std::string_view viewerJs();
 std::string_view niivueJs();  ///< empty when niivue could not be had
 std::string_view licenses();

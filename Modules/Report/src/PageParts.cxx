@@ -7,6 +7,7 @@
 
 #include "Payload.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
@@ -282,8 +283,8 @@ std::string picturesHtml(const std::vector<Picture>& pictures) {
             "<figure><div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Picture: " +
             escaped(picture.title) + "\"><img alt=\"" + escaped(picture.altText) + "\" width=\"" +
             std::to_string(picture.width) + "\" height=\"" + std::to_string(picture.height) +
-            "\" src=\"data:image/png;base64," + base64(picture.png) + "\"></div><figcaption>" +
-            escaped(picture.title) + "</figcaption></figure>\n";
+            "\" src=\"data:image/png;base64," + encodeBase64(picture.png) +
+            "\"></div><figcaption>" + escaped(picture.title) + "</figcaption></figure>\n";
     }
     return html + "</section>\n";
 }

@@ -118,24 +118,6 @@ double blockMean(const TypedVolumeView<T>& view, const Index3& first, const Inde
 
 }  // namespace
 
-std::string base64(std::string_view bytes) {
-    static constexpr char kDigits[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t n = 0; n < bytes.size(); n += 3) {
-        std::uint32_t three = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            three =
-                three << 8 | (n + k < bytes.size() ? static_cast<std::uint8_t>(bytes[n + k]) : 0);
-        }
-        for (std::size_t k = 0; k < 4; ++k) {
-            text += n + k > bytes.size() ? '=' : kDigits[three >> (18 - 6 * k) & 63];
-        }
-    }
-    return text;
-}
-
 std::string gzip(std::string_view bytes) {
     z_stream stream{};
     constexpr int kGzip = 16 + MAX_WBITS;

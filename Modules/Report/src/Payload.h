@@ -9,8 +9,6 @@
 
 namespace adaptiso {
 
-std::string base64(std::string_view bytes);
-
 /// gzip without a date, so that the same bytes give the same. \throws InternalError
 std::string gzip(std::string_view bytes);
 

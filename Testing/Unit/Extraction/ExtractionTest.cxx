@@ -55,15 +55,14 @@ TEST(Extraction, RefusesAnIndexOfAnotherVolume) {
 }
 
 TEST(Extraction, MakesAnIndexOfItsOwnForOneIsovalue) {
-    const HardVolume hard = hardVolume(3, 9);
+    const HardVolume hard = hardVolume(5, 9);
+    ExtractionOptions options;
+    options.isovalue = hard.isovalue;
     for (const Border border : {Border::Closed, Border::Open}) {
-        ExtractionOptions options;
-        options.isovalue = hard.isovalue;
-        const Extraction byItself = extractSurface(hard.volume, options, border);
-        ASSERT_FALSE(byItself.mesh.triangles.empty());
-        EXPECT_EQ(byItself.mesh,
+        EXPECT_EQ(extractSurface(hard.volume, options, border).mesh,
                   extractFrom(hard.volume, hard.isovalue, Method::Adaptive, 4, border).mesh);
     }
+    EXPECT_FALSE(extractSurface(hard.volume, options).mesh.triangles.empty());
 }
 
 TEST(Extraction, RefusesOptionsOfAMethodThatIsNotChosen) {
@@ -75,6 +74,28 @@ TEST(Extraction, RefusesOptionsOfAMethodThatIsNotChosen) {
     options.method = Method::Adaptive;
     options.discretized.adjustVertices = true;
     EXPECT_THROW(extractSurface(hard.volume, options), InvalidInput);
+}
+
+TEST(Extraction, RefusesVoxelsThatAreNeedles) {
+    for (const double thinMm : {1e-3, 1e-7}) {
+        ImageGeometry geometry;
+        geometry.size = {4, 4, 4};
+        geometry.indexToPhysical = Mat3::diagonal(thinMm, 2, 1);
+        std::vector<float> samples(64, 0.0F);
+        samples[21] = 1;
+        const Volume volume = Volume::fromSamples(samples, geometry);
+        const SpanSpaceIndex index = SpanSpaceIndex::build(volume, {});
+        ExtractionOptions options;
+        options.isovalue = 0.5;
+        options.method = Method::MarchingCubes;
+        EXPECT_FALSE(extractSurface(volume, index, options).mesh.triangles.empty());
+        options.method = Method::Adaptive;
+        if (thinMm < 1e-4) {
+            EXPECT_THROW(extractSurface(volume, index, options), InvalidInput);
+        } else {
+            expectSound(extractSurface(volume, index, options).mesh);
+        }
+    }
 }
 
 TEST(Extraction, RefusesAnIsovalueThatIsNoNumber) {

@@ -73,15 +73,6 @@ struct Shown {
     Scene scene;
 };
 
-TEST(Base64, IsThatOfRfc4648) {
-    EXPECT_EQ(base64(""), "");
-    EXPECT_EQ(base64("f"), "Zg==");
-    EXPECT_EQ(base64("fo"), "Zm8=");
-    EXPECT_EQ(base64("foo"), "Zm9v");
-    EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
-    EXPECT_EQ(base64("\xff\xfe\xfd"), "//79");
-}
-
 TEST(Gzip, ComesBackAndHoldsNoDate) {
     std::string text;
     for (int n = 0; n < 100000; ++n) text += std::to_string(n);

@@ -91,14 +91,47 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
     name = path("file", file)
     if series is not None and not isinstance(series, (str, int)):
         raise Error(f"series {shown(series)}: must be a number or a SeriesInstanceUID")
+    index = None if volume_index is None else count("volume_index", volume_index)
+    resample = flag("resample_slices", resample_slices)
+    if not hasattr(_adaptiso, "read_image"):
+        return _read_by_nibabel(name, index, series is not None or resample)
     with _reading:
         array, affine, kind, warnings = _adaptiso.read_image(
-            name, None if series is None else str(series),
-            None if volume_index is None else count("volume_index", volume_index),
-            flag("resample_slices", resample_slices))
+            name, None if series is None else str(series), index, resample)
     for warning in warnings:
         logger.warning("%s: %s", base_name(name), warning)
     return Image(array, affine, warnings, kind)
+
+
+def _read_by_nibabel(name: str, volume_index: Optional[int], wants_dicom: bool) -> Image:
+    """What `read` gives in a package that was built without readers (ADAPTISO_PYTHON_READERS)."""
+    if wants_dicom:
+        raise Error(f"{name}: DICOM is not read by this build of adaptiso")
+    try:
+        import nibabel
+    except ImportError:
+        raise Error(f"{name}: this build of adaptiso reads images by nibabel, which is not "
+                    "installed") from None
+    try:
+        image = nibabel.load(name)
+        stored = image.dataobj
+        shape, affine = stored.shape, affine_of(image.affine)
+        if len(shape) == 4 and (shape[3] == 1 or volume_index is not None):
+            stored = np.asanyarray(stored[..., volume_index or 0])
+        elif len(shape) != 3 or volume_index:
+            raise Error(f"{name}: has the shape {shape}; of a 4-D image give volume_index")
+        array = np.asanyarray(stored)
+        if array.dtype == np.float64 and image.get_data_dtype() != np.float64:
+            array = array.astype(np.float32)  # scaled: as adaptiso's own readers have it
+    except Error:
+        raise
+    except MemoryError:
+        raise
+    except Exception as error:
+        raise Error(f"{name}: {' '.join(str(error).split())}") from None
+    array = np.array(array, array.dtype.newbyteorder("="), order="F")
+    array.flags.writeable = False
+    return Image(array, affine, [], type(image).__name__)
 
 
 def base_name(file: str) -> str:
@@ -116,8 +149,9 @@ class Samples(NamedTuple):
     warnings: List[str]
 
 
-def samples_of(image: Any, affine: Any) -> Samples:
-    """`image` as `surface` and `Index` take it. \\raises Error"""
+def samples_of(image: Any, affine: Any, in_file_order: bool = False) -> Samples:
+    """`image` as `surface` and `Index` take it; `in_file_order`: copied where its samples don't lie
+    with i fastest, as files have them. \\raises Error"""
     if is_path(image):
         if affine is not None:
             raise Error("affine: a file has its own; read it with adaptiso.read and give the array")
@@ -129,7 +163,7 @@ def samples_of(image: Any, affine: Any) -> Samples:
         affine = np.eye(4) if own_affine is None else own_affine
     elif own_affine is not None:
         raise Error("affine: the image has its own; give its array and the affine")
-    return _prepared(array, affine, "", kind, [])
+    return _prepared(np.asfortranarray(array) if in_file_order else array, affine, "", kind, [])
 
 
 def affine_of(value: Any) -> Affine:

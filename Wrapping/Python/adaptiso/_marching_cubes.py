@@ -104,6 +104,8 @@ def marching_cubes(volume: Any, level: Optional[float] = None, *, spacing: Any =
 def _checked(volume: Any, spacing: Any, step_size: Any) -> Tuple[Array, Array, int]:
     if not isinstance(volume, np.ndarray) or volume.ndim != 3:
         raise Error("Input volume should be a 3D numpy array.")
+    if volume.dtype.kind not in "biuf":
+        raise Error(f"volume: samples of type {volume.dtype} can't be used")
     if min(volume.shape) < 2:
         raise Error("Input array must be at least 2x2x2.")
     try:
@@ -136,10 +138,9 @@ def _extracted(samples: Array, isovalue: float) -> Triangles:
     """Vertices (in steps along the axes), faces with the smaller samples outside, normals."""
     prepared = samples_of(samples, None)
     with read_only(prepared.user):
-        index = _adaptiso.build_index(prepared.volume, "open", 0)
         try:
-            mesh = _adaptiso.make_surface(prepared.volume, index, isovalue, "mc", None, None, None,
-                                          0.0, False, 0.0, False, 0, None, "", "", [])
+            mesh = _adaptiso.make_surface(prepared.volume, None, "open", isovalue, "mc", None, None,
+                                          None, 0.0, False, 0.0, False, 0, None, "", "", [])
         except _adaptiso.InternalError:
             raise
         except Error as error:

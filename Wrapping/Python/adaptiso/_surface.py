@@ -90,8 +90,7 @@ def surface(image: Any, level: Union[float, str], *, max_error: Optional[float] 
                        min_volume, fill_cavities, threads, progress)
     samples = samples_of(image, affine)
     with read_only(samples.user):
-        index = _adaptiso.build_index(samples.volume, border, options["threads"])
-        return _make(samples, index, options)
+        return _make(samples, None, border, options)
 
 
 class Index:
@@ -128,7 +127,7 @@ class Index:
         """The surface at a level: as `adaptiso.surface` makes it."""
         options = _options(level, max_error, triangles, reduction, min_angle, method, largest,
                            min_volume, fill_cavities, threads, progress)
-        return _make(self._samples, self._index, options)
+        return _make(self._samples, self._index, self._border, options)
 
     @property
     def range(self) -> "tuple[float, float]":
@@ -167,7 +166,8 @@ def _options(level: Any, max_error: Any, triangles: Any, reduction: Any, min_ang
     }
 
 
-def _make(samples: Samples, index: _adaptiso.ArrayIndex, options: Dict[str, Any]) -> Mesh:
-    return Mesh._of(_adaptiso.make_surface(samples.volume, index, file=samples.file,
+def _make(samples: Samples, index: Optional[_adaptiso.ArrayIndex], border: str,
+          options: Dict[str, Any]) -> Mesh:
+    return Mesh._of(_adaptiso.make_surface(samples.volume, index, border, file=samples.file,
                                            format=samples.format, warnings=samples.warnings,
                                            **options))

@@ -1,17 +1,19 @@
 #include "MeshData.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "Resources.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/Pipeline/SurfaceJson.h"
+#include "adaptiso/Report/Page.h"
+#include "adaptiso/Report/Pictures.h"
 
 namespace adaptiso::python {
 namespace {
-
-constexpr const char* kProgramName = "adaptiso (Python)";
 
 /// LPS to RAS and back: both axes turn, so triangles stay as they are.
 void turnXY(TriangleMesh& mesh) {
@@ -202,6 +204,17 @@ void MeshData::write(const std::string& path, std::optional<CoordinateFrame> fra
     TriangleMesh lps = mesh_;
     turnXY(lps);
     writeMesh(lps, path, options);
+}
+
+std::string MeshData::notebook(const std::string& title) const {
+    Report report;
+    report.title = title;
+    report.surfaces.push_back({"surface", lps()});
+    const std::vector<Picture> pictures = drawPictures(report);
+    const auto sixSides =
+        std::find_if(pictures.begin(), pictures.end(),
+                     [](const Picture& picture) { return picture.name == "surface-1.png"; });
+    return notebookHtml(report, sixSides == pictures.end() ? Picture{} : *sixSides);
 }
 
 std::pair<std::shared_ptr<MeshData>, std::string> readMeshData(

@@ -85,6 +85,9 @@ public:
     /// Writes a file in place, in `frame` or in the format's own.
     void write(const std::string& path, std::optional<CoordinateFrame> frame) const;
 
+    /// The mesh in the viewer of report pages, for a notebook. \pre it has triangles
+    std::string notebook(const std::string& title) const;
+
 private:
     TriangleMesh mesh_;
     CoordinateFrame frame_ = CoordinateFrame::Ras;

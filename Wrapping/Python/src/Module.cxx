@@ -3,8 +3,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
-#include <sys/resource.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -15,34 +15,27 @@
 
 #include "Arrays.h"
 #include "Calls.h"
+#include "HeadModel.h"
+#include "Judgements.h"
 #include "MeshData.h"
+#include "Resources.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/ImageIO/Otsu.h"
-#include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/ImageIO/SampleStatistics.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
-#include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
-#include "adaptiso/Pipeline/CheckJson.h"
 #include "adaptiso/Pipeline/Checks.h"
 #include "adaptiso/Pipeline/DistanceJson.h"
 #include "adaptiso/Pipeline/FinishSurface.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
+#ifdef ADAPTISO_PYTHON_READERS
+#include "adaptiso/ImageIO/ReadVolume.h"
+#endif
 
 namespace adaptiso::python {
 namespace {
-
-double secondsSince(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double peakMemoryMb() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;  // Linux counts KiB
-}
 
 template <class Value>
 Value choose(const char* argument, const std::string& word,
@@ -88,10 +81,8 @@ struct ArrayIndex {
     double seconds = 0;
 };
 
-std::shared_ptr<ArrayIndex> buildIndex(const ArrayVolume& volume, const std::string& border,
+std::shared_ptr<ArrayIndex> buildIndex(const ArrayVolume& volume, const IndexOptions& options,
                                        int threads) {
-    IndexOptions options;
-    options.border = borderOf(border);
     const auto start = std::chrono::steady_clock::now();
     std::shared_ptr<ArrayIndex> built;
     runUnlocked(threads, [&] {
@@ -163,19 +154,25 @@ double levelOf(const SurfaceRequest& request, const VolumeView& volume, const Va
 }
 
 /// Makes a surface as adaptiso-mesh does, from the samples on.
-std::shared_ptr<MeshData> makeSurface(ArrayVolume& volume, const ArrayIndex& built,
-                                      const SurfaceRequest& request, const ImageOrigin& origin,
-                                      py::object progress) {
+/// \param built  an index, or null: a look at every block, which for one level is quicker than a
+///               tree and a third of its size, and is gone when the surface is there
+std::shared_ptr<MeshData> makeSurface(ArrayVolume& volume, std::shared_ptr<const ArrayIndex> built,
+                                      const std::string& border, const SurfaceRequest& request,
+                                      const ImageOrigin& origin, py::object progress) {
     SurfaceHistory history;
     history.extraction = request.extraction();
-    history.index = built.index.options();
-    history.indexBytes = built.index.memoryBytes();
-    history.selection = request.selection(history.index.border);
+    history.selection = request.selection(borderOf(border));
+    if (!built) {
+        built = buildIndex(volume, {.border = borderOf(border), .search = BlockSearchKind::Linear},
+                           request.threads);
+    }
+    history.index = built->index.options();
+    history.indexBytes = built->index.memoryBytes();
     history.origin = origin;
     history.pixelType = volume.view.pixelType();
     history.range = volume.valueRange(request.threads);
     history.threads = request.threads;
-    history.seconds.emplace_back("index", built.seconds);
+    history.seconds.emplace_back("index", built->seconds);
 
     Watcher watcher(std::move(progress));
     TriangleMesh mesh;
@@ -187,7 +184,8 @@ std::shared_ptr<MeshData> makeSurface(ArrayVolume& volume, const ArrayIndex& bui
         ExtractionOptions options = history.extraction;
         options.isovalue = record.isovalue;
         options.progress = watcher.callback();
-        Extraction extraction = extractSurface(volume.view, built.index, options);
+        Extraction extraction = extractSurface(volume.view, built->index, options);
+        built.reset();
         history.seconds.emplace_back("extract", secondsSince(start));
         record.statistics = extraction.statistics;
         record.extractedTriangles = std::ssize(extraction.mesh.triangles);
@@ -219,21 +217,6 @@ std::shared_ptr<MeshData> makeSurface(ArrayVolume& volume, const ArrayIndex& bui
     return MeshData::fromLps(std::move(mesh), volume.geometry, std::move(history));
 }
 
-/// Measures and judges a mesh as adaptiso-check does.
-Json checkOf(const MeshData& data, const CheckRules& rules) {
-    TriangleMesh mesh = data.mesh();  // what measures may change is not the user's
-    mesh.normals = {};
-    const SurfaceFacts facts =
-        measureSurface(mesh, sizeLimitsOf(rules.profileInUse()), rules.maxPairs);
-    Json json = verdictJson(judgeSurface(facts, rules));
-    json.update(factsJson(facts));
-    return json;
-}
-
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 std::string checkMesh(const MeshData& data, const std::string& profile,
                       std::optional<double> minAngleDeg, std::int64_t maxPairs, int threads) {
     CheckRules rules;
@@ -241,7 +224,7 @@ std::string checkMesh(const MeshData& data, const std::string& profile,
     rules.minAngleDeg = minAngleDeg;
     rules.maxPairs = maxPairs;
     std::string json;
-    runUnlocked(threads, [&] { json = dumped(checkOf(data, rules)); });
+    runUnlocked(threads, [&] { json = dumped(surfaceVerdict(data.mesh(), rules)); });
     return json;
 }
 
@@ -255,29 +238,10 @@ std::string checkNested(const std::vector<std::shared_ptr<MeshData>>& meshes,
     rules.minGapMm = minGapMm;
     rules.minAngleDeg = minAngleDeg;
     rules.maxPairs = maxPairs;
+    std::vector<const TriangleMesh*> asked;
+    for (const auto& mesh : meshes) asked.push_back(&mesh->mesh());
     std::string text;
-    runUnlocked(threads, [&] {
-        Json surfaces = Json::array(), pairs = Json::array();
-        bool hasPassed = true;
-        for (std::size_t n = 0; n < meshes.size(); ++n) {
-            Json surface{{"name", names[n]}};
-            surface.update(checkOf(*meshes[n], rules));
-            hasPassed = hasPassed && surface["passed"].get<bool>();
-            surfaces.push_back(std::move(surface));
-        }
-        for (std::size_t n = 0; n + 1 < meshes.size(); ++n) {
-            const NestingReport report =
-                checkNesting(meshes[n]->mesh(), meshes[n + 1]->mesh(), {.maxPairs = maxPairs});
-            Json pair{{"inner", names[n]}, {"outer", names[n + 1]}};
-            pair.update(
-                nestingJson(report, judgeNesting(report, names[n], names[n + 1], {}, rules), {}));
-            hasPassed = hasPassed && pair["passed"].get<bool>();
-            pairs.push_back(std::move(pair));
-        }
-        text = dumped({{"passed", hasPassed},
-                       {"surfaces", std::move(surfaces)},
-                       {"nesting", {{"pairs", std::move(pairs)}}}});
-    });
+    runUnlocked(threads, [&] { text = dumped(nestedJson(asked, names, {}, rules)); });
     return text;
 }
 
@@ -323,6 +287,7 @@ std::string compareMeshes(const MeshData& a, const MeshData& b, std::int64_t sam
     return text;
 }
 
+#ifdef ADAPTISO_PYTHON_READERS
 py::tuple readImage(const std::string& path, std::optional<std::string> series,
                     std::optional<std::int64_t> volumeIndex, bool resampleSlices) {
     ReadOptions options;
@@ -334,6 +299,7 @@ py::tuple readImage(const std::string& path, std::optional<std::string> series,
     return py::make_tuple(toArray(read->volume), affineOf(read->volume.view().geometry()),
                           read->format, read->warnings);
 }
+#endif
 
 /// Rows of three numbers that `owner` keeps; nobody may write to them.
 template <class Value, class Row>
@@ -433,6 +399,14 @@ void declareMeshData(py::module_& module) {
                     py::make_tuple(volume.size[0], volume.size[1], volume.size[2]),
                     affineOf(volume));
             })
+        .def(
+            "notebook",
+            [](const MeshData& self, const std::string& title) {
+                std::string html;
+                runUnlocked(0, [&] { html = self.notebook(title); });
+                return html;
+            },
+            py::arg("title"))
         .def_property_readonly("area",
                                [](const MeshData& self) { return surfaceArea(self.mesh()); })
         .def_property_readonly("volume",
@@ -473,30 +447,36 @@ void declareSurfaces(py::module_& module) {
             "blocks", [](const ArrayIndex& self) { return self.index.grid().blockCount(); })
         .def_property_readonly("memory_bytes",
                                [](const ArrayIndex& self) { return self.index.memoryBytes(); });
-    module.def("build_index", &buildIndex, py::arg("volume"), py::arg("border"),
-               py::arg("threads"));
+    module.def(
+        "build_index",
+        [](const ArrayVolume& volume, const std::string& border, int threads) {
+            return buildIndex(volume, {.border = borderOf(border)}, threads);
+        },
+        py::arg("volume"), py::arg("border"), py::arg("threads"));
     module.def(
         "make_surface",
-        [](ArrayVolume& volume, const ArrayIndex& index, std::optional<double> level,
-           const std::string& method, std::optional<double> maxError,
+        [](ArrayVolume& volume, const std::shared_ptr<ArrayIndex>& index, const std::string& border,
+           std::optional<double> level, const std::string& method, std::optional<double> maxError,
            std::optional<std::int64_t> triangles, std::optional<double> reduction, double minAngle,
            bool largest, double minVolume, bool fillCavities, int threads, py::object progress,
            const std::string& file, const std::string& format,
            const std::vector<std::string>& warnings) {
-            return makeSurface(volume, index,
+            return makeSurface(volume, index, border,
                                {level, method, maxError, triangles, reduction, minAngle, largest,
                                 minVolume, fillCavities, threads},
                                {file, format, warnings}, std::move(progress));
         },
-        py::arg("volume"), py::arg("index"), py::arg("level"), py::arg("method"),
+        py::arg("volume"), py::arg("index"), py::arg("border"), py::arg("level"), py::arg("method"),
         py::arg("max_error"), py::arg("triangles"), py::arg("reduction"), py::arg("min_angle"),
         py::arg("largest"), py::arg("min_volume"), py::arg("fill_cavities"), py::arg("threads"),
         py::arg("progress"), py::arg("file"), py::arg("format"), py::arg("warnings"));
 }
 
 void declareFilesAndChecks(py::module_& module) {
+#ifdef ADAPTISO_PYTHON_READERS
     module.def("read_image", &readImage, py::arg("path"), py::arg("series"),
                py::arg("volume_index"), py::arg("resample_slices"));
+#endif
     module.def(
         "read_mesh",
         [](const std::string& path, const std::optional<std::vector<std::int64_t>>& shape,
@@ -515,6 +495,120 @@ void declareFilesAndChecks(py::module_& module) {
                py::arg("symmetric"), py::arg("threads"), py::arg("progress"));
 }
 
+/// What bem() takes, apart from what the model is made from.
+struct BemRequest {
+    bool isMeg = false;
+    std::vector<std::int64_t> vertices;
+    std::optional<std::pair<double, double>> edgeLengthMm;
+    std::array<double, 2> minGapsMm{};
+    double csfMm = 0, skullMm = 0, maxSkullMm = 0, skullHu = 0, skinHu = 0, closingMm = 0;
+    double smoothingMm = 0, cutNecksMm = 0, stepMm = 0;
+    std::array<double, 3> conductivities{};
+
+    BemModelOptions options() const {
+        BemModelOptions options;
+        BoundaryOptions& head = options.boundaries;
+        head.innerSkullOnly = isMeg;
+        head.minSkullMm = minGapsMm[0];
+        head.minScalpMm = minGapsMm[1];
+        head.csfMm = csfMm;
+        head.skullMm = skullMm;
+        head.maxSkullMm = maxSkullMm;
+        head.skullHu = skullHu;
+        head.skinHu = skinHu;
+        head.closingMm = closingMm;
+        head.smoothingMm = smoothingMm;
+        head.cutNecksMm = cutNecksMm;
+        head.stepMm = stepMm;
+        options.vertices = vertices;
+        if (edgeLengthMm) options.edgeLengthMm = {edgeLengthMm->first, edgeLengthMm->second};
+        options.conductivities = {conductivities[0], conductivities[1], conductivities[2]};
+        try {
+            checkConductivities(options.conductivities);
+        } catch (const InvalidInput& error) {
+            throw InvalidInput(std::string("conductivity: ") + error.what());
+        }
+        return options;
+    }
+};
+
+TissueLabels tissuesOf(const std::string& preset, const std::vector<std::int64_t>& brain,
+                       const std::vector<std::int64_t>& skull,
+                       const std::vector<std::int64_t>& scalp) {
+    if (!preset.empty()) return tissuePreset(preset);
+    return {brain, skull, scalp};
+}
+
+BemFileOptions bemFilesOf(const std::string& unit, const std::string& frame, bool writesGifti,
+                          bool writesVtp) {
+    return {choose<OpenMeegUnit>("units", unit,
+                                 {{"mm", OpenMeegUnit::Millimetres}, {"m", OpenMeegUnit::Metres}}),
+            frameOf(frame), writesGifti, writesVtp};
+}
+
+void declareHeadModels(py::module_& module) {
+    py::class_<HeadModelData, std::shared_ptr<HeadModelData>>(module, "HeadModelData")
+        .def_property_readonly("surfaces", &HeadModelData::surfaces)
+        .def_property_readonly("has_model",
+                               [](const HeadModelData& self) { return self.model().hasModel(); })
+        .def_property_readonly("failure",
+                               [](const HeadModelData& self) {
+                                   return self.model().hasModel() ? std::string()
+                                                                  : self.model().failureText();
+                               })
+        .def_property_readonly("warnings",
+                               [](const HeadModelData& self) { return self.model().warnings; })
+        .def_property_readonly(
+            "has_volume",
+            [](const HeadModelData& self) { return self.model().tkRasVolume.has_value(); })
+        .def("check", &HeadModelData::check, py::arg("threads"))
+        .def("report", [](const HeadModelData& self) { return self.report({}); })
+        .def(
+            "write",
+            [](const HeadModelData& self, const std::string& folder, const std::string& unit,
+               const std::string& frame, bool writesGifti, bool writesVtp) {
+                const BemFileOptions options = bemFilesOf(unit, frame, writesGifti, writesVtp);
+                runUnlocked(0, [&] { self.write(folder, options); });
+            },
+            py::arg("folder"), py::arg("units"), py::arg("frame"), py::arg("gifti"), py::arg("vtp"))
+        .def("page", &HeadModelData::page, py::arg("deface"));
+    module.def(
+        "make_bem",
+        [](const std::string& source, const std::vector<std::shared_ptr<ArrayVolume>>& images,
+           const std::shared_ptr<ArrayVolume>& brainMask, const std::string& preset,
+           const std::vector<std::vector<std::int64_t>>& tissues,
+           const std::vector<std::shared_ptr<MeshData>>& surfaces,
+           const std::vector<std::array<std::string, 3>>& inputs,
+           const std::vector<std::string>& warnings, bool isMeg,
+           const std::vector<std::int64_t>& vertices,
+           const std::optional<std::pair<double, double>>& edgeLength,
+           const std::array<double, 2>& minGap, double csf, double skull, double maxSkull,
+           double skullHu, double skinHu, double closing, double smoothing, double cutNecks,
+           double voxel, const std::array<double, 3>& conductivity, int threads,
+           py::object progress) {
+            const BemRequest request{isMeg,     vertices, edgeLength, minGap,      csf,
+                                     skull,     maxSkull, skullHu,    skinHu,      closing,
+                                     smoothing, cutNecks, voxel,      conductivity};
+            HeadSources sources;
+            sources.source = source;
+            sources.images = images;
+            sources.brainMask = brainMask;
+            sources.tissues = tissuesOf(preset, tissues.at(0), tissues.at(1), tissues.at(2));
+            sources.surfaces = surfaces;
+            for (const auto& [file, role, format] : inputs) {
+                sources.inputs.push_back({file, role, format});
+            }
+            sources.warnings = warnings;
+            return HeadModelData::make(sources, request.options(), threads, std::move(progress));
+        },
+        py::arg("source"), py::arg("images"), py::arg("brain_mask"), py::arg("preset"),
+        py::arg("tissues"), py::arg("surfaces"), py::arg("inputs"), py::arg("warnings"),
+        py::arg("meg"), py::arg("vertices"), py::arg("edge_length"), py::arg("min_gap"),
+        py::arg("csf"), py::arg("skull"), py::arg("max_skull"), py::arg("skull_hu"),
+        py::arg("skin_hu"), py::arg("closing"), py::arg("smoothing"), py::arg("cut_necks"),
+        py::arg("voxel"), py::arg("conductivity"), py::arg("threads"), py::arg("progress"));
+}
+
 }  // namespace
 }  // namespace adaptiso::python
 
@@ -527,6 +621,7 @@ PYBIND11_MODULE(_adaptiso, module) {
     declareMeshData(module);
     declareSurfaces(module);
     declareFilesAndChecks(module);
+    declareHeadModels(module);
     module.def("before_fork", &beforeFork);
     module.def("after_fork_in_parent", &afterForkInParent);
     module.def("after_fork_in_child", &afterForkInChild);

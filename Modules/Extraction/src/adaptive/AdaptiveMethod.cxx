@@ -80,47 +80,16 @@ public:
     }
 
     Extraction run() {
-        SimplifiedSurface surface;
+        Attempt attempt;
         for (int run = 0; run < kMostRuns; ++run) {
             report(run, 0);
-            surface = simplify(std::move(surface));
+            attempt = {simplify(std::move(attempt.surface)), {}, {}, {}};
             report(run, 0.6);
-            ErrorBound error = proveAndMend(surface);
-            if (isBeyond(error)) {
-                tighten(error);
-                if (run >= kFirstFreeze) {
-                    freeze(indicesOf(error), run);
-                } else if (halfway_ && hasStalled(error)) {
-                    mendHalfway(surface);
-                }
-                continue;
+            if (keepsPromises(attempt)) {
+                report(run, 1);
+                return resultOf(attempt);
             }
-            report(run, 1);
-            Extraction result;
-            result.mesh = toMesh(surface, geometry_, frame_, sampler_);
-            std::vector<std::int64_t> crossing = crossingTriangles(result.mesh);
-            for (int mend = 0; mend < kMostMends && !crossing.empty(); ++mend) {
-                const std::vector<Vec3> places = placesOf(crossing, result.mesh);
-                if (!(mend == 0 && undoFits(places, surface)) &&
-                    (wanted_.isGiven() || !mendCrossings(surface, crossing))) {
-                    break;
-                }
-                error = proveAndMend(surface);
-                result.mesh = toMesh(surface, geometry_, frame_, sampler_);
-                crossing = crossingTriangles(result.mesh);
-            }
-            if (!crossing.empty() || isBeyond(error)) {
-                std::vector<Vec3> places = placesOf(crossing, result.mesh);
-                if (isBeyond(error)) tighten(error);
-                if (!crossing.empty()) proveAround(places);
-                const std::vector<Vec3> beyond = indicesOf(error);
-                places.insert(places.end(), beyond.begin(), beyond.end());
-                if (run >= kFirstFreeze) freeze(places, run);
-                continue;
-            }
-            if (!options_.computeNormals) result.mesh.normals = {};
-            result.statistics = statisticsOf(surface, error);
-            return result;
+            learnFrom(attempt, run);
         }
         throw InternalError(
             "extractSurface: the adaptive method could not prove its mesh sound and "
@@ -128,6 +97,68 @@ public:
     }
 
 private:
+    /// What a run made, and what was found of it.
+    struct Attempt {
+        SimplifiedSurface surface;
+        ErrorBound error;
+        TriangleMesh mesh;  ///< of the surface; empty where that lies beyond the bound
+        std::vector<std::int64_t> crossing;  ///< its triangles that cross others
+    };
+
+    /// What later runs know of the ones before.
+    struct Lessons {
+        TightPlaces tight;
+        std::optional<Halfway> halfway;
+        /// Places beyond the bound after the last run.
+        double placesBeyond = std::numeric_limits<double>::max();
+        int crossedRuns = 0;     ///< that left triangles that cross
+        bool provesAll = false;  ///< every star, everywhere
+    };
+
+    /// The surface is proved to lie within the bound and to cross nothing. Single places where it
+    /// does not are mended.
+    bool keepsPromises(Attempt& attempt) {
+        attempt.error = proveAndMend(attempt.surface);
+        if (isBeyond(attempt.error)) return false;
+        findCrossings(attempt);
+        for (int mend = 0; mend < kMostMends && !attempt.crossing.empty(); ++mend) {
+            if (!(mend == 0 && undoFits(placesOf(attempt), attempt.surface)) &&
+                (wanted_.isGiven() || !mendCrossings(attempt))) {
+                break;
+            }
+            attempt.error = proveAndMend(attempt.surface);
+            findCrossings(attempt);
+        }
+        return attempt.crossing.empty() && !isBeyond(attempt.error);
+    }
+
+    /// Where promises were not kept the next run takes more care.
+    void learnFrom(Attempt& attempt, int run) {
+        std::vector<Vec3> places = indicesOf(attempt.error);
+        lessons_.tight.add(places);
+        const std::vector<Vec3> crossings = placesOf(attempt);
+        if (!crossings.empty()) proveAround(crossings);
+        if (run >= kFirstFreeze) {
+            places.insert(places.end(), crossings.begin(), crossings.end());
+            freeze(places, run);
+        } else if (lessons_.halfway && hasStalled(attempt.error)) {
+            mendHalfway(attempt.surface);
+        }
+    }
+
+    Extraction resultOf(Attempt& attempt) const {
+        Extraction result;
+        result.statistics = statisticsOf(attempt.surface, attempt.error);
+        result.mesh = std::move(attempt.mesh);
+        if (!options_.computeNormals) result.mesh.normals = {};
+        return result;
+    }
+
+    void findCrossings(Attempt& attempt) const {
+        attempt.mesh = toMesh(attempt.surface, geometry_, frame_, sampler_);
+        attempt.crossing = crossingTriangles(attempt.mesh);
+    }
+
     bool isBeyond(const ErrorBound& error) const { return boundMm_ && error.largestMm > *boundMm_; }
 
     /// What is proved of the surface, after places beyond the bound were mended.
@@ -171,34 +202,33 @@ private:
         }
         return indices;
     }
-    /// The middles of some triangles, as continuous sample indices.
-    std::vector<Vec3> placesOf(const std::vector<std::int64_t>& triangles,
-                               const TriangleMesh& mesh) const {
+    /// The middles of the triangles that cross, as continuous sample indices.
+    std::vector<Vec3> placesOf(const Attempt& attempt) const {
         std::vector<Vec3> places;
-        for (const std::int64_t t : triangles) {
-            const auto& [a, b, c] = mesh.triangles[t];
-            places.push_back(
-                geometry_.toIndex((1.0 / 3) * (mesh.points[a] + mesh.points[b] + mesh.points[c])));
+        for (const std::int64_t t : attempt.crossing) {
+            const auto& [a, b, c] = attempt.mesh.triangles[t];
+            const std::vector<Vec3>& points = attempt.mesh.points;
+            places.push_back(geometry_.toIndex((1.0 / 3) * (points[a] + points[b] + points[c])));
         }
         return places;
     }
 
-    bool mendCrossings(SimplifiedSurface& surface,
-                       const std::vector<std::int64_t>& crossing) const {
-        return SurfaceMender(surface, frame_, *boundMm_).mendCrossings(crossing) > 0;
+    bool mendCrossings(Attempt& attempt) const {
+        SurfaceMender mender(attempt.surface, frame_, *boundMm_);
+        return mender.mendCrossings(attempt.crossing) > 0;
     }
 
     /// Begins anew with more proved.
     /// \param crossings  continuous sample indices
     void proveAround(const std::vector<Vec3>& crossings) {
-        tight_.addCrossings(crossings);
-        if (++crossedRuns_ == kMostCrossedRuns) provesAll_ = true;
-        halfway_.reset();
+        lessons_.tight.addCrossings(crossings);
+        if (++lessons_.crossedRuns == kMostCrossedRuns) lessons_.provesAll = true;
+        lessons_.halfway.reset();
     }
 
     void freeze(const std::vector<Vec3>& places, int run) {
-        tight_.freeze(places, run - kFirstFreeze);
-        halfway_.reset();
+        lessons_.tight.freeze(places, run - kFirstFreeze);
+        lessons_.halfway.reset();
     }
 
     ExtractionStatistics statisticsOf(const SimplifiedSurface& surface,
@@ -210,14 +240,12 @@ private:
         return statistics;
     }
 
-    void tighten(const ErrorBound& error) { tight_.add(indicesOf(error)); }
-
     /// Hardly fewer places lie beyond the bound than after the run before: what they need may have
     /// been lost before halfway.
     bool hasStalled(const ErrorBound& error) {
         const auto count = static_cast<double>(error.beyondLimit.size());
-        const bool isStalled = count > kStalled * beyond_;
-        beyond_ = isStalled ? std::numeric_limits<double>::max() : count;
+        const bool isStalled = count > kStalled * lessons_.placesBeyond;
+        lessons_.placesBeyond = isStalled ? std::numeric_limits<double>::max() : count;
         return isStalled;
     }
 
@@ -226,12 +254,12 @@ private:
     void mendHalfway(SimplifiedSurface& surface) {
         ErrorProof proof(sampler_, bricks_, frame_, *boundMm_);
         for (int mend = 0; mend < kMostMends; ++mend) {
-            surface.state() = halfway_->state;
+            surface.state() = lessons_.halfway->state;
             const ErrorBound error = proof.prove(surface);
             if (error.largestMm <= *boundMm_) return;
-            tighten(error);
-            halfway_ =
-                Simplification(sampler_, bricks_, frame_, tight_, limits()).toHalfway(surface);
+            lessons_.tight.add(indicesOf(error));
+            lessons_.halfway = Simplification(sampler_, bricks_, frame_, lessons_.tight, limits())
+                                   .toHalfway(surface);
         }
     }
 
@@ -253,7 +281,7 @@ private:
         limits.leavesNoise = !wanted_.isGiven();
         limits.maxDistanceMm =
             boundMm - std::min(kSlackVoxels * frame_.narrowestMm(), kSlackPart * boundMm);
-        limits.provesAll = provesAll_ || limits.maxDistanceMm > sheetMm;
+        limits.provesAll = lessons_.provesAll || limits.maxDistanceMm > sheetMm;
         return limits;
     }
 
@@ -261,14 +289,14 @@ private:
     void fit(SimplifiedSurface& surface) const {
         PatchLimits closer = limits();
         closer.maxFittedMm = kFitDistance * closer.maxDistanceMm;
-        Simplification(sampler_, bricks_, frame_, tight_, closer).fit(surface);
+        Simplification(sampler_, bricks_, frame_, lessons_.tight, closer).fit(surface);
     }
 
     /// \param last  of the run before
     SimplifiedSurface simplify(SimplifiedSurface last) {
-        Simplification simplification(sampler_, bricks_, frame_, tight_, limits());
+        Simplification simplification(sampler_, bricks_, frame_, lessons_.tight, limits());
         if (!wanted_.isGiven()) {
-            SimplifiedSurface surface = simplification.toLimits(std::move(last), halfway_);
+            SimplifiedSurface surface = simplification.toLimits(std::move(last), lessons_.halfway);
             unfitted_ = surface.points;
             fit(surface);
             return surface;
@@ -290,13 +318,9 @@ private:
     WantedCount wanted_;
     std::optional<double> boundMm_;
     StarLimits shape_;
-    TightPlaces tight_;
-    std::optional<Halfway> halfway_;
-    ErrorProof proof_;
-    std::vector<Vec3> unfitted_;                          ///< vertices before they were fitted
-    double beyond_ = std::numeric_limits<double>::max();  ///< places after the last run
-    int crossedRuns_ = 0;                                 ///< that left triangles that cross
-    bool provesAll_ = false;                              ///< every star, everywhere
+    Lessons lessons_;
+    ErrorProof proof_;            ///< remembers what it proved last, to prove less the next time
+    std::vector<Vec3> unfitted_;  ///< vertices before they were fitted
 };
 
 void check(const AdaptiveOptions& options) {

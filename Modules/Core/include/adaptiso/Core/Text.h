@@ -1,11 +1,15 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace adaptiso {
 
 /// `value` as a person reads it, in at most six significant digits, in the C locale: "0.333333",
 /// "1.79769e+308", "infinity", "-infinity", "not a number". Zero is "0", whatever its sign.
 std::string shortText(double value);
+
+/// Base64 with padding, in one line (RFC 4648).
+std::string encodeBase64(std::string_view bytes);
 
 }  // namespace adaptiso

@@ -103,7 +103,9 @@ struct Extraction {
 ///               with Border::Open it is open at the volume's border and nowhere else. Empty when
 ///               no sample, or (open border) no edge of the grid, reaches the isovalue.
 /// \pre  index.grid() and pixelType() fit the volume; isovalue is finite; the options of a method
-///       that is not chosen are as they come              \throws InvalidInput otherwise
+///       that is not chosen are as they come; with Adaptive the longest side of a voxel is at most
+///       10,000 times the least distance between planes of samples
+///       \throws InvalidInput otherwise
 /// The same input gives the same bytes, whatever the number of threads.
 Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
                           const ExtractionOptions& options);

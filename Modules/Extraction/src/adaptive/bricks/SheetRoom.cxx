@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptive/Parameters.h"
 
@@ -36,14 +37,14 @@ public:
             --low_[a];
             count_[a] = high[a] - low_[a] + 2;
         }
-        begin_.assign(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]) + 1, 0);
-        for (const Index3& cube : cubes) ++begin_[number(cube) + 1];
-        for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-        std::vector<std::uint32_t> at(begin_.begin(), begin_.end() - 1);
-        places_.resize(points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            places_[at[number(cubes[i])]++] = placeOf(points[i], normals[i]);
-        }
+        std::vector<Place> places(points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) places[i] = placeOf(points[i], normals[i]);
+        places_.assign(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]),
+                       [&](const auto& give) {
+                           for (std::size_t i = 0; i < points.size(); ++i) {
+                               give(number(cubes[i]), places[i]);
+                           }
+                       });
     }
 
     static Place placeOf(const Vec3& p, const Vec3& normal) {
@@ -59,8 +60,7 @@ public:
         for (std::int64_t z = -1; z <= 1; ++z) {
             for (std::int64_t y = -1; y <= 1; ++y) {
                 const std::size_t row = number({cube[0], cube[1] + y, cube[2] + z});
-                for (std::uint32_t i = begin_[row - 1]; i < begin_[row + 2]; ++i) {
-                    const Place& other = places_[i];
+                for (const Place& other : places_.of(row - 1, row + 2)) {
                     float squared = 0, cosine = 0;
                     for (int a = 0; a < 3; ++a) {
                         const float d = other.point[a] - own.point[a];
@@ -88,8 +88,7 @@ private:
 
     const MetricFrame& frame_;
     Index3 low_{}, count_{};
-    std::vector<std::uint32_t> begin_;
-    std::vector<Place> places_;
+    Buckets<Place, std::uint32_t> places_;
 };
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "adaptiso/Core/Buckets.h"
+
 namespace adaptiso::detail {
 
 /// The half-edges of triangles by the vertex that they start from. Half-edge 3 t + c runs from
@@ -20,24 +22,18 @@ public:
     };
 
     void assign(std::size_t points, std::span<const std::array<Index, 3>> triangles) {
-        begin_.assign(points + 2, 0);
-        for (const auto& t : triangles) {
-            for (const Index v : t) ++begin_[v + 2];
-        }
-        for (std::size_t v = 2; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
-        leaving_.resize(3 * triangles.size());
-        Index h = 0;
-        for (const auto& [a, b, c] : triangles) {  // begin_[v + 1] grows to the end of v's
-            leaving_[begin_[a + 1]++] = {b, h++};
-            leaving_[begin_[b + 1]++] = {c, h++};
-            leaving_[begin_[c + 1]++] = {a, h++};
-        }
+        leaving_.assign(points, [&](const auto& give) {
+            Index h = 0;
+            for (const auto& [a, b, c] : triangles) {
+                give(a, {b, h++});
+                give(b, {c, h++});
+                give(c, {a, h++});
+            }
+        });
     }
 
     /// In ascending order.
-    std::span<const Leaving> from(Index vertex) const {
-        return {leaving_.data() + begin_[vertex], leaving_.data() + begin_[vertex + 1]};
-    }
+    std::span<const Leaving> from(Index vertex) const { return leaving_.of(vertex); }
 
     /// The opposite of each half-edge, or kNone. Where several run along an edge they are matched
     /// in ascending order.
@@ -62,8 +58,7 @@ private:
         }
     }
 
-    std::vector<Index> begin_;
-    std::vector<Leaving> leaving_;
+    Buckets<Leaving, Index> leaving_;  ///< of each vertex
 };
 
 }  // namespace adaptiso::detail

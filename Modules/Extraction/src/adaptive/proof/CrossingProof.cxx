@@ -9,6 +9,7 @@
 
 #include "Certificate.h"
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptive/Parameters.h"
@@ -20,16 +21,16 @@ namespace {
 class Fans {
 public:
     explicit Fans(const TriangleMesh& mesh)
-        : mesh_(mesh), begin_(mesh.points.size() + 1, 0), isClear_(mesh.points.size(), 0) {
-        for (const Triangle& t : mesh.triangles) {
-            for (const VertexId v : t) ++begin_[v + 1];
-        }
-        for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
-        around_.resize(3 * mesh.triangles.size());
-        std::vector<std::int64_t> at(begin_.begin(), begin_.end() - 1);
-        for (const Triangle& t : mesh.triangles) {
-            for (int c = 0; c < 3; ++c) around_[at[t[c]]++] = {t[(c + 1) % 3], t[(c + 2) % 3]};
-        }
+        : mesh_(mesh),
+          around_(mesh.points.size(),
+                  [&](const auto& give) {
+                      for (const auto& [a, b, c] : mesh.triangles) {
+                          give(a, {b, c});
+                          give(b, {c, a});
+                          give(c, {a, b});
+                      }
+                  }),
+          isClear_(mesh.points.size(), 0) {
         constexpr std::int64_t kPiece = 4096;
         parallelForPieces(static_cast<std::int64_t>(isClear_.size()), kPiece,
                           [&](std::int64_t begin, std::int64_t end) {
@@ -44,10 +45,9 @@ private:
 
     /// Seen along one direction all are upright and go round the vertex once.
     bool prove(std::int64_t v) {
-        const std::int64_t count = begin_[v + 1] - begin_[v];
+        const std::span<Sector> sectors = around_.of(static_cast<std::size_t>(v));
+        const std::int64_t count = std::ssize(sectors);
         if (count < 3 || count > kFanMost) return false;
-        const std::span<Sector> sectors(around_.data() + begin_[v],
-                                        static_cast<std::size_t>(count));
         for (std::int64_t i = 1; i < count; ++i) {  // into one ring
             const auto next =
                 std::find_if(sectors.begin() + i, sectors.end(),
@@ -80,8 +80,7 @@ private:
     }
 
     const TriangleMesh& mesh_;
-    std::vector<std::int64_t> begin_;
-    std::vector<Sector> around_;
+    Buckets<Sector> around_;
     std::vector<std::uint8_t> isClear_;
 };
 

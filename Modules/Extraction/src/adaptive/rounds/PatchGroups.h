@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "adaptiso/Core/Buckets.h"
 #include "adaptive/bricks/Bricks.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
@@ -46,35 +47,27 @@ class Groups {
 public:
     Groups() = default;
     template <class KeyOf>
-    Groups(std::size_t groups, std::size_t n, const KeyOf& keyOf) : begin_(groups + 1, 0) {
-        for (std::size_t i = 0; i < n; ++i) {
-            const std::uint64_t key = keyOf(i);
-            if (key < groups) ++begin_[key + 1];
-        }
-        for (std::size_t g = 0; g < groups; ++g) begin_[g + 1] += begin_[g];
-        members_.resize(begin_[groups]);
-        std::vector<std::uint64_t> at(begin_.begin(), begin_.end() - 1);
-        for (std::size_t i = 0; i < n; ++i) {
-            const std::uint64_t key = keyOf(i);
-            if (key < groups) members_[at[key]++] = i;
-        }
-    }
-    std::span<const std::uint64_t> of(std::size_t group) const {
-        return {members_.data() + begin_[group], begin_[group + 1] - begin_[group]};
-    }
+    Groups(std::size_t groups, std::size_t n, const KeyOf& keyOf)
+        : members_(groups, [&](const auto& give) {
+              for (std::size_t i = 0; i < n; ++i) {
+                  const std::uint64_t key = keyOf(i);
+                  if (key < groups) give(key, i);
+              }
+          }) {}
+    std::span<const std::uint64_t> of(std::size_t group) const { return members_.of(group); }
     /// Gives each member its place in its group.
     void number(std::vector<std::uint32_t>& places) const {
-        for (std::size_t g = 0; g + 1 < begin_.size(); ++g) {
+        for (std::size_t g = 0; g < members_.count(); ++g) {
             std::uint32_t place = 0;
             for (const std::uint64_t member : of(g)) places[member] = place++;
         }
     }
     /// How many members the groups up to one have together.
-    std::size_t upTo(std::size_t group) const { return begin_[group + 1]; }
-    std::size_t memberCount() const { return members_.size(); }
+    std::size_t upTo(std::size_t group) const { return members_.of(0, group + 1).size(); }
+    std::size_t memberCount() const { return members_.itemCount(); }
 
 private:
-    std::vector<std::uint64_t> begin_{0}, members_;
+    Buckets<std::uint64_t> members_;
 };
 
 /// What a thread needs while it works on patches, one after the other.

@@ -24,6 +24,16 @@ struct PageOptions {
 std::string htmlPage(const Report& report, const std::vector<Picture>& pictures,
                      const PageOptions& options = {});
 
+/// The surfaces and the image of a report in the viewer, as a part of another page: a notebook's.
+///
+/// The viewer is a page in a frame of its own, which can reach nothing else and loads nothing.
+/// Where scripts or frames are off, as in a notebook that is not trusted, the picture is seen in
+/// its place. Below stands the report's title, and that the viewer shows the surfaces coarser than
+/// they are, where it does.
+/// \return HTML, UTF-8; about 1.6 MB, and 25 bytes a triangle
+std::string notebookHtml(const Report& report, const Picture& picture,
+                         const PageOptions& options = {1'000'000, 40'000});
+
 /// The viewer was built in; else pages say that it is missing.
 bool hasViewer();
 

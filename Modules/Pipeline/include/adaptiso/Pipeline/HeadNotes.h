@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "Common/Json.h"
 #include "adaptiso/HeadModel/Plausibility.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/Pipeline/Json.h"
 #include "adaptiso/Report/Report.h"
 
 namespace adaptiso {

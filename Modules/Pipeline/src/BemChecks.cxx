@@ -1,14 +1,10 @@
-#include "CheckModel.h"
+#include "adaptiso/Pipeline/BemChecks.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace adaptiso {
 namespace {
-
-std::string nameOf(std::size_t n) {
-    return std::string(toString(static_cast<HeadSurface>(n)));
-}
 
 CheckRules bemRules(std::optional<double> minGapMm = std::nullopt) {
     CheckRules rules;
@@ -83,57 +79,55 @@ ModelChecks askOfModel(std::span<const TriangleMesh> surfaces, std::span<const d
         const SurfaceFacts& facts = asked.facts.back();
         for (Check& check : judgeSurface(facts, bemRules())) {
             const Vec3 place = placeOf(check, facts, surfaces[n]);
-            asked.checks.push_back({nameOf(n), std::move(check), place});
+            asked.checks.push_back({bemSurfaceName(n), std::move(check), place});
         }
     }
     for (std::size_t n = 0; n + 1 < surfaces.size(); ++n) {
         asked.nesting.push_back(checkNesting(surfaces[n], surfaces[n + 1], {.maxPairs = 1}));
         const NestingReport& report = asked.nesting.back();
-        for (Check& check :
-             judgeNesting(report, nameOf(n), nameOf(n + 1), {}, bemRules(gapsMm[n]))) {
-            asked.checks.push_back(
-                {nameOf(n) + " in " + nameOf(n + 1), std::move(check), report.gap.nearest.pointA});
+        for (Check& check : judgeNesting(report, bemSurfaceName(n), bemSurfaceName(n + 1), {},
+                                         bemRules(gapsMm[n]))) {
+            asked.checks.push_back({bemSurfaceName(n) + " in " + bemSurfaceName(n + 1),
+                                    std::move(check), report.gap.nearest.pointA});
         }
     }
     return asked;
 }
 
-void checkModel(const std::vector<TriangleMesh>& surfaces, BemRun& run, ProgressLine& progress) {
-    progress.show("check");
-    run.timer.time("check", [&] {
-        const ModelChecks asked = askOfModel(inScannerRas(surfaces), run.options.minGapsMm());
+void checkModel(BemModel& model, const BemHooks& hooks) {
+    hooks.stage("check", [&] {
+        const ModelChecks asked = askOfModel(inScannerRas(model.meshes), model.options.minGapsMm());
         const AffineTransform toLps = inverse(lpsToFrame(CoordinateFrame::Ras, {}));
-        for (std::size_t n = 0; n < surfaces.size(); ++n) {
-            addToReport(asked.facts[n], run.surfaces[n]);
+        for (std::size_t n = 0; n < model.meshes.size(); ++n) {
+            addToReport(asked.facts[n], model.surfaces[n]);
         }
-        run.gaps.clear();
+        model.gaps.clear();
         for (const NestingReport& report : asked.nesting) {
             const NearestPoints& nearest = report.gap.nearest;
-            run.gaps.push_back({nearest.distanceMm, toLps(nearest.pointA), toLps(nearest.pointB)});
+            model.gaps.push_back(
+                {nearest.distanceMm, toLps(nearest.pointA), toLps(nearest.pointB)});
         }
         for (const auto& [subject, check, pointMm] : asked.checks) {
             const std::string name = subject + ": " + std::string(check.name);
             const bool isPassed = !check.breaksProfile();
-            run.checks.push_back({name, isPassed, check.finding,
-                                  isPassed ? std::nullopt : std::optional(toLps(pointMm))});
-            if (!isPassed) run.findings.push_back({name + ": " + check.finding, toLps(pointMm)});
+            model.checks.push_back({name, isPassed, check.finding,
+                                    isPassed ? std::nullopt : std::optional(toLps(pointMm))});
+            if (!isPassed) model.findings.push_back({name + ": " + check.finding, toLps(pointMm)});
         }
     });
 }
 
-void askWhatIsUsual(const std::vector<TriangleMesh>& surfaces, BemRun& run,
-                    ProgressLine& progress) {
-    progress.show("check");
-    run.timer.time("check", [&] {
+void askWhatIsUsual(BemModel& model, const BemHooks& hooks) {
+    hooks.stage("check", [&] {
         PlausibilityOptions asked;
-        asked.image = run.image;
+        asked.image = model.image;
         const AffineTransform toRas = lpsToFrame(CoordinateFrame::Ras, {});
-        for (HeadNote& note : judgePlausibility(surfaces, asked)) {
-            std::string subject = nameOf(note.surface);
-            if (note.next) subject += " in " + nameOf(*note.next);
+        for (HeadNote& note : judgePlausibility(model.meshes, asked)) {
+            std::string subject = bemSurfaceName(note.surface);
+            if (note.next) subject += " in " + bemSurfaceName(*note.next);
             ToldNote told{std::move(note), std::move(subject), CoordinateFrame::Ras, {}};
             for (const Vec3& p : told.note.pointsMm) told.placesMm.push_back(toRas(p));
-            run.plausibility.push_back(std::move(told));
+            model.plausibility.push_back(std::move(told));
         }
     });
 }

@@ -1,13 +1,12 @@
-#include "ModelReadme.h"
+#include "BemReadme.h"
 
-#include "Common/CommonOptions.h"
-#include "Common/Numbers.h"
+#include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
 namespace {
 
-std::string frameText(const BemRun& run) {
-    switch (run.options.frame) {
+std::string frameText(CoordinateFrame frame) {
+    switch (frame) {
         case CoordinateFrame::Lps:
             return "scanner LPS";
         case CoordinateFrame::TkRas:
@@ -17,9 +16,9 @@ std::string frameText(const BemRun& run) {
     }
 }
 
-std::string conductivityTuple(const BemRun& run) {
-    const ConductivityModel& c = run.options.conductivities;
-    if (run.options.boundaries.innerSkullOnly) return "(" + formatNumber(c.brain) + ",)";
+std::string conductivityTuple(const BemModelOptions& options) {
+    const ConductivityModel& c = options.conductivities;
+    if (options.boundaries.innerSkullOnly) return "(" + formatNumber(c.brain) + ",)";
     return "(" + formatNumber(c.brain) + ", " + formatNumber(c.skull) + ", " +
            formatNumber(c.scalp) + ")";
 }
@@ -49,25 +48,26 @@ std::string openMeegText(bool isMeg, const std::string& frame, const std::string
 
 }  // namespace
 
-std::string modelReadme(const BemRun& run) {
-    const bool isMetres = run.options.unit == OpenMeegUnit::Metres;
-    const bool isOne = run.options.boundaries.innerSkullOnly;
+std::string bemReadme(const BemModel& model, const BemFileOptions& options,
+                      const std::string& maker) {
+    const bool isMetres = options.unit == OpenMeegUnit::Metres;
+    const bool isOne = model.options.boundaries.innerSkullOnly;
+    const std::string frame = frameText(options.frame);
     const std::string unit = isMetres ? "metres" : "millimetres";
-    std::string text = "# Boundary element head model\nMade by adaptiso-bem " + programVersion() +
-                       ". " +
+    std::string text = "# Boundary element head model\nMade by " + maker + ". " +
                        (isOne ? "One surface (inner skull), for MEG."
                               : "Three surfaces: inner skull, outer skull, outer skin.") +
                        " Each is closed, of genus 0, outward" +
                        (isOne ? ".\n" : ", and lies strictly inside the next.\n");
     text += "\n| files | for | frame and unit |\n|---|---|---|\n";
     text += std::string("| `*.surf` | FreeSurfer, MNE | ") +
-            (run.tkRasVolume ? "surface RAS (tkRAS) of the image; the footer leads to scanner RAS"
-                             : "scanner RAS (of a volume around the scanner's origin)") +
+            (model.tkRasVolume ? "surface RAS (tkRAS) of the image; the footer leads to scanner RAS"
+                               : "scanner RAS (of a volume around the scanner's origin)") +
             "; millimetres |\n";
-    text += "| `model.geom`, `model.cond`, `*.tri` | OpenMEEG | " + frameText(run) + "; " + unit +
+    text += "| `model.geom`, `model.cond`, `*.tri` | OpenMEEG | " + frame + "; " + unit +
             (isMetres ? " (potentials in volts)" : "") + " |\n";
-    if (run.options.writesGifti || run.options.writesVtp) {
-        text += "| `*.gii`, `*.vtp` | viewers | " + frameText(run) + "; millimetres |\n";
+    if (options.writesGifti || options.writesVtp) {
+        text += "| `*.gii`, `*.vtp` | viewers | " + frame + "; millimetres |\n";
     }
     text += "| `report.json` | what was made, measured and checked | scanner LPS; millimetres |\n";
 
@@ -75,9 +75,9 @@ std::string modelReadme(const BemRun& run) {
         "\nMNE-Python, with the `.surf` files in `SUBJECTS_DIR/SUBJECT/bem` (or a copy of this "
         "folder under that name):\n```python\nimport mne\nmodel = mne.make_bem_model('SUBJECT', "
         "ico=None, conductivity=" +
-        conductivityTuple(run) +
+        conductivityTuple(model.options) +
         ", subjects_dir='SUBJECTS_DIR')\nbem = mne.make_bem_solution(model)\n```\n";
-    return text + openMeegText(isOne, frameText(run), unit);
+    return text + openMeegText(isOne, frame, unit);
 }
 
 }  // namespace adaptiso

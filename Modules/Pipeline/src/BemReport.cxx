@@ -1,36 +1,30 @@
-#include "ReportPage.h"
+#include "adaptiso/Pipeline/BemReport.h"
 
 #include <algorithm>
 
-#include "Common/Json.h"
-#include "Common/Numbers.h"
-#include "Common/ReportOutput.h"
-#include "TextReport.h"
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Pipeline/ImageFacts.h"
 
 namespace adaptiso {
 namespace {
 
-std::string nameOf(std::size_t n) {
-    return std::string(toString(static_cast<HeadSurface>(n)));
-}
-
 std::string pairName(std::size_t inner) {
-    return nameOf(inner) + " in " + nameOf(inner + 1);
+    return bemSurfaceName(inner) + " in " + bemSurfaceName(inner + 1);
 }
 
-void tellVerdict(const BemRun& run, Report& report) {
-    const std::string layers = run.options.surfaceCount() == 1 ? "one layer" : "three layers";
+void tellVerdict(const BemModel& model, Report& report) {
+    const std::string layers = model.options.surfaceCount() == 1 ? "one layer" : "three layers";
     report.title = "Head model of " + layers;
-    if (run.hasModel()) {
+    if (model.hasModel()) {
         report.verdict = ReportVerdict::Passed;
         report.headline =
-            "All " + formatCount(std::ssize(run.checks)) +
+            "All " + formatCount(std::ssize(model.checks)) +
             " checks hold: every surface is closed, in one piece, of genus 0 and does "
             "not cross itself" +
-            (run.gaps.empty() ? "."
-                              : "; they lie in each other with the gaps asked "
-                                "for.");
-        const std::int64_t notes = notedCount(run.plausibility);
+            (model.gaps.empty() ? "."
+                                : "; they lie in each other with the gaps asked "
+                                  "for.");
+        const std::int64_t notes = notedCount(model.plausibility);
         if (notes > 0) {
             report.headline += " " + formatCount(notes) +
                                (notes == 1 ? " thing is" : " things are") +
@@ -38,24 +32,29 @@ void tellVerdict(const BemRun& run, Report& report) {
         }
     } else {
         report.verdict = ReportVerdict::Failed;
-        report.headline = "No model could be guaranteed: " + failureText(run);
+        report.headline = "No model could be guaranteed: " + model.failureText();
     }
 }
 
-void tellInputs(const BemRun& run, Report& report) {
-    for (const BemInput& input : run.inputs) {
-        report.inputs.push_back({input.role, baseName(input.path) + " (" + input.format + ")"});
+std::string fileText(const BemInput& input) {
+    return input.file.empty() ? input.format : input.file + " (" + input.format + ")";
+}
+
+void tellInputs(const BemModel& model, Report& report) {
+    for (const BemInput& input : model.inputs) {
+        report.inputs.push_back({input.role, fileText(input)});
     }
-    if (!run.image) return;
-    const std::vector<ReportFact> facts = imageFacts("", "", *run.image);
+    if (!model.image) return;
+    const std::vector<ReportFact> facts = imageFacts("", "", *model.image);
     report.inputs.insert(report.inputs.end(), facts.begin() + 1, facts.end());
 }
 
-void tellOptions(const BemRun& run, Report& report) {
-    const BemOptions& options = run.options;
+void tellOptions(const BemModel& model, Report& report) {
+    const BemModelOptions& options = model.options;
     const BoundaryOptions& head = options.boundaries;
-    std::string triangles = run.source == "surfaces" ? "as the surfaces came, where they could stay"
-                                                     : "2,562 vertices a surface (default)";
+    std::string triangles = model.source == "surfaces"
+                                ? "as the surfaces came, where they could stay"
+                                : "2,562 vertices a surface (default)";
     if (options.vertices.size() == 1) {
         triangles = formatCount(options.vertices.front()) + " vertices a surface";
     } else if (!options.vertices.empty()) {
@@ -69,7 +68,7 @@ void tellOptions(const BemRun& run, Report& report) {
         triangles = "edges of " + formatNumber(options.edgeLengthMm->minimumMm) + " to " +
                     formatNumber(options.edgeLengthMm->maximumMm) + " mm";
     }
-    report.options = {{"Made from", run.source}, {"Triangles", triangles}};
+    report.options = {{"Made from", model.source}, {"Triangles", triangles}};
     if (options.surfaceCount() > 1) {
         report.options.push_back(
             {"Skull, scalp at least",
@@ -81,12 +80,12 @@ void tellOptions(const BemRun& run, Report& report) {
                                                   formatNumber(sigma.skull) + ", scalp " +
                                                   formatNumber(sigma.scalp) + " S/m"});
     report.options.push_back(
-        {"FreeSurfer's files in", run.tkRasVolume ? "tkRAS mm" : "scanner RAS mm"});
+        {"FreeSurfer's files in", model.tkRasVolume ? "tkRAS mm" : "scanner RAS mm"});
 }
 
 /// "inner_skull: one closed surface of genus 0" is told in two columns.
-void tellChecks(const BemRun& run, Report& report) {
-    for (const BemCheck& check : run.checks) {
+void tellChecks(const BemModel& model, Report& report) {
+    for (const BemCheck& check : model.checks) {
         const std::size_t colon = check.name.find(": ");
         report.checks.push_back(
             {check.name.substr(0, colon),
@@ -95,29 +94,29 @@ void tellChecks(const BemRun& run, Report& report) {
     }
 }
 
-void tellSpots(const BemRun& run, Report& report) {
-    for (const Finding& finding : run.findings) {
+void tellSpots(const BemModel& model, Report& report) {
+    for (const Finding& finding : model.findings) {
         report.spots.push_back({finding.what, finding.pointMm});
     }
-    for (std::size_t n = 0; n < run.gaps.size(); ++n) {
-        const NestedGap& gap = run.gaps[n];
+    for (std::size_t n = 0; n < model.gaps.size(); ++n) {
+        const NestedGap& gap = model.gaps[n];
         report.spots.push_back(
             {"smallest gap, " + formatFixed(gap.mm, 2) + " mm, of " + pairName(n),
              0.5 * (gap.innerPointMm + gap.outerPointMm), false});
     }
 }
 
-ReportTable surfaceTable(const BemRun& run) {
+ReportTable surfaceTable(const BemModel& model) {
     ReportTable table{
         "Surfaces",
         {"Surface", "Vertices", "Triangles", "Area, cm²", "Volume, cm³", "Edges, mm",
          "Smallest angle", "From the dense surface, mm (mean, most)", "Moved to nest, mm"},
         {}};
-    for (std::size_t n = 0; n < run.surfaces.size(); ++n) {
-        const BemSurface& surface = run.surfaces[n];
+    for (std::size_t n = 0; n < model.surfaces.size(); ++n) {
+        const BemSurface& surface = model.surfaces[n];
         const auto& remesh = surface.remesh;
         table.rows.push_back(
-            {nameOf(n), formatCount(surface.topology.vertices),
+            {bemSurfaceName(n), formatCount(surface.topology.vertices),
              formatCount(surface.topology.triangles), formatRounded(surface.areaMm2 / 100),
              formatRounded(surface.volumeMm3 / 1000),
              formatFixed(surface.shape.edgeMm.minimum, 1) + " to " +
@@ -132,9 +131,9 @@ ReportTable surfaceTable(const BemRun& run) {
     return table;
 }
 
-ReportTable fileTable(const BemRun& run) {
+ReportTable fileTable(const std::vector<std::pair<std::string, std::uintmax_t>>& files) {
     ReportTable table{"Files written", {"File", "Bytes"}, {}};
-    for (const auto& [name, bytes] : run.files) {
+    for (const auto& [name, bytes] : files) {
         table.rows.push_back({name, formatCount(static_cast<long long>(bytes))});
     }
     return table;
@@ -142,33 +141,28 @@ ReportTable fileTable(const BemRun& run) {
 
 }  // namespace
 
-Report makeReport(const BemRun& run, const std::vector<TriangleMesh>& surfaces) {
+Report bemReport(const BemModel& model,
+                 const std::vector<std::pair<std::string, std::uintmax_t>>& files) {
     Report report;
-    tellVerdict(run, report);
-    tellInputs(run, report);
-    tellOptions(run, report);
-    tellChecks(run, report);
-    tellSpots(run, report);
-    addNotes(run.plausibility, report);
-    if (!run.checks.empty()) report.tables.push_back(surfaceTable(run));
-    if (!run.files.empty()) report.tables.push_back(fileTable(run));
-    report.notes = run.warnings;
-    tellStrict(report, run.options.common, run.warnings, "so no model was written");
-    report.notes.insert(report.notes.end(), run.notes.begin(), run.notes.end());
-    if (run.options.isDryRun) report.notes.push_back("Nothing else was written (--dry-run).");
-    if (!run.hasModel() && !surfaces.empty()) {
+    tellVerdict(model, report);
+    tellInputs(model, report);
+    tellOptions(model, report);
+    tellChecks(model, report);
+    tellSpots(model, report);
+    addNotes(model.plausibility, report);
+    if (!model.checks.empty()) report.tables.push_back(surfaceTable(model));
+    if (!files.empty()) report.tables.push_back(fileTable(files));
+    report.notes = model.warnings;
+    report.notes.insert(report.notes.end(), model.notes.begin(), model.notes.end());
+    if (!model.hasModel() && !model.meshes.empty()) {
         report.notes.push_back(
             "The surfaces shown are those that the model was tried from; none was written.");
     }
-    for (std::size_t n = 0; n < surfaces.size(); ++n) {
-        report.surfaces.push_back({nameOf(n), surfaces[n]});
+    for (std::size_t n = 0; n < model.meshes.size(); ++n) {
+        report.surfaces.push_back({bemSurfaceName(n), model.meshes[n]});
         report.surfaces.back().isWithinSkull =
-            static_cast<HeadSurface>(n) == HeadSurface::InnerSkull && run.source != "surfaces";
+            static_cast<HeadSurface>(n) == HeadSurface::InnerSkull && model.source != "surfaces";
     }
-    if (run.shownImage) {
-        report.volume = ReportVolume{run.inputs.front().role, run.shownImage->volume.view()};
-    }
-    report.stageSeconds = run.timer.stages();
     return report;
 }
 

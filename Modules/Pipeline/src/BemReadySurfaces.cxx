@@ -1,17 +1,14 @@
-#include "ReadySurfaces.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
 
-#include "CheckModel.h"
-#include "Common/Numbers.h"
-#include "Inputs.h"
-#include "SurfaceSteps.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/Pipeline/BemChecks.h"
+#include "adaptiso/Pipeline/BemSurfaces.h"
 
 namespace adaptiso {
 namespace {
@@ -82,96 +79,89 @@ bool isBall(const TriangleMesh& mesh) {
            topology.count(TopologyDefect::DuplicateTriangle) == 0;
 }
 
-void note(BemRun& run, std::size_t n, const std::string& text) {
-    run.notes.push_back(std::string(toString(static_cast<HeadSurface>(n))) + ": " + text);
+void note(BemModel& model, std::size_t n, const std::string& text) {
+    model.notes.push_back(bemSurfaceName(n) + ": " + text);
 }
 
 /// What is to be done to a surface. Does what leaves the surface where it is: drops what is of no
 /// use, merges vertices, turns it outward.
-Need tidied(std::size_t n, TriangleMesh& mesh, BemRun& run) {
+Need tidied(std::size_t n, TriangleMesh& mesh, BemModel& model) {
     const std::size_t vertices = mesh.points.size();
     const std::int64_t dropped = dropUseless(mesh);
-    if (dropped > 0) note(run, n, formatCount(dropped) + " triangles that are none left out");
-    if (mesh.triangles.empty()) throw InvalidInput("--surfaces: a surface holds no triangle");
+    if (dropped > 0) note(model, n, formatCount(dropped) + " triangles that are none left out");
+    if (mesh.triangles.empty()) throw InvalidInput("a surface holds no triangle");
     if (!isBall(mesh)) {
         TriangleMesh whole = merged(mesh), main = withoutIslands(whole);
         if (!isBall(main)) return Need::NewSolid;
         const bool hasIslands = main.triangles.size() < whole.triangles.size();
-        note(run, n,
+        note(model, n,
              hasIslands ? formatCount(std::ssize(whole.triangles) - std::ssize(main.triangles)) +
                               " triangles of small pieces left out"
                         : "vertices at the same place merged");
         mesh = std::move(main);
     } else if (mesh.points.size() < vertices) {
-        note(run, n, "unused vertices left out");
+        note(model, n, "unused vertices left out");
     }
     if (findSelfIntersections(mesh, {.maxPairs = 0}).pairCount > 0) return Need::NewSolid;
     if (enclosedVolume(mesh) < 0) {
         flipOrientation(mesh);
-        note(run, n, "was inside out and has been turned");
+        note(model, n, "was inside out and has been turned");
     }
     for (const Check& check : askOfSurface(mesh)) {
         if (!check.breaksProfile() || check.key == "plausibleSize") continue;
-        note(run, n, std::string(check.name) + ": " + check.finding + "; remeshed");
+        note(model, n, std::string(check.name) + ": " + check.finding + "; remeshed");
         return Need::NewTriangles;
     }
     return Need::Nothing;
 }
 
 /// In metres nothing else that can be said of a surface makes sense.
-void findWrongSizes(const std::vector<TriangleMesh>& surfaces, BemRun& run) {
+void findWrongSizes(const std::vector<TriangleMesh>& surfaces, BemModel& model) {
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
         for (const Check& check : askOfSurface(surfaces[n])) {
             if (check.key != "plausibleSize" || !check.breaksProfile()) continue;
-            const std::string name(toString(static_cast<HeadSurface>(n)));
-            run.findings.push_back({name + ": " + std::string(check.name) + ": " + check.finding,
-                                    surfaces[n].points[surfaces[n].triangles[0][0]]});
+            model.findings.push_back(
+                {bemSurfaceName(n) + ": " + std::string(check.name) + ": " + check.finding,
+                 surfaces[n].points[surfaces[n].triangles[0][0]]});
         }
     }
 }
 
 }  // namespace
 
-std::vector<TriangleMesh> readySurfaces(BemRun& run, ProgressLine& progress) {
-    progress.show("read");
-    std::vector<TriangleMesh> surfaces = run.timer.time("read", [&] { return readSurfaces(run); });
+std::vector<TriangleMesh> mendSurfaces(std::vector<TriangleMesh> surfaces, BemModel& model,
+                                       const BemHooks& hooks) {
     std::vector<Need> needs;
-    progress.show("check");
-    run.timer.time("check", [&] {
+    hooks.stage("check", [&] {
         for (std::size_t n = 0; n < surfaces.size(); ++n) {
-            needs.push_back(tidied(n, surfaces[n], run));
+            needs.push_back(tidied(n, surfaces[n], model));
         }
-        findWrongSizes(surfaces, run);
+        findWrongSizes(surfaces, model);
     });
-    run.surfaces.resize(surfaces.size());
-    if (!run.findings.empty()) return surfaces;
+    model.surfaces.resize(surfaces.size());
+    if (!model.hasModel()) return surfaces;
     if (std::find(needs.begin(), needs.end(), Need::NewSolid) == needs.end()) {
         for (std::size_t n = 0; n < surfaces.size(); ++n) {
             if (needs[n] != Need::NewTriangles) continue;
-            run.surfaces[n].denseTriangles = std::ssize(surfaces[n].triangles);
+            model.surfaces[n].denseTriangles = std::ssize(surfaces[n].triangles);
             constexpr std::int64_t kLeast = 42, kMost = 10'000;  // what MNE can work with
-            run.surfaces[n].ownVertices = std::clamp(std::ssize(surfaces[n].points), kLeast, kMost);
+            model.surfaces[n].ownVertices =
+                std::clamp(std::ssize(surfaces[n].points), kLeast, kMost);
         }
         return surfaces;
     }
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
         if (needs[n] != Need::NewSolid) continue;
-        note(run, n,
+        note(model, n,
              "is not one closed surface of genus 0 that does not cross itself: all are "
              "made anew from the solids that they bound");
     }
-    run.surfaces.clear();
-    BoundaryOptions boundaries = run.options.boundaries;
-    boundaries.progress = progress.callback();
+    model.surfaces.clear();
+    BoundaryOptions boundaries = model.options.boundaries;
+    boundaries.progress = hooks.progress;
     HeadBoundaries mended;
-    try {
-        mended = run.timer.time("boundaries",
-                                [&] { return boundariesFromSurfaces(surfaces, boundaries); });
-    } catch (const InvalidInput& error) {
-        throw InvalidInput(std::string("--surfaces: ") + error.what());
-    }
-    run.notes.insert(run.notes.end(), mended.notes.begin(), mended.notes.end());
-    return extractSurfaces(mended, run, progress);
+    hooks.stage("boundaries", [&] { mended = boundariesFromSurfaces(surfaces, boundaries); });
+    return extractSurfaces(mended, model, hooks);
 }
 
 }  // namespace adaptiso

@@ -5,10 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "BemRun.h"
-#include "Common/Progress.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/Pipeline/BemModel.h"
 #include "adaptiso/Pipeline/Checks.h"
 
 namespace adaptiso {
@@ -34,20 +33,12 @@ ModelChecks askOfModel(std::span<const TriangleMesh> surfaces, std::span<const d
 /// The same of one surface that is yet to be remeshed or nested.
 std::vector<Check> askOfSurface(const TriangleMesh& surface);
 
-/// Checks every promise about the surfaces (LPS mm), by adaptiso-check's own code; what is not kept
-/// becomes a finding of the run. Fills what the report says of the surfaces and gaps.
-void checkModel(const std::vector<TriangleMesh>& surfaces, BemRun& run, ProgressLine& progress);
+/// Checks every promise about the model's meshes, by adaptiso-check's own code (stage "check");
+/// what is not kept becomes a finding. Fills what the model tells of surfaces and gaps.
+void checkModel(BemModel& model, const BemHooks& hooks);
 
-/// Asks what is usual of head models (judgePlausibility); nothing fails by it. Fills the run's
-/// plausibility, with places told in scanner RAS.
-void askWhatIsUsual(const std::vector<TriangleMesh>& surfaces, BemRun& run, ProgressLine& progress);
-
-/// Reads the model's files back from `folder` and asks them the same once more: rounding to what a
-/// format can hold must not break a promise, and every file must lead back to the surfaces.
-/// What is not kept becomes a finding of the run.
-/// \param surfaces  that were written, LPS mm
-/// \throws FileError  a file can't be read back
-void checkFiles(const std::filesystem::path& folder, const std::vector<TriangleMesh>& surfaces,
-                BemRun& run);
+/// Asks what is usual of head models (judgePlausibility; stage "check"); nothing fails by it. Fills
+/// the model's plausibility, with places told in scanner RAS.
+void askWhatIsUsual(BemModel& model, const BemHooks& hooks);
 
 }  // namespace adaptiso

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <limits>
 
-#include "CheckModel.h"
-#include "Common/Numbers.h"
-#include "ModelFiles.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
 #include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/Pipeline/BemChecks.h"
+#include "adaptiso/Pipeline/BemFiles.h"
 
 namespace adaptiso {
 namespace {
@@ -24,10 +24,9 @@ struct FileKind {
     double unitMm;
 };
 
-std::vector<FileKind> writtenKinds(const BemRun& run) {
-    const BemOptions& options = run.options;
+std::vector<FileKind> writtenKinds(const BemModel& model, const BemFileOptions& options) {
     std::vector<FileKind> kinds{
-        {".surf", run.tkRasVolume ? CoordinateFrame::TkRas : CoordinateFrame::Ras, 1},
+        {".surf", model.tkRasVolume ? CoordinateFrame::TkRas : CoordinateFrame::Ras, 1},
         {".tri", options.frame, options.unit == OpenMeegUnit::Metres ? 1000.0 : 1.0}};
     if (options.writesGifti) kinds.push_back({".gii", options.frame, 1});
     if (options.writesVtp) kinds.push_back({".vtp", options.frame, 1});
@@ -47,18 +46,18 @@ double farthestMm(const TriangleMesh& a, const TriangleMesh& b) {
 }
 
 /// Files of one kind: the same answers as of the model, and the same places.
-void checkKind(const FileKind& kind, const fs::path& folder,
-               const std::vector<TriangleMesh>& surfaces, BemRun& run) {
+void checkKind(const FileKind& kind, const fs::path& folder, BemModel& model) {
+    const std::vector<TriangleMesh>& surfaces = model.meshes;
     // to LPS, for the places of findings; tkRAS and scanner RAS of a file are told by the frame
-    const AffineTransform toLps = inverse(lpsToFrame(kind.frame, run.tkRasVolume));
+    const AffineTransform toLps = inverse(lpsToFrame(kind.frame, model.tkRasVolume));
     std::vector<TriangleMesh> stored;
     double farthest = 0;
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
-        stored.push_back(readMesh(folder / fileName(n, kind.extension)).mesh);
+        stored.push_back(readMesh(folder / bemFileName(n, kind.extension)).mesh);
         for (Vec3& p : stored.back().points) p = kind.unitMm * p;
         farthest = std::max(farthest, farthestMm(transformed(stored.back(), toLps), surfaces[n]));
     }
-    const ModelChecks asked = askOfModel(stored, run.options.minGapsMm());
+    const ModelChecks asked = askOfModel(stored, model.options.minGapsMm());
     const auto broken =
         std::find_if(asked.checks.begin(), asked.checks.end(),
                      [](const ModelCheck& answer) { return answer.check.breaksProfile(); });
@@ -74,16 +73,18 @@ void checkKind(const FileKind& kind, const fs::path& folder,
         check.detail = "a vertex lies " + formatNumber(farthest) + " mm from where it should";
         check.pointMm = surfaces.front().points.front();
     }
-    if (!check.isPassed) run.findings.push_back({check.name + ": " + check.detail, *check.pointMm});
-    run.checks.push_back(std::move(check));
+    if (!check.isPassed) {
+        model.findings.push_back({check.name + ": " + check.detail, *check.pointMm});
+    }
+    model.checks.push_back(std::move(check));
 }
 
 }  // namespace
 
-void checkFiles(const fs::path& folder, const std::vector<TriangleMesh>& surfaces, BemRun& run) {
-    for (const FileKind& kind : writtenKinds(run)) checkKind(kind, folder, surfaces, run);
+void checkBemFiles(const fs::path& folder, const BemFileOptions& options, BemModel& model) {
+    for (const FileKind& kind : writtenKinds(model, options)) checkKind(kind, folder, model);
     readOpenMeegModel(folder / "model.geom", folder / "model.cond");  // throws where a rule breaks
-    run.checks.push_back({"model.geom, model.cond: keep OpenMEEG's rules", true, "", {}});
+    model.checks.push_back({"model.geom, model.cond: keep OpenMEEG's rules", true, "", {}});
 }
 
 }  // namespace adaptiso

@@ -1,10 +1,10 @@
-#include "HeadNotes.h"
+#include "adaptiso/Pipeline/HeadNotes.h"
 
 #include <algorithm>
 #include <iomanip>
 #include <ostream>
 
-#include "Common/Numbers.h"
+#include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
 

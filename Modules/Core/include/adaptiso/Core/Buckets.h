@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace adaptiso {
+
+/// Items in numbered buckets, sorted by counting: those of a bucket lie side by side, in the order
+/// in which they were given. \tparam Place  an unsigned or signed integer that can count the items
+template <class Item, class Place = std::size_t>
+class Buckets {
+public:
+    Buckets() = default;
+
+    /// \param giveAll  called twice with a function (bucket, item), which it calls for every item;
+    ///                 gives the same in both
+    template <class GiveAll>
+    Buckets(std::size_t count, const GiveAll& giveAll) {
+        assign(count, giveAll);
+    }
+
+    /// As the constructor; uses the memory that is there.
+    template <class GiveAll>
+    void assign(std::size_t count, const GiveAll& giveAll) {
+        begin_.assign(count + 2, 0);
+        giveAll([&](std::size_t bucket, const Item&) { ++begin_[bucket + 2]; });
+        for (std::size_t b = 2; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
+        items_.resize(static_cast<std::size_t>(begin_.back()));
+        // begin_[bucket + 1] grows to the bucket's end
+        giveAll([&](std::size_t bucket, const Item& item) { items_[begin_[bucket + 1]++] = item; });
+    }
+
+    std::span<const Item> of(std::size_t bucket) const { return of(bucket, bucket + 1); }
+    std::span<Item> of(std::size_t bucket) {
+        return {items_.data() + begin_[bucket], items_.data() + begin_[bucket + 1]};
+    }
+    /// Of the buckets from `first` up to `end`, which lie side by side.
+    std::span<const Item> of(std::size_t first, std::size_t end) const {
+        return {items_.data() + begin_[first], items_.data() + begin_[end]};
+    }
+
+    /// Buckets.
+    std::size_t count() const { return begin_.size() - 2; }
+    std::size_t itemCount() const { return items_.size(); }
+
+private:
+    std::vector<Place> begin_{0, 0};
+    std::vector<Item> items_;
+};
+
+}  // namespace adaptiso

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Progress.h"
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/HeadModel/ConductivityModel.h"
+#include "adaptiso/HeadModel/Finding.h"
+#include "adaptiso/HeadModel/HeadBoundaries.h"
+#include "adaptiso/HeadModel/NestSurfaces.h"
+#include "adaptiso/HeadModel/Remesh.h"
+#include "adaptiso/MeshQuality/Shape.h"
+#include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/Pipeline/FinishSurface.h"
+#include "adaptiso/Pipeline/HeadNotes.h"
+
+namespace adaptiso {
+
+/// What a head model is to be, whatever it is made from.
+struct BemModelOptions {
+    BoundaryOptions boundaries;  ///< layers, gaps, thicknesses, isovalues
+    /// One number for all surfaces or one for each; empty: 2,562, or by edge length.
+    std::vector<std::int64_t> vertices;
+    std::optional<EdgeLengthRange> edgeLengthMm;
+    ConductivityModel conductivities;
+
+    /// Of skull and scalp.
+    std::array<double, 2> minGapsMm() const {
+        return {boundaries.minSkullMm, boundaries.minScalpMm};
+    }
+    std::optional<std::int64_t> verticesOf(std::size_t surface) const {
+        if (vertices.empty()) return std::nullopt;
+        return vertices.size() == 1 ? vertices.front() : vertices[surface];
+    }
+    std::size_t surfaceCount() const {
+        return boundaries.innerSkullOnly ? 1 : std::size_t{kHeadSurfaceCount};
+    }
+};
+
+/// What the model is made from, for the reports.
+struct BemInput {
+    std::string file;    ///< without folders; empty: no file
+    std::string role;    ///< "t1", "brain mask", "labels", ...
+    std::string format;  ///< "NIfTI-1", "STL (binary)", ...
+};
+
+/// One surface, from dense to final.
+struct BemSurface {
+    std::int64_t denseTriangles = 0;  ///< 0: the surface was taken as it came
+    /// Of a ready surface that only needs other triangles, and as many.
+    std::optional<std::int64_t> ownVertices;
+    std::optional<RemeshStatistics> remesh;
+    SurfaceMove move;  ///< by nesting
+    TopologyReport topology;
+    ShapeReport shape;
+    std::int64_t crossingPairs = 0;
+    double areaMm2 = 0;
+    double volumeMm3 = 0;
+    double solidAngleShare = 0;
+    Vec3 extentMm;
+};
+
+/// A promise about the model, kept or not.
+struct BemCheck {
+    std::string name;  ///< "inner_skull: one closed surface of genus 0"
+    bool isPassed = false;
+    std::string detail;
+    std::optional<Vec3> pointMm;  ///< LPS, where it is not kept
+};
+
+/// A head model, or what is known of it so far: what it is made from, its surfaces, whether they
+/// keep what is promised of them.
+struct BemModel {
+    BemModelOptions options;
+    std::string source;  ///< "t1", "labels", "probabilities", "ct", "surfaces"
+    std::vector<BemInput> inputs;
+    std::vector<std::string> warnings;         ///< what makes the result doubtful
+    std::vector<std::string> notes;            ///< what was guessed, found or changed
+    std::optional<ImageGeometry> image;        ///< the main image's
+    std::optional<ImageGeometry> tkRasVolume;  ///< whose tkRAS the FreeSurfer files are in
+    std::string tkRasName;                     ///< of that volume, for the footer
+    /// Inside out, LPS mm. Where there is no model: what it was tried from.
+    std::vector<TriangleMesh> meshes;
+    std::vector<BemSurface> surfaces;
+    std::vector<NestedGap> gaps;
+    std::vector<BemCheck> checks;
+    std::vector<ToldNote> plausibility;  ///< what is unusual of adults' heads
+    std::vector<Finding> findings;       ///< why there is no model; points in LPS mm
+
+    bool hasModel() const { return findings.empty(); }
+
+    /// Why there is no model and where, in one line; the point in scanner RAS, as viewers show it.
+    /// \pre !hasModel()
+    std::string failureText() const;
+};
+
+/// For those who show progress or measure time.
+struct BemHooks {
+    StageRunner runStage{};       ///< "extract", "remesh", ...; empty: work is called, that is all
+    ProgressCallback progress{};  ///< as BoundaryOptions has it
+
+    void stage(std::string_view name, const std::function<void()>& work) const {
+        runStage ? runStage(name, work) : work();
+    }
+};
+
+/// "inner_skull" of surface 0
+std::string bemSurfaceName(std::size_t surface);
+
+}  // namespace adaptiso

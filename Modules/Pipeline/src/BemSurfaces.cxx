@@ -1,0 +1,121 @@
+#include "adaptiso/Pipeline/BemSurfaces.h"
+
+#include <utility>
+
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/Pipeline/BemChecks.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr std::int64_t kDefaultVertices = 2562;
+constexpr double kFitMm = 0.5;
+/// Files keep floats: a gap must not fall short by their rounding (3e-5 mm at 500 mm).
+constexpr double kRoundingMm = 1e-4;
+
+RemeshOptions remeshOptions(const BemModel& model, const std::vector<TriangleMesh>& dense,
+                            std::size_t n) {
+    const BemModelOptions& options = model.options;
+    RemeshOptions remesh;
+    // what is left of the voxels' stairs after smoothing; ready surfaces are taken at their word
+    if (model.source != "surfaces") remesh.fitMm = kFitMm;
+    remesh.edgeLengthMm = options.edgeLengthMm;
+    const std::int64_t usual = model.surfaces[n].ownVertices.value_or(kDefaultVertices);
+    remesh.vertices = options.verticesOf(n).value_or(options.edgeLengthMm ? 0 : usual);
+    if (n > 0) remesh.neighbours.push_back(&dense[n - 1]);
+    if (n + 1 < dense.size()) remesh.neighbours.push_back(&dense[n + 1]);
+    return remesh;
+}
+
+/// Ready surfaces keep their triangles unless others are asked for.
+bool staysAsItCame(const BemSurface& surface, const BemModelOptions& options) {
+    return surface.denseTriangles == 0 && options.vertices.empty() && !options.edgeLengthMm;
+}
+
+/// Near-equilateral triangles. What can't be had becomes a finding.
+std::vector<TriangleMesh> remeshed(const std::vector<TriangleMesh>& dense, BemModel& model,
+                                   const BemHooks& hooks) {
+    std::vector<TriangleMesh> surfaces;
+    for (std::size_t n = 0; n < dense.size(); ++n) {
+        if (staysAsItCame(model.surfaces[n], model.options)) {
+            surfaces.push_back(dense[n]);
+            continue;
+        }
+        hooks.stage("remesh", [&] {
+            if (hooks.progress) {
+                hooks.progress("remesh",
+                               static_cast<double>(n) / static_cast<double>(dense.size()));
+            }
+            Remeshed result = remeshForBem(dense[n], remeshOptions(model, dense, n));
+            model.surfaces[n].remesh = result.statistics;
+            for (Finding& finding : result.findings) {
+                finding.what = bemSurfaceName(n) + ": " + finding.what;
+                model.findings.push_back(std::move(finding));
+            }
+            surfaces.push_back(std::move(result.mesh));
+        });
+    }
+    return surfaces;
+}
+
+/// With the gaps asked for; empty when that can't be had.
+std::vector<TriangleMesh> nested(const std::vector<TriangleMesh>& surfaces, BemModel& model,
+                                 const BemHooks& hooks) {
+    NestOptions nest;
+    nest.minGapsMm.clear();
+    for (const double gap : model.options.minGapsMm()) nest.minGapsMm.push_back(gap + kRoundingMm);
+    NestResult result;
+    hooks.stage("nest", [&] { result = nestSurfaces(surfaces, nest); });
+    for (std::size_t n = 0; n < result.moves.size(); ++n) model.surfaces[n].move = result.moves[n];
+    model.findings = result.findings;
+    return std::move(result.surfaces);
+}
+
+/// Solvers take the square of the number of vertices in memory, the cube in time.
+void warnOfMany(BemModel& model) {
+    constexpr std::int64_t kMany = 10'000;
+    std::int64_t vertices = 0;
+    for (const TriangleMesh& surface : model.meshes) vertices += std::ssize(surface.points);
+    if (vertices <= kMany) return;
+    model.warnings.push_back(formatCount(vertices) +
+                             " vertices in all; MNE warns above 10,000; ask for fewer");
+}
+
+}  // namespace
+
+std::vector<TriangleMesh> extractSurfaces(const HeadBoundaries& boundaries, BemModel& model,
+                                          const BemHooks& hooks) {
+    model.notes.insert(model.notes.end(), boundaries.notes.begin(), boundaries.notes.end());
+    model.warnings.insert(model.warnings.end(), boundaries.warnings.begin(),
+                          boundaries.warnings.end());
+    std::vector<TriangleMesh> surfaces;
+    for (const FractionField& solid : boundaries.solids) {
+        hooks.stage("extract", [&] {
+            const SpanSpaceIndex index = SpanSpaceIndex::build(solid.view(), {});
+            ExtractionOptions extract;
+            extract.isovalue = kFractionIsovalue;
+            extract.method = Method::MarchingCubes;
+            extract.computeNormals = false;
+            surfaces.push_back(extractSurface(solid.view(), index, extract).mesh);
+        });
+        BemSurface surface;
+        surface.denseTriangles = std::ssize(surfaces.back().triangles);
+        model.surfaces.push_back(surface);
+    }
+    return surfaces;
+}
+
+void finishBemModel(std::vector<TriangleMesh> dense, BemModel& model, const BemHooks& hooks) {
+    if (model.hasModel()) {
+        std::vector<TriangleMesh> surfaces = remeshed(dense, model, hooks);
+        if (model.hasModel() && surfaces.size() > 1) surfaces = nested(surfaces, model, hooks);
+        if (model.hasModel()) model.meshes = std::move(surfaces);
+    }
+    if (model.hasModel()) checkModel(model, hooks);
+    if (model.hasModel()) askWhatIsUsual(model, hooks);
+    warnOfMany(model);
+    if (model.meshes.empty()) model.meshes = std::move(dense);
+}
+
+}  // namespace adaptiso

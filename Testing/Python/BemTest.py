@@ -1,0 +1,270 @@
+"""Head models: the bytes of adaptiso-bem, truth on paper, what MNE makes of them, what is refused."""
+
+import json
+import unittest
+
+import adaptiso
+import numpy as np
+from support import InFolder, needs, program
+
+NAMES = ("inner_skull", "outer_skull", "outer_skin")
+RADII = (60, 66, 72)
+STEP = 4
+#: voxels of 4 mm, so that all is quick; the working grid is 3 mm
+QUICK = {"voxel": 3, "vertices": 162, "closing": 4}
+ARGUMENTS = ["--voxel", 3, "--vertices", 162, "--closing", 4]
+TISSUES = {"brain": [1], "skull": [2], "scalp": [3]}
+
+
+def affine(n=44, centre=(0, 0, 0)):
+    matrix = np.diag([STEP, STEP, STEP, 1.0])
+    matrix[:3, 3] = np.array(centre) - STEP * (n - 1) / 2
+    return matrix
+
+
+def spheres(values=(1, 2, 3), radii=RADII, n=44):
+    """Labels of three spheres around the middle, i fastest."""
+    i, j, k = np.indices((n, n, n)) * STEP - STEP * (n - 1) / 2
+    radius = np.sqrt(i * i + j * j + k * k)
+    table = np.array([*values, 0], np.uint8)
+    return np.asfortranarray(table[np.searchsorted(radii, radius)])
+
+
+def phantom(n=44):
+    """A T1 of three spheres: bright brain, dark skull, bright scalp; and the brain's mask."""
+    t1 = np.array([0, 100, 20, 140], np.uint8)[spheres(n=n)]
+    return np.asfortranarray(t1), np.asfortranarray((spheres(n=n) == 1).astype(np.uint8))
+
+
+class Truth(unittest.TestCase):
+    def setUp(self):
+        self.model = adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), **QUICK)
+
+    def test_surfaces_are_the_spheres(self):
+        self.assertEqual(tuple(self.model.surfaces), NAMES)
+        for (name, mesh), radius in zip(self.model.surfaces.items(), RADII):
+            self.assertEqual((len(mesh.vertices), len(mesh.faces)), (162, 320))
+            distance = np.linalg.norm(mesh.vertices, axis=1)
+            self.assertLess(np.abs(distance - radius).max(), 2)  # binary voxels of 4 mm: half of one
+            self.assertLess(abs(distance.mean() - radius), 0.7)
+            self.assertGreater(mesh.volume, 0)
+            self.assertEqual(mesh.frame, "ras")
+
+    def test_the_check_is_the_checker_s(self):
+        self.assertTrue(self.model.check)
+        found = adaptiso.check_nested(list(self.model.surfaces.values()), names=list(NAMES),
+                                      min_gap=2)
+        for key in ("passed", "surfaces", "nesting"):
+            self.assertEqual(self.model.check.report[key], found.report[key], key)
+
+    def test_the_page_shows_the_model(self):
+        page = self.model.report_html()
+        self.assertTrue(page.startswith("<!DOCTYPE html>"))
+        for text in ("PASSED", "inner_skull", "Head model of three layers", *NAMES):
+            self.assertIn(text, page)
+
+    def test_repr_tells_the_surfaces(self):
+        self.assertEqual(repr(self.model), "<adaptiso.HeadModel: " + ", ".join(
+            f"{name} of 162 vertices" for name in NAMES) + ">")
+
+    def test_orders_of_samples_make_no_difference(self):
+        for labels in (np.ascontiguousarray(spheres()), spheres().astype(np.int32)):
+            other = adaptiso.bem(labels=labels, tissues=TISSUES, affine=affine(), **QUICK)
+            self.assertEqual(list(other.surfaces.values()), list(self.model.surfaces.values()))
+            self.assertTrue(labels.flags.writeable)
+
+    def test_one_surface_for_meg(self):
+        model = adaptiso.bem(labels=spheres(), tissues={"brain": [1]}, affine=affine(), meg=True,
+                             **QUICK)
+        self.assertEqual(list(model.surfaces), ["inner_skull"])
+        self.assertEqual([surface["id"] for surface in model.to_mne()], [1])
+
+    def test_progress_is_told_and_can_stop(self):
+        stages = []
+        adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), **QUICK,
+                     progress=lambda stage, done: stages.append(stage))
+        self.assertIn("remesh", stages)
+
+        def stop(stage, done):
+            raise KeyboardInterrupt
+
+        with self.assertRaises(KeyboardInterrupt):
+            adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), progress=stop, **QUICK)
+
+
+@needs("nibabel")
+class Bytes(InFolder):
+    def image(self, name, samples, matrix=None):
+        import nibabel
+        path = self.folder / name
+        nibabel.save(nibabel.Nifti1Image(samples, affine() if matrix is None else matrix), path)
+        return path
+
+    def compare(self, arguments, model, **options):
+        """The folder is the program's, but for who made it and how long it took."""
+        theirs, ours = self.folder / "theirs", self.folder / "ours"
+        program("adaptiso-bem", *arguments, "-o", theirs, "--force")
+        model.save(ours, replace=True, **options)
+        self.assertEqual(sorted(file.name for file in ours.iterdir()),
+                         sorted(file.name for file in theirs.iterdir()))
+        for file in theirs.iterdir():
+            if file.suffix not in (".json", ".md"):
+                self.assertEqual((ours / file.name).read_bytes(), file.read_bytes(), file.name)
+        readmes = [(folder / "README.md").read_text().replace("adaptiso (Python)", "adaptiso-bem")
+                   for folder in (ours, theirs)]
+        self.assertEqual(*readmes)
+        reports = [json.loads((folder / "report.json").read_text()) for folder in (ours, theirs)]
+        self.assertEqual(*map(list, reports))
+        for report in reports:
+            for key in ("program", "seconds", "peakMemoryMb"):
+                report.pop(key)
+            for file in report["output"]["files"]:
+                if file["file"] == "README.md":
+                    file.pop("bytes")
+        self.assertEqual(*reports)
+
+    def test_of_labels(self):
+        path = self.image("seg.nii", spheres())
+        self.compare(["--labels", path, "--tissue", "brain=1", "--tissue", "skull=2", "--tissue",
+                      "scalp=3", "--gifti", "--vtp", *ARGUMENTS],
+                     adaptiso.bem(labels=path, tissues=TISSUES, **QUICK), gifti=True, vtp=True)
+
+    def test_of_a_t1_with_its_mask_in_other_frames_and_units(self):
+        t1, mask = phantom()
+        tilted = affine(centre=(12, -8, 20)) @ np.array(
+            [[0.99, -0.14, 0, 0], [0.14, 0.99, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+        paths = self.image("t1.nii", t1, tilted), self.image("mask.nii", mask, tilted)
+        self.compare(["--t1", paths[0], "--brain-mask", paths[1], "--coordinates", "lps", "--units",
+                      "m", "--min-gap", "3,2.5", "--conductivity", "0.33,0.0041,0.43", *ARGUMENTS],
+                     adaptiso.bem(t1=paths[0], brain_mask=paths[1], min_gap=(3, 2.5),
+                                  conductivity=(0.33, 0.0041, 0.43), **QUICK),
+                     units="m", frame="lps")
+
+    def test_of_probabilities_and_of_a_ct(self):
+        maps = [self.image(f"c{n + 1}.nii", spheres(values)) for n, values in enumerate(
+            ((100, 0, 0), (100, 0, 0), (55, 0, 0), (0, 255, 0), (0, 0, 255)))]
+        self.compare(["--probabilities", *maps, *ARGUMENTS],
+                     adaptiso.bem(probabilities=maps, **QUICK))
+        ct = self.image("ct.nii", np.asfortranarray(
+            np.array([-1000, 40, 1000, 40], np.int16)[spheres()]))
+        self.compare(["--ct", ct, "--meg", *ARGUMENTS], adaptiso.bem(ct=ct, meg=True, **QUICK))
+
+    def test_of_surfaces(self):
+        model = adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), **QUICK)
+        files = []
+        for name, mesh in model.surfaces.items():
+            files.append(self.folder / f"{name}.vtp")
+            mesh.save(files[-1])
+        theirs, ours = self.folder / "theirs", self.folder / "ours"
+        program("adaptiso-bem", "--surfaces", *files, "-o", theirs)
+        adaptiso.bem(surfaces=files).save(ours)
+        adaptiso.bem(surfaces=[(mesh.vertices, mesh.faces) for mesh in model.surfaces.values()]).save(
+            self.folder / "arrays")
+        for name in NAMES:
+            truth = (theirs / f"{name}.tri").read_bytes()
+            self.assertEqual((ours / f"{name}.tri").read_bytes(), truth)
+            self.assertEqual((self.folder / "arrays" / f"{name}.tri").read_bytes(), truth)
+
+    def test_a_saved_surface_is_the_model_s(self):
+        path = self.image("seg.nii", spheres())
+        model = adaptiso.bem(labels=path, tissues=TISSUES, **QUICK)
+        model.save(self.folder / "model")
+        for name, mesh in model.surfaces.items():
+            mesh.save(self.folder / f"{name}.surf")
+            self.assertEqual((self.folder / f"{name}.surf").read_bytes(),
+                             (self.folder / "model" / f"{name}.surf").read_bytes())
+
+    def test_nothing_else_is_replaced(self):
+        model = adaptiso.bem(labels=spheres(), tissues={"brain": [1]}, affine=affine(), meg=True,
+                             **QUICK)
+        folder = self.folder / "model"
+        model.save(folder)
+        before = sorted(path.name for path in folder.iterdir())
+        with self.assertRaisesRegex(adaptiso.Error, "replace=True"):
+            model.save(folder)
+        (folder / "notes.txt").write_text("mine")
+        with self.assertRaisesRegex(adaptiso.Error, "holds notes.txt"):
+            model.save(folder, replace=True)
+        (folder / "notes.txt").unlink()
+        model.save(folder, replace=True)
+        self.assertEqual(sorted(path.name for path in folder.iterdir()), before)
+        with self.assertRaises(adaptiso.Error):
+            model.save(self.folder / "no" / "model")
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["model"])
+
+
+class Failures(unittest.TestCase):
+    def test_a_model_that_cannot_be_is_an_error_that_shows_where(self):
+        metres = [(points, faces) for points, faces in (
+            (mesh.vertices / 1000, mesh.faces) for mesh in adaptiso.bem(
+                labels=spheres(), tissues=TISSUES, affine=affine(), **QUICK).surfaces.values())]
+        with self.assertRaises(adaptiso.NoModel) as caught:
+            adaptiso.bem(surfaces=metres)
+        self.assertIn("size", str(caught.exception))
+        model = caught.exception.model
+        self.assertEqual(len(model.surfaces), 3)
+        self.assertFalse(model.check)
+        self.assertFalse(model.report["model"])
+        self.assertGreater(len(model.report["findings"]), 0)
+        self.assertIn("FAILED", model.report_html())
+        with self.assertRaisesRegex(adaptiso.Error, "no model to save"):
+            model.save("nowhere")
+
+    def test_what_cannot_be_used_is_refused_with_one_line(self):
+        labels, t1 = spheres(), np.zeros((9, 9, 9))
+        for options in (
+                {}, {"t1": t1, "ct": t1}, {"t1": t1, "labels": labels}, {"labels": labels},
+                {"t1": None}, {"t1": 3}, {"t1": "nowhere.nii"}, {"t1": t1},
+                {"t1": np.zeros((0, 3, 3))}, {"t1": t1[0]}, {"t1": t1.astype(complex)},
+                {"t1": t1, "brain_mask": t1}, {"t1": t1, "brain_mask": "nowhere.nii"},
+                {"ct": t1}, {"ct": t1, "skin_hu": 400}, {"probabilities": t1},
+                {"probabilities": [t1]}, {"probabilities": []}, {"labels": labels, "tissues": "spm"},
+                {"labels": labels, "tissues": {"brain": [1]}},
+                {"labels": labels, "tissues": {"brain": [1], "skull": [1], "scalp": [3]}},
+                {"labels": labels, "tissues": {"brain": ["one"], "skull": [1], "scalp": [3]}},
+                {"labels": labels, "tissues": {"brain": [9], "skull": [2], "scalp": [3]}},
+                {"labels": labels, "tissues": TISSUES, "vertices": 3},
+                {"labels": labels, "tissues": TISSUES, "vertices": [162, 162]},
+                {"labels": labels, "tissues": TISSUES, "edge_length": (5, 3)},
+                {"labels": labels, "tissues": TISSUES, "min_gap": 0.1},
+                {"labels": labels, "tissues": TISSUES, "conductivity": (1, 2)},
+                {"labels": labels, "tissues": TISSUES, "conductivity": (0.3, -1, 0.3)},
+                {"labels": labels, "tissues": TISSUES, "smoothing": np.nan},
+                {"t1": t1, "skull": 30}, {"t1": t1, "max_skull": 1}, {"t1": t1, "tissues": TISSUES},
+                {"surfaces": [1, 2, 3]}, {"surfaces": []}, {"surfaces": "a.stl"},
+                {"surfaces": [(np.eye(3), [[0, 1, 2]])] * 3}, {"t1": t1, "volume": t1},
+                {"t1": t1, "meg": "yes"}, {"t1": t1, "threads": -1}):
+            with self.assertRaises(adaptiso.Error, msg=str(options)) as caught:
+                adaptiso.bem(**{"affine": affine(), **options})
+            self.assertNotIn("\n", str(caught.exception))
+
+
+@needs("mne")
+class Mne(InFolder):
+    def test_takes_the_surfaces_as_it_would_its_own(self):
+        """mne.make_bem_model's dicts of the saved files, but for rounding to float32."""
+        import mne
+        mne.set_log_level("ERROR")
+        model = adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(centre=(9, -4, 30)),
+                             conductivity=(0.33, 0.0041, 0.43), **QUICK)
+        model.save(self.folder / "bem")
+        (self.folder / "anna").mkdir()
+        (self.folder / "bem").rename(self.folder / "anna" / "bem")
+        theirs = mne.make_bem_model("anna", ico=None, conductivity=(0.33, 0.0041, 0.43),
+                                    subjects_dir=self.folder)
+        ours = model.to_mne()
+        for their, our in zip(theirs, ours):
+            for key in ("id", "sigma", "coord_frame", "np", "ntri"):
+                self.assertEqual(our[key], their[key], key)
+            np.testing.assert_array_equal(our["tris"], their["tris"])
+            np.testing.assert_allclose(our["rr"], their["rr"], rtol=0, atol=1e-8)
+        solutions = [mne.make_bem_solution(surfaces)["solution"] for surfaces in (theirs, ours)]
+        # float32 places differ by 4e-6 of the head; entries are up to 0.02
+        np.testing.assert_allclose(*solutions, rtol=1e-4, atol=1e-6)
+        bem = mne.make_bem_solution(model.to_mne())
+        mne.write_bem_solution(self.folder / "a-bem-sol.fif", bem)
+        self.assertEqual(len(mne.read_bem_solution(self.folder / "a-bem-sol.fif")["surfs"]), 3)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

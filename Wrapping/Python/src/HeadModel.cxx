@@ -1,0 +1,230 @@
+#include "HeadModel.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+
+#include "Calls.h"
+#include "Judgements.h"
+#include "Resources.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/Pipeline/BemJson.h"
+#include "adaptiso/Pipeline/BemReport.h"
+#include "adaptiso/Pipeline/BemSurfaces.h"
+#include "adaptiso/Report/Page.h"
+#include "adaptiso/Report/Pictures.h"
+
+namespace adaptiso::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+void addSeconds(std::vector<std::pair<std::string, double>>& stages, std::string_view stage,
+                double seconds) {
+    const auto known = std::find_if(stages.begin(), stages.end(),
+                                    [&](const auto& entry) { return entry.first == stage; });
+    if (known == stages.end()) {
+        stages.emplace_back(stage, seconds);
+    } else {
+        known->second += seconds;
+    }
+}
+
+HeadBoundaries boundariesOf(const HeadSources& sources, const BoundaryOptions& options) {
+    std::vector<VolumeView> views;
+    for (const auto& image : sources.images) views.push_back(image->view);
+    if (sources.source == "labels") {
+        return boundariesFromLabels(views.front(), sources.tissues, options);
+    }
+    if (sources.source == "probabilities") return boundariesFromProbabilities(views, options);
+    if (sources.source == "ct") return boundariesFromCt(views.front(), options);
+    std::optional<VolumeView> mask;
+    if (sources.brainMask) mask = sources.brainMask->view;
+    return boundariesFromT1(views.front(), mask, options);
+}
+
+/// What is wrong with an image, told with the name of the argument.
+HeadBoundaries namedBoundaries(const HeadSources& sources, const BoundaryOptions& options) {
+    try {
+        return boundariesOf(sources, options);
+    } catch (const InvalidInput& error) {
+        const bool isOfMask = std::string(error.what()).starts_with("the brain mask");
+        throw InvalidInput((isOfMask ? "brain_mask" : sources.source) + ": " + error.what());
+    }
+}
+
+/// tkRAS whose volume nothing tells.
+bool areLoose(const HeadSources& sources) {
+    return sources.images.empty() &&
+           std::any_of(sources.surfaces.begin(), sources.surfaces.end(), [](const auto& surface) {
+               return surface->frame() == CoordinateFrame::TkRas && !surface->image();
+           });
+}
+
+/// The surfaces in LPS mm; of loose tkRAS in the LPS of a stand-in, as the program has it.
+std::vector<TriangleMesh> readyMeshes(const HeadSources& sources, BemModel& model) {
+    std::vector<TriangleMesh> meshes;
+    for (const auto& surface : sources.surfaces) {
+        std::optional<ImageGeometry> volume = model.image ? model.image : surface->image();
+        if (volume) volume = frameVolume(CoordinateFrame::TkRas, *volume);
+        const bool isTkRas = surface->frame() == CoordinateFrame::TkRas;
+        if (isTkRas && !volume) {
+            volume = conformedGeometry({{256, 256, 256}, {-128, -128, -128}, {}});
+        }
+        if (!model.tkRasVolume) model.tkRasVolume = volume;
+        meshes.push_back(fromFrame(surface->mesh(), surface->frame(), volume));
+        meshes.back().normals = {};
+    }
+    return meshes;
+}
+
+void writeText(const fs::path& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary | std::ios::trunc);
+    file.write(text.data(), static_cast<std::streamsize>(text.size()));
+    file.close();
+    if (!file) throw FileError(path.string() + ": can't be written: " + std::strerror(errno));
+}
+
+}  // namespace
+
+std::shared_ptr<HeadModelData> HeadModelData::make(const HeadSources& sources,
+                                                   const BemModelOptions& options, int threads,
+                                                   py::object progress) {
+    auto data = std::make_shared<HeadModelData>();
+    BemModel& model = data->model_;
+    model.options = options;
+    model.source = sources.source;
+    model.inputs = sources.inputs;
+    model.warnings = sources.warnings;
+    data->threads_ = threads;
+    data->isLoose_ = areLoose(sources);
+    if (!sources.images.empty()) {
+        data->shown_ = sources.images.front();
+        model.image = data->shown_->view.geometry();
+        model.tkRasVolume = frameVolume(CoordinateFrame::TkRas, *model.image);
+    }
+    Watcher watcher(std::move(progress));
+    const auto begin = std::chrono::steady_clock::now();
+    watcher.run(threads, [&] {
+        const BemHooks hooks{[&](std::string_view stage, const std::function<void()>& work) {
+                                 watcher.tell(stage, 0);
+                                 const auto start = std::chrono::steady_clock::now();
+                                 work();
+                                 addSeconds(data->seconds_, stage, secondsSince(start));
+                             },
+                             watcher.callback()};
+        std::vector<TriangleMesh> dense;
+        if (sources.source == "surfaces") {
+            try {
+                dense = mendSurfaces(readyMeshes(sources, model), model, hooks);
+            } catch (const InvalidInput& error) {
+                throw InvalidInput(std::string("surfaces: ") + error.what());
+            }
+        } else {
+            BoundaryOptions boundaries = options.boundaries;
+            boundaries.progress = hooks.progress;
+            HeadBoundaries found;
+            hooks.stage("boundaries", [&] { found = namedBoundaries(sources, boundaries); });
+            dense = extractSurfaces(found, model, hooks);
+        }
+        finishBemModel(std::move(dense), model, hooks);
+        watcher.tell("check", 1);
+    });
+    data->totalSeconds_ = secondsSince(begin);
+    data->peakMemoryMb_ = peakMemoryMb();
+    return data;
+}
+
+std::vector<std::shared_ptr<MeshData>> HeadModelData::surfaces() const {
+    std::vector<std::shared_ptr<MeshData>> list;
+    const std::optional<ImageGeometry> volume = model_.image ? model_.image : model_.tkRasVolume;
+    for (const TriangleMesh& mesh : model_.meshes) {
+        if (isLoose_) {
+            list.push_back(std::make_shared<MeshData>(MeshData::asStored(
+                toFrame(mesh, CoordinateFrame::TkRas, volume), CoordinateFrame::TkRas)));
+        } else {
+            list.push_back(MeshData::fromLps(mesh, volume, std::nullopt));
+        }
+    }
+    return list;
+}
+
+std::string HeadModelData::check(int threads) const {
+    std::vector<TriangleMesh> meshes;
+    std::vector<const TriangleMesh*> asked;
+    std::vector<std::string> names;
+    for (const TriangleMesh& mesh : model_.meshes) {
+        meshes.push_back(toFrame(mesh, CoordinateFrame::Ras));
+    }
+    for (std::size_t n = 0; n < meshes.size(); ++n) {
+        asked.push_back(&meshes[n]);
+        names.push_back(bemSurfaceName(n));
+    }
+    CheckRules rules;
+    rules.isNested = true;
+    rules.profile = Profile::Bem;
+    std::string text;
+    runUnlocked(threads, [&] {
+        text = dumped(nestedJson(asked, names, model_.options.minGapsMm(), rules));
+    });
+    return text;
+}
+
+std::string HeadModelData::reportOf(const BemModel& model, const BemFileOptions& options,
+                                    const Files& files) const {
+    Json told = bemOptionsJson(model.options);
+    told["threads"] = threads_ > 0 ? Json(threads_) : Json(nullptr);
+    told["strict"] = false;
+    Json report{{"schema", "adaptiso-bem/1"},
+                {"program", {{"name", kProgramName}, {"version", ADAPTISO_VERSION}}},
+                {"model", model.hasModel()},
+                {"failedByWarnings", false},
+                {"input", bemInputJson(model)},
+                {"options", told}};
+    report.update(bemModelJson(model));
+    report["output"] = bemOutputJson(model, options, files);
+    report["reportFailure"] = nullptr;
+    Json seconds = Json::object();
+    for (const auto& [stage, time] : seconds_) seconds[stage] = time;
+    seconds["total"] = totalSeconds_;
+    report["seconds"] = seconds;
+    report["peakMemoryMb"] = peakMemoryMb_;
+    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string HeadModelData::report(const BemFileOptions& options) const {
+    return reportOf(model_, options, {});
+}
+
+void HeadModelData::write(const fs::path& folder, const BemFileOptions& options) const {
+    std::vector<std::string> names;
+    writeBemFiles(model_, options, std::string(kProgramName) + " " + ADAPTISO_VERSION,
+                  [&](const std::string& name) {
+                      names.push_back(name);
+                      return folder / name;
+                  });
+    BemModel written = model_;
+    checkBemFiles(folder, options, written);
+    if (!written.hasModel()) throw InvalidInput("no model: " + written.failureText());
+    Files files;
+    for (const std::string& name : names) files.emplace_back(name, fs::file_size(folder / name));
+    writeText(folder / "report.json", reportOf(written, options, files));
+}
+
+std::string HeadModelData::page(bool leavesOutFaces) const {
+    Report report = bemReport(model_, {});
+    report.program = kProgramName;
+    report.version = ADAPTISO_VERSION;
+    report.date = reportDate();
+    report.leavesOutFaces = leavesOutFaces;
+    if (shown_) report.volume = ReportVolume{model_.inputs.front().role, shown_->view};
+    report.stageSeconds = seconds_;
+    std::string html;
+    runUnlocked(threads_, [&] { html = htmlPage(report, drawPictures(report)); });
+    return html;
+}
+
+}  // namespace adaptiso::python
