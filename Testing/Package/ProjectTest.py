@@ -117,5 +117,34 @@ class Validation(unittest.TestCase):
                 "A.B": validation.FAILED, "C.D": validation.NOT_RUN, "E.F": validation.PASSED})
 
 
+class Pages(unittest.TestCase):
+    def test_links_lead_somewhere(self):
+        """From every page to files of the project, and to headings as GitHub names them."""
+        def anchors(page):
+            plain = re.sub(r"(?ms)^```.*?^```", "", page.read_text(encoding="utf-8"))
+            headings = re.findall(r"(?m)^#+ (.*)$", plain)
+            return {re.sub(r"[^\w\- ]", "", re.sub(r"\]\([^)]*\)", "", heading)).lower().replace(" ", "-")
+                    for heading in headings}
+
+        pages = [page for page in SOURCE.rglob("*.md")
+                 if not {"build", "node_modules"} & set(page.relative_to(SOURCE).parts)]
+        self.assertGreater(len(pages), 20)
+        for page in pages:
+            plain = re.sub(r"(?ms)^```.*?^```", "", page.read_text(encoding="utf-8"))
+            for link in re.findall(r"\]\(([^)\s]+)\)", plain):
+                if re.match(r"[a-z]+:", link):
+                    continue
+                name, _, anchor = link.partition("#")
+                target = (page.parent / name).resolve() if name else page
+                self.assertTrue(target.exists(), f"{page}: {link}")
+                if anchor:
+                    self.assertIn(anchor, anchors(target), f"{page}: {link}")
+
+    def test_figures_are_as_they_are_drawn(self):
+        done = subprocess.run([sys.executable, "-B", SOURCE / "Documentation" / "algorithmFigures.py",
+                               "--check"], text=True, capture_output=True)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=2)

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "RandomVolumes.h"
 #include "Support/AnalyticVolumes.h"
@@ -11,14 +10,6 @@
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
-#include "adaptive/bricks/SheetRoom.h"
-#include "adaptive/bricks/SheetTest.h"
-#include "adaptive/proof/CrossingProof.h"
-#include "adaptive/proof/NearTriangle.h"
-#include "adaptive/proof/PieceBound.h"
-#include "adaptive/rounds/BrickRound.h"
-#include "adaptive/rounds/TightPlaces.h"
-#include "lattice/LatticeSampler.h"
 
 namespace adaptiso::testing {
 namespace {
@@ -389,131 +380,6 @@ TEST(AdaptiveMethod, RefusesLimitsThatMeanNothing) {
           AdaptiveOptions{.maxErrorMm = {}, .maxTriangles = {}, .reduction = 1.5}}) {
         EXPECT_THROW(extractWith(volume, 0, bad), InvalidInput);
     }
-}
-
-TEST(SheetTest, KnowsOneSheetFromTwo) {
-    const auto window = [](const auto& isInside) {
-        std::uint64_t bits = 0;
-        for (int i = 0; i < 64; ++i) {
-            if (isInside(i % 4, i / 4 % 4, i / 16)) bits |= std::uint64_t{1} << i;
-        }
-        return bits;
-    };
-    EXPECT_TRUE(detail::isSingleSheet(window([](int, int, int z) { return z < 2; })));
-    EXPECT_TRUE(detail::isSingleSheet(window([](int x, int, int z) { return x + z < 3; })));
-    EXPECT_TRUE(
-        detail::isSingleSheet(window([](int x, int y, int z) { return x < 2 && y < 2 && z < 2; })));
-    EXPECT_FALSE(detail::isSingleSheet(window([](int, int, int z) { return z == 1; })));
-    EXPECT_FALSE(detail::isSingleSheet(window([](int x, int, int z) { return z == 1 && x < 2; })));
-    EXPECT_FALSE(detail::isSingleSheet(window([](int x, int y, int) { return x == y; })));
-    EXPECT_FALSE(detail::isSingleSheet(0));
-}
-
-TEST(SheetRoom, IsTheDistanceToASheetThatFacesElsewhere) {
-    // two sheets 0.5 apart that face away from each other, and a third 0.9 over them
-    std::vector<Vec3> points, normals;
-    for (int i = 0; i < 300; ++i) {
-        const int layer = i % 3;
-        points.push_back({0.25 * (i / 3 % 10), 0.25 * (i / 30), layer == 2 ? 1.4 : 0.5 * layer});
-        normals.push_back({0, 0, layer == 1 ? 3.0 : -3.0});
-    }
-    std::vector<std::uint8_t> room(points.size(), 0);
-    room.front() = detail::SheetRoom::kAlone;
-    ImageGeometry geometry;
-    geometry.size = {8, 8, 8};
-    detail::SheetRoom::fillIn(points, normals, detail::MetricFrame(geometry), room);
-    constexpr int kParts = detail::SheetRoom::kParts;
-    EXPECT_EQ(room.front(), detail::SheetRoom::kAlone);
-    for (std::size_t i = 1; i < room.size(); ++i) {
-        EXPECT_NEAR(room[i], (i % 3 == 2 ? 0.9 : 0.5) * kParts, 1) << i;
-    }
-}
-
-TEST(TightPlaces, AskForProofsWhereTrianglesCrossed) {
-    detail::TightPlaces places;
-    places.addCrossings({{10, 10, 10}});
-    std::vector<detail::Sample> samples(2);
-    samples[0].setPoint({11, 10, 9});
-    samples[1].setPoint({20, 10, 10});
-    ImageGeometry geometry;
-    geometry.size = {32, 32, 32};
-    places.apply(detail::MetricFrame(geometry), samples);
-    EXPECT_EQ(samples[0].room, 0);
-    EXPECT_TRUE(samples[1].isAlone());
-}
-
-TEST(TightPlaces, FreezeWhatIsAroundThem) {
-    detail::TightPlaces places;
-    EXPECT_FALSE(places.isFrozen({10, 10, 10}));
-    places.freeze({{10, 10, 10}}, 0);
-    EXPECT_TRUE(places.isFrozen({10, 10, 11.5}));
-    EXPECT_FALSE(places.isFrozen({10, 10, 20}));
-    places.freeze({{10, 10, 10}}, 3);  // 12 voxels around
-    EXPECT_TRUE(places.isFrozen({10, 10, 20}));
-    EXPECT_FALSE(places.isFrozen({10, 10, 40}));
-}
-
-TEST(BrickRound, LeavesFrozenPlacesAtFullResolution) {
-    const Volume volume = ball(48, 18, Mat3{});
-    const auto index = SpanSpaceIndex::build(volume.view(), {4, Border::Closed});
-    const auto sampler = detail::LatticeSampler::make(volume.view(), 0, Border::Closed);
-    const detail::Bricks bricks(index.grid(), index.blocksAt(0).blocks);
-    const detail::MetricFrame frame(volume.view().geometry());
-    detail::PatchLimits limits;
-    limits.maxCost = 10;
-    limits.maxDistanceMm = 0.5;
-    detail::TightPlaces tight;
-    const auto simplified = [&] {
-        return detail::simplifyBricks(*sampler, bricks, frame, tight, limits, nullptr);
-    };
-    const std::int64_t without = simplified().triangleCount();
-    tight.freeze({{23.5, 23.5, 41.5}}, 1);  // the ball's pole
-    const detail::SimplifiedSurface surface = simplified();
-    EXPECT_GT(surface.triangleCount(), without + 50);
-    EXPECT_LT(surface.triangleCount(), surface.fineTriangles / 2);
-    tight.freeze({{23.5, 23.5, 23.5}}, 6);  // all of it
-    EXPECT_EQ(simplified().triangleCount(), surface.fineTriangles);
-}
-
-TEST(CrossingProof, FindsTrianglesThatCross) {
-    TriangleMesh mesh;
-    mesh.points = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {5, 5, 1}};
-    mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
-    EXPECT_EQ(detail::crossingTriangles(mesh).size(), 2U);
-    mesh.points[3] = {1, 1, 0.5};
-    EXPECT_TRUE(detail::crossingTriangles(mesh).empty());
-}
-
-TEST(NearTriangle, TellsWhatTheDistanceTells) {
-    std::mt19937 random(7);
-    std::uniform_real_distribution<double> at(-1, 1), squared(0.001, 2);
-    const auto point = [&] { return Vec3{at(random), at(random), at(random)}; };
-    int within = 0;
-    for (int n = 0; n < 20000; ++n) {
-        detail::Corners t{point(), point(), point()};
-        if (n % 10 == 0) t[2] = t[0] + 0.3 * (t[1] - t[0]) + 1e-9 * t[2];  // next to flat
-        const Vec3 p = point();
-        const double limit = squared(random), distance = detail::squaredDistanceToTriangle(p, t);
-        if (std::abs(distance - limit) < 1e-6) continue;
-        const detail::NearTriangle near(t, limit);
-        EXPECT_EQ(near.has(p), distance < limit) << n;
-        within += static_cast<int>(near.has(p));
-    }
-    EXPECT_GT(within, 5000);
-    EXPECT_LT(within, 15000);
-}
-
-TEST(PieceBound, IsTheDistanceOfAPieceAcrossARidge) {
-    // a roof of two triangles with its ridge along x at height 1, and a piece under the ridge
-    detail::PieceBound bound(0.0);
-    bound.nearby() = {{Vec3{-10, -5, 0}, Vec3{10, -5, 0}, Vec3{0, 0, 1}},
-                      {Vec3{-10, 5, 0}, Vec3{0, 0, 1}, Vec3{10, 5, 0}}};
-    const detail::Corners piece{Vec3{0, -0.5, 0.7}, Vec3{0.2, 0.5, 0.7}, Vec3{-0.2, 0.5, 0.7}};
-    bound.include(piece);
-    // farthest at y = 0, where the roof is highest: under it by 0.3, times the slope's cosine
-    const double exact = 0.3 * 5 / std::sqrt(26.0);
-    EXPECT_GE(bound.boundMm(), 0.98 * exact);
-    EXPECT_LE(bound.boundMm(), 1.05 * exact);
 }
 
 }  // namespace adaptiso::testing

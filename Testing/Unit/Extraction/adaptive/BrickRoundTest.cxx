@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "Support/AnalyticVolumes.h"
-#include "adaptiso/SpanSpace/SpanSpaceIndex.h"
+#include "Surfaces.h"
 #include "adaptive/rounds/BrickRound.h"
-#include "lattice/LatticeSampler.h"
 
 namespace adaptiso::testing {
 namespace {
@@ -30,20 +28,16 @@ Volume layeredVolume(std::int64_t side) {
 // Bricks are simplified side by side, each without a look at the others: what reached into a
 // neighbour could meet its triangles.
 TEST(BrickRound, KeepsEachTriangleInOneBrick) {
-    const Volume volume = layeredVolume(72);
     for (const Border border : {Border::Closed, Border::Open}) {
-        const auto index = SpanSpaceIndex::build(volume.view(), {4, border});
-        const auto sampler = detail::LatticeSampler::make(volume.view(), 5, border);
-        const detail::Bricks bricks(index.grid(), index.blocksAt(5).blocks);
-        ASSERT_GT(bricks.count(), 8);
-        const detail::MetricFrame frame(volume.view().geometry());
+        const Scene scene(layeredVolume(44), 5, border);
+        ASSERT_GE(scene.bricks.count(), 8);
         detail::PatchLimits limits;
         limits.maxCost = 10;
         limits.maxDistanceMm = 0.5;
         const detail::SimplifiedSurface surface =
-            detail::simplifyBricks(*sampler, bricks, frame, {}, limits, nullptr);
+            detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, {}, limits, nullptr);
         ASSERT_LT(surface.triangleCount(), surface.fineTriangles / 2);
-        const auto offset = static_cast<double>(index.grid().offset);
+        const auto offset = static_cast<double>(scene.bricks.grid().offset);
         constexpr double kRounding = 1e-9;  // of coordinates up to 100
         for (const auto& t : surface.triangles) {
             Vec3 low = surface.points[t[0]], high = low;
@@ -59,6 +53,25 @@ TEST(BrickRound, KeepsEachTriangleInOneBrick) {
             }
         }
     }
+}
+
+TEST(BrickRound, LeavesFrozenPlacesAtFullResolution) {
+    const Scene scene = ballScene();
+    detail::PatchLimits limits;
+    limits.maxCost = 10;
+    limits.maxDistanceMm = 0.5;
+    detail::TightPlaces tight;
+    const auto simplified = [&] {
+        return detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, tight, limits,
+                                      nullptr);
+    };
+    const std::int64_t without = simplified().triangleCount();
+    tight.freeze({kBallMiddle + Vec3{0, 0, kBallRadius}}, 0);
+    const detail::SimplifiedSurface surface = simplified();
+    EXPECT_GT(surface.triangleCount(), without + 20);
+    EXPECT_LT(surface.triangleCount(), surface.fineTriangles / 2);
+    tight.freeze({kBallMiddle}, 6);  // all of it
+    EXPECT_EQ(simplified().triangleCount(), surface.fineTriangles);
 }
 
 }  // namespace adaptiso::testing

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <cstdint>
 
 #include "adaptive/collapse/ChangedStar.h"
 #include "adaptive/collapse/CrossingGuard.h"
@@ -96,25 +96,6 @@ TEST(CrossingGuard, SeesTrianglesWhereACommitPutThem) {
     other.vertex = {3, 1, 0.45};
     ASSERT_TRUE(shapeStar(patch, {}, other));
     EXPECT_FALSE(guard.crossesNothing(other));
-}
-
-TEST(ChangedStar, IsNoGraphWhereItGoesRoundItsVertexTwice) {
-    // ten triangles in a spiral staircase of two turns about the z axis, each of them upright
-    Patch patch;
-    ChangedStar changed;
-    constexpr int kSteps = 10;
-    for (int i = 0; i < kSteps; ++i) {
-        const double angle = 4 * M_PI * i / kSteps;
-        patch.points.push_back({std::cos(angle), std::sin(angle), 0.05 * i});
-        changed.star.ring[i] = static_cast<std::uint32_t>(i);
-        changed.star.apex[i] = kSteps;
-        changed.star.triangle[i] = static_cast<std::uint32_t>(i);
-    }
-    patch.points.push_back({0, 0, 0.2});
-    changed.star.count = kSteps;
-    changed.vertex = {0, 0, 0.25};
-    ASSERT_TRUE(shapeStar(patch, {}, changed));
-    EXPECT_FALSE(changed.isGraph);
 }
 
 }  // namespace adaptiso::testing

@@ -2,59 +2,19 @@
 
 #include <algorithm>
 #include <limits>
-#include <random>
 #include <vector>
 
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
+#include "Surfaces.h"
 #include "adaptive/mending/SurfaceMender.h"
 #include "adaptive/proof/CrossingProof.h"
+#include "adaptive/proof/PieceBound.h"
 
 namespace adaptiso::testing {
 namespace {
 
 using detail::PlaceBeyond;
-
-/// With a sample at each vertex.
-detail::SimplifiedSurface surfaceOf(const TriangleMesh& mesh) {
-    detail::SimplifiedSurface surface;
-    surface.points = mesh.points;
-    surface.quadrics.resize(mesh.points.size());
-    surface.states.assign(mesh.points.size(), detail::Patch::State::Open);
-    surface.samples.resize(mesh.points.size());
-    surface.sampleTriangle.resize(mesh.points.size());
-    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-        surface.samples[v].setPoint(mesh.points[v]);
-    }
-    for (const auto& [a, b, c] : mesh.triangles) {
-        for (const VertexId v : {a, b, c}) surface.sampleTriangle[v] = surface.triangles.size();
-        surface.triangles.push_back({static_cast<std::uint64_t>(a), static_cast<std::uint64_t>(b),
-                                     static_cast<std::uint64_t>(c)});
-    }
-    return surface;
-}
-
-/// \param dropsUnused  vertices without a triangle, which merging edges leaves
-TriangleMesh meshOf(const detail::SimplifiedSurface& surface, bool dropsUnused = false) {
-    TriangleMesh mesh;
-    std::vector<VertexId> number(surface.points.size(), dropsUnused ? -1 : 0);
-    for (const auto& t : surface.triangles) {
-        for (const std::uint64_t v : t) number[v] = 0;
-    }
-    for (std::size_t v = 0; v < number.size(); ++v) {
-        if (number[v] < 0) continue;
-        number[v] = std::ssize(mesh.points);
-        mesh.points.push_back(surface.points[v]);
-    }
-    for (const auto& t : surface.triangles) {
-        mesh.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
-    }
-    return mesh;
-}
-
-detail::MetricFrame unitFrame() {
-    return detail::MetricFrame(ImageGeometry{});
-}
 
 PlaceBeyond placeAt(const Vec3& onSimplified, const Vec3& onFine, std::uint64_t triangle) {
     return {onSimplified, onFine, triangle, false};
@@ -169,7 +129,7 @@ TEST(SurfaceMender, PartsTrianglesThatCross) {
     ASSERT_FALSE(crossing.empty());
     detail::SurfaceMender mender(surface, unitFrame(), kLimitMm);
     EXPECT_GT(mender.mendCrossings(crossing), 0U);
-    EXPECT_TRUE(detail::crossingTriangles(meshOf(surface, true)).empty());
+    EXPECT_TRUE(detail::crossingTriangles(meshOf(surface)).empty());
 }
 
 // Places all over a sphere, inside and outside, more than one in many of its triangles.
@@ -196,7 +156,7 @@ TEST(SurfaceMender, LeavesASoundSurface) {
             mended += mender.mendDistances(places);
         }
         EXPECT_GT(mended, 100U);
-        const TriangleMesh mesh = meshOf(surface, true);
+        const TriangleMesh mesh = meshOf(surface);
         expectSound(mesh);
         EXPECT_TRUE(detail::crossingTriangles(mesh).empty());
     }

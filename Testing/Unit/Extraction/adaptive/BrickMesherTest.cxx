@@ -1,0 +1,125 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "RandomVolumes.h"
+#include "Surfaces.h"
+#include "adaptive/bricks/Bricks.h"
+
+namespace adaptiso::testing {
+namespace {
+
+using detail::Brick;
+using detail::BrickMesher;
+using detail::Bricks;
+using detail::FineSurface;
+
+/// A triangle by its corners, in ten millionths of a voxel, the least one first.
+using Key = std::array<std::array<std::int64_t, 3>, 3>;
+
+Key keyOf(const Vec3& a, const Vec3& b, const Vec3& c) {
+    Key key;
+    for (int i = 0; i < 3; ++i) {
+        for (int axis = 0; axis < 3; ++axis) {
+            key[i][axis] = std::llround(1e7 * (i == 0 ? a : i == 1 ? b : c)[axis]);
+        }
+    }
+    std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
+    return key;
+}
+
+Key keyOf(const FineSurface& fine, std::size_t t) {
+    const auto& [a, b, c] = fine.triangles[t];
+    return keyOf(fine.vertices[a].index, fine.vertices[b].index, fine.vertices[c].index);
+}
+
+/// The triangles of a surface, by the lattice position of their cells.
+std::map<Key, Index3> cellsOf(const FineSurface& fine, const Brick& brick) {
+    std::map<Key, Index3> cells;
+    for (std::size_t c = 0; c < fine.cells.size(); ++c) {
+        const auto& at = fine.cells[c].position;
+        const std::size_t end =
+            c + 1 < fine.cells.size() ? fine.cells[c + 1].firstTriangle : fine.triangles.size();
+        for (std::size_t t = fine.cells[c].firstTriangle; t < end; ++t) {
+            cells[keyOf(fine, t)] = {brick.low[0] + at[0], brick.low[1] + at[1],
+                                     brick.low[2] + at[2]};
+        }
+    }
+    return cells;
+}
+
+}  // namespace
+
+// Ambiguous faces, open and closed borders, one brick and many.
+TEST(BrickMesher, MakesTheSurfaceOfMarchingCubes) {
+    std::size_t most = 0;
+    for (std::uint64_t seed = 0; seed < 24; ++seed) {
+        const HardVolume hard = hardVolume(seed, seed % 4 == 0 ? 40 : 12);
+        const Border border = seed % 2 == 0 ? Border::Closed : Border::Open;
+        const int blockSize = 2 << seed % 3;
+        const Extraction mc =
+            extractFrom(hard.volume, hard.isovalue, Method::MarchingCubes, blockSize, border);
+        std::vector<Key> expected, keys;
+        for (const auto& [a, b, c] : mc.mesh.triangles) {
+            expected.push_back(keyOf(mc.mesh.points[a], mc.mesh.points[b], mc.mesh.points[c]));
+        }
+        const auto index = SpanSpaceIndex::build(hard.volume.view(), {blockSize, border});
+        const auto sampler =
+            detail::LatticeSampler::make(hard.volume.view(), hard.isovalue, border);
+        const Bricks bricks(index.grid(), index.blocksAt(hard.isovalue).blocks);
+        BrickMesher mesher(*sampler, index.grid());
+        FineSurface fine;
+        for (std::int64_t b = 0; b < bricks.count(); ++b) {
+            mesher.mesh(bricks[b], fine);
+            EXPECT_EQ(fine.ownTriangles, fine.triangles.size());
+            for (std::size_t t = 0; t < fine.triangles.size(); ++t) keys.push_back(keyOf(fine, t));
+        }
+        std::sort(expected.begin(), expected.end());
+        std::sort(keys.begin(), keys.end());
+        ASSERT_EQ(keys, expected) << seed;
+        most = std::max(most, static_cast<std::size_t>(bricks.count()));
+    }
+    EXPECT_GE(most, 4U);
+}
+
+TEST(BrickMesher, GivesAHaloOfTheCellsAround) {
+    const Scene scene = ballScene();
+    ASSERT_EQ(scene.bricks.count(), 8);
+    BrickMesher mesher(*scene.sampler, scene.bricks.grid());
+    FineSurface fine;
+    std::map<Key, Index3> all;
+    for (std::int64_t b = 0; b < 8; ++b) {
+        mesher.mesh(scene.bricks[b], fine);
+        all.merge(cellsOf(fine, scene.bricks[b]));
+    }
+    for (std::int64_t b = 0; b < 8; ++b) {
+        const Brick& brick = scene.bricks[b];
+        mesher.mesh(brick, fine);
+        const std::size_t own = fine.triangles.size(), vertices = fine.vertices.size();
+        std::vector<Key> alone, withHalo, expected;
+        for (std::size_t t = 0; t < own; ++t) alone.push_back(keyOf(fine, t));
+        mesher.meshWithHalo(scene.bricks, b, fine);
+        EXPECT_EQ(fine.ownTriangles, own);
+        EXPECT_EQ(fine.ownVertices, vertices);
+        for (std::size_t t = 0; t < own; ++t) EXPECT_EQ(keyOf(fine, t), alone[t]);
+        for (const auto& [key, cell] : cellsOf(fine, brick)) withHalo.push_back(key);
+        for (const auto& [key, cell] : all) {
+            bool isNear = true;
+            for (int a = 0; a < 3; ++a) {
+                const std::int64_t at = cell[a] - brick.low[a];
+                isNear =
+                    isNear && at >= -BrickMesher::kHalo && at < Brick::kSide + BrickMesher::kHalo;
+            }
+            if (isNear) expected.push_back(key);
+        }
+        EXPECT_EQ(withHalo, expected);  // maps are sorted
+        EXPECT_GT(withHalo.size(), own);
+    }
+}
+
+}  // namespace adaptiso::testing

@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "Surfaces.h"
+#include "adaptive/bricks/Bricks.h"
+
+namespace adaptiso::testing {
+namespace {
+
+using detail::Brick;
+using detail::BrickMesher;
+using detail::Bricks;
+using detail::FineSurface;
+
+}  // namespace
+
+TEST(Bricks, HaveEachActiveBlockOnce) {
+    const Scene scene = ballScene();
+    const BlockGrid& grid = scene.bricks.grid();
+    std::vector<std::uint32_t> blocks;
+    for (std::int64_t b = 0; b < scene.bricks.count(); ++b) {
+        const Brick& brick = scene.bricks[b];
+        EXPECT_TRUE(std::is_sorted(brick.blocks.begin(), brick.blocks.end()));
+        EXPECT_EQ(scene.bricks.at({brick.low[0] / Brick::kSide, brick.low[1] / Brick::kSide,
+                                   brick.low[2] / Brick::kSide}),
+                  b);
+        for (const std::uint32_t block : brick.blocks) {
+            const Index3 first = grid.firstSample(block);
+            for (int a = 0; a < 3; ++a) {
+                EXPECT_GE(first[a] + grid.offset, brick.low[a]);
+                EXPECT_LE(first[a] + grid.offset + grid.blockSize, brick.low[a] + Brick::kSide);
+            }
+        }
+        blocks.insert(blocks.end(), brick.blocks.begin(), brick.blocks.end());
+    }
+    std::sort(blocks.begin(), blocks.end());
+    EXPECT_EQ(blocks, scene.index.blocksAt(0).blocks);
+    EXPECT_EQ(scene.bricks.at({-1, 0, 0}), Bricks::kNone);
+    EXPECT_EQ(scene.bricks.at({0, 0, 99}), Bricks::kNone);
+}
+
+TEST(Bricks, KnowWhichVerticesTheyMayShare) {
+    const Scene scene = ballScene();
+    BrickMesher mesher(*scene.sampler, scene.bricks.grid());
+    FineSurface fine;
+    std::map<std::uint64_t, int> bricksAt;
+    std::set<std::uint64_t> onWall;
+    for (std::int64_t b = 0; b < scene.bricks.count(); ++b) {
+        mesher.mesh(scene.bricks[b], fine);
+        for (const auto& vertex : fine.vertices) {
+            ++bricksAt[vertex.edge.word];
+            if (vertex.isOnWall) onWall.insert(vertex.edge.word);
+        }
+    }
+    EXPECT_GT(onWall.size(), 100U);
+    EXPECT_LT(onWall.size(), bricksAt.size() / 4);
+    for (const auto& [edge, count] : bricksAt) EXPECT_EQ(count > 1, onWall.contains(edge));
+}
+
+TEST(Bricks, KnowWhereNoOtherSheetIsNear) {
+    // a slab of one sample at z = 8, and a floor at z = 20
+    const Scene scene(
+        {30, 30, 30}, [](const Vec3& p) { return std::max(0.6 - std::abs(p.z - 8), p.z - 20.3); },
+        Border::Open);
+    BrickMesher mesher(*scene.sampler, scene.bricks.grid());
+    FineSurface fine;
+    ASSERT_EQ(scene.bricks.count(), 1);
+    mesher.mesh(scene.bricks[0], fine);
+    for (const auto& vertex : fine.vertices) {
+        ASSERT_EQ(vertex.isSingleSheet, vertex.index.z > 15) << vertex.index.z;
+    }
+}
+
+}  // namespace adaptiso::testing

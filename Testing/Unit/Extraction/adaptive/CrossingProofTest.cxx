@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "ExactCrossing.h"
+#include "Support/Meshes.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptive/proof/CrossingProof.h"
+
+namespace adaptiso::testing {
+namespace {
+
+/// By a look at all pairs; nothing where four points lie in one plane, or a triangle comes twice.
+std::optional<std::vector<std::int64_t>> crossingByBruteForce(const IntegerSoup& soup) {
+    std::set<std::int64_t> crossing;
+    const int count = static_cast<int>(soup.triangles.size());
+    for (int s = 0; s < count; ++s) {
+        for (int t = s + 1; t < count; ++t) {
+            const std::set<int> points = [&] {
+                std::set<int> all(soup.triangles[s].begin(), soup.triangles[s].end());
+                all.insert(soup.triangles[t].begin(), soup.triangles[t].end());
+                return all;
+            }();
+            if (points.size() == 3) return {};
+            const std::optional<bool> cross = soup.cross(s, t);
+            if (!cross) return {};
+            if (*cross) crossing.insert({s, t});
+        }
+    }
+    return std::vector<std::int64_t>(crossing.begin(), crossing.end());
+}
+
+}  // namespace
+
+TEST(CrossingProof, FindsTrianglesThatCross) {
+    TriangleMesh mesh;
+    mesh.points = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {5, 5, 1}};
+    mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+    EXPECT_EQ(detail::crossingTriangles(mesh), (std::vector<std::int64_t>{0, 1}));
+    mesh.points[3] = {1, 1, 0.5};
+    EXPECT_TRUE(detail::crossingTriangles(mesh).empty());
+    EXPECT_TRUE(detail::crossingTriangles({}).empty());
+}
+
+// Few points: most triangles share corners, and edges.
+TEST(CrossingProof, FindsExactlyWhatCrossesInSoups) {
+    std::mt19937 random(4);
+    int compared = 0;
+    std::size_t found = 0, clear = 0;
+    for (int n = 0; n < 400; ++n) {
+        const IntegerSoup soup = randomSoup(random, 8 + n % 40, 12, 1000);
+        const auto expected = crossingByBruteForce(soup);
+        if (!expected) continue;
+        ++compared;
+        found += expected->size();
+        clear += 12 - expected->size();
+        ASSERT_EQ(detail::crossingTriangles(soup.mesh()), *expected) << n;
+    }
+    EXPECT_GT(compared, 200);
+    EXPECT_GT(found, 100U);
+    EXPECT_GT(clear, 100U);
+}
+
+// Larger meshes, whose vertices have fans that are proved at once.
+TEST(CrossingProof, FindsAllTrianglesOfSpheresThatCross) {
+    EXPECT_TRUE(detail::crossingTriangles(icosphere(3)).empty());
+    EXPECT_TRUE(detail::crossingTriangles(torusMesh(20, 12, 3, 1)).empty());
+    const TriangleMesh mesh = crossingSpheres(2);
+    std::set<std::int64_t> expected;
+    for (const auto& pair : findSelfIntersections(mesh, {.maxPairs = 10000}).pairs) {
+        expected.insert(pair.begin(), pair.end());
+    }
+    EXPECT_GT(expected.size(), 20U);
+    EXPECT_EQ(detail::crossingTriangles(mesh),
+              std::vector<std::int64_t>(expected.begin(), expected.end()));
+}
+
+TEST(CrossingProof, FindsAFanThatIsFoldedOver) {
+    // eight sectors around the origin, of which one vertex of the ring is taken across the next
+    TriangleMesh mesh;
+    mesh.points = {{0, 0, 0}};
+    for (int i = 0; i < 8; ++i) {
+        const double angle = M_PI / 4 * i;
+        mesh.points.push_back({std::cos(angle), std::sin(angle), 0.1});
+        mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % 8});
+    }
+    EXPECT_TRUE(detail::crossingTriangles(mesh).empty());
+    mesh.points[1] = {std::cos(1.0), std::sin(1.0), 0.05};
+    mesh.points[8].z = 0.6;  // so that the sector between them passes through the one behind it
+    EXPECT_FALSE(detail::crossingTriangles(mesh).empty());
+}
+
+TEST(CrossingProof, FindsATriangleThatComesTwice) {
+    EXPECT_EQ(detail::crossingTriangles(withDuplicateTriangle(icosphere(1))).size(), 2U);
+}
+
+}  // namespace adaptiso::testing

@@ -1,0 +1,83 @@
+#include <gtest/gtest.h>
+
+#include "SampledSquare.h"
+#include "adaptive/collapse/ErrorTracker.h"
+
+namespace adaptiso::testing {
+namespace {
+
+using detail::ErrorTracker;
+using detail::SampleAssignment;
+using detail::SheetRoom;
+
+constexpr double kRounding = 1e-5;  // samples are kept in single precision
+
+}  // namespace
+
+TEST(ErrorTracker, MeasuresHowFarTheSamplesAre) {
+    SampledSquare square;
+    square.addSample(0.3);
+    square.addSample(-0.4);
+    const auto fit = ErrorTracker(square.patch, unitFrame()).measure(square.changed);
+    ASSERT_TRUE(fit);
+    EXPECT_NEAR(fit->sumOfSquares, 0.09 + 0.16, kRounding);
+    EXPECT_NEAR(fit->largestSquare, 0.16, kRounding);
+}
+
+TEST(ErrorTracker, RefusesAVertexBeyondTheDistance) {
+    SampledSquare square;
+    ErrorTracker errors(square.patch, unitFrame());
+    SampleAssignment result;
+    square.shape({2.1, 2, 0.5});
+    EXPECT_FALSE(errors.assign(square.changed, 0.49, result));
+    EXPECT_TRUE(errors.assign(square.changed, 0.51, result));
+}
+
+TEST(ErrorTracker, RefusesASampleLeftBeyondTheDistance) {
+    SampledSquare square;
+    square.addSample(0.6);
+    ErrorTracker errors(square.patch, unitFrame());
+    SampleAssignment result;
+    EXPECT_FALSE(errors.assign(square.changed, 0.59, result));
+    EXPECT_TRUE(errors.assign(square.changed, 0.61, result));
+    EXPECT_NEAR(result.largestSquare, 0.36, kRounding);
+}
+
+TEST(ErrorTracker, HalvesTheSquareOfTheDistanceWhereItIsTight) {
+    SampledSquare square;
+    const std::size_t s = square.addSample(0.3);
+    square.patch.samples[s].tightness = 2;  // half the distance
+    ErrorTracker errors(square.patch, unitFrame());
+    SampleAssignment result;
+    EXPECT_FALSE(errors.assign(square.changed, 0.59, result));
+    EXPECT_TRUE(errors.assign(square.changed, 0.61, result));
+    EXPECT_FALSE(errors.measure(square.changed));  // no vertex is fitted there
+}
+
+TEST(ErrorTracker, KnowsWhereOtherSheetsAreNear) {
+    SampledSquare square;
+    const std::size_t s = square.addSample(0);
+    for (const int room : {0, SheetRoom::kParts - 1, int{SheetRoom::kAlone}}) {
+        square.patch.samples[s].room = static_cast<std::uint8_t>(room);
+        const ErrorTracker errors(square.patch, unitFrame());
+        SampleAssignment result;
+        square.shape({2.4, 2.2, 0.02});
+        EXPECT_TRUE(errors.assign(square.changed, 1, result));
+        EXPECT_EQ(result.isCrowded, room == 0) << room;
+        EXPECT_EQ(result.isInSingleSheet(), room == SheetRoom::kAlone) << room;
+        square.shape({2.4, 2.2, 0.9});  // nearly as far as the other sheet
+        EXPECT_TRUE(errors.assign(square.changed, 1, result));
+        EXPECT_EQ(result.isCrowded, room != SheetRoom::kAlone) << room;
+    }
+}
+
+TEST(ErrorTracker, IsInNoSingleSheetWithoutASample) {
+    SampledSquare square;
+    square.patch.samples.clear();
+    square.patch.sampleTriangle.clear();
+    SampleAssignment result;
+    EXPECT_TRUE(ErrorTracker(square.patch, unitFrame()).assign(square.changed, 0.1, result));
+    EXPECT_FALSE(result.isInSingleSheet());
+}
+
+}  // namespace adaptiso::testing

@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "Support/Meshes.h"
+#include "adaptive/mesh/HalfEdges.h"
+
+namespace adaptiso::testing {
+namespace {
+
+using HalfEdges = detail::HalfEdges<VertexId>;
+
+std::vector<VertexId> twinsOf(const TriangleMesh& mesh) {
+    HalfEdges halfEdges;
+    halfEdges.assign(mesh.points.size(), mesh.triangles);
+    std::vector<VertexId> twin;
+    halfEdges.match(mesh.triangles, twin);
+    return twin;
+}
+
+VertexId from(const TriangleMesh& mesh, VertexId h) {
+    return mesh.triangles[h / 3][h % 3];
+}
+VertexId to(const TriangleMesh& mesh, VertexId h) {
+    return mesh.triangles[h / 3][(h + 1) % 3];
+}
+
+/// Every twin runs the other way, and has the half-edge as its own. \return those without one
+int countUnmatched(const TriangleMesh& mesh) {
+    const std::vector<VertexId> twin = twinsOf(mesh);
+    EXPECT_EQ(twin.size(), 3 * mesh.triangles.size());
+    int unmatched = 0;
+    for (VertexId h = 0; h < std::ssize(twin); ++h) {
+        if (twin[h] == HalfEdges::kNone) {
+            ++unmatched;
+            continue;
+        }
+        EXPECT_EQ(twin[twin[h]], h);
+        EXPECT_EQ(from(mesh, twin[h]), to(mesh, h));
+        EXPECT_EQ(to(mesh, twin[h]), from(mesh, h));
+    }
+    return unmatched;
+}
+
+}  // namespace
+
+TEST(HalfEdges, MatchAllOfAClosedMesh) {
+    EXPECT_EQ(countUnmatched(icosphere(2)), 0);
+    EXPECT_EQ(countUnmatched(torusMesh(7, 5, 3, 1)), 0);
+    EXPECT_EQ(countUnmatched(cubeMesh()), 0);
+}
+
+TEST(HalfEdges, LeaveThoseOfABorderWithoutATwin) {
+    EXPECT_EQ(countUnmatched(planeMesh(5, 1)), 4 * 5);
+    EXPECT_EQ(countUnmatched(withHole(icosphere(1))), 3);
+}
+
+TEST(HalfEdges, MatchNoneThatRunTheSameWay) {
+    // the three edges of the turned triangle, on both sides
+    EXPECT_EQ(countUnmatched(withFlippedTriangle(icosphere(1))), 6);
+}
+
+TEST(HalfEdges, MatchOneOfSeveralAndRefuseTheRest) {
+    TriangleMesh mesh;
+    mesh.points.resize(6);
+    // three triangles run from 0 to 1, two back
+    mesh.triangles = {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}, {0, 1, 5}, {1, 0, 2}};
+    const std::vector<VertexId> twin = twinsOf(mesh);
+    EXPECT_EQ(twin[0], 6);
+    EXPECT_EQ(twin[6], 0);
+    EXPECT_EQ(twin[3], 12);
+    EXPECT_EQ(twin[12], 3);
+    EXPECT_EQ(twin[9], HalfEdges::kNone);
+    // three edges of the triangle that comes twice have three half-edges
+    EXPECT_EQ(countUnmatched(withDuplicateTriangle(icosphere(1))), 3);
+}
+
+TEST(HalfEdges, AreListedByTheirVertexInAscendingOrder) {
+    const TriangleMesh mesh = planeMesh(4, 1);
+    HalfEdges halfEdges;
+    halfEdges.assign(mesh.points.size(), mesh.triangles);
+    std::size_t listed = 0;
+    for (VertexId v = 0; v < std::ssize(mesh.points); ++v) {
+        const auto leaving = halfEdges.from(v);
+        listed += leaving.size();
+        for (std::size_t i = 0; i < leaving.size(); ++i) {
+            EXPECT_EQ(from(mesh, leaving[i].halfEdge), v);
+            EXPECT_EQ(to(mesh, leaving[i].halfEdge), leaving[i].to);
+            if (i > 0) {
+                EXPECT_LT(leaving[i - 1].halfEdge, leaving[i].halfEdge);
+            }
+        }
+    }
+    EXPECT_EQ(listed, 3 * mesh.triangles.size());
+}
+
+TEST(HalfEdges, ForgetTheLastMesh) {
+    const TriangleMesh large = icosphere(2), small = planeMesh(1, 1);
+    HalfEdges halfEdges;
+    std::vector<VertexId> twin;
+    for (const TriangleMesh* mesh : {&large, &small}) {
+        halfEdges.assign(mesh->points.size(), mesh->triangles);
+        halfEdges.match(mesh->triangles, twin);
+    }
+    EXPECT_EQ(twin, twinsOf(small));
+}
+
+}  // namespace adaptiso::testing

@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "Support/Soundness.h"
+#include "Surfaces.h"
+#include "adaptive/proof/PieceBound.h"
+#include "adaptive/rounds/PatchRound.h"
+
+namespace adaptiso::testing {
+namespace {
+
+using detail::PatchRound;
+using detail::PatchWork;
+using detail::SimplifiedSurface;
+
+constexpr detail::PatchCut kCut{16, 12};
+constexpr double kDistanceMm = 0.2, kRounding = 1e-5;  // samples are kept in single precision
+
+/// A ball's full surface in a voxel of 1 mm.
+struct Ball {
+    Scene scene = ballScene();
+    SimplifiedSurface surface = scene.fullSurface();
+
+    static detail::PatchLimits limits() {
+        detail::PatchLimits limits;
+        limits.maxCost = 1;
+        limits.maxDistanceMm = kDistanceMm;
+        return limits;
+    }
+    void run(const PatchWork& work) { PatchRound(surface, kCut, scene.frame).run(work); }
+
+    double squaredDistance(std::size_t s) const {
+        const auto& [a, b, c] = surface.triangles[surface.sampleTriangle[s]];
+        return detail::squaredDistanceToTriangle(
+            surface.samples[s].point(), {surface.points[a], surface.points[b], surface.points[c]});
+    }
+    double sumOfSquares() const {
+        double sum = 0;
+        for (std::size_t s = 0; s < surface.samples.size(); ++s) sum += squaredDistance(s);
+        return sum;
+    }
+};
+
+}  // namespace
+
+TEST(PatchRound, LeavesASoundSurfaceNearItsSamples) {
+    Ball ball;
+    ball.run({Ball::limits()});
+    EXPECT_LT(ball.surface.triangleCount(), ball.surface.fineTriangles / 2);
+    expectSound(meshOf(ball.surface));
+    ASSERT_EQ(ball.surface.states.size(), ball.surface.points.size());
+    ASSERT_EQ(ball.surface.quadrics.size(), ball.surface.points.size());
+    EXPECT_EQ(meshOf(ball.surface).points.size(), ball.surface.points.size());  // none unused
+    for (std::size_t s = 0; s < ball.surface.samples.size(); ++s) {
+        ASSERT_LT(ball.surface.sampleTriangle[s], ball.surface.triangles.size());
+        EXPECT_LE(std::sqrt(ball.squaredDistance(s)), kDistanceMm + kRounding);
+    }
+}
+
+TEST(PatchRound, KeepsWhatStraddlesTheCut) {
+    Ball ball;
+    using Key = std::array<double, 9>;
+    const auto keys = [](const SimplifiedSurface& surface, bool onlyStraddling) {
+        std::set<Key> all;
+        for (const auto& t : surface.triangles) {
+            std::set<std::array<double, 3>> cubes;
+            Key key;
+            for (int c = 0; c < 3; ++c) {
+                const Vec3& p = surface.points[t[c]];
+                cubes.insert({std::floor((p.x - 12) / 16), std::floor((p.y - 12) / 16),
+                              std::floor((p.z - 12) / 16)});
+                for (int a = 0; a < 3; ++a) key[3 * c + a] = p[a];
+            }
+            if (!onlyStraddling || cubes.size() > 1) all.insert(key);
+        }
+        return all;
+    };
+    const std::set<Key> straddling = keys(ball.surface, true);
+    ball.run({Ball::limits()});
+    const std::set<Key> after = keys(ball.surface, false);
+    EXPECT_GT(straddling.size(), 100U);
+    EXPECT_TRUE(std::includes(after.begin(), after.end(), straddling.begin(), straddling.end()));
+}
+
+TEST(PatchRound, MakesNoMoreCollapsesThanAsked) {
+    for (const std::int64_t most : {0, 1, 100}) {
+        Ball ball;
+        PatchWork work{Ball::limits()};
+        work.mostCollapses = most;
+        ball.run(work);
+        // two triangles each; the patches are large enough for their shares
+        EXPECT_EQ(ball.surface.fineTriangles - ball.surface.triangleCount(), 2 * most);
+    }
+}
+
+TEST(PatchRound, TriesOutWhatItWouldDo) {
+    Ball ball;
+    const SimplifiedSurface before = ball.surface;
+    const detail::PatchTrial trial =
+        PatchRound(ball.surface, kCut, ball.scene.frame).tryOut(Ball::limits(), true);
+    EXPECT_EQ(ball.surface.points, before.points);
+    EXPECT_EQ(ball.surface.triangles, before.triangles);
+    EXPECT_EQ(ball.surface.sampleTriangle, before.sampleTriangle);
+    EXPECT_EQ(ball.surface.states, before.states);
+    EXPECT_EQ(trial.share, 1);
+    ball.run({Ball::limits()});
+    EXPECT_EQ(2 * trial.collapses(), before.triangleCount() - ball.surface.triangleCount());
+    for (const auto& patch : trial.costs) {
+        for (const double cost : patch) EXPECT_LE(cost, Ball::limits().maxCost);
+    }
+}
+
+TEST(PatchRound, BringsVerticesNearerToTheSamples) {
+    Ball ball;
+    ball.run({Ball::limits()});
+    const std::int64_t count = ball.surface.triangleCount();
+    const double before = ball.sumOfSquares();
+    PatchWork work{Ball::limits()};
+    work.collapses = false;
+    work.fits = true;
+    ball.run(work);
+    EXPECT_EQ(ball.surface.triangleCount(), count);
+    EXPECT_LT(ball.sumOfSquares(), 0.9 * before);
+    expectSound(meshOf(ball.surface));
+}
+
+TEST(PatchRound, LeavesVerticesThatAreFinal) {
+    Ball ball;
+    ball.surface.states.assign(ball.surface.points.size(), detail::Patch::State::Final);
+    const auto points = ball.surface.points;
+    ball.run({Ball::limits()});
+    EXPECT_EQ(ball.surface.points, points);
+}
+
+}  // namespace adaptiso::testing

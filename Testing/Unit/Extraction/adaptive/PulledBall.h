@@ -1,0 +1,49 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "Surfaces.h"
+#include "adaptive/proof/ErrorBound.h"
+
+namespace adaptiso::testing {
+
+/// The ball's surface in eight bricks, as it is and with changes.
+struct ProvedBall {
+    Scene scene = ballScene();
+    detail::SimplifiedSurface full = scene.fullSurface();
+
+    detail::ErrorProof proof(double limitMm = std::numeric_limits<double>::max()) const {
+        return {*scene.sampler, scene.bricks, scene.frame, limitMm};
+    }
+    /// All vertices taken outward.
+    detail::SimplifiedSurface outward(double mm) const {
+        detail::SimplifiedSurface moved = full;
+        for (Vec3& p : moved.points) p = p + mm * normalized(p - kBallMiddle);
+        return moved;
+    }
+    /// The vertex nearest to a place.
+    std::uint64_t vertexAt(const Vec3& place) const {
+        const auto at = std::min_element(
+            full.points.begin(), full.points.end(),
+            [&](const Vec3& p, const Vec3& q) { return norm(p - place) < norm(q - place); });
+        return static_cast<std::uint64_t>(at - full.points.begin());
+    }
+};
+
+/// Pulls a vertex away from the ball's middle.
+inline detail::SurfaceChanges pull(detail::SimplifiedSurface& surface, std::uint64_t vertex,
+                                   double mm) {
+    detail::SurfaceChanges changes;
+    for (std::uint64_t t = 0; t < surface.triangles.size(); ++t) {
+        const auto& c = surface.triangles[t];
+        if (std::find(c.begin(), c.end(), vertex) == c.end()) continue;
+        changes.triangles.push_back(t);
+        changes.before.push_back(
+            {surface.points[c[0]], surface.points[c[1]], surface.points[c[2]]});
+    }
+    surface.points[vertex] += mm * normalized(surface.points[vertex] - kBallMiddle);
+    return changes;
+}
+
+}  // namespace adaptiso::testing

@@ -1,0 +1,132 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "Support/Soundness.h"
+#include "Surfaces.h"
+#include "adaptive/proof/PieceBound.h"
+#include "adaptive/rounds/Simplification.h"
+
+namespace adaptiso::testing {
+namespace {
+
+using detail::Halfway;
+using detail::Simplification;
+using detail::SimplifiedSurface;
+using detail::WantedCount;
+
+constexpr double kDistanceMm = 0.2, kRounding = 1e-5;  // samples are kept in single precision
+
+struct Ball {
+    Scene scene = ballScene();
+    detail::TightPlaces tight;
+    detail::PatchLimits limits;
+
+    Ball() { limits.maxDistanceMm = kDistanceMm; }
+    Simplification simplification() const {
+        return {*scene.sampler, scene.bricks, scene.frame, tight, limits};
+    }
+};
+
+double largestDistance(const SimplifiedSurface& surface) {
+    double largest = 0;
+    for (std::size_t s = 0; s < surface.samples.size(); ++s) {
+        const auto& [a, b, c] = surface.triangles[surface.sampleTriangle[s]];
+        largest = std::max(largest, detail::squaredDistanceToTriangle(
+                                        surface.samples[s].point(),
+                                        {surface.points[a], surface.points[b], surface.points[c]}));
+    }
+    return std::sqrt(largest);
+}
+
+}  // namespace
+
+TEST(WantedCount, IsTheLeastOfWhatIsAskedFor) {
+    EXPECT_FALSE(WantedCount{}.isGiven());
+    EXPECT_EQ(WantedCount{}.of(1000), 1000);
+    EXPECT_EQ((WantedCount{300, {}}.of(1000)), 300);
+    EXPECT_EQ((WantedCount{5000, {}}.of(1000)), 1000);
+    EXPECT_EQ((WantedCount{{}, 0.75}.of(1000)), 250);
+    EXPECT_EQ((WantedCount{300, 0.75}.of(1000)), 250);
+    EXPECT_EQ((WantedCount{200, 0.75}.of(1000)), 200);
+}
+
+TEST(Simplification, StaysWithinItsLimits) {
+    const Ball ball;
+    std::optional<Halfway> halfway;
+    const SimplifiedSurface surface = ball.simplification().toLimits({}, halfway);
+    EXPECT_LE(largestDistance(surface), kDistanceMm + kRounding);
+    EXPECT_LT(surface.triangleCount(), surface.fineTriangles / 8);
+    expectSound(meshOf(surface));
+    ASSERT_TRUE(halfway);
+    EXPECT_GT(halfway->state.triangleCount(), surface.triangleCount());
+    EXPECT_LT(halfway->state.triangleCount(), surface.fineTriangles);
+}
+
+TEST(Simplification, ComesToTheSameFromHalfway) {
+    const Ball ball;
+    std::optional<Halfway> halfway;
+    const SimplifiedSurface first = ball.simplification().toLimits({}, halfway);
+    // the state of the run before counts for nothing, its samples do
+    const SimplifiedSurface again =
+        ball.simplification().toLimits(ball.scene.fullSurface(), halfway);
+    EXPECT_EQ(again.points, first.points);
+    EXPECT_EQ(again.triangles, first.triangles);
+}
+
+TEST(Simplification, StaysCloserWherePlacesAreTight) {
+    Ball ball;
+    std::optional<Halfway> halfway;
+    const std::int64_t before = ball.simplification().toLimits({}, halfway).triangleCount();
+    const Vec3 pole = kBallMiddle + Vec3{0, 0, kBallRadius};
+    for (int times = 0; times < 2; ++times) ball.tight.add({pole});
+    halfway.reset();
+    const SimplifiedSurface surface = ball.simplification().toLimits({}, halfway);
+    EXPECT_GT(surface.triangleCount(), before);
+    for (std::size_t s = 0; s < surface.samples.size(); ++s) {
+        if (norm(surface.samples[s].point() - pole) > 1) continue;
+        EXPECT_GT(surface.samples[s].tightness, 0);
+        const auto& [a, b, c] = surface.triangles[surface.sampleTriangle[s]];
+        EXPECT_LE(std::sqrt(detail::squaredDistanceToTriangle(
+                      surface.samples[s].point(),
+                      {surface.points[a], surface.points[b], surface.points[c]})),
+                  kDistanceMm / 2);
+    }
+}
+
+TEST(Simplification, MakesTheWantedCount) {
+    const Ball ball;
+    for (const double reduction : {0.3, 0.75, 0.9}) {
+        const WantedCount wanted{{}, reduction};
+        const SimplifiedSurface surface = ball.simplification().toCount(wanted, 0);
+        EXPECT_LE(surface.triangleCount(), wanted.of(surface.fineTriangles)) << reduction;
+        EXPECT_GE(surface.triangleCount(), wanted.of(surface.fineTriangles) - 1) << reduction;
+        EXPECT_LE(largestDistance(surface), kDistanceMm + kRounding) << reduction;
+        expectSound(meshOf(surface));
+    }
+}
+
+TEST(Simplification, GoesFartherForACountWhereItMay) {
+    const Ball ball;
+    const WantedCount wanted{40, {}};
+    EXPECT_GT(ball.simplification().toCount(wanted, 0).triangleCount(), 60);
+    const SimplifiedSurface surface = ball.simplification().toCount(wanted, 50);
+    EXPECT_LE(surface.triangleCount(), 40);
+    EXPECT_GE(surface.triangleCount(), 39);
+    EXPECT_GT(largestDistance(surface), kDistanceMm);
+    expectSound(meshOf(surface));
+}
+
+TEST(Simplification, FitsVerticesWithoutACollapse) {
+    const Ball ball;
+    std::optional<Halfway> halfway;
+    SimplifiedSurface surface = ball.simplification().toLimits({}, halfway);
+    const auto triangles = surface.triangles;
+    const auto points = surface.points;
+    ball.simplification().fit(surface);
+    EXPECT_EQ(surface.triangles, triangles);
+    EXPECT_NE(surface.points, points);
+    EXPECT_LE(largestDistance(surface), kDistanceMm + kRounding);
+}
+
+}  // namespace adaptiso::testing
