@@ -204,6 +204,60 @@ void main() {
     }
   };
 
+  /** Regions are many: a list to search. A click on a name shows that region alone and goes there, a
+   * click with Ctrl or Cmd besides the others; the boxes show and hide. */
+  const makeRegionControls = (viewer) => {
+    const list = byId("surfaces"), rows = [];
+    list.className = "regions";
+    byId("region-tools").hidden = false;
+    byId("surfaces-title").textContent = "Regions";
+    const tell = () => {
+      const shown = viewer.surfaces.filter((surface) => surface.isShown).length;
+      byId("region-count").textContent = `${shown} of ${rows.length} shown`;
+      viewer.nv.drawScene();
+    };
+    const show = (n, isShown) => {
+      viewer.surfaces[n].isShown = isShown;
+      viewer.surfaces[n].mesh.visible = isShown;
+      rows[n].box.checked = isShown;
+    };
+    for (const [n, surface] of data.surfaces.entries()) {
+      const row = document.createElement("div");
+      row.className = "region";
+      const box = Object.assign(document.createElement("input"), { type: "checkbox", checked: true });
+      box.setAttribute("aria-label", `Show ${surface.name}`);
+      const swatch = Object.assign(document.createElement("span"), { className: "swatch" });
+      swatch.style.background = `rgb(${surface.color.join(" ")})`;
+      const button = Object.assign(document.createElement("button"),
+        { type: "button", textContent: surface.name });
+      row.append(box, swatch, button);
+      list.append(row);
+      rows.push({ row, box, button, text: surface.name.toLowerCase() });
+      box.addEventListener("change", () => { show(n, box.checked); tell(); });
+      button.addEventListener("click", (event) => {
+        for (const [m, other] of rows.entries()) {
+          if (!event.ctrlKey && !event.metaKey) show(m, m === n);
+          other.button.removeAttribute("aria-current");
+        }
+        show(n, true);
+        button.setAttribute("aria-current", "true");
+        viewer.moveTo(surface.point);
+        tell();
+      });
+    }
+    for (const [id, isShown] of [["show-all", true], ["show-none", false]]) {
+      byId(id).addEventListener("click", () => {
+        for (const n of rows.keys()) show(n, isShown);
+        tell();
+      });
+    }
+    byId("find").addEventListener("input", () => {
+      const wanted = byId("find").value.toLowerCase();
+      for (const { row, text } of rows) row.hidden = !text.includes(wanted);
+    });
+    tell();
+  };
+
   const listen = (viewer) => {
     const spots = document.querySelectorAll("button[data-spot]");
     for (const button of spots) {
@@ -259,7 +313,7 @@ void main() {
     await viewer.load();
     nv.setSliceType(niivue.SLICE_TYPE.MULTIPLANAR);
     nv.setRenderAzimuthElevation(145, 12);
-    makeSurfaceControls(viewer);
+    (data.areRegions ? makeRegionControls : makeSurfaceControls)(viewer);
     listen(viewer);
     viewer.moveTo(data.start);
     window.adaptisoViewer = viewer;

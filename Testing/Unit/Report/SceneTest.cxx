@@ -35,7 +35,8 @@ SceneMesh drawn(TriangleMesh ras) {
 
 Rendering renderAlone(const SceneSurface& surface, const BoundingBox& box, const View& view,
                       int size) {
-    return render(surface, vertexNormals(surface.mesh), box, view, size);
+    const VertexNormals normals = vertexNormals(surface.mesh);
+    return render({&surface, 1}, {&normals, 1}, box, view, size);
 }
 
 TEST(CutByPlane, CubeGivesItsPerimeter) {
