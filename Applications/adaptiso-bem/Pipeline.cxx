@@ -51,8 +51,8 @@ bool hasJsonFile(const BemOptions& options) {
 }
 
 /// The folder's own names when it may be replaced.
-std::vector<std::string_view> replaceable(const BemOptions& options) {
-    return options.mayReplace ? modelFileNames() : std::vector<std::string_view>{};
+OwnNames replaceable(const BemOptions& options) {
+    return options.mayReplace ? OwnNames(modelFileNames()) : OwnNames();
 }
 
 void checkSubject(const BemOptions& options) {
