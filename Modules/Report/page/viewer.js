@@ -8,7 +8,9 @@
   // of a slice: the axis across it, the one to the right, the one up
   const AXES = { [AXIAL]: [2, 0, 1], [CORONAL]: [1, 0, 2], [SAGITTAL]: [0, 1, 2] };
 
-  // Both sides are lit; what is seen from its inside is red; what lies beyond the plane is cut away.
+  // Both sides are lit; what is seen from its inside is red (of a region, dark: where they are cut
+  // that is nearly all there is to see); what lies beyond the plane is cut away.
+  const INSIDE = data.areRegions ? "0.55 * vClr.rgb" : "vec3(0.84, 0.27, 0.25)";
   const SHADER = `#version 300 es
 precision highp int;
 precision highp float;
@@ -23,7 +25,7 @@ void main() {
   // through a transparent surface its own far side would be seen
   if (!gl_FrontFacing && opacity < 0.99) discard;
   vec3 n = normalize(vN);
-  vec3 base = gl_FrontFacing ? vClr.rgb : vec3(0.84, 0.27, 0.25);
+  vec3 base = gl_FrontFacing ? vClr.rgb : ${INSIDE};
   float light = 0.3 + 0.7 * abs(dot(n, normalize(vec3(-0.35, 0.45, -0.9))));
   color = vec4(base * light, opacity);
 }`;
@@ -211,6 +213,8 @@ void main() {
     list.className = "regions";
     byId("region-tools").hidden = false;
     byId("surfaces-title").textContent = "Regions";
+    byId("inside-hint").textContent = "A click on a region's name shows it alone and goes there; "
+      + "with Ctrl it is added to what is shown.";
     const tell = () => {
       const shown = viewer.surfaces.filter((surface) => surface.isShown).length;
       byId("region-count").textContent = `${shown} of ${rows.length} shown`;
