@@ -79,9 +79,10 @@ void main() {
         const mesh = await niivue.NVMesh.readMesh(
           bytesOf(`surface-${n}`), "surface.mz3", nv.gl, surface.opacity, rgba, true);
         mesh.meshShaderIndex = shader;
-        nv.addMesh(mesh);
+        nv.meshes.push(mesh);  // addMesh() would load the image anew for each of hundreds
         this.surfaces.push({ mesh, color: surface.color, isShown: true, cuts: [] });
       }
+      nv.updateGLVolume();
       this.hook();
     }
 

@@ -173,6 +173,21 @@ TEST(Renderer, ShowsTheInsideInRed) {
     EXPECT_GT(middle[0], 2 * middle[2]);
 }
 
+TEST(Renderer, TheNearestOfSeveralIsSeen) {
+    std::vector<SceneSurface> spheres{asSeen(testing::icosphere(3, {}, 6)),
+                                      asSeen(testing::icosphere(3, {}, 10))};
+    spheres[0].color = {0, 255, 0};
+    spheres[1].color = {0, 0, 255};
+    for (int turn = 0; turn < 2; ++turn, std::swap(spheres[0], spheres[1])) {
+        const std::vector<VertexNormals> normals{vertexNormals(spheres[0].mesh),
+                                                 vertexNormals(spheres[1].mesh)};
+        const Rendering seen =
+            render(spheres, normals, {{-10, -10, -10}, {10, 10, 10}}, sixViews()[0], 100);
+        EXPECT_GT(seen.colors[50 * 100 + 50][2], 100);
+        EXPECT_EQ(seen.colors[50 * 100 + 50][1], 0);
+    }
+}
+
 TEST(Renderer, KnowsWhatIsHidden) {
     const SceneSurface sphere = asSeen(testing::icosphere(4, {}, 10));
     const View& front = sixViews()[0];
