@@ -54,7 +54,7 @@ class Printed(unittest.TestCase):
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = Path(cls.temporary.name)
-        cls.browser = browser.Browser()
+        cls.browser = browser.Browser(webgl=False)  # the viewer is not printed
         surfaces = []
         for radius in (80, 86, 92):
             surfaces.append(f"r{radius}.off")

@@ -1,6 +1,7 @@
 """Headless Chromium, as the tests of report pages use it."""
 
 import base64
+import io
 import json
 import shutil
 import sys
@@ -10,34 +11,37 @@ import time
 SKIPPED = 77
 
 try:
+    from PIL import Image
     from selenium import webdriver
     from selenium.webdriver.chrome.options import Options
     from selenium.webdriver.chrome.service import Service
 except ImportError:
     webdriver = None
 
+WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
+NO_WEBGL = ("--disable-gpu", "--disable-3d-apis")
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 
 
 def require():
     """Ends the test program as skipped where there is no browser to drive."""
     if webdriver is None or not CHROMIUM or not DRIVER:
-        print("skipped: needs chromium, chromium-driver and python3-selenium")
+        print("skipped: needs chromium, chromium-driver, python3-selenium and python3-pil")
         sys.exit(SKIPPED)
 
 
 class Browser:
-    """One window on one page. WebGL is drawn by the processor, so that it works anywhere."""
+    """One window on one page. WebGL is drawn by the processor, so that it works anywhere, and takes
+    seconds a page: without it the viewer says that it is missing."""
 
-    def __init__(self, width=1280, height=1700):
+    def __init__(self, width=1280, height=1700, webgl=True):
         self.profile = tempfile.mkdtemp(prefix="adaptiso-chromium-")
         options = Options()
         for argument in ("--headless=new", "--no-sandbox", "--no-first-run", "--disable-quic",
                          "--disable-background-networking", "--disable-component-update",
-                         "--disable-sync", "--use-angle=swiftshader",
-                         "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
-                         "--hide-scrollbars", "--force-device-scale-factor=1",
-                         f"--user-data-dir={self.profile}", f"--window-size={width},{height}"):
+                         "--disable-sync", "--hide-scrollbars", "--force-device-scale-factor=1",
+                         f"--user-data-dir={self.profile}", f"--window-size={width},{height}",
+                         *(WEBGL if webgl else NO_WEBGL)):
             options.add_argument(argument)
         options.binary_location = CHROMIUM
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
@@ -100,21 +104,8 @@ class Browser:
         self.run("document.querySelector(arguments[0]).scrollIntoView()", selector)
         return base64.b64decode(self.find(selector)[0].screenshot_as_base64)
 
-    def grey(self, png, columns, rows):
-        """Means (0 to 255) of columns x rows equal parts of a picture, row by row."""
-        self.driver.get("about:blank")
-        return self.driver.execute_async_script("""
-            const [url, columns, rows, done] = arguments, image = new Image();
-            image.onload = () => {
-                const canvas = Object.assign(document.createElement("canvas"),
-                                             { width: columns, height: rows });
-                const context = canvas.getContext("2d");
-                context.imageSmoothingQuality = "high";
-                context.drawImage(image, 0, 0, columns, rows);
-                const { data } = context.getImageData(0, 0, columns, rows), grey = [];
-                for (let n = 0; n < data.length; n += 4)
-                    grey.push((data[n] + data[n + 1] + data[n + 2]) / 3);
-                done(grey);
-            };
-            image.src = url;""", "data:image/png;base64," + base64.b64encode(png).decode(),
-            columns, rows)
+
+def grey(png, columns, rows):
+    """Means (0 to 255) of columns x rows equal parts of a picture, row by row."""
+    picture = Image.open(io.BytesIO(png)).convert("RGB").resize((columns, rows), Image.BOX)
+    return [sum(pixel) / 3 for pixel in picture.getdata()]

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <string>
 
-#include "BoxesMethod.h"
-#include "MarchingCubes.h"
-#include "SurfaceLoops.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptive/AdaptiveMethod.h"
+#include "boxes/BoxesMethod.h"
+#include "cells/MarchingCubes.h"
+#include "loops/SurfaceLoops.h"
 
 namespace adaptiso {
 

@@ -5,20 +5,20 @@
 #include <cmath>
 #include <random>
 
-#include "LatticeSampler.h"
 #include "RandomVolumes.h"
 #include "Support/AnalyticVolumes.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
-#include "adaptive/BrickRound.h"
-#include "adaptive/CrossingProof.h"
-#include "adaptive/NearTriangle.h"
-#include "adaptive/PieceBound.h"
-#include "adaptive/SheetRoom.h"
-#include "adaptive/SheetTest.h"
-#include "adaptive/TightPlaces.h"
+#include "adaptive/bricks/SheetRoom.h"
+#include "adaptive/bricks/SheetTest.h"
+#include "adaptive/proof/CrossingProof.h"
+#include "adaptive/proof/NearTriangle.h"
+#include "adaptive/proof/PieceBound.h"
+#include "adaptive/rounds/BrickRound.h"
+#include "adaptive/rounds/TightPlaces.h"
+#include "lattice/LatticeSampler.h"
 
 namespace adaptiso::testing {
 namespace {

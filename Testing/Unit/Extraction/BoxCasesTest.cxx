@@ -4,7 +4,7 @@
 #include <set>
 #include <tuple>
 
-#include "BoxCases.h"
+#include "cells/BoxCases.h"
 
 namespace adaptiso::detail {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "LatticeSampler.h"
 #include "Support/AnalyticVolumes.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
-#include "adaptive/BrickRound.h"
+#include "adaptive/rounds/BrickRound.h"
+#include "lattice/LatticeSampler.h"
 
 namespace adaptiso::testing {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "adaptive/ChangedStar.h"
-#include "adaptive/CrossingGuard.h"
+#include "adaptive/collapse/ChangedStar.h"
+#include "adaptive/collapse/CrossingGuard.h"
 
 namespace adaptiso::testing {
 namespace {

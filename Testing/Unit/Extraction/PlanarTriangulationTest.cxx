@@ -3,9 +3,9 @@
 #include <map>
 #include <set>
 
-#include "PlanarTriangulation.h"
 #include "Support/AnalyticVolumes.h"
 #include "adaptiso/Core/Errors.h"
+#include "filling/PlanarTriangulation.h"
 
 namespace adaptiso::detail {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "SimpleBoxes.h"
 #include "Support/AnalyticVolumes.h"
+#include "boxes/SimpleBoxes.h"
 
 namespace adaptiso::detail {
 namespace {

@@ -5,8 +5,8 @@
 #include <ostream>
 #include <vector>
 
-#include "AscBoxes.h"
 #include "Support/AnalyticVolumes.h"
+#include "boxes/AscBoxes.h"
 
 namespace adaptiso::detail {
 

@@ -7,8 +7,8 @@
 
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
-#include "adaptive/CrossingProof.h"
-#include "adaptive/SurfaceMender.h"
+#include "adaptive/mending/SurfaceMender.h"
+#include "adaptive/proof/CrossingProof.h"
 
 namespace adaptiso::testing {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <utility>
 
-#include "AscSurface.h"
-#include "BoxSurface.h"
-#include "FillLoops.h"
 #include "RandomVolumes.h"
-#include "SurfaceLoops.h"
+#include "boxes/AscSurface.h"
+#include "boxes/BoxSurface.h"
+#include "filling/FillLoops.h"
+#include "loops/SurfaceLoops.h"
 
 namespace adaptiso::detail {
 namespace {

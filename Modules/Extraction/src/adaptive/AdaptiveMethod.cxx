@@ -1,16 +1,17 @@
-#include "AdaptiveMethod.h"
+#include "adaptive/AdaptiveMethod.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "../MeshRepair.h"
-#include "CrossingProof.h"
-#include "ErrorBound.h"
-#include "Simplification.h"
-#include "SurfaceMender.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptive/Parameters.h"
+#include "adaptive/mending/SurfaceMender.h"
+#include "adaptive/proof/CrossingProof.h"
+#include "adaptive/proof/ErrorBound.h"
+#include "adaptive/rounds/Simplification.h"
+#include "filling/MeshRepair.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -127,28 +128,6 @@ public:
     }
 
 private:
-    static constexpr int kMostRuns = 16, kMostMends = 6, kMostCrossedRuns = 3, kMostIdleMends = 2;
-    /// What fails from this run on stays at full resolution, twice as far around with every run:
-    /// in the last one all of it, if need be.
-    static constexpr int kFirstFreeze = 6;
-    /// Vertices are fitted within this part of the allowed distance, or no farther than they were:
-    /// then few places are lost.
-    static constexpr double kFitDistance = 0.75;
-    /// Mending that leaves more than this part of the places beyond the bound, twice, has stalled.
-    static constexpr double kMended = 0.8;
-    /// Runs that leave more than this part of the places beyond the bound lead nowhere.
-    static constexpr double kStalled = 0.25;
-    /// Up to this distance (of the least one between planes of samples) single sheets are certain
-    /// not to meet others: see isSingleSheet.
-    static constexpr double kSheetVoxels = 0.5;
-    /// What is tried first for a count without a bound: it leads to largest distances below half a
-    /// voxel.
-    static constexpr double kCountVoxels = 0.46;
-    /// First allowed distance of samples: that much below the bound (in the least distance between
-    /// planes of samples, and as a part of the bound), since points between samples may lie
-    /// farther.
-    static constexpr double kSlackVoxels = 0.05, kSlackPart = 0.3;
-
     bool isBeyond(const ErrorBound& error) const { return boundMm_ && error.largestMm > *boundMm_; }
 
     /// What is proved of the surface, after places beyond the bound were mended.
@@ -267,8 +246,8 @@ private:
     }
 
     PatchLimits limits() const {
-        const double sheetMm = kSheetVoxels * frame_.narrowestMm();
-        const double boundMm = boundMm_.value_or(kCountVoxels * frame_.narrowestMm());
+        const double sheetMm = kSheetDistance * frame_.narrowestMm();
+        const double boundMm = boundMm_.value_or(kCountDistance * frame_.narrowestMm());
         PatchLimits limits;
         limits.shape = shape_;
         limits.leavesNoise = !wanted_.isGiven();

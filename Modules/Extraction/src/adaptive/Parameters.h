@@ -1,0 +1,162 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+/// Every constant of the adaptive method that was chosen, with its unit and its reason. Numbers
+/// that follow from the data's layout stand where they are used.
+///
+/// A voxel is the least distance between planes of samples (MetricFrame::narrowestMm). Costs are
+/// the quadrics' squared distances weighted by areas, in voxels to the fourth. "Chosen by" names
+/// the measurement: the scans are those of Documentation/Benchmarks.md.
+namespace adaptiso::detail {
+
+// ---- What runs aim at (AdaptiveMethod) ----
+
+/// Vertices of samples stay that much below the bound, in voxels and as a part of the bound at
+/// most: points between samples may lie farther. More takes more triangles, less more mending.
+inline constexpr double kSlackVoxels = 0.05, kSlackPart = 0.3;
+/// Distance of samples, voxels, that a count without a bound starts with. Largest distances then
+/// stay below half a voxel.
+inline constexpr double kCountDistance = 0.46;
+/// Voxels: a star within this distance of its samples is a single sheet where the sheet test says
+/// so. Half a voxel is what the test's 4 x 4 x 4 samples are proved for (isSingleSheet).
+inline constexpr double kSheetDistance = 0.5;
+/// Runs from the beginning; those of them that may end in crossings before all stars are proved.
+inline constexpr int kMostRuns = 16, kMostCrossedRuns = 3;
+/// Rounds of mending crossings in one run; rounds of mending distances that may gain little.
+inline constexpr int kMostMends = 6, kMostIdleMends = 2;
+/// A round of mending gains little when it leaves more than this part of the places.
+inline constexpr double kMended = 0.8;
+/// Runs lead nowhere when they leave more than this part of the places of the run before.
+inline constexpr double kStalled = 0.25;
+/// From this run on places that fail stay at full resolution, twice as far around with every run.
+inline constexpr int kFirstFreeze = 6;
+/// Vertices are fitted within this part of the allowed distance, or no farther than they were: then
+/// few places come to lie beyond the bound.
+inline constexpr double kFitDistance = 0.75;
+
+// ---- Rounds (Simplification, PatchRound, TightPlaces) ----
+
+/// Limits of cost: of the bricks' round, and above which there is none.
+inline constexpr double kFirstCost = 1e-3, kLastCost = 10;
+/// Limits of cost of the first rounds towards a bound, each six times the one before: cheap
+/// collapses first, everywhere, so that walls between patches do not show.
+inline constexpr std::array kBoundCosts{3e-3, 1.8e-2, 0.108, 0.648, 3.888};
+/// The surface that later runs start from: costs below this part of the square of the allowed
+/// distance, distances below this part of it.
+inline constexpr double kHalfwayCost = 2, kHalfwayDistance = 0.25;
+/// Limit of cost after the allowed distance has grown on the way to a count.
+inline constexpr double kCostAfterDistance = 0.01;
+/// A round that leaves more than this part of the triangles was hardly worth it.
+inline constexpr double kWorthwhile = 0.99;
+/// Above this part of the wanted count a round is not thought to lead below it.
+inline constexpr double kFarFromCount = 1.6;
+/// Up to this part of the wanted count the rest is dealt out by size: the patches' costs hardly
+/// differ.
+inline constexpr double kNearCount = 1.05;
+/// Where some patches tell for all, this part of the wanted collapses is aimed at, so that it does
+/// not become more of them.
+inline constexpr double kTrialAim = 0.95;
+/// A trial takes every eighth patch, or as many as to have 16 of them.
+inline constexpr std::size_t kTrialFewest = 16, kTrialEvery = 8;
+/// Above this cost cubes are twice as large as bricks: else too much would straddle them. Small
+/// ones stay in a processor's cache.
+inline constexpr double kCoarseCost = 0.13;
+/// Side of the cubes that a place is made tighter in, voxels, and how often the square of the
+/// allowed distance is halved there, by how often the place has failed.
+inline constexpr double kTightCube = 1.5;
+inline constexpr std::array<std::uint8_t, 4> kHalvings{0, 5, 14, 40};
+
+// ---- Bricks (BrickRound, SheetRoom, SheetTest) ----
+
+/// The middle of a full-resolution triangle is a sample where normals at its corners are farther
+/// apart: between corners a ridge could pass unseen. Cosine of 20 degrees.
+inline constexpr double kBentCosine = 0.94;
+/// A brick is noise if this part of its cells is crossed and less than that part of its vertices
+/// lies in a single sheet. Without the first condition teapot's thin walls would be noise, for a
+/// third more triangles.
+inline constexpr double kNoiseCrossed = 0.5, kNoiseSingle = 0.05;
+/// Vertices are in one plane where their area vectors add up to their area but for this part; a
+/// brick with fewer of them than that part is not searched for flat boxes.
+inline constexpr double kFlatPart = 1e-9, kFewFlat = 0.05;
+/// Another sheet is one whose normal differs by more: cosine of about 70 degrees.
+inline constexpr float kOtherSheetCosine = 0.3F;
+
+// ---- Collapses (PatchSimplifier, ChangedStar, ErrorTracker, CrossingGuard) ----
+
+/// On a flat part all places are as good to the quadrics: shorter edges go first.
+inline constexpr double kLengthWeight = 1e-6;
+/// How much the quadric counts beside the samples when a vertex is fitted, and how stiff the fit
+/// is. Chosen by the mean distance on engine, teapot and ch2bet.
+inline constexpr double kQuadricWeight = 0.5, kFitStiffness = 0.05;
+/// Least cosine between a triangle's normal and the star's mean normal before the change; or else
+/// between it and the triangle's own before.
+inline constexpr double kStarCosine = 0.3, kOwnCosine = 0.6;
+/// Twice the area over the squared longest side: below it a triangle counts as flat.
+inline constexpr double kFlatTriangle = 1e-5;
+/// A star may come this part of the way to other sheets without a proof that it meets none, unless
+/// they are nearer than kNarrowRoom voxels: two stars that come towards each other still pass, and
+/// what lies between samples strays little more than they.
+inline constexpr double kUsableRoom = 0.4, kNarrowRoom = 0.6;
+/// Along edges sharper than this cosine points are looked at, this far apart (of the samples'
+/// spacing), so many at most: a ridge may pass between the samples of a rounder surface.
+inline constexpr double kRidgeCosine = 0.95, kRidgeSpacing = 0.5;
+inline constexpr int kRidgeMostSteps = 16;
+/// Side of the cubes by which near triangles are found, voxels: about the size of triangles of the
+/// simplified surface.
+inline constexpr double kNearCube = 2;
+/// Voxels that proofs leave between triangles.
+inline constexpr double kProofGap = 1e-4;
+/// A fan of triangles is proved clear by one direction if each is more upright to it than this
+/// cosine, and there are no more of them.
+inline constexpr double kFanCosine = 0.02;
+inline constexpr int kFanMost = 24;
+
+// ---- The proof of the bound (BrickProof, SurfaceWalk, PieceBound, ErrorProof) ----
+
+/// How many triangles a walk may visit: from a full-resolution triangle; from one of the simplified
+/// surface, this many and so many for each voxel's face that would cover it.
+inline constexpr int kStepsOfFine = 40, kFewSteps = 100;
+inline constexpr double kStepsPerFace = 20, kManySteps = 1e6;
+/// Voxels: from this bound on few pieces need cuts, and triangles are quartered instead.
+inline constexpr double kLooseBound = 0.2;
+/// Quartered parts whose longest side is less than this many times the bound are cut along the
+/// walk; those above that many times are quartered again without a look at what they lie over.
+inline constexpr double kSmallQuarter = 2, kLargeQuarter = 6;
+/// Steps towards the triangle under a point.
+inline constexpr int kStepsUnder = 16;
+/// After so many searches in a brick all its triangles are gone through instead.
+inline constexpr int kSearches = 30;
+/// So many full-resolution triangles are asked whether a piece lies near them: with those whose
+/// middles are nearest nearly every piece is settled.
+inline constexpr std::size_t kNearestFine = 6;
+/// Cuts of a piece, one after the other: to try, and to be sure; halvings that find where to cut.
+inline constexpr int kFewCuts = 3, kManyCuts = 8, kCutHalvings = 10;
+/// A bound that must grow grows by 1 % more (of the distance, here squared), so that it need not
+/// grow often.
+inline constexpr double kBoundGrowth = 1.0201;
+/// Samples that stand for the full-resolution surface where pieces are too far from every brick.
+inline constexpr std::size_t kFarSamples = 4096;
+
+// ---- Mending (SurfaceMender) ----
+
+/// By its barycentric coordinates a place lies beside a vertex, or beside an edge.
+inline constexpr double kAtVertex = 0.9, kAtEdge = 0.12;
+/// The surface has left a place when it is farther from it than this part of the place's distance.
+inline constexpr double kLeftPlace = 0.1;
+/// A new vertex is put on the full-resolution surface, or else this part of the way to it: the
+/// shorter the way, the less the triangles turn.
+inline constexpr std::array kMendSteps{1.0, 0.6, 0.35};
+/// Least cosine between the normals of a triangle before and after: first; where that allows
+/// nothing. A second limit of -1 gained nothing.
+inline constexpr std::array kMendCosines{0.3, -0.3};
+/// Where nothing else is allowed the vertex that has most of the place's weight moves, if it has
+/// more than this, by these parts of the way.
+inline constexpr double kMoveWeight = 0.4;
+inline constexpr std::array kMoveSteps{0.6, 0.35, 0.15};
+/// An edge is turned where that leaves less than this part of the distance.
+inline constexpr double kTurnLeaves = 0.5;
+
+}  // namespace adaptiso::detail

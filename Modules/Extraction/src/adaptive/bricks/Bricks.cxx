@@ -1,0 +1,255 @@
+#include "adaptive/bricks/Bricks.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "adaptive/bricks/SheetTest.h"
+#include "cells/BoxCases.h"
+#include "cells/CellTriangles.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr int kMargin = 1;         ///< samples around a block that the sheet test looks at
+constexpr int kLargestBlock = 16;  ///< cells a side
+constexpr int kPositions = Brick::kSide + 1 + 2 * BrickMesher::kHalo;
+constexpr int kCellCentre = 3;  ///< in place of an edge's axis
+
+/// \param p  lattice position relative to the brick
+std::size_t edgeSlot(const std::array<int, 3>& p, int axis) {
+    constexpr int kHalo = BrickMesher::kHalo;
+    const auto x = static_cast<std::size_t>(p[0] + kHalo),
+               y = static_cast<std::size_t>(p[1] + kHalo),
+               z = static_cast<std::size_t>(p[2] + kHalo);
+    return 3 * ((z * kPositions + y) * kPositions + x) + static_cast<std::size_t>(axis);
+}
+
+/// The surface of a cell that needs fans.
+template <class VertexOn>
+void addFans(const BoxCase& boxCase, const CellCrossings& crossings, const VertexOn& vertexOn,
+             FineSurface& surface) {
+    const auto triangle = [&](int e, int f, int g) {
+        surface.triangles.push_back({vertexOn(e), vertexOn(f), vertexOn(g)});
+    };
+    const auto fan = [&](std::span<const std::uint8_t> loop, const Vec3& middle) {
+        std::array<std::uint32_t, kBoxEdges> ring{};
+        for (std::size_t i = 0; i < loop.size(); ++i) ring[i] = vertexOn(loop[i]);
+        const auto centre = static_cast<std::uint32_t>(surface.vertices.size());
+        FineVertex vertex;
+        vertex.index = middle;
+        vertex.edge = EdgeKey::make({0, 0, 0}, kCellCentre);
+        vertex.isSingleSheet = false;
+        surface.vertices.push_back(vertex);
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            surface.triangles.push_back({centre, ring[i], ring[(i + 1) % loop.size()]});
+        }
+    };
+    forEachFan(boxCase, crossings, triangle, fan);
+}
+
+}  // namespace
+
+Bricks::Bricks(const BlockGrid& grid, const std::vector<std::uint32_t>& blocks) : grid_(grid) {
+    const std::int64_t perSide = Brick::kSide / grid.blockSize;
+    for (int a = 0; a < 3; ++a) places_[a] = (grid.blocks[a] + perSide - 1) / perSide;
+    numberAt_.assign(static_cast<std::size_t>(places_[0] * places_[1] * places_[2]), kNone);
+    const auto placeOf = [&](std::int64_t b) {
+        return Index3{b % grid.blocks[0] / perSide, b / grid.blocks[0] % grid.blocks[1] / perSide,
+                      b / (grid.blocks[0] * grid.blocks[1]) / perSide};
+    };
+    const auto slotOf = [&](const Index3& p) {
+        return p[0] + places_[0] * (p[1] + places_[1] * p[2]);
+    };
+    for (const std::uint32_t block : blocks) numberAt_[slotOf(placeOf(block))] = 0;
+    for (std::int64_t slot = 0; slot < static_cast<std::int64_t>(numberAt_.size()); ++slot) {
+        if (numberAt_[slot] == kNone) continue;
+        numberAt_[slot] = count();
+        Brick& brick = bricks_.emplace_back();
+        brick.low = {slot % places_[0] * Brick::kSide,
+                     slot / places_[0] % places_[1] * Brick::kSide,
+                     slot / (places_[0] * places_[1]) * Brick::kSide};
+    }
+    for (const std::uint32_t block : blocks) {
+        bricks_[numberAt_[slotOf(placeOf(block))]].blocks.push_back(block);
+    }
+}
+
+std::int64_t Bricks::at(const Index3& place) const {
+    for (int a = 0; a < 3; ++a) {
+        if (place[a] < 0 || place[a] >= places_[a]) return kNone;
+    }
+    return numberAt_[place[0] + places_[0] * (place[1] + places_[1] * place[2])];
+}
+
+BrickMesher::BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid)
+    : sampler_(sampler),
+      grid_(grid),
+      vertexOnEdge_(3 * std::size_t{kPositions} * kPositions * kPositions),
+      rows_(std::size_t{kLargestBlock + 1 + 2 * kMargin} * (kLargestBlock + 1 + 2 * kMargin)) {}
+
+void BrickMesher::mesh(const Brick& brick, FineSurface& surface) {
+    findsSheets_ = true;
+    meshBrick(brick, surface);
+    forget(brick, surface);
+}
+
+void BrickMesher::meshWithHalo(const Bricks& bricks, std::int64_t number, FineSurface& surface) {
+    const Brick& brick = bricks[number];
+    findsSheets_ = false;
+    meshBrick(brick, surface);
+    for (int n = 0; n < 27; ++n) {
+        const std::int64_t other = bricks.at({brick.low[0] / Brick::kSide + n % 3 - 1,
+                                              brick.low[1] / Brick::kSide + n / 3 % 3 - 1,
+                                              brick.low[2] / Brick::kSide + n / 9 - 1});
+        if (other == Bricks::kNone || other == number) continue;
+        for (const std::uint32_t block : bricks[other].blocks) {
+            const Index3 first = grid_.firstSample(block);
+            CellRange range = cellsOf(block);
+            bool isNear = true;
+            for (int a = 0; a < 3; ++a) {
+                const auto inBrick = static_cast<int>(first[a] + grid_.offset - brick.low[a]);
+                range.begin[a] = std::max(range.begin[a], -kHalo - inBrick);
+                range.end[a] = std::min(range.end[a], Brick::kSide + kHalo - inBrick);
+                isNear = isNear && range.begin[a] < range.end[a];
+            }
+            if (isNear) meshBlock(brick, block, range, surface);
+        }
+    }
+    forget(brick, surface);
+}
+
+void BrickMesher::meshBrick(const Brick& brick, FineSurface& surface) {
+    surface.vertices.clear();
+    surface.triangles.clear();
+    surface.cells.clear();
+    surface.cellsSeen = 0;
+    for (const std::uint32_t block : brick.blocks) {
+        meshBlock(brick, block, cellsOf(block), surface);
+    }
+    surface.ownVertices = surface.vertices.size();
+    surface.ownTriangles = surface.triangles.size();
+    surface.ownMiddles = static_cast<std::size_t>(
+        std::count_if(surface.vertices.begin(), surface.vertices.end(),
+                      [](const FineVertex& v) { return v.edge.axis() == kCellCentre; }));
+}
+
+void BrickMesher::forget(const Brick& brick, const FineSurface& surface) {
+    for (const FineVertex& vertex : surface.vertices) {
+        if (vertex.edge.axis() == kCellCentre) continue;
+        std::array<int, 3> p{};
+        for (int a = 0; a < 3; ++a) {
+            p[a] = static_cast<int>(vertex.edge.position(a) - brick.low[a]);
+        }
+        vertexOnEdge_[edgeSlot(p, vertex.edge.axis())] = 0;
+    }
+}
+
+/// The cells of a block that lie in the volume.
+BrickMesher::CellRange BrickMesher::cellsOf(std::uint32_t block) const {
+    const int n = grid_.blockSize;
+    CellRange range{{0, 0, 0}, {n, n, n}};
+    if (grid_.border == Border::Closed) return range;
+    const Index3 first = grid_.firstSample(block);
+    for (int a = 0; a < 3; ++a) {
+        range.end[a] =
+            static_cast<int>(std::clamp<std::int64_t>(grid_.volumeSize[a] - 1 - first[a], 0, n));
+    }
+    return range;
+}
+
+void BrickMesher::meshBlock(const Brick& brick, std::uint32_t block, const CellRange& range,
+                            FineSurface& surface) {
+    const BoxCases& cases = BoxCases::instance();
+    const int count = grid_.blockSize + 1 + 2 * kMargin;
+    const Index3 first = grid_.firstSample(block);
+    sampler_.insideRows({first[0] - kMargin, first[1] - kMargin, first[2] - kMargin}, count,
+                        rows_.data());
+    std::array<int, 3> inBrick{};
+    for (int a = 0; a < 3; ++a) {
+        inBrick[a] = static_cast<int>(first[a] + grid_.offset - brick.low[a]);
+    }
+
+    const auto vertexOn = [&](const std::array<int, 3>& cell, int edge, bool isSingle) {
+        const int corner = lowCorner(edge), axis = edgeAxis(edge);
+        std::array<int, 3> p{};
+        for (int a = 0; a < 3; ++a) p[a] = inBrick[a] + cell[a] + (corner >> a & 1);
+        std::uint32_t& slot = vertexOnEdge_[edgeSlot(p, axis)];
+        if (slot == 0) {
+            slot = static_cast<std::uint32_t>(surface.vertices.size() + 1);
+            const Index3 lattice{brick.low[0] + p[0], brick.low[1] + p[1], brick.low[2] + p[2]};
+            FineVertex vertex;
+            vertex.edge = EdgeKey::make(lattice, axis);
+            const LatticeEdge onEdge = vertex.edge.latticeEdge(grid_.offset);
+            for (int a = 0; a < 3; ++a) vertex.index[a] = static_cast<double>(onEdge.sample[a]);
+            vertex.index[axis] += sampler_.crossingAlong(onEdge);
+            for (int a = 0; a < 3; ++a) {
+                if (a != axis && (p[a] == 0 || p[a] == Brick::kSide)) vertex.isOnWall = true;
+            }
+            surface.vertices.push_back(vertex);
+        }
+        if (!isSingle) surface.vertices[slot - 1].isSingleSheet = false;
+        return slot - 1;
+    };
+
+    std::int64_t seen = 1;
+    for (int a = 0; a < 3; ++a) seen *= range.end[a] - range.begin[a];
+    surface.cellsSeen += seen;
+    const std::uint32_t cellsInRange = (1u << range.end[0]) - (1u << range.begin[0]);
+    for (int z = range.begin[2]; z < range.end[2]; ++z) {
+        for (int y = range.begin[1]; y < range.end[1]; ++y) {
+            const auto row = [&](int dy, int dz) {
+                return rows_[static_cast<std::size_t>(z + dz) * count + y + dy];
+            };
+            const std::uint32_t all = row(1, 1) & row(2, 1) & row(1, 2) & row(2, 2);
+            const std::uint32_t any = row(1, 1) | row(2, 1) | row(1, 2) | row(2, 2);
+            std::uint32_t crossed = ((any | any >> 1) & ~(all & all >> 1)) >> kMargin;
+            crossed &= cellsInRange;
+            for (; crossed != 0; crossed &= crossed - 1) {
+                const int x = std::countr_zero(crossed);
+                const auto window = [&] {
+                    std::uint64_t inside = 0;
+                    for (int dz = 0; dz < 4; ++dz) {
+                        for (int dy = 0; dy < 4; ++dy) {
+                            inside |= static_cast<std::uint64_t>(row(dy, dz) >> x & 15u)
+                                      << (4 * (dy + 4 * dz));
+                        }
+                    }
+                    return inside;
+                };
+                const auto pair = [&](int dy, int dz) { return row(dy, dz) >> (x + 1) & 3u; };
+                const unsigned corners =
+                    pair(1, 1) | pair(2, 1) << 2 | pair(1, 2) << 4 | pair(2, 2) << 6;
+                unsigned joined = 0;
+                const unsigned ambiguous = cases.ambiguousFaces(corners);
+                for (int face = 0; ambiguous >> face != 0; ++face) {
+                    if ((ambiguous >> face & 1u) == 0) continue;
+                    Index3 sample{first[0] + x, first[1] + y, first[2] + z};
+                    sample[face / 2] += face & 1;
+                    joined |= static_cast<unsigned>(sampler_.insideJoins(sample, face / 2)) << face;
+                }
+                const BoxCase& boxCase = cases[cases.caseIndex(corners, joined)];
+                const bool isSingle = findsSheets_ && isSingleSheet(window());
+                surface.cells.push_back({{static_cast<std::int16_t>(inBrick[0] + x),
+                                          static_cast<std::int16_t>(inBrick[1] + y),
+                                          static_cast<std::int16_t>(inBrick[2] + z)},
+                                         static_cast<std::uint32_t>(surface.triangles.size())});
+                const auto at = [&](int edge) { return vertexOn({x, y, z}, edge, isSingle); };
+                if (ambiguous != 0) {
+                    const CellCrossings crossings = crossingsOfCell(
+                        sampler_, {first[0] + x, first[1] + y, first[2] + z}, boxCase);
+                    if (needsFans(boxCase, crossings)) {
+                        addFans(boxCase, crossings, at, surface);
+                        continue;
+                    }
+                }
+                for (int i = 0; i < boxCase.triangleCount; ++i) {
+                    const auto& [e, f, g] = boxCase.triangle[i];
+                    surface.triangles.push_back({at(e), at(f), at(g)});
+                }
+            }
+        }
+    }
+}
+
+}  // namespace adaptiso::detail

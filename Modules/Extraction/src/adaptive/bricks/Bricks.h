@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "adaptiso/SpanSpace/BlockGrid.h"
+#include "adaptive/mesh/ZeroedTable.h"
+#include "lattice/LatticeSampler.h"
+#include "loops/SurfaceLoops.h"
+
+namespace adaptiso::detail {
+
+/// A cube of blocks, worked on as one: what is made of it fits a processor's cache.
+struct Brick {
+    static constexpr int kSide = 32;  ///< cells
+
+    Index3 low{};                       ///< lattice position of its first sample
+    std::vector<std::uint32_t> blocks;  ///< active ones, ascending
+};
+
+/// The bricks that hold active blocks.
+class Bricks {
+public:
+    Bricks(const BlockGrid& grid, const std::vector<std::uint32_t>& blocks);
+
+    static constexpr std::int64_t kNone = -1;
+
+    const BlockGrid& grid() const { return grid_; }
+    std::int64_t count() const { return static_cast<std::int64_t>(bricks_.size()); }
+    const Brick& operator[](std::int64_t number) const { return bricks_[number]; }
+
+    /// The brick at a place (lattice position / Brick::kSide), or kNone.
+    std::int64_t at(const Index3& place) const;
+
+private:
+    BlockGrid grid_;
+    Index3 places_{};
+    std::vector<std::int64_t> numberAt_;
+    std::vector<Brick> bricks_;
+};
+
+/// A vertex of the full-resolution surface.
+struct FineVertex {
+    Vec3 index;    ///< where it lies, continuous sample indices
+    EdgeKey edge;  ///< lattice edge that it lies on; none (axis 3) for the middle of a cell
+    bool isOnWall = false;  ///< may belong to a neighbouring brick too
+    /// Around the vertex, a cell and more on every side, the surface is one sheet seen from some
+    /// direction: no other part of it comes near.
+    bool isSingleSheet = true;
+};
+
+/// The marching cubes surface within a brick, as the method mc makes it.
+struct FineSurface {
+    std::vector<FineVertex> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< outward in index space
+
+    /// How many of them are the brick's own, not of the halo; those come first.
+    std::size_t ownVertices = 0, ownTriangles = 0;
+    /// Loops filled from their middle, which takes two triangles more than the table's.
+    std::size_t ownMiddles = 0;
+
+    /// A crossed cell and its first triangle; those after it are the next cell's.
+    struct Cell {
+        std::array<std::int16_t, 3> position;  ///< relative to the brick
+        std::uint32_t firstTriangle;
+    };
+    std::vector<Cell> cells;
+    std::int64_t cellsSeen = 0;  ///< of the active blocks, crossed or not
+};
+
+/// Makes fine surfaces brick by brick; keeps its working memory between them.
+class BrickMesher {
+public:
+    static constexpr int kHalo = 3;  ///< cells
+
+    explicit BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid);
+
+    /// The same brick always gives the same vertices and triangles in the same order.
+    void mesh(const Brick& brick, FineSurface& surface);
+
+    /// The brick's surface, and after it that of the cells up to kHalo around the brick. Single
+    /// sheets are not looked for.
+    void meshWithHalo(const Bricks& bricks, std::int64_t number, FineSurface& surface);
+
+private:
+    struct CellRange {
+        std::array<int, 3> begin, end;  ///< cells of a block
+    };
+    void meshBrick(const Brick& brick, FineSurface& surface);
+    void meshBlock(const Brick& brick, std::uint32_t block, const CellRange& range,
+                   FineSurface& surface);
+    CellRange cellsOf(std::uint32_t block) const;
+    void forget(const Brick& brick, const FineSurface& surface);
+
+    const LatticeSampler& sampler_;
+    const BlockGrid& grid_;
+    bool findsSheets_ = true;
+    ZeroedTable vertexOnEdge_;  ///< number + 1
+    std::vector<std::uint32_t> rows_;
+};
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+
+#include "adaptive/mesh/PatchTopology.h"
+
+namespace adaptiso::detail {
+
+/// A star as it would be after a change: its new vertex and the triangles around it.
+struct ChangedStar {
+    /// A triangle (vertex, ring[i], ring[i + 1]), ready for distances.
+    struct Wedge {
+        Vec3 e1, e2;           ///< its sides from the vertex
+        double a11, a12, a22;  ///< products of the sides
+        double inverse;        ///< 1 / (a11 a22 - a12 a12)
+    };
+
+    Star star;
+    Vec3 vertex;
+    std::array<Wedge, Star::kMost> wedge;
+    /// Before and after the change the star is a graph over one plane: all its triangles face the
+    /// same side, and go round the new vertex once. Then its triangles can't cross each other, nor
+    /// what lies beside the star.
+    bool isGraph = false;
+};
+
+/// What a changed star must be to be worth having.
+struct StarLimits {
+    double leastAngleDeg = 0;  ///< refuse angles below this unless the worst one before was worse
+};
+
+/// Fills in the wedges for the star's vertex at star.vertex.
+/// \return false when a triangle would be flat, turn too far from the surface, or have too sharp a
+///         corner. Slivers on the way are allowed: forbidding them costs accuracy.
+bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& changed);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,324 @@
+#include "adaptive/collapse/CrossingGuard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "adaptive/Parameters.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr std::uint32_t kNoEntry = 0xFFFFFFFF;
+
+}  // namespace
+
+CrossingGuard::CrossingGuard(const Patch& patch, const PatchTopology& topology,
+                             const MetricFrame& frame, bool looksEverywhere)
+    : patch_(patch),
+      topology_(topology),
+      looksEverywhere_(looksEverywhere),
+      gapMm_(kProofGap * frame.narrowestMm()),
+      cubeMm_(kNearCube * frame.voxelMm()) {}
+
+/// Those whose samples know of no other sheet near them; of those without samples, those between
+/// three such ones.
+std::vector<std::uint8_t> CrossingGuard::trianglesInSingleSheets() const {
+    enum class Sheet : std::uint8_t { Unknown, Single, Other };
+    std::vector<Sheet> sheet(patch_.triangles.size(), Sheet::Unknown);
+    for (std::size_t s = 0; s < patch_.samples.size(); ++s) {
+        Sheet& known = sheet[patch_.sampleTriangle[s]];
+        if (!patch_.samples[s].isAlone()) {
+            known = Sheet::Other;
+        } else if (known == Sheet::Unknown) {
+            known = Sheet::Single;
+        }
+    }
+    std::vector<std::uint8_t> isSingle(sheet.size());
+    for (std::uint32_t t = 0; t < sheet.size(); ++t) {
+        isSingle[t] = static_cast<std::uint8_t>(sheet[t] == Sheet::Single);
+        if (sheet[t] != Sheet::Unknown || t >= patch_.ownTriangles) continue;
+        bool isBetween = true;
+        for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+            const std::uint32_t twin = topology_.twin(h);
+            isBetween =
+                isBetween && twin != PatchTopology::kNone && sheet[twin / 3] == Sheet::Single;
+        }
+        isSingle[t] = static_cast<std::uint8_t>(isBetween);
+    }
+    return isSingle;
+}
+
+void CrossingGuard::buildGrid() {
+    stamp_.assign(patch_.triangles.size(), 0);
+    box_.resize(patch_.triangles.size());
+    hasBox_.assign(patch_.triangles.size(), 0);
+    CornerBox all{patch_.points[0], patch_.points[0]};
+    for (const Vec3& p : patch_.points) all.add(p);
+    low_ = all.low;
+    const Vec3 extent = all.high - all.low;
+    std::size_t cubes = 1;
+    for (int a = 0; a < 3; ++a) {
+        count_[a] = 1 + static_cast<std::int32_t>(extent[a] / cubeMm_);
+        cubes *= static_cast<std::size_t>(count_[a]);
+    }
+    firstEntry_.assign(cubes, kNoEntry);
+    const std::vector<std::uint8_t> isSingle =
+        looksEverywhere_ ? std::vector<std::uint8_t>(patch_.triangles.size(), 0)
+                         : trianglesInSingleSheets();
+    for (std::uint32_t t = 0; t < patch_.triangles.size(); ++t) {
+        if (patch_.triangles[t][0] == Patch::kGone) continue;
+        if (isSingle[t] == 0) enter(t);
+    }
+}
+
+CrossingGuard::Cubes CrossingGuard::cubesOf(const Box& box) const {
+    Cubes cubes{};
+    for (int a = 0; a < 3; ++a) {
+        const auto at = [&](float position) {
+            const double cube = (position - low_[a]) / cubeMm_;
+            return static_cast<std::int32_t>(
+                std::clamp(cube, 0.0, static_cast<double>(count_[a] - 1)));
+        };
+        cubes.first[a] = at(box.low[a]);
+        cubes.last[a] = at(box.high[a]);
+    }
+    return cubes;
+}
+
+template <class F>
+void CrossingGuard::forEachCube(const Cubes& cubes, const F& f) const {
+    for (std::int32_t z = cubes.first[2]; z <= cubes.last[2]; ++z) {
+        for (std::int32_t y = cubes.first[1]; y <= cubes.last[1]; ++y) {
+            const std::size_t row =
+                static_cast<std::size_t>(count_[0]) *
+                static_cast<std::size_t>(y + static_cast<std::int64_t>(count_[1]) * z);
+            for (std::int32_t x = cubes.first[0]; x <= cubes.last[0]; ++x) f(row + x);
+        }
+    }
+}
+
+void CrossingGuard::enter(std::uint32_t triangle) {
+    forEachCube(cubesOf(boxAt(triangle)), [&](std::size_t cube) {
+        entries_.push_back({triangle, firstEntry_[cube]});
+        firstEntry_[cube] = static_cast<std::uint32_t>(entries_.size() - 1);
+    });
+}
+
+const CrossingGuard::Box& CrossingGuard::boxAt(std::uint32_t triangle) {
+    if (hasBox_[triangle] == 0) {
+        box_[triangle] = rounded(boxOf(cornersOf(triangle)));
+        hasBox_[triangle] = 1;
+    }
+    return box_[triangle];
+}
+
+Corners CrossingGuard::cornersOf(std::uint32_t triangle) const {
+    const auto& t = patch_.triangles[triangle];
+    return {patch_.points[t[0]], patch_.points[t[1]], patch_.points[t[2]]};
+}
+
+CrossingGuard::Box CrossingGuard::rounded(const CornerBox& box) {
+    constexpr float kMore = 2 * std::numeric_limits<float>::epsilon(),
+                    kLeast = std::numeric_limits<float>::min();
+    Box result;
+    for (int a = 0; a < 3; ++a) {
+        const auto low = static_cast<float>(box.low[a]), high = static_cast<float>(box.high[a]);
+        result.low[a] = low - (kMore * std::abs(low) + kLeast);
+        result.high[a] = high + (kMore * std::abs(high) + kLeast);
+    }
+    return result;
+}
+
+void CrossingGuard::commit(const ChangedStar& changed, bool isSingleSheet) {
+    if (box_.empty()) return;
+    const Star& star = changed.star;
+    for (int i = 0; i < star.count; ++i) {
+        const std::uint32_t t = star.triangle[i];
+        hasBox_[t] = 0;
+        if (isSingleSheet && !looksEverywhere_) continue;
+        box_[t] = rounded(boxOf({changed.vertex, patch_.points[star.ring[i]],
+                                 patch_.points[star.ring[(i + 1) % star.count]]}));
+        hasBox_[t] = 1;
+        enter(t);
+    }
+    constexpr float kFar = std::numeric_limits<float>::max();
+    for (int i = 0; i < star.removedCount; ++i) {  // some cubes still list them
+        box_[star.removed[i]] = {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+        hasBox_[star.removed[i]] = 1;
+    }
+}
+
+bool CrossingGuard::crossesNothing(const ChangedStar& changed) {
+    if (!changed.isGraph && !wedgesAreClear(changed)) return false;
+    if (box_.empty()) buildGrid();
+    collectNear(changed);
+    const int n = changed.star.count;
+    for (const std::uint32_t other : near_) {
+        const Box& box = box_[other];
+        std::array<std::uint8_t, Star::kMost> overlaps;
+        for (int i = 0; i < n; ++i) {
+            overlaps[i] = static_cast<std::uint8_t>(
+                (wedgeLow_[0][i] <= box.high[0]) & (box.low[0] <= wedgeHigh_[0][i]) &
+                (wedgeLow_[1][i] <= box.high[1]) & (box.low[1] <= wedgeHigh_[1][i]) &
+                (wedgeLow_[2][i] <= box.high[2]) & (box.low[2] <= wedgeHigh_[2][i]));
+        }
+        for (int i = 0; i < n; ++i) {
+            if (overlaps[i] != 0 && !isClear(changed, i, other)) return false;
+        }
+    }
+    return true;
+}
+
+/// The triangles around a vertex of the ring share no more than it and their edges: seen along one
+/// direction all are upright and go round the vertex once.
+/// \pre the star's old triangles carry the stamp, and no others
+bool CrossingGuard::fanIsClear(const ChangedStar& changed, int at) const {
+    const Star& star = changed.star;
+    const std::uint32_t r = star.ring[at];
+    if (!topology_.isMovable(r)) return false;
+    const Vec3 centre = patch_.points[r];
+    struct Sector {
+        Vec3 from, to, area2;
+    };
+    std::array<Sector, kFanMost> sectors;
+    int count = 0;
+    Vec3 axis;
+    const auto add = [&](const Vec3& from, const Vec3& to) {
+        const Vec3 area2 = cross(from, to);
+        sectors[count++] = {from, to, area2};
+        axis += area2;
+    };
+    const int before = (at + star.count - 1) % star.count, after = (at + 1) % star.count;
+    const Vec3 toVertex = changed.vertex - centre;
+    add(patch_.points[star.ring[after]] - centre, toVertex);
+    add(toVertex, patch_.points[star.ring[before]] - centre);
+    const std::uint32_t begin = topology_.leaving(r);
+    std::uint32_t h = begin;
+    do {
+        const std::uint32_t inwards = PatchTopology::previous(h);
+        if (stamp_[h / 3] != now_) {
+            if (count == kFanMost) return false;
+            add(patch_.points[topology_.to(h)] - centre,
+                patch_.points[topology_.from(inwards)] - centre);
+        }
+        h = topology_.twin(inwards);
+    } while (h != begin);
+    const double least = kFanCosine * norm(axis);
+    for (int i = 0; i < count; ++i) {
+        const Sector& s = sectors[i];
+        const double upright = dot(s.area2, axis);
+        if (!(upright > 0 && upright * upright > least * least * squaredNorm(s.area2))) {
+            return false;
+        }
+        // a second way round would pass the spoke again
+        if (i >= 2 && dot(cross(s.from, toVertex), axis) >= 0 &&
+            dot(cross(toVertex, s.to), axis) >= 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// The star's triangles among themselves.
+bool CrossingGuard::wedgesAreClear(const ChangedStar& changed) const {
+    const Star& star = changed.star;
+    const int n = star.count;
+    const Vec3& p = changed.vertex;
+    const auto ring = [&](int i) { return patch_.points[star.ring[i % n]]; };
+    for (int i = 0; i < n; ++i) {
+        for (int j = i + 1; j < n; ++j) {
+            bool isClear = false;
+            if (j == i + 1) {
+                isClear = touchAtEdgeOnly({ring(j), p, ring(i)}, {p, ring(j), ring(j + 1)});
+            } else if (i == 0 && j == n - 1) {
+                isClear = touchAtEdgeOnly({p, ring(0), ring(1)}, {ring(0), p, ring(j)});
+            } else {
+                isClear =
+                    touchAtVertexOnly({p, ring(i), ring(i + 1)}, {p, ring(j), ring(j + 1)}, gapMm_);
+            }
+            if (!isClear) return false;
+        }
+    }
+    return true;
+}
+
+bool CrossingGuard::isClear(const ChangedStar& changed, int wedge, std::uint32_t other) const {
+    const Star& star = changed.star;
+    const std::uint32_t r = star.ring[wedge], s = star.ring[(wedge + 1) % star.count];
+    const Vec3 &p = changed.vertex, &pr = patch_.points[r], &ps = patch_.points[s];
+    const auto& o = patch_.triangles[other];
+    const auto corner = [&](int c) { return patch_.points[o[c % 3]]; };
+    int atR = -1, atS = -1;
+    for (int c = 0; c < 3; ++c) {
+        if (o[c] == r) atR = c;
+        if (o[c] == s) atS = c;
+    }
+    const bool isInFan =
+        (atR >= 0 && fanIsClear_[wedge]) || (atS >= 0 && fanIsClear_[(wedge + 1) % star.count]);
+    if (isInFan) return true;
+    if (atR >= 0 && atS >= 0) {
+        return touchAtEdgeOnly({pr, ps, p}, {ps, pr, corner(3 - atR - atS)});
+    }
+    if (atR >= 0) {
+        return touchAtVertexOnly({pr, ps, p}, {pr, corner(atR + 1), corner(atR + 2)}, gapMm_);
+    }
+    if (atS >= 0) {
+        return touchAtVertexOnly({ps, p, pr}, {ps, corner(atS + 1), corner(atS + 2)}, gapMm_);
+    }
+    return areApart({p, pr, ps}, cornersOf(other), gapMm_);
+}
+
+void CrossingGuard::collectNear(const ChangedStar& changed) {
+    const Star& star = changed.star;
+    ++now_;
+    near_.clear();
+    CornerBox whole{changed.vertex, changed.vertex};
+    for (int i = 0; i < star.count; ++i) {
+        const Vec3 &r = patch_.points[star.ring[i]],
+                   &s = patch_.points[star.ring[(i + 1) % star.count]];
+        CornerBox wedge = boxOf({changed.vertex, r, s});
+        wedge.widen(gapMm_);
+        const Box box = rounded(wedge);
+        for (int a = 0; a < 3; ++a) {
+            wedgeLow_[a][i] = box.low[a];
+            wedgeHigh_[a][i] = box.high[a];
+        }
+        whole.add(r);
+        stamp_[star.triangle[i]] = now_;
+    }
+    for (int i = 0; i < star.removedCount; ++i) stamp_[star.removed[i]] = now_;
+    whole.widen(gapMm_);
+    starBox_ = rounded(whole);
+    for (int i = 0; i < star.count; ++i) fanIsClear_[i] = fanIsClear(changed, i);
+    collectAroundRing(star);
+    collectFromGrid();
+}
+
+void CrossingGuard::collectAroundRing(const Star& star) {
+    for (int i = 0; i < star.count; ++i) {
+        if (!topology_.isMovable(star.ring[i])) continue;  // its triangles are in the grid's hands
+        const std::uint32_t begin = topology_.leaving(star.ring[i]);
+        std::uint32_t h = begin;
+        do {
+            addNear(h / 3);
+            h = topology_.twin(PatchTopology::previous(h));
+        } while (h != begin);
+    }
+}
+
+void CrossingGuard::collectFromGrid() {
+    forEachCube(cubesOf(starBox_), [&](std::size_t cube) {
+        for (std::uint32_t e = firstEntry_[cube]; e != kNoEntry; e = entries_[e].next) {
+            addNear(entries_[e].triangle);
+        }
+    });
+}
+
+void CrossingGuard::addNear(std::uint32_t triangle) {
+    if (stamp_[triangle] == now_) return;
+    stamp_[triangle] = now_;
+    if (boxAt(triangle).overlaps(starBox_)) near_.push_back(triangle);
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "Certificate.h"
+#include "adaptive/collapse/ChangedStar.h"
+#include "adaptive/mesh/MetricFrame.h"
+#include "adaptive/mesh/PatchTopology.h"
+
+namespace adaptiso::detail {
+
+/// Proves that a changed star crosses no triangle near it. What can't be proved is refused.
+///
+/// Near triangles are found by their boxes, in a grid of cubes. Those whose samples all lie in a
+/// single sheet are left out, since no other part of the surface comes near them; so most stars
+/// need no proof at all (see needsProof). A triangle without samples is left out only between three
+/// of those: nothing else tells what is near it. Triangles that share a vertex of the ring are
+/// proved together, by their common view (see fanIsClear); planes between two triangles are tried
+/// for the others.
+class CrossingGuard {
+public:
+    /// \param looksEverywhere  all triangles are looked at, and every star is proved
+    CrossingGuard(const Patch& patch, const PatchTopology& topology, const MetricFrame& frame,
+                  bool looksEverywhere);
+
+    /// A star that is a graph over a plane, in a single sheet, can cross nothing.
+    bool needsProof(const ChangedStar& changed, bool isCrowded) const {
+        return looksEverywhere_ || isCrowded || !changed.isGraph;
+    }
+
+    bool crossesNothing(const ChangedStar& changed);
+
+    /// The star was changed.
+    /// \param isSingleSheet  all its samples, one or more, know of no other sheet near them
+    void commit(const ChangedStar& changed, bool isSingleSheet);
+
+private:
+    /// Single precision, rounded outwards.
+    struct Box {
+        std::array<float, 3> low, high;
+        bool overlaps(const Box& o) const {
+            return low[0] <= o.high[0] && o.low[0] <= high[0] && low[1] <= o.high[1] &&
+                   o.low[1] <= high[1] && low[2] <= o.high[2] && o.low[2] <= high[2];
+        }
+    };
+    static Box rounded(const CornerBox& box);
+
+    /// The cubes that a box overlaps.
+    struct Cubes {
+        std::array<std::int32_t, 3> first, last;
+    };
+    struct Entry {
+        std::uint32_t triangle, next;
+    };
+    void buildGrid();
+    std::vector<std::uint8_t> trianglesInSingleSheets() const;
+    Cubes cubesOf(const Box& box) const;
+    template <class F>
+    void forEachCube(const Cubes& cubes, const F& f) const;
+    void enter(std::uint32_t triangle);
+    const Box& boxAt(std::uint32_t triangle);
+    Corners cornersOf(std::uint32_t triangle) const;
+    bool wedgesAreClear(const ChangedStar& changed) const;
+    bool fanIsClear(const ChangedStar& changed, int at) const;
+    bool isClear(const ChangedStar& changed, int wedge, std::uint32_t other) const;
+    void collectNear(const ChangedStar& changed);
+    void collectAroundRing(const Star& star);
+    void collectFromGrid();
+    void addNear(std::uint32_t triangle);
+
+    const Patch& patch_;
+    const PatchTopology& topology_;
+    bool looksEverywhere_;
+    double gapMm_, cubeMm_;
+    Vec3 low_;                               ///< of the grid
+    std::array<std::int32_t, 3> count_{};    ///< of its cubes, by axis
+    std::vector<std::uint32_t> firstEntry_;  ///< of each cube: a list
+    std::vector<Entry> entries_;             ///< some are of triangles that have changed since
+    std::vector<std::uint32_t> stamp_;       ///< of triangles seen in this search
+    std::uint32_t now_ = 0;
+    std::vector<std::uint32_t> near_;
+    std::vector<Box> box_;              ///< of each triangle, where it is known
+    std::vector<std::uint8_t> hasBox_;  ///< it is known
+    Box starBox_{};
+    std::array<std::array<float, Star::kMost>, 3> wedgeLow_{}, wedgeHigh_{};  ///< by axis
+    std::array<bool, Star::kMost> fanIsClear_{};  ///< of each vertex of the ring
+};
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,245 @@
+#include "adaptive/collapse/ErrorTracker.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "adaptive/Parameters.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Squared distance from q to the segment from the origin to e.
+double squaredDistanceToSegment(const Vec3& q, const Vec3& e) {
+    const double t = std::clamp(dot(q, e) / squaredNorm(e), 0.0, 1.0);
+    return squaredNorm(q - t * e);
+}
+
+struct WedgeDistance {
+    double squared;
+    int towards;  ///< the neighbouring wedge that may be nearer: -1, 1, or 0 for none
+};
+
+/// From a point, seen from the star's vertex, to a triangle of the star.
+WedgeDistance distanceTo(const ChangedStar::Wedge& w, const Vec3& q) {
+    const double d1 = dot(q, w.e1), d2 = dot(q, w.e2);
+    const double u = (w.a22 * d1 - w.a12 * d2) * w.inverse,
+                 v = (w.a11 * d2 - w.a12 * d1) * w.inverse;
+    if (u >= 0 && v >= 0 && u + v <= 1) {
+        return {std::max(0.0, squaredNorm(q) - u * d1 - v * d2), 0};
+    }
+    WedgeDistance result{kInfinity, 0};
+    if (u < 0) result = {squaredDistanceToSegment(q, w.e2), 1};
+    if (v < 0) {
+        const double squared = squaredDistanceToSegment(q, w.e1);
+        if (squared < result.squared) result = {squared, -1};
+    }
+    if (u + v > 1) {
+        result.squared = std::min(result.squared, squaredDistanceToSegment(q - w.e1, w.e2 - w.e1));
+    }
+    return result;
+}
+
+/// About how far a point lies from the full-resolution surface: its height over the tangent plane.
+double heightOver(const Sample& sample, const Vec3& p) {
+    return std::abs(dot(sample.normal(), p - sample.point()));
+}
+
+/// A distance, larger where it must be small.
+double tightened(double distanceMm, const Sample& sample) {
+    return sample.tightness == 0 ? distanceMm : distanceMm * std::exp2(0.5 * sample.tightness);
+}
+
+}  // namespace
+
+void SampleAssignment::clear() {
+    moves.clear();
+    for (auto& along : position) along.clear();
+    sumOfSquares = largestSquare = 0;
+    leastRoom = SheetRoom::kAlone;
+    isCrowded = false;
+}
+
+ErrorTracker::ErrorTracker(Patch& patch, const MetricFrame& frame)
+    : patch_(patch),
+      sampleSpacingMm_(frame.voxelMm()),
+      firstSample_(patch.triangles.size(), kNone),
+      nextSample_(patch.samples.size(), kNone),
+      triangleRoom_(patch.triangles.size(), SheetRoom::kAlone) {
+    for (int room = 0; room < kRooms; ++room) {
+        const double voxels = static_cast<double>(room) / SheetRoom::kParts,
+                     mm = kUsableRoom * voxels * frame.narrowestMm();
+        squaredRoom_[room] = voxels < kNarrowRoom ? -1 : mm * mm;
+    }
+    squaredRoom_[SheetRoom::kAlone] = kInfinity;
+    for (auto s = static_cast<std::uint32_t>(patch.samples.size()); s-- > 0;) {
+        const std::uint32_t t = patch.sampleTriangle[s];
+        nextSample_[s] = firstSample_[t];
+        firstSample_[t] = s;
+    }
+}
+
+/// Calls f(triangle, wedge that takes its place or lies beside it) until f returns false.
+template <class F>
+bool ErrorTracker::forEachTriangle(const Star& star, const F& f) const {
+    for (int i = 0; i < star.count; ++i) {
+        if (!f(star.triangle[i], i)) return false;
+    }
+    for (int i = 0; i < star.removedCount; ++i) {
+        if (!f(star.removed[i], i == 0 ? 0 : star.secondWedge)) return false;
+    }
+    return true;
+}
+
+SampleAssignment::Move ErrorTracker::nearest(const ChangedStar& changed, std::uint32_t sample,
+                                             int start, double& squaredDistance) const {
+    // downhill from wedge to wedge, one way round
+    const Vec3 q = patch_.samples[sample].point() - changed.vertex;
+    const int n = changed.star.count;
+    SampleAssignment::Move best{sample, start};
+    squaredDistance = kInfinity;
+    int direction = 0;
+    for (int tries = 0, i = start; tries < n; ++tries) {
+        const WedgeDistance found = distanceTo(changed.wedge[i], q);
+        if (!(found.squared < squaredDistance)) break;
+        squaredDistance = found.squared;
+        best.wedge = i;
+        if (found.towards == 0 || (direction != 0 && found.towards != direction)) break;
+        direction = found.towards;
+        i = (i + direction + n) % n;
+    }
+    return best;
+}
+
+std::optional<StarFit> ErrorTracker::measure(const ChangedStar& unchanged) const {
+    StarFit fit;
+    const bool isLoose = forEachTriangle(unchanged.star, [&](std::uint32_t triangle, int wedge) {
+        for (std::uint32_t s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
+            const Sample& sample = patch_.samples[s];
+            if (sample.tightness > 0) return false;
+            const double squared =
+                distanceTo(unchanged.wedge[wedge], sample.point() - unchanged.vertex).squared;
+            fit.sumOfSquares += squared;
+            fit.largestSquare = std::max(fit.largestSquare, squared);
+        }
+        return true;
+    });
+    return isLoose ? std::optional(fit) : std::nullopt;
+}
+
+bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm,
+                          SampleAssignment& result) const {
+    const double most = maxDistanceMm * maxDistanceMm;
+    result.clear();
+    std::uint8_t roomUnseen = SheetRoom::kAlone;
+    const bool isNear = forEachTriangle(changed.star, [&](std::uint32_t triangle, int wedge) {
+        roomUnseen = std::min(roomUnseen, triangleRoom_[triangle]);
+        for (std::uint32_t s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
+            double squared = 0;
+            const SampleAssignment::Move move = nearest(changed, s, wedge, squared);
+            const Sample& sample = patch_.samples[s];
+            result.leastRoom = std::min(result.leastRoom, sample.room);
+            if (squared > squaredRoom_[sample.room]) result.isCrowded = true;
+            if (!(squared <=
+                  (sample.tightness == 0 ? most : std::ldexp(most, -sample.tightness)))) {
+                return false;
+            }
+            result.sumOfSquares += squared;
+            result.largestSquare = std::max(result.largestSquare, squared);
+            result.moves.push_back(move);
+            for (int a = 0; a < 3; ++a) result.position[a].push_back(sample.position[a]);
+        }
+        return true;
+    });
+    result.leastRoom = std::min(result.leastRoom, roomUnseen);
+    if (!isNear) return false;
+    if (result.moves.empty()) {
+        result.isCrowded = result.leastRoom != SheetRoom::kAlone;
+        return true;
+    }
+    const Sample& nearest = sampleNearest(changed.vertex, result);
+    const double height = heightOver(nearest, changed.vertex);
+    if (height * height > squaredRoom_[std::min(nearest.room, roomUnseen)]) result.isCrowded = true;
+    return tightened(height, nearest) <= maxDistanceMm &&
+           ridgesAreNear(changed, result, maxDistanceMm);
+}
+
+/// Of the samples that are handed over, but for differences of a ten-thousandth.
+const Sample& ErrorTracker::sampleNearest(const Vec3& p, const SampleAssignment& assignment) const {
+    // a number of 32 bits for each, by which the compiler takes several at once: the square, as
+    // floats that are not negative sort by their bits, with the place in its last bits
+    constexpr std::int32_t kPlaces = 1 << 10;
+    const std::array<float, 3> q = Sample::positionOf(p);
+    const auto count = static_cast<std::int32_t>(assignment.moves.size());
+    std::int32_t at = 0, least = std::numeric_limits<std::int32_t>::max();
+    for (std::int32_t begin = 0; begin < count; begin += kPlaces) {
+        const std::int32_t here = std::min(kPlaces, count - begin);
+        const float *xs = assignment.position[0].data() + begin,
+                    *ys = assignment.position[1].data() + begin,
+                    *zs = assignment.position[2].data() + begin;
+        std::int32_t best = std::numeric_limits<std::int32_t>::max();
+        for (std::int32_t i = 0; i < here; ++i) {
+            const float x = xs[i] - q[0], y = ys[i] - q[1], z = zs[i] - q[2];
+            const auto bits = std::bit_cast<std::int32_t>(x * x + y * y + z * z);
+            best = std::min(best, (bits & ~(kPlaces - 1)) | i);
+        }
+        if ((best & ~(kPlaces - 1)) < (least & ~(kPlaces - 1))) {
+            least = best;
+            at = begin + (best & (kPlaces - 1));
+        }
+    }
+    return patch_.samples[assignment.moves[at].sample];
+}
+
+/// The way back: a sharp edge may pass between the samples of a rounder surface.
+bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, const SampleAssignment& assignment,
+                                 double maxDistanceMm) const {
+    const int n = changed.star.count;
+    const auto normal = [&](int i) {
+        const ChangedStar::Wedge& w = changed.wedge[i];
+        return std::sqrt(w.inverse) * cross(w.e1, w.e2);
+    };
+    Vec3 before = normal(n - 1);
+    for (int i = 0; i < n; ++i) {
+        const Vec3 after = normal(i);
+        const bool isSharp = dot(before, after) < kRidgeCosine;
+        before = after;
+        if (!isSharp) continue;
+        const Vec3& spoke = changed.wedge[i].e1;
+        const int steps =
+            std::min(kRidgeMostSteps,
+                     1 + static_cast<int>(norm(spoke) / (kRidgeSpacing * sampleSpacingMm_)));
+        for (int k = 1; k < steps; ++k) {
+            const Vec3 p = changed.vertex + static_cast<double>(k) / steps * spoke;
+            const Sample& nearest = sampleNearest(p, assignment);
+            if (tightened(heightOver(nearest, p), nearest) > maxDistanceMm) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+void ErrorTracker::commit(const ChangedStar& changed, const SampleAssignment& assignment) {
+    forEachTriangle(changed.star, [&](std::uint32_t triangle, int) {
+        firstSample_[triangle] = kNone;
+        return true;
+    });
+    for (const SampleAssignment::Move& move : assignment.moves) {
+        const std::uint32_t t = changed.star.triangle[move.wedge];
+        nextSample_[move.sample] = firstSample_[t];
+        firstSample_[t] = move.sample;
+        patch_.sampleTriangle[move.sample] = t;
+    }
+    // a triangle without samples has the room of those around it
+    for (int i = 0; i < changed.star.count; ++i) {
+        const std::uint32_t t = changed.star.triangle[i];
+        if (firstSample_[t] == kNone) triangleRoom_[t] = assignment.leastRoom;
+    }
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "adaptive/collapse/ChangedStar.h"
+#include "adaptive/mesh/MetricFrame.h"
+
+namespace adaptiso::detail {
+
+/// What a changed star does to the samples of its triangles: which of the new triangles each one
+/// is handed to, and how far from it it then is.
+struct SampleAssignment {
+    struct Move {
+        std::uint32_t sample;
+        int wedge;
+    };
+    std::vector<Move> moves;
+    std::array<std::vector<float>, 3> position;  ///< of the moves' samples, by axis
+    double sumOfSquares = 0;                     ///< of distances, mm2
+    double largestSquare = 0;                    ///< of distances, mm2
+    std::uint8_t leastRoom = SheetRoom::kAlone;  ///< of all samples, see Sample
+    /// The star comes so far towards other sheets that it could meet them.
+    bool isCrowded = false;
+
+    /// All samples, one or more, know of no other sheet near them.
+    bool isInSingleSheet() const { return !moves.empty() && leastRoom == SheetRoom::kAlone; }
+    void clear();
+};
+
+/// How far the samples of an unchanged star are from their triangles.
+struct StarFit {
+    double sumOfSquares = 0;   ///< mm2
+    double largestSquare = 0;  ///< mm2
+};
+
+/// Which triangle of a patch stands for each sample of the full-resolution surface, and how far
+/// off it is: the samples of the triangles that a change takes away are handed to the new ones.
+class ErrorTracker {
+public:
+    static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+    ErrorTracker(Patch& patch, const MetricFrame& frame);
+
+    /// \return nothing when the star touches places that must be tight
+    std::optional<StarFit> measure(const ChangedStar& unchanged) const;
+
+    /// Finds for every sample of the star's triangles the near one of the changed triangles.
+    /// \param result  what is found; its memory is used again
+    /// \return false when a sample, or a point of the star, would be farther than maxDistanceMm
+    bool assign(const ChangedStar& changed, double maxDistanceMm, SampleAssignment& result) const;
+
+    /// Hands the samples over as assign() found.
+    void commit(const ChangedStar& changed, const SampleAssignment& assignment);
+
+    /// The samples of a triangle, as a list.
+    std::uint32_t first(std::uint32_t triangle) const { return firstSample_[triangle]; }
+    std::uint32_t next(std::uint32_t sample) const { return nextSample_[sample]; }
+
+private:
+    template <class F>
+    bool forEachTriangle(const Star& star, const F& f) const;
+    SampleAssignment::Move nearest(const ChangedStar& changed, std::uint32_t sample, int start,
+                                   double& squaredDistance) const;
+
+    const Sample& sampleNearest(const Vec3& p, const SampleAssignment& assignment) const;
+    bool ridgesAreNear(const ChangedStar& changed, const SampleAssignment& assignment,
+                       double maxDistanceMm) const;
+
+    Patch& patch_;
+    double sampleSpacingMm_;
+    static constexpr int kRooms = SheetRoom::kAlone + 1;
+    std::array<double, kRooms> squaredRoom_{};  ///< that may be used, by Sample::room
+    std::vector<std::uint32_t> firstSample_, nextSample_;
+    std::vector<std::uint8_t> triangleRoom_;  ///< where there are no samples, see Sample
+};
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,213 @@
+#include "adaptive/collapse/PatchSimplifier.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "adaptive/Parameters.h"
+
+namespace adaptiso::detail {
+PatchSimplifier::PatchSimplifier(Patch& patch, const MetricFrame& frame, const PatchLimits& limits)
+    : patch_(patch),
+      frame_(frame),
+      limits_(limits),
+      topology_(patch),
+      errors_(patch, frame),
+      guard_(patch, topology_, frame, limits.provesAll),
+      changes_(patch.points.size(), 0) {}
+
+QuadricMinimum PatchSimplifier::bestPlace(std::uint32_t a, std::uint32_t b) const {
+    return minimize(patch_.quadrics[a] + patch_.quadrics[b],
+                    0.5 * (patch_.points[a] + patch_.points[b]));
+}
+
+void PatchSimplifier::propose(std::uint32_t halfEdge, double leastCost) {
+    const std::uint32_t a = topology_.from(halfEdge), b = topology_.to(halfEdge);
+    if (!mayChange(a) || !mayChange(b)) return;
+    const double weight = patch_.quadrics[a].weight() + patch_.quadrics[b].weight();
+    const double error = bestPlace(a, b).error;
+    if (error > weight * limits_.maxDistanceMm * limits_.maxDistanceMm) return;
+    const double cost =
+        error + kLengthWeight * weight * squaredNorm(patch_.points[b] - patch_.points[a]);
+    if (cost > limits_.maxCost || cost <= leastCost) return;
+    queue_.push_back({cost, halfEdge, a, b, changes_[a] + changes_[b]});
+    std::push_heap(queue_.begin(), queue_.end(), IsLater());
+}
+
+void PatchSimplifier::setState(std::uint32_t v, Patch::State state) {
+    if (patch_.states[v] != Patch::State::Final) patch_.states[v] = state;
+}
+
+/// What lies around the changed star may be tried again.
+void PatchSimplifier::markChanged(const Star& star) {
+    for (int i = 0; i < star.count; ++i) setState(star.ring[i], Patch::State::Open);
+}
+
+bool PatchSimplifier::isStale(const Candidate& c) const {
+    return changes_[c.a] + changes_[c.b] != c.changes || !topology_.isMovable(c.a) ||
+           !topology_.isMovable(c.b);
+}
+
+const PatchSimplifier::Change* PatchSimplifier::evaluateCollapse(std::uint32_t halfEdge) {
+    Change& change = change_;
+    if (!topology_.starOfEdge(halfEdge, change.star.star)) return nullptr;
+    change.vertex = topology_.from(halfEdge);
+    change.halfEdge = halfEdge;
+    change.star.vertex = bestPlace(change.vertex, topology_.to(halfEdge)).point;
+    return staysNear(change) && crossesNothing(change) ? &change : nullptr;
+}
+
+const PatchSimplifier::Change* PatchSimplifier::evaluateFit(std::uint32_t vertex) {
+    Change& change = change_;
+    if (!topology_.starOf(vertex, change.star.star)) return nullptr;
+    change.vertex = vertex;
+    change.halfEdge = PatchTopology::kNone;
+    change.star.vertex = patch_.points[vertex];
+    if (!shapeStar(patch_, limits_.shape, change.star)) return nullptr;
+    const std::optional<StarFit> before = errors_.measure(change.star);
+    if (!before) return nullptr;
+    const Quadric& quadric = patch_.quadrics[vertex];
+    const double mostError = quadric.weight() * limits_.maxDistanceMm * limits_.maxDistanceMm,
+                 farthest =
+                     std::max(before->largestSquare, limits_.maxFittedMm * limits_.maxFittedMm);
+    change.star.vertex = fittedPlace(change.star, quadric);
+    const bool isBetter = quadric.at(change.star.vertex) <= mostError && staysNear(change) &&
+                          change.samples.sumOfSquares < before->sumOfSquares &&
+                          change.samples.largestSquare <= farthest;
+    return isBetter && crossesNothing(change) ? &change : nullptr;
+}
+
+void PatchSimplifier::apply(const Change& change) {
+    if (change.halfEdge != PatchTopology::kNone) {
+        const std::uint32_t other = topology_.to(change.halfEdge);
+        topology_.collapse(change.halfEdge, change.star.star);
+        markChanged(change.star.star);
+        setState(change.vertex, Patch::State::Open);
+        patch_.quadrics[change.vertex] += patch_.quadrics[other];
+        ++changes_[change.vertex];
+        ++changes_[other];
+    }
+    errors_.commit(change.star, change.samples);
+    guard_.commit(change.star, change.samples.isInSingleSheet());
+    patch_.points[change.vertex] = change.star.vertex;
+}
+
+void PatchSimplifier::settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, int largestSide,
+                                      std::vector<double>* costs) {
+    const auto boxAt = [&](std::uint32_t v, int side) {
+        const Vec3 index = frame_.toIndex(patch_.points[v]);
+        return Index3{static_cast<std::int64_t>(std::floor(index.x / side)),
+                      static_cast<std::int64_t>(std::floor(index.y / side)),
+                      static_cast<std::int64_t>(std::floor(index.z / side))};
+    };
+    for (int side = 2; side <= largestSide; side *= 2) {
+        for (std::uint32_t h = 0; h < 3 * patch_.ownTriangles; ++h) {
+            if (patch_.triangles[h / 3][0] == Patch::kGone) continue;
+            const std::uint32_t a = topology_.from(h), b = topology_.to(h);
+            if (isFlat[a] == 0 || isFlat[b] == 0 || !mayChange(a) || !mayChange(b)) continue;
+            if (boxAt(a, side) != boxAt(b, side)) continue;
+            const Change* change = evaluateCollapse(h);
+            if (change == nullptr) continue;
+            apply(*change);
+            if (costs != nullptr) costs->push_back(0);
+        }
+    }
+}
+
+void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* costs) {
+    for (std::uint32_t h = 0; h < 3 * patch_.ownTriangles; ++h) {
+        if (patch_.triangles[h / 3][0] == Patch::kGone) continue;
+        const std::uint32_t twin = topology_.twin(h);
+        if (twin == PatchTopology::kNone || h > twin) continue;
+        const bool isTried = patch_.states[topology_.from(h)] == Patch::State::Tried &&
+                             patch_.states[topology_.to(h)] == Patch::State::Tried;
+        propose(h, isTried ? limits_.triedCost : -1);
+    }
+    for (std::uint32_t v = 0; v < patch_.points.size(); ++v) {
+        if (topology_.isMovable(v) && patch_.states[v] == Patch::State::Open) {
+            patch_.states[v] = Patch::State::Tried;
+        }
+    }
+    std::int64_t made = 0;
+    while (!queue_.empty() && made < most) {
+        const Candidate best = queue_.front();
+        std::pop_heap(queue_.begin(), queue_.end(), IsLater());
+        queue_.pop_back();
+        if (isStale(best)) continue;
+        const Change* change = evaluateCollapse(best.halfEdge);
+        if (change == nullptr) continue;
+        apply(*change);
+        ++made;
+        if (costs != nullptr) costs->push_back(best.cost);
+        const std::uint32_t begin = topology_.leaving(best.a);
+        std::uint32_t h = begin;
+        do {
+            propose(h, -1);
+            h = topology_.twin(PatchTopology::previous(h));
+        } while (h != begin);
+    }
+    for (const Candidate& untried : queue_) {
+        for (const std::uint32_t v : {untried.a, untried.b}) {
+            if (patch_.states[v] == Patch::State::Tried) patch_.states[v] = Patch::State::Open;
+        }
+    }
+    queue_.clear();
+}
+
+/// The star has the shape asked for and lies near its samples.
+bool PatchSimplifier::staysNear(Change& change) const {
+    return isInBox(change.star.vertex) && shapeStar(patch_, limits_.shape, change.star) &&
+           errors_.assign(change.star, limits_.maxDistanceMm, change.samples);
+}
+
+/// \pre staysNear() was true
+bool PatchSimplifier::crossesNothing(const Change& change) {
+    return !guard_.needsProof(change.star, change.samples.isCrowded) ||
+           guard_.crossesNothing(change.star);
+}
+
+bool PatchSimplifier::isInBox(const Vec3& p) const {
+    const Vec3 index = frame_.toIndex(p);
+    for (int a = 0; a < 3; ++a) {
+        if (!(index[a] >= patch_.lowIndex[a] && index[a] <= patch_.highIndex[a])) return false;
+    }
+    return true;
+}
+
+void PatchSimplifier::fitVertices() {
+    for (std::uint32_t v = 0; v < patch_.points.size(); ++v) {
+        if (!mayChange(v) || patch_.states[v] == Patch::State::Fitted) continue;
+        // one with too many triangles is not fitted, and stays as it is
+        const Change* change = evaluateFit(v);
+        patch_.states[v] = Patch::State::Fitted;
+        if (change != nullptr) apply(*change);
+    }
+}
+
+/// \param star  a vertex's, shaped for its present place \param own  the vertex's quadric
+Vec3 PatchSimplifier::fittedPlace(const ChangedStar& star, const Quadric& own) const {
+    // a sample's distance is linear in the vertex's step d: n . (s - q) - w n . d, w the weight of
+    // the vertex at the sample's foot q; a sample stands for a voxel's face of surface
+    const double scale = kQuadricWeight / (frame_.voxelMm() * frame_.voxelMm());
+    Quadric sum;
+    sum.xx = scale * own.xx, sum.xy = scale * own.xy, sum.xz = scale * own.xz;
+    sum.yy = scale * own.yy, sum.yz = scale * own.yz, sum.zz = scale * own.zz;
+    sum.b = scale * (own.timesA(star.vertex) + own.b);
+    for (int i = 0; i < star.star.count; ++i) {
+        const ChangedStar::Wedge& w = star.wedge[i];
+        const Vec3 normal = std::sqrt(w.inverse) * cross(w.e1, w.e2);
+        for (std::uint32_t s = errors_.first(star.star.triangle[i]); s != ErrorTracker::kNone;
+             s = errors_.next(s)) {
+            const Vec3 d = patch_.samples[s].point() - star.vertex;
+            const double d1 = dot(d, w.e1), d2 = dot(d, w.e2);
+            const double u = std::clamp((w.a22 * d1 - w.a12 * d2) * w.inverse, 0.0, 1.0),
+                         t = std::clamp((w.a11 * d2 - w.a12 * d1) * w.inverse, 0.0, 1.0);
+            const Vec3 g = std::max(0.0, 1 - u - t) * normal;
+            sum.xx += g.x * g.x, sum.xy += g.x * g.y, sum.xz += g.x * g.z;
+            sum.yy += g.y * g.y, sum.yz += g.y * g.z, sum.zz += g.z * g.z;
+            sum.b += -dot(normal, d) * g;
+        }
+    }
+    return star.vertex + minimize(sum, {}, kFitStiffness).point;
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "adaptive/collapse/CrossingGuard.h"
+#include "adaptive/collapse/ErrorTracker.h"
+#include "adaptive/mesh/MetricFrame.h"
+#include "adaptive/mesh/Patch.h"
+#include "adaptive/mesh/PatchTopology.h"
+
+namespace adaptiso::detail {
+
+struct PatchLimits {
+    double maxCost = 0;        ///< of a collapse, mm2 x mm2
+    double triedCost = -1;     ///< maxCost when the points that are tried were
+    double maxDistanceMm = 0;  ///< of a sample from the triangle that stands for it
+    /// Of a sample from the triangles of a fitted vertex, unless some sample was as far before.
+    double maxFittedMm = std::numeric_limits<double>::max();
+    StarLimits shape;
+    bool provesAll = false;    ///< also stars that can cross nothing by what is known of them
+    bool leavesNoise = false;  ///< bricks full of it stay at full resolution
+};
+
+/// Simplifies a patch in place by quadric edge collapses, cheapest first [Garland1997].
+class PatchSimplifier {
+public:
+    PatchSimplifier(Patch& patch, const MetricFrame& frame, const PatchLimits& limits);
+
+    /// Makes one vertex of those that lie in the same box of the lattice, in boxes of 2, 4, ...
+    /// cells a side, where the surface is flat: there any order is as good, and none has to wait.
+    /// \param isFlat       of each vertex: all triangles around it lie in one plane
+    /// \param largestSide  cells
+    /// \param costs        gets a 0 for each collapse; may be null
+    void settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, int largestSide,
+                         std::vector<double>* costs);
+
+    /// Collapses edges until none is left within the limits, at most `most` of them.
+    /// \param costs  gets the cost of each, in order; may be null
+    void collapseEdges(std::int64_t most, std::vector<double>* costs);
+
+    /// Moves vertices to where their triangles lie closest to the samples that they stand for
+    /// (least squares, held by the vertex's quadric): those that are not fitted yet.
+    void fitVertices();
+
+private:
+    struct Candidate {
+        double cost;
+        std::uint32_t halfEdge, a, b;
+        std::uint32_t changes;  ///< of both ends when it was proposed; stale when there are more
+    };
+    struct IsLater {
+        bool operator()(const Candidate& x, const Candidate& y) const {
+            if (x.cost != y.cost) return x.cost > y.cost;
+            return x.a != y.a ? x.a > y.a : x.b > y.b;
+        }
+    };
+
+    /// A change that nothing refuses: all that apply() needs. An edge is collapsed into the vertex
+    /// it starts from, or a vertex moves.
+    struct Change {
+        ChangedStar star;
+        SampleAssignment samples;
+        std::uint32_t vertex = 0;
+        std::uint32_t halfEdge = PatchTopology::kNone;  ///< that is collapsed, if one is
+    };
+
+    bool mayChange(std::uint32_t v) const {
+        return topology_.isMovable(v) && patch_.states[v] != Patch::State::Final;
+    }
+    void setState(std::uint32_t v, Patch::State state);
+    void markChanged(const Star& star);
+    QuadricMinimum bestPlace(std::uint32_t a, std::uint32_t b) const;
+    /// \param leastCost  of the collapse; it is not proposed below
+    void propose(std::uint32_t halfEdge, double leastCost);
+    bool isStale(const Candidate& candidate) const;
+
+    /// What collapsing the edge would do; null when it must not be. Valid until the next
+    /// evaluation: its memory, 5 kB and the samples, is used again.
+    const Change* evaluateCollapse(std::uint32_t halfEdge);
+    /// What moving the vertex to where its triangles fit the samples would do; null when that must
+    /// not be, or is no better. As above.
+    const Change* evaluateFit(std::uint32_t vertex);
+    void apply(const Change& change);
+
+    bool staysNear(Change& change) const;
+    bool crossesNothing(const Change& change);
+    bool isInBox(const Vec3& p) const;
+    Vec3 fittedPlace(const ChangedStar& star, const Quadric& own) const;
+
+    Patch& patch_;
+    const MetricFrame& frame_;
+    PatchLimits limits_;
+    PatchTopology topology_;
+    ErrorTracker errors_;
+    CrossingGuard guard_;
+    std::vector<std::uint32_t> changes_;  ///< of each vertex
+    std::vector<Candidate> queue_;        ///< a heap
+    Change change_;                       ///< the one that is evaluated
+};
+
+}  // namespace adaptiso::detail

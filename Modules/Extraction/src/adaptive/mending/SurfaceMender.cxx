@@ -1,0 +1,554 @@
+#include "adaptive/mending/SurfaceMender.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <utility>
+
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptive/Parameters.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr std::size_t kSlots = std::size_t{1} << 16;
+
+std::array<double, 3> barycentric(const Vec3& p, const Corners& t) {
+    const Vec3 area2 = areaVector2(t[0], t[1], t[2]);
+    const double whole = squaredNorm(area2);
+    const double u = dot(areaVector2(p, t[1], t[2]), area2) / whole,
+                 v = dot(areaVector2(t[0], p, t[2]), area2) / whole;
+    return {u, v, 1 - u - v};
+}
+
+double squaredDistanceToNearest(const Vec3& p, const std::vector<Corners>& triangles) {
+    double least = squaredDistanceToTriangle(p, triangles[0]);
+    for (const Corners& t : triangles) least = std::min(least, squaredDistanceToTriangle(p, t));
+    return least;
+}
+
+bool contains(const std::vector<std::uint64_t>& numbers, std::uint64_t number) {
+    return std::find(numbers.begin(), numbers.end(), number) != numbers.end();
+}
+
+}  // namespace
+
+SurfaceMender::SurfaceMender(SimplifiedSurface& surface, const MetricFrame& frame, double limitMm)
+    : surface_(surface), squaredLimit_(limitMm * limitMm), cubeMm_(kNearCube * frame.voxelMm()) {}
+
+std::size_t SurfaceMender::mendDistances(std::vector<PlaceBeyond> places) {
+    std::erase_if(places, [](const PlaceBeyond& p) { return p.triangle == PlaceBeyond::kNone; });
+    std::stable_sort(places.begin(), places.end(), [](const PlaceBeyond& a, const PlaceBeyond& b) {
+        return a.squaredDistance() > b.squaredDistance();
+    });
+    prepare(places);
+    const auto mended = static_cast<std::size_t>(std::count_if(
+        places.begin(), places.end(), [&](const PlaceBeyond& place) { return mendPlace(place); }));
+    removeGone();
+    return mended;
+}
+
+std::size_t SurfaceMender::mendCrossings(const std::vector<std::int64_t>& triangles) {
+    std::vector<PlaceBeyond> places;
+    for (const std::int64_t t : triangles) {
+        PlaceBeyond& place = places.emplace_back();
+        place.triangle = static_cast<std::uint64_t>(t);
+    }
+    prepare(places);
+    const auto mended = static_cast<std::size_t>(
+        std::count_if(places.begin(), places.end(), [&](const PlaceBeyond& place) {
+            return !contains(gone_, place.triangle) && mendCrossing(place.triangle);
+        }));
+    removeGone();
+    return mended;
+}
+
+/// Brings the triangle to one of its samples, or merges two of its corners.
+bool SurfaceMender::mendCrossing(std::uint64_t triangle) {
+    const Corners corners = cornersOf(triangle);
+    if (crossesNothing({corners}, around_.at(surface_.triangles[triangle][0]))) return false;
+    std::vector<PlaceBeyond> places;
+    const auto samples = samplesOf_.find(triangle);
+    if (samples != samplesOf_.end()) {
+        for (const std::uint64_t s : samples->second) {
+            const Vec3 p = surface_.samples[s].point();
+            places.push_back(
+                {closestPointOnTriangle(p, corners[0], corners[1], corners[2]), p, triangle, true});
+        }
+    }
+    for (const double leastCosine : kMendCosines) {
+        leastCosine_ = leastCosine;
+        for (const PlaceBeyond& place : places) {
+            if (insert(place, triangle, barycentric(place.onSimplified, corners))) return true;
+        }
+        const Vec3 middle = (1.0 / 3) * (corners[0] + corners[1] + corners[2]);
+        for (int corner = 0; corner < 3; ++corner) {
+            if (collapseEdge(triangle, corner, {middle, middle, triangle, false})) return true;
+        }
+    }
+    return false;
+}
+
+void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
+    around_.clear();
+    parts_.clear();
+    parent_.clear();
+    samplesOf_.clear();
+    inCube_.clear();
+    mayHaveCube_.assign(kSlots, false);
+    std::vector<bool> isTrackedVertex(surface_.points.size()), isNear(surface_.triangles.size());
+    for (const PlaceBeyond& place : places) {
+        for (const std::uint64_t v : surface_.triangles[place.triangle]) isTrackedVertex[v] = true;
+    }
+    for (std::uint64_t t = 0; t < isNear.size(); ++t) {
+        for (const std::uint64_t v : surface_.triangles[t]) {
+            if (!isTrackedVertex[v]) continue;
+            around_[v].push_back(t);
+            isNear[t] = true;
+        }
+        if (!isNear[t]) continue;
+        CornerBox box = boxOf(cornersOf(t));
+        box.widen(cubeMm_ / 2);  // new vertices lie beside the triangle
+        forEachCube(box, [&](const Index3& cube) {
+            inCube_[cube];
+            mayHaveCube_[hashSlot(cube)] = true;
+        });
+    }
+    for (std::uint64_t t = 0; t < isNear.size(); ++t) trackCubes(t);
+    for (std::uint64_t s = 0; s < surface_.sampleTriangle.size(); ++s) {
+        const std::uint64_t t = surface_.sampleTriangle[s];
+        if (isNear[t]) samplesOf_[t].push_back(s);
+    }
+}
+
+bool SurfaceMender::mendPlace(const PlaceBeyond& place) {
+    const std::uint64_t t = partAt(place);
+    if (t == kNone) return false;
+    const std::array<double, 3> at = barycentric(place.onSimplified, cornersOf(t));
+    const auto largest = std::max_element(at.begin(), at.end()) - at.begin(),
+               least = std::min_element(at.begin(), at.end()) - at.begin();
+    for (const double leastCosine : kMendCosines) {
+        leastCosine_ = leastCosine;
+        if (insert(place, t, at)) return true;
+        const auto besideLeast = static_cast<int>(least + 1) % 3;
+        if (at[least] < kAtEdge && turnEdge(t, besideLeast, place)) return true;
+    }
+    for (int corner = 0; corner < 3; ++corner) {
+        if (collapseEdge(t, corner, place)) return true;
+    }
+    if (at[largest] < kMoveWeight) return false;
+    const std::uint64_t vertex = surface_.triangles[t][largest];
+    const Vec3 whole = 1 / at[largest] * (place.onFine - place.onSimplified);
+    return std::any_of(kMoveSteps.begin(), kMoveSteps.end(),
+                       [&](double part) { return moveVertex(vertex, part * whole); });
+}
+
+/// \param at  barycentric coordinates of the place in the triangle
+bool SurfaceMender::insert(const PlaceBeyond& place, std::uint64_t triangle,
+                           const std::array<double, 3>& at) {
+    const auto largest = std::max_element(at.begin(), at.end()) - at.begin(),
+               least = std::min_element(at.begin(), at.end()) - at.begin();
+    const Vec3 whole = place.onFine - place.onSimplified;
+    for (const double part : kMendSteps) {
+        const Vec3 target = place.onSimplified + part * whole;
+        if (at[largest] > kAtVertex &&
+            moveVertex(surface_.triangles[triangle][largest], part * whole)) {
+            return true;
+        }
+        const auto besideLeast = static_cast<int>(least + 1) % 3;
+        if (at[least] < kAtEdge && splitEdge(triangle, besideLeast, target)) return true;
+        if (splitTriangle(triangle, target)) return true;
+    }
+    return false;
+}
+
+/// The part of the place's triangle that it lies in; kNone when the surface has left the place.
+std::uint64_t SurfaceMender::partAt(const PlaceBeyond& place) const {
+    std::uint64_t best = place.triangle;
+    if (contains(gone_, best)) return kNone;
+    double least = squaredDistanceToTriangle(place.onSimplified, cornersOf(best));
+    const auto parts = parts_.find(place.triangle);
+    if (parts != parts_.end()) {
+        for (const std::uint64_t t : parts->second) {
+            if (contains(gone_, t)) continue;
+            const double squared = squaredDistanceToTriangle(place.onSimplified, cornersOf(t));
+            if (squared >= least) continue;
+            least = squared;
+            best = t;
+        }
+    }
+    return least > kLeftPlace * kLeftPlace * place.squaredDistance() ? kNone : best;
+}
+
+bool SurfaceMender::moveVertex(std::uint64_t vertex, const Vec3& step) {
+    if (!isTracked(vertex) || surface_.states[vertex] == Patch::State::Final ||
+        isOnBorder(vertex)) {
+        return false;
+    }
+    const Numbers& around = around_.at(vertex);
+    std::vector<Corners> moved;
+    for (const std::uint64_t t : around) {
+        const Corners before = cornersOf(t);
+        Corners& now = moved.emplace_back(before);
+        for (int c = 0; c < 3; ++c) {
+            if (surface_.triangles[t][c] == vertex) now[c] = before[c] + step;
+        }
+        if (!facesAs(now, before)) return false;
+    }
+    if (!isSound(moved, around)) return false;
+    for (const std::uint64_t t : around) note(t);
+    surface_.points[vertex] = surface_.points[vertex] + step;
+    for (const std::uint64_t t : Numbers(around)) replace(t, surface_.triangles[t]);
+    return true;
+}
+
+/// Splits the edge from a corner of the triangle to the next one, and the triangles at it.
+bool SurfaceMender::splitEdge(std::uint64_t triangle, int corner, const Vec3& point) {
+    const std::optional<Edge> edge = edgeAt(triangle, corner);
+    if (!edge) return false;
+    const auto [a, b, c, d, twin] = *edge;
+    const auto& at = surface_.points;
+    const Corners first = cornersOf(triangle), second = cornersOf(twin);
+    const std::vector<Corners> parts{
+        {at[a], point, at[c]}, {point, at[b], at[c]}, {at[b], point, at[d]}, {point, at[a], at[d]}};
+    if (!facesAs(parts[0], first) || !facesAs(parts[1], first) || !facesAs(parts[2], second) ||
+        !facesAs(parts[3], second) || !isSound(parts, {triangle, twin})) {
+        return false;
+    }
+    note(triangle);
+    note(twin);
+    const std::uint64_t v = addVertex(point);
+    replace(triangle, {a, v, c});
+    replace(twin, {b, v, d});
+    const std::uint64_t besideFirst = addTriangle({v, b, c}, triangle),
+                        besideSecond = addTriangle({v, a, d}, twin);
+    handOver({triangle, twin}, {triangle, twin, besideFirst, besideSecond});
+    return true;
+}
+
+bool SurfaceMender::splitTriangle(std::uint64_t triangle, const Vec3& point) {
+    const auto [a, b, c] = surface_.triangles[triangle];
+    const auto& at = surface_.points;
+    const Corners before = cornersOf(triangle);
+    const std::vector<Corners> parts{
+        {at[a], at[b], point}, {at[b], at[c], point}, {at[c], at[a], point}};
+    if (!facesAs(parts[0], before) || !facesAs(parts[1], before) || !facesAs(parts[2], before) ||
+        !isSound(parts, {triangle})) {
+        return false;
+    }
+    note(triangle);
+    const std::uint64_t v = addVertex(point);
+    replace(triangle, {a, b, v});
+    const std::uint64_t second = addTriangle({b, c, v}, triangle),
+                        third = addTriangle({c, a, v}, triangle);
+    handOver({triangle}, {triangle, second, third});
+    return true;
+}
+
+/// The two triangles at the edge from a corner to the next one get their other diagonal, where that
+/// brings them to the place.
+bool SurfaceMender::turnEdge(std::uint64_t triangle, int corner, const PlaceBeyond& place) {
+    const std::optional<Edge> edge = edgeAt(triangle, corner);
+    if (!edge) return false;
+    const auto [a, b, c, d, twin] = *edge;
+    if (turned_.contains({std::min(c, d), std::max(c, d)}) || (!isTracked(c) && !isTracked(d)) ||
+        triangleOf(c, d) != kNone || triangleOf(d, c) != kNone) {
+        return false;
+    }
+    const auto& at = surface_.points;
+    const Corners first = cornersOf(triangle), second = cornersOf(twin);
+    const std::vector<Corners> parts{{at[a], at[d], at[c]}, {at[d], at[b], at[c]}};
+    const bool isNearer = squaredDistanceToNearest(place.onFine, parts) <=
+                          kTurnLeaves * kTurnLeaves * place.squaredDistance();
+    const bool facesAlike = std::all_of(parts.begin(), parts.end(), [&](const Corners& part) {
+        return facesAs(part, first) || facesAs(part, second);
+    });
+    if (!isNearer || !facesAlike || !isSound(parts, {triangle, twin})) return false;
+    turned_.insert({std::min(a, b), std::max(a, b)});
+    note(triangle);
+    note(twin);
+    replace(triangle, {a, d, c});
+    replace(twin, {d, b, c});
+    handOver({triangle, twin}, {triangle, twin});
+    return true;
+}
+
+/// Merges the ends of the edge from a corner to the next one, where that brings the surface nearer
+/// to the place.
+bool SurfaceMender::collapseEdge(std::uint64_t triangle, int corner, const PlaceBeyond& place) {
+    const std::optional<Edge> edge = edgeAt(triangle, corner);
+    if (!edge || !mayMerge(*edge)) return false;
+    const auto [a, b, c, d, twin] = *edge;
+    Numbers replaced = around_.at(a);
+    for (const std::uint64_t t : around_.at(b)) {
+        if (!contains(replaced, t)) replaced.push_back(t);
+    }
+    const Vec3 first = surface_.points[a], second = surface_.points[b];
+    const double squared = place.squaredDistance();
+    for (const Vec3& target : {place.onFine, 0.5 * (first + second), first, second}) {
+        std::vector<Corners> parts;
+        bool isAllowed = true;
+        for (const std::uint64_t t : replaced) {
+            if (t == triangle || t == twin) continue;
+            const Corners before = cornersOf(t);
+            Corners& now = parts.emplace_back(before);
+            for (int i = 0; i < 3; ++i) {
+                const std::uint64_t v = surface_.triangles[t][i];
+                if (v == a || v == b) now[i] = target;
+            }
+            isAllowed = isAllowed && facesAs(now, before);
+        }
+        if (!isAllowed ||
+            (squared > 0 && squaredDistanceToNearest(place.onFine, parts) >= squared) ||
+            !isSound(parts, replaced)) {
+            continue;
+        }
+        for (const std::uint64_t t : replaced) note(t);
+        surface_.points[a] = target;
+        Numbers kept;
+        for (const std::uint64_t t : replaced) {
+            if (t == triangle || t == twin) {
+                for (const std::uint64_t v : surface_.triangles[t]) {
+                    const auto around = around_.find(v);
+                    if (around != around_.end()) std::erase(around->second, t);
+                }
+                gone_.push_back(t);
+                continue;
+            }
+            Triangle corners = surface_.triangles[t];
+            std::replace(corners.begin(), corners.end(), b, a);
+            replace(t, corners);
+            kept.push_back(t);
+        }
+        handOver(replaced, kept);
+        return true;
+    }
+    return false;
+}
+
+/// Merging the edge's ends leaves a manifold (link condition), and both may move.
+bool SurfaceMender::mayMerge(const Edge& edge) const {
+    std::set<std::uint64_t> besideFirst, besideSecond;
+    for (const auto& [vertex, beside] :
+         {std::pair(edge.a, &besideFirst), std::pair(edge.b, &besideSecond)}) {
+        if (!isTracked(vertex) || surface_.states[vertex] == Patch::State::Final ||
+            isOnBorder(vertex)) {
+            return false;
+        }
+        for (const std::uint64_t t : around_.at(vertex)) {
+            beside->insert(surface_.triangles[t].begin(), surface_.triangles[t].end());
+        }
+    }
+    Numbers common;
+    std::set_intersection(besideFirst.begin(), besideFirst.end(), besideSecond.begin(),
+                          besideSecond.end(), std::back_inserter(common));
+    // both ends, and the two corners across the edge
+    constexpr std::size_t kShared = 4;
+    // each end with its neighbours: four vertices in all would be a tetrahedron, which goes flat
+    constexpr std::size_t kLeast = 10;
+    return common.size() == kShared && besideFirst.size() + besideSecond.size() >= kLeast;
+}
+
+/// Gives the numbers of triangles that are gone to the last ones.
+void SurfaceMender::removeGone() {
+    if (gone_.empty()) return;
+    std::sort(gone_.begin(), gone_.end(), std::greater());
+    std::unordered_map<std::uint64_t, std::uint64_t> renumbered;
+    for (const std::uint64_t t : gone_) {
+        const std::uint64_t last = surface_.triangles.size() - 1;
+        if (t != last) {
+            surface_.triangles[t] = surface_.triangles[last];
+            renumbered[last] = t;
+            changes_.triangles.push_back(t);
+        }
+        surface_.triangles.pop_back();
+    }
+    for (std::uint64_t& t : surface_.sampleTriangle) {
+        for (auto at = renumbered.find(t); at != renumbered.end(); at = renumbered.find(t)) {
+            t = at->second;
+        }
+    }
+    gone_.clear();
+}
+
+/// The triangle is not flat, and faces about where another one does.
+bool SurfaceMender::facesAs(const Corners& now, const Corners& before) const {
+    const Vec3 area2 = areaVector2(now[0], now[1], now[2]),
+               old = areaVector2(before[0], before[1], before[2]);
+    const double longest = std::max(
+        {squaredNorm(now[1] - now[0]), squaredNorm(now[2] - now[1]), squaredNorm(now[0] - now[2])});
+    return norm(area2) > kFlatTriangle * longest &&
+           dot(area2, old) > leastCosine_ * norm(area2) * norm(old);
+}
+
+/// \param replaced  triangles that go
+bool SurfaceMender::isSound(const std::vector<Corners>& triangles, const Numbers& replaced) const {
+    return staysNear(triangles, replaced) && crossesNothing(triangles, replaced);
+}
+
+/// The samples of the replaced triangles lie within the bound of the new ones, or as near as the
+/// farthest before.
+bool SurfaceMender::staysNear(const std::vector<Corners>& triangles,
+                              const Numbers& replaced) const {
+    double before = squaredLimit_, after = 0;
+    for (const std::uint64_t t : replaced) {
+        const auto samples = samplesOf_.find(t);
+        if (samples == samplesOf_.end()) continue;
+        for (const std::uint64_t s : samples->second) {
+            const Vec3 p = surface_.samples[s].point();
+            after = std::max(after, squaredDistanceToNearest(p, triangles));
+            before = std::max(before, squaredDistanceToTriangle(p, cornersOf(t)));
+        }
+    }
+    return after <= before;
+}
+
+bool SurfaceMender::crossesNothing(const std::vector<Corners>& triangles,
+                                   const Numbers& replaced) const {
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (trianglesCross(triangles[i], triangles[j])) return false;
+        }
+        const CornerBox box = boxOf(triangles[i]);
+        bool isClear = true;
+        forEachCube(box, [&](const Index3& cube) {
+            const auto in = inCube_.find(cube);
+            if (!isClear || in == inCube_.end()) return;
+            isClear = std::none_of(in->second.begin(), in->second.end(), [&](std::uint64_t t) {
+                const Corners other = cornersOf(t);
+                return boxOf(other).overlaps(box) && !contains(replaced, t) &&
+                       !contains(gone_, t) && trianglesCross(triangles[i], other);
+            });
+        });
+        if (!isClear) return false;
+    }
+    return true;
+}
+
+/// The triangle with this half-edge.
+/// \pre one of its ends is tracked
+std::uint64_t SurfaceMender::triangleOf(std::uint64_t from, std::uint64_t to) const {
+    for (const std::uint64_t t : around_.at(isTracked(from) ? from : to)) {
+        const Triangle& c = surface_.triangles[t];
+        for (int i = 0; i < 3; ++i) {
+            if (c[i] == from && c[(i + 1) % 3] == to) return t;
+        }
+    }
+    return kNone;
+}
+
+/// The edge from a corner of the triangle to the next one; none at an open border.
+std::optional<SurfaceMender::Edge> SurfaceMender::edgeAt(std::uint64_t triangle, int corner) const {
+    const Triangle& t = surface_.triangles[triangle];
+    const std::uint64_t a = t[corner], b = t[(corner + 1) % 3];
+    if (!isTracked(a) && !isTracked(b)) return {};
+    const std::uint64_t twin = triangleOf(b, a);
+    if (twin == kNone) return {};
+    const Triangle& u = surface_.triangles[twin];
+    const auto d = std::find_if(u.begin(), u.end(), [&](auto v) { return v != a && v != b; });
+    return Edge{a, b, t[(corner + 2) % 3], *d, twin};
+}
+
+/// Some edge at the vertex has one triangle only.
+bool SurfaceMender::isOnBorder(std::uint64_t vertex) const {
+    const Numbers& around = around_.at(vertex);
+    return std::any_of(around.begin(), around.end(), [&](std::uint64_t t) {
+        const Triangle& c = surface_.triangles[t];
+        const auto i = std::find(c.begin(), c.end(), vertex) - c.begin();
+        return triangleOf(c[(i + 1) % 3], vertex) == kNone;
+    });
+}
+
+std::uint64_t SurfaceMender::addVertex(const Vec3& point) {
+    const std::uint64_t v = surface_.points.size();
+    surface_.points.push_back(point);
+    surface_.quadrics.emplace_back();
+    surface_.states.push_back(Patch::State::Open);
+    around_[v];
+    return v;
+}
+
+/// \param parent  the triangle that it was a part of
+std::uint64_t SurfaceMender::addTriangle(const Triangle& triangle, std::uint64_t parent) {
+    const std::uint64_t number = surface_.triangles.size();
+    surface_.triangles.push_back(triangle);
+    changes_.triangles.push_back(number);
+    track(number);
+    const auto older = parent_.find(parent);
+    const std::uint64_t oldest = older == parent_.end() ? parent : older->second;
+    parent_[number] = oldest;
+    parts_[oldest].push_back(number);
+    return number;
+}
+
+void SurfaceMender::replace(std::uint64_t number, const Triangle& triangle) {
+    for (const std::uint64_t v : surface_.triangles[number]) {
+        const auto around = around_.find(v);
+        if (around != around_.end()) std::erase(around->second, number);
+    }
+    surface_.triangles[number] = triangle;
+    track(number);
+}
+
+std::size_t SurfaceMender::hashSlot(const Index3& cube) {
+    const auto at = [&](int a) { return static_cast<std::size_t>(cube[a]); };
+    return (at(0) * 73856093 ^ at(1) * 19349663 ^ at(2) * 83492791) % kSlots;
+}
+
+/// The triangle is about to change.
+void SurfaceMender::note(std::uint64_t triangle) {
+    changes_.triangles.push_back(triangle);
+    changes_.before.push_back(cornersOf(triangle));
+}
+
+/// Lists a triangle with its vertices and its cubes.
+void SurfaceMender::track(std::uint64_t triangle) {
+    for (const std::uint64_t v : surface_.triangles[triangle]) {
+        const auto around = around_.find(v);
+        if (around != around_.end()) around->second.push_back(triangle);
+    }
+    trackCubes(triangle);
+}
+
+void SurfaceMender::trackCubes(std::uint64_t triangle) {
+    forEachCube(boxOf(cornersOf(triangle)), [&](const Index3& cube) {
+        if (!mayHaveCube_[hashSlot(cube)]) return;
+        const auto in = inCube_.find(cube);
+        if (in != inCube_.end()) in->second.push_back(triangle);
+    });
+}
+
+/// Gives the samples of some triangles to the nearest of others.
+void SurfaceMender::handOver(const Numbers& from, const Numbers& to) {
+    Numbers samples;
+    for (const std::uint64_t t : from) {
+        const auto of = samplesOf_.find(t);
+        if (of == samplesOf_.end()) continue;
+        samples.insert(samples.end(), of->second.begin(), of->second.end());
+        of->second.clear();
+    }
+    for (const std::uint64_t s : samples) {
+        const Vec3 p = surface_.samples[s].point();
+        const std::uint64_t nearest =
+            *std::min_element(to.begin(), to.end(), [&](std::uint64_t t, std::uint64_t u) {
+                return squaredDistanceToTriangle(p, cornersOf(t)) <
+                       squaredDistanceToTriangle(p, cornersOf(u));
+            });
+        surface_.sampleTriangle[s] = nearest;
+        samplesOf_[nearest].push_back(s);
+    }
+}
+
+template <class F>
+void SurfaceMender::forEachCube(const CornerBox& box, const F& f) const {
+    const auto at = [&](double mm) { return static_cast<std::int64_t>(std::floor(mm / cubeMm_)); };
+    for (std::int64_t z = at(box.low.z); z <= at(box.high.z); ++z) {
+        for (std::int64_t y = at(box.low.y); y <= at(box.high.y); ++y) {
+            for (std::int64_t x = at(box.low.x); x <= at(box.high.x); ++x) f(Index3{x, y, z});
+        }
+    }
+}
+
+}  // namespace adaptiso::detail

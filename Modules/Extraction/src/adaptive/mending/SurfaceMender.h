@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "adaptive/mesh/MetricFrame.h"
+#include "adaptive/mesh/SimplifiedSurface.h"
+#include "adaptive/proof/BrickProof.h"
+
+namespace adaptiso::detail {
+
+/// Mends a simplified surface where it lies beyond the bound: brings it to the full-resolution
+/// surface there by a new vertex, as greedy insertion refines terrains [Garland1995].
+///
+/// The triangle of the place is split in three; beside an edge the edge is split, with the two
+/// triangles at it; beside a vertex that moves. Where none of these is allowed the edge gets the
+/// other diagonal, or an edge of the triangle is collapsed. A change is allowed if no triangle
+/// turns too far, none crosses another, and no sample is taken beyond the bound.
+///
+/// Vertices keep their numbers; those that collapses leave without a triangle stay in the list.
+class SurfaceMender {
+public:
+    /// \param limitMm  the bound
+    SurfaceMender(SimplifiedSurface& surface, const MetricFrame& frame, double limitMm);
+
+    /// Mends the farthest places first, and skips those that the surface has left by then.
+    /// \return how many were mended
+    std::size_t mendDistances(std::vector<PlaceBeyond> places);
+
+    /// Changes triangles that cross others until they don't, where that can be done.
+    /// \return how many were changed
+    std::size_t mendCrossings(const std::vector<std::int64_t>& triangles);
+
+    /// Since the last call of this function.
+    SurfaceChanges takeChanges() { return std::exchange(changes_, {}); }
+
+private:
+    using Triangle = SurfaceState::Triangle;
+    using Numbers = std::vector<std::uint64_t>;
+    static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+
+    /// The edge from a to b with its triangles (a, b, c) and (b, a, d), the twin.
+    struct Edge {
+        std::uint64_t a, b, c, d, twin;
+    };
+
+    void prepare(const std::vector<PlaceBeyond>& places);
+    bool mendPlace(const PlaceBeyond& place);
+    bool mendCrossing(std::uint64_t triangle);
+    bool insert(const PlaceBeyond& place, std::uint64_t triangle, const std::array<double, 3>& at);
+    std::uint64_t partAt(const PlaceBeyond& place) const;
+    bool moveVertex(std::uint64_t vertex, const Vec3& step);
+    bool splitEdge(std::uint64_t triangle, int corner, const Vec3& point);
+    bool splitTriangle(std::uint64_t triangle, const Vec3& point);
+    bool turnEdge(std::uint64_t triangle, int corner, const PlaceBeyond& place);
+
+    bool collapseEdge(std::uint64_t triangle, int corner, const PlaceBeyond& place);
+    bool mayMerge(const Edge& edge) const;
+    void removeGone();
+
+    bool facesAs(const Corners& now, const Corners& before) const;
+    bool isSound(const std::vector<Corners>& triangles, const Numbers& replaced) const;
+    bool staysNear(const std::vector<Corners>& triangles, const Numbers& replaced) const;
+    bool crossesNothing(const std::vector<Corners>& triangles, const Numbers& replaced) const;
+
+    Corners cornersOf(std::uint64_t triangle) const {
+        const Triangle& t = surface_.triangles[triangle];
+        return {surface_.points[t[0]], surface_.points[t[1]], surface_.points[t[2]]};
+    }
+    bool isTracked(std::uint64_t vertex) const { return around_.contains(vertex); }
+    std::uint64_t triangleOf(std::uint64_t from, std::uint64_t to) const;
+    std::optional<Edge> edgeAt(std::uint64_t triangle, int corner) const;
+    bool isOnBorder(std::uint64_t vertex) const;
+    std::uint64_t addVertex(const Vec3& point);
+    std::uint64_t addTriangle(const Triangle& triangle, std::uint64_t parent);
+    void replace(std::uint64_t number, const Triangle& triangle);
+    void track(std::uint64_t triangle);
+    void trackCubes(std::uint64_t triangle);
+    static std::size_t hashSlot(const Index3& cube);
+    void note(std::uint64_t triangle);
+    void handOver(const Numbers& from, const Numbers& to);
+    template <class F>
+    void forEachCube(const CornerBox& box, const F& f) const;
+
+    SimplifiedSurface& surface_;
+    double squaredLimit_, cubeMm_;
+    double leastCosine_ = 0;                         ///< between the normals before and after
+    std::set<std::array<std::uint64_t, 2>> turned_;  ///< edges that were: they do not come back
+
+    SurfaceChanges changes_;
+
+    // of one call
+    Numbers gone_;                                       ///< triangles that collapsed
+    std::unordered_map<std::uint64_t, Numbers> around_;  ///< triangles, of each tracked vertex
+    std::unordered_map<std::uint64_t, Numbers> parts_;   ///< of each triangle that was split
+    std::unordered_map<std::uint64_t, std::uint64_t> parent_;  ///< of each part
+    std::unordered_map<std::uint64_t, Numbers> samplesOf_;     ///< of triangles around_ has
+    /// Triangles whose boxes overlap a cube, for the cubes that a change may reach into. Some have
+    /// changed since.
+    std::map<Index3, Numbers> inCube_;
+    std::vector<bool> mayHaveCube_;  ///< by hashSlot(): most cubes are not in inCube_
+};
+
+}  // namespace adaptiso::detail

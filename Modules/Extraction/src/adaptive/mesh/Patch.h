@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptive/bricks/SheetRoom.h"
+#include "adaptive/collapse/Quadric.h"
+
+namespace adaptiso::detail {
+
+/// A point of the full-resolution surface, in the metric frame: a vertex, or the middle of a
+/// triangle where the surface bends.
+struct Sample {
+    std::array<float, 3> position{};
+    std::array<std::int16_t, 3> direction{};  ///< of the normal, in parts of kUnit
+    std::uint8_t room = SheetRoom::kAlone;    ///< to other sheets, see SheetRoom
+    /// How often the square of the allowed distance is halved, see TightPlaces.
+    std::uint8_t tightness = 0;
+
+    static constexpr double kUnit = 32767;
+
+    bool isAlone() const { return room == SheetRoom::kAlone; }
+
+    Vec3 point() const { return {position[0], position[1], position[2]}; }
+    Vec3 normal() const {
+        return (1 / kUnit) * Vec3{static_cast<double>(direction[0]),
+                                  static_cast<double>(direction[1]),
+                                  static_cast<double>(direction[2])};
+    }
+    void setPoint(const Vec3& p) { position = positionOf(p); }
+    /// \param n  of any length
+    void setNormal(const Vec3& n) {
+        const Vec3 unit = kUnit * normalized(n);
+        for (int a = 0; a < 3; ++a) {
+            direction[a] = static_cast<std::int16_t>(std::lround(unit[a]));
+        }
+    }
+    static std::array<float, 3> positionOf(const Vec3& p) {
+        return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+    }
+};
+
+/// A part of a surface that is simplified alone, in the metric frame.
+///
+/// The first `ownTriangles` triangles may change; those after them are looked at only, so that
+/// nothing crosses them. A vertex moves or goes if all triangles around it are own ones.
+struct Patch {
+    using Corner = std::uint32_t;
+    static constexpr std::uint32_t kGone = 0xFFFFFFFF;  ///< in place of a gone triangle's corners
+
+    std::vector<Vec3> points;
+    std::vector<Quadric> quadrics;  ///< of each point
+    enum class State : std::uint8_t {
+        Open,
+        Tried,   ///< nothing around it has changed since all its edges were tried
+        Fitted,  ///< no edge around it was collapsed since it was fitted
+        Final    ///< stays
+    };
+    std::vector<State> states;  ///< of each point
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::uint32_t ownTriangles = 0;
+
+    std::vector<Sample> samples;
+    std::vector<std::uint32_t> sampleTriangle;  ///< the triangle that stands for each
+
+    /// New vertices stay in this box, in continuous index coordinates: so nothing that the patch
+    /// makes can meet what other patches make at the same time in boxes of their own.
+    Vec3 lowIndex, highIndex;
+
+    /// Of a cube of `side` cells. A hair inside, so that no rounding takes a vertex out, and none
+    /// comes to lie in a wall beside those that are fixed there.
+    void setBox(const Index3& low, std::int64_t side) {
+        constexpr double kInside = 1e-6;
+        for (int a = 0; a < 3; ++a) {
+            lowIndex[a] = static_cast<double>(low[a]) + kInside;
+            highIndex[a] = static_cast<double>(low[a] + side) - kInside;
+        }
+    }
+};
+
+}  // namespace adaptiso::detail

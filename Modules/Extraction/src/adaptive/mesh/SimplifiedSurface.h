@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "Certificate.h"
+#include "adaptive/mesh/Patch.h"
+
+namespace adaptiso::detail {
+
+/// What rounds of simplification change of a surface, in the metric frame.
+struct SurfaceState {
+    using Triangle = std::array<std::uint64_t, 3>;
+
+    std::vector<Vec3> points;
+    std::vector<StoredQuadric> quadrics;  ///< of each point, seen from it
+    std::vector<Patch::State> states;     ///< of each point
+    std::vector<Triangle> triangles;
+    std::vector<std::uint64_t> sampleTriangle;  ///< the triangle that stands for each sample
+
+    std::int64_t triangleCount() const { return static_cast<std::int64_t>(triangles.size()); }
+};
+
+/// The whole surface between rounds of simplification, and the samples of the full-resolution one.
+struct SimplifiedSurface : SurfaceState {
+    static constexpr std::uint64_t kGone = ~std::uint64_t{0};
+
+    /// Those within bricks, brick by brick in the mesher's order; then those on bricks' walls,
+    /// ordered by their lattice edge.
+    std::vector<Sample> samples;
+    std::vector<std::uint64_t> firstSample;  ///< of each brick; then the first on a wall
+    std::vector<std::uint64_t> wallEdges;    ///< EdgeKey of each wall sample, ascending
+
+    std::int64_t fineTriangles = 0;   ///< of the full-resolution surface
+    std::int64_t tableTriangles = 0;  ///< of it, were no loop filled from its middle
+
+    SurfaceState& state() { return *this; }
+};
+
+/// What was changed of a surface.
+struct SurfaceChanges {
+    std::vector<std::uint64_t> triangles;  ///< that are new or changed, or got another number
+    std::vector<Corners> before;           ///< of triangles that changed or went
+};
+
+/// The costs of a round's collapses, patch by patch in the order they were made.
+using CollapseCosts = std::vector<std::vector<double>>;
+
+/// The largest cost limit with which a round would still have left `collapses` or fewer made, by
+/// the costs of the round.
+double costLimitFor(const CollapseCosts& costs, std::int64_t collapses);
+
+}  // namespace adaptiso::detail

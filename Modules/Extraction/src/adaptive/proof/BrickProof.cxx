@@ -1,0 +1,393 @@
+#include "adaptive/proof/BrickProof.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "adaptive/Parameters.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr int kCells = Brick::kSide + 2 * BrickMesher::kHalo;
+
+/// Where a cell is remembered, by its place in the brick.
+std::size_t cellSlot(int x, int y, int z) {
+    constexpr int kHalo = BrickMesher::kHalo;
+    return static_cast<std::size_t>(x + kHalo + kCells * (y + kHalo + kCells * (z + kHalo)));
+}
+
+}  // namespace
+
+BrickProof::BrickProof(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
+                       const LatticeSampler& sampler, const ProofScope& scope, double enoughMm,
+                       double limitMm)
+    : surface_(surface),
+      lookup_(lookup),
+      frame_(lookup.frame()),
+      scope_(scope),
+      enoughMm_(enoughMm),
+      limitMm_(limitMm),
+      mesher_(sampler, lookup.bricks().grid()),
+      cellAt_(std::size_t{kCells} * kCells * kCells) {}
+
+BrickBound BrickProof::prove(std::int64_t brick) {
+    brick_ = brick;
+    if (isIdle()) return {};
+    low_ = lookup_.bricks()[brick].low;
+    mesher_.meshWithHalo(lookup_.bricks(), brick, fine_);
+    points_.resize(fine_.vertices.size());
+    for (std::size_t v = 0; v < points_.size(); ++v) {
+        points_[v] = frame_.fromIndex(fine_.vertices[v].index);
+    }
+    walkable_.assign(points_, fine_.triangles);
+    result_ = {};
+    searches_ = 0;
+    fromFine_ = toFine_ = PieceBound(enoughMm_);
+    proveOwnCells();
+    proveTriangles();
+    result_.provedMm = std::max(fromFine_.boundMm(), toFine_.boundMm());
+    return std::move(result_);
+}
+
+/// Nothing in the brick is to be proved.
+bool BrickProof::isIdle() const {
+    const auto& blocks = lookup_.bricks()[brick_].blocks;
+    const auto triangles = lookup_.ofBrick(brick_);
+    return std::none_of(blocks.begin(), blocks.end(),
+                        [&](std::uint32_t block) { return scope_.isWanted(block); }) &&
+           std::all_of(triangles.begin(), triangles.end(),
+                       [&](std::uint64_t t) { return scope_.isProved(t); });
+}
+
+/// The full-resolution surface in the brick's own cells.
+void BrickProof::proveOwnCells() {
+    findStandIns();
+    findUnmoved();
+    unchanged_.clear();
+    const auto& cells = fine_.cells;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        if (cells[c].firstTriangle >= fine_.ownTriangles) break;
+        if (!scope_.isWanted(blockOf(cells[c]))) continue;
+        const std::size_t end =
+            c + 1 < cells.size() ? cells[c + 1].firstTriangle : fine_.triangles.size();
+        for (std::size_t t = cells[c].firstTriangle; t < end; ++t) proveFine(t);
+    }
+    std::sort(unchanged_.begin(), unchanged_.end());
+}
+
+std::uint64_t BrickProof::blockOf(const FineSurface::Cell& cell) const {
+    const BlockGrid& grid = lookup_.bricks().grid();
+    const auto at = [&](int a) { return (low_[a] + cell.position[a]) / grid.blockSize; };
+    return static_cast<std::uint64_t>(at(0) + grid.blocks[0] * (at(1) + grid.blocks[1] * at(2)));
+}
+
+/// The pieces of the simplified surface that the brick answers for.
+void BrickProof::proveTriangles() {
+    rememberCells();
+    const auto triangles = lookup_.ofBrick(brick_);
+    findStarts(triangles);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        triangle_ = triangles[i];
+        if (scope_.isProved(triangle_)) continue;
+        const Corners corners = lookup_.cornersOf(triangle_);
+        provePiece(corners, startAt_[i], norm(areaVector2(corners[0], corners[1], corners[2])));
+    }
+    forgetCells();
+}
+
+void BrickProof::findStandIns() {
+    standIn_.resize(fine_.ownVertices);
+    std::uint64_t within = surface_.firstSample[brick_];
+    const std::uint64_t firstOnWall = surface_.firstSample.back();
+    for (std::size_t v = 0; v < fine_.ownVertices; ++v) {
+        const FineVertex& vertex = fine_.vertices[v];
+        if (!vertex.isOnWall) {
+            standIn_[v] = surface_.sampleTriangle[within++];
+            continue;
+        }
+        const auto at = std::lower_bound(surface_.wallEdges.begin(), surface_.wallEdges.end(),
+                                         vertex.edge.word);
+        standIn_[v] = surface_.sampleTriangle[firstOnWall + (at - surface_.wallEdges.begin())];
+    }
+}
+
+void BrickProof::findUnmoved() {
+    unmoved_.assign(fine_.ownVertices, -1);
+    for (std::size_t v = 0; v < fine_.ownVertices; ++v) {
+        for (const VertexId corner : lookup_.triangle(standIn_[v])) {
+            if (lookup_.point(corner) == points_[v]) unmoved_[v] = corner;
+        }
+    }
+}
+
+/// The fine triangle is a triangle of the simplified surface as well.
+bool BrickProof::isUnchanged(const std::array<std::uint32_t, 3>& fine) {
+    const VertexId a = unmoved_[fine[0]], b = unmoved_[fine[1]], c = unmoved_[fine[2]];
+    if (a < 0 || b < 0 || c < 0) return false;
+    const VertexId t = lookup_.walkable().find(a, b, c);
+    if (t == WalkableSurface<VertexId>::kNone) return false;
+    unchanged_.push_back(static_cast<std::uint64_t>(t));
+    return true;
+}
+
+/// For every triangle of the simplified surface a fine one that it stands for, or none.
+void BrickProof::findStarts(std::span<const std::uint64_t> triangles) {
+    startAt_.assign(triangles.size(), Walkable::kNone);
+    for (std::uint32_t v = 0; v < fine_.ownVertices; ++v) {
+        const auto at = std::lower_bound(triangles.begin(), triangles.end(), standIn_[v]);
+        if (at != triangles.end() && *at == standIn_[v]) {
+            startAt_[at - triangles.begin()] = walkable_.triangleAt(v);
+        }
+    }
+}
+
+void BrickProof::rememberCells() {
+    for (std::uint32_t c = 0; c < fine_.cells.size(); ++c) {
+        const auto& p = fine_.cells[c].position;
+        cellAt_[cellSlot(p[0], p[1], p[2])] = c + 1;
+    }
+    fine_.cells.push_back({{0, 0, 0}, static_cast<std::uint32_t>(fine_.triangles.size())});
+}
+
+void BrickProof::forgetCells() {
+    fine_.cells.pop_back();
+    for (const auto& cell : fine_.cells) {
+        cellAt_[cellSlot(cell.position[0], cell.position[1], cell.position[2])] = 0;
+    }
+}
+
+void BrickProof::proveFine(std::size_t t) {
+    const auto& v = fine_.triangles[t];
+    if (isUnchanged(v)) return;
+    const Corners piece{points_[v[0]], points_[v[1]], points_[v[2]]};
+    cover(piece, lookup_.walkable(), static_cast<VertexId>(standIn_[v[0]]),
+          fromFine_.squaredBound(), kStepsOfFine);
+    for (const ConvexPiece& left : walk_.left()) {
+        for (int i = 2; i < left.count(); ++i) {
+            proveFinePart({left.corner(0), left.corner(i - 1), left.corner(i)}, v);
+        }
+    }
+}
+
+/// \param of  the fine triangle that it is a part of
+void BrickProof::proveFinePart(const Corners& piece, const std::array<std::uint32_t, 3>& of) {
+    std::vector<Corners>& nearby = fromFine_.nearby();
+    nearby.clear();
+    for (const std::uint32_t corner : of) nearby.push_back(lookup_.cornersOf(standIn_[corner]));
+    if (fromFine_.isWithin(piece)) return;
+    collectAround(of);
+    if (fromFine_.isWithin(piece)) return;
+    // all that can be nearer than what the corners are known to be
+    double reachMm = fromFine_.boundMm();
+    for (const Vec3& corner : piece) {
+        double nearest = kInfinity;
+        for (const Corners& stand : nearby) {
+            nearest = std::min(nearest, squaredDistanceToTriangle(corner, stand));
+        }
+        reachMm = std::max(reachMm, std::sqrt(nearest));
+    }
+    collectWithin(reachMm, piece);
+    const std::optional<FarPoint> far = include(piece, fromFine_);
+    if (!far) return;
+    const std::uint64_t t = far->hasNearest ? within_[far->nearest] : PlaceBeyond::kNone;
+    result_.beyondLimit.push_back({far->onOther, far->point, t, true});
+}
+
+/// The triangles that share corners with those that stand for a fine triangle's corners.
+void BrickProof::collectAround(const std::array<std::uint32_t, 3>& fine) {
+    around_.clear();
+    for (const std::uint32_t corner : fine) {
+        for (const VertexId v : lookup_.triangle(standIn_[corner])) {
+            lookup_.walkable().forEachAt(v, [&](VertexId t) { around_.push_back(t); });
+        }
+    }
+    std::sort(around_.begin(), around_.end());
+    around_.erase(std::unique(around_.begin(), around_.end()), around_.end());
+    fromFine_.nearby().clear();
+    for (const VertexId t : around_) fromFine_.nearby().push_back(lookup_.cornersOf(t));
+}
+
+/// The triangles that may lie within a distance of a part of a fine triangle.
+void BrickProof::collectWithin(double distanceMm, const Corners& piece) {
+    std::vector<Corners>& nearby = fromFine_.nearby();
+    nearby.clear();
+    within_.clear();
+    const auto add = [&](std::uint64_t t) {
+        nearby.push_back(lookup_.cornersOf(t));
+        within_.push_back(t);
+    };
+    if (++searches_ > kSearches || !lookup_.ofBrickHasAllWithin(distanceMm)) {
+        lookup_.forEachNear(piece, distanceMm, add);
+        return;
+    }
+    CornerBox box = boxOf(piece);
+    box.widen(distanceMm);
+    for (const std::uint64_t t : lookup_.ofBrick(brick_)) {
+        if (boxOf(lookup_.cornersOf(t)).overlaps(box)) add(t);
+    }
+}
+
+/// Goes over the pieces of a triangle of the simplified surface that this brick answers for.
+/// \param area2  twice the piece's area
+void BrickProof::provePiece(const Corners& piece, std::uint32_t start, double area2) {
+    const CornerBox box = latticeBox(piece);
+    constexpr double kRoom = BrickMesher::kHalo / 2.0;
+    for (int a = 0; a < 3; ++a) {
+        if (box.high[a] < -kRoom || box.low[a] > Brick::kSide + kRoom) return;
+    }
+    const Vec3 middle = (1.0 / 3) * (piece[0] + piece[1] + piece[2]);
+    const std::int64_t brick = lookup_.brickFor(lookup_.latticeOf(middle));
+    if (lookup_.isSmall(piece) || (brick != Bricks::kNone && lookup_.isWithinReach(brick, piece))) {
+        if (brick != brick_) return;
+        result_.provedArea += 0.5 * area2;
+        if (!std::binary_search(unchanged_.begin(), unchanged_.end(), triangle_)) {
+            proveWhole(piece, start, area2);
+        }
+        return;
+    }
+    for (const Corners& part : quarter(piece)) provePiece(part, start, area2 / 4);
+}
+
+void BrickProof::proveWhole(const Corners& piece, std::uint32_t start, double area2) {
+    if (start == Walkable::kNone) start = nearestFine(piece[0]);
+    if (start == Walkable::kNone) {
+        proveSmall(piece);
+        return;
+    }
+    const double faces = area2 / (frame_.narrowestMm() * frame_.narrowestMm());
+    const int steps = kFewSteps + static_cast<int>(std::min(kManySteps, kStepsPerFace * faces));
+    cover(piece, walkable_, start, toFine_.squaredBound(), steps);
+    for (const ConvexPiece& left : walk_.left()) {
+        for (int i = 2; i < left.count(); ++i) {
+            proveSmall({left.corner(0), left.corner(i - 1), left.corner(i)});
+        }
+    }
+}
+
+template <class Index>
+void BrickProof::cover(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
+                       double squaredDistance, int steps) {
+    const double loose = kLooseBound * frame_.voxelMm();
+    if (squaredDistance > loose * loose) {
+        walk_.coverLoosely(piece, surface, start, squaredDistance, steps);
+    } else {
+        walk_.cover(ConvexPiece(piece), surface, start, squaredDistance, steps);
+    }
+}
+
+void BrickProof::proveSmall(const Corners& piece) {
+    if (lookup_.isSmall(piece)) {
+        proveLeaf(piece, latticeBox(piece));
+        return;
+    }
+    for (const Corners& part : quarter(piece)) proveSmall(part);
+}
+
+void BrickProof::proveLeaf(const Corners& piece, const CornerBox& box) {
+    const auto use = [&] {
+        toFine_.nearby().clear();
+        for (const std::uint32_t t : near_) toFine_.nearby().push_back(walkable_.cornersOf(t));
+    };
+    collectNear(box, 0.5);
+    keepNearest(piece);
+    use();
+    if (!near_.empty() && toFine_.isWithin(piece, toFine_.nearby().front())) return;
+    if (toFine_.isWithin(piece)) return;
+    for (double reach = 1.5;; reach *= 2) {  // mostly once
+        collectNear(box, reach);
+        if (!near_.empty() || reach > kCells) break;
+    }
+    use();
+    const std::optional<FarPoint> far = include(piece, toFine_);
+    if (far) result_.beyondLimit.push_back({far->point, far->onOther, triangle_, false});
+}
+
+/// \return a point of the piece, where that could not be shown to lie within the limit
+std::optional<FarPoint> BrickProof::include(const Corners& piece, PieceBound& bound) {
+    PieceBound atMost(limitMm_);
+    const double limit = atMost.squaredBound();
+    const PieceBound before = bound.withoutNearby();
+    bound.include(piece);
+    if (bound.squaredBound() <= limit) return {};
+    // it grew by more than it had to: try the limit itself
+    atMost.nearby() = bound.nearby();
+    const double reached = bound.boundMm();
+    atMost.include(piece);
+    if (atMost.squaredBound() <= limit) {
+        bound = atMost.withoutNearby();
+        return {};
+    }
+    result_.farthestMm = std::max(result_.farthestMm, reached);
+    const FarPoint far = atMost.farthest();
+    bound = before;
+    return far;
+}
+
+/// In cells, seen from the brick's first.
+CornerBox BrickProof::latticeBox(const Corners& piece) const {
+    const Vec3 low{static_cast<double>(low_[0]), static_cast<double>(low_[1]),
+                   static_cast<double>(low_[2])};
+    return boxOf({lookup_.latticeOf(piece[0]) - low, lookup_.latticeOf(piece[1]) - low,
+                  lookup_.latticeOf(piece[2]) - low});
+}
+
+std::uint32_t BrickProof::nearestFine(const Vec3& p) {
+    const CornerBox box = latticeBox({p, p, p});
+    std::uint32_t best = Walkable::kNone;
+    double least = kInfinity;
+    for (double reach = 0.5; reach < 2 && best == Walkable::kNone; ++reach) {
+        collectNear(box, reach);
+        for (const std::uint32_t t : near_) {
+            const double squared = squaredDistanceToTriangle(p, walkable_.cornersOf(t));
+            if (squared < least) {
+                least = squared;
+                best = t;
+            }
+        }
+    }
+    return best;
+}
+
+/// The fine triangles in the cells up to `reach` around a box.
+void BrickProof::collectNear(const CornerBox& box, double reach) {
+    near_.clear();
+    std::array<int, 3> first{}, last{};
+    for (int a = 0; a < 3; ++a) {
+        constexpr int kHalo = BrickMesher::kHalo;
+        first[a] = std::max(-kHalo, static_cast<int>(std::floor(box.low[a] - reach)));
+        last[a] =
+            std::min(Brick::kSide + kHalo - 1, static_cast<int>(std::floor(box.high[a] + reach)));
+    }
+    for (int z = first[2]; z <= last[2]; ++z) {
+        for (int y = first[1]; y <= last[1]; ++y) {
+            for (int x = first[0]; x <= last[0]; ++x) {
+                const std::uint32_t cell = cellAt_[cellSlot(x, y, z)];
+                if (cell == 0) continue;
+                for (std::uint32_t t = fine_.cells[cell - 1].firstTriangle;
+                     t < fine_.cells[cell].firstTriangle; ++t) {
+                    near_.push_back(t);
+                }
+            }
+        }
+    }
+}
+
+/// Of the fine triangles near a piece, keeps the few whose middles are nearest: nearly every piece
+/// lies near one of them.
+void BrickProof::keepNearest(const Corners& piece) {
+    if (near_.size() <= kNearestFine) return;
+    const Vec3 middle = piece[0] + piece[1] + piece[2];
+    ranked_.clear();
+    for (const std::uint32_t t : near_) {
+        const Corners c = walkable_.cornersOf(t);
+        ranked_.emplace_back(squaredNorm(c[0] + c[1] + c[2] - middle), t);
+    }
+    std::partial_sort(ranked_.begin(), ranked_.begin() + kNearestFine, ranked_.end());
+    near_.resize(kNearestFine);
+    for (std::size_t i = 0; i < kNearestFine; ++i) near_[i] = ranked_[i].second;
+}
+
+}  // namespace adaptiso::detail

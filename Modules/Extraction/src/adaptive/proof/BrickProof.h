@@ -1,0 +1,128 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "adaptive/bricks/Bricks.h"
+#include "adaptive/mesh/MetricFrame.h"
+#include "adaptive/mesh/SimplifiedSurface.h"
+#include "adaptive/mesh/ZeroedTable.h"
+#include "adaptive/proof/PieceBound.h"
+#include "adaptive/proof/SurfaceLookup.h"
+#include "adaptive/proof/SurfaceWalk.h"
+
+namespace adaptiso::detail {
+
+/// A place where one of the two surfaces lies beyond the limit. Points in the metric frame.
+struct PlaceBeyond {
+    static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+
+    Vec3 onSimplified, onFine;       ///< one of them is the place, the other the nearest point
+    std::uint64_t triangle = kNone;  ///< of the simplified surface; kNone where none was near
+    bool isOfFine = false;           ///< the place is one of the full-resolution surface
+
+    const Vec3& point() const { return isOfFine ? onFine : onSimplified; }
+    double squaredDistance() const { return squaredNorm(onSimplified - onFine); }
+};
+
+/// What is proved of the surfaces within a brick.
+struct BrickBound {
+    double provedMm = 0;    ///< bound of all that lies within the limit
+    double farthestMm = 0;  ///< bound of the rest
+    std::vector<PlaceBeyond> beyondLimit;
+    double provedArea = 0;  ///< of the simplified surface, mm2
+};
+
+/// What is to be proved; all where the lists are empty.
+struct ProofScope {
+    std::vector<std::uint8_t> isKnown;  ///< of each triangle of the simplified one: proved before
+    std::vector<bool> blocks;  ///< those whose part of the full-resolution surface is to be proved
+
+    bool isProved(std::uint64_t triangle) const {
+        return !isKnown.empty() && isKnown[triangle] != 0;
+    }
+    bool isWanted(std::uint64_t block) const { return blocks.empty() || blocks[block]; }
+};
+
+/// Proves bounds of the distance between the full-resolution surface, made anew, and the simplified
+/// one, brick by brick; keeps its working memory between bricks.
+///
+/// Each surface is cut into pieces along walks on the other one (see SurfaceWalk); what a walk
+/// can't settle is left to PieceBound.
+class BrickProof {
+public:
+    /// \param enoughMm  no bound need be tighter
+    /// \param limitMm   pieces farther off are noted, and do not loosen the bound of the rest
+    BrickProof(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
+               const LatticeSampler& sampler, const ProofScope& scope, double enoughMm,
+               double limitMm);
+
+    BrickBound prove(std::int64_t brick);
+
+private:
+    using Walkable = WalkableSurface<std::uint32_t>;
+
+    void findStandIns();
+    void findUnmoved();
+    bool isUnchanged(const std::array<std::uint32_t, 3>& fine);
+    void findStarts(std::span<const std::uint64_t> triangles);
+    void rememberCells();
+    void forgetCells();
+
+    bool isIdle() const;
+    void proveOwnCells();
+    void proveTriangles();
+    std::uint64_t blockOf(const FineSurface::Cell& cell) const;
+    void proveFine(std::size_t t);
+    void proveFinePart(const Corners& piece, const std::array<std::uint32_t, 3>& of);
+    void collectWithin(double distanceMm, const Corners& piece);
+    void collectAround(const std::array<std::uint32_t, 3>& fine);
+    void provePiece(const Corners& piece, std::uint32_t start, double area2);
+    void proveWhole(const Corners& piece, std::uint32_t start, double area2);
+    template <class Index>
+    void cover(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
+               double squaredDistance, int steps);
+    void proveSmall(const Corners& piece);
+    void proveLeaf(const Corners& piece, const CornerBox& box);
+    std::optional<FarPoint> include(const Corners& piece, PieceBound& bound);
+
+    CornerBox latticeBox(const Corners& piece) const;
+    std::uint32_t nearestFine(const Vec3& p);
+    void collectNear(const CornerBox& box, double reach);
+    void keepNearest(const Corners& piece);
+
+    const SimplifiedSurface& surface_;
+    const SurfaceLookup& lookup_;
+    const MetricFrame& frame_;
+    const ProofScope& scope_;
+    double enoughMm_, limitMm_;
+    BrickMesher mesher_;
+
+    std::int64_t brick_ = 0;
+    Index3 low_{};
+    FineSurface fine_;
+    std::vector<Vec3> points_;  ///< of the fine surface, metric frame
+    Walkable walkable_;
+    std::vector<std::uint64_t> standIn_;  ///< of each of the brick's own fine vertices
+    /// For each of the brick's own fine vertices the vertex of the simplified surface in its place.
+    std::vector<VertexId> unmoved_;
+    std::vector<std::uint64_t> unchanged_;  ///< triangles that are fine ones too, ascending
+    std::vector<std::uint32_t> startAt_;    ///< a fine triangle at each of the brick's triangles
+    ZeroedTable cellAt_;                    ///< number + 1
+    std::uint64_t triangle_ = 0;            ///< whose pieces are looked at
+
+    int searches_ = 0;  ///< for near triangles of the simplified surface
+
+    PieceBound fromFine_, toFine_;
+    BrickBound result_;
+    SurfaceWalk walk_;
+    std::vector<std::uint32_t> near_;
+    std::vector<VertexId> around_;
+    std::vector<std::uint64_t> within_;  ///< the triangles that collectWithin() found
+    std::vector<std::pair<double, std::uint32_t>> ranked_;
+};
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptive/bricks/Bricks.h"
+#include "adaptive/mesh/MetricFrame.h"
+#include "adaptive/mesh/SimplifiedSurface.h"
+#include "adaptive/proof/SurfaceWalk.h"
+
+namespace adaptiso::detail {
+
+inline std::array<Corners, 4> quarter(const Corners& t) {
+    const Vec3 a = 0.5 * (t[0] + t[1]), b = 0.5 * (t[1] + t[2]), c = 0.5 * (t[2] + t[0]);
+    return {{{t[0], a, c}, {a, t[1], b}, {c, b, t[2]}, {a, b, c}}};
+}
+
+/// Triangles of a simplified surface by the bricks whose neighbourhood they reach into, and by
+/// their places. A copy: the surface may change.
+class SurfaceLookup {
+public:
+    SurfaceLookup(const SimplifiedSurface& surface, const Bricks& bricks, const MetricFrame& frame);
+
+    const Bricks& bricks() const { return bricks_; }
+    const MetricFrame& frame() const { return frame_; }
+
+    std::uint64_t triangleCount() const { return mesh_.triangles.size(); }
+    Corners cornersOf(std::uint64_t t) const {
+        const adaptiso::Triangle& c = mesh_.triangles[t];
+        return {mesh_.points[c[0]], mesh_.points[c[1]], mesh_.points[c[2]]};
+    }
+    const adaptiso::Triangle& triangle(std::uint64_t t) const { return mesh_.triangles[t]; }
+    const Vec3& point(VertexId v) const { return mesh_.points[v]; }
+    /// Calls f(t) for all triangles that may lie within a distance of a piece.
+    template <class F>
+    void forEachNear(const Corners& piece, double distanceMm, const F& f) const {
+        CornerBox box = boxOf(piece);
+        box.widen(distanceMm);
+        tree().forEachOverlap({box.low, box.high},
+                              [&](std::int64_t t) { f(static_cast<std::uint64_t>(t)); });
+    }
+    const WalkableSurface<VertexId>& walkable() const { return walkable_; }
+    std::span<const std::uint64_t> ofBrick(std::int64_t b) const { return ofBrick_[b]; }
+    /// ofBrick() has all triangles within a distance of the brick.
+    bool ofBrickHasAllWithin(double distanceMm) const {
+        return distanceMm <= kRoom * frame_.narrowestMm();
+    }
+
+    /// Calls f(brick) for the bricks whose neighbourhood a triangle reaches into.
+    template <class F>
+    void forEachBrickNear(std::uint64_t t, const F& f) const {
+        const auto [first, last] = placesNear(t);
+        for (std::int64_t z = first[2]; z <= last[2]; ++z) {
+            for (std::int64_t y = first[1]; y <= last[1]; ++y) {
+                for (std::int64_t x = first[0]; x <= last[0]; ++x) {
+                    const std::int64_t b = bricks_.at({x, y, z});
+                    if (b != Bricks::kNone) f(b);
+                }
+            }
+        }
+    }
+
+    /// Lattice position (continuous) of a point of the metric frame.
+    Vec3 latticeOf(const Vec3& p) const {
+        const auto offset = static_cast<double>(bricks_.grid().offset);
+        return frame_.toIndex(p) + Vec3{offset, offset, offset};
+    }
+
+    /// The brick that answers for a point: the one that it lies in, or else the first one that has
+    /// it in its halo with room around; kNone where there is none.
+    std::int64_t brickFor(const Vec3& lattice) const;
+
+    /// A piece is not cut further: its box is no larger than a cell.
+    bool isSmall(const Corners& piece) const;
+
+    /// All of a piece lies in the brick or in its halo with room around.
+    bool isWithinReach(std::int64_t brick, const Corners& piece) const;
+
+private:
+    static constexpr double kRoom = BrickMesher::kHalo / 2.0;
+
+    static bool isNear(const Brick& brick, const Vec3& lattice);
+
+    /// First and last of the bricks' places that a triangle reaches into, with room around.
+    std::pair<Index3, Index3> placesNear(std::uint64_t t) const;
+
+    /// Built when it is first asked for.
+    const AabbTree& tree() const;
+
+    const Bricks& bricks_;
+    const MetricFrame& frame_;
+    TriangleMesh mesh_;
+    mutable std::once_flag treeIsBuilt_;
+    mutable std::optional<AabbTree> tree_;
+    WalkableSurface<VertexId> walkable_;
+    std::vector<std::vector<std::uint64_t>> ofBrick_;
+};
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "adaptive/bricks/Bricks.h"
+#include "adaptive/collapse/PatchSimplifier.h"
+#include "adaptive/mesh/MetricFrame.h"
+#include "adaptive/mesh/SimplifiedSurface.h"
+#include "adaptive/rounds/TightPlaces.h"
+
+namespace adaptiso::detail {
+
+/// The first round: meshes every brick and simplifies it alone, so that the full-resolution surface
+/// never exists as a whole. What lies on bricks' walls stays as it is.
+/// \param costs  gets those of each brick's collapses; may be null
+SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& bricks,
+                                 const MetricFrame& frame, const TightPlaces& tight,
+                                 const PatchLimits& limits, CollapseCosts* costs);
+
+}  // namespace adaptiso::detail

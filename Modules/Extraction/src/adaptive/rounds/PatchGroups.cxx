@@ -1,0 +1,250 @@
+#include "adaptive/rounds/PatchGroups.h"
+
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "adaptiso/Core/Parallel.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr std::int64_t kPiece = 1 << 14;
+
+}  // namespace
+
+PatchCubes::PatchCubes(const SurfaceState& surface, const PatchCut& cut, const MetricFrame& frame)
+    : cut_(cut), frame_(frame) {
+    if (surface.points.empty()) return;
+    Vec3 low = frame.toIndex(surface.points[0]), high = low;
+    for (const Vec3& p : surface.points) {
+        const Vec3 index = frame.toIndex(p);
+        low = {std::min(low.x, index.x), std::min(low.y, index.y), std::min(low.z, index.z)};
+        high = {std::max(high.x, index.x), std::max(high.y, index.y), std::max(high.z, index.z)};
+    }
+    low_ = cubeAtIndex(low);
+    const Index3 last = cubeAtIndex(high);
+    for (int a = 0; a < 3; ++a) count_[a] = last[a] - low_[a] + 1;
+}
+
+Index3 PatchCubes::cubeAtIndex(const Vec3& index) const {
+    Index3 cube;
+    for (int a = 0; a < 3; ++a) {
+        cube[a] = static_cast<std::int64_t>(std::floor(
+            (index[a] - static_cast<double>(cut_.shift)) / static_cast<double>(cut_.side)));
+    }
+    return cube;
+}
+
+void PatchCubes::setBounds(std::size_t number, Patch& patch) const {
+    const auto n = static_cast<std::int64_t>(number);
+    Index3 low{n % count_[0] + low_[0], n / count_[0] % count_[1] + low_[1],
+               n / (count_[0] * count_[1]) + low_[2]};
+    for (std::int64_t& along : low) along = along * cut_.side + cut_.shift;
+    patch.setBox(low, cut_.side);
+}
+
+PatchGroups::PatchGroups(const SimplifiedSurface& surface, const PatchCut& cut,
+                         const MetricFrame& frame)
+    : surface_(surface),
+      cubes_(surface, cut, frame),
+      cubeOfVertex_(cubesOfVertices()),
+      cubeOfTriangle_(cubesOfTriangles()),
+      placeOfVertex_(surface.points.size()),
+      placeOfTriangle_(surface.triangles.size()),
+      obstacles_(cubes_.count()) {
+    tbb::parallel_invoke([&] { groupVertices(); }, [&] { groupTriangles(); },
+                         [&] {
+                             samples_ = Groups(count(), surface.samples.size(), [&](std::size_t s) {
+                                 return cubeOfTriangle_[surface.sampleTriangle[s]];
+                             });
+                         });
+}
+
+std::vector<std::uint32_t> PatchGroups::cubesOfVertices() const {
+    std::vector<std::uint32_t> cubes(surface_.points.size());
+    parallelForPieces(static_cast<std::int64_t>(cubes.size()), kPiece,
+                      [&](std::int64_t begin, std::int64_t end) {
+                          for (std::int64_t v = begin; v < end; ++v) {
+                              cubes[v] = cubes_.numberOf(cubes_.cubeAt(surface_.points[v]));
+                          }
+                      });
+    return cubes;
+}
+
+std::vector<std::uint32_t> PatchGroups::cubesOfTriangles() const {
+    std::vector<std::uint32_t> cubes(surface_.triangles.size());
+    parallelForPieces(
+        static_cast<std::int64_t>(cubes.size()), kPiece, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t t = begin; t < end; ++t) {
+                const auto& c = surface_.triangles[t];
+                const std::uint32_t cube = cubeOfVertex_[c[0]];
+                const bool isWithin = cubeOfVertex_[c[1]] == cube && cubeOfVertex_[c[2]] == cube;
+                cubes[t] = isWithin ? cube : kStraddles;
+            }
+        });
+    return cubes;
+}
+
+void PatchGroups::groupVertices() {
+    vertices_ =
+        Groups(count(), surface_.points.size(), [&](std::size_t v) { return cubeOfVertex_[v]; });
+    vertices_.number(placeOfVertex_);
+}
+
+void PatchGroups::groupTriangles() {
+    triangles_ = Groups(count(), surface_.triangles.size(),
+                        [&](std::size_t t) { return cubeOfTriangle_[t]; });
+    triangles_.number(placeOfTriangle_);
+    for (std::uint64_t t = 0; t < cubeOfTriangle_.size(); ++t) {
+        if (cubeOfTriangle_[t] != kStraddles) continue;
+        placeOfTriangle_[t] = static_cast<std::uint32_t>(straddling_.size());
+        straddling_.push_back(t);
+    }
+    strayedSamples_ = Groups(straddling_.size(), surface_.samples.size(), [&](std::size_t s) {
+        const std::uint64_t t = surface_.sampleTriangle[s];
+        return cubeOfTriangle_[t] == kStraddles ? placeOfTriangle_[t] : kStraddles;
+    });
+    collectObstacles();
+}
+
+/// Triangles that straddle cubes are obstacles in all the cubes that they may reach into.
+void PatchGroups::collectObstacles() {
+    for (std::uint32_t i = 0; i < straddling_.size(); ++i) {
+        Index3 low{}, high{};
+        for (int c = 0; c < 3; ++c) {
+            const Index3 cube =
+                cubes_.cubeAt(surface_.points[surface_.triangles[straddling_[i]][c]]);
+            for (int a = 0; a < 3; ++a) {
+                low[a] = c == 0 ? cube[a] : std::min(low[a], cube[a]);
+                high[a] = c == 0 ? cube[a] : std::max(high[a], cube[a]);
+            }
+        }
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+            for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+                for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+                    obstacles_[cubes_.numberOf({x, y, z})].push_back(i);
+                }
+            }
+        }
+    }
+}
+
+bool PatchGroups::isIdle(std::size_t n) const {
+    const auto members = vertices_.of(n);
+    return triangles_.of(n).empty() ||
+           std::all_of(members.begin(), members.end(),
+                       [&](std::uint64_t v) { return surface_.states[v] == Patch::State::Final; });
+}
+
+std::vector<std::int64_t> PatchGroups::shares(std::int64_t total) const {
+    std::vector<std::int64_t> share(count(), total);
+    const auto all = static_cast<double>(triangles_.memberCount());
+    if (static_cast<double>(total) > all) return share;
+    std::int64_t dealt = 0;
+    for (std::size_t n = 0; n < count(); ++n) {
+        const double upToHere = static_cast<double>(triangles_.upTo(n)) / all;
+        const auto due =
+            static_cast<std::int64_t>(std::floor(upToHere * static_cast<double>(total) + 0.5));
+        share[n] = due - dealt;
+        dealt = due;
+    }
+    return share;
+}
+
+/// The samples of the cube's triangles, triangle by triangle.
+void PatchGroups::sortSamples(std::size_t n, std::vector<std::uint64_t>& sorted) const {
+    const auto members = samples_.of(n);
+    const auto triangleOf = [&](std::uint64_t s) {
+        return placeOfTriangle_[surface_.sampleTriangle[s]];
+    };
+    std::vector<std::uint32_t> at(triangles_.of(n).size() + 1, 0);
+    for (const std::uint64_t s : members) ++at[triangleOf(s) + 1];
+    for (std::size_t t = 1; t < at.size(); ++t) at[t] += at[t - 1];
+    sorted.resize(members.size());
+    for (const std::uint64_t s : members) sorted[at[triangleOf(s)]++] = s;
+}
+
+Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
+    Patch patch;
+    cubes_.setBounds(n, patch);
+    const auto members = vertices_.of(n);
+    patch.points.reserve(members.size());
+    patch.quadrics.reserve(members.size());
+    patch.states.reserve(members.size());
+    for (const std::uint64_t v : members) {
+        patch.points.push_back(surface_.points[v]);
+        patch.quadrics.push_back(surface_.quadrics[v].about(surface_.points[v]));
+        patch.states.push_back(surface_.states[v]);
+    }
+    const auto own = triangles_.of(n);
+    patch.triangles.reserve(own.size() + obstacles_[n].size());
+    for (const std::uint64_t t : own) {
+        const SurfaceState::Triangle& c = surface_.triangles[t];
+        patch.triangles.push_back(
+            {placeOfVertex_[c[0]], placeOfVertex_[c[1]], placeOfVertex_[c[2]]});
+    }
+    patch.ownTriangles = static_cast<std::uint32_t>(own.size());
+    sortSamples(n, scratch.samples);
+    patch.samples.reserve(scratch.samples.size());
+    patch.sampleTriangle.reserve(scratch.samples.size());
+    for (const std::uint64_t s : scratch.samples) {
+        patch.samples.push_back(surface_.samples[s]);
+        patch.sampleTriangle.push_back(placeOfTriangle_[surface_.sampleTriangle[s]]);
+    }
+    addObstacles(n, patch, scratch);
+    return patch;
+}
+
+/// Adds the triangles that straddle the cube's walls, with their vertices and samples.
+void PatchGroups::addObstacles(std::size_t n, Patch& patch, PatchScratch& scratch) const {
+    scratch.outsideNumber.resize(surface_.points.size());
+    const auto localVertex = [&](std::uint64_t v) {
+        if (cubeOfVertex_[v] == n) return placeOfVertex_[v];
+        std::uint32_t& number = scratch.outsideNumber[v];
+        if (number == 0) {
+            patch.points.push_back(surface_.points[v]);
+            patch.quadrics.emplace_back();
+            patch.states.push_back(Patch::State::Open);
+            scratch.outsideVertices.push_back(v);
+            number = static_cast<std::uint32_t>(patch.points.size());
+        }
+        return number - 1;
+    };
+    for (const std::uint32_t obstacle : obstacles_[n]) {
+        for (const std::uint64_t s : strayedSamples_.of(obstacle)) {
+            patch.samples.push_back(surface_.samples[s]);
+            patch.sampleTriangle.push_back(static_cast<std::uint32_t>(patch.triangles.size()));
+        }
+        const SurfaceState::Triangle& c = surface_.triangles[straddling_[obstacle]];
+        patch.triangles.push_back({localVertex(c[0]), localVertex(c[1]), localVertex(c[2])});
+    }
+    for (const std::uint64_t v : scratch.outsideVertices) scratch.outsideNumber[v] = 0;
+    scratch.outsideVertices.clear();
+}
+
+void PatchGroups::putBack(std::size_t n, const Patch& patch, const PatchScratch& scratch,
+                          SurfaceState& surface) const {
+    const auto members = vertices_.of(n);
+    for (std::size_t v = 0; v < members.size(); ++v) {
+        surface.states[members[v]] = patch.states[v];
+        // those that other patches look at have not changed, and must not be written
+        if (surface.points[members[v]] == patch.points[v]) continue;
+        surface.points[members[v]] = patch.points[v];
+        surface.quadrics[members[v]] = StoredQuadric::of(patch.quadrics[v], patch.points[v]);
+    }
+    const auto own = triangles_.of(n);
+    for (std::size_t i = 0; i < scratch.samples.size(); ++i) {
+        surface.sampleTriangle[scratch.samples[i]] = own[patch.sampleTriangle[i]];
+    }
+    for (std::size_t t = 0; t < own.size(); ++t) {
+        for (int c = 0; c < 3; ++c) {
+            const std::uint32_t v = patch.triangles[t][c];
+            surface.triangles[own[t]][c] =
+                v == Patch::kGone ? SimplifiedSurface::kGone : members[v];
+        }
+    }
+}
+
+}  // namespace adaptiso::detail

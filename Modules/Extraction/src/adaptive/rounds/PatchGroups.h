@@ -1,0 +1,132 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "adaptive/bricks/Bricks.h"
+#include "adaptive/mesh/MetricFrame.h"
+#include "adaptive/mesh/SimplifiedSurface.h"
+
+namespace adaptiso::detail {
+
+/// Cubes that cut the whole surface into patches: their side in cells, and where the first starts.
+struct PatchCut {
+    std::int64_t side = Brick::kSide;
+    std::int64_t shift = 0;
+};
+
+/// The cubes of a cut that can hold the surface.
+class PatchCubes {
+public:
+    PatchCubes(const SurfaceState& surface, const PatchCut& cut, const MetricFrame& frame);
+
+    std::size_t count() const {
+        return static_cast<std::size_t>(count_[0] * count_[1] * count_[2]);
+    }
+    Index3 cubeAt(const Vec3& p) const { return cubeAtIndex(frame_.toIndex(p)); }
+    std::uint32_t numberOf(const Index3& cube) const {
+        return static_cast<std::uint32_t>(
+            cube[0] - low_[0] + count_[0] * (cube[1] - low_[1] + count_[1] * (cube[2] - low_[2])));
+    }
+    void setBounds(std::size_t number, Patch& patch) const;
+
+private:
+    Index3 cubeAtIndex(const Vec3& index) const;
+
+    PatchCut cut_;
+    const MetricFrame& frame_;
+    Index3 low_{0, 0, 0}, count_{1, 1, 1};
+};
+
+/// Numbers 0 .. n sorted by a small key, in their order where it is equal; those whose key is too
+/// large are left out.
+class Groups {
+public:
+    Groups() = default;
+    template <class KeyOf>
+    Groups(std::size_t groups, std::size_t n, const KeyOf& keyOf) : begin_(groups + 1, 0) {
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::uint64_t key = keyOf(i);
+            if (key < groups) ++begin_[key + 1];
+        }
+        for (std::size_t g = 0; g < groups; ++g) begin_[g + 1] += begin_[g];
+        members_.resize(begin_[groups]);
+        std::vector<std::uint64_t> at(begin_.begin(), begin_.end() - 1);
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::uint64_t key = keyOf(i);
+            if (key < groups) members_[at[key]++] = i;
+        }
+    }
+    std::span<const std::uint64_t> of(std::size_t group) const {
+        return {members_.data() + begin_[group], begin_[group + 1] - begin_[group]};
+    }
+    /// Gives each member its place in its group.
+    void number(std::vector<std::uint32_t>& places) const {
+        for (std::size_t g = 0; g + 1 < begin_.size(); ++g) {
+            std::uint32_t place = 0;
+            for (const std::uint64_t member : of(g)) places[member] = place++;
+        }
+    }
+    /// How many members the groups up to one have together.
+    std::size_t upTo(std::size_t group) const { return begin_[group + 1]; }
+    std::size_t memberCount() const { return members_.size(); }
+
+private:
+    std::vector<std::uint64_t> begin_{0}, members_;
+};
+
+/// What a thread needs while it works on patches, one after the other.
+struct PatchScratch {
+    std::vector<std::uint64_t> samples;        ///< of the patch's own triangles, in its order
+    std::vector<std::uint32_t> outsideNumber;  ///< number + 1 in the patch, of the whole's vertices
+    std::vector<std::uint64_t> outsideVertices;  ///< that have one
+};
+
+/// The patches of a cut: who belongs to which.
+class PatchGroups {
+public:
+    PatchGroups(const SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame);
+
+    std::size_t count() const { return cubes_.count(); }
+    /// Nothing of it can change.
+    bool isIdle(std::size_t n) const;
+    std::size_t triangleCount(std::size_t n) const { return triangles_.of(n).size(); }
+
+    /// `total` dealt out by the patches' numbers of triangles.
+    std::vector<std::int64_t> shares(std::int64_t total) const;
+
+    /// A copy of a patch, with the triangles around it as obstacles.
+    Patch take(std::size_t n, PatchScratch& scratch) const;
+
+    /// Writes what take() copied, and has changed since, back to the surface. Different patches
+    /// touch different members, so this may run in parallel.
+    /// \param scratch  as take() left it
+    void putBack(std::size_t n, const Patch& patch, const PatchScratch& scratch,
+                 SurfaceState& surface) const;
+
+private:
+    static constexpr std::uint32_t kStraddles = 0xFFFFFFFF;
+
+    std::vector<std::uint32_t> cubesOfVertices() const;
+    std::vector<std::uint32_t> cubesOfTriangles() const;
+    void groupVertices();
+    void groupTriangles();
+    void collectObstacles();
+    void sortSamples(std::size_t n, std::vector<std::uint64_t>& sorted) const;
+    void addObstacles(std::size_t n, Patch& patch, PatchScratch& scratch) const;
+
+    const SimplifiedSurface& surface_;
+    PatchCubes cubes_;
+    std::vector<std::uint32_t> cubeOfVertex_, cubeOfTriangle_;
+    std::vector<std::uint32_t> placeOfVertex_;    ///< in its cube
+    std::vector<std::uint32_t> placeOfTriangle_;  ///< in its cube, or among those that straddle
+    std::vector<std::uint64_t> straddling_;
+    Groups vertices_, triangles_;
+    Groups samples_;                                     ///< of the cubes' triangles
+    Groups strayedSamples_;                              ///< of each triangle that straddles
+    std::vector<std::vector<std::uint32_t>> obstacles_;  ///< straddling ones, of each cube
+};
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,103 @@
+#include "adaptive/rounds/PatchRound.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+
+#include "adaptiso/Core/Parallel.h"
+#include "adaptive/Parameters.h"
+
+namespace adaptiso::detail {
+namespace {
+
+void removeGone(SurfaceState& surface) {
+    constexpr std::uint64_t kGone = SimplifiedSurface::kGone;
+    std::vector<std::uint64_t> newTriangle(surface.triangles.size()),
+        newVertex(surface.points.size(), kGone);
+    std::uint64_t triangles = 0, vertices = 0;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        if (surface.triangles[t][0] == kGone) continue;
+        for (const std::uint64_t v : surface.triangles[t]) newVertex[v] = 0;
+        newTriangle[t] = triangles;
+        surface.triangles[triangles++] = surface.triangles[t];
+    }
+    for (std::uint64_t& v : newVertex) {
+        if (v != kGone) v = vertices++;
+    }
+    const auto keep = [&](auto& members) {
+        for (std::size_t v = 0; v < newVertex.size(); ++v) {
+            if (newVertex[v] != kGone) members[newVertex[v]] = members[v];
+        }
+        members.resize(vertices);
+        members.shrink_to_fit();
+    };
+    tbb::parallel_invoke(
+        [&] {
+            surface.triangles.resize(triangles);
+            surface.triangles.shrink_to_fit();
+            for (auto& t : surface.triangles) {
+                for (std::uint64_t& v : t) v = newVertex[v];
+            }
+        },
+        [&] { keep(surface.quadrics); }, [&] { keep(surface.points); },
+        [&] { keep(surface.states); },
+        [&] {
+            for (std::uint64_t& t : surface.sampleTriangle) t = newTriangle[t];
+        });
+}
+
+}  // namespace
+
+std::int64_t PatchTrial::collapses() const {
+    std::int64_t count = 0;
+    for (const auto& patch : costs) count += std::ssize(patch);
+    return count;
+}
+
+PatchRound::PatchRound(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame)
+    : surface_(surface), frame_(frame), groups_(surface, cut, frame) {}
+
+PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
+    std::vector<std::size_t> all, some;
+    for (std::size_t n = 0; n < groups_.count(); ++n) {
+        if (!groups_.isIdle(n)) all.push_back(n);
+    }
+    const std::size_t every =
+        triesAll ? 1 : std::clamp<std::size_t>(all.size() / kTrialFewest, 1, kTrialEvery);
+    double triangles = 0, tried = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto count = static_cast<double>(groups_.triangleCount(all[i]));
+        triangles += count;
+        if (i % every != every / 2) continue;
+        some.push_back(all[i]);
+        tried += count;
+    }
+    PatchTrial trial;
+    trial.costs.resize(some.size());
+    if (every > 1) trial.share = tried / triangles;
+    tbb::enumerable_thread_specific<PatchScratch> scratches;
+    parallelForPieces(std::ssize(some), 1, [&](std::int64_t i, std::int64_t) {
+        Patch patch = groups_.take(some[i], scratches.local());
+        PatchSimplifier(patch, frame_, limits).collapseEdges(patch.ownTriangles, &trial.costs[i]);
+    });
+    return trial;
+}
+
+void PatchRound::run(const PatchWork& work) {
+    const std::vector<std::int64_t> quota = groups_.shares(work.mostCollapses);
+    tbb::enumerable_thread_specific<PatchScratch> scratches;
+    parallelForPieces(static_cast<std::int64_t>(groups_.count()), 1,
+                      [&](std::int64_t n, std::int64_t) {
+                          if (groups_.isIdle(n)) return;
+                          PatchScratch& scratch = scratches.local();
+                          Patch patch = groups_.take(n, scratch);
+                          PatchSimplifier simplifier(patch, frame_, work.limits);
+                          if (work.collapses) simplifier.collapseEdges(quota[n], nullptr);
+                          if (work.fits) simplifier.fitVertices();
+                          groups_.putBack(n, patch, scratch, surface_);
+                      });
+    if (work.collapses) removeGone(surface_);
+}
+
+}  // namespace adaptiso::detail

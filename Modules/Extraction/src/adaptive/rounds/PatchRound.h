@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "adaptive/collapse/PatchSimplifier.h"
+#include "adaptive/mesh/MetricFrame.h"
+#include "adaptive/mesh/SimplifiedSurface.h"
+#include "adaptive/rounds/PatchGroups.h"
+
+namespace adaptiso::detail {
+
+/// What a round does in every patch.
+struct PatchWork {
+    PatchLimits limits;
+    bool collapses = true;
+    /// Collapses to make in all patches together, or more than there can be.
+    std::int64_t mostCollapses = std::numeric_limits<std::int64_t>::max() / 4;
+    bool fits = false;
+};
+
+/// What a round would do, by some of its patches.
+struct PatchTrial {
+    CollapseCosts costs;  ///< of their collapses
+    double share = 1;     ///< of all patches' triangles
+
+    std::int64_t collapses() const;
+};
+
+/// Works on the surface in the patches of a cut, side by side. Triangles that straddle two cubes
+/// stay as they are.
+class PatchRound {
+public:
+    PatchRound(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame);
+
+    /// Collapses edges in copies of some patches, spread over the surface, or of all.
+    PatchTrial tryOut(const PatchLimits& limits, bool triesAll) const;
+
+    /// Once.
+    void run(const PatchWork& work);
+
+private:
+    SimplifiedSurface& surface_;
+    const MetricFrame& frame_;
+    PatchGroups groups_;
+};
+
+}  // namespace adaptiso::detail

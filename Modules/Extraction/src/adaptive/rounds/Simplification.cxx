@@ -1,0 +1,175 @@
+#include "adaptive/rounds/Simplification.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "adaptive/Parameters.h"
+
+namespace adaptiso::detail {
+namespace {
+
+/// How much the limit of cost may grow in a round: the more the farther the wanted count is.
+double costStep(std::int64_t triangles, std::int64_t target) {
+    const double part = static_cast<double>(triangles) / static_cast<double>(target);
+    if (part > 2) return 16;
+    return part > 1.4 ? 4 : 2;
+}
+
+}  // namespace
+
+Simplification::Simplification(const LatticeSampler& sampler, const Bricks& bricks,
+                               const MetricFrame& frame, const TightPlaces& tight,
+                               const PatchLimits& limits)
+    : sampler_(sampler), bricks_(bricks), frame_(frame), tight_(tight), limits_(limits) {
+    const double voxel = frame.voxelMm();
+    costUnit_ = voxel * voxel * voxel * voxel;
+}
+
+/// Cuts in turn, so that what straddles one cut lies within the next, also where their cubes grow.
+PatchCut Simplification::nextCut() {
+    ++rounds_;
+    const bool isFine = limits_.maxCost <= kCoarseCost * costUnit_;
+    const std::int64_t side = isFine ? Brick::kSide : std::int64_t{2} * Brick::kSide,
+                       shift = isFine ? 0 : Brick::kSide / 4;
+    return {side, shift + (rounds_ % 2 == 1 ? side / 2 : 0)};
+}
+
+void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
+    limits_.triedCost = limits_.maxCost;
+    limits_.maxCost = cost;
+    PatchRound(surface, nextCut(), frame_).run({limits_});
+}
+
+Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
+    const double distanceMm = limits_.maxDistanceMm, voxel = frame_.voxelMm();
+    const double mostCost = kHalfwayCost * voxel * voxel * distanceMm * distanceMm;
+    limits_.maxDistanceMm *= kHalfwayDistance;
+    limits_.maxCost = kFirstCost * costUnit_;
+    surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
+    for (const double cost : kBoundCosts) {
+        if (cost * costUnit_ > mostCost) break;
+        roundUpTo(cost * costUnit_, surface);
+    }
+    // what was refused for its distance is to be tried again
+    for (Patch::State& state : surface.states) {
+        if (state == Patch::State::Tried) state = Patch::State::Open;
+    }
+    limits_.maxDistanceMm = distanceMm;
+    return {surface, rounds_, limits_.maxCost};
+}
+
+void Simplification::goOnFrom(const Halfway& halfway, SimplifiedSurface& surface) {
+    surface.state() = halfway.state;
+    rounds_ = halfway.rounds;
+    limits_.maxCost = halfway.cost;
+    tight_.apply(frame_, surface.samples);
+}
+
+SimplifiedSurface Simplification::toLimits(SimplifiedSurface last,
+                                           std::optional<Halfway>& halfway) {
+    SimplifiedSurface surface = std::move(last);
+    if (halfway) {
+        goOnFrom(*halfway, surface);
+    } else {
+        halfway = toHalfway(surface);
+    }
+    for (const double cost : kBoundCosts) {
+        if (cost * costUnit_ > limits_.maxCost) roundUpTo(cost * costUnit_, surface);
+    }
+    for (int idle = 0; idle < 2;) {
+        const std::int64_t before = surface.triangleCount();
+        roundUpTo(std::numeric_limits<double>::max(), surface);
+        idle = static_cast<double>(surface.triangleCount()) >=
+                       kWorthwhile * static_cast<double>(before)
+                   ? idle + 1
+                   : 0;
+    }
+    return surface;
+}
+
+/// A round up to a cost that does not lead below the target: where it would, by a trial, up to the
+/// cost that makes as many collapses as wanted.
+void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
+    limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
+    const std::int64_t before = surface.triangleCount(), wanted = (before - target + 1) / 2;
+    const double times = static_cast<double>(before) / static_cast<double>(target);
+    PatchWork work{limits_};
+    work.mostCollapses = wanted;
+    PatchRound round(surface, nextCut(), frame_);
+    bool isLanding = false;
+    if (times < kNearCount || isTied_) {
+        work.fits = true;
+    } else if (times <= kFarFromCount) {  // from afar not reached but by a cost far too high
+        const PatchTrial trial = round.tryOut(limits_, triesAll_);
+        const double part = trial.share < 1 ? kTrialAim * trial.share : 1;
+        const auto most = static_cast<std::int64_t>(part * static_cast<double>(wanted));
+        if (trial.collapses() > most) {
+            work.limits.maxCost = costLimitFor(trial.costs, most);
+            work.fits = isLanding = true;
+        }
+        work.mostCollapses = PatchWork{}.mostCollapses;
+    }
+    fits_ = work.fits ? fits_ + 1 : 0;
+    round.run(work);
+    // where costs are equal, as on flat parts, a limit leaves all or none: the next round deals out
+    isTied_ = isLanding && before - surface.triangleCount() < wanted;
+}
+
+SimplifiedSurface Simplification::toCount(const WantedCount& wanted, double farthestMm) {
+    const PatchLimits limits = limits_;
+    SimplifiedSurface surface = towards(wanted, farthestMm);
+    if (surface.triangleCount() + 1 < wanted.of(surface.fineTriangles)) {
+        triesAll_ = true;  // the patches that were tried were not like the others
+        limits_ = limits;
+        surface = towards(wanted, farthestMm);
+    }
+    fit(surface);
+    return surface;
+}
+
+/// All but the last fits.
+SimplifiedSurface Simplification::towards(const WantedCount& wanted, double farthestMm) {
+    CollapseCosts costs;
+    double cost = kFirstCost;
+    limits_.maxCost = cost * costUnit_;
+    rounds_ = fits_ = 0;
+    isTied_ = false;
+    SimplifiedSurface surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, &costs);
+    const std::int64_t target = wanted.of(surface.fineTriangles);
+    if (surface.triangleCount() < target) {
+        limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
+        surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
+    }
+    for (;;) {
+        for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
+            const std::int64_t before = surface.triangleCount();
+            cost *= costStep(before, target);
+            if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
+            roundTowards(surface, target, cost);
+            if (cost > kLastCost) idle = surface.triangleCount() == before ? idle + 1 : 0;
+        }
+        if (surface.triangleCount() <= target || limits_.maxDistanceMm >= farthestMm) break;
+        goFarther(surface);
+        cost = kCostAfterDistance;
+    }
+    return surface;
+}
+
+/// Goes on with twice the allowed distance: what was refused for it is to be tried again.
+void Simplification::goFarther(SimplifiedSurface& surface) {
+    limits_.maxDistanceMm *= 2;
+    limits_.provesAll = true;  // beyond what single sheets are certain of
+    for (Patch::State& state : surface.states) {
+        if (state == Patch::State::Tried) state = Patch::State::Open;
+    }
+}
+
+void Simplification::fit(SimplifiedSurface& surface) {
+    PatchWork work{limits_};
+    work.collapses = false;
+    work.fits = true;
+    for (; fits_ < 2; ++fits_) PatchRound(surface, nextCut(), frame_).run(work);
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "adaptive/rounds/BrickRound.h"
+#include "adaptive/rounds/PatchRound.h"
+
+namespace adaptiso::detail {
+
+/// How many triangles are wanted: a number, or a share of those of the full surface to drop.
+struct WantedCount {
+    std::optional<std::int64_t> triangles;
+    std::optional<double> reduction;
+
+    bool isGiven() const { return triangles || reduction; }
+    std::int64_t of(std::int64_t fineTriangles) const {
+        std::int64_t count = std::min(triangles.value_or(fineTriangles), fineTriangles);
+        if (reduction) {
+            const double kept = (1 - *reduction) * static_cast<double>(fineTriangles);
+            count = std::min(count, static_cast<std::int64_t>(kept));
+        }
+        return count;
+    }
+};
+
+/// A surface after its first rounds, whose changes are too small to matter to the bound: when
+/// places turn out to need more care, it can be gone on from here.
+struct Halfway {
+    SurfaceState state;
+    int rounds = 0;
+    double cost = 0;  ///< limit of its last round
+};
+
+/// One run of the simplification with fixed limits, in rounds: first every brick alone, then the
+/// patches of shifted cuts in turn, with a limit of cost that grows, so that all parts of the
+/// surface get coarser together.
+class Simplification {
+public:
+    Simplification(const LatticeSampler& sampler, const Bricks& bricks, const MetricFrame& frame,
+                   const TightPlaces& tight, const PatchLimits& limits);
+
+    /// As few triangles as the limits allow; vertices are not fitted.
+    /// \param last     of the run before, when that went through `halfway`
+    /// \param halfway  where to start; is filled in when empty
+    SimplifiedSurface toLimits(SimplifiedSurface last, std::optional<Halfway>& halfway);
+
+    /// Rounds with changes that are small in every way.
+    Halfway toHalfway(SimplifiedSurface& surface);
+
+    /// The wanted number of triangles, or as few as the limits allow.
+    /// \param farthestMm  where they don't, the allowed distance of samples is doubled on the way
+    ///                    until it is as large as that
+    SimplifiedSurface toCount(const WantedCount& wanted, double farthestMm);
+
+    /// Moves vertices to where they lie closest to their samples: twice, so that what straddles the
+    /// cut has its turn as well.
+    void fit(SimplifiedSurface& surface);
+
+private:
+    PatchCut nextCut();
+    void roundUpTo(double cost, SimplifiedSurface& surface);
+    void goOnFrom(const Halfway& halfway, SimplifiedSurface& surface);
+    SimplifiedSurface towards(const WantedCount& wanted, double farthestMm);
+    void goFarther(SimplifiedSurface& surface);
+    void roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost);
+
+    const LatticeSampler& sampler_;
+    const Bricks& bricks_;
+    const MetricFrame& frame_;
+    const TightPlaces& tight_;
+    PatchLimits limits_;
+    double costUnit_;
+    int rounds_ = 0;
+    int fits_ = 0;           ///< how many of the last rounds were with fits
+    bool isTied_ = false;    ///< the last round made less than half of its collapses
+    bool triesAll_ = false;  ///< patches, before it lands on a count
+};
+
+}  // namespace adaptiso::detail
