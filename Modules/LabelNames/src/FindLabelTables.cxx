@@ -152,7 +152,12 @@ FoundLabelTables findLabelTables(const fs::path& image) {
         } catch (const NoLabelTable&) {
             // something else of that name
         } catch (const FileError& fault) {
-            warnings.push_back("its names are not used: " + std::string(fault.what()));
+            // the file's own name, without folders: what is told may be passed on
+            const std::string said = fault.what(), whole = path.string();
+            warnings.push_back("its names are not used: " +
+                               (said.starts_with(whole)
+                                    ? path.filename().string() + said.substr(whole.size())
+                                    : said));
         }
         if (hasNames(found.table) && hasAllColors(found.table)) break;
     }
