@@ -12,6 +12,17 @@ namespace {
 /// More regions than that make a page slow to open; the largest are shown.
 constexpr std::size_t kMostShown = 2000;
 
+/// A region's colour, lighter where it could not be told from the page's black ground.
+ReportColor onBlack(const LabelColor& color) {
+    constexpr std::uint8_t kDark = 70;
+    if (std::ranges::max(color) >= kDark) return color;
+    ReportColor lighter{};
+    for (std::size_t n = 0; n < 3; ++n) {
+        lighter[n] = static_cast<std::uint8_t>(color[n] + kDark);
+    }
+    return lighter;
+}
+
 void tellVerdict(const LabelsRun& run, Report& report) {
     const std::size_t count = run.regions.size();
     report.title = formatCount(static_cast<std::int64_t>(count)) +
@@ -138,7 +149,7 @@ Report makeReport(const LabelsRun& run, const RegionSurfaces& surfaces,
     const std::vector<std::size_t> shown = chooseShown(run, report);
     for (const std::size_t n : shown) {
         ReportSurface surface{run.nameOf(run.regions[n].label), surfaces.surface(n)};
-        surface.color = run.regions[n].color;
+        surface.color = onBlack(run.regions[n].color);
         report.surfaces.push_back(std::move(surface));
     }
     report.tables.push_back(regionTable(run, shown));

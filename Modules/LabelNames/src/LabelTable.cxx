@@ -59,19 +59,21 @@ std::string fromLatin1(std::string_view text) {
     return result;
 }
 
-/// Reds, greens and blues of 0 to 255.
+/// Reds, greens and blues of 0 to 255. MRIcron's own atlases have black where they have no colour.
 LabelTable decodeLut(std::string_view bytes) {
     LabelTable table;
     table.format = "MRIcron colours";
     for (std::int32_t value = 0; value < 256; ++value) {
-        LabelEntry& entry = table.entries.emplace_back();
-        entry.value = value;
         LabelColor color{};
         for (std::size_t n = 0; n < 3; ++n) {
             color[n] = static_cast<std::uint8_t>(bytes[256 * n + static_cast<std::size_t>(value)]);
         }
+        if (color == LabelColor{}) continue;
+        LabelEntry& entry = table.entries.emplace_back();
+        entry.value = value;
         entry.color = color;
     }
+    if (table.entries.empty()) refuseKind("its 768 bytes are all black");
     return table;
 }
 

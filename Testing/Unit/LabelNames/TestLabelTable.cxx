@@ -96,7 +96,8 @@ TEST(LabelTable, ReadsMricronsColors) {
     bytes[256 + 7] = '\x80';
     const LabelTable table = decoded(bytes);
     EXPECT_EQ(entryOf(table, 7), (LabelEntry{7, "", "", kOrange}));
-    EXPECT_EQ(table.entries.size(), 256U);
+    EXPECT_EQ(table.entries.size(), 1U) << "black is no colour";
+    EXPECT_THROW(decoded(std::string(768, '\0')), NoLabelTable);
 }
 
 TEST(LabelTable, ReadsNii2meshsSemicolons) {

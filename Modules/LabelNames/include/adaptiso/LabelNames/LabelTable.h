@@ -49,7 +49,7 @@ public:
 ///   FreeSurfer   rows of index, name, R G B A; # begins a comment
 ///   ITK-SNAP     rows of index, R G B A, two flags and a name in quotes
 ///   MRIcron      rows of index and name, or index, name and code; or 768 bytes, the reds, greens
-///                and blues of the values 0 to 255
+///                and blues of the values 0 to 255; black is none
 ///   nii2mesh     rows of index;name
 ///   GIFTI        the LabelTable of a .gii
 ///   FSL          an atlas in XML: of a probabilistic one label n is the value n + 1, of others n
