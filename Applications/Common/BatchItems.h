@@ -37,6 +37,11 @@ std::vector<BatchItem> findBidsScans(const std::filesystem::path& root,
                                      const std::vector<std::string>& participants,
                                      const std::filesystem::path& derivatives);
 
+/// The same of label maps, *_dseg.nii[.gz]: in a dataset of derivatives, where they are.
+std::vector<BatchItem> findBidsSegmentations(const std::filesystem::path& root,
+                                             const std::vector<std::string>& participants,
+                                             const std::filesystem::path& derivatives);
+
 /// The surfaces, in formats that MeshIO reads, anywhere under sub-* of `derivatives`, by path;
 /// their records go beside them. \throws InvalidInput  as findBidsScans()
 std::vector<BatchItem> findBidsSurfaces(const std::filesystem::path& root,

@@ -56,10 +56,17 @@ void requireFound(const std::vector<BatchItem>& items, std::size_t before, const
     if (items.size() == before) throw InvalidInput("--bids: no " + what + " in " + where.string());
 }
 
-constexpr const char* kScan = "T1w image";
+/// Images of one suffix, as --bids looks for them.
+struct BidsImages {
+    std::string suffix;  ///< "T1w"
+    std::string what;    ///< for messages
+};
+const BidsImages kScans{"T1w", "T1w image"};
+const BidsImages kSegmentations{"dseg", "label map (*_dseg.nii.gz)"};
 constexpr const char* kSurface = "surface";
 
-void addScans(const fs::path& folder, const fs::path& target, std::vector<BatchItem>& items) {
+void addImages(const fs::path& folder, const fs::path& target, const BidsImages& images,
+               std::vector<BatchItem>& items) {
     std::vector<fs::path> files;
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder / "anat", error)) {
@@ -67,7 +74,8 @@ void addScans(const fs::path& folder, const fs::path& target, std::vector<BatchI
     }
     for (const fs::path& file : sorted(files)) {
         const std::string name = file.filename().string();
-        for (const std::string_view ending : {"_T1w.nii", "_T1w.nii.gz"}) {
+        for (const char* const type : {".nii", ".nii.gz"}) {
+            const std::string ending = "_" + images.suffix + type;
             if (!name.ends_with(ending) || name.starts_with(".")) continue;
             items.push_back({name.substr(0, name.size() - ending.size()), {file}, target / "anat"});
         }
@@ -84,23 +92,35 @@ bool isSurface(const fs::path& file) {
     }
 }
 
+std::vector<BatchItem> findImages(const fs::path& root,
+                                  const std::vector<std::string>& participants,
+                                  const fs::path& derivatives, const BidsImages& images) {
+    std::vector<BatchItem> items;
+    for (const fs::path& subject : participantFolders(root, root, participants)) {
+        const std::size_t before = items.size();
+        const fs::path target = derivatives / subject.filename();
+        addImages(subject, target, images, items);
+        for (const fs::path& session : foldersIn(subject, "ses-")) {
+            addImages(session, target / session.filename(), images, items);
+        }
+        if (!participants.empty()) requireFound(items, before, subject, images.what);
+    }
+    requireFound(items, 0, root, images.what);
+    return items;
+}
+
 }  // namespace
 
 std::vector<BatchItem> findBidsScans(const fs::path& root,
                                      const std::vector<std::string>& participants,
                                      const fs::path& derivatives) {
-    std::vector<BatchItem> items;
-    for (const fs::path& subject : participantFolders(root, root, participants)) {
-        const std::size_t before = items.size();
-        const fs::path target = derivatives / subject.filename();
-        addScans(subject, target, items);
-        for (const fs::path& session : foldersIn(subject, "ses-")) {
-            addScans(session, target / session.filename(), items);
-        }
-        if (!participants.empty()) requireFound(items, before, subject, kScan);
-    }
-    requireFound(items, 0, root, kScan);
-    return items;
+    return findImages(root, participants, derivatives, kScans);
+}
+
+std::vector<BatchItem> findBidsSegmentations(const fs::path& root,
+                                             const std::vector<std::string>& participants,
+                                             const fs::path& derivatives) {
+    return findImages(root, participants, derivatives, kSegmentations);
 }
 
 std::vector<BatchItem> findBidsSurfaces(const fs::path& root,

@@ -213,7 +213,7 @@ void removeTemporary(const fs::path& path) {
     std::error_code error;
     if (fs::is_directory(fs::symlink_status(path, error))) {
         for (const auto& entry : fs::directory_iterator(path, error)) {
-            unlink(entry.path().c_str());
+            removeTemporary(entry.path());  // a file, or a folder of files
         }
         rmdir(path.c_str());
     } else {

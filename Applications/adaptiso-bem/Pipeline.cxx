@@ -49,8 +49,8 @@ bool hasJsonFile(const BemOptions& options) {
 }
 
 /// The folder's own names when it may be replaced.
-std::vector<std::string_view> replaceable(const BemOptions& options) {
-    return options.mayReplace ? bemFileNames() : std::vector<std::string_view>{};
+OwnNames replaceable(const BemOptions& options) {
+    return options.mayReplace ? OwnNames(bemFileNames()) : OwnNames();
 }
 
 /// Where --subject's surfaces go: SUBJECTS_DIR/SUBJECT/bem/<surface>.surf, one a surface.

@@ -1,6 +1,7 @@
 #include "MeshBatch.h"
 
 #include "Common/Batch.h"
+#include "Common/InputNames.h"
 #include "Common/Numbers.h"
 #include "OutputNames.h"
 

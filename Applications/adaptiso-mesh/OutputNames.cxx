@@ -1,9 +1,10 @@
 #include "OutputNames.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <string_view>
+
+#include "Common/InputNames.h"
 
 namespace adaptiso {
 namespace {
@@ -14,19 +15,6 @@ std::string lowerCase(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return text;
-}
-
-/// `name` less the first of `extensions` that it ends in, whatever the case.
-template <std::size_t N>
-std::string withoutExtension(const std::string& name,
-                             const std::array<std::string_view, N>& extensions) {
-    const std::string lower = lowerCase(name);
-    for (const std::string_view extension : extensions) {
-        if (lower.size() > extension.size() && lower.ends_with(extension)) {
-            return name.substr(0, name.size() - extension.size());
-        }
-    }
-    return name;
 }
 
 std::string replaceIso(std::string text, const std::string& isovalue) {
@@ -41,26 +29,14 @@ std::string replaceIso(std::string text, const std::string& isovalue) {
 /// "lh-iso50.surf.gii" of "lh.surf.gii": GIFTI surfaces have an extension of two parts.
 fs::path insertBeforeExtension(const fs::path& path, const std::string& text) {
     const std::string name = path.filename().string();
-    std::string stem = withoutExtension(name, std::array<std::string_view, 1>{".surf.gii"});
-    if (stem == name) stem = path.stem().string();
+    constexpr std::string_view kTwoParts = ".surf.gii";
+    const std::size_t kept = name.size() - std::min(name.size(), kTwoParts.size());
+    const bool hasTwoParts = kept > 0 && lowerCase(name.substr(kept)) == kTwoParts;
+    const std::string stem = hasTwoParts ? name.substr(0, kept) : path.stem().string();
     return path.parent_path() / (stem + text + name.substr(stem.size()));
 }
 
 }  // namespace
-
-std::string inputStem(const fs::path& input) {
-    constexpr std::array<std::string_view, 14> kImageExtensions{
-        ".nii.gz", ".nii", ".hdr.gz", ".hdr", ".img.gz", ".img", ".nrrd",
-        ".nhdr",   ".mha", ".mhd",    ".mgh", ".mgz",    ".dcm", ".ima"};
-    std::error_code error;
-    fs::path path = input;
-    if (fs::is_directory(input, error)) {
-        path = fs::canonical(input, error);  // the name that ".", ".." and "scan/" stand for
-        if (error || path == path.root_path()) return "volume";
-        return path.filename().string();
-    }
-    return withoutExtension(path.filename().string(), kImageExtensions);
-}
 
 fs::path outputPath(const MeshOptions& options, const std::string& isovalue) {
     if (options.output.empty()) return inputStem(options.input) + "-iso" + isovalue + ".vtp";

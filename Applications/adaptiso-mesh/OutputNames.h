@@ -7,10 +7,6 @@
 
 namespace adaptiso {
 
-/// The input's name without folder and without the extensions of image files: "brain" of
-/// "scans/brain.nii.gz"; the folder's own name of a folder, however it is written.
-std::string inputStem(const std::filesystem::path& input);
-
 /// The file that the surface at an isovalue goes to.
 ///
 /// Without an output in `options`: "<stem>-iso<isovalue>.vtp" in the current folder. An output

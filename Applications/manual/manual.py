@@ -225,7 +225,8 @@ def main():
     kind, program, output = sys.argv[1:]
     said = json.loads(subprocess.run([program, "--help-json"], check=True, text=True,
                                      stdout=subprocess.PIPE).stdout)
-    programs = ["adaptiso-mesh", "adaptiso-bem", "adaptiso-check", "adaptiso-compare"]
+    programs = ["adaptiso-mesh", "adaptiso-labels", "adaptiso-bem", "adaptiso-check",
+                "adaptiso-compare"]
     text = {"man": lambda: manual_page(said, programs), "bash": lambda: bash_completion(said),
             "zsh": lambda: zsh_completion(said)}[kind]()
     data = text.encode()

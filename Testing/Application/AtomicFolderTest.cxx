@@ -170,5 +170,40 @@ TEST_F(AtomicFolderTest, ASignalRemovesFilesAndFolder) {
     EXPECT_EQ(names(folder_), Names{});
 }
 
+TEST_F(AtomicFolderTest, HoldsFoldersOfFiles) {
+    {
+        AtomicFolder labels(folder_ / "labels", {});
+        labels.writeText("regions/1.vtp", "one");
+        labels.writeText("regions/2.vtp", "two");
+    }
+    EXPECT_EQ(names(folder_), Names{});
+    AtomicFolder labels(folder_ / "labels", {});
+    for (int n = 0; n < 100; ++n) {  // so many are forced to disk together
+        labels.writeText("regions/" + std::to_string(n), "x");
+    }
+    labels.commit();
+    EXPECT_EQ(names(folder_), Names{"labels"});
+    EXPECT_EQ(names(folder_ / "labels" / "regions").size(), 100u);
+}
+
+TEST_F(AtomicFolderTest, ReplacesFoldersOfItsOwnFilesAlone) {
+    const OwnNames own([](std::string_view name) { return name.starts_with("regions/"); });
+    const auto write = [&](const char* text) {
+        AtomicFolder labels(folder_ / "labels", own);
+        labels.writeText("regions/1", text);
+        labels.commit();
+    };
+    write("one");
+    write("two");
+    EXPECT_EQ(text(folder_ / "labels" / "regions" / "1"), "two");
+    EXPECT_EQ(names(folder_), Names{"labels"}) << "the former folder is gone whole";
+    fs::create_directory(folder_ / "labels" / "regions" / "deeper");
+    EXPECT_THROW(write("three"), FileError);
+    fs::remove(folder_ / "labels" / "regions" / "deeper");
+    put(folder_ / "labels" / "mine.txt", "");
+    EXPECT_THROW(write("three"), FileError);
+    EXPECT_EQ(text(folder_ / "labels" / "regions" / "1"), "two");
+}
+
 }  // namespace
 }  // namespace adaptiso

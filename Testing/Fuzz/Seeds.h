@@ -26,5 +26,6 @@ void addMeshSeeds(Seeds& seeds);
 void addFenceSeeds(Seeds& seeds);
 void addIndexSeeds(Seeds& seeds);
 void addOpenMeegSeeds(Seeds& seeds);
+void addLabelSeeds(Seeds& seeds);
 
 }  // namespace adaptiso::fuzz

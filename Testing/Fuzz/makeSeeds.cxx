@@ -66,6 +66,26 @@ void addOpenMeegSeeds(Seeds& seeds) {
                               conductivities + "Air 0\nSkin 0.33\nBrain 0.33\nSkull 0.0041\n");
 }
 
+void addLabelSeeds(Seeds& seeds) {
+    for (const char* const text :
+         {"index\tname\tabbreviation\tcolor\n1\tGray Matter\tGM\t#ff0000\n2\tb\tn/a\tn/a\n",
+          "LabelValue,Name,Color_R,Color_G,Color_B,Color_A\n1,\"a, \"\"b\"\"\",255,128,0,255\n",
+          "# LUT\n0 Unknown 0 0 0 0\r\n1001 ctx-lh 25 100 40 0\r\n", "1 a 1 2 3\n2 b 1 2 3\n",
+          "# Color table file x\n1 left_side 255 0 0 255\n",
+          "# ITK-SnAP\n 1 255 0 0 1 1 1 \"Label 1\"\n", "1 Precentral_L 2001\n2 b 2002\n",
+          "0\tUnclassified\n1\tc\xf4t\xe9 x\n", "1;a;2\n2;b;3\n",
+          "<GIFTI><LabelTable><Label Key=\"1\" Red=\"1\" Green=\"0.5\" Blue=\"0\">a</Label>"
+          "</LabelTable></GIFTI>",
+          "<atlas><header><type>Label</type></header><data><label index=\"0\">a</label></data>"
+          "</atlas>",
+          R"({"1": "a", "2": {"name": "b", "color": "#ff8000"}})",
+          R"([{"id": 8, "acronym": "g", "name": "Grey", "rgb_triplet": [255, 128, 0]}])",
+          R"({"R": [0, 255], "G": [0, 1], "B": [0, 0], "I": [0, 9], "labels": ["", "b"]})"}) {
+        seeds.add("labels", text);
+    }
+    seeds.add("labels", std::string(767, '\0') + "\xff");
+}
+
 }  // namespace adaptiso::fuzz
 
 int main(int argc, char** argv) {
@@ -81,6 +101,7 @@ int main(int argc, char** argv) {
         adaptiso::fuzz::addFenceSeeds(seeds);
         adaptiso::fuzz::addIndexSeeds(seeds);
         adaptiso::fuzz::addOpenMeegSeeds(seeds);
+        adaptiso::fuzz::addLabelSeeds(seeds);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "makeSeeds: %s\n", error.what());
         return 3;

@@ -12,7 +12,8 @@ from pathlib import Path
 from support import BIN, ApplicationTest, main
 
 MADE = Path(os.environ["ADAPTISO_BUILD"]) / "Applications" / "manual"
-PROGRAMS = ("adaptiso-mesh", "adaptiso-bem", "adaptiso-check", "adaptiso-compare")
+PROGRAMS = ("adaptiso-mesh", "adaptiso-labels", "adaptiso-bem", "adaptiso-check",
+            "adaptiso-compare")
 
 
 def output(*command, **options):

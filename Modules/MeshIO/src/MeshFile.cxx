@@ -106,20 +106,29 @@ void requireNeutralName(const std::string& name) {
     }
 }
 
-void requireOnePerPoint(const std::vector<PointArray>& arrays, const TriangleMesh& mesh,
-                        const MeshFormat& format, const std::string& file) {
-    if (!arrays.empty() && format.id != MeshFormatId::VtkXml) {
+void requireOneEach(const std::string& array, std::size_t values, std::size_t count,
+                    const std::string& what, const std::string& file) {
+    if (values == count) return;
+    throw InvalidInput(file + ": the array " + meshio::printable(array) + " has " +
+                       std::to_string(values) + " values for " + std::to_string(count) + " " +
+                       what + ", must be one each");
+}
+
+void requireArrays(const MeshWriteOptions& options, const TriangleMesh& mesh,
+                   const MeshFormat& format, const std::string& file) {
+    const bool hasArrays = !options.pointArrays.empty() || !options.cellArrays.empty();
+    if (hasArrays && format.id != MeshFormatId::VtkXml) {
         throw InvalidInput(file + ": " + std::string(format.name) +
-                           " files hold no values at points; write .vtp");
+                           " files hold no values at points" +
+                           (options.cellArrays.empty() ? "" : " and triangles") + "; write .vtp");
     }
-    for (const PointArray& array : arrays) {
+    for (const PointArray& array : options.pointArrays) {
         const std::size_t count =
             std::visit([](const auto& values) { return values.size(); }, array.values);
-        if (count != mesh.points.size()) {
-            throw InvalidInput(file + ": the array " + meshio::printable(array.name) + " has " +
-                               std::to_string(count) + " values for " +
-                               std::to_string(mesh.points.size()) + " points, must be one each");
-        }
+        requireOneEach(array.name, count, mesh.points.size(), "points", file);
+    }
+    for (const CellArray& array : options.cellArrays) {
+        requireOneEach(array.name, array.values.size(), mesh.triangles.size(), "triangles", file);
     }
 }
 
@@ -138,7 +147,7 @@ void requireWritable(const TriangleMesh& mesh, const MeshFormat& format,
                            " files hold mm, not voxel indices; write RAS, LPS or tkRAS");
     }
     if (format.holdsVolumeGeometry) requireNeutralName(options.volumeName);
-    requireOnePerPoint(options.pointArrays, mesh, format, file);
+    requireArrays(options, mesh, format, file);
 }
 
 TriangleMesh movedTo(const MeshWriteOptions& options, const TriangleMesh& mesh,

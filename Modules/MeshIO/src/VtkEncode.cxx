@@ -1,7 +1,9 @@
 #include "VtkEncode.h"
 
+#include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
+#include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkStringArray.h>
@@ -47,11 +49,24 @@ void addPointArrays(vtkPolyData& data, const std::vector<PointArray>& arrays) {
     if (!arrays.empty()) data.GetPointData()->SetActiveScalars(arrays.front().name.c_str());
 }
 
+void addCellArrays(vtkPolyData& data, const std::vector<CellArray>& arrays) {
+    static_assert(sizeof(int) == sizeof(std::int32_t));
+    for (const CellArray& each : arrays) {
+        vtkNew<vtkIntArray> array;
+        array->SetName(each.name.c_str());
+        array->SetNumberOfValues(static_cast<vtkIdType>(each.values.size()));
+        std::copy(each.values.begin(), each.values.end(), array->GetPointer(0));
+        data.GetCellData()->AddArray(array);
+    }
+    if (!arrays.empty()) data.GetCellData()->SetActiveScalars(arrays.front().name.c_str());
+}
+
 }  // namespace
 
 vtkSmartPointer<vtkPolyData> toLabelledPolyData(const MeshRecord& record) {
     auto data = toVtkPolyData(record.mesh);
     addPointArrays(*data, record.options.pointArrays);
+    addCellArrays(*data, record.options.cellArrays);
     addField(*data, kFrameFieldName, toString(record.options.frame));
     addField(*data, kVersionFieldName, "1");
     return data;

@@ -8,7 +8,9 @@
   // of a slice: the axis across it, the one to the right, the one up
   const AXES = { [AXIAL]: [2, 0, 1], [CORONAL]: [1, 0, 2], [SAGITTAL]: [0, 1, 2] };
 
-  // Both sides are lit; what is seen from its inside is red; what lies beyond the plane is cut away.
+  // Both sides are lit; what is seen from its inside is red (of a region, dark: where they are cut
+  // that is nearly all there is to see); what lies beyond the plane is cut away.
+  const INSIDE = data.areRegions ? "0.55 * vClr.rgb" : "vec3(0.84, 0.27, 0.25)";
   const SHADER = `#version 300 es
 precision highp int;
 precision highp float;
@@ -23,7 +25,7 @@ void main() {
   // through a transparent surface its own far side would be seen
   if (!gl_FrontFacing && opacity < 0.99) discard;
   vec3 n = normalize(vN);
-  vec3 base = gl_FrontFacing ? vClr.rgb : vec3(0.84, 0.27, 0.25);
+  vec3 base = gl_FrontFacing ? vClr.rgb : ${INSIDE};
   float light = 0.3 + 0.7 * abs(dot(n, normalize(vec3(-0.35, 0.45, -0.9))));
   color = vec4(base * light, opacity);
 }`;
@@ -77,9 +79,10 @@ void main() {
         const mesh = await niivue.NVMesh.readMesh(
           bytesOf(`surface-${n}`), "surface.mz3", nv.gl, surface.opacity, rgba, true);
         mesh.meshShaderIndex = shader;
-        nv.addMesh(mesh);
+        nv.meshes.push(mesh);  // addMesh() would load the image anew for each of hundreds
         this.surfaces.push({ mesh, color: surface.color, isShown: true, cuts: [] });
       }
+      nv.updateGLVolume();
       this.hook();
     }
 
@@ -204,6 +207,62 @@ void main() {
     }
   };
 
+  /** Regions are many: a list to search. A click on a name shows that region alone and goes there, a
+   * click with Ctrl or Cmd besides the others; the boxes show and hide. */
+  const makeRegionControls = (viewer) => {
+    const list = byId("surfaces"), rows = [];
+    list.className = "regions";
+    byId("region-tools").hidden = false;
+    byId("surfaces-title").textContent = "Regions";
+    byId("inside-hint").textContent = "A click on a region's name shows it alone and goes there; "
+      + "with Ctrl it is added to what is shown.";
+    const tell = () => {
+      const shown = viewer.surfaces.filter((surface) => surface.isShown).length;
+      byId("region-count").textContent = `${shown} of ${rows.length} shown`;
+      viewer.nv.drawScene();
+    };
+    const show = (n, isShown) => {
+      viewer.surfaces[n].isShown = isShown;
+      viewer.surfaces[n].mesh.visible = isShown;
+      rows[n].box.checked = isShown;
+    };
+    for (const [n, surface] of data.surfaces.entries()) {
+      const row = document.createElement("div");
+      row.className = "region";
+      const box = Object.assign(document.createElement("input"), { type: "checkbox", checked: true });
+      box.setAttribute("aria-label", `Show ${surface.name}`);
+      const swatch = Object.assign(document.createElement("span"), { className: "swatch" });
+      swatch.style.background = `rgb(${surface.color.join(" ")})`;
+      const button = Object.assign(document.createElement("button"),
+        { type: "button", textContent: surface.name });
+      row.append(box, swatch, button);
+      list.append(row);
+      rows.push({ row, box, button, text: surface.name.toLowerCase() });
+      box.addEventListener("change", () => { show(n, box.checked); tell(); });
+      button.addEventListener("click", (event) => {
+        for (const [m, other] of rows.entries()) {
+          if (!event.ctrlKey && !event.metaKey) show(m, m === n);
+          other.button.removeAttribute("aria-current");
+        }
+        show(n, true);
+        button.setAttribute("aria-current", "true");
+        viewer.moveTo(surface.point);
+        tell();
+      });
+    }
+    for (const [id, isShown] of [["show-all", true], ["show-none", false]]) {
+      byId(id).addEventListener("click", () => {
+        for (const n of rows.keys()) show(n, isShown);
+        tell();
+      });
+    }
+    byId("find").addEventListener("input", () => {
+      const wanted = byId("find").value.toLowerCase();
+      for (const { row, text } of rows) row.hidden = !text.includes(wanted);
+    });
+    tell();
+  };
+
   const listen = (viewer) => {
     const spots = document.querySelectorAll("button[data-spot]");
     for (const button of spots) {
@@ -259,7 +318,7 @@ void main() {
     await viewer.load();
     nv.setSliceType(niivue.SLICE_TYPE.MULTIPLANAR);
     nv.setRenderAzimuthElevation(145, 12);
-    makeSurfaceControls(viewer);
+    (data.areRegions ? makeRegionControls : makeSurfaceControls)(viewer);
     listen(viewer);
     viewer.moveTo(data.start);
     window.adaptisoViewer = viewer;

@@ -1,5 +1,6 @@
 #include "adaptiso/Report/Page.h"
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -73,6 +74,29 @@ Json pointJson(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
 
+/// Where to look for a surface: the middle of its box, or of what is its own there, along x.
+Vec3 pointIn(const SceneMesh& mesh) {
+    if (mesh.isEmpty()) return {};
+    const BoundingBox box = boxOf(mesh);
+    Vec3 middle = 0.5 * (box.minimum + box.maximum);
+    // a bent region does not hold its middle: take that of the widest part of a line through it
+    std::vector<double> crossings;
+    for (const Segment& segment : cutByPlane(mesh, 2, middle.z)) {
+        const Vec3 &a = segment[0], &b = segment[1];
+        if ((a.y >= middle.y) == (b.y >= middle.y)) continue;
+        crossings.push_back(a.x + (middle.y - a.y) / (b.y - a.y) * (b.x - a.x));
+    }
+    std::sort(crossings.begin(), crossings.end());
+    double widest = 0;
+    for (std::size_t n = 0; n + 1 < crossings.size(); n += 2) {
+        const double width = crossings[n + 1] - crossings[n];
+        if (width <= widest) continue;
+        widest = width;
+        middle.x = 0.5 * (crossings[n] + crossings[n + 1]);
+    }
+    return middle;
+}
+
 /// The scene as the viewer gets it: no more triangles than it can show with ease.
 Scene forViewer(const Scene& scene, const PageOptions& options, std::vector<std::string>& notes) {
     std::vector<std::int64_t> counts;
@@ -99,8 +123,10 @@ std::string viewerData(const Report& report, const Scene& scene, const PageOptio
     for (std::size_t n = 0; n < shown.surfaces.size(); ++n) {
         const SceneSurface& surface = shown.surfaces[n];
         // those around the first are seen through
+        const bool isOpaque = n == 0 || report.areRegions;
         surfaces.push_back(
-            {{"name", surface.name}, {"color", surface.color}, {"opacity", n == 0 ? 1.0 : 0.35}});
+            {{"name", surface.name}, {"color", surface.color}, {"opacity", isOpaque ? 1.0 : 0.35}});
+        if (report.areRegions) surfaces.back()["point"] = pointJson(pointIn(surface.mesh));
         elements += dataElement("surface-" + std::to_string(n), "text/plain",
                                 encodeBase64(gzip(mz3Of(surface))));
     }
@@ -110,7 +136,8 @@ std::string viewerData(const Report& report, const Scene& scene, const PageOptio
         {"surfaces", surfaces},
         {"spots", spots},
         {"start", pointJson(shown.spots.empty() ? middle : shown.spots.front().pointMm)},
-        {"hasImage", report.volume.has_value()}};
+        {"hasImage", report.volume.has_value()},
+        {"areRegions", report.areRegions}};
     const std::string image =
         report.volume ? niftiOf(report.volume->view, options.maxVoxels, scene.face.get())
                       : blankNifti(scene.box);

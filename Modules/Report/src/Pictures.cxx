@@ -16,7 +16,11 @@ std::vector<Picture> drawPictures(const Report& report) {
     if (!scene.isEmpty() && (!scene.face || scene.hasTriangles())) {
         add(spotPicture(report, scene));
         for (const int axis : {2, 1, 0}) add(contourPicture(report, scene, axis));
-        for (std::size_t n = 0; n < scene.surfaces.size(); ++n) add(sixSidesPicture(scene, n));
+        if (report.areRegions) {
+            add(regionsPicture(scene));
+        } else {
+            for (std::size_t n = 0; n < scene.surfaces.size(); ++n) add(sixSidesPicture(scene, n));
+        }
     }
     for (std::size_t n = 0; n < report.histograms.size(); ++n) add(histogramPicture(report, n));
     add(trianglePicture(scene));

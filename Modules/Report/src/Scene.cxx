@@ -79,7 +79,7 @@ Scene makeScene(const Report& report) {
     for (const ReportSurface& given : report.surfaces) {
         SceneSurface surface;
         surface.name = given.name;
-        surface.color = surfaceColor(scene.surfaces.size());
+        surface.color = given.color.value_or(surfaceColor(scene.surfaces.size()));
         surface.mesh = SceneMesh::of(given.mesh);
         surface.triangles = std::ssize(given.mesh.triangles);
         if (given.valuesMm.size() == given.mesh.points.size()) surface.valuesMm = given.valuesMm;

@@ -56,11 +56,11 @@ void drawSides(Canvas& canvas, Pixel corner, const SlicePlane& plane) {
 std::string contourAlt(const Scene& scene, int axis, bool hasImage) {
     std::string text = std::string("Twelve ") + sliceName(axis) +
                        (hasImage ? " slices of the image" : " slices") + " with the outlines of ";
-    for (std::size_t n = 0; n < scene.surfaces.size(); ++n) {
-        text += (n == 0                           ? ""
-                 : n + 1 == scene.surfaces.size() ? " and "
-                                                  : ", ") +
-                scene.surfaces[n].name;
+    constexpr std::size_t kMost = 12;
+    const std::size_t count = scene.surfaces.size();
+    if (count > kMost) return text + std::to_string(count) + " surfaces.";
+    for (std::size_t n = 0; n < count; ++n) {
+        text += (n == 0 ? "" : n + 1 == count ? " and " : ", ") + scene.surfaces[n].name;
     }
     return text + ".";
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <span>
 
 #include "SurfaceRenderer.h"
 #include "adaptiso/Core/Parallel.h"
@@ -39,19 +40,18 @@ BoundingBox boxOf(const SceneSurface& surface, const BoundingBox& otherwise) {
 
 }  // namespace
 
-Picture sixSidesPicture(const Scene& scene, std::size_t n) {
-    const SceneSurface& surface = scene.surfaces[n];
-    const BoundingBox box = boxOf(surface, scene.box);
-    const bool hasBar = !surface.valuesMm.empty();
-    Canvas canvas(3 * (kSize + kGap) + kGap + (hasBar ? kBarRoom : 0),
-                  kHead + 2 * (kSize + kLabel + kGap), kWhite);
-    canvas.rectangle({10, 14}, 22, 12, surface.color);
-    canvas.text({40, 26}, surface.name, 16, kInk, Anchor::Left, true);
+namespace {
 
+/// Surfaces from six sides, below a line of title.
+void drawSixSides(Canvas& canvas, const Scene& scene, std::span<const SceneSurface> surfaces,
+                  const BoundingBox& box) {
+    std::vector<VertexNormals> normals(surfaces.size());
+    parallelForPieces(std::ssize(surfaces), 1, [&](std::int64_t begin, std::int64_t) {
+        normals[begin] = vertexNormals(surfaces[begin].mesh);
+    });
     std::array<Rendering, 6> renderings;
-    const VertexNormals normals = vertexNormals(surface.mesh);
     parallelForPieces(6, 1, [&](std::int64_t begin, std::int64_t) {
-        renderings[begin] = render(surface, normals, box, sixViews()[begin], kSize);
+        renderings[begin] = render(surfaces, normals, box, sixViews()[begin], kSize);
     });
     const double toleranceMm = 0.02 * norm(box.maximum - box.minimum);
     for (int side = 0; side < 6; ++side) {
@@ -70,7 +70,21 @@ Picture sixSidesPicture(const Scene& scene, std::size_t n) {
         canvas.text({left + 30.0, base}, view.leftSide, 14, kFaint);
         canvas.text({left + kSize - 30.0, base}, view.rightSide, 14, kFaint, Anchor::Right);
     }
-    if (hasBar) drawColorBar(canvas, 3 * (kSize + kGap) + 12, surface.largestValueMm);
+}
+
+constexpr int kSixWidth = 3 * (kSize + kGap) + kGap;
+constexpr int kSixHeight = kHead + 2 * (kSize + kLabel + kGap);
+
+}  // namespace
+
+Picture sixSidesPicture(const Scene& scene, std::size_t n) {
+    const SceneSurface& surface = scene.surfaces[n];
+    const bool hasBar = !surface.valuesMm.empty();
+    Canvas canvas(kSixWidth + (hasBar ? kBarRoom : 0), kSixHeight, kWhite);
+    canvas.rectangle({10, 14}, 22, 12, surface.color);
+    canvas.text({40, 26}, surface.name, 16, kInk, Anchor::Left, true);
+    drawSixSides(canvas, scene, {&surface, 1}, boxOf(surface, scene.box));
+    if (hasBar) drawColorBar(canvas, kSixWidth - kGap + 12, surface.largestValueMm);
     return {"surface-" + std::to_string(n + 1) + ".png",
             surface.name + " from six sides",
             "The surface " + surface.name +
@@ -79,6 +93,22 @@ Picture sixSidesPicture(const Scene& scene, std::size_t n) {
                               fixed(surface.largestValueMm) + " mm (yellow)"
                         : "") +
                 ". Where its inside shows, it is red.",
+            canvas.png(),
+            canvas.width(),
+            canvas.height()};
+}
+
+Picture regionsPicture(const Scene& scene) {
+    Canvas canvas(kSixWidth, kSixHeight, kWhite);
+    const std::string count = std::to_string(scene.surfaces.size()) +
+                              (scene.surfaces.size() == 1 ? " region" : " regions");
+    canvas.text({10, 26}, count + ", each in its colour", 16, kInk, Anchor::Left, true);
+    drawSixSides(canvas, scene, scene.surfaces, scene.box);
+    return {"regions.png",
+            "All regions from six sides",
+            "The surfaces of " + count +
+                ", each in its colour, from the front, the left, above, the back, the right and "
+                "below. Where an inside shows, it is red.",
             canvas.png(),
             canvas.width(),
             canvas.height()};

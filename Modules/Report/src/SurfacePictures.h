@@ -9,4 +9,7 @@ namespace adaptiso {
 /// colour, with a colour bar.
 Picture sixSidesPicture(const Scene& scene, std::size_t n);
 
+/// All surfaces together, each in its colour, likewise.
+Picture regionsPicture(const Scene& scene);
+
 }  // namespace adaptiso

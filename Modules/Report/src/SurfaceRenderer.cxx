@@ -21,11 +21,8 @@ struct Corner {
 /// The picture before it is averaged down.
 class Raster {
 public:
-    Raster(const SceneSurface& surface, const VertexNormals& normals, const BoundingBox& box,
-           const View& view, int size)
-        : surface_(surface),
-          normals_(normals),
-          view_(view),
+    Raster(const BoundingBox& box, const View& view, int size)
+        : view_(view),
           right_(view.right()),
           size_(size * kFiner),
           middle_(0.5 * (box.minimum + box.maximum)),
@@ -36,9 +33,11 @@ public:
         mmPerPixel_ = 1.06 * std::max({extent.x, extent.y, extent.z, 1e-9}) / size_;
     }
 
-    void draw() {
+    void draw(const SceneSurface& surface, const VertexNormals& normals) {
+        surface_ = &surface;
+        normals_ = &normals;
         drawsEdges_ = meanTrianglePixels() > 60;
-        surface_.mesh.forEachTriangle(
+        surface.mesh.forEachTriangle(
             [&](const Triangle& t) { drawTriangle(corner(t[0]), corner(t[1]), corner(t[2])); });
     }
 
@@ -52,16 +51,16 @@ public:
 
 private:
     Corner corner(VertexId v) const {
-        const Vec3 p = surface_.mesh.point(v) - middle_;
+        const Vec3 p = surface_->mesh.point(v) - middle_;
         return {size_ / 2.0 + dot(p, right_) / mmPerPixel_,
                 size_ / 2.0 - dot(p, view_.up) / mmPerPixel_, dot(p, view_.toViewer),
-                toVec3(normals_[v]), surface_.valuesMm.empty() ? 0 : surface_.valuesMm[v]};
+                toVec3((*normals_)[v]), surface_->valuesMm.empty() ? 0 : surface_->valuesMm[v]};
     }
 
     double meanTrianglePixels() const {
         const auto count =
-            static_cast<double>(std::max<std::int64_t>(surface_.mesh.triangleCount(), 1));
-        return surfaceArea(surface_.mesh) / count / (mmPerPixel_ * mmPerPixel_);
+            static_cast<double>(std::max<std::int64_t>(surface_->mesh.triangleCount(), 1));
+        return surfaceArea(surface_->mesh) / count / (mmPerPixel_ * mmPerPixel_);
     }
 
     void drawTriangle(const Corner& a, const Corner& b, const Corner& c) {
@@ -99,8 +98,8 @@ private:
     ReportColor shade(Vec3 normal, double value, bool isBack, bool isEdge) const {
         normal = normalized(normal);
         if (dot(normal, view_.toViewer) < 0) normal = -normal;
-        ReportColor color = surface_.color;
-        if (!surface_.valuesMm.empty()) color = viridis(value / surface_.largestValueMm);
+        ReportColor color = surface_->color;
+        if (!surface_->valuesMm.empty()) color = viridis(value / surface_->largestValueMm);
         if (isBack) color = kBack;
         const double light =
             (0.45 + 0.55 * std::max(0.0, dot(normal, light_))) * (isEdge ? 0.72 : 1);
@@ -130,8 +129,8 @@ private:
         result.depthMm.push_back(depth);
     }
 
-    const SceneSurface& surface_;
-    const VertexNormals& normals_;
+    const SceneSurface* surface_ = nullptr;  ///< that is drawn
+    const VertexNormals* normals_ = nullptr;
     const View& view_;
     Vec3 right_;
     int size_;
@@ -183,10 +182,10 @@ VertexNormals vertexNormals(const SceneMesh& mesh) {
     return normals;
 }
 
-Rendering render(const SceneSurface& surface, const VertexNormals& normals, const BoundingBox& box,
-                 const View& view, int size) {
-    Raster raster(surface, normals, box, view, size);
-    raster.draw();
+Rendering render(std::span<const SceneSurface> surfaces, std::span<const VertexNormals> normals,
+                 const BoundingBox& box, const View& view, int size) {
+    Raster raster(box, view, size);
+    for (std::size_t n = 0; n < surfaces.size(); ++n) raster.draw(surfaces[n], normals[n]);
     return raster.finish();
 }
 

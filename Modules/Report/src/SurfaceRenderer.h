@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "Canvas.h"
@@ -38,10 +39,11 @@ struct Rendering {
 using VertexNormals = std::vector<Normal>;
 VertexNormals vertexNormals(const SceneMesh& mesh);
 
-/// Draws the surface with a depth buffer; light comes from the viewer's upper left. Triangles seen
+/// Draws the surfaces with a depth buffer; light comes from the viewer's upper left. Triangles seen
 /// from their back are red. Edges are drawn where triangles are large enough to tell them apart.
-/// \param box  what fills the picture, whatever the view
-Rendering render(const SceneSurface& surface, const VertexNormals& normals, const BoundingBox& box,
-                 const View& view, int size);
+/// \param normals  of each surface
+/// \param box      what fills the picture, whatever the view
+Rendering render(std::span<const SceneSurface> surfaces, std::span<const VertexNormals> normals,
+                 const BoundingBox& box, const View& view, int size);
 
 }  // namespace adaptiso

@@ -122,6 +122,32 @@ TEST(Notebook, SaysThatItShowsLess) {
     EXPECT_FALSE(holds(notebookHtml(example(), {}), "coarser than they are"));
 }
 
+TEST(Page, RegionsAreAListToClickInTheirOwnColors) {
+    if (!hasViewer()) GTEST_SKIP() << "built without niivue";
+    Report report = example();
+    EXPECT_TRUE(holds(htmlPage(report, {}), "\"areRegions\":false"));
+    report.areRegions = true;
+    report.surfaces.front().color = ReportColor{1, 2, 3};
+    // two balls: the middle of their box lies in neither
+    TriangleMesh second = testing::icosphere(2, {-30, 4, 5}, 10);
+    TriangleMesh both = testing::icosphere(2, {30, 4, 5}, 9);
+    const auto before = std::ssize(both.points);
+    both.points.insert(both.points.end(), second.points.begin(), second.points.end());
+    for (Triangle t : second.triangles) {
+        for (VertexId& v : t) v += before;
+        both.triangles.push_back(t);
+    }
+    report.surfaces.push_back({"both", both});
+    const std::string page = htmlPage(report, {});
+    EXPECT_TRUE(holds(page, "\"areRegions\":true"));
+    EXPECT_TRUE(holds(page, "\"color\":[1,2,3],\"opacity\":1.0"));
+    EXPECT_FALSE(holds(page, "\"opacity\":0.35"));
+    // the middle of the larger, in RAS
+    const std::size_t at = page.find("\"point\":[", page.find("\"name\":\"both\""));
+    ASSERT_NE(at, std::string::npos);
+    EXPECT_NEAR(std::stod(page.substr(at + 9)), 30, 0.5);
+}
+
 TEST(ReportDate, IsThatOfSourceDateEpoch) {
     setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
     EXPECT_EQ(reportDate(), "2023-11-14 22:13 UTC");

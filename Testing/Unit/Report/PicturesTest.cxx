@@ -50,6 +50,15 @@ TEST(Pictures, AreAllThere) {
     EXPECT_EQ(namesOf(drawPictures(example.report)), all);
 }
 
+TEST(Pictures, RegionsAreDrawnTogether) {
+    Example example;
+    example.report.areRegions = true;
+    const std::set<std::string> names = namesOf(drawPictures(example.report));
+    EXPECT_TRUE(names.contains("regions.png"));
+    EXPECT_TRUE(names.contains("contours-axial.png"));
+    EXPECT_FALSE(names.contains("surface-1.png"));
+}
+
 TEST(Pictures, ArePngFilesWithAltTexts) {
     const Example example;
     for (const Picture& picture : drawPictures(example.report)) {

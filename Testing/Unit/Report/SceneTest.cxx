@@ -35,7 +35,8 @@ SceneMesh drawn(TriangleMesh ras) {
 
 Rendering renderAlone(const SceneSurface& surface, const BoundingBox& box, const View& view,
                       int size) {
-    return render(surface, vertexNormals(surface.mesh), box, view, size);
+    const VertexNormals normals = vertexNormals(surface.mesh);
+    return render({&surface, 1}, {&normals, 1}, box, view, size);
 }
 
 TEST(CutByPlane, CubeGivesItsPerimeter) {
@@ -170,6 +171,21 @@ TEST(Renderer, ShowsTheInsideInRed) {
     const ReportColor middle = seen.colors[50 * 100 + 50];
     EXPECT_GT(middle[0], 2 * middle[1]);
     EXPECT_GT(middle[0], 2 * middle[2]);
+}
+
+TEST(Renderer, TheNearestOfSeveralIsSeen) {
+    std::vector<SceneSurface> spheres{asSeen(testing::icosphere(3, {}, 6)),
+                                      asSeen(testing::icosphere(3, {}, 10))};
+    spheres[0].color = {0, 255, 0};
+    spheres[1].color = {0, 0, 255};
+    for (int turn = 0; turn < 2; ++turn, std::swap(spheres[0], spheres[1])) {
+        const std::vector<VertexNormals> normals{vertexNormals(spheres[0].mesh),
+                                                 vertexNormals(spheres[1].mesh)};
+        const Rendering seen =
+            render(spheres, normals, {{-10, -10, -10}, {10, 10, 10}}, sixViews()[0], 100);
+        EXPECT_GT(seen.colors[50 * 100 + 50][2], 100);
+        EXPECT_EQ(seen.colors[50 * 100 + 50][1], 0);
+    }
 }
 
 TEST(Renderer, KnowsWhatIsHidden) {

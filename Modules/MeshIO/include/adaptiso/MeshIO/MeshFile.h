@@ -25,6 +25,12 @@ struct PointArray {
     std::variant<std::vector<double>, std::vector<Color>> values;
 };
 
+/// A whole number for every triangle of a mesh.
+struct CellArray {
+    std::string name;
+    std::vector<std::int32_t> values;
+};
+
 struct MeshWriteOptions {
     CoordinateFrame frame = CoordinateFrame::Ras;
     /// The volume that the surface was made from. TkRas and Voxel need it; a FreeSurfer surface
@@ -36,6 +42,8 @@ struct MeshWriteOptions {
     /// VTK XML only: written beside the mesh, the first as the active scalars. readMesh() leaves
     /// them aside.
     std::vector<PointArray> pointArrays{};
+    /// VTK XML only: written beside the mesh, as Int32.
+    std::vector<CellArray> cellArrays{};
 };
 
 /// Writes a surface in the format that the file's name asks for (findMeshFormat()).
@@ -57,8 +65,8 @@ struct MeshWriteOptions {
 /// \throws InvalidInput  unknown extension; frame without its volume, or that the format can't
 ///         hold; a mesh without triangles, with a triangle's index out of range, a coordinate
 ///         that is not finite (or too large for float), normals that are not one per point,
-///         more elements than the format can count; point arrays that the format can't hold, or
-///         that are not one value per point
+///         more elements than the format can count; arrays that the format can't hold, or that are
+///         not one value per point or triangle
 /// \throws FileError     the file can't be written (no such folder, no permission, disk full)
 void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
                const MeshWriteOptions& options = {});

@@ -22,6 +22,7 @@ struct Picture {
 ///   spots                                three slices through each of the first spots
 ///   surface-N                            each surface from six sides, what faces away from the
 ///                                        viewer in red; values in colour, with a colour bar
+///   regions                              in their stead, of regions: all together
 ///   triangles, histogram-N               sizes and smallest angles; the report's own histograms
 ///   times                                seconds by stage
 ///

@@ -59,6 +59,7 @@ struct ReportSurface {
     std::vector<double> valuesMm{};
     /// Closed and around the brain alone: neither it nor what it holds shows a face.
     bool isWithinSkull = false;
+    std::optional<ReportColor> color{};  ///< none: surfaceColor() of its number
 };
 
 /// The image that the surfaces belong to. The samples must live as long as the report.
@@ -89,6 +90,9 @@ struct Report {
     std::vector<ReportTable> tables;
     std::vector<std::string> notes;  ///< warnings, and what is not shown
     std::vector<ReportSurface> surfaces;
+    /// The surfaces are the regions of one map: they touch, none holds another, and there may be
+    /// hundreds. They are drawn together, opaque, and the viewer has a list of them to click.
+    bool areRegions = false;
     std::optional<ReportVolume> volume;
     std::vector<ReportHistogram> histograms;  ///< besides those of the triangles' size and angle
     std::vector<std::pair<std::string, double>> stageSeconds;

@@ -1,0 +1,41 @@
+#include "Common/InputNames.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lowerCase(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+}  // namespace
+
+std::string inputStem(const fs::path& input) {
+    constexpr std::array<std::string_view, 14> kImageExtensions{
+        ".nii.gz", ".nii", ".hdr.gz", ".hdr", ".img.gz", ".img", ".nrrd",
+        ".nhdr",   ".mha", ".mhd",    ".mgh", ".mgz",    ".dcm", ".ima"};
+    std::error_code error;
+    fs::path path = input;
+    if (fs::is_directory(input, error)) {
+        path = fs::canonical(input, error);  // the name that ".", ".." and "scan/" stand for
+        if (error || path == path.root_path()) return "volume";
+        return path.filename().string();
+    }
+    const std::string name = path.filename().string(), lower = lowerCase(name);
+    for (const std::string_view extension : kImageExtensions) {
+        if (lower.size() > extension.size() && lower.ends_with(extension)) {
+            return name.substr(0, name.size() - extension.size());
+        }
+    }
+    return name;
+}
+
+}  // namespace adaptiso

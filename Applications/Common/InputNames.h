@@ -1,0 +1,12 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace adaptiso {
+
+/// The input's name without folder and without the extensions of image files: "brain" of
+/// "scans/brain.nii.gz"; the folder's own name of a folder, however it is written.
+std::string inputStem(const std::filesystem::path& input);
+
+}  // namespace adaptiso

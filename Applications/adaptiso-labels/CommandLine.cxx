@@ -1,0 +1,191 @@
+#include "CommandLine.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "Common/ImageOptions.h"
+#include "Common/OptionValues.h"
+#include "Common/UsageWords.h"
+#include "adaptiso/MeshIO/Formats.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr const char* kInput = "Input";
+constexpr const char* kRegions = "Regions";
+constexpr const char* kWalls = "Walls";
+constexpr const char* kOutput = "Output";
+
+std::vector<std::string> knownExtensions() {
+    std::vector<std::string> known;
+    for (const MeshFormat& format : meshFormats()) {
+        for (const std::string_view extension : format.extensions) {
+            known.emplace_back(extension.substr(1));
+        }
+    }
+    return known;
+}
+
+/// "stl" or ".stl" as ".stl". \throws UsageError
+std::string parseFormat(std::string text) {
+    std::ranges::transform(text, text.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    if (text.starts_with('.')) text.erase(0, 1);
+    const std::vector<std::string> known = knownExtensions();
+    return "." + known[parseChoice("--format", text, known)];
+}
+
+/// What one option alone can't tell.
+void checkCombinations(const LabelsOptions& options) {
+    if (options.inputs.empty() && options.batch.list.empty() && options.batch.bids.empty()) {
+        throw UsageError("SEG is missing: the label map to make surfaces of");
+    }
+    if (!options.volume.empty() && !options.report.isWanted()) {
+        throw UsageError("--volume: is shown on the page; it needs --report or --pictures");
+    }
+    if (options.maxTriangles && options.reduction) {
+        throw UsageError("--triangles and --reduction: are two ways to ask for one count");
+    }
+    requireDisjoint(options.merges);
+    const std::vector<std::string> forRun{"{name}"};
+    requirePlaceholders("--output", options.output, forRun);
+    requirePlaceholders("--report", options.report.page, forRun);
+    requirePlaceholders("--pictures", options.report.pictures, forRun);
+    requirePlaceholders("--summary", options.batch.summary, {});
+    requirePlaceholders("--output-dir", options.batch.outputFolder, {});
+    requirePlaceholders("--json", options.common.json, {});
+}
+
+void declareInput(CLI::App& app, LabelsOptions& options) {
+    app.add_option(
+           "INPUT", options.inputs,
+           "A 3-D label map (SEG): NIfTI, NRRD, MetaImage, MGH, or a DICOM series, of whole "
+           "numbers, 0 where no region is; several make a batch")
+        ->type_name("");
+    declareReadOptions(app, options.read, kInput);
+    app.add_flag("--any-map", options.takesAnyMap,
+                 "Take the image for a label map even if its values change from voxel to voxel, as "
+                 "those of a scan do")
+        ->group(kInput);
+    app.add_option("--names", options.names,
+                   "A table of names and colours: BIDS .tsv, FreeSurfer, ITK-SNAP, 3D Slicer, "
+                   "MRIcron, FSL, GIFTI or JSON, told apart by content (default: what lies beside "
+                   "the image under its name, or is its BIDS dataset's)")
+        ->type_name("FILE")
+        ->group(kInput);
+}
+
+void declareRegions(CLI::App& app, LabelsOptions& options) {
+    addValue(
+        app, "--labels", "LIST",
+        [&options](const std::string& text) {
+            options.labels = parseLabelRanges("--labels", text);
+        },
+        "Write these regions only, 1,2,10-20; their walls are those that the whole map gives them")
+        ->group(kRegions);
+    app.add_option_function<std::vector<std::string>>(
+           "--merge",
+           [&options](const std::vector<std::string>& texts) {
+               for (const std::string& text : texts) {
+                   options.merges.push_back(parseLabelMerge(text));
+               }
+           },
+           "Take several labels for one region, Thalamus=10,49, that goes by the first of them; "
+           "may be given several times")
+        ->type_name("NAME=LIST")
+        ->allow_extra_args(false)
+        ->group(kRegions);
+}
+
+void declareWalls(CLI::App& app, LabelsOptions& options) {
+    addNumber(app, "--max-error", options.maxErrorMm, {.least = 0, .unit = "mm"},
+              "No point of a wall at full resolution is farther than MM from the same wall here, "
+              "nor the other way round; 0 writes the full resolution (default, unless a count is "
+              "given: 0.15 of the least distance between planes of voxels)")
+        ->type_name("MM")
+        ->group(kWalls);
+    addCount(app, "--triangles", options.maxTriangles, 0, kAnyCount,
+             "As near to the full resolution as N triangles in all walls together can be")
+        ->group(kWalls);
+    addNumber(app, "--reduction", options.reduction, {.least = 0, .most = 1},
+              "The share F of the full resolution's triangles to drop, 0 to 1")
+        ->type_name("F")
+        ->group(kWalls);
+}
+
+void declareOutput(CLI::App& app, LabelsOptions& options) {
+    app.add_option("-o,--output", options.output,
+                   "The folder to write, whole or not at all (default: <INPUT>-labels in the "
+                   "current folder)")
+        ->type_name("DIR")
+        ->group(kOutput);
+    app.add_flag("--force", options.mayReplace,
+                 "Replace a folder that this program wrote; one that holds other files is not")
+        ->group(kOutput);
+    addValue(
+        app, "--format",
+        choiceName({"vtp", "vtk", "ply", "stl", "obj", "off", "gii", "tri", "surf"}),
+        [&options](const std::string& text) { options.format = parseFormat(text); },
+        "The format of the regions' files (default: vtp)")
+        ->group(kOutput);
+    addChoice<CoordinateFrame>(app, "--coordinates", options.frame,
+                               {{"ras", CoordinateFrame::Ras},
+                                {"lps", CoordinateFrame::Lps},
+                                {"tkras", CoordinateFrame::TkRas},
+                                {"voxel", CoordinateFrame::Voxel}},
+                               "The points' frame in all files: scanner RAS mm (default), scanner "
+                               "LPS mm, FreeSurfer's surface RAS mm (default with --format surf), "
+                               "or voxel indices")
+        ->group(kOutput);
+    declareReportOptions(app, options.report, kOutput);
+    app.add_option("--volume", options.volume,
+                   "With --report: the image to show behind the regions (default: the label map)")
+        ->type_name("IMG")
+        ->group(kOutput);
+}
+
+constexpr const char* kFooter = R"(Examples:
+  adaptiso-labels aseg.mgz -o aseg
+      walls.vtp, regions/<label>.vtp, all.vtm, all.surf.gii and all.label.gii,
+      regions.tsv and report.json in the folder aseg
+  adaptiso-labels aal.nii.gz --max-error 0.3 --report aal.html --volume T1.nii.gz
+      names and colours from aal.nii.txt and aal.nii.lut beside it
+  adaptiso-labels seg.nrrd --names Colors.ctbl --labels 1,2,10-20 --format stl -o seg
+  adaptiso-labels aseg.mgz --merge Thalamus=10,49 --merge Putamen=12,51 -o deep
+  adaptiso-labels seg.nii.gz --max-error 0 -o full
+      the full resolution, which the bound is measured against
+  adaptiso-labels --bids derivatives/segmentation --skip-existing
+      each *_dseg image a run of its own
+
+Exit codes: 0 done, 1 the walls do not keep what is promised of them, one or
+more of many inputs failed, or a warning with --strict, 2 wrong usage, 3 bad
+input (or no memory or disk left), 4 internal error. When it is not 0, no
+folder was written (of many inputs: none of those that failed).)";
+
+}  // namespace
+
+Program labelsProgram() {
+    return {"adaptiso-labels",
+            "Makes surfaces of all regions of a segmentation: neighbours share one wall, and no "
+            "two cross.",
+            kFooter};
+}
+
+void declareLabelsOptions(CLI::App& app, LabelsOptions& options) {
+    declareInput(app, options);
+    declareRegions(app, options);
+    declareWalls(app, options);
+    declareOutput(app, options);
+    declareBatchOptions(app, options.batch, "the label maps, *_dseg");
+    declareCommonOptions(app, options.common, "no folder is then written, reports are");
+    app.callback([&app, &options] {
+        if (!options.inputs.empty()) options.input = options.inputs.front();
+        checkCombinations(options);
+        if (options.isBatch()) keepRunOptions(app, options.batch);
+    });
+}
+
+}  // namespace adaptiso

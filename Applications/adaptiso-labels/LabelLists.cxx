@@ -1,0 +1,101 @@
+#include "LabelLists.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "Common/RunApp.h"
+#include "Common/UsageWords.h"
+
+namespace adaptiso {
+namespace {
+
+/// Takes a number off the beginning of `text`.
+bool takeLabel(std::string_view& text, Label& label) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), label);
+    if (error != std::errc()) return false;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    return true;
+}
+
+bool takeRange(std::string_view text, LabelRange& range) {
+    if (!takeLabel(text, range.first)) return false;
+    range.last = range.first;
+    if (!text.starts_with('-')) return text.empty();
+    text.remove_prefix(1);
+    return takeLabel(text, range.last) && text.empty() && range.first <= range.last;
+}
+
+bool contain(const LabelRanges& ranges, Label label) {
+    return std::ranges::any_of(ranges, [&](const auto& range) { return range.contains(label); });
+}
+
+bool overlap(const LabelRange& a, const LabelRange& b) {
+    return a.first <= b.last && b.first <= a.last;
+}
+
+}  // namespace
+
+std::string toText(const LabelRange& range) {
+    const std::string first = std::to_string(range.first);
+    return range.first == range.last ? first : first + "-" + std::to_string(range.last);
+}
+
+LabelRanges parseLabelRanges(const std::string& option, const std::string& text) {
+    LabelRanges ranges;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t end = std::min(text.find(',', at), text.size());
+        LabelRange range;
+        if (!takeRange(std::string_view(text).substr(at, end - at), range)) {
+            throw UsageError(option + " " + shown(text) +
+                             ": must be labels and ranges of them with commas between, like "
+                             "1,2,10-20");
+        }
+        if (range.contains(0)) {
+            throw UsageError(option + " " + shown(text) +
+                             ": holds 0, which is what lies outside of all regions");
+        }
+        ranges.push_back(range);
+        at = end + 1;
+    }
+    return ranges;
+}
+
+bool LabelMerge::contains(Label label) const {
+    return contain(labels, label);
+}
+
+LabelMerge parseLabelMerge(const std::string& text) {
+    const std::size_t equals = text.rfind('=');
+    if (equals == std::string::npos || equals == 0) {
+        throw UsageError("--merge " + shown(text) +
+                         ": must be a name and labels, like Thalamus=10,49");
+    }
+    LabelMerge merge{text.substr(0, equals), {}};
+    const auto isControl = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+    if (std::ranges::any_of(merge.name, isControl)) {
+        throw UsageError("--merge " + shown(text) + ": the name holds control characters");
+    }
+    merge.labels = parseLabelRanges("--merge " + shown(merge.name), text.substr(equals + 1));
+    return merge;
+}
+
+void requireDisjoint(const std::vector<LabelMerge>& merges) {
+    for (std::size_t n = 0; n < merges.size(); ++n) {
+        for (std::size_t m = 0; m < n; ++m) {
+            const std::string both =
+                "--merge: " + shown(merges[m].name) + " and " + shown(merges[n].name);
+            if (merges[m].name == merges[n].name) {
+                throw UsageError("--merge " + shown(merges[n].name) + ": given twice");
+            }
+            for (const LabelRange& a : merges[m].labels) {
+                for (const LabelRange& b : merges[n].labels) {
+                    if (!overlap(a, b)) continue;
+                    throw UsageError(both + " both take label " +
+                                     std::to_string(std::max(a.first, b.first)));
+                }
+            }
+        }
+    }
+}
+
+}  // namespace adaptiso

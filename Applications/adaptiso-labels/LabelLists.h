@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adaptiso/Labels/Labels.h"
+
+namespace adaptiso {
+
+/// Labels from `first` to `last`.
+struct LabelRange {
+    Label first = 0, last = 0;
+
+    bool contains(Label label) const { return first <= label && label <= last; }
+    friend bool operator==(const LabelRange&, const LabelRange&) = default;
+};
+using LabelRanges = std::vector<LabelRange>;
+
+/// "1", "10-20"
+std::string toText(const LabelRange& range);
+
+/// "1,2,10-20" \throws UsageError  naming `option`: no such list, or one with 0 in it
+LabelRanges parseLabelRanges(const std::string& option, const std::string& text);
+
+/// Labels that become one region, of the number that is the first of `labels`.
+struct LabelMerge {
+    std::string name;
+    LabelRanges labels;
+
+    Label number() const { return labels.front().first; }
+    bool contains(Label label) const;
+};
+
+/// "Thalamus=10,49" \throws UsageError  as parseLabelRanges(), or without a name
+LabelMerge parseLabelMerge(const std::string& text);
+
+/// \throws UsageError  two of them hold a label, or have a name
+void requireDisjoint(const std::vector<LabelMerge>& merges);
+
+}  // namespace adaptiso

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "Common/Resources.h"
+#include "Common/Warnings.h"
+#include "Pipeline.h"
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Volume.h"
+#include "adaptiso/LabelNames/LabelTable.h"
+#include "adaptiso/Labels/Labels.h"
+#include "adaptiso/MeshIO/Formats.h"
+
+namespace adaptiso {
+
+/// What is known of one region.
+struct Region {
+    Label label = 0;
+    std::string name;          ///< "region 5" where no table names it
+    std::string abbreviation;  ///< empty: none
+    LabelColor color{};
+    bool hasOwnName = false;
+    std::int64_t voxels = 0;
+    RegionMeasure measure;
+    std::string file;  ///< in the output folder: "regions/5.vtp"
+};
+
+/// A promise about the walls, kept or not.
+struct LabelsCheck {
+    std::string name;  ///< "no two triangles cross"
+    bool isPassed = true;
+    std::string finding{};         ///< empty when passed
+    std::vector<Vec3> pointsMm{};  ///< LPS, the first places where it is not kept
+};
+
+/// What the names and colours are from.
+struct NamesSummary {
+    std::string format;              ///< empty: no table
+    std::vector<std::string> files;  ///< without folders
+};
+
+/// What is known of the label map once it has been read.
+struct MapSummary {
+    std::string format;
+    ImageGeometry geometry;
+    PixelType pixelType{};
+    ValueRange range{};
+    std::vector<std::string> warnings;
+    std::int64_t labels = 0;  ///< other than 0, before any are merged
+};
+
+/// What --strict means for the folder, where there is a warning.
+inline constexpr const char* kNotWritten = "so no surface was written";
+
+/// One run of the program, for the reports.
+struct LabelsRun {
+    const LabelsOptions& options;
+    std::filesystem::path folder;  ///< the output
+    const MeshFormat* format = nullptr;
+    CoordinateFrame frame{};
+    MapSummary map{};
+    NamesSummary names{};
+    LabelStatistics statistics{};
+    std::int64_t points = 0, triangles = 0;  ///< of the walls
+    std::vector<Region> regions{};           ///< those that are wanted, by label
+    std::vector<LabelsCheck> checks{};
+    std::vector<std::pair<std::string, std::uintmax_t>> files{};  ///< of the folder
+    StageTimer timer{};
+    std::vector<std::string> warnings{};  ///< all; each names its file
+    std::string reportFailure{};          ///< why there is no page; empty: nothing failed
+
+    bool holdsPromises() const {
+        for (const LabelsCheck& check : checks) {
+            if (!check.isPassed) return false;
+        }
+        return true;
+    }
+    /// --strict makes the warnings failures: the folder is not written.
+    bool failsStrict() const { return adaptiso::failsStrict(options.common, warnings); }
+    bool writesFolder() const { return holdsPromises() && !failsStrict(); }
+
+    /// The region of a label; nullptr: it is not among those wanted.
+    const Region* find(Label label) const;
+    /// "Precentral_L (1)", "1" of one that is not wanted, "outside" of 0
+    std::string nameOf(Label label) const;
+};
+
+}  // namespace adaptiso

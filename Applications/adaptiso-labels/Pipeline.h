@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "Common/BatchOptions.h"
+#include "Common/CommonOptions.h"
+#include "Common/ReportOutput.h"
+#include "LabelLists.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/MeshIO/Formats.h"
+
+namespace adaptiso {
+
+/// What adaptiso-labels is asked to do.
+struct LabelsOptions {
+    std::vector<std::filesystem::path> inputs;  ///< as given
+    std::filesystem::path input;                ///< the one, when it is one
+    BatchOptions batch;
+    ReadOptions read;
+    bool takesAnyMap = false;     ///< also one that changes from voxel to voxel
+    std::filesystem::path names;  ///< a table; empty: one is looked for beside the input
+    LabelRanges labels;           ///< regions that are wanted; empty: all
+    std::vector<LabelMerge> merges;
+    std::optional<double> maxErrorMm;
+    std::optional<std::int64_t> maxTriangles;
+    std::optional<double> reduction;
+    std::filesystem::path output;  ///< a folder; empty: "<input>-labels" in the current one
+    bool mayReplace = false;
+    std::string format = ".vtp";           ///< of the regions' files, an extension
+    std::optional<CoordinateFrame> frame;  ///< none: the format's own
+    std::filesystem::path volume;          ///< shown behind the regions; empty: the input
+    ReportOptions report;
+    CommonOptions common;
+
+    /// The name of an output has a place for an input's.
+    static bool namesInput(const std::filesystem::path& output) {
+        return output.string().find("{name}") != std::string::npos;
+    }
+    /// Each input is a run of its own (Batch.h).
+    bool isBatch() const {
+        return batch.isAsked() || inputs.size() > 1 || namesInput(output) ||
+               namesInput(report.page) || namesInput(report.pictures);
+    }
+};
+
+/// Reads the label map, extracts and checks the walls, and writes the folder, whole or not at all.
+/// \return an exit code; kExitCheckFailed when the complex does not keep its promises
+/// \throws UsageError    the format can't hold the frame
+/// \throws FileError     an input can't be read, the output can't be written
+/// \throws InvalidInput  the image is no label map, or has not the labels asked for
+int runLabels(const LabelsOptions& options);
+
+}  // namespace adaptiso

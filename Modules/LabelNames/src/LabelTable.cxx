@@ -1,0 +1,172 @@
+#include "adaptiso/LabelNames/LabelTable.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <new>
+
+#include "Rows.h"
+
+namespace adaptiso {
+namespace {
+
+using namespace labelnames;
+
+constexpr std::size_t kLutBytes = 768;
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{64} << 20;
+
+bool isText(std::string_view bytes) {
+    return std::ranges::none_of(bytes, [](unsigned char c) {
+        return (c < 0x20 && c != '\t' && c != '\n' && c != '\r' && c != '\f' && c != '\v') ||
+               c == 0x7f;
+    });
+}
+
+bool isUtf8(std::string_view text) {
+    for (std::size_t n = 0; n < text.size();) {
+        const auto c = static_cast<unsigned char>(text[n++]);
+        if (c < 0x80) continue;
+        const int more = c >= 0xf0 ? 3 : c >= 0xe0 ? 2 : 1;
+        if (c < 0xc2 || c > 0xf4) return false;
+        for (int k = 0; k < more; ++k, ++n) {
+            if (n == text.size() || (static_cast<unsigned char>(text[n]) & 0xc0) != 0x80) {
+                return false;
+            }
+        }
+        // too long a form, half of a pair, or beyond the last character
+        const auto second = static_cast<unsigned char>(text[n - static_cast<std::size_t>(more)]);
+        if ((c == 0xe0 && second < 0xa0) || (c == 0xed && second > 0x9f) ||
+            (c == 0xf0 && second < 0x90) || (c == 0xf4 && second > 0x8f)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+std::string fromLatin1(std::string_view text) {
+    std::string result;
+    for (const char each : text) {
+        const auto c = static_cast<unsigned char>(each);
+        if (c < 0x80) {
+            result += each;
+        } else {
+            result += static_cast<char>(0xc0 | c >> 6);
+            result += static_cast<char>(0x80 | (c & 0x3f));
+        }
+    }
+    return result;
+}
+
+/// Reds, greens and blues of 0 to 255. MRIcron's own atlases have black where they have no colour.
+LabelTable decodeLut(std::string_view bytes) {
+    LabelTable table;
+    table.format = "MRIcron colours";
+    for (std::int32_t value = 0; value < 256; ++value) {
+        LabelColor color{};
+        for (std::size_t n = 0; n < 3; ++n) {
+            color[n] = static_cast<std::uint8_t>(bytes[256 * n + static_cast<std::size_t>(value)]);
+        }
+        if (color == LabelColor{}) continue;
+        LabelEntry& entry = table.entries.emplace_back();
+        entry.value = value;
+        entry.color = color;
+    }
+    if (table.entries.empty()) refuseKind("its 768 bytes are all black");
+    return table;
+}
+
+LabelTable decode(std::string_view bytes) {
+    if (bytes.empty()) refuseKind("it is empty");
+    if (bytes.size() == kLutBytes && !isText(bytes)) return decodeLut(bytes);
+    if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+    if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) {
+        refuseKind("it is UTF-16; save it as UTF-8");
+    }
+    if (!isText(bytes)) refuseKind("it is no text");
+    const std::string latin = isUtf8(bytes) ? std::string() : fromLatin1(bytes);
+    const std::string_view text = latin.empty() ? bytes : std::string_view(latin);
+    const std::string_view start = trimmed(text.substr(0, 4096));
+    if (start.empty()) refuseKind("it holds nothing but blanks");
+    // XML names its own encoding
+    if (start.front() == '<') return decodeXml(trimmed(bytes));
+    if (start.front() == '{' || start.front() == '[') return decodeJson(text);
+    return isDelimited(text) ? decodeDelimited(text) : decodeSpaced(text);
+}
+
+}  // namespace
+
+const LabelEntry* LabelTable::find(std::int32_t value) const {
+    const auto at = std::ranges::lower_bound(entries, value, {}, &LabelEntry::value);
+    return at != entries.end() && at->value == value ? &*at : nullptr;
+}
+
+LabelTable decodeLabelTable(std::string_view bytes, std::string_view name) {
+    const std::string prefix = std::string(name) + ": ";
+    try {
+        return decode(bytes);
+    } catch (const NoLabelTable& error) {
+        throw NoLabelTable(prefix + error.what());
+    } catch (const FileError& error) {
+        throw FileError(prefix + error.what());
+    } catch (const std::bad_alloc&) {
+        throw FileError(prefix + "the table does not fit into memory");
+    }
+}
+
+LabelTable readLabelTable(const std::filesystem::path& file) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    if (!fs::exists(status)) throw FileError(file.string() + ": no such file; check the name");
+    if (!fs::is_regular_file(status)) {
+        throw FileError(file.string() + ": not a regular file; give a file on disk");
+    }
+    const std::uintmax_t size = fs::file_size(file, error);
+    if (!error && size > kMostBytes) {
+        throw NoLabelTable(file.string() + ": is no table of labels: it has " +
+                           std::to_string(size) + " bytes, must be 64 MiB or less");
+    }
+    errno = 0;
+    std::ifstream stream(file, std::ios::binary);
+    std::string bytes(error ? 0 : size, '\0');
+    stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (error || !stream || static_cast<std::uintmax_t>(stream.gcount()) != size) {
+        throw FileError(file.string() + ": can't be read (" +
+                        (errno != 0 ? std::strerror(errno) : "unknown reason") + ")");
+    }
+    return decodeLabelTable(bytes, file.string());
+}
+
+LabelColor labelColor(std::int32_t value) {
+    // hues a golden angle apart are far from those of the values near; brightness and strength take
+    // turns, so that the next nearest hues differ as well
+    constexpr double kGolden = 0.6180339887498949;
+    const auto n = static_cast<std::uint32_t>(value);
+    const double turn = kGolden * n - std::floor(kGolden * n);
+    const double bright = n % 3 == 0 ? 0.95 : n % 3 == 1 ? 0.8 : 0.65;
+    const double strength = n % 2 == 0 ? 0.75 : 0.5;
+    LabelColor color{};
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        // a channel is full for a third of the circle, gone for another, and ramps between
+        const double at = turn + (3.0 - static_cast<double>(channel)) / 3;
+        const double away = std::abs(6 * (at - std::floor(at)) - 3);
+        const double part = std::clamp(away - 1, 0.0, 1.0);
+        color[channel] =
+            static_cast<std::uint8_t>(std::lround(255 * bright * (1 - strength * (1 - part))));
+    }
+    return color;
+}
+
+std::string hexText(const LabelColor& color) {
+    constexpr char kDigits[] = "0123456789abcdef";
+    std::string text = "#";
+    for (const std::uint8_t channel : color) {
+        text += kDigits[channel >> 4];
+        text += kDigits[channel & 15];
+    }
+    return text;
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "adaptiso/Core/Progress.h"
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Core/Volume.h"
+
+namespace adaptiso {
+
+/// The number of a region of a label map. 0 is what lies outside of all regions.
+using Label = std::int32_t;
+
+/// The walls between the regions of a label map, each stored once: V points (LPS mm), T triangles.
+///
+/// A triangle is counter-clockwise seen from its second label: its normal points from labels[t][0]
+/// into labels[t][1]. Of a wall's two labels the smaller comes first, 0 last.
+struct LabelComplex {
+    std::vector<Vec3> points;
+    std::vector<Triangle> triangles;
+    std::vector<std::array<Label, 2>> labels;  ///< of each triangle
+
+    friend bool operator==(const LabelComplex&, const LabelComplex&) = default;
+};
+
+struct LabelOptions {
+    /// Of the least distance between planes of samples.
+    static constexpr double kDefaultMaxErrorVoxels = 0.15;
+
+    /// Two-sided distance to the full-resolution walls, mm, of each wall to itself. 0: these walls
+    /// themselves; none: kDefaultMaxErrorVoxels, unless a count is given. \pre >= 0
+    std::optional<double> maxErrorMm;
+    std::optional<std::int64_t> maxTriangles;  ///< as accurate as can be at this count. \pre >= 0
+    /// Share of the full-resolution triangles to drop, 0 to 1: a count by another name.
+    std::optional<double> reduction;
+    /// The regions whose walls are wanted, each label once; empty: all. They are what the whole map
+    /// has, wherever the other side's label is wanted or not.
+    std::vector<Label> labels;
+    /// Move walls off the staircase of the voxels, as far as no voxel centre changes its label.
+    bool smooth = true;
+    ProgressCallback progress;  ///< called as the work goes on; may be empty
+};
+
+struct LabelStatistics {
+    std::int64_t fullTriangles = 0;  ///< of the full-resolution walls of the whole map
+    std::int64_t cells = 0;          ///< cubes between eight voxel centres that a wall runs through
+    /// Of these: kept in several parts, as one vertex would pinch a region.
+    std::int64_t dividedCells = 0;
+    /// Vertices that smoothing left at the limit of what the labels allow.
+    std::int64_t heldVertices = 0;
+    /// Places where walls crossed after smoothing, and were divided until they did not.
+    std::int64_t mendedCrossings = 0;
+    /// Distance to the full-resolution walls that is proved, both ways, mm. 0: these themselves.
+    double errorBoundMm = 0;
+    /// The count that maxTriangles and reduction ask for, where they do.
+    std::optional<std::int64_t> wantedTriangles;
+};
+
+struct LabelResult {
+    LabelComplex complex;
+    LabelStatistics statistics;
+};
+
+/// The walls between the regions of a label map, in one complex.
+///
+/// Every region's surface is closed, outward and 2-manifold, also where voxels touch at an edge or
+/// a corner only; no two triangles cross; every voxel centre lies in the region of its label. What
+/// lies beyond the border of the volume has the label 0. The method: Documentation/Labels.md.
+///
+/// \return  empty when all labels are 0.
+/// \pre  samples are whole numbers that Label holds; options as their comments say; options.labels
+///       are in the map                                          \throws InvalidInput otherwise
+/// Cost: time grows with the voxels (a scan) and with the area of the walls. The same input gives
+/// the same bytes, whatever the number of threads.
+LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options = {});
+
+/// The labels of a map other than 0, ascending.
+/// \pre as of extractLabels \throws InvalidInput otherwise
+std::vector<Label> findLabels(const VolumeView& volume);
+
+/// The surface of one region: closed, outward, its points those of the complex, to the bit, in
+/// the complex's order. Empty for a label that no triangle has.
+TriangleMesh regionSurface(const LabelComplex& complex, Label label);
+
+/// What a region shares with another one.
+struct RegionContact {
+    Label label = 0;
+    std::int64_t triangles = 0;
+    double areaMm2 = 0;
+
+    friend bool operator==(const RegionContact&, const RegionContact&) = default;
+};
+
+struct RegionMeasure {
+    Label label = 0;
+    std::int64_t vertices = 0;
+    std::int64_t triangles = 0;
+    double volumeMm3 = 0;
+    double areaMm2 = 0;
+    /// Vertices - edges + triangles of its surface: 2 for a ball, 0 for a ring, 4 for a shell.
+    std::int64_t eulerCharacteristic = 0;
+    std::int64_t components = 0;  ///< pieces of its surface; the wall of a cavity is one of its own
+    std::vector<RegionContact> neighbours;  ///< by label, 0 among them
+
+    friend bool operator==(const RegionMeasure&, const RegionMeasure&) = default;
+};
+
+/// The measures of every region that has triangles, by label; 0 is none.
+///
+/// In a complex of chosen regions the others have but the walls that they share with these: their
+/// measures are left out by naming the ones that are whole.
+/// \param labels  whose measures are wanted, ascending; empty: all that have triangles
+std::vector<RegionMeasure> measureRegions(const LabelComplex& complex,
+                                          const std::vector<Label>& labels = {});
+
+}  // namespace adaptiso

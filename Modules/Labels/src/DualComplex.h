@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "CellPattern.h"
+#include "LabelGrid.h"
+
+namespace adaptiso::detail {
+
+/// A cell that a wall runs through.
+struct WallCell {
+    std::int64_t place = 0;  ///< in the grid
+    VertexId firstVertex = 0;
+    VertexId firstPoint = 0;   ///< of its points on faces
+    std::uint16_t code = 0;    ///< of its pattern
+    std::uint16_t points = 0;  ///< faces with a point of their own, as bits: see facePoint()
+
+    const CellPattern& pattern() const { return cellPattern(code); }
+};
+
+/// Edges of the dual complex: vertices of groups that share a face.
+struct Adjacency {
+    VertexId a, b;
+    bool isJunction;  ///< three or more labels meet there
+};
+
+/// The walls of a label map as polygons: the dual of Kuhn's triangulation of the lattice, one
+/// polygon for each of its edges between two labels, one vertex for each group of tetrahedra.
+///
+/// Where the tetrahedra of two groups are not convex together, what joins their vertices bends at
+/// a point on the face that they share. Polygons that would have less than three corners are none.
+struct DualComplex {
+    struct Polygon {
+        std::int64_t begin;  ///< of its corners
+        std::int64_t place;  ///< where its lattice edge begins
+        std::array<Label, 2> labels;
+        std::uint8_t kind;   ///< of its lattice edge
+        std::uint8_t count;  ///< of corners
+        bool isWhole;        ///< four corners, each anywhere in a cell of its own
+    };
+
+    std::vector<WallCell> cells;  ///< by place
+    std::vector<Polygon> polygons;
+    std::vector<VertexId> corners;  ///< counter-clockwise, seen from where the lattice edge ends
+    std::vector<Adjacency> adjacencies;
+    VertexId groupCount = 0;  ///< vertices of groups: 0 ... groupCount - 1
+    VertexId pointCount = 0;  ///< points on faces: from groupCount on
+
+    std::span<const VertexId> cornersOf(const Polygon& p) const {
+        return {corners.data() + p.begin, p.count};
+    }
+};
+
+DualComplex makeDualComplex(const LabelGrid& grid);
+
+/// A point on a face of a cell's tetrahedra: which vertices it lies between, and the face.
+struct FacePoint {
+    std::array<VertexId, 2> between;
+    std::int64_t cell;        ///< place of the cell that has it
+    std::array<int, 3> face;  ///< its corners
+};
+
+/// Those of the complex, in the order of their numbers.
+std::vector<FacePoint> facePoints(const LabelGrid& grid, const DualComplex& complex);
+
+}  // namespace adaptiso::detail

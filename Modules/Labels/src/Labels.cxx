@@ -1,0 +1,124 @@
+#include "adaptiso/Labels/Labels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "DualComplex.h"
+#include "LabelGrid.h"
+#include "Placement.h"
+#include "Walls.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+namespace {
+
+using namespace detail;
+
+void requireOptions(const LabelOptions& options) {
+    if (options.maxErrorMm && !(std::isfinite(*options.maxErrorMm) && *options.maxErrorMm >= 0)) {
+        throw InvalidInput("extractLabels: the largest error is " +
+                           std::to_string(*options.maxErrorMm) + " mm, must be >= 0");
+    }
+    if (options.maxTriangles && *options.maxTriangles < 0) {
+        throw InvalidInput("extractLabels: the number of triangles is " +
+                           std::to_string(*options.maxTriangles) + ", must be >= 0");
+    }
+    if (options.reduction && !(*options.reduction >= 0 && *options.reduction <= 1)) {
+        throw InvalidInput("extractLabels: the reduction is " + std::to_string(*options.reduction) +
+                           ", must be 0 to 1");
+    }
+}
+
+/// The chosen labels, ascending.
+std::vector<Label> chosenLabels(const LabelGrid& grid, const LabelOptions& options) {
+    std::vector<Label> chosen = options.labels;
+    std::sort(chosen.begin(), chosen.end());
+    std::vector<std::uint8_t> isThere(chosen.size(), 0);
+    for (const Label label : grid.labels) {
+        if (label == 0) continue;
+        const auto at = std::lower_bound(chosen.begin(), chosen.end(), label);
+        if (at != chosen.end() && *at == label) isThere[at - chosen.begin()] = 1;
+    }
+    for (std::size_t n = 0; n < chosen.size(); ++n) {
+        if (isThere[n] == 0) {
+            throw InvalidInput("label " + std::to_string(chosen[n]) +
+                               (n > 0 && chosen[n] == chosen[n - 1]
+                                    ? " is chosen twice"
+                                    : " is chosen, but not in the map"));
+        }
+    }
+    return chosen;
+}
+
+/// Leaves only what a chosen region has, and the points that it uses, in their order.
+void keepRegions(LabelComplex& complex, const std::vector<Label>& chosen) {
+    const auto isChosen = [&](Label label) {
+        return std::binary_search(chosen.begin(), chosen.end(), label);
+    };
+    std::vector<VertexId> number(complex.points.size(), -1);
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
+        if (!isChosen(complex.labels[t][0]) && !isChosen(complex.labels[t][1])) continue;
+        complex.triangles[kept] = complex.triangles[t];
+        complex.labels[kept++] = complex.labels[t];
+        for (const VertexId v : complex.triangles[t]) number[v] = 0;
+    }
+    complex.triangles.resize(kept);
+    complex.labels.resize(kept);
+    VertexId used = 0;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+        if (number[v] < 0) continue;
+        number[v] = used;
+        complex.points[used++] = complex.points[v];
+    }
+    complex.points.resize(used);
+    for (Triangle& t : complex.triangles) {
+        for (VertexId& v : t) v = number[v];
+    }
+}
+
+LabelResult makeWalls(const LabelGrid& grid, const ImageGeometry& geometry,
+                      const LabelOptions& options) {
+    const auto tell = [&](double fraction) {
+        if (options.progress) options.progress("walls", fraction);
+    };
+    LabelResult result;
+    LabelStatistics& statistics = result.statistics;
+    tell(0);
+    const DualComplex dual = makeDualComplex(grid);
+    statistics.cells = static_cast<std::int64_t>(dual.cells.size());
+    statistics.dividedCells =
+        std::count_if(dual.cells.begin(), dual.cells.end(),
+                      [](const WallCell& cell) { return !cell.pattern().isWhole(); });
+    tell(0.2);
+    const std::vector<Room> rooms = roomsOf(grid, dual);
+    std::vector<Vec3> points = startPoints(grid, dual, rooms);
+    if (options.smooth) {
+        relax(dual, rooms, points);
+        statistics.heldVertices = countHeld(dual, rooms, points);
+    }
+    appendFacePoints(grid, dual, points);
+    tell(0.6);
+    Walls walls = cutPolygons(dual, grid, points, geometry);
+    statistics.mendedCrossings = walls.mendedCrossings;
+    statistics.fullTriangles = static_cast<std::int64_t>(walls.complex.triangles.size());
+    result.complex = std::move(walls.complex);
+    tell(1);
+    return result;
+}
+
+}  // namespace
+
+LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options) {
+    requireOptions(options);
+    const LabelGrid grid = makeGrid(volume);
+    const std::vector<Label> chosen = chosenLabels(grid, options);
+    LabelResult result = makeWalls(grid, volume.geometry(), options);
+    if (!chosen.empty()) keepRegions(result.complex, chosen);
+    return result;
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,277 @@
+#include "Placement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "adaptiso/Core/Parallel.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr std::int64_t kPiece = 4096;
+
+Vec3 offsetOf(int corner) {
+    return {static_cast<double>(corner & 1), static_cast<double>(corner >> 1 & 1),
+            static_cast<double>(corner >> 2)};
+}
+
+Vec3 middleOf(int tetrahedron) {
+    return 0.25 * (offsetOf(0) + offsetOf(kRing[tetrahedron]) +
+                   offsetOf(kRing[after(tetrahedron)]) + offsetOf(7));
+}
+
+/// The two axes whose coordinates are equal on the inner face at a corner of the ring, the one
+/// that is larger in the tetrahedron first.
+std::array<int, 2> axesOf(int ring, int tetrahedron) {
+    const int corner = kRing[ring];
+    std::array<int, 2> axes{};
+    int n = 0;
+    const bool isOne = (corner & (corner - 1)) == 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (((corner >> axis & 1) == 0) == isOne) axes[n++] = axis;
+    }
+    const Vec3 middle = middleOf(tetrahedron);
+    if (middle[axes[0]] < middle[axes[1]]) std::swap(axes[0], axes[1]);
+    return axes;
+}
+
+/// The largest part of the way from `from` to `to` on which f >= least, f being linear.
+double partOfWay(double from, double to, double least) {
+    return to >= least ? 1 : (from - least) / (from - to);
+}
+
+/// Of each vertex, its neighbours that count.
+struct Neighbours {
+    std::vector<std::int64_t> begin;
+    std::vector<VertexId> of;
+};
+
+Neighbours neighboursOf(const DualComplex& complex) {
+    std::vector<std::uint8_t> isJunction(complex.groupCount, 0);
+    for (const Adjacency& edge : complex.adjacencies) {
+        if (edge.isJunction) isJunction[edge.a] = isJunction[edge.b] = 1;
+    }
+    Neighbours n;
+    n.begin.assign(complex.groupCount + 1, 0);
+    const auto forEach = [&](const auto& f) {
+        for (const Adjacency& edge : complex.adjacencies) {
+            if (edge.isJunction || isJunction[edge.a] == 0) f(edge.a, edge.b);
+            if (edge.isJunction || isJunction[edge.b] == 0) f(edge.b, edge.a);
+        }
+    };
+    forEach([&](VertexId v, VertexId) { ++n.begin[v + 1]; });
+    for (std::size_t v = 1; v < n.begin.size(); ++v) n.begin[v] += n.begin[v - 1];
+    n.of.resize(n.begin.back());
+    std::vector<std::int64_t> at(n.begin.begin(), n.begin.end() - 1);
+    forEach([&](VertexId v, VertexId w) { n.of[at[v]++] = w; });
+    return n;
+}
+
+/// Normals of the walls at their vertices, into the wall's greater label; 0 at junctions.
+std::vector<Vec3> wallNormals(const DualComplex& complex, const std::vector<Vec3>& points) {
+    std::vector<Vec3> normals(complex.groupCount);
+    for (const DualComplex::Polygon& polygon : complex.polygons) {
+        const auto corners = complex.cornersOf(polygon);
+        std::array<VertexId, 12> own;
+        int count = 0;
+        for (const VertexId v : corners) {
+            if (v < complex.groupCount) own[count++] = v;
+        }
+        Vec3 area;
+        for (int n = 1; n + 1 < count; ++n) {
+            area += areaVector2(points[own[0]], points[own[n]], points[own[n + 1]]);
+        }
+        if (polygon.labels[0] > polygon.labels[1]) area = -area;
+        for (int n = 0; n < count; ++n) normals[own[n]] += area;
+    }
+    for (Vec3& normal : normals) normal = normalized(normal);
+    for (const Adjacency& edge : complex.adjacencies) {
+        if (edge.isJunction) normals[edge.a] = normals[edge.b] = {};
+    }
+    return normals;
+}
+
+/// Smoothing sinks curved walls. Where the way along the normal, on average over the
+/// neighbourhood, is more than a sheet of voxels leaves open anyway, what is more is taken back.
+void takeBackShift(const DualComplex& complex, const std::vector<Room>& rooms,
+                   const Neighbours& neighbours, const std::vector<Vec3>& start,
+                   std::vector<Vec3>& points) {
+    constexpr double kFreeShift = 0.07;  // voxels: tubes of radius 4 keep their true volume
+    constexpr int kRounds = 20;          // steps of averaging: some 4 voxels around
+    const std::vector<Vec3> normals = wallNormals(complex, points);
+    std::vector<double> shift(points.size()), next(points.size());
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        shift[v] = dot(points[v] - start[v], normals[v]);
+    }
+    for (int round = 0; round < kRounds; ++round) {
+        parallelForPieces(complex.groupCount, kPiece, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t v = begin; v < end; ++v) {
+                if (normals[v] == Vec3{}) continue;
+                double sum = shift[v], count = 1;
+                for (std::int64_t n = neighbours.begin[v]; n < neighbours.begin[v + 1]; ++n) {
+                    if (normals[neighbours.of[n]] == Vec3{}) continue;
+                    sum += shift[neighbours.of[n]];
+                    ++count;
+                }
+                next[v] = sum / count;
+            }
+        });
+        std::swap(shift, next);
+    }
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        const double excess = shift[v] - std::clamp(shift[v], -kFreeShift, kFreeShift);
+        if (excess != 0 && !(normals[v] == Vec3{})) {
+            points[v] = heldIn(rooms[v], points[v] - excess * normals[v]);
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<Room> roomsOf(const LabelGrid& grid, const DualComplex& complex) {
+    std::vector<Room> rooms(complex.groupCount);
+    for (const WallCell& cell : complex.cells) {
+        const Index3 index = grid.indexOf(cell.place);
+        const CellPattern& pattern = cell.pattern();
+        for (int g = 0; g < pattern.groups; ++g) {
+            Room& room = rooms[cell.firstVertex + g];
+            for (int axis = 0; axis < 3; ++axis) {
+                room.cell[axis] = static_cast<std::int32_t>(index[axis]);
+            }
+            room.first = pattern.first[g];
+            room.size = pattern.size[g];
+        }
+    }
+    return rooms;
+}
+
+Vec3 heldIn(const Room& room, const Vec3& p) {
+    const Vec3 corner = room.corner();
+    Vec3 q = p - corner;
+    if (room.size == kTetrahedra) {
+        for (int axis = 0; axis < 3; ++axis)
+            q[axis] = std::clamp(q[axis], kLeastGap, 1 - kLeastGap);
+        return corner + q;
+    }
+    const int last = (room.first + room.size - 1) % kTetrahedra;
+    Vec3 middle;
+    for (int n = 0; n < room.size; ++n) middle += middleOf((room.first + n) % kTetrahedra);
+    middle = (1.0 / room.size) * middle;
+    double part = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        part = std::min({part, partOfWay(middle[axis], q[axis], kLeastGap),
+                         partOfWay(1 - middle[axis], 1 - q[axis], kLeastGap)});
+    }
+    for (const auto& [high, low] : {axesOf(room.first, room.first), axesOf(after(last), last)}) {
+        part = std::min(part, partOfWay(middle[high] - middle[low], q[high] - q[low], kLeastGap));
+    }
+    return corner + middle + part * (q - middle);
+}
+
+std::vector<Vec3> startPoints(const LabelGrid& grid, const DualComplex& complex,
+                              const std::vector<Room>& rooms) {
+    std::vector<Vec3> points(complex.groupCount);
+    const auto count = static_cast<std::int64_t>(complex.cells.size());
+    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t c = begin; c < end; ++c) {
+            const WallCell& cell = complex.cells[c];
+            const std::array<Label, 8> labels = grid.cornersOf(cell.place);
+            const CellPattern& pattern = cell.pattern();
+            for (int g = 0; g < pattern.groups; ++g) {
+                unsigned own = 0;
+                for (int t = 0; t < kTetrahedra; ++t) {
+                    if (pattern.groupOf[t] == g) own |= cornersOf(t);
+                }
+                Vec3 sum;
+                int crossed = 0;
+                for (int a = 0; a < 8; ++a) {
+                    for (int axis = 0; axis < 3; ++axis) {
+                        const int b = a | 1 << axis;
+                        if (a == b || (own >> a & own >> b & 1U) == 0 || labels[a] == labels[b]) {
+                            continue;
+                        }
+                        sum += 0.5 * (offsetOf(a) + offsetOf(b));
+                        ++crossed;
+                    }
+                }
+                const Room& room = rooms[cell.firstVertex + g];
+                points[cell.firstVertex + g] =
+                    room.size == kTetrahedra ? room.corner() + Vec3{0.5, 0.5, 0.5}
+                                             : heldIn(room, room.corner() + (1.0 / crossed) * sum);
+            }
+        }
+    });
+    return points;
+}
+
+void relax(const DualComplex& complex, const std::vector<Room>& rooms, std::vector<Vec3>& points) {
+    // Measured on balls, tubes and half-balls: fewer rounds leave more of the staircase (area), a
+    // wider pass band leaves its long waves.
+    constexpr int kRounds = 100;
+    constexpr double kInward = 0.6, kPassBand = 0.005;
+    constexpr double kOutward = 1 / (kPassBand - 1 / kInward);
+    const Neighbours neighbours = neighboursOf(complex);
+    const std::vector<Vec3> start = points;
+    std::vector<Vec3> next(points.size());
+    const auto move = [&](double part) {
+        parallelForPieces(complex.groupCount, kPiece, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t v = begin; v < end; ++v) {
+                const std::int64_t first = neighbours.begin[v], last = neighbours.begin[v + 1];
+                if (first == last) {
+                    next[v] = points[v];
+                    continue;
+                }
+                Vec3 sum;
+                for (std::int64_t n = first; n < last; ++n) sum += points[neighbours.of[n]];
+                const Vec3 middle = (1.0 / static_cast<double>(last - first)) * sum;
+                next[v] = heldIn(rooms[v], points[v] + part * (middle - points[v]));
+            }
+        });
+        std::swap(points, next);
+    };
+    for (int round = 0; round < kRounds; ++round) {
+        move(kInward);
+        move(kOutward);
+    }
+    takeBackShift(complex, rooms, neighbours, start, points);
+}
+
+std::int64_t countHeld(const DualComplex& complex, const std::vector<Room>& rooms,
+                       const std::vector<Vec3>& points) {
+    std::int64_t held = 0;
+    for (VertexId v = 0; v < complex.groupCount; ++v) {
+        const Vec3 q = points[v] - rooms[v].corner();
+        bool isHeld = false;
+        for (int axis = 0; axis < 3; ++axis) {
+            isHeld = isHeld || q[axis] <= kLeastGap || q[axis] >= 1 - kLeastGap;
+        }
+        held += isHeld ? 1 : 0;
+    }
+    return held;
+}
+
+void appendFacePoints(const LabelGrid& grid, const DualComplex& complex,
+                      std::vector<Vec3>& points) {
+    for (const FacePoint& face : facePoints(grid, complex)) {
+        const Index3 index = grid.indexOf(face.cell);
+        const Vec3 corner{static_cast<double>(index[0]), static_cast<double>(index[1]),
+                          static_cast<double>(index[2])};
+        std::array<Vec3, 3> c;
+        for (int n = 0; n < 3; ++n) c[n] = corner + offsetOf(face.face[n]);
+        const Vec3 normal = areaVector2(c[0], c[1], c[2]);
+        const Vec3 a = points[face.between[0]], b = points[face.between[1]];
+        const double from = dot(a - c[0], normal), into = dot(b - c[0], normal);
+        const Vec3 passed = a + from / (from - into) * (b - a);
+        const double area = squaredNorm(normal);
+        double part = 1;
+        for (int n = 0; n < 3; ++n) {  // barycentric, 1/3 in the middle
+            const double weight =
+                dot(areaVector2(passed, c[(n + 1) % 3], c[(n + 2) % 3]), normal) / area;
+            part = std::min(part, partOfWay(1.0 / 3, weight, 4 * kLeastGap));
+        }
+        const Vec3 middle = (1.0 / 3) * (c[0] + c[1] + c[2]);
+        points.push_back(middle + part * (passed - middle));
+    }
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,433 @@
+"""adaptiso-labels as its users call it: what it writes, what it refuses, names, choices, batches."""
+
+import json
+import random
+
+from labelsSupport import LabelsTest, label_map, three_boxes
+from support import (BAD_INPUT, CHECK_FAILED, OK, USAGE, Image, write_4d_nifti, write_metaimage,
+                     main, write_nifti, write_nrrd)
+
+
+class OutputTest(LabelsTest):
+    def setUp(self):
+        super().setUp()
+        write_nifti(self.path("boxes.nii"), three_boxes(spacing=(1, 1.5, 2), origin=(-5, 3, 20)))
+
+    def test_writes_the_folder(self):
+        done = self.labels("boxes.nii", "-o", "out")
+        self.assertEqual(set(self.files("out")),
+                         {"walls.vtp", "regions/1.vtp", "regions/2.vtp", "regions/7.vtp", "all.vtm",
+                          "all.surf.gii", "all.label.gii", "regions.tsv", "report.json"})
+        self.assertIn("3 regions", done.stdout)
+        self.assertEqual(done.stdout.count("holds:"), 4)
+        self.assertNotIn("FAILED", done.stdout)
+
+    def test_is_named_after_the_input_by_default(self):
+        self.labels("boxes.nii", "--quiet")
+        self.assertTrue((self.path("boxes-labels") / "walls.vtp").is_file())
+
+    def test_measures_agree_with_the_voxels_and_each_other(self):
+        self.labels("boxes.nii", "-o", "out", "--max-error", "0")
+        rows = self.table("out")
+        self.assertEqual(set(rows), {1, 2, 7})
+        voxel = 1 * 1.5 * 2
+        self.assertEqual(int(rows[7]["voxels"]), 6 * 4 * 4)
+        whole = sum(float(row["volume_mm3"]) for row in rows.values())
+        # walls are smooth at the boxes' edges: that takes away less than a twentieth
+        self.assertAlmostEqual(whole, 12 * 10 * 8 * voxel, delta=0.05 * 12 * 10 * 8 * voxel)
+        for row in rows.values():
+            self.assertEqual(row["euler_characteristic"], "2")
+            self.assertEqual(row["components"], "1")
+        self.assertEqual(rows[1]["neighbours"], "0,2,7")
+        self.assertEqual(rows[7]["neighbours"], "1,2")
+
+        report = self.folder_report("out")
+        self.assertEqual(report["schema"], "adaptiso-labels/1")
+        self.assertTrue(report["passed"])
+        contacts = {}
+        for region in report["regions"]:
+            row = rows[region["label"]]
+            self.assertEqual(region["triangles"], int(row["triangles"]))
+            self.assertEqual(region["volumeMm3"], float(row["volume_mm3"]))
+            shares = [each["areaMm2"] for each in region["neighbours"]]
+            self.assertAlmostEqual(sum(shares), region["areaMm2"], delta=1e-6 * sum(shares))
+            for each in region["neighbours"]:
+                contacts[region["label"], each["label"]] = (each["areaMm2"], each["triangles"])
+        for (a, b), (area, triangles) in contacts.items():
+            if b != 0:
+                # the same triangles, added up in another order
+                self.assertAlmostEqual(contacts[b, a][0], area, delta=1e-12 * area)
+                self.assertEqual(contacts[b, a][1], triangles)
+
+    def test_every_format(self):
+        for extension in ("vtk", "ply", "stl", "obj", "off", "gii", "tri", "surf"):
+            with self.subTest(extension):
+                self.labels("boxes.nii", "-o", extension, "--format", extension, "--quiet")
+                files = self.files(extension)
+                for label in (1, 2, 7):
+                    self.assertIn(f"regions/{label}.{extension}", files)
+                    self.assertIn(f"all/{label}.vtp", files)
+                self.assertIn(b'file="all/7.vtp"', files["all.vtm"])
+                frame = self.folder_report(extension)["output"]["coordinates"]
+                self.assertEqual(frame, "tkras" if extension == "surf" else "ras")
+
+    def test_frames(self):
+        for frame in ("ras", "lps", "tkras", "voxel"):
+            self.labels("boxes.nii", "-o", frame, "--coordinates", frame, "--quiet")
+            self.assertEqual(self.folder_report(frame)["output"]["coordinates"], frame)
+        self.refused(USAGE, "voxel: FreeSurfer holds points in mm only", "boxes.nii", "-o", "out",
+                     "--format", "surf", "--coordinates", "voxel")
+
+    def test_the_same_bytes_for_any_number_of_threads(self):
+        write_nifti(self.path("noise.nii"),
+                    Image((14, 14, 14), "B", [random.Random(5).randrange(5) for _ in range(14**3)]))
+        for threads in (1, 2, 5):
+            self.labels("noise.nii", "-o", f"t{threads}", "--threads", threads, "--quiet")
+        self.assertEqual(self.files("t1"), self.files("t2"))
+        self.assertEqual(self.files("t1"), self.files("t5"))
+
+    def test_whole_numbered_floats_are_labels(self):
+        write_nifti(self.path("floats.nii"),
+                    three_boxes("f", spacing=(1, 1.5, 2), origin=(-5, 3, 20)))
+        self.labels("boxes.nii", "-o", "a", "--quiet")
+        self.labels("floats.nii", "-o", "b", "--quiet")
+        a, b = self.files("a"), self.files("b")
+        del a["report.json"], b["report.json"]  # these name the type of the samples
+        self.assertEqual(a, b)
+
+    def test_other_formats_of_images(self):
+        for name, write in (("boxes.nrrd", write_nrrd), ("boxes.mha", write_metaimage)):
+            write(self.path(name), three_boxes())
+            self.labels(name, "-o", name + "-out", "--quiet")
+
+    def test_replaces_its_own_folder_when_asked_to(self):
+        self.labels("boxes.nii", "-o", "out", "--quiet")
+        self.refused(BAD_INPUT, "out: exists and is not empty", "boxes.nii", "-o", "out")
+        self.labels("boxes.nii", "-o", "out", "--force", "--labels", "1", "--format", "stl",
+                    "--quiet")
+        self.assertEqual({name for name in self.files("out") if name.startswith("regions/")},
+                         {"regions/1.stl"})
+        self.path("out/notes.txt").write_text("mine")
+        self.refused(BAD_INPUT, "out: holds notes.txt, which this program does not write",
+                     "boxes.nii", "-o", "out", "--force")
+
+    def test_never_overwrites_an_input(self):
+        self.path("in").mkdir()
+        write_nifti(self.path("in/boxes.nii"), three_boxes())
+        self.refused(BAD_INPUT, "in: holds an input", "in/boxes.nii", "-o", "in", "--force")
+        self.refused(BAD_INPUT, "boxes.nii", "boxes.nii", "-o", "out", "--json", "boxes.nii")
+
+    def test_json_report(self):
+        done = self.labels("boxes.nii", "-o", "out", "--json", "-")
+        report = json.loads(done.stdout)
+        self.assertEqual(report["output"]["folder"], "out")
+        self.assertTrue(report["output"]["written"])
+        sizes = {each["file"]: each["bytes"] for each in report["output"]["files"]}
+        self.assertEqual(sizes, {name: len(data) for name, data in self.files("out").items()})
+        self.assertIn("crossings", report["seconds"])
+        inside = self.folder_report("out")
+        for key in inside:  # that of the folder differs in what differs from run to run alone
+            if key not in ("output", "options"):
+                self.assertEqual(inside[key], report[key], key)
+
+    def test_report_page(self):
+        self.path("boxes.tsv").write_text("index\tname\n1\tleft <b>\n2\tright\n7\tinner\n")
+        self.labels("boxes.nii", "-o", "out", "--report", "page.html", "--pictures", "pictures",
+                    "--quiet")
+        page = self.path("page.html").read_text()
+        self.assertIn("3 regions of boxes.nii", page)
+        self.assertIn("left &lt;b&gt;", page)
+        self.assertIn('"areRegions":true', page)
+        self.assertNotIn("left <b>", page)
+        pictures = {path.name for path in self.path("pictures").iterdir()}
+        self.assertIn("regions.png", pictures)
+        self.assertIn("contours-axial.png", pictures)
+        self.assertNotIn("surface-1.png", pictures)
+
+    def test_another_image_behind_the_regions(self):
+        write_nifti(self.path("t1.nii"), Image((16, 14, 12), "h", list(range(16 * 14 * 12))))
+        self.labels("boxes.nii", "-o", "out", "--report", "page.html", "--volume", "t1.nii", "-q")
+        self.refused(USAGE, "--volume: is shown on the page", "boxes.nii", "-o", "two", "--volume",
+                     "t1.nii")
+
+
+class HardMapsTest(LabelsTest):
+    """Maps that other programs fail on. The program's own checks judge; that they can fail is
+    tested in LabelsCheckTest.cxx."""
+
+    def made(self, name, image):
+        write_nifti(self.path(name + ".nii"), image)
+        for error in ("0", "0.4"):
+            out = f"{name}-{error}"
+            self.labels(name + ".nii", "-o", out, "--max-error", error, "--quiet")
+            report = self.folder_report(out)
+            self.assertTrue(report["passed"], report["checks"])
+            self.assertEqual(len(report["regions"]), report["input"]["labels"])
+            self.assertLessEqual(report["walls"]["errorBoundMm"], float(error))
+        return report
+
+    def test_a_map_without_background(self):
+        report = self.made("full", label_map((6, 5, 4), lambda i, j, k: 1 + i // 3))
+        self.assertEqual(len(report["regions"]), 2)
+
+    def test_one_voxel(self):
+        self.made("voxel", label_map((3, 3, 3), lambda i, j, k: 4 * (i == j == k == 1)))
+
+    def test_one_slice_is_refused_as_an_image_of_two_dimensions(self):
+        write_nifti(self.path("slice.nii"), label_map((9, 8, 1), lambda i, j, k: i > 2))
+        self.refused(BAD_INPUT, "slice.nii: is a 2-D image or a single slice", "slice.nii", "-o",
+                     "out")
+
+    def test_checkerboard(self):
+        self.made("checkers", label_map((6, 6, 6), lambda i, j, k: 1 + (i + j + k) % 2))
+        self.made("holes", label_map((6, 6, 6), lambda i, j, k: (i + j + k) % 2))
+
+    def test_touching_in_an_edge_and_in_a_corner(self):
+        self.made("edge", label_map((6, 6, 4), lambda i, j, k: 3 if (i in (1, 2)) == (j in (1, 2))
+                                    and 0 < i < 5 and 0 < j < 5 and 0 < k < 3 else 0))
+        self.made("corner", label_map((6, 6, 6), lambda i, j, k: 3 if (i, j, k) in
+                                      ((2, 2, 2), (3, 3, 3)) else 0))
+
+    def test_sheet_of_one_voxel(self):
+        self.made("sheet", label_map((12, 12, 9), lambda i, j, k: 2 if k == 4 else 1 if k < 4
+                                     else 3))
+
+    def test_noise(self):
+        for seed in range(3):
+            values = random.Random(seed)
+            self.made(f"noise{seed}",
+                      Image((10, 10, 10), "B", [values.randrange(5) for _ in range(1000)]))
+
+    def test_negative_and_large_labels(self):
+        import struct
+        write_nrrd(self.path("large.nrrd"), three_boxes())
+        data = self.path("large.nrrd").read_bytes().replace(b"type: int16", b"type: int32")
+        head, samples = data.split(b"\n\n", 1)
+        numbers = {0: 0, 1: -5, 2: 614454277, 7: 2147483520}
+        labels = [numbers[each] for each in struct.unpack(f"<{len(samples) // 2}h", samples)]
+        self.path("large.nrrd").write_bytes(head + b"\n\n" +
+                                            struct.pack(f"<{len(labels)}i", *labels))
+        self.labels("large.nrrd", "-o", "out", "-q")
+        self.assertEqual(set(self.table("out")), {-5, 614454277, 2147483520})
+        self.assertTrue((self.path("out") / "regions" / "-5.vtp").is_file())
+
+
+class ChoiceTest(LabelsTest):
+    def setUp(self):
+        super().setUp()
+        write_nifti(self.path("boxes.nii"), three_boxes())
+        self.path("boxes.tsv").write_text(
+            "index\tname\tcolor\n1\tleft/one\t#ff0000\n2\tright\t#00ff00\n7\tinner\tn/a\n")
+
+    def test_chosen_regions_have_the_walls_of_the_whole_map(self):
+        self.labels("boxes.nii", "-o", "whole", "-q", "--max-error", "0.3")
+        self.labels("boxes.nii", "-o", "some", "-q", "--max-error", "0.3", "--labels", "1,5-9")
+        whole, some = self.files("whole"), self.files("some")
+        self.assertEqual({name for name in some if name.startswith("regions/")},
+                         {"regions/1.vtp", "regions/7.vtp"})
+        for name in ("regions/1.vtp", "regions/7.vtp"):
+            self.assertEqual(some[name], whole[name])
+        self.assertEqual(self.table("some")[1], self.table("whole")[1])
+
+    def test_merged_labels_are_one_region(self):
+        self.labels("boxes.nii", "-o", "out", "-q", "--merge", "both=2,7")
+        rows = self.table("out")
+        self.assertEqual(set(rows), {1, 2})
+        self.assertEqual(rows[2]["name"], "both")
+        self.assertEqual(rows[2]["color"], "#00ff00")
+        self.assertEqual(int(rows[2]["voxels"]), 6 * 10 * 8 + 3 * 4 * 4)
+        self.assertEqual(rows[1]["neighbours"], "0,2")
+        # a label that is merged stands for its region
+        self.labels("boxes.nii", "-o", "chosen", "-q", "--merge", "both=2,7", "--labels", "7")
+        self.assertEqual(set(self.table("chosen")), {2})
+
+    def test_refuses_choices_that_make_no_sense(self):
+        for pattern, *arguments in (
+                (r"--labels 1,x: must be labels", "--labels", "1,x"),
+                (r"--labels 9-3: must be labels", "--labels", "9-3"),
+                (r"--labels 0: holds 0", "--labels", "0"),
+                (r"--merge both: must be a name and labels", "--merge", "both"),
+                (r"--merge =1: must be a name", "--merge", "=1"),
+                (r"a and b both take label 2", "--merge", "a=1,2", "--merge", "b=2-5"),
+                (r"--merge a: given twice", "--merge", "a=1", "--merge", "a=2"),
+                (r"--triangles and --reduction", "--triangles", "9", "--reduction", "0.5"),
+                (r"--max-error -1: must be a number, 0 or more", "--max-error=-1"),
+                (r"--format png: must be vtp", "--format", "png")):
+            with self.subTest(pattern):
+                self.refused(USAGE, pattern, "boxes.nii", "-o", "out", *arguments)
+        self.refused(USAGE, "SEG is missing", "-o", "out")
+        self.refused(BAD_INPUT, "--labels 5: boxes.nii has no such label", "boxes.nii", "-o", "out",
+                     "--labels", "1,5")
+
+    def test_a_merge_of_nothing_is_told(self):
+        done = self.labels("boxes.nii", "-o", "out", "-q", "--merge", "x=50,51")
+        self.assertIn("has none of the labels of --merge x", done.stderr)
+
+    def test_counts(self):
+        full = json.loads(self.labels("boxes.nii", "-o", "a", "--max-error", "0", "--json",
+                                      "-").stdout)["walls"]
+        self.assertEqual(full["triangles"], full["fullTriangles"])
+        self.assertEqual(full["errorBoundMm"], 0)
+        for name, wanted, *arguments in (("b", full["triangles"] // 2, "--reduction", "0.5"),
+                                         ("c", 200, "--triangles", "200")):
+            done = self.labels("boxes.nii", "-o", name, *arguments, "--json", "-")
+            walls = json.loads(done.stdout)["walls"]
+            if walls["wantedTriangles"] is None:
+                self.skipTest("the module Labels does not simplify walls yet")
+            self.assertEqual(walls["wantedTriangles"], wanted)
+            if walls["triangles"] > wanted:  # then it says so
+                self.assertRegex(done.stderr, f"triangles in its walls, not {wanted:,} as asked")
+
+
+class RefusalTest(LabelsTest):
+    def test_real_valued_images_are_refused_by_name_value_and_place(self):
+        image = three_boxes("f")
+        image.samples[3 + 16 * (4 + 14 * 5)] = 0.375
+        write_nifti(self.path("real.nii"), image)
+        self.refused(BAD_INPUT, r"real.nii: voxel \(3, 4, 5\) holds 0.375, which is no whole number",
+                     "real.nii", "-o", "out")
+        image.samples[0] = float("nan")
+        write_nifti(self.path("nan.nii"), image)
+        self.refused(BAD_INPUT, r"nan.nii: voxel \(0, 0, 0\) holds not a number", "nan.nii", "-o",
+                     "out")
+        image.samples[0] = 2.0 ** 40
+        write_nifti(self.path("far.nii"), image)
+        self.refused(BAD_INPUT, r"holds 1099511627776, beyond the labels", "far.nii", "-o", "out")
+
+    def test_scans_are_refused(self):
+        values = random.Random(1)
+        scan = Image((20, 20, 20), "h", [values.randrange(300) for _ in range(8000)])
+        write_nifti(self.path("t1.nii"), scan)
+        self.refused(BAD_INPUT, "t1.nii: is an image, no label map: it has 299 values", "t1.nii",
+                     "-o", "out")
+
+    def test_any_map_takes_them_all_the_same(self):
+        values = random.Random(1)
+        write_nifti(self.path("many.nii"),
+                    Image((5, 5, 5), "h", [values.randrange(60) for _ in range(125)]))
+        self.refused(BAD_INPUT, "--any-map", "many.nii", "-o", "out")
+        self.labels("many.nii", "-o", "out", "--any-map", "-q")
+
+    def test_other_wrong_inputs(self):
+        write_nifti(self.path("empty.nii"), label_map((4, 4, 4), lambda i, j, k: 0))
+        self.refused(BAD_INPUT, "empty.nii: holds no label: all voxels are 0", "empty.nii", "-o",
+                     "out")
+        self.refused(BAD_INPUT, "gone.nii", "gone.nii", "-o", "out")
+        write_4d_nifti(self.path("4d.nii"), [three_boxes(), three_boxes()])
+        self.refused(BAD_INPUT, "4d.nii", "4d.nii", "-o", "out")
+        self.labels("4d.nii", "-o", "out", "--volume-index", "1", "-q")
+
+
+class NamesTest(LabelsTest):
+    def setUp(self):
+        super().setUp()
+        write_nifti(self.path("boxes.nii"), three_boxes())
+
+    def names(self, *arguments):
+        """Names and colours of 1, 2 and 7."""
+        self.labels("boxes.nii", "-o", "out", "--force", "-q", *arguments)
+        return [(row["name"], row["color"]) for row in self.table("out").values()]
+
+    def test_without_a_table(self):
+        names = self.names()
+        self.assertEqual([name for name, _ in names], ["region 1", "region 2", "region 7"])
+        self.assertEqual(len({color for _, color in names}), 3)
+        self.assertIsNone(self.folder_report("out")["names"]["format"])
+
+    def test_of_every_kind(self):
+        wanted = [("left/one", "#ff8000"), ("right", "#0000ff"), ("inner", "#00ff00")]
+        for name, text in (
+                ("a.tsv", "index\tname\tcolor\n1\tleft/one\t#ff8000\n2\tright\t#0000ff\n"
+                          "7\tinner\t#00ff00\n"),
+                ("a.txt", "0 Unknown 0 0 0 0\n1 left/one 255 128 0 0\n2 right 0 0 255 0\n"
+                          "7 inner 0 255 0 0\n"),
+                ("a.label", '0 0 0 0 0 0 0 "Clear"\n1 255 128 0 1 1 1 "left/one"\n'
+                            '2 0 0 255 1 1 1 "right"\n7 0 255 0 1 1 1 "inner"\n'),
+                ("a.ctbl", "# Color table file x\n1 left/one 255 128 0 255\n2 right 0 0 255 255\n"
+                           "7 inner 0 255 0 255\n"),
+                ("a.csv", "LabelValue,Name,Color_R,Color_G,Color_B,Color_A\n1,left/one,255,128,0,1\n"
+                          "2,right,0,0,255,1\n7,inner,0,255,0,1\n"),
+                ("a.json", json.dumps({"1": {"name": "left/one", "color": [255, 128, 0]},
+                                       "2": {"name": "right", "color": "#0000ff"},
+                                       "7": {"name": "inner", "color": [0, 255, 0]}}))):
+            with self.subTest(name):
+                self.path(name).write_text(text)
+                self.assertEqual(self.names("--names", name), wanted)
+                self.assertEqual(self.folder_report("out")["names"]["files"], [name])
+
+    def test_files_are_named_by_number(self):
+        self.path("boxes.txt").write_text("1 ../../evil/name\n2 a/b\n7 <&\"'>\n")
+        self.assertEqual([name for name, _ in self.names()], ["../../evil/name", "a/b", "<&\"'>"])
+        self.assertEqual({name for name in self.files("out") if name.startswith("regions/")},
+                         {"regions/1.vtp", "regions/2.vtp", "regions/7.vtp"})
+        self.assertIn(b"&lt;&amp;&quot;", self.files("out")["all.vtm"])
+
+    def test_found_beside_the_image_as_mricron_has_them(self):
+        self.path("boxes.nii.txt").write_text("1 left 2001\r\n2 right 2002\r\n7 inner 2003\r\n")
+        colors = bytearray(768)
+        colors[1], colors[256 + 2], colors[512 + 7] = 255, 255, 255
+        self.path("boxes.nii.lut").write_bytes(colors)
+        self.assertEqual(self.names(), [("left", "#ff0000"), ("right", "#00ff00"),
+                                        ("inner", "#0000ff")])
+
+    def test_regions_tsv_names_the_same_regions_again(self):
+        self.path("boxes.txt").write_text("1 c\u00f4t\u00e9\n2 right\n7 inner\n")
+        first = self.names()
+        self.path("again.tsv").write_bytes(self.files("out")["regions.tsv"])
+        self.assertEqual(self.names("--names", "again.tsv"), first)
+
+    def test_what_has_no_name_is_told(self):
+        self.path("boxes.txt").write_text("1 left\n2 right\n")
+        done = self.labels("boxes.nii", "-o", "out", "-q")
+        self.assertRegex(done.stderr, r"boxes.txt: names all but 1 of the 3 regions, not 7")
+        done = self.run_labels("boxes.nii", "-o", "strict", "-q", "--strict")
+        self.assertEqual(done.returncode, CHECK_FAILED)
+        self.assertFalse(self.path("strict").exists())
+
+    def test_damaged_tables_are_refused_by_line(self):
+        self.path("bad.tsv").write_text("index\tname\n1\ta\nx\tb\n")
+        self.refused(BAD_INPUT, r"bad.tsv: line 3: the index is 'x'", "boxes.nii", "-o", "out",
+                     "--names", "bad.tsv")
+        self.path("bad.md").write_text("# Title\nno table\n")
+        self.refused(BAD_INPUT, r"bad.md: is no table of labels", "boxes.nii", "-o", "out",
+                     "--names", "bad.md")
+        # one that was not asked for costs a warning
+        self.path("boxes.tsv").write_text("index\tname\n1\ta\nx\tb\n")
+        done = self.labels("boxes.nii", "-o", "out", "-q")
+        self.assertRegex(done.stderr, r"names are not used: .*boxes.tsv: line 3")
+
+
+class BatchTest(LabelsTest):
+    def test_many_inputs(self):
+        for name in ("a", "b"):
+            write_nifti(self.path(name + ".nii"), three_boxes())
+        write_nifti(self.path("c.nii"), three_boxes("f"))
+        data = bytearray(self.path("c.nii").read_bytes())
+        data[-4:] = b"\0\0\0\x3f"  # 0.5
+        self.path("c.nii").write_bytes(data)
+        done = self.run_labels("a.nii", "b.nii", "c.nii", "--output-dir", "made", "--jobs", "2")
+        self.assertEqual(done.returncode, CHECK_FAILED, done.stderr)
+        self.assertIn("3 regions", done.stdout)
+        self.assertRegex(done.stdout + done.stderr, "c.nii: voxel")
+        made = {path.name for path in self.path("made").iterdir() if path.is_dir()}
+        self.assertEqual(made, {"a-labels", "b-labels"})
+        again = self.run_labels("a.nii", "b.nii", "--output-dir", "made", "--skip-existing")
+        self.assertEqual(again.returncode, OK, again.stderr)
+        self.assertTrue(self.path("made/summary.html").is_file())
+
+    def test_a_dataset(self):
+        anat = self.path("study/sub-01/anat")
+        anat.mkdir(parents=True)
+        self.path("study/dataset_description.json").write_text(
+            '{"Name": "x", "BIDSVersion": "1.8.0"}')
+        write_nifti(anat / "sub-01_desc-aseg_dseg.nii", three_boxes())
+        self.path("study/desc-aseg_dseg.tsv").write_text("index\tname\n1\tleft\n2\tright\n7\tin\n")
+        self.labels("--bids", "study", "-q")
+        tables = list(self.path("study").rglob("regions.tsv"))
+        self.assertEqual(len(tables), 1, list(self.path("study").rglob("*")))
+        self.assertIn("sub-01_desc-aseg", str(tables[0]))
+        self.assertIn("1\tleft\t", tables[0].read_text())
+
+
+if __name__ == "__main__":
+    main()

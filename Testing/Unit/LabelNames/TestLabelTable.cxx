@@ -1,0 +1,266 @@
+// Each format as its program writes it, what tells formats apart, and what is refused.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <random>
+#include <set>
+#include <string>
+
+#include "adaptiso/LabelNames/LabelTable.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr LabelColor kRed{255, 0, 0}, kOrange{255, 128, 0};
+
+LabelTable decoded(const std::string& text) {
+    return decodeLabelTable(text, "x");
+}
+
+const LabelEntry& entryOf(const LabelTable& table, std::int32_t value) {
+    static const LabelEntry none;
+    const LabelEntry* const entry = table.find(value);
+    EXPECT_NE(entry, nullptr) << value;
+    return entry == nullptr ? none : *entry;
+}
+
+std::string refusalOf(const std::string& text) {
+    try {
+        decoded(text);
+    } catch (const FileError& error) {
+        return error.what();
+    }
+    return "taken";
+}
+
+TEST(LabelTable, ReadsBids) {
+    const LabelTable table = decoded(
+        "index\tname\tabbreviation\tcolor\tmapping\n"
+        "1\tGray Matter\tGM\t#ff0000\t1\n"
+        "2\tWhite/Matter\tn/a\tn/a\t2\n");
+    EXPECT_EQ(table.format, "BIDS");
+    EXPECT_EQ(entryOf(table, 1), (LabelEntry{1, "Gray Matter", "GM", kRed}));
+    EXPECT_EQ(entryOf(table, 2), (LabelEntry{2, "White/Matter", "", {}}));
+    EXPECT_EQ(table.find(3), nullptr);
+}
+
+TEST(LabelTable, ReadsFreeSurfer) {
+    const LabelTable table = decoded(
+        "#$Id: FreeSurferColorLUT.txt\n\n#No. Label Name: R G B A\n"
+        "0   Unknown                 0   0   0   0\n"
+        "1001    ctx-lh-bankssts     255 128 0   0\r\n");
+    EXPECT_EQ(table.format, "FreeSurfer");
+    EXPECT_EQ(entryOf(table, 1001), (LabelEntry{1001, "ctx-lh-bankssts", "", kOrange}));
+    EXPECT_EQ(entryOf(decoded("1 a_b 255 0 0\n2 c 1 2 3\n"), 1), (LabelEntry{1, "a_b", "", kRed}));
+}
+
+TEST(LabelTable, ReadsSlicersColorTablesWithBlanksForUnderscores) {
+    const LabelTable table = decoded(
+        "# Color table file /tmp/GenericColors.txt\n# 2 values\n"
+        "0 background 0 0 0 0\n1 left_ventricle 255 0 0 255\n");
+    EXPECT_EQ(table.format, "3D Slicer");
+    EXPECT_EQ(entryOf(table, 1), (LabelEntry{1, "left ventricle", "", kRed}));
+}
+
+TEST(LabelTable, ReadsSlicersCommas) {
+    const LabelTable table = decoded(
+        "LabelValue,Name,Color_R,Color_G,Color_B,Color_A\n"
+        "1,\"lobe, \"\"left\"\"\",255,128,0,255\n2,right,,,,\n");
+    EXPECT_EQ(table.format, "3D Slicer");
+    EXPECT_EQ(entryOf(table, 1), (LabelEntry{1, "lobe, \"left\"", "", kOrange}));
+    EXPECT_EQ(entryOf(table, 2).color, std::nullopt);
+}
+
+TEST(LabelTable, ReadsItkSnap) {
+    const LabelTable table = decoded(
+        "################################################\n# ITK-SnAP Label Description File\n"
+        "    0     0    0    0        0  0  0    \"Clear Label\"\n"
+        "    1   255    0    0        1  1  1    \"Label 1\"\n");
+    EXPECT_EQ(table.format, "ITK-SNAP");
+    EXPECT_EQ(entryOf(table, 1), (LabelEntry{1, "Label 1", "", kRed}));
+    EXPECT_EQ(entryOf(table, 0).name, "Clear Label");
+}
+
+TEST(LabelTable, ReadsMricronsNamesWithAndWithoutCodes) {
+    EXPECT_EQ(entryOf(decoded("1 Precentral_L 2001\r\n2 Precentral_R 2002\r\n\r\n"), 2).name,
+              "Precentral_R");
+    EXPECT_EQ(entryOf(decoded("0\tUnclassified\r\n1\tMiddle cerebellar\r\n"), 1).name,
+              "Middle cerebellar");
+    // the number is what tells these apart, so it is no code
+    EXPECT_EQ(entryOf(decoded("1 Area 1\n2 Area 2\n4 Area 4\n"), 4).name, "Area 4");
+}
+
+TEST(LabelTable, ReadsMricronsColors) {
+    std::string bytes(768, '\0');
+    bytes[7] = '\xff';
+    bytes[256 + 7] = '\x80';
+    const LabelTable table = decoded(bytes);
+    EXPECT_EQ(entryOf(table, 7), (LabelEntry{7, "", "", kOrange}));
+    EXPECT_EQ(table.entries.size(), 1U) << "black is no colour";
+    EXPECT_THROW(decoded(std::string(768, '\0')), NoLabelTable);
+}
+
+TEST(LabelTable, ReadsNii2meshsSemicolons) {
+    EXPECT_EQ(entryOf(decoded("1;Precentral L;2001\n2;Precentral R;2002\n"), 1).name,
+              "Precentral L");
+}
+
+TEST(LabelTable, ReadsGifti) {
+    const LabelTable table = decoded(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<GIFTI Version=\"1.0\"><MetaData/>\n"
+        "<LabelTable><Label Key=\"0\" Red=\"1\" Green=\"1\" Blue=\"1\" Alpha=\"0\">none</Label>\n"
+        "<Label Key=\"-3\" Red=\"1\" Green=\"0.502\" Blue=\"0\"><![CDATA[a < b]]></Label>"
+        "</LabelTable></GIFTI>");
+    EXPECT_EQ(table.format, "GIFTI");
+    EXPECT_EQ(entryOf(table, -3), (LabelEntry{-3, "a < b", "", kOrange}));
+}
+
+TEST(LabelTable, ReadsFslsAtlases) {
+    const std::string labels =
+        "<data><label index=\"0\" x=\"48\" y=\"94\" z=\"35\">Frontal Pole</label>"
+        "<label index=\"1\" x=\"1\" y=\"2\" z=\"3\">Insular</label></data></atlas>";
+    const std::string head = "<?xml version=\"1.0\"?><atlas version=\"1.0\"><header><name>x</name>";
+    // a probabilistic atlas's summary image counts from 1
+    EXPECT_EQ(entryOf(decoded(head + "<type>Probabilistic</type></header>" + labels), 1).name,
+              "Frontal Pole");
+    EXPECT_EQ(entryOf(decoded(head + "<type>Label</type></header>" + labels), 1).name, "Insular");
+}
+
+TEST(LabelTable, ReadsJson) {
+    EXPECT_EQ(entryOf(decoded(R"({"1": "left", "2": {"name": "right", "color": "#ff0000"}})"), 2),
+              (LabelEntry{2, "right", "", kRed}));
+    EXPECT_EQ(
+        entryOf(decoded(R"([{"id": 8, "acronym": "grey", "name": "Grey", "rgb_triplet": [255, 128,
+                           0]}])"),
+                8),
+        (LabelEntry{8, "Grey", "grey", kOrange}));
+    EXPECT_EQ(entryOf(decoded(R"({"labels": [{"key": 4, "label": "x", "red": 1.0, "green": 0.502,
+                                 "blue": 0}]})"),
+                      4),
+              (LabelEntry{4, "x", "", kOrange}));
+    EXPECT_EQ(entryOf(decoded(R"({"R": [0, 255], "G": [0, 128], "B": [0, 0], "I": [0, 9],
+                                 "labels": ["", "nine"]})"),
+                      9),
+              (LabelEntry{9, "nine", "", kOrange}));
+}
+
+TEST(LabelTable, TakesOtherTextThanUtf8ForLatin1) {
+    EXPECT_EQ(entryOf(decoded("1 c\xf4t\xe9\n2 x\n"), 1).name, "c\u00f4t\u00e9");
+    EXPECT_EQ(entryOf(decoded("\xef\xbb\xbf"
+                              "1 c\u00f4t\u00e9\n2 x\n"),
+                      1)
+                  .name,
+              "c\u00f4t\u00e9");
+}
+
+TEST(LabelTable, TellsOfValuesListedTwice) {
+    const LabelTable table = decoded("1 a\n1 b\n2 c\n2 c\n");
+    EXPECT_EQ(entryOf(table, 1).name, "a");
+    ASSERT_EQ(table.warnings.size(), 1U);
+    EXPECT_NE(table.warnings[0].find("label 1 is listed twice"), std::string::npos);
+}
+
+TEST(LabelTable, NamesTheLineThatIsWrong) {
+    EXPECT_NE(refusalOf("index\tname\n1\ta\nx\tb\n").find("x: line 3: the index is 'x'"),
+              std::string::npos);
+    EXPECT_NE(refusalOf("index\tname\tcolor\n1\ta\tred\n").find("line 2: the colour is 'red'"),
+              std::string::npos);
+    EXPECT_NE(refusalOf("# c\n1 a 1 2 3 0\n2 b 1 2 300 0\n").find("line 3: a colour has '300'"),
+              std::string::npos);
+    EXPECT_NE(refusalOf("index\tname\n4294967296\ta\n").find("32 bits"), std::string::npos);
+    EXPECT_NE(refusalOf("index\tname\n").find("lists no label"), std::string::npos);
+    EXPECT_NE(refusalOf("LabelValue,Name\n1,\"a\n").find("quote is not closed"), std::string::npos);
+}
+
+TEST(LabelTable, RefusesWhatIsNoTable) {
+    for (const std::string& text :
+         {std::string(), std::string("   \n"), std::string("hello\nworld\n"), std::string("{}"),
+          std::string("{\"Manufacturer\": \"x\"}"), std::string("{\"a\""), std::string("[1, 2]"),
+          std::string("<svg/>"), std::string("# only\n"),
+          std::string("\xff\xfe"
+                      "1\0",
+                      4),
+          std::string(1000, '\0')}) {
+        EXPECT_THROW(decoded(text), NoLabelTable) << text;
+    }
+    EXPECT_THROW(decoded("<!DOCTYPE GIFTI [<!ENTITY a \"b\">]><GIFTI/>"), FileError);
+    EXPECT_THROW(decoded("<GIFTI><LabelTable><Label Key=\"1\">a"), FileError);
+}
+
+TEST(LabelTable, NamesHoldNoControlCharacters) {
+    const LabelTable table = decoded("{\"1\": \" a\\u0000\\n\\u001b[2Jb\\u0085 \"}");
+    for (const char c : entryOf(table, 1).name) EXPECT_GE(static_cast<unsigned char>(c), 0x20);
+}
+
+/// Whatever is done to a table's bytes, it is read or refused in one line.
+TEST(LabelTable, SurvivesDamage) {
+    const std::string good = "index\tname\tcolor\n1\tleft\t#ff0000\n2\tright\tn/a\n" +
+                             std::string(3, '\n') +
+                             "7 name 1 2 3 4\n<label index=\"1\">{\"1\": [2, \"x\"]}";
+    std::mt19937 random(7);
+    for (int round = 0; round < 3000; ++round) {
+        std::string bytes = good;
+        for (int n = 0; n < 4; ++n) {
+            bytes[random() % bytes.size()] = static_cast<char>(random() % 256);
+        }
+        bytes.resize(random() % (bytes.size() + 1));
+        const std::string said = refusalOf(bytes);
+        EXPECT_EQ(said.find('\n'), std::string::npos);
+        EXPECT_LT(said.size(), 1000U);
+    }
+}
+
+TEST(LabelColor, NeighboursAreToldApart) {
+    const auto distance = [](const LabelColor& a, const LabelColor& b) {
+        int sum = 0;
+        for (std::size_t n = 0; n < 3; ++n) sum += std::abs(a[n] - b[n]);
+        return sum;
+    };
+    std::set<LabelColor> all;
+    for (std::int32_t value = 1; value < 256; ++value) {
+        all.insert(labelColor(value));
+        for (std::int32_t step = 1; step <= 3; ++step) {
+            // 60 of 765: as far as two neighbouring hues of a dozen lie
+            EXPECT_GE(distance(labelColor(value), labelColor(value + step)), 60) << value;
+        }
+    }
+    EXPECT_GT(all.size(), 250U);
+    EXPECT_EQ(hexText(kOrange), "#ff8000");
+}
+
+/// Debian's mricron-data and python3-mne, where they are installed.
+class RealTables : public testing::Test {
+protected:
+    static LabelTable read(const std::string& file) {
+        if (!std::filesystem::exists(file)) return {};
+        return readLabelTable(file);
+    }
+    static constexpr const char* kFolder = "/usr/share/mricron/templates/";
+};
+
+TEST_F(RealTables, MricronsAtlases) {
+    const LabelTable aal = read(std::string(kFolder) + "aal.nii.txt");
+    if (aal.entries.empty()) GTEST_SKIP() << "mricron-data is not installed";
+    EXPECT_EQ(aal.entries.size(), 116U);
+    EXPECT_EQ(entryOf(aal, 1).name, "Precentral_L");
+    EXPECT_EQ(entryOf(aal, 116).name, "Vermis_10");
+    const LabelTable aicha = read(std::string(kFolder) + "AICHAmc.nii.txt");
+    EXPECT_EQ(aicha.entries.size(), 192U);
+    EXPECT_EQ(entryOf(aicha, 192).name, "N_Thalamus-9");
+    const LabelTable jhu = read(std::string(kFolder) + "JHU-WhiteMatter-labels-1mm.nii.txt");
+    EXPECT_EQ(entryOf(jhu, 2).name, "Pontine_crossing_tract_(a_part_of_MCP)");
+    const LabelTable colors = read(std::string(kFolder) + "aal.nii.lut");
+    EXPECT_EQ(entryOf(colors, 1).color, (LabelColor{0xcc, 0xcc, 0xcc}));
+}
+
+TEST_F(RealTables, FreeSurfersOwn) {
+    const LabelTable table = read("/usr/lib/python3/dist-packages/mne/data/FreeSurferColorLUT.txt");
+    if (table.entries.empty()) GTEST_SKIP() << "python3-mne is not installed";
+    EXPECT_GT(table.entries.size(), 1000U);
+    EXPECT_EQ(entryOf(table, 17),
+              (LabelEntry{17, "Left-Hippocampus", "", LabelColor{220, 216, 20}}));
+    EXPECT_EQ(table.format, "FreeSurfer");
+}
+
+}  // namespace
+}  // namespace adaptiso

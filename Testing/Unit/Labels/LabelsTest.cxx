@@ -1,0 +1,394 @@
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "Support/AnalyticVolumes.h"
+#include "Support/Soundness.h"
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Labels/Labels.h"
+#include "adaptiso/MeshQuality/InsideTest.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+
+namespace adaptiso {
+namespace {
+
+using testing::centredGeometry;
+using testing::isSound;
+using testing::mirroredGeometry;
+using testing::nextRandom;
+using testing::obliqueGeometry;
+using testing::shearedGeometry;
+
+/// A label map and its samples.
+struct Map {
+    ImageGeometry geometry;
+    std::vector<Label> labels;
+
+    Map(const ImageGeometry& of, const std::function<Label(const Index3&)>& labelAt)
+        : geometry(of) {
+        for (std::int64_t k = 0; k < of.size[2]; ++k) {
+            for (std::int64_t j = 0; j < of.size[1]; ++j) {
+                for (std::int64_t i = 0; i < of.size[0]; ++i) labels.push_back(labelAt({i, j, k}));
+            }
+        }
+    }
+    static Map inSpace(const ImageGeometry& of, const std::function<Label(const Vec3&)>& labelAt) {
+        return {of, [&](const Index3& index) {
+                    return labelAt(
+                        of.toPhysical({static_cast<double>(index[0]), static_cast<double>(index[1]),
+                                       static_cast<double>(index[2])}));
+                }};
+    }
+    VolumeView view() const { return {labels.data(), geometry}; }
+    Label at(std::int64_t i, std::int64_t j, std::int64_t k) const {
+        const Index3& n = geometry.size;
+        const bool isInside = i >= 0 && j >= 0 && k >= 0 && i < n[0] && j < n[1] && k < n[2];
+        return isInside ? labels[i + n[0] * (j + n[1] * k)] : 0;
+    }
+    Vec3 centre(std::int64_t i, std::int64_t j, std::int64_t k) const {
+        return geometry.toPhysical(
+            {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+    }
+};
+
+/// Random labels 0 ... kinds - 1.
+Map noise(const ImageGeometry& geometry, int kinds, std::uint64_t seed) {
+    return {geometry, [&](const Index3&) {
+                return static_cast<Label>(nextRandom(seed) % static_cast<std::uint64_t>(kinds));
+            }};
+}
+
+/// Euler characteristic of what a label's voxels span in Kuhn's triangulation: vertices - edges +
+/// triangles - tetrahedra all of whose corners have it. Its surface has twice that.
+std::int64_t solidEulerCharacteristic(const Map& map, Label label) {
+    // simplices are chains of steps, each with more of the bits 1, 2, 4 than the one before
+    const std::vector<std::vector<int>> chains{
+        {},     {1},    {2},       {3},       {4},       {5},       {6},       {7},      {1, 3},
+        {1, 5}, {1, 7}, {2, 3},    {2, 6},    {2, 7},    {4, 5},    {4, 6},    {4, 7},   {3, 7},
+        {5, 7}, {6, 7}, {1, 3, 7}, {1, 5, 7}, {2, 3, 7}, {2, 6, 7}, {4, 5, 7}, {4, 6, 7}};
+    std::int64_t sum = 0;
+    for (std::int64_t k = 0; k < map.geometry.size[2]; ++k) {
+        for (std::int64_t j = 0; j < map.geometry.size[1]; ++j) {
+            for (std::int64_t i = 0; i < map.geometry.size[0]; ++i) {
+                if (map.at(i, j, k) != label) continue;
+                for (const auto& chain : chains) {
+                    bool isOwn = true;
+                    for (const int c : chain) {
+                        isOwn =
+                            isOwn && map.at(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)) == label;
+                    }
+                    if (isOwn) sum += chain.size() % 2 == 0 ? 1 : -1;
+                }
+            }
+        }
+    }
+    return sum;
+}
+
+/// Everything that extractLabels promises of any map.
+::testing::AssertionResult keepsPromises(const Map& map, const LabelOptions& options = {}) {
+    const LabelComplex complex = extractLabels(map.view(), options).complex;
+    TriangleMesh all;
+    all.points = complex.points;
+    all.triangles = complex.triangles;
+    if (const SelfIntersections crossings = findSelfIntersections(all); crossings.pairCount != 0) {
+        return ::testing::AssertionFailure() << crossings.pairCount << " pairs of triangles cross";
+    }
+    const std::vector<Label> labels = findLabels(map.view());
+    const std::vector<RegionMeasure> measures = measureRegions(complex);
+    if (measures.size() != labels.size()) {
+        return ::testing::AssertionFailure()
+               << measures.size() << " of " << labels.size() << " regions are there";
+    }
+    for (const RegionMeasure& m : measures) {
+        const TriangleMesh mesh = regionSurface(complex, m.label);
+        if (const auto sound = isSound(mesh); !sound) {
+            return ::testing::AssertionFailure() << "region " << m.label << ": " << sound.message();
+        }
+        if (!(m.volumeMm3 > 0)) {
+            return ::testing::AssertionFailure() << "region " << m.label << " is inside out";
+        }
+        if (const auto own = 2 * solidEulerCharacteristic(map, m.label);
+            own != m.eulerCharacteristic) {
+            return ::testing::AssertionFailure()
+                   << "region " << m.label << ": Euler characteristic " << m.eulerCharacteristic
+                   << " instead of " << own;
+        }
+        const AabbTree tree(mesh);
+        const InsideTest inside(mesh, tree);
+        for (std::int64_t k = 0; k < map.geometry.size[2]; ++k) {
+            for (std::int64_t j = 0; j < map.geometry.size[1]; ++j) {
+                for (std::int64_t i = 0; i < map.geometry.size[0]; ++i) {
+                    const Side own = map.at(i, j, k) == m.label ? Side::Inside : Side::Outside;
+                    if (inside.sideOf(map.centre(i, j, k)) != own) {
+                        return ::testing::AssertionFailure()
+                               << "voxel " << i << ' ' << j << ' ' << k
+                               << " is on the wrong side of region " << m.label;
+                    }
+                }
+            }
+        }
+    }
+    return ::testing::AssertionSuccess();
+}
+
+TEST(ExtractLabels, HoldsForEveryWayToLabelACellsCorners) {
+    // every partition of eight corners, with and without 0 among the labels
+    std::array<Label, 8> labels{};
+    std::int64_t patterns = 0;
+    const auto visit = [&](const auto& self, int c, int kinds) -> void {
+        if (c == 8) {
+            for (const Label first : {0, 1}) {
+                const Map map(centredGeometry({2, 2, 2}), [&](const Index3& i) {
+                    return labels[i[0] + 2 * i[1] + 4 * i[2]] + first;
+                });
+                ASSERT_TRUE(keepsPromises(map)) << ::testing::PrintToString(labels);
+            }
+            ++patterns;
+            return;
+        }
+        for (int kind = 0; kind <= kinds; ++kind) {
+            labels[c] = kind;
+            self(self, c + 1, std::max(kinds, kind + 1));
+            if (::testing::Test::HasFatalFailure()) return;
+        }
+    };
+    visit(visit, 1, 1);
+    EXPECT_EQ(patterns, 4140);  // the eighth Bell number
+}
+
+TEST(ExtractLabels, HoldsForRandomNoise) {
+    std::uint64_t seed = 1;
+    for (int round = 0; round < 300; ++round) {
+        const auto side = [&] { return static_cast<std::int64_t>(1 + nextRandom(seed) % 6); };
+        const Index3 size{side(), side(), side()};
+        const int kinds = static_cast<int>(2 + nextRandom(seed) % 6);
+        const std::vector<ImageGeometry> geometries{
+            centredGeometry(size), obliqueGeometry(size, {0.7, 1, 2.5}),
+            shearedGeometry(size, {1, 1.2, 3}), mirroredGeometry(size, {0.9, 0.9, 4})};
+        LabelOptions options;
+        options.smooth = round % 5 != 0;
+        const Map map = noise(geometries[round % 4], kinds, nextRandom(seed));
+        ASSERT_TRUE(keepsPromises(map, options)) << "round " << round;
+    }
+}
+
+TEST(ExtractLabels, HoldsForCheckerboardsSheetsAndSingleVoxels) {
+    const ImageGeometry geometry = centredGeometry({8, 7, 6});
+    const auto sum = [](const Index3& i) { return i[0] + i[1] + i[2]; };
+    const std::vector<Map> maps{
+        {geometry, [&](const Index3& i) { return static_cast<Label>(sum(i) % 2); }},
+        {geometry, [&](const Index3& i) { return static_cast<Label>(1 + sum(i) % 2); }},
+        {geometry, [&](const Index3& i) { return static_cast<Label>(sum(i) % 3); }},
+        {geometry, [&](const Index3& i) { return sum(i) == 9 ? 5 : 0; }},
+        {geometry, [&](const Index3& i) { return sum(i) == 9  ? 5
+                                                 : sum(i) < 9 ? 3
+                                                              : 4; }},
+        {geometry, [](const Index3& i) { return i[2] == 3  ? 5
+                                                : i[2] < 3 ? 3
+                                                           : 4; }},
+        {geometry,
+         [](const Index3& i) {
+             return i == Index3{3, 3, 3} ? 9 : 0;
+         }},
+        {geometry, [](const Index3& i) { return i[0] % 2 + i[1] % 2 + i[2] % 2 == 0 ? 9 : 2; }},
+        {geometry, [](const Index3&) { return 12101; }}};
+    for (std::size_t n = 0; n < maps.size(); ++n)
+        EXPECT_TRUE(keepsPromises(maps[n])) << "map " << n;
+}
+
+TEST(ExtractLabels, HoldsForRoundWallsThatMeet) {
+    // smooth maps let walls leave the middle of their cells, as noise does not
+    std::uint64_t seed = 5;
+    for (int round = 0; round < 8; ++round) {
+        std::array<Vec3, 7> sites;
+        for (Vec3& site : sites) {
+            for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+                site.*axis = static_cast<double>(nextRandom(seed) % 1000) / 50 - 10;
+            }
+        }
+        const ImageGeometry geometry = round % 2 == 0 ? centredGeometry({22, 22, 22})
+                                                      : mirroredGeometry({22, 22, 22}, {1, 1, 1.4});
+        const Map map = Map::inSpace(geometry, [&](const Vec3& p) {
+            Label nearest = 0;
+            double least = 81;
+            for (std::size_t n = 0; n < sites.size(); ++n) {
+                const double d = squaredNorm(p - sites[n]);
+                if (d < least) {
+                    least = d;
+                    nearest = static_cast<Label>(n + 1);
+                }
+            }
+            return nearest;
+        });
+        EXPECT_TRUE(keepsPromises(map)) << "round " << round;
+    }
+}
+
+// Bars of the measures: what a smooth wall through the labels of a ball can be expected to have.
+// The voxels themselves are 0.3 % (radius 10) and less away from the ball's volume.
+TEST(ExtractLabels, GivesBallsTheirVolumeAndArea) {
+    for (const double radius : {10.0, 20.0, 40.0}) {
+        const auto side = static_cast<std::int64_t>(2 * radius + 6);
+        const Map map = Map::inSpace(centredGeometry({side, side, side}), [&](const Vec3& p) {
+            return norm(p - Vec3{0.13, -0.21, 0.37}) < radius ? 1 : 0;
+        });
+        LabelOptions options;
+        options.maxErrorMm = 0;
+        const auto measures = measureRegions(extractLabels(map.view(), options).complex);
+        ASSERT_EQ(measures.size(), 1U);
+        const double volume = 4 * std::numbers::pi * std::pow(radius, 3) / 3,
+                     area = 4 * std::numbers::pi * std::pow(radius, 2);
+        EXPECT_NEAR(measures[0].volumeMm3, volume, 0.002 * volume) << radius;
+        EXPECT_NEAR(measures[0].areaMm2, area, 0.005 * area) << radius;
+        EXPECT_EQ(measures[0].eulerCharacteristic, 2);
+    }
+}
+
+TEST(ExtractLabels, KeepsTheVolumeOfThinTubes) {
+    // round ends of radius r at a distance of 40; what thinner tubes lose is a fifteenth
+    const Vec3 along = normalized({1, 2, 3}), middle{0.13, -0.21, 0.37};
+    for (const auto& [radius, part] : std::map<double, double>{{4, 0.005}, {1.5, 0.07}}) {
+        const Map map = Map::inSpace(centredGeometry({49, 57, 61}), [&](const Vec3& p) {
+            const double t = std::clamp(dot(p - middle, along), -20.0, 20.0);
+            return norm(p - middle - t * along) < radius ? 1 : 0;
+        });
+        LabelOptions options;
+        options.maxErrorMm = 0;
+        const auto measures = measureRegions(extractLabels(map.view(), options).complex);
+        const double volume = std::numbers::pi * radius * radius * 40 +
+                              4 * std::numbers::pi * std::pow(radius, 3) / 3;
+        ASSERT_EQ(measures.size(), 1U);
+        EXPECT_NEAR(measures[0].volumeMm3, volume, part * volume) << radius;
+    }
+}
+
+/// Two half-balls of radius 20 that meet in the plane x = 0, half-way between voxel centres.
+Map halfBalls() {
+    return Map::inSpace(centredGeometry({48, 48, 48}), [](const Vec3& p) {
+        return norm(p) >= 20 ? 0 : p.x < 0 ? 1 : 2;
+    });
+}
+
+TEST(ExtractLabels, LeavesAFlatWallFlat) {
+    const Map map = halfBalls();
+    LabelOptions options;
+    options.maxErrorMm = 0;
+    const LabelComplex complex = extractLabels(map.view(), options).complex;
+    double farthest = 0;
+    std::int64_t triangles = 0;
+    for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
+        if (complex.labels[t] != std::array<Label, 2>{1, 2}) continue;
+        ++triangles;
+        for (const VertexId v : complex.triangles[t]) {
+            farthest = std::max(farthest, std::abs(complex.points[v].x));
+        }
+    }
+    EXPECT_GT(triangles, 0);
+    EXPECT_LE(farthest, 0.05);
+}
+
+TEST(ExtractLabels, GivesChosenRegionsTheWallsOfTheWholeMap) {
+    const Map map = noise(obliqueGeometry({9, 8, 7}, {1, 1.5, 2}), 5, 77);
+    const LabelComplex all = extractLabels(map.view(), {}).complex;
+    LabelOptions options;
+    options.labels = {4, 2};
+    const LabelComplex chosen = extractLabels(map.view(), options).complex;
+    std::set<Label> seen;
+    for (const auto& pair : chosen.labels) seen.insert(pair.begin(), pair.end());
+    EXPECT_EQ(seen, (std::set<Label>{0, 1, 2, 3, 4}));  // the other sides keep their numbers
+    for (const Label label : {2, 4}) {
+        EXPECT_EQ(regionSurface(chosen, label), regionSurface(all, label));
+    }
+    EXPECT_EQ(measureRegions(chosen, {2})[0], measureRegions(all, {2})[0]);
+    std::vector<bool> isUsed(chosen.points.size(), false);
+    for (const Triangle& t : chosen.triangles) {
+        for (const VertexId v : t) isUsed[v] = true;
+    }
+    EXPECT_EQ(std::count(isUsed.begin(), isUsed.end(), false), 0);
+}
+
+TEST(ExtractLabels, GivesTheSameBytesForAnyNumberOfThreads) {
+    const Map map = noise(obliqueGeometry({40, 30, 35}, {1, 1.5, 2}), 4, 3);
+    const Map balls = halfBalls();
+    for (const Map* of : {&map, &balls}) {
+        const LabelComplex many = extractLabels(of->view(), {}).complex;
+        const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+        EXPECT_EQ(extractLabels(of->view(), {}).complex, many);
+    }
+}
+
+TEST(ExtractLabels, NamesTheSmallerLabelFirstAndZeroLast) {
+    const Map map(centredGeometry({4, 1, 1}), [](const Index3& i) {
+        return std::array<Label, 4>{7, -3, 0, 2}[i[0]];
+    });
+    std::set<std::array<Label, 2>> pairs;
+    for (const auto& pair : extractLabels(map.view(), {}).complex.labels) pairs.insert(pair);
+    EXPECT_TRUE(pairs.contains({7, -3}));
+    EXPECT_TRUE(pairs.contains({2, 0}));
+    EXPECT_TRUE(pairs.contains({-3, 0}));
+}
+
+TEST(ExtractLabels, TakesEveryPixelTypeAlike) {
+    const ImageGeometry geometry = centredGeometry({6, 5, 4});
+    const Map map = noise(geometry, 4, 21);
+    const LabelComplex expected = extractLabels(map.view(), {}).complex;
+    const std::vector<std::uint8_t> bytes(map.labels.begin(), map.labels.end());
+    const std::vector<float> floats(map.labels.begin(), map.labels.end());
+    EXPECT_EQ(extractLabels(VolumeView(bytes.data(), geometry), {}).complex, expected);
+    EXPECT_EQ(extractLabels(VolumeView(floats.data(), geometry), {}).complex, expected);
+}
+
+TEST(ExtractLabels, RefusesWhatIsNoLabelMap) {
+    const ImageGeometry geometry = centredGeometry({2, 1, 1});
+    for (const double sample : {0.5, std::numeric_limits<double>::quiet_NaN(), 2147483648.0}) {
+        const std::vector<double> samples{1, sample};
+        EXPECT_THROW(extractLabels(VolumeView(samples.data(), geometry), {}), InvalidInput);
+        EXPECT_THROW(findLabels(VolumeView(samples.data(), geometry)), InvalidInput);
+    }
+}
+
+TEST(ExtractLabels, RefusesOptionsThatBreakTheirRules) {
+    const Map map(centredGeometry({2, 1, 1}),
+                  [](const Index3& i) { return static_cast<Label>(i[0]); });
+    const auto refuses = [&](const auto& change) {
+        LabelOptions options;
+        change(options);
+        EXPECT_THROW(extractLabels(map.view(), options), InvalidInput);
+    };
+    refuses([](LabelOptions& o) { o.maxErrorMm = -1; });
+    refuses([](LabelOptions& o) { o.maxErrorMm = std::nan(""); });
+    refuses([](LabelOptions& o) { o.maxTriangles = -1; });
+    refuses([](LabelOptions& o) { o.reduction = 1.5; });
+    refuses([](LabelOptions& o) { o.labels = {2}; });
+    refuses([](LabelOptions& o) { o.labels = {1, 1}; });
+    refuses([](LabelOptions& o) { o.labels = {0}; });
+}
+
+TEST(ExtractLabels, GivesNothingForAMapOfZeros) {
+    const Map map(centredGeometry({3, 3, 3}), [](const Index3&) { return 0; });
+    const LabelResult result = extractLabels(map.view(), {});
+    EXPECT_TRUE(result.complex.points.empty());
+    EXPECT_TRUE(result.complex.triangles.empty());
+    EXPECT_TRUE(findLabels(map.view()).empty());
+}
+
+TEST(FindLabels, ListsThemAscendingWithoutZero) {
+    const Map map(centredGeometry({5, 1, 1}), [](const Index3& i) {
+        return std::array<Label, 5>{7, -3, 0, 7, 2}[i[0]];
+    });
+    EXPECT_EQ(findLabels(map.view()), (std::vector<Label>{-3, 2, 7}));
+}
+
+}  // namespace
+}  // namespace adaptiso
