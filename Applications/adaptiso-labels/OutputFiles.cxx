@@ -2,14 +2,20 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
+#include <functional>
+#include <utility>
 
 #include "Common/Numbers.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/LabelFiles.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::string_view kVtp = ".vtp";
 
@@ -20,7 +26,7 @@ MeshWriteOptions writeOptions(const LabelsRun& run) {
     return write;
 }
 
-void writeWalls(const LabelComplex& complex, const LabelsRun& run, AtomicFolder& folder) {
+void writeWalls(const LabelComplex& complex, const fs::path& path, const LabelsRun& run) {
     MeshWriteOptions write = writeOptions(run);
     write.cellArrays = {{"label0", {}}, {"label1", {}}};
     for (std::size_t side = 0; side < 2; ++side) {
@@ -28,7 +34,7 @@ void writeWalls(const LabelComplex& complex, const LabelsRun& run, AtomicFolder&
         values.reserve(complex.labels.size());
         for (const auto& labels : complex.labels) values.push_back(labels[side]);
     }
-    writeMesh({complex.points, {}, complex.triangles}, folder.place("walls.vtp"), write);
+    writeMesh({complex.points, {}, complex.triangles}, path, write);
 }
 
 /// The regions' surfaces in one mesh, vertices on walls once for each of their regions, and the
@@ -47,23 +53,17 @@ struct JoinedSurfaces {
     }
 };
 
-bool fits(const JoinedSurfaces& joined) {
-    const auto most = static_cast<std::size_t>(findMeshFormat("all.surf.gii").maxElements);
-    return joined.mesh.points.size() <= most && joined.mesh.triangles.size() <= most;
-}
-
-void writeJoined(const JoinedSurfaces& joined, LabelsRun& run, AtomicFolder& folder) {
-    if (!fits(joined)) {
-        run.warnings.push_back(
-            "all.surf.gii is not written: the surfaces have more points than GIFTI counts");
-        return;
-    }
-    writeMesh(joined.mesh, folder.place("all.surf.gii"), writeOptions(run));
+void writeJoined(const RegionSurfaces& surfaces, const fs::path& surfacePath,
+                 const fs::path& labelPath, const LabelsRun& run) {
+    JoinedSurfaces joined;
     std::vector<LabelKey> table;
-    for (const Region& region : run.regions) {
+    for (std::size_t n = 0; n < run.regions.size(); ++n) {
+        const Region& region = run.regions[n];
+        joined.add(surfaces.surface(n), region.label);
         table.push_back({region.label, region.name, region.color});
     }
-    writeGiftiLabels(joined.labels, table, folder.place("all.label.gii"));
+    writeMesh(joined.mesh, surfacePath, writeOptions(run));
+    writeGiftiLabels(joined.labels, table, labelPath);
 }
 
 /// A field of a table: tabs and line ends would end it.
@@ -94,6 +94,16 @@ bool isOwnFile(std::string_view name) {
     return std::ranges::find(kNames, name) != std::end(kNames);
 }
 
+bool fitsGifti(const LabelsRun& run) {
+    const auto most = static_cast<double>(findMeshFormat("all.surf.gii").maxElements);
+    double points = 0, triangles = 0;
+    for (const Region& region : run.regions) {
+        points += static_cast<double>(region.measure.vertices);
+        triangles += static_cast<double>(region.measure.triangles);
+    }
+    return points <= most && triangles <= most;
+}
+
 std::string regionsTable(const LabelsRun& run) {
     std::string text =
         "index\tname\tabbreviation\tcolor\tvoxels\tvolume_mm3\tarea_mm2\ttriangles\t"
@@ -118,26 +128,37 @@ std::string regionsTable(const LabelsRun& run) {
 
 void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, LabelsRun& run,
                 AtomicFolder& folder) {
+    const bool areVtp = run.options.format == kVtp;
+    std::vector<std::function<void()>> works;  // the longest first
+    const auto add = [&](auto&& work) { works.emplace_back(std::forward<decltype(work)>(work)); };
     folder.fill([&] {
-        writeWalls(complex, run, folder);
-        JoinedSurfaces joined;
+        add([&, path = folder.place("walls.vtp")] { writeWalls(complex, path, run); });
+        if (fitsGifti(run)) {
+            add([&, surface = folder.place("all.surf.gii"),
+                 labels = folder.place("all.label.gii")] {
+                writeJoined(surfaces, surface, labels, run);
+            });
+        }
         std::vector<VtkBlock> blocks;
-        const bool areVtp = run.options.format == kVtp;
         for (std::size_t n = 0; n < run.regions.size(); ++n) {
             const Region& region = run.regions[n];
-            const TriangleMesh surface = surfaces.surface(n);
-            writeMesh(surface, folder.place(region.file), writeOptions(run));
-            std::string block = region.file;
+            std::vector<fs::path> paths{folder.place(region.file)};
+            blocks.push_back({region.name, region.file});
             if (!areVtp) {
-                block = "all/" + std::to_string(region.label) + std::string(kVtp);
-                writeMesh(surface, folder.place(block), writeOptions(run));
+                blocks.back().file = "all/" + std::to_string(region.label) + std::string(kVtp);
+                paths.push_back(folder.place(blocks.back().file));
             }
-            blocks.push_back({region.name, block});
-            joined.add(surface, region.label);
+            add([&, n, paths] {
+                const TriangleMesh surface = surfaces.surface(n);
+                for (const fs::path& path : paths) writeMesh(surface, path, writeOptions(run));
+            });
         }
         writeMultiBlock(blocks, folder.place("all.vtm"));
-        writeJoined(joined, run, folder);
         folder.writeText("regions.tsv", regionsTable(run));
+        // VTK makes ready what all its writers share when the first of them is used: by one thread
+        works.back()();
+        works.pop_back();
+        parallelForPieces(std::ssize(works), 1, [&](std::int64_t n, std::int64_t) { works[n](); });
     });
 }
 

@@ -213,6 +213,11 @@ int runLabels(const LabelsOptions& options) {
     const RegionSurfaces surfaces(complex, run.regions);
     checkComplex(complex, surfaces, map, run, progress);
     warnOfCount(run);
+    if (!fitsGifti(run)) {
+        run.warnings.push_back(baseName(options.input) +
+                               ": all.surf.gii is left out, as the surfaces have more points or "
+                               "triangles than GIFTI counts");
+    }
 
     ReportResult page;  // its folder goes, if empty, after what lies in it
     std::vector<AtomicOutput> outputs;
