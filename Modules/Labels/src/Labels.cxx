@@ -9,6 +9,7 @@
 #include "DualComplex.h"
 #include "LabelGrid.h"
 #include "Placement.h"
+#include "SimplifyWalls.h"
 #include "Walls.h"
 #include "adaptiso/Core/Errors.h"
 
@@ -30,6 +31,13 @@ void requireOptions(const LabelOptions& options) {
         throw InvalidInput("extractLabels: the reduction is " + std::to_string(*options.reduction) +
                            ", must be 0 to 1");
     }
+}
+
+/// Between neighbouring planes of samples, the least of the three axes.
+double leastPlaneDistanceMm(const ImageGeometry& geometry) {
+    const Mat3 toIndex = transpose(inverse(geometry.indexToPhysical));
+    return 1 /
+           std::max({norm(toIndex.column[0]), norm(toIndex.column[1]), norm(toIndex.column[2])});
 }
 
 /// The chosen labels, ascending.
@@ -110,6 +118,26 @@ LabelResult makeWalls(const LabelGrid& grid, const ImageGeometry& geometry,
     return result;
 }
 
+/// What the options ask for; none: the full walls.
+std::optional<SimplifyOptions> simplification(const LabelOptions& options,
+                                              const ImageGeometry& geometry,
+                                              std::int64_t fullTriangles) {
+    SimplifyOptions wanted;
+    wanted.progress = options.progress;
+    wanted.maxErrorMm = options.maxErrorMm;
+    wanted.maxTriangles = options.maxTriangles;
+    if (options.reduction) {
+        const auto left = static_cast<std::int64_t>(
+            std::ceil((1 - *options.reduction) * static_cast<double>(fullTriangles)));
+        wanted.maxTriangles = std::min(left, wanted.maxTriangles.value_or(left));
+    }
+    if (!wanted.maxErrorMm && !wanted.maxTriangles) {
+        wanted.maxErrorMm = LabelOptions::kDefaultMaxErrorVoxels * leastPlaneDistanceMm(geometry);
+    }
+    if (wanted.maxErrorMm == 0.0 || wanted.maxTriangles.value_or(0) >= fullTriangles) return {};
+    return wanted;
+}
+
 }  // namespace
 
 LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options) {
@@ -117,6 +145,13 @@ LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options)
     const LabelGrid grid = makeGrid(volume);
     const std::vector<Label> chosen = chosenLabels(grid, options);
     LabelResult result = makeWalls(grid, volume.geometry(), options);
+    const auto wanted = simplification(options, volume.geometry(), result.statistics.fullTriangles);
+    if (wanted) {
+        SimplifiedWalls walls = simplifyWalls(result.complex, volume.geometry(), *wanted);
+        result.complex = std::move(walls.complex);
+        result.statistics.errorBoundMm = walls.errorBoundMm;
+        result.statistics.wantedTriangles = wanted->maxTriangles;
+    }
     if (!chosen.empty()) keepRegions(result.complex, chosen);
     return result;
 }

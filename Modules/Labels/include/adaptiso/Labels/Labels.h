@@ -66,9 +66,13 @@ struct LabelResult {
 
 /// The walls between the regions of a label map, in one complex.
 ///
+/// The dual complex of Kuhn's triangulation, its cells contracted where that leaves the topology,
+/// smoothed, and simplified by edge collapse within a proved distance [Nielson1997, Gibson1998,
+/// Garland1997, Dey1999].
+///
 /// Every region's surface is closed, outward and 2-manifold, also where voxels touch at an edge or
 /// a corner only; no two triangles cross; every voxel centre lies in the region of its label. What
-/// lies beyond the border of the volume has the label 0. The method: Documentation/Labels.md.
+/// lies beyond the border of the volume has the label 0. The method: Documentation/LabelsMethod.md.
 ///
 /// \return  empty when all labels are 0.
 /// \pre  samples are whole numbers that Label holds; options as their comments say; options.labels

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "adaptiso/Core/ImageGeometry.h"
+
+namespace adaptiso::detail {
+
+/// Tells whether a change of walls takes them over a voxel centre.
+class SweptCentres {
+public:
+    explicit SweptCentres(const ImageGeometry& geometry)
+        : originMm_(geometry.originMm), toIndex_(inverse(geometry.indexToPhysical)) {}
+
+    /// A voxel centre lies in the tetrahedron of a triangle and a point, or so near to it that
+    /// rounding could tell otherwise. Replacing triangles round an edge by the cone of a new point
+    /// over their border sweeps the tetrahedra of these triangles and the point, and no more.
+    bool isCentreIn(const std::array<Vec3, 3>& triangle, const Vec3& point) const;
+
+private:
+    Vec3 originMm_;
+    Mat3 toIndex_;
+};
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,121 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Labels/Labels.h"
+
+namespace adaptiso::detail {
+
+/// Walls that edge collapses change, each of which can be taken back later.
+///
+/// A change replaces the triangles round an edge by those of one new vertex. To take one back,
+/// first take back the later ones that replaced some of its triangles; so what is left is always
+/// what some of the changes make of the full walls.
+class WallMesh {
+public:
+    using Id = std::uint32_t;
+    static constexpr Id kNone = ~Id{0};
+
+    /// Where a vertex lies: in a wall, on a curve where walls meet, where curves end or meet.
+    enum class Kind : std::uint8_t { Wall, Curve, Corner };
+
+    struct WallTriangle {
+        std::array<Id, 3> v;
+        Id wall;  ///< number of its two labels
+        bool has(Id vertex) const { return v[0] == vertex || v[1] == vertex || v[2] == vertex; }
+    };
+
+    explicit WallMesh(const LabelComplex& full);
+
+    std::int64_t fullPoints() const { return fullPoints_; }
+    std::int64_t fullTriangles() const { return fullTriangles_; }
+    std::size_t pointCount() const { return points_.size(); }
+    std::size_t triangleCount() const { return triangles_.size(); }  ///< with those that are gone
+    std::int64_t aliveTriangles() const { return alive_; }
+
+    const Vec3& point(Id v) const { return points_[v]; }
+    Kind kind(Id v) const { return kinds_[v]; }
+    bool isAlive(Id v) const { return count_[v] > 0; }
+    const WallTriangle& triangle(Id t) const { return triangles_[t]; }
+    bool isTriangleAlive(Id t) const { return killer_[t] == kNone; }
+    /// The change that took it away. \pre it is not alive
+    Id killerOf(Id t) const { return killer_[t]; }
+    /// The change that made it; kNone for a triangle of the full walls.
+    Id makerOf(Id t) const { return maker_[t]; }
+    std::span<const Id> around(Id v) const { return {entries_.data() + begin_[v], count_[v]}; }
+    std::array<Vec3, 3> cornersOf(Id t) const {
+        const auto& v = triangles_[t].v;
+        return {points_[v[0]], points_[v[1]], points_[v[2]]};
+    }
+    /// Triangles at the edge.
+    int orderOf(Id u, Id v) const;
+
+    struct Change {
+        Id u, v, w;
+        std::uint64_t removedBegin, removedEnd;  ///< in removed()
+        Id madeBegin, madeEnd;
+    };
+    std::span<const Id> removedBy(const Change& c) const {
+        return {removed_.data() + c.removedBegin, c.removedEnd - c.removedBegin};
+    }
+    const Change& change(Id n) const { return changes_[n]; }
+
+    /// Replaces `star`, all triangles round u and v, those round the edge at its end. The new
+    /// triangles are, in this order, those of the star's first `kept` with u and v replaced.
+    /// \return the number of the change
+    Id collapse(Id u, Id v, const Vec3& point, Kind kind, std::span<const Id> star,
+                std::size_t kept);
+
+    /// Takes back a change and what rests on it. Calls f(change) for each, before it goes.
+    template <class F>
+    void undo(Id change, const F& f);
+
+    /// The walls as they are, points in their order; and the triangle that each was.
+    LabelComplex complex(std::vector<Id>* numbers = nullptr) const;
+    const std::array<Label, 2>& labelsOf(Id wall) const { return walls_[wall]; }
+
+private:
+    void undoOne(const Change& change);
+    void replaceEntry(Id vertex, Id from, Id to);
+    void findKinds();
+
+    std::int64_t fullPoints_, fullTriangles_, alive_;
+    std::vector<Vec3> points_;
+    std::vector<Kind> kinds_;
+    std::vector<WallTriangle> triangles_;
+    std::vector<Id> maker_, killer_;
+    std::vector<std::uint64_t> begin_;
+    std::vector<Id> count_, entries_;
+    std::vector<Change> changes_;
+    std::vector<Id> removed_;
+    std::vector<std::array<Label, 2>> walls_;
+    std::vector<Id> stack_;
+};
+
+template <class F>
+void WallMesh::undo(Id change, const F& f) {
+    stack_.assign(1, change);
+    while (!stack_.empty()) {
+        const Id n = stack_.back();
+        const Change& c = changes_[n];
+        Id later = kNone;
+        for (Id t = c.madeBegin; t < c.madeEnd && later == kNone; ++t) {
+            if (killer_[t] != kNone && killer_[t] != n) later = killer_[t];
+        }
+        if (later != kNone) {
+            stack_.push_back(later);
+            continue;
+        }
+        stack_.pop_back();
+        if (c.madeBegin < c.madeEnd && killer_[c.madeBegin] == n) continue;  // gone already
+        f(c);
+        undoOne(c);
+        for (Id t = c.madeBegin; t < c.madeEnd; ++t) killer_[t] = n;  // killed by its own maker
+    }
+}
+
+}  // namespace adaptiso::detail
