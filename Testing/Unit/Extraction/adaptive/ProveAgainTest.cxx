@@ -53,6 +53,16 @@ TEST(ErrorProof, SaysAgainWhatProvingAnewSays) {
     }
 }
 
+TEST(ErrorProof, FindsAgainWhatWasNotMended) {
+    const ProvedBall ball;
+    SimplifiedSurface surface = ball.full;
+    pull(surface, ball.vertexAt({28, 28, 40}), 1.5);
+    ErrorProof kept = ball.proof(0.5);
+    const ErrorBound first = kept.prove(surface), again = kept.proveAgain(surface, {});
+    EXPECT_FALSE(first.beyondLimit.empty());
+    EXPECT_TRUE(isAmong(first, again) && isAmong(again, first));
+}
+
 // Triangles that go and leave nothing in their place: the full surface there has lost what was
 // near.
 TEST(ErrorProof, LooksAgainWhereTrianglesWent) {
