@@ -61,7 +61,7 @@ private:
         Vec3 point;
         Kind kind = Kind::Wall;
     };
-    /// Samples are vertices alone: between them the distance may be larger.
+    /// Between samples the distance may be larger.
     static constexpr float kTrust = 0.8F, kTighter = 0.6F;
     static constexpr std::uint8_t kOnWall = 3;  ///< a sample's slot
 
@@ -76,6 +76,11 @@ private:
     bool findHomes(Id u, Id v, const Plan& plan, double limitMm);
     bool isNearFull(const Vec3& point, double limitMm);
     void link(Id sample, Id triangle, std::uint8_t slot);
+    /// Samples are the vertices of the full walls and, after them, the middles of their triangles.
+    Vec3 samplePoint(Id sample) const;
+    /// A vertex of the full walls at a sample.
+    Id vertexAt(Id sample) const;
+    bool spokesAreNear(const Plan& plan, double limitMm);
 
     WallMesh mesh_;
     SweptCentres centres_;
@@ -86,7 +91,7 @@ private:
     std::vector<double> leastCost_;  ///< of each vertex's edges, when last looked at
     std::vector<std::uint64_t> fullBegin_;
     std::vector<Id> fullAround_;  ///< triangles of the full walls at their vertices
-    // vertices of the full walls, and the triangles that they are assigned to: lists
+    // samples, and the triangles that they are assigned to: lists
     std::vector<Id> home_, nextSample_, firstSample_;
     std::vector<float> tightness_;    ///< part of the limit that a sample may use
     std::vector<std::uint8_t> slot_;  ///< edge of the home that it is assigned to
@@ -99,6 +104,7 @@ private:
     struct NewHome {
         Id sample, star;
         std::uint8_t slot;
+        Vec3 point;
     };
     std::vector<NewHome> newHomes_;
     Id nearestSample_ = kNone;
@@ -112,11 +118,11 @@ Collapser::Collapser(const LabelComplex& full, const ImageGeometry& geometry)
       origin_(full.points.size()),
       tried_(full.points.size(), -1),
       leastCost_(full.points.size(), 0),
-      home_(full.points.size(), kNone),
-      nextSample_(full.points.size(), kNone),
+      home_(full.points.size() + full.triangles.size(), kNone),
+      nextSample_(home_.size(), kNone),
       firstSample_(full.triangles.size(), kNone),
-      tightness_(full.points.size(), kTrust),
-      slot_(full.points.size(), kOnWall),
+      tightness_(home_.size(), kTrust),
+      slot_(home_.size(), kOnWall),
       mark_(full.points.size(), 0) {
     fullBegin_.reserve(full.points.size() + 1);
     fullBegin_.push_back(0);
@@ -141,7 +147,22 @@ Collapser::Collapser(const LabelComplex& full, const ImageGeometry& geometry)
             }
         }
     }
+    for (Id t = 0; t < full.triangles.size(); ++t) {
+        link(static_cast<Id>(full.points.size()) + t, t, kOnWall);
+    }
     addQuadrics();
+}
+
+Vec3 Collapser::samplePoint(Id sample) const {
+    const auto vertices = static_cast<Id>(mesh_.fullPoints());
+    if (sample < vertices) return mesh_.point(sample);
+    const auto c = mesh_.cornersOf(sample - vertices);
+    return (1.0 / 3) * (c[0] + c[1] + c[2]);
+}
+
+Id Collapser::vertexAt(Id sample) const {
+    const auto vertices = static_cast<Id>(mesh_.fullPoints());
+    return sample < vertices ? sample : mesh_.triangle(sample - vertices).v[0];
 }
 
 void Collapser::addQuadrics() {
@@ -337,12 +358,12 @@ bool Collapser::findHomes(Id u, Id v, const Plan& plan, double limitMm) {
     for (std::size_t i = 0; i < star_.size(); ++i) {
         const auto& t = mesh_.triangle(star_[i]);
         for (Id s = firstSample_[star_[i]]; s != kNone; s = nextSample_[s]) {
-            const Vec3& p = mesh_.point(s);
+            const Vec3 p = samplePoint(s);
             if (const double d2 = squaredNorm(p - plan.point); d2 < nearest2) {
                 nearest2 = d2;
                 nearestSample_ = s;
             }
-            NewHome home{s, kNone, slot_[s]};
+            NewHome home{s, kNone, slot_[s], p};
             double best2 = kInfinity;
             if (slot_[s] == kOnWall) {
                 for (std::size_t n = 0; n < kept_; ++n) {
@@ -380,7 +401,8 @@ bool Collapser::findHomes(Id u, Id v, const Plan& plan, double limitMm) {
 /// The full walls come near the point, as far as those round the nearest sample show.
 bool Collapser::isNearFull(const Vec3& point, double limitMm) {
     limitMm *= tightness_[nearestSample_];
-    for (std::uint64_t n = fullBegin_[nearestSample_]; n < fullBegin_[nearestSample_ + 1]; ++n) {
+    const Id vertex = vertexAt(nearestSample_);
+    for (std::uint64_t n = fullBegin_[vertex]; n < fullBegin_[vertex + 1]; ++n) {
         const auto c = mesh_.cornersOf(fullAround_[n]);
         if (squaredNorm(point - closestPointOnTriangle(point, c[0], c[1], c[2])) <=
             limitMm * limitMm) {
@@ -388,6 +410,28 @@ bool Collapser::isNearFull(const Vec3& point, double limitMm) {
         }
     }
     return false;
+}
+
+/// The middles of the edges at the new vertex are near the full walls: a ridge may pass between
+/// samples.
+bool Collapser::spokesAreNear(const Plan& plan, double limitMm) {
+    for (std::size_t i = 0; i < kept_; ++i) {
+        const auto& t = mesh_.triangle(star_[i]).v;
+        for (const Id x : t) {
+            if (mark_[x] == stamp_) continue;
+            mark_[x] = stamp_;
+            const Vec3 middle = 0.5 * (plan.point + mesh_.point(x));
+            double nearest2 = kInfinity;
+            for (const NewHome& home : newHomes_) {
+                const double d2 = squaredNorm(home.point - middle);
+                if (d2 >= nearest2) continue;
+                nearest2 = d2;
+                nearestSample_ = home.sample;
+            }
+            if (nearest2 < kInfinity && !isNearFull(middle, limitMm)) return false;
+        }
+    }
+    return true;
 }
 
 bool Collapser::tryCollapse(Id u, Id v, Plan plan, double limitMm) {
@@ -398,6 +442,12 @@ bool Collapser::tryCollapse(Id u, Id v, Plan plan, double limitMm) {
     if (!keepsShape(u, v, plan.point)) return false;
     if (!findHomes(u, v, plan, limitMm)) return false;
     if (isMoved && !isNearFull(plan.point, limitMm)) return false;
+    const Id nearest = nearestSample_;
+    if (mark_.size() < mesh_.pointCount()) mark_.resize(mesh_.pointCount(), 0);
+    ++stamp_;
+    mark_[u] = mark_[v] = stamp_;
+    if (!spokesAreNear(plan, limitMm)) return false;
+    nearestSample_ = nearest;
     if (sweepsCentre(plan.point)) return false;
 
     const Id n = mesh_.collapse(u, v, plan.point, plan.kind, star_, kept_);
@@ -408,7 +458,7 @@ bool Collapser::tryCollapse(Id u, Id v, Plan plan, double limitMm) {
         link(home.sample, change.madeBegin + home.star, home.slot);
     }
     quadrics_.push_back(quadrics_[u] + quadrics_[v]);
-    origin_.push_back(nearestSample_);
+    origin_.push_back(vertexAt(nearestSample_));
     leastCost_.push_back(0);
     tried_.push_back(-1);
     mark_.push_back(0);
@@ -468,8 +518,9 @@ void Collapser::undo(Id change) {
                 for (const Id to : star) {
                     if (mesh_.triangle(to).wall != mesh_.triangle(t).wall) continue;
                     const auto p = mesh_.cornersOf(to);
-                    const double d2 = squaredNorm(
-                        mesh_.point(s) - closestPointOnTriangle(mesh_.point(s), p[0], p[1], p[2]));
+                    const Vec3 at = samplePoint(s);
+                    const double d2 =
+                        squaredNorm(at - closestPointOnTriangle(at, p[0], p[1], p[2]));
                     if (d2 < best2) {
                         best2 = d2;
                         home = to;
@@ -488,6 +539,7 @@ void Collapser::undo(Id change) {
 
 void Collapser::tightenFull(Id full) {
     for (const Id v : mesh_.triangle(full).v) tightness_[v] *= kTighter;
+    tightness_[static_cast<Id>(mesh_.fullPoints()) + full] *= kTighter;
 }
 
 void Collapser::tightenNear(Id triangle) {
@@ -499,6 +551,8 @@ void Collapser::tightenNear(Id triangle) {
 
 Id Collapser::standInOf(Id full) const {
     const auto& t = mesh_.triangle(full);
+    const Id ofMiddle = home_[static_cast<Id>(mesh_.fullPoints()) + full];
+    if (mesh_.isTriangleAlive(ofMiddle)) return ofMiddle;
     for (const Id v : t.v) {
         if (home_[v] != kNone && slot_[v] == kOnWall) return home_[v];
     }
