@@ -87,7 +87,10 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
     statistics.duplicateTriangles = parts.duplicate;
     statistics.borderEdges = std::ssize(parts.borderEdges);
     statistics.nonManifoldVertices = std::move(parts.nonManifold);
-    statistics.crossingTriangles = std::move(parts.crossing);
+    for (const std::int64_t t : parts.crossing) {
+        statistics.crossingTriangles.push_back(
+            parts.inputTriangle.empty() ? t : std::int64_t{parts.inputTriangle[t]});
+    }
     statistics.errorBoundMm = made.errorBoundMm;
     statistics.wantedTriangles = made.wantedTriangles;
     return result;

@@ -30,9 +30,11 @@ struct SimplifyOptions {
 
 /// What was found of the input, and what is proved of the result.
 struct SimplifyStatistics {
-    std::int64_t degenerateTriangles = 0;  ///< of the input, without area: dropped
-    std::int64_t duplicateTriangles = 0;   ///< of the input, with the corners of another: dropped
-    std::int64_t borderEdges = 0;          ///< of the input: with one triangle
+    /// Of the input, without area: dropped. Where a corner lies on the opposite side the triangle
+    /// across it is split there, so that the surface does not open.
+    std::int64_t degenerateTriangles = 0;
+    std::int64_t duplicateTriangles = 0;  ///< of the input, with the corners of another: dropped
+    std::int64_t borderEdges = 0;         ///< of the input: with one triangle
     /// Vertices of the input at edges with three triangles or more, or with two that face opposite
     /// sides, and those that join triangles by themselves alone: kept as they are.
     std::vector<std::int64_t> nonManifoldVertices;

@@ -7,7 +7,7 @@
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/MeshQuality/Topology.h"
+#include "adaptive/full/FlatTriangles.h"
 #include "adaptive/mesh/HalfEdges.h"
 #include "adaptive/mesh/Patch.h"
 #include "adaptive/proof/CrossingProof.h"
@@ -41,36 +41,37 @@ void requireSimplifiable(const TriangleMesh& mesh) {
     }
 }
 
-/// Of the triangles, those that have the corners of one before them, whichever way round.
-std::vector<std::uint8_t> findDuplicateTriangles(const TriangleMesh& mesh) {
-    const std::size_t count = mesh.triangles.size();
+/// Of triangles, those that have the corners of one before them, whichever way round.
+std::vector<std::uint8_t> findDuplicateTriangles(const std::vector<Triangle>& triangles,
+                                                 std::size_t points) {
+    const std::size_t count = triangles.size();
     // by its smallest corner, as the others it shares a bucket with are few
-    const Buckets<std::uint32_t, std::uint32_t> bySmallest(
-        mesh.points.size(), [&](const auto& give) {
-            for (std::uint32_t t = 0; t < count; ++t) {
-                const auto& [a, b, c] = mesh.triangles[t];
-                give(static_cast<std::size_t>(std::min({a, b, c})), t);
-            }
-        });
+    const Buckets<std::uint32_t, std::uint32_t> bySmallest(points, [&](const auto& give) {
+        for (std::uint32_t t = 0; t < count; ++t) {
+            const auto& [a, b, c] = triangles[t];
+            give(static_cast<std::size_t>(std::min({a, b, c})), t);
+        }
+    });
     std::vector<std::uint8_t> isDuplicate(count, 0);
     const auto sorted = [&](std::uint32_t t) {
-        Triangle corners = mesh.triangles[t];
+        Triangle corners = triangles[t];
         std::sort(corners.begin(), corners.end());
         return corners;
     };
-    parallelForPieces(std::ssize(mesh.points), kPiece, [&](std::int64_t begin, std::int64_t end) {
-        std::vector<std::pair<Triangle, std::uint32_t>> here;
-        for (std::int64_t v = begin; v < end; ++v) {
-            here.clear();
-            for (const std::uint32_t t : bySmallest.of(static_cast<std::size_t>(v))) {
-                here.emplace_back(sorted(t), t);
+    parallelForPieces(
+        static_cast<std::int64_t>(points), kPiece, [&](std::int64_t begin, std::int64_t end) {
+            std::vector<std::pair<Triangle, std::uint32_t>> here;
+            for (std::int64_t v = begin; v < end; ++v) {
+                here.clear();
+                for (const std::uint32_t t : bySmallest.of(static_cast<std::size_t>(v))) {
+                    here.emplace_back(sorted(t), t);
+                }
+                std::sort(here.begin(), here.end());
+                for (std::size_t i = 1; i < here.size(); ++i) {
+                    if (here[i].first == here[i - 1].first) isDuplicate[here[i].second] = 1;
+                }
             }
-            std::sort(here.begin(), here.end());
-            for (std::size_t i = 1; i < here.size(); ++i) {
-                if (here[i].first == here[i - 1].first) isDuplicate[here[i].second] = 1;
-            }
-        }
-    });
+        });
     return isDuplicate;
 }
 
@@ -99,9 +100,10 @@ public:
         takeTriangles();
         halfEdges_.assign(parts_.points.size(), parts_.triangles);
         halfEdges_.match(parts_.triangles, twin_);
+        const std::vector<std::int64_t> crossing = findCrossings();
         cutEdges();
         cutPoints();
-        keepCrossings();
+        keepCrossings(crossing);
         if (keepsBorders_) {
             for (const std::uint64_t h : parts_.borderEdges) {
                 keep(from(static_cast<std::uint32_t>(h)));
@@ -121,22 +123,26 @@ private:
 
     /// Those with an area, each once; with the points that they use.
     void takeTriangles() {
-        const std::vector<std::uint8_t> isDuplicate = findDuplicateTriangles(mesh_);
+        const AreaTriangles withArea = withoutFlatTriangles(mesh_);
+        const std::vector<std::uint8_t> isDuplicate =
+            findDuplicateTriangles(withArea.triangles, mesh_.points.size());
+        parts_.degenerate = withArea.flat;
         std::vector<std::uint32_t> number(mesh_.points.size(), kNone);
-        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-            if (isDegenerate(mesh_, mesh_.triangles[t])) {
-                ++parts_.degenerate;
-            } else if (isDuplicate[t] != 0) {
+        for (std::size_t t = 0; t < withArea.triangles.size(); ++t) {
+            if (withArea.isLeftOut[t] != 0) continue;
+            if (isDuplicate[t] != 0) {
                 ++parts_.duplicate;
-            } else {
-                const auto& [a, b, c] = mesh_.triangles[t];
-                parts_.triangles.push_back({static_cast<std::uint32_t>(a),
-                                            static_cast<std::uint32_t>(b),
-                                            static_cast<std::uint32_t>(c)});
-                inputTriangle_.push_back(static_cast<std::uint32_t>(t));
-                number[a] = number[b] = number[c] = 0;
+                continue;
             }
+            const auto& [a, b, c] = withArea.triangles[t];
+            parts_.triangles.push_back({static_cast<std::uint32_t>(a),
+                                        static_cast<std::uint32_t>(b),
+                                        static_cast<std::uint32_t>(c)});
+            parts_.inputTriangle.push_back(static_cast<std::uint32_t>(t));
+            number[a] = number[b] = number[c] = 0;
         }
+        isWhole_ = withArea.flat == 0 && parts_.duplicate == 0;
+        if (isWhole_) parts_.inputTriangle = {};
         if (parts_.triangles.empty()) {
             throw InvalidInput("simplify: the mesh has no triangle with an area");
         }
@@ -249,21 +255,18 @@ private:
         parts_.isKept[v] = 1;
     }
 
-    /// Numbers of what is left of the input's triangles.
     std::vector<std::int64_t> findCrossings() {
         parts_.tree = std::make_shared<const AabbTree>(mesh_);
-        if (parts_.triangles.size() == mesh_.triangles.size()) {
-            return crossingTriangles(mesh_, *parts_.tree);
-        }
+        if (isWhole_) return crossingTriangles(mesh_, *parts_.tree);
         TriangleMesh left;
-        left.points = mesh_.points;
-        for (const std::uint32_t t : inputTriangle_) left.triangles.push_back(mesh_.triangles[t]);
+        left.points = parts_.points;
+        for (const auto& [a, b, c] : parts_.triangles) left.triangles.push_back({a, b, c});
         return crossingTriangles(left);
     }
 
-    void keepCrossings() {
-        for (const std::int64_t t : findCrossings()) {
-            parts_.crossing.push_back(inputTriangle_[t]);
+    void keepCrossings(const std::vector<std::int64_t>& crossing) {
+        parts_.crossing = crossing;
+        for (const std::int64_t t : crossing) {
             for (const std::uint32_t v : parts_.triangles[t]) keep(v);
         }
         if (!parts_.isKept.empty()) parts_.isKept.resize(parts_.points.size(), 0);
@@ -273,7 +276,8 @@ private:
     const TriangleMesh& mesh_;
     bool keepsBorders_;
     MeshParts parts_;
-    std::vector<std::uint32_t> inputTriangle_, inputPoint_;  ///< of each triangle and point
+    std::vector<std::uint32_t> inputPoint_;  ///< of each point
+    bool isWhole_ = true;                    ///< no triangle of the input was left out or changed
     HalfEdges<std::uint32_t> halfEdges_;
     std::vector<std::uint32_t> twin_;
     std::vector<std::uint8_t> isCut_;  ///< of each half-edge

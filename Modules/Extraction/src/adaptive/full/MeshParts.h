@@ -26,7 +26,8 @@ struct MeshParts {
     std::vector<std::uint8_t> isKept;            ///< of each point: it stays. Empty: none is
     std::vector<std::uint64_t> borderEdges;      ///< half-edges of open borders, not of cuts
     std::vector<VertexId> nonManifold;           ///< points of the input, ascending
-    std::vector<std::int64_t> crossing;          ///< triangles of the input
+    std::vector<std::int64_t> crossing;          ///< triangles that cross others, ascending
+    std::vector<std::uint32_t> inputTriangle;    ///< of each triangle. Empty: its own number
     std::shared_ptr<const AabbTree> tree;        ///< of the input
     std::int64_t degenerate = 0, duplicate = 0;  ///< triangles that were dropped
 };

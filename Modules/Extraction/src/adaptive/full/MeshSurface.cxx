@@ -57,7 +57,11 @@ Corners cornersIn(const TriangleMesh& mesh, std::int64_t t) {
 MeshSurface::MeshSurface(const TriangleMesh& input, const MeshParts& parts,
                          std::optional<double> boundMm)
     : FullSurface(frameOf(voxelOf(parts, boundMm))), input_(input), parts_(parts) {
-    for (const std::int64_t t : parts.crossing) crossing_.push_back(cornersIn(input, t));
+    for (const std::int64_t t : parts.crossing) {
+        Corners corners = cornersOf(static_cast<std::size_t>(t));
+        for (Vec3& p : corners) p = p + parts.origin;
+        crossing_.push_back(corners);
+    }
     std::sort(crossing_.begin(), crossing_.end(), isBefore);
 }
 
