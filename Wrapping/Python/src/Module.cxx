@@ -19,6 +19,7 @@
 #include "Judgements.h"
 #include "MeshData.h"
 #include "Resources.h"
+#include "Simplify.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Extraction/Extraction.h"
@@ -621,6 +622,7 @@ PYBIND11_MODULE(_adaptiso, module) {
     declareMeshData(module);
     declareSurfaces(module);
     declareFilesAndChecks(module);
+    declareSimplify(module);
     declareHeadModels(module);
     module.def("before_fork", &beforeFork);
     module.def("after_fork_in_parent", &afterForkInParent);
