@@ -80,13 +80,10 @@ bool PatchTopology::closedStarOf(std::uint32_t h, Star& star) const {
 /// must stay.
 bool PatchTopology::openStarOf(std::uint32_t h, Star& star) const {
     const std::uint32_t twin = twin_[h];
-    const auto isEar = [&](std::uint32_t side) {
-        return twin_[next(side)] == kNone && twin_[previous(side)] == kNone;
-    };
     if (twin == kNone) {
         star.removed[0] = h / 3;
         star.removedCount = 1;
-        if (isEar(h) || !addFan(leaving_[to(h)], h / 3, star)) return false;
+        if (!addFan(leaving_[to(h)], h / 3, star)) return false;
         star.beside[0] = std::max(0, star.count - 1);
         return addFan(twin_[previous(h)], kNone, star) && star.count > 0;
     }
