@@ -11,6 +11,7 @@
 #include "InputFolder.h"
 #include "Seeds.h"
 #include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/MeshIO/PointData.h"
 #include "adaptiso/MeshIO/VtkAdaptor.h"
 
 namespace adaptiso::fuzz {
@@ -36,6 +37,51 @@ void addOwnFiles(Seeds& seeds) {
             seeds.add(ending.substr(1), std::string(std::istreambuf_iterator<char>(stream), {}));
         }
     }
+}
+
+std::string contentOf(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Meshes with values at their points, and such values in files of their own.
+void addValues(Seeds& seeds) {
+    const InputFolder folder;
+    MeshWriteOptions options;
+    options.pointArrays = {{"depth", std::vector<double>{1, 2, 3, 4}},
+                           {"two", std::vector<double>(8), 2},
+                           {"labels", std::vector<std::int64_t>{-1, 2, 3, 4}},
+                           {"RGB", std::vector<Color>(4)}};
+    for (const MeshFormat& format : meshFormats()) {
+        if (!format.holdsPointArrays) continue;
+        const std::string ending(format.extensions.front());
+        const auto file = folder.path() / ("values" + ending);
+        writeMesh(tetrahedron(), file, options);
+        seeds.add(ending.substr(1), contentOf(file));
+    }
+    const std::vector<float> numbers{1, 2, 3, 4};
+    const std::vector<std::int32_t> labels{1, 2, 3, 4};
+    PointData data{PointDataFormat::FreeSurferCurv, 4, {{{}, numbers, 1, {}}}, {}, {}, {}};
+    writePointData(data, 4, folder.path() / "lh.curv");
+    seeds.add("curv", contentOf(folder.path() / "lh.curv"));
+    seeds.add("curv", std::string("\0\0\2\0\0\1\x00\x96\xFF\x38", 10));
+    data = {PointDataFormat::FreeSurferAnnot, 4, {{{}, labels, 1, {}}}, {}, {}, {}};
+    const std::string one("\0\0\0\1", 4), color(16, '\1');
+    data.annotTable = one + "\xFF\xFF\xFF\xFE" + one + one + "t" + one + one + one + "x" + color;
+    writePointData(data, 4, folder.path() / "lh.annot");
+    seeds.add("annot", contentOf(folder.path() / "lh.annot"));
+    data = {PointDataFormat::Gifti, 4,  {},
+            {{1, "one", {}}},       {}, {{"AnatomicalStructurePrimary", "CortexLeft"}}};
+    data.arrays = {{"NIFTI_INTENT_SHAPE", numbers, 1, {{"Name", "depth"}}},
+                   {"NIFTI_INTENT_LABEL", labels, 1, {}},
+                   {"NIFTI_INTENT_NONE", std::vector<float>(8), 2, {}}};
+    writePointData(data, 4, folder.path() / "a.gii");
+    seeds.add("shape", contentOf(folder.path() / "a.gii"));
+    seeds.add("shape",
+              "<GIFTI><LabelTable><Label Index=\"3\" Red=\"0.5\">a</Label></LabelTable><DataArray "
+              "Intent=\"NIFTI_INTENT_NONE\" DataType=\"NIFTI_TYPE_UINT8\" Encoding=\"ASCII\" "
+              "Dimensionality=\"2\" Dim0=\"2\" Dim1=\"2\" ArrayIndexingOrder=\"ColumnMajorOrder\">"
+              "<Data>1 2 3 4</Data></DataArray></GIFTI>");
 }
 
 void addVtkFiles(Seeds& seeds) {
@@ -113,6 +159,7 @@ void addForeignTexts(Seeds& seeds) {
 
 void addMeshSeeds(Seeds& seeds) {
     addOwnFiles(seeds);
+    addValues(seeds);
     addVtkFiles(seeds);
     addForeignTexts(seeds);
 }
