@@ -10,6 +10,7 @@
 #include "Common/BatchPlan.h"
 #include "Common/BatchRecord.h"
 #include "Common/BatchRows.h"
+#include "Common/Bids.h"
 #include "Common/Numbers.h"
 #include "Common/Progress.h"
 #include "Common/ResultOutput.h"

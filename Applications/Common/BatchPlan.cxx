@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "Common/AtomicOutput.h"
+#include "Common/Bids.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 
@@ -17,12 +18,16 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kName = "{name}";
 
-std::string withName(std::string text, const std::string& name) {
-    for (std::size_t at = text.find(kName); at != std::string::npos;
-         at = text.find(kName, at + name.size())) {
-        text.replace(at, kName.size(), name);
+std::string replaced(std::string text, std::string_view place, std::string_view by) {
+    for (std::size_t at = text.find(place); at != std::string::npos;
+         at = text.find(place, at + by.size())) {
+        text.replace(at, place.size(), by);
     }
     return text;
+}
+
+std::string withName(std::string text, const std::string& name) {
+    return replaced(std::move(text), kName, name);
 }
 
 /// "--output" and its value, of "--output=value".
@@ -119,7 +124,7 @@ void BatchPlan::findItems() {
 
 void BatchPlan::prepareOutputs() {
     if (!batch_.bids.empty()) {
-        makeDerivatives(base_, program_.name);
+        makeDerivatives(batch_.bids, base_, program_.name);
     } else if (!base_.empty()) {
         fs::create_directories(base_);
     }
@@ -138,7 +143,8 @@ void BatchPlan::prepareOutputs() {
 std::string BatchPlan::outputPattern() const {
     for (const std::string& option : batch_.runOptions) {
         const auto [name, value] = split(option);
-        if (name == "--output") return value;
+        if (name != "--output") continue;
+        return batch_.bids.empty() ? value : replaced(value, "{iso}", kIsoLabel);
     }
     return batch_.bids.empty() ? program_.defaultOutput : program_.defaultBidsOutput;
 }
