@@ -123,6 +123,10 @@ void BatchPlan::findItems() {
 }
 
 void BatchPlan::prepareOutputs() {
+    if (program_.isPartOfApp) {
+        fs::create_directories(base_);
+        return;
+    }
     if (!batch_.bids.empty()) {
         makeDerivatives(batch_.bids, base_, program_.name);
     } else if (!base_.empty()) {
@@ -153,7 +157,9 @@ std::vector<std::string> BatchPlan::outputs(const BatchItem& item,
                                             const std::vector<std::string>& names) const {
     const fs::path folder = fs::path(withName(outputPattern(), item.name)).parent_path();
     std::vector<std::string> files;
-    for (const std::string& name : names) files.push_back((folder / name).string());
+    for (const std::string& name : names) {
+        files.push_back((folder / withName(name, item.name)).string());
+    }
     return files;
 }
 
@@ -224,8 +230,13 @@ std::vector<std::string> BatchPlan::arguments(const BatchItem& item) const {
         const int machine = static_cast<int>(std::thread::hardware_concurrency());
         arguments.push_back("--threads=" + std::to_string(std::max(1, machine / *batch_.jobs)));
     }
-    arguments.insert(arguments.end(), {"--quiet", "--no-warnings", "--json=-", "--"});
-    for (const fs::path& input : item.inputs) arguments.push_back(input.string());
+    arguments.insert(arguments.end(), {"--quiet", "--no-warnings", "--json=-"});
+    if (program_.inputOption.empty()) arguments.emplace_back("--");
+    for (const fs::path& input : item.inputs) {
+        arguments.push_back(program_.inputOption.empty()
+                                ? input.string()
+                                : program_.inputOption + "=" + input.string());
+    }
     return arguments;
 }
 
