@@ -10,6 +10,8 @@
 #include "Common/BatchPlan.h"
 #include "Common/BatchRecord.h"
 #include "Common/BatchRows.h"
+#include "Common/Bids.h"
+#include "Common/EarlierRuns.h"
 #include "Common/Numbers.h"
 #include "Common/Progress.h"
 #include "Common/ResultOutput.h"
@@ -22,27 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A name in the words of a reason: of a file, not of the folders that it lies in.
-std::string nameOf(const fs::path& path) {
-    return path.filename().string();
-}
-
-std::vector<std::string> namesOf(const std::vector<KeptOption>& options) {
-    std::vector<std::string> names;
-    for (const KeptOption& option : options) names.push_back(option.name);
-    return names;
-}
-
-/// "--method" where only its value differs.
-std::string differenceOf(const std::vector<KeptOption>& before,
-                         const std::vector<KeptOption>& now) {
-    if (namesOf(before) != namesOf(now)) return "other options were given";
-    for (std::size_t n = 0; n < now.size(); ++n) {
-        if (before[n] != now[n]) return "another " + now[n].name + " was given";
-    }
-    return {};
-}
-
 class BatchRun {
 public:
     BatchRun(const BatchProgram& program, const BatchOptions& batch, const CommonOptions& common)
@@ -52,8 +33,8 @@ public:
           plan_(program, batch, common),
           items_(plan_.items()),
           records_(items_.size()),
-          inputs_(items_.size()),
           reasons_(items_.size()),
+          earlier_(program, plan_),
           expected_(findExpected()),
           progress_(common.isQuiet) {}
 
@@ -69,10 +50,13 @@ public:
         runChildren(
             waiting.size(), batch_.jobs.value_or(1),
             [&](std::size_t n) { return start(waiting[n]); },
-            [&](std::size_t n, const ChildResult& result) { finish(waiting[n], result); });
+            [&](std::size_t n, const ChildResult& result) { finish(waiting[n], result); },
+            program_.executable);
         progress_.clear();
         writeFiles();
-        if (!common_.isQuiet && !common_.wantsJsonOnStdout()) printTotals();
+        if (!common_.isQuiet && !common_.wantsJsonOnStdout() && !program_.isPartOfApp) {
+            printTotals();
+        }
         flushResults();
         return failedCount() == 0 ? kExitOk : kExitCheckFailed;
     }
@@ -82,102 +66,17 @@ private:
 
     void findEarlierRuns() {
         for (std::size_t n = 0; n < items_.size(); ++n) {
-            const Planned planned = plan_.records(items_[n]);
-            std::vector<KeptRecord> kept;
-            for (const PlannedRecord& record : planned) {
-                reasons_[n] = whyAgain(n, record, kept);
-                if (!reasons_[n].empty() || kept.empty()) break;
-            }
-            if (reasons_[n].empty() && kept.size() == planned.size()) {
-                records_[n] = together(kept);
-            }
-            if (reasons_[n] == kNothingThere) reasons_[n].clear();
+            std::vector<EarlierRecord> found = earlier_.look(n);
+            if (EarlierRuns::areDone(found)) records_[n] = together(found);
+            reasons_[n] = EarlierRuns::reasonOf(found);
         }
     }
 
-    /// Why a surface has to be made again; nothing, and its record, when it has not.
-    std::string whyAgain(std::size_t n, const PlannedRecord& planned,
-                         std::vector<KeptRecord>& kept) {
-        RecordFault fault = RecordFault::None;
-        std::optional<KeptRecord> record = readRecord(planned.file, fault);
-        std::error_code error;
-        switch (fault) {
-            case RecordFault::None:
-                break;
-            case RecordFault::Missing:
-                return !planned.surface.empty() && fs::exists(planned.surface, error)
-                           ? nameOf(planned.surface) + " has no record"
-                           : kNothingThere;
-            case RecordFault::Damaged:
-                return "its record is damaged";
-            case RecordFault::OfAnotherVersion:
-                return "its record is of another version";
-        }
-        if (!record->hasEnded) return "its last run did not end";
-        if (!record->run.isFinished()) return "its last run failed";
-        if (record->version != versionText(program_.name)) return "another version has made it";
-        std::string why = differenceOf(record->options, planned.options);
-        if (why.empty()) why = changeOfInputs(n, *record);
-        if (why.empty()) why = changeOfOutputs(items_[n], *record, planned);
-        if (why.empty()) kept.push_back(std::move(*record));
-        return why;
-    }
-
-    std::string changeOfInputs(std::size_t n, const KeptRecord& record) {
-        const std::vector<KeptInput>& now = inputsOf(n);
-        if (now.size() != record.inputs.size()) return "its input can't be read, or could not";
-        for (std::size_t k = 0; k < now.size(); ++k) {
-            if (changeOf(record.inputs[k].file, now[k].file) != FileChange::None) {
-                return "the input " + now[k].file.file + " has changed";
-            }
-        }
-        return {};
-    }
-
-    /// Surfaces, and what is asked for besides; of what else was written nobody wants to know.
-    std::string changeOfOutputs(const BatchItem& item, const KeptRecord& record,
-                                const PlannedRecord& planned) const {
-        const auto extras = plan_.extras(item);
-        for (const auto& [option, path] : extras) {
-            if (!isKept(item, record, option, path)) return nameOf(path) + " was not made";
-        }
-        if (!planned.surface.empty() && record.run.outputs.empty()) return "it holds no surface";
-        for (const KeptOutput& output : record.outputs) {
-            const bool isAsked = output.option == kOutput ||
-                                 std::any_of(extras.begin(), extras.end(), [&](const auto& extra) {
-                                     return extra.first == output.option;
-                                 });
-            if (!isAsked) continue;
-            const fs::path path = item.folder / output.file.file;
-            constexpr bool kTrustsTimes = false;
-            switch (changeOf(output.file, path, kTrustsTimes)) {
-                case FileChange::None:
-                    break;
-                case FileChange::Gone:
-                    return nameOf(path) + " is gone";
-                case FileChange::Changed:
-                    return nameOf(path) + " has changed";
-            }
-        }
-        return {};
-    }
-
-    /// The record tells of what an option asks for: of the file, or of one in the folder.
-    static bool isKept(const BatchItem& item, const KeptRecord& record, const std::string& option,
-                       const fs::path& path) {
-        return std::any_of(record.outputs.begin(), record.outputs.end(), [&](const auto& output) {
-            const fs::path file = (item.folder / output.file.file).lexically_normal();
-            return output.option == option &&
-                   (file == path.lexically_normal() ||
-                    file.parent_path() == (path / "").lexically_normal().parent_path());
-        });
-    }
-
-    /// The run that made all of `kept`, or would have.
-    static BatchRecord together(std::vector<KeptRecord>& kept) {
-        BatchRecord run = std::move(kept.front().run);
-        for (std::size_t n = 1; n < kept.size(); ++n) {
-            BatchRecord& other = kept[n].run;
+    /// The run that made all of `found`, or would have.
+    static BatchRecord together(std::vector<EarlierRecord>& found) {
+        BatchRecord run = std::move(found.front().record->run);
+        for (std::size_t n = 1; n < found.size(); ++n) {
+            BatchRecord& other = found[n].record->run;
             run.outputs.insert(run.outputs.end(), other.outputs.begin(), other.outputs.end());
             if (run.report.contains(kSurfaces) && other.report.contains(kSurfaces)) {
                 for (const Json& surface : other.report[kSurfaces]) {
@@ -187,30 +86,6 @@ private:
         }
         run.isOfEarlierRun = true;
         return run;
-    }
-
-    /// What the item's run reads, as it was when this was first asked; none when it can't be read.
-    const std::vector<KeptInput>& inputsOf(std::size_t n) {
-        if (inputs_[n]) return *inputs_[n];
-        std::vector<KeptInput>& inputs = inputs_[n].emplace();
-        try {
-            for (const fs::path& path : plan_.inputs(items_[n])) {
-                inputs.push_back({keptInput(path, plan_.folder()), placeOf(items_[n], path)});
-            }
-        } catch (const FileError&) {
-            inputs.clear();  // the run will say so
-        }
-        return inputs;
-    }
-
-    /// From the record's folder, of an input in the folder that all is written to.
-    std::string placeOf(const BatchItem& item, const fs::path& input) const {
-        if (plan_.folder().empty()) return {};
-        const fs::path file = fs::absolute(input).lexically_normal();
-        const std::string inBase =
-            file.lexically_relative(fs::absolute(plan_.folder()).lexically_normal()).string();
-        if (inBase.empty() || inBase.starts_with("..")) return {};
-        return file.lexically_relative(fs::absolute(item.folder).lexically_normal()).string();
     }
 
     /// What has no record gets one that says that it has not ended: if this batch is killed, nobody
@@ -228,8 +103,9 @@ private:
     std::vector<std::string> start(std::size_t n) {
         const BatchItem& item = items_[n];
         if (!item.folder.empty()) fs::create_directories(item.folder);
-        inputs_[n].reset();  // they may have changed since they were looked at
-        inputsOf(n);
+        if (program_.removesFormer) removeFormerOutputs(n);
+        earlier_.forgetInputs(n);  // they may have changed since they were looked at
+        earlier_.inputs(n);
         if (plan_.keepsRecords()) {
             removeFormerRecord(item);
             for (const auto& [file, record] : notFinished(n)) writeRecord(file, record);
@@ -245,8 +121,31 @@ private:
         if (fault == RecordFault::OfAnotherVersion) fs::remove(file);
     }
 
+    /// What a run has made that would come out otherwise now: if the run to come fails, or ends
+    /// before its time, no file of an old input or of old options stands for it.
+    void removeFormerOutputs(std::size_t n) {
+        const BatchItem& item = items_[n];
+        earlier_.forgetInputs(n);
+        std::vector<EarlierRecord> found = earlier_.look(n);
+        if (EarlierRuns::areDone(found)) return;  // another batch has made it meanwhile
+        for (const EarlierRecord& one : found) {
+            if (!one.record) continue;
+            for (const KeptOutput& output : one.record->outputs) {
+                const fs::path path = item.folder / output.file.file;
+                constexpr bool kTrustsTimes = false;
+                if (changeOf(output.file, path, kTrustsTimes) != FileChange::None) continue;
+                std::error_code error;
+                fs::remove(path, error);
+                for (fs::path folder = path.parent_path(); folder != item.folder && !error;
+                     folder = folder.parent_path()) {
+                    if (!fs::is_empty(folder, error) || !fs::remove(folder, error)) break;
+                }
+            }
+        }
+    }
+
     KeptRecord newRecord(std::size_t n, const PlannedRecord& planned) const {
-        KeptRecord record{program_.name, versionText(program_.name)};
+        KeptRecord record{program_.name, program_.versionText()};
         record.run.name = items_[n].name;
         for (const fs::path& input : items_[n].inputs) {
             record.run.files.push_back(baseName(input));
@@ -274,7 +173,14 @@ private:
         if (result.signal != 0) {
             detail::removeLeftTemporaries(item.folder.empty() ? "." : item.folder);
         }
-        keep(n, record);
+        if (!record.isFinished() && batch_.skipsExisting) {
+            // of two batches on one folder the slower may fail where the other has all in place
+            earlier_.forgetInputs(n);
+            std::vector<EarlierRecord> found = earlier_.look(n);
+            if (EarlierRuns::areDone(found)) record = together(found);
+        }
+        if (!record.isOfEarlierRun) keep(n, record);
+        if (program_.ended) program_.ended(item, record);
         records_[n] = std::move(record);
         tellThoseNext();
         constexpr std::chrono::seconds kBetweenPages(30);
@@ -283,7 +189,7 @@ private:
 
     void keep(std::size_t n, const BatchRecord& run) {
         const Planned planned = plan_.records(items_[n]);
-        const std::vector<KeptInput> inputs = unchangedInputs(n);
+        const std::vector<KeptInput> inputs = earlier_.unchangedInputs(n);
         const std::vector<KeptOutput> extras =
             run.isFinished() ? keptExtras(items_[n]) : std::vector<KeptOutput>{};
         for (std::size_t k = 0; k < planned.size(); ++k) {
@@ -293,8 +199,9 @@ private:
             record.says = says(record.run);
             record.inputs = inputs;
             for (const std::string& output : record.run.outputs) {
-                record.outputs.push_back({kOutput, kept(output, items_[n].folder / output)});
+                record.outputs.push_back({kOutputOption, kept(output, items_[n].folder / output)});
             }
+            if (record.run.hasPassed()) addSidecars(items_[n], record);
             record.outputs.insert(record.outputs.end(), extras.begin(), extras.end());
             if (plan_.keepsRecords()) {
                 writeRecord(planned[k].file, record);
@@ -302,6 +209,21 @@ private:
                 own_[planned[k].file] = std::move(record);
             }
         }
+    }
+
+    /// Beside what the run has made, and part of it: "a.json" of "a.vtp" and of the folder "a".
+    void addSidecars(const BatchItem& item, KeptRecord& record) const {
+        if (!program_.sidecar || record.run.outputs.empty()) return;
+        const std::string& made = record.run.outputs.front();
+        const std::string top = made.substr(0, made.find('/'));
+        const std::string name = top.substr(0, top.find('.')) + ".json";
+        std::vector<AtomicOutput> outputs;
+        outputs.emplace_back(item.folder / name)
+            .writeText(program_.sidecar(item, record.run.report)
+                           .dump(2, ' ', false, Json::error_handler_t::replace) +
+                       "\n");
+        AtomicOutput::commit(outputs);
+        record.outputs.push_back({kOutputOption, kept(name, item.folder / name)});
     }
 
     /// What tells of the n-th surface.
@@ -326,23 +248,14 @@ private:
         }
     }
 
-    /// None that nobody can tell whether the run has read them before or after they were changed.
-    std::vector<KeptInput> unchangedInputs(std::size_t n) {
-        std::vector<KeptInput> inputs = inputsOf(n);
-        const std::vector<fs::path> paths = plan_.inputs(items_[n]);
-        for (std::size_t k = 0; k < inputs.size(); ++k) {
-            if (!hasTimesOf(inputs[k].file, paths[k], plan_.folder())) inputs[k].file.sha256 = "";
-        }
-        return inputs;
-    }
-
     std::vector<KeptOutput> keptExtras(const BatchItem& item) const {
         std::vector<KeptOutput> outputs;
         for (const auto& [option, path] : plan_.extras(item)) {
             std::vector<fs::path> files{path};
             if (fs::is_directory(path)) files = filesOfInput(path, {});
             for (const fs::path& file : files) {
-                if (!fs::exists(file)) continue;
+                // how long it took differs from run to run: another run's is as good
+                if (!fs::exists(file) || file.filename() == "times.png") continue;
                 const std::string name =
                     file.lexically_proximate(item.folder.empty() ? "." : item.folder).string();
                 outputs.push_back({option, kept(name, file)});
@@ -427,7 +340,8 @@ private:
 
     void writeFiles() {
         writePage();
-        if (!common_.wantsJson() || common_.wantsJsonOnStdout()) return;
+        if (program_.jsonLines != nullptr) *program_.jsonLines += jsonLines_;
+        if (!common_.wantsJson() || common_.wantsJsonOnStdout() || program_.isPartOfApp) return;
         std::vector<AtomicOutput> outputs;
         outputs.emplace_back(common_.json).writeText(jsonLines_);
         AtomicOutput::commit(outputs);
@@ -435,7 +349,7 @@ private:
 
     /// The scans of a BIDS dataset, all of which a reader of the page expects there.
     std::vector<BatchItem> findExpected() const {
-        if (batch_.bids.empty()) return {};
+        if (batch_.bids.empty() || program_.isPartOfApp) return {};
         try {
             return findBidsScans(batch_.bids, {}, plan_.folder());
         } catch (const InvalidInput&) {
@@ -445,8 +359,6 @@ private:
 
     using Clock = std::chrono::steady_clock;
 
-    static constexpr const char* kNothingThere = "nothing is there";
-    static constexpr const char* kOutput = "--output";
     static constexpr const char* kSurfaces = "surfaces";
 
     const BatchProgram& program_;
@@ -455,9 +367,9 @@ private:
     const BatchPlan plan_;
     const std::vector<BatchItem>& items_;
     std::vector<std::optional<BatchRecord>> records_;  ///< none: not ended yet
-    std::vector<std::optional<std::vector<KeptInput>>> inputs_;
     std::vector<std::string> reasons_;  ///< why it is made again; empty: it was not made before
-    Records own_;                       ///< that are kept in no file
+    EarlierRuns earlier_;
+    Records own_;  ///< that are kept in no file
     const std::vector<BatchItem> expected_;
     Clock::time_point pageWritten_{};
     ProgressLine progress_;

@@ -7,6 +7,7 @@
 
 #include "Common/BatchItems.h"
 #include "Common/BatchOptions.h"
+#include "Common/BatchRecord.h"
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 
@@ -40,10 +41,33 @@ struct BatchProgram {
                                          const std::filesystem::path&)>
         findInBids;
     /// From the report of a run: what came of it in a few words; the files that it wrote under
-    /// --output, without folders.
+    /// --output, without the folders of that ({name} stands for the item's name).
     std::function<std::string(const Json&)> says;
     std::function<std::vector<std::string>(const Json&)> outputs;
+
+    // of a program that runs others, one batch of each after the other
+    std::filesystem::path executable{};  ///< empty: this very program
+    std::string inputOption{};           ///< that takes the input ("--t1"); empty: none does
+    std::string version{};               ///< what the executable's --version prints; empty: ours
+    /// The page, the dataset's description and the totals are the caller's business, and so is the
+    /// file of --json: its lines go to `jsonLines`.
+    bool isPartOfApp = false;
+    std::string* jsonLines = nullptr;
+    /// Before an item is made again what it has left goes, where that is still as it was made.
+    bool removesFormer = false;
+    /// From the report of a run that has passed: what stands in "<name>.json" beside its surface,
+    /// or its folder. Counts as made by the run.
+    std::function<Json(const BatchItem&, const Json&)> sidecar{};
+    /// Told of every run when its record is kept.
+    std::function<void(const BatchItem&, const BatchRecord&)> ended{};
+
+    std::string versionText() const {
+        return version.empty() ? adaptiso::versionText(name) : version;
+    }
 };
+
+/// The option of a surface, or of the folder of several, in records.
+inline constexpr const char* kOutputOption = "--output";
 
 /// Runs the program once for every input, in processes of their own, `batch.jobs` at a time, and
 /// tells of each in a line, in the order of the inputs: as text, or as JSON with --json. A run that

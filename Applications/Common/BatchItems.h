@@ -29,29 +29,6 @@ std::vector<BatchItem> readBatchList(
 /// The name of the folder that holds `file`.
 std::string folderName(const std::filesystem::path& file);
 
-/// The T1w images of a BIDS dataset, sub-*/[ses-*/]anat/*_T1w.nii[.gz], by name; each goes into the
-/// same subfolders of `derivatives`, named by its entities ("sub-01_ses-2_acq-hi").
-/// \param participants  labels, with or without "sub-"; empty: all
-/// \throws InvalidInput  no BIDS dataset, no such participant, or one asked for has no such image
-std::vector<BatchItem> findBidsScans(const std::filesystem::path& root,
-                                     const std::vector<std::string>& participants,
-                                     const std::filesystem::path& derivatives);
-
-/// The same of label maps, *_dseg.nii[.gz]: in a dataset of derivatives, where they are.
-std::vector<BatchItem> findBidsSegmentations(const std::filesystem::path& root,
-                                             const std::vector<std::string>& participants,
-                                             const std::filesystem::path& derivatives);
-
-/// The surfaces, in formats that MeshIO reads, anywhere under sub-* of `derivatives`, by path;
-/// their records go beside them. \throws InvalidInput  as findBidsScans()
-std::vector<BatchItem> findBidsSurfaces(const std::filesystem::path& root,
-                                        const std::vector<std::string>& participants,
-                                        const std::filesystem::path& derivatives);
-
-/// Makes the folder, and its dataset_description.json, which BIDS asks for, unless it is there.
-/// \throws FileError
-void makeDerivatives(const std::filesystem::path& derivatives, const std::string& program);
-
 /// \throws InvalidInput  two items would write under one name
 void requireOwnNames(const std::vector<BatchItem>& items);
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "Common/AtomicOutput.h"
+#include "Common/Bids.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 
@@ -17,12 +18,16 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kName = "{name}";
 
-std::string withName(std::string text, const std::string& name) {
-    for (std::size_t at = text.find(kName); at != std::string::npos;
-         at = text.find(kName, at + name.size())) {
-        text.replace(at, kName.size(), name);
+std::string replaced(std::string text, std::string_view place, std::string_view by) {
+    for (std::size_t at = text.find(place); at != std::string::npos;
+         at = text.find(place, at + by.size())) {
+        text.replace(at, place.size(), by);
     }
     return text;
+}
+
+std::string withName(std::string text, const std::string& name) {
+    return replaced(std::move(text), kName, name);
 }
 
 /// "--output" and its value, of "--output=value".
@@ -118,8 +123,12 @@ void BatchPlan::findItems() {
 }
 
 void BatchPlan::prepareOutputs() {
+    if (program_.isPartOfApp) {
+        fs::create_directories(base_);
+        return;
+    }
     if (!batch_.bids.empty()) {
-        makeDerivatives(base_, program_.name);
+        makeDerivatives(batch_.bids, base_, program_.name);
     } else if (!base_.empty()) {
         fs::create_directories(base_);
     }
@@ -138,7 +147,8 @@ void BatchPlan::prepareOutputs() {
 std::string BatchPlan::outputPattern(const BatchItem& item) const {
     for (const std::string& option : batch_.runOptions) {
         const auto [name, value] = split(option);
-        if (name == "--output") return value;
+        if (name != "--output") continue;
+        return batch_.bids.empty() ? value : replaced(value, "{iso}", kIsoLabel);
     }
     if (program_.defaultOutputOf) return program_.defaultOutputOf(item);
     return batch_.bids.empty() ? program_.defaultOutput : program_.defaultBidsOutput;
@@ -148,7 +158,9 @@ std::vector<std::string> BatchPlan::outputs(const BatchItem& item,
                                             const std::vector<std::string>& names) const {
     const fs::path folder = fs::path(withName(outputPattern(item), item.name)).parent_path();
     std::vector<std::string> files;
-    for (const std::string& name : names) files.push_back((folder / name).string());
+    for (const std::string& name : names) {
+        files.push_back((folder / withName(name, item.name)).string());
+    }
     return files;
 }
 
@@ -219,8 +231,13 @@ std::vector<std::string> BatchPlan::arguments(const BatchItem& item) const {
         const int machine = static_cast<int>(std::thread::hardware_concurrency());
         arguments.push_back("--threads=" + std::to_string(std::max(1, machine / *batch_.jobs)));
     }
-    arguments.insert(arguments.end(), {"--quiet", "--no-warnings", "--json=-", "--"});
-    for (const fs::path& input : item.inputs) arguments.push_back(input.string());
+    arguments.insert(arguments.end(), {"--quiet", "--no-warnings", "--json=-"});
+    if (program_.inputOption.empty()) arguments.emplace_back("--");
+    for (const fs::path& input : item.inputs) {
+        arguments.push_back(program_.inputOption.empty()
+                                ? input.string()
+                                : program_.inputOption + "=" + input.string());
+    }
     return arguments;
 }
 

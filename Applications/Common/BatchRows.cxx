@@ -101,7 +101,9 @@ void addOutputs(const KeptRecord& record, const fs::path& folder, SummaryRow& ro
     }
 }
 
-SummaryRow rowOf(const fs::path& file, const KeptRecord& record) {
+}  // namespace
+
+SummaryRow summaryRow(const fs::path& file, const KeptRecord& record) {
     const fs::path folder = detail::folderOf(file);
     SummaryRow row;
     row.program = record.program;
@@ -125,6 +127,8 @@ SummaryRow rowOf(const fs::path& file, const KeptRecord& record) {
                                         : RunState::Changed;
     return row;
 }
+
+namespace {
 
 /// Of a file that should be a record.
 SummaryRow faultyRow(const fs::path& file, RecordFault fault) {
@@ -175,7 +179,7 @@ std::vector<SummaryRow> rowsOf(const Snapshot& kept, const Records& own,
     std::set<std::pair<fs::path, std::string>> known;  // folders and names of items
     const auto add = [&](const fs::path& file, const KeptRecord& record) {
         known.emplace(detail::folderOf(file).lexically_normal(), record.run.name);
-        placed.emplace_back(file, rowOf(file, record));
+        placed.emplace_back(file, summaryRow(file, record));
     };
     for (const auto& [file, seen] : kept) {
         if (own.contains(file)) continue;

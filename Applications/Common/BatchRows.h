@@ -21,6 +21,9 @@ struct RecordPlace {
 /// Records by the file that they are, or will be, kept in.
 using Records = std::map<std::filesystem::path, KeptRecord>;
 
+/// The line of a record kept in `file`; what it tells of is looked at.
+SummaryRow summaryRow(const std::filesystem::path& file, const KeptRecord& record);
+
 /// A line of the page for every record of every program in `place`, with `own`, which count more
 /// than what is kept in their files, and for every one of `expected` that has no record while
 /// others have: failures first, then what is gone, changed, not finished or not begun, then what is

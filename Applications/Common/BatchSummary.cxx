@@ -21,7 +21,7 @@ table{border-collapse:collapse;width:100%;min-width:44em}
 .scroll{overflow-x:auto}.scroll:focus-visible{outline:3px solid #4c9aff}
 th,td{border-bottom:1px solid #bbb;padding:.4em .6em;text-align:left;vertical-align:top}
 .ok{color:#00532c;font-weight:bold}.failed{color:#a00000;font-weight:bold}
-tr.bad{background:#fff0f0}img{max-width:160px;max-height:120px}td.number{text-align:right}
+tr.bad{background:#fff0f0}tr.unusual{background:#fff8e0}img{max-width:160px;max-height:120px}td.number{text-align:right}
 @media print{@page{size:A4;margin:15mm}body{margin:0;font-size:11px}tr{break-inside:avoid}.scroll{overflow:visible}table{min-width:0}}
 )";
 
@@ -110,10 +110,17 @@ std::string_view stateText(RunState state) {
             return "&#10007;&nbsp;not finished";
         case RunState::NotRun:
             return "&#10007;&nbsp;not run";
+        case RunState::Unusual:
+            return "&#9888;&nbsp;done, unusual";
         case RunState::Done:
             return "&#10003;&nbsp;done";
     }
     return "";
+}
+
+/// What there is to do about it is done.
+bool hasRun(const SummaryRow& row) {
+    return row.state == RunState::Done || row.state == RunState::Unusual;
 }
 
 std::string rowText(const SummaryRow& row, const fs::path& page) {
@@ -123,12 +130,15 @@ std::string rowText(const SummaryRow& row, const fs::path& page) {
     }
     const std::string report =
         row.report.empty() ? "" : anchor(row.report, "report of " + row.name, page);
-    const bool isDone = row.state == RunState::Done;
-    return std::string("<tr") + (isDone ? "" : " class=\"bad\"") + "><td class=\"" +
-           (isDone ? "ok" : "failed") + "\">" + std::string(stateText(row.state)) +
-           "</td><th scope=\"row\">" + escaped(row.name) + "</th><td>" + escaped(row.program) +
-           "</td><td>" + escaped(row.file) + "</td><td>" + escaped(row.says) + "</td><td>" +
-           report + (report.empty() || files.empty() ? "" : "<br>") + files + "</td><td>" +
+    const bool isDone = hasRun(row);
+    const std::string_view mark = !isDone                          ? " class=\"bad\""
+                                  : row.state == RunState::Unusual ? " class=\"unusual\""
+                                                                   : "";
+    return std::string("<tr") + std::string(mark) + "><td class=\"" + (isDone ? "ok" : "failed") +
+           "\">" + std::string(stateText(row.state)) + "</td><th scope=\"row\">" +
+           escaped(row.name) + "</th><td>" + escaped(row.program) + "</td><td>" +
+           escaped(row.file) + "</td><td>" + escaped(row.says) + "</td><td>" + report +
+           (report.empty() || files.empty() ? "" : "<br>") + files + "</td><td>" +
            thumbnail(row, page) + "</td><td>" + escaped(row.date) + "</td><td class=\"number\">" +
            (row.seconds > 0 ? formatFixed(row.seconds, 1) : "") + "</td></tr>\n";
 }
@@ -150,15 +160,15 @@ std::string verdictOf(const std::vector<SummaryRow>& rows) {
                               : ", " + std::to_string(count(state))) +
                 " " + words;
     }
-    return !text.empty() ? text : rows.empty() ? "Nothing was run" : "All " + all + " done";
+    if (text.empty()) text = rows.empty() ? "Nothing was run" : "All " + all + " done";
+    const auto unusual = count(RunState::Unusual);
+    return text + (unusual == 0 ? "" : ", " + std::to_string(unusual) + " unusual");
 }
 
 }  // namespace
 
 std::string summaryPage(const std::vector<SummaryRow>& rows, const fs::path& page) {
-    const bool isDone = !rows.empty() && std::all_of(rows.begin(), rows.end(), [](const auto& row) {
-        return row.state == RunState::Done;
-    });
+    const bool isDone = !rows.empty() && std::all_of(rows.begin(), rows.end(), hasRun);
     const std::string verdict = verdictOf(rows);
     std::string text =
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"

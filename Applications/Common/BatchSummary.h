@@ -12,6 +12,7 @@ enum class RunState {
     Changed,      ///< it was done, but what it made or looked at is gone or not the same any more
     NotFinished,  ///< it has begun, or its record can't be read
     NotRun,       ///< its input is there, and nothing else
+    Unusual,      ///< done, and unlike what the others have come to
     Done,
 };
 

@@ -1,18 +1,25 @@
+#include "Common/Bids.h"
+
 #include <algorithm>
+#include <fstream>
 #include <system_error>
 
 #include "Common/AtomicOutput.h"
-#include "Common/BatchItems.h"
 #include "Common/CommonOptions.h"
-#include "Common/Json.h"
 #include "adaptiso/MeshIO/Formats.h"
 
 namespace adaptiso {
+
+const BidsImages kBidsScans{"T1w", "T1w image"};
+const BidsImages kBidsSegmentations{"dseg", "label map (*_dseg.nii.gz)"};
+
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr const char* kDescription = "dataset_description.json";
+constexpr const char* kSurface = "surface";
+constexpr const char* kCodeUrl = "https://example.org/adaptiso";  // as the bill of materials has it
 
 /// By name, so that the order is the same on every file system.
 std::vector<fs::path> sorted(std::vector<fs::path> paths) {
@@ -31,39 +38,15 @@ std::vector<fs::path> foldersIn(const fs::path& folder, const std::string& prefi
     return sorted(found);
 }
 
-/// The folders of the participants asked for in `within`, which is `root` or its derivatives.
-std::vector<fs::path> participantFolders(const fs::path& root, const fs::path& within,
-                                         const std::vector<std::string>& participants) {
-    if (!fs::exists(root / kDescription)) {
-        throw InvalidInput("--bids " + root.string() + ": is no BIDS dataset, it has no " +
-                           kDescription);
-    }
-    if (participants.empty()) return foldersIn(within, "sub-");
-    std::vector<fs::path> folders;
-    for (const std::string& label : participants) {
-        const std::string name = label.starts_with("sub-") ? label : "sub-" + label;
-        if (name.find('/') != std::string::npos || !fs::is_directory(within / name)) {
-            throw InvalidInput("--participant " + label + ": there is no folder " + name + " in " +
-                               within.string());
-        }
-        folders.push_back(within / name);
-    }
-    return folders;
+/// "sub-01" of "01" and of "sub-01".
+std::string withPrefix(const std::string& label, const std::string& prefix) {
+    return label.starts_with(prefix) ? label : prefix + label;
 }
 
 void requireFound(const std::vector<BatchItem>& items, std::size_t before, const fs::path& where,
                   const std::string& what) {
     if (items.size() == before) throw InvalidInput("--bids: no " + what + " in " + where.string());
 }
-
-/// Images of one suffix, as --bids looks for them.
-struct BidsImages {
-    std::string suffix;  ///< "T1w"
-    std::string what;    ///< for messages
-};
-const BidsImages kScans{"T1w", "T1w image"};
-const BidsImages kSegmentations{"dseg", "label map (*_dseg.nii.gz)"};
-constexpr const char* kSurface = "surface";
 
 void addImages(const fs::path& folder, const fs::path& target, const BidsImages& images,
                std::vector<BatchItem>& items) {
@@ -96,12 +79,11 @@ std::vector<BatchItem> findImages(const fs::path& root,
                                   const std::vector<std::string>& participants,
                                   const fs::path& derivatives, const BidsImages& images) {
     std::vector<BatchItem> items;
-    for (const fs::path& subject : participantFolders(root, root, participants)) {
+    for (const fs::path& subject : bidsSubjects(root, root, participants, "--participant")) {
         const std::size_t before = items.size();
-        const fs::path target = derivatives / subject.filename();
-        addImages(subject, target, images, items);
-        for (const fs::path& session : foldersIn(subject, "ses-")) {
-            addImages(session, target / session.filename(), images, items);
+        for (BatchItem& item :
+             bidsImagesOf(subject, {}, derivatives / subject.filename(), images)) {
+            items.push_back(std::move(item));
         }
         if (!participants.empty()) requireFound(items, before, subject, images.what);
     }
@@ -109,25 +91,75 @@ std::vector<BatchItem> findImages(const fs::path& root,
     return items;
 }
 
+/// An entry of SourceDatasets: what the dataset says of where it can be had.
+Json sourceOf(const fs::path& root) {
+    std::ifstream file(root / kDescription);
+    const Json said = Json::parse(file, nullptr, false);
+    Json source{{"URL", "bids:raw:"}};
+    if (!said.is_object() || !said.contains("DatasetDOI")) return source;
+    std::string doi = said["DatasetDOI"].is_string() ? said["DatasetDOI"].get<std::string>() : "";
+    if (doi.starts_with("doi:")) doi.erase(0, 4);
+    if (doi.empty()) return source;
+    source["DOI"] = doi;
+    source["URL"] = doi.starts_with("http") ? doi : "https://doi.org/" + doi;
+    return source;
+}
+
 }  // namespace
+
+std::vector<fs::path> bidsSubjects(const fs::path& root, const fs::path& within,
+                                   const std::vector<std::string>& participants,
+                                   const std::string& option) {
+    if (!fs::exists(root / kDescription)) {
+        throw InvalidInput((option == "--participant" ? "--bids " : "") + root.string() +
+                           ": is no BIDS dataset, it has no " + kDescription);
+    }
+    if (participants.empty()) return foldersIn(within, "sub-");
+    std::vector<fs::path> folders;
+    for (const std::string& label : participants) {
+        const std::string name = withPrefix(label, "sub-");
+        if (name.find('/') != std::string::npos || !fs::is_directory(within / name)) {
+            throw InvalidInput(option + " " + label + ": there is no folder " + name + " in " +
+                               within.string());
+        }
+        folders.push_back(within / name);
+    }
+    return folders;
+}
+
+std::vector<BatchItem> bidsImagesOf(const fs::path& subject,
+                                    const std::vector<std::string>& sessions,
+                                    const fs::path& target, const BidsImages& images) {
+    std::vector<BatchItem> items;
+    if (sessions.empty()) addImages(subject, target, images, items);
+    for (const fs::path& session : foldersIn(subject, "ses-")) {
+        const std::string name = session.filename().string();
+        const bool isAsked = sessions.empty() ||
+                             std::any_of(sessions.begin(), sessions.end(), [&](const auto& label) {
+                                 return withPrefix(label, "ses-") == name;
+                             });
+        if (isAsked) addImages(session, target / name, images, items);
+    }
+    return items;
+}
 
 std::vector<BatchItem> findBidsScans(const fs::path& root,
                                      const std::vector<std::string>& participants,
                                      const fs::path& derivatives) {
-    return findImages(root, participants, derivatives, kScans);
+    return findImages(root, participants, derivatives, kBidsScans);
 }
 
 std::vector<BatchItem> findBidsSegmentations(const fs::path& root,
                                              const std::vector<std::string>& participants,
                                              const fs::path& derivatives) {
-    return findImages(root, participants, derivatives, kSegmentations);
+    return findImages(root, participants, derivatives, kBidsSegmentations);
 }
 
 std::vector<BatchItem> findBidsSurfaces(const fs::path& root,
                                         const std::vector<std::string>& participants,
                                         const fs::path& derivatives) {
     std::vector<BatchItem> items;
-    for (const fs::path& subject : participantFolders(root, derivatives, participants)) {
+    for (const fs::path& subject : bidsSubjects(root, derivatives, participants, "--participant")) {
         std::vector<fs::path> files;
         for (const fs::directory_entry& entry : fs::recursive_directory_iterator(subject)) {
             if (entry.is_regular_file() && isSurface(entry.path())) files.push_back(entry.path());
@@ -142,15 +174,37 @@ std::vector<BatchItem> findBidsSurfaces(const fs::path& root,
     return items;
 }
 
-void makeDerivatives(const fs::path& derivatives, const std::string& program) {
+std::string bidsLabel(std::string_view number) {
+    std::string label;
+    for (const char c : number) {
+        if (c == '+') continue;  // of an exponent, which has a sign in any case
+        label += c == '.' ? 'p' : c == '-' ? 'm' : c;
+    }
+    return label;
+}
+
+Json bidsDescription(const fs::path& root, const fs::path& derivatives,
+                     const std::string& program) {
+    std::error_code error;
+    const fs::path link = fs::proximate(root, derivatives, error);
+    return {{"Name", "adaptiso"},
+            {"BIDSVersion", "1.8.0"},
+            {"DatasetType", "derivative"},
+            {"GeneratedBy",
+             {{{"Name", program}, {"Version", programVersion()}, {"CodeURL", kCodeUrl}}}},
+            {"SourceDatasets", {sourceOf(root)}},
+            {"DatasetLinks", {{"raw", link.generic_string()}}}};
+}
+
+void makeDerivatives(const fs::path& root, const fs::path& derivatives,
+                     const std::string& program) {
     fs::create_directories(derivatives);
     if (fs::exists(derivatives / kDescription)) return;
-    const Json description{{"Name", "adaptiso"},
-                           {"BIDSVersion", "1.8.0"},
-                           {"DatasetType", "derivative"},
-                           {"GeneratedBy", {{{"Name", program}, {"Version", programVersion()}}}}};
     std::vector<AtomicOutput> outputs;
-    outputs.emplace_back(derivatives / kDescription).writeText(description.dump(2) + "\n");
+    outputs.emplace_back(derivatives / kDescription)
+        .writeText(bidsDescription(root, derivatives, program)
+                       .dump(2, ' ', false, Json::error_handler_t::replace) +
+                   "\n");
     AtomicOutput::commit(outputs);
 }
 

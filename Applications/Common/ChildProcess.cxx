@@ -55,7 +55,8 @@ struct Child {
 };
 
 /// What the child does between fork and exec: only calls that are safe there.
-[[noreturn]] void becomeProgram(pid_t parent, char* const* arguments, int out, int err) {
+[[noreturn]] void becomeProgram(pid_t parent, const char* program, char* const* arguments, int out,
+                                int err) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent) _exit(127);  // it ended before it could be told
     const int in = open("/dev/null", O_RDONLY | O_CLOEXEC);
@@ -63,7 +64,7 @@ struct Child {
         dup2(err, STDERR_FILENO) < 0) {
         _exit(127);
     }
-    execv("/proc/self/exe", arguments);
+    execv(program, arguments);
     _exit(127);
 }
 
@@ -74,7 +75,7 @@ std::array<Descriptor, 2> makePipe() {
     return {Descriptor(ends[0]), Descriptor(ends[1])};
 }
 
-Child start(std::size_t number, std::vector<std::string> arguments) {
+Child start(const std::string& program, std::size_t number, std::vector<std::string> arguments) {
     std::vector<char*> pointers;
     std::string name = "adaptiso";
     pointers.push_back(name.data());
@@ -85,7 +86,9 @@ Child start(std::size_t number, std::vector<std::string> arguments) {
     const pid_t parent = getpid();
     const pid_t process = fork();
     if (process < 0) throw std::system_error(errno, std::generic_category(), "fork");
-    if (process == 0) becomeProgram(parent, pointers.data(), out[1].get(), err[1].get());
+    if (process == 0) {
+        becomeProgram(parent, program.c_str(), pointers.data(), out[1].get(), err[1].get());
+    }
     return {number, process, std::move(out[0]), std::move(err[0])};
 }
 
@@ -140,7 +143,9 @@ bool hasEnded(Child& child) {
 
 void runChildren(std::size_t count, int jobs,
                  const std::function<std::vector<std::string>(std::size_t)>& arguments,
-                 const std::function<void(std::size_t, ChildResult)>& finished) {
+                 const std::function<void(std::size_t, ChildResult)>& finished,
+                 const std::filesystem::path& program) {
+    const std::string path = program.empty() ? "/proc/self/exe" : program.string();
     // a caller that ignores the ends of its children has its children ignore theirs
     signal(SIGCHLD, SIG_DFL);
     std::list<Child> children;
@@ -150,7 +155,7 @@ void runChildren(std::size_t count, int jobs,
         while (next < count && children.size() < static_cast<std::size_t>(jobs)) {
             if (waiting.empty()) waiting = arguments(next);
             try {
-                children.push_back(start(next, waiting));
+                children.push_back(start(path, next, waiting));
             } catch (const std::system_error&) {
                 // the limit of processes is reached: the end of one of ours makes room
                 if (children.empty()) throw;
@@ -171,6 +176,15 @@ void runChildren(std::size_t count, int jobs,
             finished(number, std::move(result));
         }
     }
+}
+
+ChildResult runChild(const std::filesystem::path& program,
+                     const std::vector<std::string>& arguments) {
+    ChildResult result;
+    runChildren(
+        1, 1, [&](std::size_t) { return arguments; },
+        [&](std::size_t, ChildResult ended) { result = std::move(ended); }, program);
+    return result;
 }
 
 }  // namespace adaptiso

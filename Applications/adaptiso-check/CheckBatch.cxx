@@ -1,6 +1,7 @@
 #include "CheckBatch.h"
 
 #include "Common/Batch.h"
+#include "Common/Bids.h"
 
 namespace adaptiso {
 namespace {

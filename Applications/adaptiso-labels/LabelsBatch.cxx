@@ -1,6 +1,7 @@
 #include "LabelsBatch.h"
 
 #include "Common/Batch.h"
+#include "Common/Bids.h"
 #include "Common/InputNames.h"
 #include "Common/Numbers.h"
 

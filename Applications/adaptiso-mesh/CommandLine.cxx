@@ -63,7 +63,7 @@ void checkLookingOnly(const MeshOptions& options) {
 /// Of the names of what is written: {name} stands for an input of a batch, {iso} in the surface's
 /// name for the isovalue.
 void checkPlaceholders(const MeshOptions& options) {
-    const std::vector<std::string> forRun{"{name}"}, forSurface{"{iso}", "{name}"};
+    const std::vector<std::string> forRun{"{name}"}, forSurface{"{iso}", "{isolabel}", "{name}"};
     requirePlaceholders("--output", options.output.parent_path(), forRun);
     requirePlaceholders("--output", options.output.filename(), forSurface);
     requirePlaceholders("--save-index", options.indexFiles.save, forRun);
@@ -226,8 +226,9 @@ void declareOutput(CLI::App& app, MeshOptions& options) {
     app.add_option(
            "-o,--output", options.output,
            "The file to write (default: <INPUT>-iso<V>.vtp in the current folder). {iso} in "
-           "its name stands for the isovalue; without it, several surfaces get -iso<V> "
-           "before the extension. The format follows from the extension: " +
+           "its name stands for the isovalue, {isolabel} for the same in letters and digits "
+           "(411p5, m300); without them, several surfaces get -iso<V> before the extension. The "
+           "format follows from the extension: " +
                knownExtensions())
         ->type_name("OUT")
         ->group(kOutput);

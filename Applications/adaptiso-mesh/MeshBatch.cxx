@@ -1,6 +1,7 @@
 #include "MeshBatch.h"
 
 #include "Common/Batch.h"
+#include "Common/Bids.h"
 #include "Common/InputNames.h"
 #include "Common/Numbers.h"
 #include "OutputNames.h"
@@ -50,7 +51,7 @@ int runMeshBatch(const MeshOptions& options) {
         return files;
     };
     program.defaultOutput = "{name}-iso{iso}.vtp";
-    program.defaultBidsOutput = "{name}_desc-iso{iso}_mesh.vtp";
+    program.defaultBidsOutput = "{name}_desc-iso{isolabel}_mesh.vtp";
     program.nameOf = inputStem;
     program.findInBids = findBidsScans;
     program.says = says;

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "Common/Bids.h"
 #include "Common/InputNames.h"
 
 namespace adaptiso {
@@ -17,11 +18,10 @@ std::string lowerCase(std::string text) {
     return text;
 }
 
-std::string replaceIso(std::string text, const std::string& isovalue) {
-    constexpr std::string_view kPlace = "{iso}";
-    for (std::size_t at = text.find(kPlace); at != std::string::npos;
-         at = text.find(kPlace, at + isovalue.size())) {
-        text.replace(at, kPlace.size(), isovalue);
+std::string replaced(std::string text, std::string_view place, const std::string& by) {
+    for (std::size_t at = text.find(place); at != std::string::npos;
+         at = text.find(place, at + by.size())) {
+        text.replace(at, place.size(), by);
     }
     return text;
 }
@@ -41,9 +41,9 @@ fs::path insertBeforeExtension(const fs::path& path, const std::string& text) {
 fs::path outputPath(const MeshOptions& options, const std::string& isovalue) {
     if (options.output.empty()) return inputStem(options.input) + "-iso" + isovalue + ".vtp";
     const std::string name = options.output.filename().string();
-    if (name.find("{iso}") != std::string::npos) {
-        return options.output.parent_path() / replaceIso(name, isovalue);
-    }
+    const std::string named =
+        replaced(replaced(name, "{iso}", isovalue), kIsoLabel, bidsLabel(isovalue));
+    if (named != name) return options.output.parent_path() / named;
     if (options.isovalues.size() == 1) return options.output;
     return insertBeforeExtension(options.output, "-iso" + isovalue);
 }

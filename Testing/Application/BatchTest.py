@@ -290,6 +290,31 @@ class Bids(BatchTest):
                          ("derivative", "adaptiso-mesh"))
         self.assertTrue(self.path("study/derivatives/adaptiso/summary.html").exists())
 
+    def test_names_hold_letters_and_digits_alone_whatever_the_isovalue(self):
+        self.lines(OK, "--bids", "study", "--participant", "02", "--iso", 100.5, "--iso", -3, "--iso", "auto")
+        self.lines(OK, "--bids", "study", "--participant", "02", "--iso", -2.5, "-o",
+                   "{name}_desc-iso{iso}_mesh.stl")
+        root = self.path("study/derivatives/adaptiso")
+        made = sorted(path.name for path in root.rglob("*_mesh.*") if path.suffix in (".vtp", ".stl"))
+        self.assertLess({"sub-02_desc-iso100p5_mesh.vtp", "sub-02_desc-isom2p5_mesh.stl",
+                         "sub-02_desc-isom3_mesh.vtp"}, set(made))
+        self.assertEqual(len(made), 4)
+        for name in made:
+            self.assertRegex(name, r"^sub-02_desc-[a-zA-Z0-9]+_mesh\.(vtp|stl)$")
+        again = self.lines(OK, "--bids", "study", "--participant", "02", "--iso", 100.5,
+                           "--skip-existing")
+        self.assertEqual([line["earlierRun"] for line in again], [True])
+
+    def test_the_dataset_says_what_made_it_and_of_what(self):
+        study = self.path("study/dataset_description.json")
+        study.write_text('{"Name": "x", "BIDSVersion": "1.8.0", "DatasetDOI": "doi:10.1/abc"}')
+        self.batch(OK, "--bids", "study", "--participant", "02", "--iso", 100)
+        said = json.loads(self.path("study/derivatives/adaptiso/dataset_description.json").read_text())
+        self.assertRegex(said["GeneratedBy"][0]["CodeURL"], "^https://")
+        self.assertRegex(said["GeneratedBy"][0]["Version"], r"^\d+\.\d+")
+        self.assertEqual(said["SourceDatasets"], [{"DOI": "10.1/abc", "URL": "https://doi.org/10.1/abc"}])
+        self.assertEqual(said["DatasetLinks"], {"raw": "../.."})
+
     def test_participants_and_going_on(self):
         self.batch(OK, "--bids", "study", "--participant", "02", "--iso", 100)
         self.assertEqual(len(self.surfaces()), 1)

@@ -71,6 +71,10 @@ class Recipes(ApplicationTest):
             rows = list(csv.DictReader(table))
         self.assertEqual([row["file"][:6] for row in rows], ["sub-01", "sub-02"])
         self.assertIn("bone.stl: 0", done.stdout)
+        with open(self.path("app/quality.tsv"), newline="") as table:
+            rows = list(csv.DictReader(table, delimiter="\t"))
+        self.assertEqual([(row["participant_id"], row["check"]) for row in rows],
+                         [("sub-01", "passed"), ("sub-02", "passed")])
 
     def surface(self, name):
         done = run(f"adaptiso-check {name} --profile view --json -", self.folder)

@@ -177,7 +177,7 @@ WRONG = [
      (*BALL, "--series", "1")),
     (BAD_INPUT, "--series 1: ball.nii is NIfTI-1", CHECK,
      ("a.off", "--volume", "ball.nii", "--series", "1")),
-    (USAGE, r"--output \{foo\}.stl: \{foo\} stands for nothing here; there is \{iso\} or \{name\}",
+    (USAGE, r"--output \{foo\}.stl: \{foo\} stands for nothing here; there is \{iso\}, \{isolabel\} or \{name\}",
      MESH, ("missing.nii", "--iso", "1", "-o", "{foo}.stl")),
     (USAGE, r"--output \{iso\}: \{iso\} stands for nothing here; there is \{name\}", MESH,
      (*BALL, "-o", "{iso}/a.stl")),

@@ -90,7 +90,8 @@ runInside() {
     began=$SECONDS
     echo "######## $1: $2"
     env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
-        chroot "$root" bash -c "cd $inside && $2" </dev/null
+        chroot "$root" bash -c "cd $inside && { $2
+}" </dev/null
     seconds=$((SECONDS - began))
     after=$(systemMegabytes)
     printf '%-22s %3d min %02d s   %5d MB installed\n' "$1" $((seconds / 60)) $((seconds % 60)) \
@@ -113,15 +114,16 @@ tryPackage() {
     root=$work/machine
     inside=/root
     makeRoot
-    cp "$deb" "$root/root/adaptiso.deb"
+    cp "$deb" "$root/adaptiso.deb"
     cp "$scanFrom" "$root/root/"
     printf 'package %s, %s MB before\n' "$(basename "$deb")" "$(systemMegabytes)" >>"$work/summary"
+    # as the container's recipe does it
     runInside "package: install" \
-        "apt-get -q update && apt-get -q -y install --no-install-recommends ./adaptiso.deb"
+        "$(sed -n '/^%post/,/^%environment/{/^%/!p}' "$repository/Examples/cohort/adaptiso.def")"
     runInside "package: adaptiso-mesh" \
         "adaptiso-mesh ch2bet.nii.gz --iso 100 -o brain.stl && adaptiso-check --profile view brain.stl"
     inside=/ runInside "package: the others" \
-        "adaptiso-bem --version && adaptiso-compare /root/brain.stl /root/brain.stl &&
+        "adaptiso-bem --version && adaptiso-bids -v && adaptiso-compare /root/brain.stl /root/brain.stl &&
         adaptiso-simplify /root/brain.stl --max-error 0.5 -o /root/small.stl"
     if chroot "$root" sh -c 'command -v gcc g++ cmake'; then
         echo "try.sh: the machine for the package is not bare" >&2

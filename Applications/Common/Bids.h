@@ -1,0 +1,74 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "Common/BatchItems.h"
+#include "Common/Json.h"
+
+namespace adaptiso {
+
+/// Stands for an isovalue in the name of a BIDS derivative: bidsLabel() of it.
+inline constexpr std::string_view kIsoLabel = "{isolabel}";
+
+/// Images of one suffix in a BIDS dataset.
+struct BidsImages {
+    std::string suffix;  ///< "T1w"
+    std::string what;    ///< for messages
+};
+extern const BidsImages kBidsScans;          ///< *_T1w.nii[.gz]
+extern const BidsImages kBidsSegmentations;  ///< *_dseg.nii[.gz]
+
+/// The T1w images of a BIDS dataset, sub-*/[ses-*/]anat/*_T1w.nii[.gz], by name; each goes into the
+/// same subfolders of `derivatives`, named by its entities ("sub-01_ses-2_acq-hi").
+/// \param participants  labels, with or without "sub-"; empty: all
+/// \throws InvalidInput  no BIDS dataset, no such participant, or one asked for has no such image
+std::vector<BatchItem> findBidsScans(const std::filesystem::path& root,
+                                     const std::vector<std::string>& participants,
+                                     const std::filesystem::path& derivatives);
+
+/// The same of label maps, *_dseg.nii[.gz]: in a dataset of derivatives, where they are.
+std::vector<BatchItem> findBidsSegmentations(const std::filesystem::path& root,
+                                             const std::vector<std::string>& participants,
+                                             const std::filesystem::path& derivatives);
+
+/// The surfaces, in formats that MeshIO reads, anywhere under sub-* of `derivatives`, by path;
+/// their records go beside them. \throws InvalidInput  as findBidsScans()
+std::vector<BatchItem> findBidsSurfaces(const std::filesystem::path& root,
+                                        const std::vector<std::string>& participants,
+                                        const std::filesystem::path& derivatives);
+
+/// The images of one participant, sub-*/[ses-*/]anat/, by session and name. Not an error: none.
+/// \param subject   the participant's folder
+/// \param sessions  labels, with or without "ses-"; empty: all, and what is in no session
+/// \param target    the participant's folder of derivatives
+std::vector<BatchItem> bidsImagesOf(const std::filesystem::path& subject,
+                                    const std::vector<std::string>& sessions,
+                                    const std::filesystem::path& target, const BidsImages& images);
+
+/// The folders sub-* in `within`, which is `root` or its derivatives: those of `participants`,
+/// labels with or without "sub-"; empty: all.
+/// \param option  that names them, for messages: "--participant"
+/// \throws InvalidInput  `root` is no BIDS dataset, or there is no such participant
+std::vector<std::filesystem::path> bidsSubjects(const std::filesystem::path& root,
+                                                const std::filesystem::path& within,
+                                                const std::vector<std::string>& participants,
+                                                const std::string& option);
+
+/// What of a number's text a BIDS label may hold, letters and digits: "411p5" of "411.5", "m300" of
+/// "-300", "1em07" of "1e-07". No two numbers have one label.
+std::string bidsLabel(std::string_view number);
+
+/// dataset_description.json of derivatives of the dataset in `root`. \param program  that makes
+/// them
+Json bidsDescription(const std::filesystem::path& root, const std::filesystem::path& derivatives,
+                     const std::string& program);
+
+/// Makes the folder, and its dataset_description.json, which BIDS asks for, unless it is there.
+/// \throws FileError
+void makeDerivatives(const std::filesystem::path& root, const std::filesystem::path& derivatives,
+                     const std::string& program);
+
+}  // namespace adaptiso

@@ -1,0 +1,162 @@
+#include "CommandLine.h"
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <system_error>
+
+#include "Common/OptionValues.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kWhom = "Whom";
+constexpr const char* kWhat = "What to make (of participants), or to look for (the group)";
+constexpr const char* kGroupLevel = "Group level";
+constexpr const char* kRunning = "Running";
+
+void declareArguments(CLI::App& app, BidsOptions& options) {
+    app.add_option("BIDS_DIR", options.dataset, "The dataset; nothing is written to it")
+        ->type_name("")
+        ->required();
+    app.add_option("OUT_DIR", options.output,
+                   "The dataset of derivatives to write; jobs of several participants may share "
+                   "it, each writes below its own sub-*")
+        ->type_name("")
+        ->required();
+    app.add_option_function<std::string>(
+           "LEVEL",
+           [&options](const std::string& text) {
+               options.level = parseChoice("LEVEL", text, {"participant", "group"}) == 0
+                                   ? BidsLevel::Participant
+                                   : BidsLevel::Group;
+           },
+           "participant: make what is not there yet; group: a table, a page, who is missing")
+        ->type_name("")
+        ->required();
+}
+
+void declareWhom(CLI::App& app, BidsOptions& options) {
+    app.add_option("--participant-label,--participant_label", options.participants,
+                   "Take these participants only, LABEL 01 or sub-01, one or several")
+        ->type_name("LABEL")
+        ->group(kWhom);
+    app.add_option("--session-label,--session_label", options.sessions,
+                   "Take these sessions only, LABEL 1 or ses-1, one or several")
+        ->type_name("LABEL")
+        ->group(kWhom);
+    app.add_flag("--skip-bids-validation,--skip_bids_validation", options.skipsValidation,
+                 "Do not look whether the names in BIDS_DIR are those of a BIDS dataset")
+        ->group(kWhom);
+}
+
+void declareWhat(CLI::App& app, BidsOptions& options) {
+    app.add_option("--surfaces", options.surfaces,
+                   "Isosurfaces of every T1w image: options of adaptiso-mesh without dashes, with "
+                   "commas between them, iso=100,iso=120,largest; format=stl names the files' "
+                   "extension (default, unless --bem or --labels is given: iso=auto)")
+        ->type_name("LIST")
+        ->group(kWhat);
+    app.add_flag("--bem", options.makesBem, "A head model of every T1w image, by adaptiso-bem")
+        ->group(kWhat);
+    app.add_option("--bem-options", options.bemOptions,
+                   "Options of adaptiso-bem: vertices=642,meg,brain-mask=masks/{name}.nii.gz")
+        ->type_name("LIST")
+        ->group(kWhat);
+    app.add_flag("--labels", options.makesLabels,
+                 "Surfaces of the regions of every label map (*_dseg), by adaptiso-labels")
+        ->group(kWhat);
+    app.add_option("--labels-options", options.labelsOptions,
+                   "Options of adaptiso-labels: max-error=0.3,format=stl")
+        ->type_name("LIST")
+        ->group(kWhat);
+    app.add_option("--segmentations", options.segmentations,
+                   "With --labels: the dataset of derivatives that holds the label maps (default: "
+                   "BIDS_DIR)")
+        ->type_name("DIR")
+        ->group(kWhat);
+    app.add_flag("--check", options.makesChecks,
+                 "Check the isosurfaces by adaptiso-check; what the other programs make they check")
+        ->group(kWhat);
+    app.add_option("--check-options", options.checkOptions,
+                   "Options of adaptiso-check: profile=view")
+        ->type_name("LIST")
+        ->group(kWhat);
+    app.add_flag_callback(
+           "--no-pictures", [&options] { options.makesPictures = false; },
+           "Make no pictures for the page (2 MB a surface)")
+        ->group(kWhat);
+}
+
+void declareRunning(CLI::App& app, BidsOptions& options) {
+    addNumber(app, "--outlier", options.outlierLimit, {.least = 0, .isAbove = true},
+              "Mark values farther than Z robust standard deviations (1.4826 times the median "
+              "distance from the median) from the cohort's median (default: 3.5)")
+        ->type_name("Z")
+        ->group(kGroupLevel);
+    addCount(app, "--jobs", options.jobs, 1, 1024,
+             "Participant level: work on N scans at a time (default: 1)")
+        ->group(kRunning);
+    declareCommonOptions(app, options.common, "what it would have written is not there then");
+    app.set_version_flag(
+        "-v,--version", [&app] { return versionText(app.get_name()); },
+        "Print the version and exit");
+}
+
+void checkCombinations(BidsOptions& options) {
+    const auto require = [](bool isGood, const std::string& message) {
+        if (!isGood) throw UsageError(message);
+    };
+    require(options.bemOptions.empty() || options.makesBem, "--bem-options: needs --bem");
+    require(options.labelsOptions.empty() || options.makesLabels,
+            "--labels-options: needs --labels");
+    require(options.segmentations.empty() || options.makesLabels,
+            "--segmentations: needs --labels");
+    require(options.checkOptions.empty() || options.makesChecks, "--check-options: needs --check");
+    if (options.surfaces.empty() && !options.makesBem && !options.makesLabels) {
+        options.surfaces = "iso=auto";
+    }
+    require(!options.makesChecks || !options.surfaces.empty(), "--check: needs --surfaces");
+    require(options.level == BidsLevel::Participant || !options.jobs,
+            "--jobs: is for the participant level");
+    std::error_code error;
+    require(!fs::equivalent(options.dataset, options.output, error),
+            "OUT_DIR " + options.output.string() +
+                ": is BIDS_DIR; name a folder of its own, such as BIDS_DIR/derivatives/adaptiso");
+}
+
+constexpr const char* kFooter = R"(Examples:
+  adaptiso-bids study study/derivatives/adaptiso participant --participant-label 01
+      one participant: an isosurface at Otsu's value
+  adaptiso-bids study out participant --surfaces iso=90,largest --bem --jobs 4
+  adaptiso-bids study out participant --labels --segmentations study/derivatives/seg
+  adaptiso-bids study out group --surfaces iso=90,largest --bem
+      with the options of the participant level: quality.tsv, summary.html, who
+      is missing and why
+
+What is there from the same inputs (by checksum), options and version is not
+made again. A participant may be run again at any time, by several at once too.
+
+Exit codes: 0 done, 1 a scan or a participant failed, or (group) is missing,
+2 wrong usage, 3 bad input (or no memory or disk left, or a run was killed: try
+again), 4 internal error.)";
+
+}  // namespace
+
+Program bidsProgram() {
+    return {"adaptiso-bids",
+            "Makes surfaces and head models of a BIDS dataset, as a BIDS App: one participant a "
+            "job, then the group.",
+            kFooter};
+}
+
+void declareBidsOptions(CLI::App& app, BidsOptions& options) {
+    declareArguments(app, options);
+    declareWhom(app, options);
+    declareWhat(app, options);
+    declareRunning(app, options);
+    app.callback([&options] { checkCombinations(options); });
+}
+
+}  // namespace adaptiso

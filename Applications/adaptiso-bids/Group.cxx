@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <iostream>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "Cohort.h"
+#include "Common/AtomicOutput.h"
+#include "Common/Bids.h"
+#include "Common/ExitCodes.h"
+#include "Common/Numbers.h"
+#include "Common/ResultOutput.h"
+#include "Common/RunApp.h"
+#include "Levels.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kProgram = "adaptiso-bids";
+
+/// What is no part of BIDS in its present version, for its validators.
+constexpr const char* kIgnored =
+    "*_mesh.*\n**/*_mesh.*\n**/*_mesh/\n**/*_figures/\n**/*.adaptiso-*.json\nquality.*\n"
+    "summary.html\n";
+
+constexpr const char* kReadme =
+    R"(Surfaces made by adaptiso-bids (adaptiso %VERSION%) of the images of another dataset, for which
+dataset_description.json has the link. Research software, no medical device.
+
+summary.html       what was made of each scan, with pictures; what needs a look comes first
+quality.tsv        measures of every surface, and why one is not there; quality.json says what
+                   the columns mean
+sub-*/             surfaces, each with a sidecar (.json) that says what it was made of, and a
+                   record (.adaptiso-*.json) with the checksums of what went in and came out
+)";
+
+std::string dumped(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json descriptionOf(const BidsOptions& options) {
+    Json json = bidsDescription(options.dataset, options.output, kProgram);
+    if (!options.segmentations.empty()) {
+        std::error_code error;
+        json["DatasetLinks"]["segmentations"] =
+            fs::proximate(options.segmentations, options.output, error).generic_string();
+        json["SourceDatasets"].push_back({{"URL", "bids:segmentations:"}});
+    }
+    return json;
+}
+
+std::string readme() {
+    std::string text = kReadme;
+    const std::string place = "%VERSION%";
+    return text.replace(text.find(place), place.size(), programVersion());
+}
+
+bool isGood(const QualityRow& row) {
+    return row.state == QualityState::Done;
+}
+
+/// "sub-01_ses-2: surfaces iso100"
+std::string subjectOf(const QualityRow& row) {
+    std::string text = row.scan.empty() ? row.participant : row.scan;
+    if (!row.product.empty()) text += ": " + row.product;
+    return text + (row.part.empty() ? "" : " " + row.part);
+}
+
+/// Marks and reasons of the table, on the page; what needs a look first.
+std::vector<SummaryRow> pageRows(Cohort& cohort) {
+    for (std::size_t n = 0; n < cohort.rows.size(); ++n) {
+        const QualityRow& row = cohort.rows[n];
+        if (row.outliers.empty()) continue;
+        SummaryRow& line = cohort.summary[cohort.shownBy[n]];
+        if (line.state == RunState::Done) line.state = RunState::Unusual;
+        line.says += (line.says.empty() ? "" : "; ") + std::string("unlike the others: ") +
+                     (row.part.empty() ? "" : row.part + " ") + row.outliers;
+    }
+    std::vector<SummaryRow> rows = std::move(cohort.summary);
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const auto& a, const auto& b) { return a.state < b.state; });
+    return rows;
+}
+
+Json rowJson(const QualityRow& row) {
+    const auto orNone = [](const std::string& text) {
+        return text.empty() ? Json(nullptr) : Json(text);
+    };
+    return {{"participant", row.participant}, {"session", orNone(row.session)},
+            {"scan", orNone(row.scan)},       {"product", orNone(row.product)},
+            {"part", orNone(row.part)},       {"state", toString(row.state)},
+            {"reason", orNone(row.reason)},   {"outliers", orNone(row.outliers)}};
+}
+
+struct Counts {
+    std::size_t participants = 0, whole = 0, bad = 0, unusual = 0;
+};
+
+Counts countsOf(const std::vector<QualityRow>& rows) {
+    std::set<std::string> all, faulty;
+    Counts counts;
+    for (const QualityRow& row : rows) {
+        if (row.state != QualityState::Leftover) all.insert(row.participant);
+        if (!isGood(row)) faulty.insert(row.participant);
+        counts.bad += isGood(row) ? 0 : 1;
+        counts.unusual += row.outliers.empty() ? 0 : 1;
+    }
+    counts.participants = all.size();
+    for (const std::string& participant : all) counts.whole += faulty.contains(participant) ? 0 : 1;
+    return counts;
+}
+
+std::string jsonReport(const std::vector<QualityRow>& rows, const Counts& counts) {
+    Json faulty = Json::array(), unusual = Json::array();
+    for (const QualityRow& row : rows) {
+        if (!isGood(row)) faulty.push_back(rowJson(row));
+        if (!row.outliers.empty()) unusual.push_back(rowJson(row));
+    }
+    return dumped({{"schema", "adaptiso-bids/1"},
+                   {"program", {{"name", kProgram}, {"version", programVersion()}}},
+                   {"passed", counts.bad == 0},
+                   {"participants", counts.participants},
+                   {"wholeParticipants", counts.whole},
+                   {"surfaces", rows.size() - counts.bad},
+                   {"missing", faulty},
+                   {"unusual", unusual}});
+}
+
+void printTotals(std::ostream& out, const Counts& counts, std::size_t rows,
+                 const BidsOptions& options) {
+    out << counts.participants << " participant" << (counts.participants == 1 ? "" : "s") << ", "
+        << counts.whole << " whole; " << rows - counts.bad << " surfaces, " << counts.unusual
+        << " unusual\n"
+        << (options.output / "quality.tsv").string() << " and "
+        << (options.output / "summary.html").string() << " are written\n";
+}
+
+}  // namespace
+
+int runGroup(const BidsOptions& options, const std::vector<fs::path>& subjects) {
+    const bool writesJson = options.common.wantsJson() && !options.common.wantsJsonOnStdout();
+    if (writesJson) checkOutput(options.common.json);
+    std::error_code error;
+    if (!fs::is_directory(options.output, error)) {
+        throw InvalidInput(options.output.string() +
+                           ": is not there; run the participant level first");
+    }
+    Cohort cohort = lookAtCohort(options, subjects);
+    if (cohort.records == 0) {
+        throw InvalidInput(options.output.string() +
+                           ": nothing of these participants is there, "
+                           "with these options; run the participant level first");
+    }
+    markOutliers(cohort.rows, options.outlierLimit);
+    const std::vector<SummaryRow> lines = pageRows(cohort);
+    const std::vector<QualityRow>& rows = cohort.rows;
+    const fs::path page = options.output / "summary.html";
+    std::vector<AtomicOutput> outputs;
+    const auto write = [&](const char* name, const std::string& text) {
+        outputs.emplace_back(options.output / name).writeText(text);
+    };
+    write("dataset_description.json", dumped(descriptionOf(options)));
+    write("README", readme());
+    write(".bidsignore", kIgnored);
+    write("quality.tsv", qualityTable(rows));
+    write("quality.json", dumped(qualityDictionary(options.outlierLimit)));
+    write("summary.html", summaryPage(lines, page));
+    const Counts counts = countsOf(rows);
+    const std::string json = options.common.wantsJson() ? jsonReport(rows, counts) : "";
+    if (writesJson) outputs.emplace_back(options.common.json).writeText(json);
+    printResults(options.common, json,
+                 [&](std::ostream& out) { printTotals(out, counts, rows.size(), options); });
+    AtomicOutput::commit(outputs);
+    for (const QualityRow& row : rows) {
+        if (isGood(row)) continue;
+        printError(kProgram, toString(row.state) + ": " + subjectOf(row) + ": " + row.reason);
+    }
+    return counts.bad == 0 ? kExitOk : kExitCheckFailed;
+}
+
+}  // namespace adaptiso

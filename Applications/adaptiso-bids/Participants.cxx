@@ -1,0 +1,82 @@
+#include <deque>
+#include <iostream>
+#include <string>
+
+#include "Common/AtomicOutput.h"
+#include "Common/ExitCodes.h"
+#include "Common/ResultOutput.h"
+#include "Common/RunApp.h"
+#include "Levels.h"
+#include "Products.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr const char* kProgram = "adaptiso-bids";
+
+/// How the runs of all batches ended.
+struct Ends {
+    bool haveFailed = false, wereKilled = false, wereRefused = false;
+
+    void add(const BatchRecord& record) {
+        haveFailed = haveFailed || !record.hasPassed();
+        wereKilled = wereKilled || record.signal != 0;
+        wereRefused = wereRefused || (record.signal == 0 && record.exitCode == kExitUsage);
+    }
+    int code() const {
+        return wereRefused  ? kExitUsage
+               : wereKilled ? kExitBadInput
+               : haveFailed ? kExitCheckFailed
+                            : kExitOk;
+    }
+};
+
+/// Participants that have no image to make something of.
+void tellThoseWithout(const Product& product, const CommonOptions& common, Ends& ends) {
+    for (const std::string& subject : product.without) {
+        ends.haveFailed = true;
+        const std::string reason = product.name + ": no " + product.needs;
+        if (common.isQuiet || common.wantsJsonOnStdout()) {
+            printError(kProgram, "failed: " + subject + ": " + reason);
+        } else {
+            std::cout << "FAILED  " << subject << ": " << reason << std::endl;
+        }
+    }
+}
+
+void run(Product& product, const CommonOptions& common, std::string& lines, Ends& ends) {
+    tellThoseWithout(product, common, ends);
+    if (product.items.empty()) return;
+    product.program.jsonLines = &lines;
+    product.program.ended = [&ends](const BatchItem&, const BatchRecord& record) {
+        ends.add(record);
+    };
+    const int code = runBatch(product.program, product.batch, common);
+    ends.haveFailed = ends.haveFailed || code != kExitOk;  // of earlier runs, too
+}
+
+}  // namespace
+
+int runParticipants(const BidsOptions& options,
+                    const std::vector<std::filesystem::path>& subjects) {
+    const bool writesJson = options.common.wantsJson() && !options.common.wantsJsonOnStdout();
+    if (writesJson) checkOutput(options.common.json);
+    std::deque<Product> products = findProducts(options, subjects);
+    Ends ends;
+    std::string lines;
+    for (Product& product : products) run(product, options.common, lines, ends);
+    if (options.makesChecks) {
+        products.push_back(checkOf(options, products.front()));
+        bindItems(products.back());
+        run(products.back(), options.common, lines, ends);
+    }
+    if (writesJson) {
+        std::vector<AtomicOutput> outputs;
+        outputs.emplace_back(options.common.json).writeText(lines);
+        AtomicOutput::commit(outputs);
+    }
+    flushResults();
+    return ends.code();
+}
+
+}  // namespace adaptiso

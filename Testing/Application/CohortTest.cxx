@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "Common/Bids.h"
+#include "Common/RunApp.h"
+#include "adaptiso-bids/Outliers.h"
+#include "adaptiso-bids/QualityTable.h"
+#include "adaptiso-bids/Siblings.h"
+
+namespace adaptiso {
+namespace {
+
+using Values = std::vector<std::optional<double>>;
+
+TEST(BidsLabel, HasLettersAndDigitsAlone) {
+    EXPECT_EQ(bidsLabel("411.5"), "411p5");
+    EXPECT_EQ(bidsLabel("-300"), "m300");
+    EXPECT_EQ(bidsLabel("1e-07"), "1em07");
+    EXPECT_EQ(bidsLabel("1e+20"), "1e20");
+    EXPECT_EQ(bidsLabel("auto"), "auto");
+}
+
+TEST(RobustScores, AreDistancesFromTheMedianInScaledMads) {
+    // median 3, distances 2 1 0 1 97: their median is 1
+    const Values scores = robustScores(Values{1, 2, 3, 4, 100});
+    ASSERT_TRUE(scores[4]);
+    EXPECT_NEAR(*scores[4], 97 / 1.4826, 1e-12);
+    EXPECT_NEAR(*scores[0], -2 / 1.4826, 1e-12);
+    EXPECT_EQ(*scores[2], 0);
+}
+
+TEST(RobustScores, StandWhereHalfOfTheValuesAreWrong) {
+    const Values scores = robustScores(Values{10, 11, 12, 13, 14, 1e6, 2e6, 3e6, 4e6});
+    EXPECT_LT(std::abs(*scores[1]), 1.0);
+}
+
+TEST(RobustScores, TakeTheMeanDistanceWhereMostAreEqual) {
+    // distances 0 0 0 0 5: mean 1
+    const Values scores = robustScores(Values{2, 2, 2, 2, 7});
+    EXPECT_NEAR(*scores[4], 5 / 1.253314, 1e-12);
+}
+
+TEST(RobustScores, AreNoneOfFewOrEqualValuesAndOfNone) {
+    for (const auto& score : robustScores(Values{1, 2, 3, 400})) EXPECT_FALSE(score);
+    for (const auto& score : robustScores(Values{3, 3, 3, 3, 3, 3})) EXPECT_FALSE(score);
+    EXPECT_FALSE(robustScores(Values{1, 2, 3, 4, 5, std::nullopt})[5]);
+    EXPECT_FALSE(robustScores(Values{1, 2, 3, 4, 5, std::nan("")})[5]);
+}
+
+TEST(QualityTable, HasARowOfCellsForEveryColumnThatTheDictionaryNames) {
+    QualityRow row;
+    row.participant = "sub-01";
+    row.reason = "tab\there\nand line";
+    row[Measure::AreaMm2] = 0.1;
+    const std::string text = qualityTable({row});
+    const std::string head = text.substr(0, text.find('\n'));
+    const std::string line = text.substr(head.size() + 1);
+    EXPECT_EQ(std::count(head.begin(), head.end(), '\t'),
+              std::count(line.begin(), line.end(), '\t'));
+    EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1);
+    EXPECT_NE(line.find("\ttab here and line\t"), std::string::npos);
+    EXPECT_NE(line.find("\t0.1\t"), std::string::npos);
+    EXPECT_EQ(qualityDictionary(3.5).size(),
+              static_cast<std::size_t>(std::count(head.begin(), head.end(), '\t')) + 1);
+}
+
+TEST(QualityTable, ComparesWhatIsAlike) {
+    std::vector<QualityRow> rows;
+    for (int n = 0; n < 12; ++n) {
+        QualityRow row;
+        row.product = "bem";
+        row.part = n % 2 == 0 ? "inner_skull" : "outer_skin";
+        row[Measure::VolumeMm3] = (n % 2 == 0 ? 1000 : 5000) + n;
+        rows.push_back(row);
+    }
+    rows[0][Measure::VolumeMm3] = 5000;  // as large as the others' skin
+    markOutliers(rows, 3.5);
+    EXPECT_EQ(rows[0].outliers.substr(0, 12), "volume_mm3:+");
+    for (std::size_t n = 1; n < rows.size(); ++n) EXPECT_EQ(rows[n].outliers, "");
+}
+
+TEST(SiblingOptions, GiveValuesTheirCommas) {
+    const Sibling sibling{"adaptiso-x", {}, {}, {"iso", "largest", "crop", "vertices", "output"}};
+    EXPECT_EQ(
+        siblingOptions("--o", "iso=100,largest,crop=:,:,40:,vertices=1,2,3,iso=-3", sibling, {}),
+        (std::vector<std::string>{"--iso=100", "--largest", "--crop=:,:,40:", "--vertices=1,2,3",
+                                  "--iso=-3"}));
+    EXPECT_TRUE(siblingOptions("--o", "", sibling, {}).empty());
+    for (const char* const wrong : {"is0=1", "100", "--iso=3", "iso=", "output=x", ",iso=1"}) {
+        EXPECT_THROW(siblingOptions("--o", wrong, sibling, {"output"}), UsageError) << wrong;
+    }
+}
+
+}  // namespace
+}  // namespace adaptiso
