@@ -10,6 +10,8 @@
 
 #include "InputFolder.h"
 #include "Seeds.h"
+#include "adaptiso/MeshIO/CurrySurface.h"
+#include "adaptiso/MeshIO/FiffSurfaces.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshIO/VtkAdaptor.h"
 
@@ -22,6 +24,11 @@ TriangleMesh tetrahedron() {
             {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 }
 
+std::string bytesOf(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 void addOwnFiles(Seeds& seeds) {
     const InputFolder folder;
     for (const MeshFormat& format : meshFormats()) {
@@ -32,10 +39,18 @@ void addOwnFiles(Seeds& seeds) {
             options.volume = ImageGeometry{{10, 20, 30}, {-5, -20, -45}, Mat3::diagonal(1, 2, 3)};
             const auto file = folder.path() / ("mesh" + ending);
             writeMesh(tetrahedron(), file, options);
-            std::ifstream stream(file, std::ios::binary);
-            seeds.add(ending.substr(1), std::string(std::istreambuf_iterator<char>(stream), {}));
+            seeds.add(ending.substr(1), bytesOf(file));
         }
     }
+}
+
+void addSurfaceLists(Seeds& seeds) {
+    const InputFolder folder;
+    const FiffSurface surfaces[] = {{4, 0.33, tetrahedron()}, {1, 0.33, tetrahedron()}};
+    writeFiffSurfaces(surfaces, folder.path() / "a.fif");
+    seeds.add("fif", bytesOf(folder.path() / "a.fif"));
+    writeCurrySurface(tetrahedron(), folder.path() / "a.s00", "CoordinateFrame: RAS mm");
+    seeds.add("curry", bytesOf(folder.path() / "a.s00"));
 }
 
 void addVtkFiles(Seeds& seeds) {
@@ -113,6 +128,7 @@ void addForeignTexts(Seeds& seeds) {
 
 void addMeshSeeds(Seeds& seeds) {
     addOwnFiles(seeds);
+    addSurfaceLists(seeds);
     addVtkFiles(seeds);
     addForeignTexts(seeds);
 }

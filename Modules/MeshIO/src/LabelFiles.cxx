@@ -1,13 +1,9 @@
 #include "adaptiso/MeshIO/LabelFiles.h"
 
 #include <bit>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <functional>
 #include <limits>
 
-#include "ByteSink.h"
+#include "FileBytes.h"
 #include "Packing.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
@@ -41,21 +37,6 @@ std::string escaped(std::string_view text) {
     return result;
 }
 
-void writeFile(const std::filesystem::path& path, const std::function<void(ByteSink&)>& write) {
-    const auto fail = [&](const char* what) {
-        throw FileError(path.string() + ": can't be " + what + " (" +
-                        (errno != 0 ? std::strerror(errno) : "unknown reason") + ")");
-    };
-    errno = 0;
-    std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-    if (!stream) fail("made");
-    ByteSink sink(stream);
-    write(sink);
-    sink.finish();
-    stream.close();
-    if (!stream) fail("written");
-}
-
 void encodeKey(const LabelKey& label, bool isSeen, ByteSink& sink) {
     sink << "<Label Key=\"" << std::int64_t{label.key} << "\"";
     constexpr const char* kChannels[] = {" Red=\"", " Green=\"", " Blue=\""};
@@ -79,7 +60,7 @@ void writeGiftiLabels(std::span<const std::int32_t> labels, std::span<const Labe
         if (std::endian::native == std::endian::big) label = meshio::swappedBytes(label);
         bytes.append(reinterpret_cast<const char*>(&label), sizeof(label));
     }
-    writeFile(path, [&](ByteSink& sink) {
+    meshio::writeBytes(path, [&](ByteSink& sink) {
         sink << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
                 "<!DOCTYPE GIFTI SYSTEM \"http://www.nitrc.org/frs/download.php/115/gifti.dtd\">\n"
                 "<GIFTI Version=\"1.0\" NumberOfDataArrays=\"1\">\n<MetaData/>\n<LabelTable>\n";
@@ -98,7 +79,7 @@ void writeGiftiLabels(std::span<const std::int32_t> labels, std::span<const Labe
 }
 
 void writeMultiBlock(std::span<const VtkBlock> blocks, const std::filesystem::path& path) {
-    writeFile(path, [&](ByteSink& sink) {
+    meshio::writeBytes(path, [&](ByteSink& sink) {
         sink << "<?xml version=\"1.0\"?>\n<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\" "
                 "byte_order=\"LittleEndian\">\n<vtkMultiBlockDataSet>\n";
         std::int64_t index = 0;

@@ -1,15 +1,13 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <new>
 
 #include "ByteSource.h"
 #include "Codecs.h"
+#include "FileBytes.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
@@ -168,37 +166,6 @@ void scaleToUnitLength(std::vector<Normal>& normals) {
     }
 }
 
-std::string systemReason() {
-    return errno != 0 ? std::strerror(errno) : "unknown reason";
-}
-
-/// The bytes of a regular file.
-std::string readBytes(const std::filesystem::path& path) {
-    namespace fs = std::filesystem;
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) {
-        throw FileError(path.string() + ": no such file; check the name");
-    }
-    if (!fs::is_regular_file(status)) {
-        throw FileError(path.string() + ": not a regular file; give a file on disk");
-    }
-    errno = 0;
-    std::ifstream stream(path, std::ios::binary);
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (!stream || error) {
-        throw FileError(path.string() + ": can't be opened (" + systemReason() +
-                        "); check its permissions");
-    }
-    std::string bytes(size, '\0');
-    stream.read(bytes.data(), static_cast<std::streamsize>(size));
-    if (static_cast<std::uintmax_t>(stream.gcount()) != size) {
-        throw FileError(path.string() + ": only " + std::to_string(stream.gcount()) + " of " +
-                        std::to_string(size) + " bytes can be read; check the disk");
-    }
-    return bytes;
-}
-
 }  // namespace
 
 namespace meshio {
@@ -225,20 +192,9 @@ void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
     const TriangleMesh moved = movedTo(options, mesh, path.string());
     requireWritable(moved, format, options, path.string());
 
-    errno = 0;
-    std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-    if (!stream) {
-        throw FileError(path.string() + ": can't be made (" + systemReason() +
-                        "); check that the folder exists and may be written to");
-    }
-    meshio::ByteSink sink(stream);
-    codecOf(format.id).encode({moved, options}, sink);
-    sink.finish();
-    stream.close();
-    if (!stream) {
-        throw FileError(path.string() + ": can't be written (" + systemReason() +
-                        "); free space on the disk or write elsewhere");
-    }
+    meshio::writeBytes(path, [&](meshio::ByteSink& sink) {
+        codecOf(format.id).encode({moved, options}, sink);
+    });
 }
 
 MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name,
@@ -263,7 +219,7 @@ MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::strin
 
 MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& options) {
     const MeshFormat& format = findMeshFormat(path);
-    return decodeMesh(readBytes(path), format, path.string(), options);
+    return decodeMesh(meshio::readBytes(path), format, path.string(), options);
 }
 
 }  // namespace adaptiso
