@@ -18,6 +18,8 @@ constexpr const char* kInput = "Input (one of --t1, --labels, --probabilities, -
 constexpr const char* kHead = "Head";
 constexpr const char* kMesh = "Surfaces";
 constexpr const char* kOutput = "Output";
+constexpr const char* kToolboxes =
+    "Files for other programs, besides those of FreeSurfer and OpenMEEG";
 
 std::vector<std::string> parts(const std::string& text, char separator) {
     std::vector<std::string> result;
@@ -266,12 +268,28 @@ void declareOutput(CLI::App& app, BemOptions& options) {
         ->type_name("ras|lps|tkras")
         ->check(CLI::IsMember({"ras", "lps", "tkras"}).description(""))
         ->group(kOutput);
-    app.add_flag("--gifti", options.files.writesGifti, "Write .gii files too")->group(kOutput);
-    app.add_flag("--vtp", options.files.writesVtp, "Write .vtp files too")->group(kOutput);
     app.add_flag("--dry-run", options.isDryRun,
                  "Do and check everything, write nothing but the reports asked for by name")
         ->group(kOutput);
     declareReportOptions(app, options.report, kOutput);
+}
+
+void declareToolboxes(CLI::App& app, BemOptions& options) {
+    BemFileOptions& files = options.files;
+    const auto addFlag = [&](const char* name, bool& target, const char* description) {
+        app.add_flag(name, target, description)->group(kToolboxes);
+    };
+    addFlag("--fif", files.writesFif,
+            "MNE: bem.fif (all surfaces), head-dense.fif and head-sparse.fif (the skin, for "
+            "coregistration); with --subject in the subject's folder too");
+    addFlag("--fieldtrip", files.writesFieldTrip,
+            "FieldTrip: headmodel.mat (bnd, cond, tissue, unit, coordsys)");
+    addFlag("--brainstorm", files.writesBrainstorm,
+            "Brainstorm: tess_innerskull_bem.mat, ... (scanner RAS, metres)");
+    addFlag("--simnibs", files.writesSimNibs, "SimNIBS: csf.stl, bone.stl, skin.stl (scanner RAS)");
+    addFlag("--curry", files.writesCurry, "Curry: .s00 (skin) to .s02 (inner skull)");
+    addFlag("--gifti", files.writesGifti, "Viewers: .gii");
+    addFlag("--vtp", files.writesVtp, "Viewers: .vtp");
 }
 
 /// What one option alone can't tell.
@@ -329,6 +347,7 @@ constexpr const char* kFooter = R"(Examples:
   adaptiso-bem --probabilities c1.nii c2.nii c3.nii c4.nii c5.nii -o model
   adaptiso-bem --ct ct.nii.gz --meg -o model --report model.html
   adaptiso-bem --surfaces inner.stl outer.stl skin.stl --min-gap 3,2 -o model
+  adaptiso-bem --t1 T1.nii.gz --fif --fieldtrip --brainstorm -o model
 
 Exit codes: 0 done, 1 no model could be guaranteed, or a warning with --strict
 (the folder holds report.json alone), 2 wrong usage, 3 bad input (or no memory
@@ -339,7 +358,9 @@ or disk left), 4 internal error. When it is above 1, nothing was written.)";
 Program bemProgram() {
     return {"adaptiso-bem",
             "Makes the nested surfaces of a boundary element head model (EEG: inner skull, outer "
-            "skull,\nouter skin; MEG: inner skull) for MNE, FreeSurfer and OpenMEEG.",
+            "skull,\nouter skin; MEG: inner skull) for MNE, FreeSurfer, OpenMEEG, FieldTrip, "
+            "Brainstorm, "
+            "SimNIBS\nand Curry.",
             kFooter};
 }
 
@@ -348,6 +369,7 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
     declareHead(app, options);
     declareSurfaces(app, options);
     declareOutput(app, options);
+    declareToolboxes(app, options);
     declareCommonOptions(app, options.common, "of the model only the report is then written");
     app.callback([&options] { checkCombinations(options); });
 }

@@ -1,6 +1,7 @@
 #include "Pipeline.h"
 
 #include <algorithm>
+#include <fstream>
 #include <iostream>
 #include <optional>
 #include <span>
@@ -17,7 +18,6 @@
 #include "Inputs.h"
 #include "JsonReport.h"
 #include "TextReport.h"
-#include "adaptiso/HeadModel/ExportFreeSurfer.h"
 #include "adaptiso/Pipeline/BemReport.h"
 #include "adaptiso/Pipeline/BemSurfaces.h"
 
@@ -50,17 +50,37 @@ bool hasJsonFile(const BemOptions& options) {
 
 /// The folder's own names when it may be replaced.
 OwnNames replaceable(const BemOptions& options) {
-    return options.mayReplace ? OwnNames(bemFileNames()) : OwnNames();
+    if (!options.mayReplace) return {};
+    const std::vector<std::string> names = bemFileNames();
+    return std::vector<std::string_view>(names.begin(), names.end());
 }
 
-/// Where --subject's surfaces go: SUBJECTS_DIR/SUBJECT/bem/<surface>.surf, one a surface.
-std::vector<fs::path> subjectPaths(const BemOptions& options) {
-    std::vector<fs::path> paths;
-    if (options.subject.empty()) return paths;
+/// What a subject gets: the folder's files, and their names in SUBJECTS_DIR/SUBJECT/bem.
+struct SubjectFile {
+    std::string name;
+    fs::path path;
+};
+
+std::vector<SubjectFile> subjectFiles(const BemOptions& options) {
+    std::vector<SubjectFile> files;
+    if (options.subject.empty()) return files;
     const fs::path folder = options.subjectsDir / options.subject / "bem";
     for (std::size_t n = 0; n < options.model.surfaceCount(); ++n) {
-        paths.push_back(folder / bemFileName(n, ".surf"));
+        const std::string name = bemFileName(n, ".surf");
+        files.push_back({name, folder / name});
     }
+    if (!options.files.writesFif) return files;
+    // the names that mne.coregistration looks for
+    for (const char* name : {kFiffModel, kFiffDenseHead, kFiffSparseHead}) {
+        if (name != kFiffModel && !options.model.hasSkin()) continue;
+        files.push_back({name, folder / (options.subject + "-" + name)});
+    }
+    return files;
+}
+
+std::vector<fs::path> subjectPaths(const BemOptions& options) {
+    std::vector<fs::path> paths;
+    for (const SubjectFile& file : subjectFiles(options)) paths.push_back(file.path);
     return paths;
 }
 
@@ -129,14 +149,18 @@ void tellWarnings(const BemRun& run, std::size_t first = 0) {
     printWarnings("adaptiso-bem", run.options.common, std::span(run.model.warnings).subspan(first));
 }
 
-/// The FreeSurfer surfaces once more, for the subject's own folder.
-std::vector<AtomicOutput> writeSubject(BemRun& run) {
-    const BemModel& model = run.model;
+/// Files of the model's folder once more, for the subject's own.
+std::vector<AtomicOutput> writeSubject(BemRun& run, const AtomicFolder& folder) {
     std::vector<AtomicOutput> outputs;
-    run.subjectFiles = subjectPaths(run.options);
-    for (std::size_t n = 0; n < run.subjectFiles.size(); ++n) {
-        outputs.emplace_back(run.subjectFiles[n]).write([&](const fs::path& path) {
-            writeFreeSurferSurface(model.meshes[n], path, model.tkRasVolume, model.tkRasName);
+    for (const SubjectFile& file : subjectFiles(run.options)) {
+        run.subjectFiles.push_back(file.path);
+        outputs.emplace_back(file.path).write([&](const fs::path& path) {
+            // the bytes alone: a file that is replaced keeps its mode
+            std::ifstream from(folder.path() / file.name, std::ios::binary);
+            std::ofstream to(path, std::ios::binary | std::ios::trunc);
+            to << from.rdbuf();
+            to.close();
+            if (!from || !to) throw FileError(path.string() + ": can't be written");
         });
     }
     return outputs;
@@ -202,7 +226,7 @@ void write(BemRun& run, ProgressLine& progress) {
     std::optional<AtomicFolder> folder;
     if (!options.isDryRun) {
         fillFolder(run, folder);
-        if (run.model.hasModel() && !run.failsStrict()) outputs = writeSubject(run);
+        if (run.model.hasModel() && !run.failsStrict()) outputs = writeSubject(run, *folder);
     }
     const std::unique_ptr<PictureFolder> pictures = show(run, outputs, folder);
     const std::string json = jsonReport(run);
@@ -224,6 +248,7 @@ int runBem(const BemOptions& options) {
     ProgressLine progress(options.common.isQuiet);
     BemRun run{options, {}};
     run.model.options = options.model;
+    run.model.options.wantsHeadShape = options.files.writesFif;
     run.model.source = sourceOf(options);
     checkOutputs(options);
 

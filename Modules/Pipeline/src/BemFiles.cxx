@@ -1,31 +1,20 @@
 #include "adaptiso/Pipeline/BemFiles.h"
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
+#include "BemFileKinds.h"
 #include "BemReadme.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/HeadModel/ExportFreeSurfer.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
-#include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/HeadModel/ExportOpenMeeg.h"
 
 namespace adaptiso {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<ImageGeometry> volumeOf(CoordinateFrame frame, const BemModel& model) {
-    return frame == CoordinateFrame::TkRas ? model.tkRasVolume : std::nullopt;
-}
-
-void writeGeneral(const TriangleMesh& surface, const fs::path& path, const BemModel& model,
-                  const BemFileOptions& options) {
-    MeshWriteOptions write;
-    write.frame = options.frame;
-    write.volume = volumeOf(write.frame, model);
-    writeMesh(surface, path, write);
-}
 
 void writeText(const fs::path& path, const std::string& text) {
     errno = 0;
@@ -39,12 +28,21 @@ void writeText(const fs::path& path, const std::string& text) {
 
 }  // namespace
 
-std::vector<std::string_view> bemFileNames() {
-    return {"inner_skull.surf", "outer_skull.surf", "outer_skin.surf", "inner_skull.tri",
-            "outer_skull.tri",  "outer_skin.tri",   "inner_skull.gii", "outer_skull.gii",
-            "outer_skin.gii",   "inner_skull.vtp",  "outer_skull.vtp", "outer_skin.vtp",
-            "model.geom",       "model.cond",       "report.json",     "spots.png",
-            "README.md"};
+std::vector<std::string> bemFileNames() {
+    std::vector<std::string> names{"model.geom",   "model.cond",    "report.json",
+                                   "spots.png",    "README.md",     kFiffModel,
+                                   kFiffDenseHead, kFiffSparseHead, kFieldTripFile};
+    for (int n = 0; n < kHeadSurfaceCount; ++n) {
+        for (const char* extension : {".surf", ".tri", ".gii", ".vtp"}) {
+            names.push_back(bemFileName(n, extension));
+        }
+        const auto surface = static_cast<HeadSurface>(n);
+        for (std::string& name :
+             std::array{simNibsName(surface), brainstormName(surface), curryName(surface)}) {
+            names.push_back(std::move(name));
+        }
+    }
+    return names;
 }
 
 std::string bemFileName(std::size_t surface, const char* extension) {
@@ -55,19 +53,9 @@ void writeBemFiles(const BemModel& model, const BemFileOptions& options, const s
                    const std::function<fs::path(const std::string&)>& place) {
     std::vector<std::string> triangleFiles;
     for (std::size_t n = 0; n < model.meshes.size(); ++n) {
-        const TriangleMesh& mesh = model.meshes[n];
-        writeFreeSurferSurface(mesh, place(bemFileName(n, ".surf")), model.tkRasVolume,
-                               model.tkRasName);
         triangleFiles.push_back(bemFileName(n, ".tri"));
-        writeOpenMeegSurface(mesh, place(triangleFiles.back()), options.frame, options.unit,
-                             volumeOf(options.frame, model));
-        if (options.writesGifti) {
-            writeGeneral(mesh, place(bemFileName(n, ".gii")), model, options);
-        }
-        if (options.writesVtp) {
-            writeGeneral(mesh, place(bemFileName(n, ".vtp")), model, options);
-        }
     }
+    for (const BemFileKind& kind : bemFileKinds(model, options)) kind.write(place);
     writeText(place("model.geom"), openMeegGeometry(triangleFiles));
     writeText(place("model.cond"),
               openMeegConductivities(model.meshes.size(), model.options.conductivities));

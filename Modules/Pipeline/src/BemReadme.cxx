@@ -23,6 +23,60 @@ std::string conductivityTuple(const BemModelOptions& options) {
            formatNumber(c.scalp) + ")";
 }
 
+/// Rows of the table of files, for what else was asked for.
+std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
+                        const std::string& frame) {
+    const std::string mri = model.tkRasVolume ? "surface RAS (tkRAS) of the image" : "scanner RAS";
+    std::string rows;
+    if (options.writesGifti || options.writesVtp) {
+        rows += "| `*.gii`, `*.vtp` | viewers | " + frame + "; millimetres |\n";
+    }
+    if (options.writesFif) {
+        rows += std::string("| `bem.fif`") +
+                (model.headShape ? ", `head-dense.fif`, `head-sparse.fif`" : "") + " | MNE | " +
+                mri + " (\"MRI coordinates\"); metres |\n";
+    }
+    if (options.writesFieldTrip) {
+        rows += "| `headmodel.mat` | FieldTrip | " + frame + "; millimetres |\n";
+    }
+    if (options.writesBrainstorm) {
+        rows += "| `tess_*_bem.mat` | Brainstorm | scanner RAS (\"world\", not SCS); metres |\n";
+    }
+    if (options.writesSimNibs) {
+        rows += "| `csf.stl`, `bone.stl`, `skin.stl` | SimNIBS | scanner RAS; millimetres |\n";
+    }
+    if (options.writesCurry) {
+        rows += "| `*.s0*` | Curry | " + frame + "; millimetres |\n";
+    }
+    return rows;
+}
+
+/// How toolboxes take their files, for what else was asked for.
+std::string toolboxText(const BemFileOptions& options, bool isOne) {
+    std::string text;
+    if (options.writesFif) {
+        text +=
+            "\nMNE-Python without FreeSurfer's folders:\n```python\nimport mne\n"
+            "bem = mne.make_bem_solution(mne.read_bem_surfaces('bem.fif'))\n```\n";
+    }
+    if (options.writesFieldTrip) {
+        text += isOne ? "\nFieldTrip (`type` is singleshell, which needs no more):\n```matlab\n"
+                        "load headmodel.mat\n```\n"
+                      : "\nFieldTrip, with OpenMEEG (or ft_headmodel_dipoli, _bemcp):\n"
+                        "```matlab\nload headmodel.mat\n"
+                        "headmodel = ft_headmodel_openmeeg(headmodel.bnd, 'conductivity', "
+                        "headmodel.cond, 'tissue', headmodel.tissue);\n```\n";
+    }
+    if (options.writesBrainstorm) {
+        text +=
+            "\nBrainstorm takes the points of `tess_*_bem.mat` for SCS coordinates, which follow "
+            "from nasion and ears; these are the scanner's: convert them with `cs_convert(sMri, "
+            "'world', 'scs', Vertices)`, or import the `.gii` files as \"GIFTI / World "
+            "coordinates\".\n";
+    }
+    return text;
+}
+
 /// From the model to the gain matrix.
 std::string openMeegText(bool isMeg, const std::string& frame, const std::string& unit) {
     std::string text =
@@ -66,9 +120,7 @@ std::string bemReadme(const BemModel& model, const BemFileOptions& options,
             "; millimetres |\n";
     text += "| `model.geom`, `model.cond`, `*.tri` | OpenMEEG | " + frame + "; " + unit +
             (isMetres ? " (potentials in volts)" : "") + " |\n";
-    if (options.writesGifti || options.writesVtp) {
-        text += "| `*.gii`, `*.vtp` | viewers | " + frame + "; millimetres |\n";
-    }
+    text += toolboxRows(model, options, frame);
     text += "| `report.json` | what was made, measured and checked | scanner LPS; millimetres |\n";
 
     text +=
@@ -77,7 +129,7 @@ std::string bemReadme(const BemModel& model, const BemFileOptions& options,
         "ico=None, conductivity=" +
         conductivityTuple(model.options) +
         ", subjects_dir='SUBJECTS_DIR')\nbem = mne.make_bem_solution(model)\n```\n";
-    return text + openMeegText(isOne, frame, unit);
+    return text + openMeegText(isOne, frame, unit) + toolboxText(options, isOne);
 }
 
 }  // namespace adaptiso

@@ -98,6 +98,25 @@ void warnOfMany(BemModel& model) {
                              " vertices in all; MNE warns above 10,000; ask for fewer");
 }
 
+/// The skin as it was found, and the model's with few triangles.
+HeadShape headShapeOf(TriangleMesh dense, BemModel& model) {
+    constexpr std::int64_t kVertices = 1252;  // 2,500 triangles, as MNE's own sparse heads have
+    HeadShape shape{std::move(dense), model.meshes.back()};
+    shape.dense.normals.clear();
+    if (std::ssize(shape.sparse.points) <= kVertices) return shape;
+    RemeshOptions remesh;
+    remesh.vertices = kVertices;
+    Remeshed sparse = remeshForBem(shape.sparse, remesh);
+    if (sparse.findings.empty()) {
+        shape.sparse = std::move(sparse.mesh);
+    } else {
+        model.notes.push_back("the sparse head has the triangles of " +
+                              bemSurfaceName(model.meshes.size() - 1) + ": " +
+                              sparse.findings.front().what);
+    }
+    return shape;
+}
+
 }  // namespace
 
 std::vector<TriangleMesh> extractSurfaces(const HeadBoundaries& boundaries, BemModel& model,
@@ -130,6 +149,10 @@ void finishBemModel(std::vector<TriangleMesh> dense, BemModel& model, const BemH
     }
     if (model.hasModel()) checkModel(model, hooks);
     if (model.hasModel()) askWhatIsUsual(model, hooks);
+    if (model.hasModel() && model.options.wantsHeadShape && model.meshes.size() > 1) {
+        hooks.stage("remesh",
+                    [&] { model.headShape = headShapeOf(std::move(dense.back()), model); });
+    }
     warnOfMany(model);
     if (model.meshes.empty()) model.meshes = std::move(dense);
 }

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
@@ -18,10 +17,27 @@ struct BemFileOptions {
     CoordinateFrame frame = CoordinateFrame::Ras;  ///< of all files but FreeSurfer's
     bool writesGifti = false;
     bool writesVtp = false;
+    /// bem.fif and, of a model with a skin, head-dense.fif and head-sparse.fif: MNE's, in metres,
+    /// in the frame of the FreeSurfer files.
+    bool writesFif = false;
+    bool writesFieldTrip = false;   ///< headmodel.mat
+    bool writesBrainstorm = false;  ///< tess_*_bem.mat: scanner RAS, metres
+    bool writesSimNibs = false;     ///< csf.stl, bone.stl, skin.stl: scanner RAS
+    bool writesCurry = false;       ///< inner_skull.s02, ...
 };
 
+inline constexpr const char* kFiffModel = "bem.fif";
+inline constexpr const char* kFiffDenseHead = "head-dense.fif";
+inline constexpr const char* kFiffSparseHead = "head-sparse.fif";
+inline constexpr const char* kFieldTripFile = "headmodel.mat";
+
+/// Of a surface's file: "csf.stl", "tess_innerskull_bem.mat", "inner_skull.s02".
+std::string simNibsName(HeadSurface surface);
+std::string brainstormName(HeadSurface surface);
+std::string curryName(HeadSurface surface);
+
 /// Every name that a model's folder may hold.
-std::vector<std::string_view> bemFileNames();
+std::vector<std::string> bemFileNames();
 
 /// "inner_skull.surf" of surface 0
 std::string bemFileName(std::size_t surface, const char* extension);

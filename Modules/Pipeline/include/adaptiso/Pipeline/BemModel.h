@@ -30,6 +30,7 @@ struct BemModelOptions {
     std::vector<std::int64_t> vertices;
     std::optional<EdgeLengthRange> edgeLengthMm;
     ConductivityModel conductivities;
+    bool wantsHeadShape = false;  ///< the skin alone as well, for coregistration
 
     /// Of skull and scalp.
     std::array<double, 2> minGapsMm() const {
@@ -42,6 +43,7 @@ struct BemModelOptions {
     std::size_t surfaceCount() const {
         return boundaries.innerSkullOnly ? 1 : std::size_t{kHeadSurfaceCount};
     }
+    bool hasSkin() const { return surfaceCount() > 1; }
 };
 
 /// What the model is made from, for the reports.
@@ -75,6 +77,12 @@ struct BemCheck {
     std::optional<Vec3> pointMm;  ///< LPS, where it is not kept
 };
 
+/// The skin alone, for coregistration.
+struct HeadShape {
+    TriangleMesh dense;   ///< as finely as it was found
+    TriangleMesh sparse;  ///< of the model, with at most 2,500 triangles
+};
+
 /// A head model, or what is known of it so far: what it is made from, its surfaces, whether they
 /// keep what is promised of them.
 struct BemModel {
@@ -89,6 +97,7 @@ struct BemModel {
     /// Inside out, LPS mm. Where there is no model: what it was tried from.
     std::vector<TriangleMesh> meshes;
     std::vector<BemSurface> surfaces;
+    std::optional<HeadShape> headShape;  ///< LPS mm; if wanted, and there is a model with a skin
     std::vector<NestedGap> gaps;
     std::vector<BemCheck> checks;
     std::vector<ToldNote> plausibility;  ///< what is unusual of adults' heads
