@@ -37,8 +37,9 @@ std::string sourceOf(const BemOptions& options) {
 std::vector<fs::path> inputsOf(const BemOptions& options) {
     std::vector<fs::path> inputs = options.probabilities;
     inputs.insert(inputs.end(), options.surfaces.begin(), options.surfaces.end());
-    for (const fs::path& path :
-         {options.t1, options.brainMask, options.labels, options.ct, options.volume}) {
+    inputs.insert(inputs.end(), options.pial.begin(), options.pial.end());
+    for (const fs::path& path : {options.t1, options.brainMask, options.aseg, options.labels,
+                                 options.ct, options.volume}) {
         if (!path.empty()) inputs.push_back(path);
     }
     return inputs;
@@ -66,7 +67,7 @@ std::vector<SubjectFile> subjectFiles(const BemOptions& options) {
     if (options.subject.empty()) return files;
     const fs::path folder = options.subjectsDir / options.subject / "bem";
     for (std::size_t n = 0; n < options.model.surfaceCount(); ++n) {
-        const std::string name = bemFileName(n, ".surf");
+        const std::string name = bemFileName(options.model.surface(n), ".surf");
         files.push_back({name, folder / name});
     }
     if (!options.files.writesFif) return files;

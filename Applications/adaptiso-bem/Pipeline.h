@@ -22,11 +22,14 @@ struct BemOptions {
     std::filesystem::path ct;
     std::vector<std::filesystem::path> surfaces;
 
-    std::filesystem::path brainMask;  ///< with t1
-    TissueLabels tissues;             ///< with labels
-    std::filesystem::path volume;     ///< with surfaces: the image whose tkRAS is written
-    ReadOptions read;                 ///< of the main image
+    std::filesystem::path brainMask;          ///< with t1
+    std::filesystem::path aseg;               ///< with t1
+    std::vector<std::filesystem::path> pial;  ///< with t1, of four layers
+    TissueLabels tissues;                     ///< with labels
+    std::filesystem::path volume;             ///< with surfaces: the image whose tkRAS is written
+    ReadOptions read;                         ///< of the main image
     BemModelOptions model;
+    bool namesCsf = false;  ///< the conductivity of CSF was given
     BemFileOptions files;
 
     std::filesystem::path output;

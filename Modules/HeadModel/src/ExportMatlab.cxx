@@ -15,12 +15,14 @@ namespace {
 
 constexpr const char* kModel = "headmodel";
 
-/// What lies within a surface, as FieldTrip names tissues. Of three layers the inner skull holds
-/// the brain.
-std::string tissueWithin(HeadSurface surface) {
+/// What lies within a surface, as FieldTrip names tissues. Without a surface of its own the brain
+/// fills the inner skull.
+std::string tissueWithin(HeadSurface surface, std::size_t count) {
     switch (surface) {
-        case HeadSurface::InnerSkull:
+        case HeadSurface::Brain:
             return "brain";
+        case HeadSurface::InnerSkull:
+            return count == kHeadSurfaceCount ? "csf" : "brain";
         case HeadSurface::OuterSkull:
             return "skull";
         case HeadSurface::OuterSkin:
@@ -29,10 +31,9 @@ std::string tissueWithin(HeadSurface surface) {
     throw InternalError("tissueWithin: unknown head surface");
 }
 
-HeadSurface surfaceAround(const std::string& tissue) {
-    for (const HeadSurface surface :
-         {HeadSurface::InnerSkull, HeadSurface::OuterSkull, HeadSurface::OuterSkin}) {
-        if (tissueWithin(surface) == tissue) return surface;
+HeadSurface surfaceAround(const std::string& tissue, std::size_t count) {
+    for (std::size_t n = 0; n < count; ++n) {
+        if (tissueWithin(headSurface(n, count), count) == tissue) return headSurface(n, count);
     }
     throw FileError("it holds an unknown tissue");
 }
@@ -89,7 +90,7 @@ void writeFieldTripModel(std::span<const HeadLayer> layers, const std::filesyste
     std::vector<std::string> tissues;
     for (auto layer = layers.rbegin(); layer != layers.rend(); ++layer) {
         conductivities.push_back(layer->conductivity);
-        tissues.push_back(tissueWithin(layer->surface));
+        tissues.push_back(tissueWithin(layer->surface, layers.size()));
     }
     std::vector<std::vector<MatVariable>> model;
     model.push_back(listOf(boundariesOf(layers, coordsys), matRow("cond", conductivities),
@@ -114,7 +115,7 @@ std::vector<HeadLayer> readFieldTripModel(const std::filesystem::path& path) {
             layer.conductivity = conductivities[n];
             matvar_t* const tissue = Mat_VarGetCell(&tissues, static_cast<int>(n));
             if (tissue == nullptr) throw FileError("it names fewer tissues than conductivities");
-            layer.surface = surfaceAround(textOf(*tissue));
+            layer.surface = surfaceAround(textOf(*tissue), layers.size());
             layer.mesh.points = pointsOf(matField(boundaries, "pos", n));
             layer.mesh.triangles =
                 trianglesOf(matField(boundaries, "tri", n), layer.mesh.points.size());

@@ -25,7 +25,7 @@ struct Source {
     const BemModel& model;
     const BemFileOptions& options;
 
-    HeadSurface surface(std::size_t n) const { return static_cast<HeadSurface>(n); }
+    HeadSurface surface(std::size_t n) const { return headSurface(n, model.meshes.size()); }
     std::optional<ImageGeometry> volume(CoordinateFrame frame) const {
         return frame == CoordinateFrame::TkRas ? model.tkRasVolume : std::nullopt;
     }
@@ -41,7 +41,7 @@ struct Source {
         return moved;
     }
     double conductivity(std::size_t n) const {
-        return model.options.conductivities.within(surface(n));
+        return model.options.conductivities.within(surface(n), model.meshes.size());
     }
 };
 
@@ -50,8 +50,7 @@ BemFileKind wholeModel(const Source& source, std::string name, CoordinateFrame f
                        double unitMm = 1) {
     BemFileKind kind{std::move(name), frame, unitMm, {}, {}, true, {}, {}};
     for (const TriangleMesh& mesh : source.model.meshes) kind.meshes.push_back(&mesh);
-    const auto gaps = source.model.options.minGapsMm();
-    kind.gapsMm.assign(gaps.begin(), gaps.end());
+    kind.gapsMm = source.model.options.minGapsMm();
     return kind;
 }
 
@@ -81,7 +80,7 @@ BemFileKind oneEach(BemFileKind kind, const std::vector<std::string>& names,
 std::vector<std::string> namesOf(const Source& source, const char* extension) {
     std::vector<std::string> names;
     for (std::size_t n = 0; n < source.model.meshes.size(); ++n) {
-        names.push_back(bemFileName(n, extension));
+        names.push_back(bemFileName(source.surface(n), extension));
     }
     return names;
 }
@@ -137,7 +136,7 @@ BemFileKind curryFiles(const Source& source) {
         wholeModel(source, "*.s0*", frame), names,
         [source, frame](std::size_t n, const TriangleMesh& mesh, const fs::path& path) {
             writeCurrySurface(toFrame(mesh, frame, source.volume(frame)), path,
-                              bemSurfaceName(n) + ", " + frameMarker(frame));
+                              std::string(toString(source.surface(n))) + ", " + frameMarker(frame));
         },
         readCurrySurface);
 }
@@ -151,8 +150,9 @@ BemFileKind brainstormFiles(const Source& source) {
     return oneEach(
         wholeModel(source, "tess_*_bem.mat", CoordinateFrame::Ras, kMetreMm), names,
         [source](std::size_t n, const TriangleMesh& mesh, const fs::path& path) {
-            writeBrainstormSurface(source.placed(mesh, CoordinateFrame::Ras, kMetreMm), path,
-                                   bemSurfaceName(n) + " (world: scanner RAS, m; not SCS)");
+            writeBrainstormSurface(
+                source.placed(mesh, CoordinateFrame::Ras, kMetreMm), path,
+                std::string(toString(source.surface(n))) + " (world: scanner RAS, m; not SCS)");
         },
         readBrainstormSurface);
 }
@@ -193,14 +193,21 @@ std::vector<TriangleMesh> readFiffMeshes(const fs::path& path) {
     return stored;
 }
 
-/// Outermost first, as MNE writes them.
+/// Outermost first, as MNE writes them. MNE has no number for a brain within CSF: it gets the rest,
+/// with the brain's conductivity within the inner skull.
 BemFileKind fiffModel(const Source& source) {
     BemFileKind kind = wholeModel(source, kFiffModel, source.mriFrame(), kMetreMm);
-    kind.write = [source](const PlaceFile& place) {
+    const std::size_t first = source.model.options.boundaries.withBrain ? 1 : 0;
+    if (first > 0) {
+        kind.meshes.erase(kind.meshes.begin());
+        kind.gapsMm.erase(kind.gapsMm.begin());
+    }
+    kind.write = [source, first](const PlaceFile& place) {
         std::vector<FiffSurface> surfaces;
-        for (std::size_t n = source.model.meshes.size(); n-- > 0;) {
+        for (std::size_t n = source.model.meshes.size(); n-- > first;) {
             surfaces.push_back(
-                {fiffId(source.surface(n)), source.conductivity(n),
+                {fiffId(source.surface(n)),
+                 n == first ? source.model.options.conductivities.brain : source.conductivity(n),
                  source.placed(source.model.meshes[n], source.mriFrame(), kMetreMm)});
         }
         writeFiffSurfaces(surfaces, place(kFiffModel));
@@ -223,18 +230,20 @@ BemFileKind fiffHead(const Source& source, const char* name, const TriangleMesh&
 }  // namespace
 
 std::string simNibsName(HeadSurface surface) {
-    constexpr std::array<const char*, kHeadSurfaceCount> kNames{"csf.stl", "bone.stl", "skin.stl"};
+    constexpr std::array<const char*, kHeadSurfaceCount> kNames{"gm.stl", "csf.stl", "bone.stl",
+                                                                "skin.stl"};
     return kNames[static_cast<std::size_t>(surface)];
 }
 
 std::string brainstormName(HeadSurface surface) {
     constexpr std::array<const char*, kHeadSurfaceCount> kNames{
-        "tess_innerskull_bem.mat", "tess_outerskull_bem.mat", "tess_head_bem.mat"};
+        "tess_brain_bem.mat", "tess_innerskull_bem.mat", "tess_outerskull_bem.mat",
+        "tess_head_bem.mat"};
     return kNames[static_cast<std::size_t>(surface)];
 }
 
 std::string curryName(HeadSurface surface) {
-    constexpr std::array<const char*, kHeadSurfaceCount> kEndings{".s02", ".s01", ".s00"};
+    constexpr std::array<const char*, kHeadSurfaceCount> kEndings{".s03", ".s02", ".s01", ".s00"};
     return std::string(toString(surface)) + kEndings[static_cast<std::size_t>(surface)];
 }
 

@@ -32,11 +32,11 @@ std::vector<std::string> bemFileNames() {
     std::vector<std::string> names{"model.geom",   "model.cond",    "report.json",
                                    "spots.png",    "README.md",     kFiffModel,
                                    kFiffDenseHead, kFiffSparseHead, kFieldTripFile};
-    for (int n = 0; n < kHeadSurfaceCount; ++n) {
+    for (std::size_t n = 0; n < kHeadSurfaceCount; ++n) {
+        const HeadSurface surface = headSurface(n, kHeadSurfaceCount);
         for (const char* extension : {".surf", ".tri", ".gii", ".vtp"}) {
-            names.push_back(bemFileName(n, extension));
+            names.push_back(bemFileName(surface, extension));
         }
-        const auto surface = static_cast<HeadSurface>(n);
         for (std::string& name :
              std::array{simNibsName(surface), brainstormName(surface), curryName(surface)}) {
             names.push_back(std::move(name));
@@ -45,15 +45,15 @@ std::vector<std::string> bemFileNames() {
     return names;
 }
 
-std::string bemFileName(std::size_t surface, const char* extension) {
-    return bemSurfaceName(surface) + extension;
+std::string bemFileName(HeadSurface surface, const char* extension) {
+    return std::string(toString(surface)) + extension;
 }
 
 void writeBemFiles(const BemModel& model, const BemFileOptions& options, const std::string& maker,
                    const std::function<fs::path(const std::string&)>& place) {
     std::vector<std::string> triangleFiles;
     for (std::size_t n = 0; n < model.meshes.size(); ++n) {
-        triangleFiles.push_back(bemFileName(n, ".tri"));
+        triangleFiles.push_back(bemFileName(headSurface(n, model.meshes.size()), ".tri"));
     }
     for (const BemFileKind& kind : bemFileKinds(model, options)) kind.write(place);
     writeText(place("model.geom"), openMeegGeometry(triangleFiles));

@@ -14,9 +14,9 @@ Json remeshJson(const BemSurface& surface) {
             {"maximumVertexDistanceMm", number(surface.remesh->maximumVertexDistanceMm)}};
 }
 
-Json surfaceJson(std::size_t n, const BemSurface& surface) {
+Json surfaceJson(const std::string& name, const BemSurface& surface) {
     const ShapeReport& shape = surface.shape;
-    return {{"name", bemSurfaceName(n)},
+    return {{"name", name},
             {"denseTriangles", surface.denseTriangles},
             {"vertices", surface.topology.vertices},
             {"triangles", surface.topology.triangles},
@@ -76,30 +76,35 @@ Json bemOptionsJson(const BemModelOptions& options) {
     if (options.edgeLengthMm) {
         edges = {options.edgeLengthMm->minimumMm, options.edgeLengthMm->maximumMm};
     }
-    return {{"layers", options.surfaceCount()},
-            {"vertices", options.vertices.empty() ? Json(nullptr) : Json(options.vertices)},
-            {"edgeLengthMm", edges},
-            {"minGapMm", {b.minSkullMm, b.minScalpMm}},
-            {"smoothingMm", b.smoothingMm},
-            {"closingMm", b.closingMm},
-            {"cutNecksMm", b.cutNecksMm},
-            {"voxelMm", b.stepMm > 0 ? Json(b.stepMm) : Json(nullptr)},
-            {"csfMm", b.csfMm},
-            {"skullMm", b.skullMm},
-            {"maxSkullMm", b.maxSkullMm},
-            {"skullHu", b.skullHu},
-            {"skinHu", b.skinHu},
-            {"conductivity",
-             {{"brain", options.conductivities.brain},
-              {"skull", options.conductivities.skull},
-              {"scalp", options.conductivities.scalp}}}};
+    return {
+        {"layers", options.surfaceCount()},
+        {"vertices", options.vertices.empty() ? Json(nullptr) : Json(options.vertices)},
+        {"edgeLengthMm", edges},
+        {"minGapMm", {b.minSkullMm, b.minScalpMm}},
+        {"minCsfMm", b.minCsfMm},
+        {"sulciMm", b.sulciMm},
+        {"smoothingMm", b.smoothingMm},
+        {"closingMm", b.closingMm},
+        {"cutNecksMm", b.cutNecksMm},
+        {"voxelMm", b.stepMm > 0 ? Json(b.stepMm) : Json(nullptr)},
+        {"csfMm", b.csfMm},
+        {"skullMm", b.skullMm},
+        {"maxSkullMm", b.maxSkullMm},
+        {"skullHu", b.skullHu},
+        {"skinHu", b.skinHu},
+        {"conductivity",
+         {{"brain", options.conductivities.brain},
+          {"csf", options.boundaries.withBrain ? Json(options.conductivities.csf) : Json(nullptr)},
+          {"skull", options.conductivities.skull},
+          {"scalp", options.conductivities.scalp}}}};
 }
 
 Json bemModelJson(const BemModel& model) {
     Json surfaces = Json::array(), gaps = Json::array(), checks = Json::array();
     Json findings = Json::array();
     for (std::size_t n = 0; n < model.surfaces.size(); ++n) {
-        surfaces.push_back(surfaceJson(n, model.surfaces[n]));
+        surfaces.push_back(
+            surfaceJson(bemSurfaceName(n, model.surfaces.size()), model.surfaces[n]));
     }
     for (const NestedGap& gap : model.gaps) gaps.push_back(gapJson(gap));
     for (const BemCheck& check : model.checks) {

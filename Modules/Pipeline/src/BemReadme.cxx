@@ -18,6 +18,7 @@ std::string frameText(CoordinateFrame frame) {
 
 std::string conductivityTuple(const BemModelOptions& options) {
     const ConductivityModel& c = options.conductivities;
+    // MNE takes the inner three of four layers' surfaces: CSF counts as brain there
     if (options.boundaries.innerSkullOnly) return "(" + formatNumber(c.brain) + ",)";
     return "(" + formatNumber(c.brain) + ", " + formatNumber(c.skull) + ", " +
            formatNumber(c.scalp) + ")";
@@ -108,11 +109,15 @@ std::string bemReadme(const BemModel& model, const BemFileOptions& options,
     const bool isOne = model.options.boundaries.innerSkullOnly;
     const std::string frame = frameText(options.frame);
     const std::string unit = isMetres ? "metres" : "millimetres";
-    std::string text = "# Boundary element head model\nMade by " + maker + ". " +
-                       (isOne ? "One surface (inner skull), for MEG."
-                              : "Three surfaces: inner skull, outer skull, outer skin.") +
-                       " Each is closed, of genus 0, outward" +
-                       (isOne ? ".\n" : ", and lies strictly inside the next.\n");
+    std::string text =
+        "# Boundary element head model\nMade by " + maker + ". " +
+        (isOne ? "One surface (inner skull), for MEG."
+         : model.options.boundaries.withBrain
+             ? "Four surfaces: brain, inner skull (CSF lies between them), outer skull, "
+               "outer skin."
+             : "Three surfaces: inner skull, outer skull, outer skin.") +
+        " Each is closed, of genus 0, outward" +
+        (isOne ? ".\n" : ", and lies strictly inside the next.\n");
     text += "\n| files | for | frame and unit |\n|---|---|---|\n";
     text += std::string("| `*.surf` | FreeSurfer, MNE | ") +
             (model.tkRasVolume ? "surface RAS (tkRAS) of the image; the footer leads to scanner RAS"

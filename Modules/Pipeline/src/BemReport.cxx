@@ -8,12 +8,15 @@
 namespace adaptiso {
 namespace {
 
-std::string pairName(std::size_t inner) {
-    return bemSurfaceName(inner) + " in " + bemSurfaceName(inner + 1);
+std::string pairName(std::size_t inner, std::size_t count) {
+    return bemSurfaceName(inner, count) + " in " + bemSurfaceName(inner + 1, count);
 }
 
 void tellVerdict(const BemModel& model, Report& report) {
-    const std::string layers = model.options.surfaceCount() == 1 ? "one layer" : "three layers";
+    const std::size_t count = model.options.surfaceCount();
+    const std::string layers = count == 1   ? "one layer"
+                               : count == 3 ? "three layers"
+                                            : "four layers";
     report.title = "Head model of " + layers;
     if (model.hasModel()) {
         report.verdict = ReportVerdict::Passed;
@@ -54,7 +57,8 @@ void tellOptions(const BemModel& model, Report& report) {
     const BoundaryOptions& head = options.boundaries;
     std::string triangles = model.source == "surfaces"
                                 ? "as the surfaces came, where they could stay"
-                                : "2,562 vertices a surface (default)";
+                            : head.withBrain ? "by the layers' thickness, 10,000 vertices at most"
+                                             : "2,562 vertices a surface (default)";
     if (options.vertices.size() == 1) {
         triangles = formatCount(options.vertices.front()) + " vertices a surface";
     } else if (!options.vertices.empty()) {
@@ -74,11 +78,16 @@ void tellOptions(const BemModel& model, Report& report) {
             {"Skull, scalp at least",
              formatNumber(head.minSkullMm) + " mm, " + formatNumber(head.minScalpMm) + " mm"});
     }
+    if (head.withBrain) {
+        report.options.push_back({"CSF at least", formatNumber(head.minCsfMm) + " mm"});
+    }
     report.options.push_back({"Smoothing", formatNumber(head.smoothingMm) + " mm"});
     const ConductivityModel& sigma = options.conductivities;
-    report.options.push_back({"Conductivity", "brain " + formatNumber(sigma.brain) + ", skull " +
-                                                  formatNumber(sigma.skull) + ", scalp " +
-                                                  formatNumber(sigma.scalp) + " S/m"});
+    report.options.push_back(
+        {"Conductivity", "brain " + formatNumber(sigma.brain) +
+                             (head.withBrain ? ", CSF " + formatNumber(sigma.csf) : "") +
+                             ", skull " + formatNumber(sigma.skull) + ", scalp " +
+                             formatNumber(sigma.scalp) + " S/m"});
     report.options.push_back(
         {"FreeSurfer's files in", model.tkRasVolume ? "tkRAS mm" : "scanner RAS mm"});
 }
@@ -100,9 +109,9 @@ void tellSpots(const BemModel& model, Report& report) {
     }
     for (std::size_t n = 0; n < model.gaps.size(); ++n) {
         const NestedGap& gap = model.gaps[n];
-        report.spots.push_back(
-            {"smallest gap, " + formatFixed(gap.mm, 2) + " mm, of " + pairName(n),
-             0.5 * (gap.innerPointMm + gap.outerPointMm), false});
+        report.spots.push_back({"smallest gap, " + formatFixed(gap.mm, 2) + " mm, of " +
+                                    pairName(n, model.meshes.size()),
+                                0.5 * (gap.innerPointMm + gap.outerPointMm), false});
     }
 }
 
@@ -116,7 +125,7 @@ ReportTable surfaceTable(const BemModel& model) {
         const BemSurface& surface = model.surfaces[n];
         const auto& remesh = surface.remesh;
         table.rows.push_back(
-            {bemSurfaceName(n), formatCount(surface.topology.vertices),
+            {bemSurfaceName(n, model.meshes.size()), formatCount(surface.topology.vertices),
              formatCount(surface.topology.triangles), formatRounded(surface.areaMm2 / 100),
              formatRounded(surface.volumeMm3 / 1000),
              formatFixed(surface.shape.edgeMm.minimum, 1) + " to " +
@@ -159,9 +168,10 @@ Report bemReport(const BemModel& model,
             "The surfaces shown are those that the model was tried from; none was written.");
     }
     for (std::size_t n = 0; n < model.meshes.size(); ++n) {
-        report.surfaces.push_back({bemSurfaceName(n), model.meshes[n]});
+        report.surfaces.push_back({bemSurfaceName(n, model.meshes.size()), model.meshes[n]});
         report.surfaces.back().isWithinSkull =
-            static_cast<HeadSurface>(n) == HeadSurface::InnerSkull && model.source != "surfaces";
+            headSurface(n, model.meshes.size()) <= HeadSurface::InnerSkull &&
+            model.source != "surfaces";
     }
     return report;
 }

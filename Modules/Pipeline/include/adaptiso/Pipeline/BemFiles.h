@@ -39,8 +39,8 @@ std::string curryName(HeadSurface surface);
 /// Every name that a model's folder may hold.
 std::vector<std::string> bemFileNames();
 
-/// "inner_skull.surf" of surface 0
-std::string bemFileName(std::size_t surface, const char* extension);
+/// "inner_skull.surf"
+std::string bemFileName(HeadSurface surface, const char* extension);
 
 /// Writes the model's files: FreeSurfer surfaces, OpenMEEG's set, what else is asked for, and
 /// README.md.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -26,23 +25,24 @@ namespace adaptiso {
 /// What a head model is to be, whatever it is made from.
 struct BemModelOptions {
     BoundaryOptions boundaries;  ///< layers, gaps, thicknesses, isovalues
-    /// One number for all surfaces or one for each; empty: 2,562, or by edge length.
+    /// One number for all surfaces or one for each; empty: by edge length or, without that, 2,562
+    /// of each of three surfaces, and of four as many as the layers' thickness asks for, 10,000 in
+    /// all at most.
     std::vector<std::int64_t> vertices;
     std::optional<EdgeLengthRange> edgeLengthMm;
     ConductivityModel conductivities;
     bool wantsHeadShape = false;  ///< the skin alone as well, for coregistration
 
-    /// Of skull and scalp.
-    std::array<double, 2> minGapsMm() const {
-        return {boundaries.minSkullMm, boundaries.minScalpMm};
-    }
+    /// Between neighbours, from inside out.
+    std::vector<double> minGapsMm() const;
     std::optional<std::int64_t> verticesOf(std::size_t surface) const {
         if (vertices.empty()) return std::nullopt;
         return vertices.size() == 1 ? vertices.front() : vertices[surface];
     }
     std::size_t surfaceCount() const {
-        return boundaries.innerSkullOnly ? 1 : std::size_t{kHeadSurfaceCount};
+        return boundaries.innerSkullOnly ? 1 : boundaries.withBrain ? kHeadSurfaceCount : 3;
     }
+    HeadSurface surface(std::size_t n) const { return headSurface(n, surfaceCount()); }
     bool hasSkin() const { return surfaceCount() > 1; }
 };
 
@@ -120,7 +120,7 @@ struct BemHooks {
     }
 };
 
-/// "inner_skull" of surface 0
-std::string bemSurfaceName(std::size_t surface);
+/// "inner_skull" of surface 0 of three.
+std::string bemSurfaceName(std::size_t surface, std::size_t count);
 
 }  // namespace adaptiso
