@@ -18,6 +18,7 @@ constexpr const char* kInput = "Input (one of --t1, --labels, --probabilities, -
 constexpr const char* kHead = "Head";
 constexpr const char* kMesh = "Surfaces";
 constexpr const char* kOutput = "Output";
+constexpr const char* kElectrodes = "Electrodes and landmarks";
 constexpr const char* kToolboxes =
     "Files for other programs, besides those of FreeSurfer and OpenMEEG";
 
@@ -315,6 +316,60 @@ void declareOutput(CLI::App& app, BemOptions& options) {
     declareReportOptions(app, options.report, kOutput);
 }
 
+/// "X,Y,Z" in scanner RAS mm
+void addPoint(CLI::App& app, const std::string& name, std::optional<Vec3>& target,
+              const std::string& description) {
+    app.add_option_function<std::string>(
+           name,
+           [&target, name](const std::string& text) {
+               const std::vector<double> p =
+                   numbers(name, text, ',', 3, 3, "three numbers of mm: X,Y,Z");
+               target = Vec3{p[0], p[1], p[2]};
+           },
+           description)
+        ->type_name("X,Y,Z")
+        ->group(kElectrodes);
+}
+
+void declareElectrodes(CLI::App& app, BemOptions& options) {
+    app.add_option(
+           "--electrodes", options.electrodes,
+           "Electrodes, moved onto the skin and written back: BIDS _electrodes.tsv (with its "
+           "_coordsystem.json), ASA .elc, BESA .sfp, FIFF .fif")
+        ->type_name("FILE")
+        ->group(kElectrodes);
+    app.add_option_function<std::string>(
+           "--electrodes-in",
+           [&options](const std::string& frame) {
+               ElectrodeOptions& electrodes = options.model.electrodes;
+               electrodes.frame = frame == "lps"     ? CoordinateFrame::Lps
+                                  : frame == "tkras" ? CoordinateFrame::TkRas
+                                                     : CoordinateFrame::Ras;
+           },
+           "Their frame (default: what the file says; else by its nasion and ears; else scanner "
+           "RAS)")
+        ->type_name("ras|lps|tkras")
+        ->check(CLI::IsMember({"ras", "lps", "tkras"}).description(""))
+        ->group(kElectrodes);
+    app.add_option_function<std::string>(
+           "--montage",
+           [&options](const std::string& system) {
+               options.model.electrodes.positions = system == "10-20"   ? PositionSystem::TenTwenty
+                                                    : system == "10-10" ? PositionSystem::TenTen
+                                                                        : PositionSystem::TenFive;
+           },
+           "Electrode positions of the 10-20, 10-10 or 10-05 system, computed on the skin from "
+           "nasion "
+           "and ears")
+        ->type_name("10-20|10-10|10-05")
+        ->check(CLI::IsMember({"10-20", "10-10", "10-05"}).description(""))
+        ->group(kElectrodes);
+    addPoint(app, "--nasion", options.nasion,
+             "Nasion, scanner RAS mm (default: the electrodes' file's, else guessed)");
+    addPoint(app, "--left-ear", options.leftEar, "Left preauricular point, the same");
+    addPoint(app, "--right-ear", options.rightEar, "Right preauricular point, the same");
+}
+
 void declareToolboxes(CLI::App& app, BemOptions& options) {
     BemFileOptions& files = options.files;
     const auto addFlag = [&](const char* name, bool& target, const char* description) {
@@ -329,6 +384,8 @@ void declareToolboxes(CLI::App& app, BemOptions& options) {
             "Brainstorm: tess_innerskull_bem.mat, ... (scanner RAS, metres)");
     addFlag("--simnibs", files.writesSimNibs, "SimNIBS: csf.stl, bone.stl, skin.stl (scanner RAS)");
     addFlag("--curry", files.writesCurry, "Curry: .s00 (skin) to .s02 (inner skull)");
+    addFlag("--besa", files.writesBesa,
+            "BESA: head.sfp (landmarks, electrodes, points of the skin)");
     addFlag("--gifti", files.writesGifti, "Viewers: .gii");
     addFlag("--vtp", files.writesVtp, "Viewers: .vtp");
 }
@@ -384,6 +441,19 @@ void checkCombinations(const BemOptions& options) {
                                    head.skullHu > kSoftTissueHu),
             "--skin-hu must lie above air (-1000 HU) and below --skull-hu, and that above soft "
             "tissue (40 HU)");
+    const bool namesLandmarks = options.nasion || options.leftEar || options.rightEar;
+    const bool wantsElectrodes =
+        !options.electrodes.empty() || options.model.electrodes.positions || namesLandmarks;
+    require(options.electrodes.empty() || !options.model.electrodes.positions,
+            "--electrodes and --montage exclude each other");
+    require(!namesLandmarks || (options.nasion && options.leftEar && options.rightEar),
+            "--nasion, --left-ear and --right-ear need each other");
+    require(!wantsElectrodes || options.model.hasSkin(),
+            "electrodes and landmarks need a skin: not with --meg");
+    require(!options.model.electrodes.frame || !options.electrodes.empty(),
+            "--electrodes-in needs --electrodes");
+    require(!options.files.writesBesa || options.model.hasSkin(),
+            "--besa needs a skin: not with --meg");
     require(options.isDryRun || !options.output.empty(), "-o DIR is needed (or --dry-run)");
     require(options.subject.empty() == options.subjectsDir.empty(),
             "--subjects-dir and --subject need each other");
@@ -401,6 +471,9 @@ constexpr const char* kFooter = R"(Examples:
   adaptiso-bem --probabilities c1.nii c2.nii c3.nii c4.nii c5.nii -o model
   adaptiso-bem --ct ct.nii.gz --meg -o model --report model.html
   adaptiso-bem --surfaces inner.stl outer.stl skin.stl --min-gap 3,2 -o model
+  adaptiso-bem --t1 T1.nii.gz --electrodes sub-1_electrodes.tsv -o model
+  adaptiso-bem --t1 T1.nii.gz --montage 10-10 --nasion 0,85,-35 --left-ear=-80,-28,-41 \
+      --right-ear 80,-28,-41 -o model
   adaptiso-bem --t1 T1.nii.gz --fif --fieldtrip --brainstorm -o model
 
 Exit codes: 0 done, 1 no model could be guaranteed, or a warning with --strict
@@ -424,6 +497,7 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
     declareHead(app, options);
     declareSurfaces(app, options);
     declareOutput(app, options);
+    declareElectrodes(app, options);
     declareToolboxes(app, options);
     declareCommonOptions(app, options.common, "of the model only the report is then written");
     app.callback([&options] { checkCombinations(options); });

@@ -10,6 +10,7 @@
 #include "BemRun.h"
 #include "Common/AtomicFolder.h"
 #include "Common/ExitCodes.h"
+#include "Common/Json.h"
 #include "Common/Naming.h"
 #include "Common/Progress.h"
 #include "Common/ResultOutput.h"
@@ -18,6 +19,9 @@
 #include "Inputs.h"
 #include "JsonReport.h"
 #include "TextReport.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/PointFiles.h"
+#include "adaptiso/Pipeline/BemElectrodes.h"
 #include "adaptiso/Pipeline/BemReport.h"
 #include "adaptiso/Pipeline/BemSurfaces.h"
 
@@ -39,7 +43,7 @@ std::vector<fs::path> inputsOf(const BemOptions& options) {
     inputs.insert(inputs.end(), options.surfaces.begin(), options.surfaces.end());
     inputs.insert(inputs.end(), options.pial.begin(), options.pial.end());
     for (const fs::path& path : {options.t1, options.brainMask, options.aseg, options.labels,
-                                 options.ct, options.volume}) {
+                                 options.ct, options.volume, options.electrodes}) {
         if (!path.empty()) inputs.push_back(path);
     }
     return inputs;
@@ -143,6 +147,32 @@ std::vector<TriangleMesh> firstSurfaces(BemRun& run, const BemHooks& hooks,
     std::vector<TriangleMesh> surfaces = run.timer.time("read", [&] { return readSurfaces(run); });
     return naming("--surfaces",
                   [&] { return mendSurfaces(std::move(surfaces), run.model, hooks); });
+}
+
+/// What is known of electrodes and landmarks before there is a head.
+void readElectrodes(BemRun& run) {
+    const BemOptions& options = run.options;
+    ElectrodeOptions& wanted = run.model.options.electrodes;
+    wanted.wantsLandmarks = options.files.writesBesa;
+    if (!options.electrodes.empty()) {
+        wanted.file = readPoints(options.electrodes);
+        wanted.fileName = baseName(options.electrodes);
+        run.model.inputs.push_back({wanted.fileName, "electrodes", wanted.file->format});
+    }
+    if (!options.nasion) return;
+    const AffineTransform toLps = inverse(lpsToFrame(CoordinateFrame::Ras, {}));
+    Landmarks landmarks;
+    landmarks.nasionMm = toLps(*options.nasion);
+    landmarks.leftEarMm = toLps(*options.leftEar);
+    landmarks.rightEarMm = toLps(*options.rightEar);
+    wanted.landmarks = landmarks;
+}
+
+void putElectrodes(BemRun& run, const BemHooks& hooks) {
+    if (!run.model.hasModel() || !run.model.options.electrodes.areWanted()) return;
+    const fs::path& file = run.options.electrodes;
+    naming(file.empty() ? std::string("--montage") : "--electrodes " + file.string(),
+           [&] { placeElectrodes(run.model, hooks); });
 }
 
 /// Those from number `first` on.
@@ -252,6 +282,7 @@ int runBem(const BemOptions& options) {
     run.model.options.wantsHeadShape = options.files.writesFif;
     run.model.source = sourceOf(options);
     checkOutputs(options);
+    readElectrodes(run);
 
     const BemHooks hooks{[&](std::string_view stage, const std::function<void()>& work) {
                              progress.show(stage);
@@ -264,6 +295,7 @@ int runBem(const BemOptions& options) {
     tellWarnings(run);
     const std::size_t told = run.model.warnings.size();
     finishBemModel(std::move(dense), run.model, hooks);
+    putElectrodes(run, hooks);
     progress.clear();
     tellWarnings(run, told);
 

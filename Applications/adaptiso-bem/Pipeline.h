@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct BemOptions {
     bool namesCsf = false;  ///< the conductivity of CSF was given
     BemFileOptions files;
 
+    std::filesystem::path electrodes;               ///< a file; empty: none
+    std::optional<Vec3> nasion, leftEar, rightEar;  ///< scanner RAS mm
     std::filesystem::path output;
     bool mayReplace = false;
     std::filesystem::path subjectsDir;

@@ -296,6 +296,28 @@ class Toolboxes(ClientTest):
         self.assertGreater(surface["ntri"], 20_000)
         self.assertEqual(len(mne.read_bem_surfaces(bem / "anna-bem.fif")), 3)
 
+    def test_mne_reads_electrodes(self):
+        x, y, z = CENTRE
+        self.bem(*self.arguments, "--montage", "10-20", "--nasion", f"{x},{y + 92},{z}",
+                 f"--left-ear={x - 92},{y},{z}", f"--right-ear={x + 92},{y},{z}", "-o", "model")
+        rows = self.path("model/electrodes.tsv").read_text().splitlines()[1:]
+        expected = {row.split("\t")[0]: np.array(row.split("\t")[1:], float) for row in rows}
+        np.testing.assert_allclose(expected["Cz"], CENTRE + np.array([0, 0, 92]), atol=3)
+        # .sfp says no unit: MNE takes its numbers for metres
+        for name, scale in (("electrodes.sfp", 1), ("electrodes.elc", 1000)):
+            montage = mne.channels.read_custom_montage(self.path("model") / name, head_size=None)
+            found = montage.get_positions()["ch_pos"]
+            for electrode, place in expected.items():
+                np.testing.assert_allclose(scale * found[electrode], place, atol=1e-3)
+        dig = mne.channels.read_dig_fif(self.path("model/electrodes-dig.fif")).get_positions()
+        self.assertEqual(dig["coord_frame"], "mri")
+        self.assertEqual(len(dig["ch_pos"]), 21)
+        skin, _ = mne.read_surface(self.path("model/outer_skin.surf"))  # tkRAS
+        middle = skin.mean(axis=0)
+        for place in dig["ch_pos"].values():
+            self.assertAlmostEqual(np.linalg.norm(1000 * place - middle), 92, delta=3)
+        np.testing.assert_allclose(1000 * dig["nasion"] - middle, (0, 92, 0), atol=2)
+
     def test_the_same_bytes_again(self):
         for name in ("one", "two"):
             self.bem(*self.arguments, "--fif", "--fieldtrip", "--brainstorm", "--simnibs", "--curry",

@@ -381,7 +381,7 @@ class BadInput(BemTest):
             "--brain-mask needs --t1": ("--ct", "a.nii", "--brain-mask", "a.nii", "-o", "m"),
             "--labels needs --preset": ("--labels", "a.nii", "-o", "m"),
             "skull=... and scalp=": ("--labels", "a.nii", "--tissue", "brain=1", "-o", "m"),
-            "must be brain, skull or scalp": ("--labels", "a.nii", "--tissue", "eyes=1", "-o", "m"),
+            "must be brain, csf, skull or scalp": ("--labels", "a.nii", "--tissue", "eyes=1", "-o", "m"),
             "labels with commas": ("--labels", "a.nii", "--tissue", "brain=1,x", "-o", "m"),
             "need --labels": ("--t1", "a.nii", "--preset", "charm", "-o", "m"),
             "--surfaces needs 3 files": ("--surfaces", "a.stl", "-o", "m"),
@@ -394,7 +394,7 @@ class BadInput(BemTest):
             "MIN:MAX": ("--t1", "a.nii", "-o", "m", "--edge-length", "9"),
             "0.5 mm or more": ("--t1", "a.nii", "-o", "m", "--min-gap", "0.4"),
             "one number, or 3": ("--t1", "a.nii", "-o", "m", "--vertices", "642,642"),
-            "one or two numbers": ("--t1", "a.nii", "-o", "m", "--min-gap", "1,2,3"),
+            "one to three numbers": ("--t1", "a.nii", "-o", "m", "--min-gap", "1,2,3,4"),
             "above 0 and at most 10": ("--t1", "a.nii", "-o", "m", "--conductivity", "0.3,0,0.3"),
             "--max-skull must be more": ("--t1", "a.nii", "-o", "m", "--max-skull", "1"),
             "--skull must lie between": ("--t1", "a.nii", "-o", "m", "--skull", "30"),
@@ -428,7 +428,9 @@ class BadInput(BemTest):
 
 class Report(BemTest):
     def test_keys_are_the_documented_ones(self):
-        self.bem(*self.labels(), "-o", "model")
+        skin = RADII[-1]
+        self.bem(*self.labels(), "--montage", "10-20", "--nasion", f"0,{skin},0",
+                 f"--left-ear=-{skin},0,0", "--right-ear", f"{skin},0,0", "-o", "model")
         section = README.read_text().split("## The report")[1]
         documented = set()
         for row in re.findall(r"^\| (`.*?`) \|", section, re.MULTILINE):

@@ -13,6 +13,7 @@
 #include "adaptiso/MeshIO/CurrySurface.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
 #include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/MeshIO/PointFiles.h"
 #include "adaptiso/MeshIO/VtkAdaptor.h"
 
 namespace adaptiso::fuzz {
@@ -51,6 +52,17 @@ void addSurfaceLists(Seeds& seeds) {
     seeds.add("fif", bytesOf(folder.path() / "a.fif"));
     writeCurrySurface(tetrahedron(), folder.path() / "a.s00", "CoordinateFrame: RAS mm");
     seeds.add("curry", bytesOf(folder.path() / "a.s00"));
+    const NamedPoint points[] = {{"Cz", PointKind::Electrode, {0, 0, 90}},
+                                 {"Nasion", PointKind::Nasion, {0, 95, 0}}};
+    const auto tsv = folder.path() / "electrodes.tsv", json = folder.path() / "coordsystem.json";
+    writeBidsElectrodes(points, tsv, json, CoordinateFrame::Ras);
+    seeds.add("tsv", bytesOf(tsv) + '\0' + bytesOf(json));
+    writeElc(points, folder.path() / "a.elc");
+    seeds.add("elc", bytesOf(folder.path() / "a.elc"));
+    writeSfp(points, folder.path() / "a.sfp");
+    seeds.add("sfp", bytesOf(folder.path() / "a.sfp"));
+    writeFiffPoints(points, folder.path() / "b.fif");
+    seeds.add("dig", bytesOf(folder.path() / "b.fif"));
 }
 
 void addVtkFiles(Seeds& seeds) {

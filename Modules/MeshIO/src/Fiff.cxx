@@ -117,6 +117,18 @@ std::vector<std::array<std::int32_t, 3>> toTriples(const Tag& tag) {
     return rows;
 }
 
+DigitizedPoint toPoint(const Tag& tag) {
+    constexpr std::size_t kBytes = 20;
+    requireType(tag, kDigPointStruct, kBytes);
+    const char* const bytes = tag.data.data();
+    DigitizedPoint point{
+        loadAs<std::int32_t>(bytes, kBig), loadAs<std::int32_t>(bytes + 4, kBig), {}};
+    for (int axis = 0; axis < 3; ++axis) {
+        point.metres[axis] = loadAs<float>(bytes + 8 + 4 * axis, kBig);
+    }
+    return point;
+}
+
 Writer::Writer(ByteSink& sink) : sink_(sink) {
     header(kFileId, kIdStruct, kIdBytes);
     sink_.bigEndian(kVersion);

@@ -57,6 +57,14 @@ float toReal(const Tag& tag);
 std::vector<Vec3> toVectors(const Tag& tag);
 std::vector<std::array<std::int32_t, 3>> toTriples(const Tag& tag);
 
+/// A point of a digitizer.
+struct DigitizedPoint {
+    std::int32_t kind = 0;  ///< 1 cardinal, 2 HPI, 3 EEG, 4 extra
+    std::int32_t number = 0;
+    Vec3 metres;
+};
+DigitizedPoint toPoint(const Tag& tag);
+
 /// Writes a file tag by tag. No date, machine or user is in it.
 class Writer {
 public:

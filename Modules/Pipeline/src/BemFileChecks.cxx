@@ -35,8 +35,7 @@ double farthestMm(const TriangleMesh& a, const TriangleMesh& b) {
 
 /// Files of one kind: the same answers as of the model, and the same places.
 void checkKind(const BemFileKind& kind, const fs::path& folder, BemModel& model) {
-    // to LPS, for the places of findings; tkRAS and scanner RAS of a file are told by the frame
-    const AffineTransform toLps = inverse(lpsToFrame(kind.frame, model.tkRasVolume));
+    const AffineTransform toLps = inverse(kind.fromLps);
     std::vector<TriangleMesh> stored = kind.read(folder);
     double farthest =
         stored.size() == kind.meshes.size() ? 0 : std::numeric_limits<double>::infinity();

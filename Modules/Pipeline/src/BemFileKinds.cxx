@@ -33,9 +33,17 @@ struct Source {
     CoordinateFrame mriFrame() const {
         return model.tkRasVolume ? CoordinateFrame::TkRas : CoordinateFrame::Ras;
     }
-    /// Points in `frame`, in units of `unitMm`, with normals.
-    TriangleMesh placed(const TriangleMesh& mesh, CoordinateFrame frame, double unitMm) const {
-        TriangleMesh moved = toFrame(mesh, frame, volume(frame));
+    AffineTransform into(CoordinateFrame frame) const { return lpsToFrame(frame, volume(frame)); }
+    /// Brainstorm's own coordinates follow from nasion and ears; guessed ones would not be its
+    /// user's.
+    bool knowsLandmarks() const {
+        return model.electrodes && model.electrodes->landmarks &&
+               !model.electrodes->landmarks->areGuessed();
+    }
+    /// Points moved, in units of `unitMm`, with normals.
+    TriangleMesh placed(const TriangleMesh& mesh, const AffineTransform& move,
+                        double unitMm) const {
+        TriangleMesh moved = transformed(mesh, move);
         for (Vec3& point : moved.points) point = (1 / unitMm) * point;
         moved.normals = areaWeightedNormals(moved);
         return moved;
@@ -46,9 +54,9 @@ struct Source {
 };
 
 /// A kind that holds the whole model in a frame and a unit.
-BemFileKind wholeModel(const Source& source, std::string name, CoordinateFrame frame,
+BemFileKind wholeModel(const Source& source, std::string name, const AffineTransform& fromLps,
                        double unitMm = 1) {
-    BemFileKind kind{std::move(name), frame, unitMm, {}, {}, true, {}, {}};
+    BemFileKind kind{std::move(name), fromLps, unitMm, {}, {}, true, {}, {}};
     for (const TriangleMesh& mesh : source.model.meshes) kind.meshes.push_back(&mesh);
     kind.gapsMm = source.model.options.minGapsMm();
     return kind;
@@ -86,17 +94,18 @@ std::vector<std::string> namesOf(const Source& source, const char* extension) {
 }
 
 BemFileKind freeSurferFiles(const Source& source) {
-    return oneEach(wholeModel(source, "*.surf", source.mriFrame()), namesOf(source, ".surf"),
-                   [source](std::size_t, const TriangleMesh& mesh, const fs::path& path) {
-                       writeFreeSurferSurface(mesh, path, source.model.tkRasVolume,
-                                              source.model.tkRasName);
-                   });
+    return oneEach(
+        wholeModel(source, "*.surf", source.into(source.mriFrame())), namesOf(source, ".surf"),
+        [source](std::size_t, const TriangleMesh& mesh, const fs::path& path) {
+            writeFreeSurferSurface(mesh, path, source.model.tkRasVolume, source.model.tkRasName);
+        });
 }
 
 BemFileKind openMeegFiles(const Source& source) {
     const BemFileOptions& options = source.options;
     const double unitMm = options.unit == OpenMeegUnit::Metres ? kMetreMm : 1;
-    return oneEach(wholeModel(source, "*.tri", options.frame, unitMm), namesOf(source, ".tri"),
+    return oneEach(wholeModel(source, "*.tri", source.into(options.frame), unitMm),
+                   namesOf(source, ".tri"),
                    [source](std::size_t, const TriangleMesh& mesh, const fs::path& path) {
                        writeOpenMeegSurface(mesh, path, source.options.frame, source.options.unit,
                                             source.volume(source.options.frame));
@@ -105,14 +114,15 @@ BemFileKind openMeegFiles(const Source& source) {
 
 /// .gii and .vtp
 BemFileKind viewerFiles(const Source& source, const char* extension) {
-    return oneEach(wholeModel(source, std::string("*") + extension, source.options.frame),
-                   namesOf(source, extension),
-                   [source](std::size_t, const TriangleMesh& mesh, const fs::path& path) {
-                       MeshWriteOptions write;
-                       write.frame = source.options.frame;
-                       write.volume = source.volume(write.frame);
-                       writeMesh(mesh, path, write);
-                   });
+    return oneEach(
+        wholeModel(source, std::string("*") + extension, source.into(source.options.frame)),
+        namesOf(source, extension),
+        [source](std::size_t, const TriangleMesh& mesh, const fs::path& path) {
+            MeshWriteOptions write;
+            write.frame = source.options.frame;
+            write.volume = source.volume(write.frame);
+            writeMesh(mesh, path, write);
+        });
 }
 
 /// SimNIBS's own frame is the scanner's.
@@ -122,7 +132,7 @@ BemFileKind simNibsFiles(const Source& source) {
         names.push_back(simNibsName(source.surface(n)));
     }
     return oneEach(
-        wholeModel(source, "*.stl", CoordinateFrame::Ras), names,
+        wholeModel(source, "*.stl", source.into(CoordinateFrame::Ras)), names,
         [](std::size_t, const TriangleMesh& mesh, const fs::path& path) { writeMesh(mesh, path); });
 }
 
@@ -133,7 +143,7 @@ BemFileKind curryFiles(const Source& source) {
     }
     const CoordinateFrame frame = source.options.frame;
     return oneEach(
-        wholeModel(source, "*.s0*", frame), names,
+        wholeModel(source, "*.s0*", source.into(frame)), names,
         [source, frame](std::size_t n, const TriangleMesh& mesh, const fs::path& path) {
             writeCurrySurface(toFrame(mesh, frame, source.volume(frame)), path,
                               std::string(toString(source.surface(n))) + ", " + frameMarker(frame));
@@ -141,30 +151,33 @@ BemFileKind curryFiles(const Source& source) {
         readCurrySurface);
 }
 
-/// Without a nasion and ears there are no coordinates of Brainstorm's own: the scanner's.
+/// In Brainstorm's own coordinates where they are known, else in the scanner's.
 BemFileKind brainstormFiles(const Source& source) {
     std::vector<std::string> names;
     for (std::size_t n = 0; n < source.model.meshes.size(); ++n) {
         names.push_back(brainstormName(source.surface(n)));
     }
+    const bool isScs = source.knowsLandmarks();
+    const AffineTransform move = isScs ? toBrainstorm(*source.model.electrodes->landmarks)
+                                       : source.into(CoordinateFrame::Ras);
     return oneEach(
-        wholeModel(source, "tess_*_bem.mat", CoordinateFrame::Ras, kMetreMm), names,
-        [source](std::size_t n, const TriangleMesh& mesh, const fs::path& path) {
-            writeBrainstormSurface(
-                source.placed(mesh, CoordinateFrame::Ras, kMetreMm), path,
-                std::string(toString(source.surface(n))) + " (world: scanner RAS, m; not SCS)");
+        wholeModel(source, "tess_*_bem.mat", move, kMetreMm), names,
+        [source, move, isScs](std::size_t n, const TriangleMesh& mesh, const fs::path& path) {
+            writeBrainstormSurface(source.placed(mesh, move, kMetreMm), path,
+                                   std::string(toString(source.surface(n))) +
+                                       (isScs ? " (SCS, m)" : " (world: scanner RAS, m; not SCS)"));
         },
         readBrainstormSurface);
 }
 
 BemFileKind fieldTripFile(const Source& source) {
-    BemFileKind kind = wholeModel(source, kFieldTripFile, source.options.frame);
+    BemFileKind kind = wholeModel(source, kFieldTripFile, source.into(source.options.frame));
     kind.write = [source](const PlaceFile& place) {
         std::vector<HeadLayer> layers;
         const CoordinateFrame frame = source.options.frame;
         for (std::size_t n = 0; n < source.model.meshes.size(); ++n) {
             layers.push_back({source.surface(n), source.conductivity(n),
-                              source.placed(source.model.meshes[n], frame, 1)});
+                              source.placed(source.model.meshes[n], source.into(frame), 1)});
         }
         writeFieldTripModel(layers, place(kFieldTripFile), frame);
     };
@@ -196,7 +209,7 @@ std::vector<TriangleMesh> readFiffMeshes(const fs::path& path) {
 /// Outermost first, as MNE writes them. MNE has no number for a brain within CSF: it gets the rest,
 /// with the brain's conductivity within the inner skull.
 BemFileKind fiffModel(const Source& source) {
-    BemFileKind kind = wholeModel(source, kFiffModel, source.mriFrame(), kMetreMm);
+    BemFileKind kind = wholeModel(source, kFiffModel, source.into(source.mriFrame()), kMetreMm);
     const std::size_t first = source.model.options.boundaries.withBrain ? 1 : 0;
     if (first > 0) {
         kind.meshes.erase(kind.meshes.begin());
@@ -208,7 +221,7 @@ BemFileKind fiffModel(const Source& source) {
             surfaces.push_back(
                 {fiffId(source.surface(n)),
                  n == first ? source.model.options.conductivities.brain : source.conductivity(n),
-                 source.placed(source.model.meshes[n], source.mriFrame(), kMetreMm)});
+                 source.placed(source.model.meshes[n], source.into(source.mriFrame()), kMetreMm)});
         }
         writeFiffSurfaces(surfaces, place(kFiffModel));
     };
@@ -217,10 +230,10 @@ BemFileKind fiffModel(const Source& source) {
 }
 
 BemFileKind fiffHead(const Source& source, const char* name, const TriangleMesh& head) {
-    BemFileKind kind{name, source.mriFrame(), kMetreMm, {&head}, {}, false, {}, {}};
+    BemFileKind kind{name, source.into(source.mriFrame()), kMetreMm, {&head}, {}, false, {}, {}};
     kind.write = [source, name, &head](const PlaceFile& place) {
         const FiffSurface surface{fiffId(HeadSurface::OuterSkin), 1.0,
-                                  source.placed(head, source.mriFrame(), kMetreMm)};
+                                  source.placed(head, source.into(source.mriFrame()), kMetreMm)};
         writeFiffSurfaces({&surface, 1}, place(name));
     };
     kind.read = [name](const fs::path& folder) { return readFiffMeshes(folder / name); };

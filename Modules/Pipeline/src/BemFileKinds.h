@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/Pipeline/BemFiles.h"
 #include "adaptiso/Pipeline/BemModel.h"
 
@@ -17,7 +17,7 @@ using PlaceFile = std::function<std::filesystem::path(const std::string& name)>;
 /// Files of one format: how they come about, and how their surfaces come back.
 struct BemFileKind {
     std::string name;                         ///< for findings: "*.surf"
-    CoordinateFrame frame;                    ///< of the points stored
+    AffineTransform fromLps;                  ///< of the points stored
     double unitMm = 1;                        ///< of the points stored
     std::vector<const TriangleMesh*> meshes;  ///< that they hold, from inside out
     std::vector<double> gapsMm{};             ///< promised between these

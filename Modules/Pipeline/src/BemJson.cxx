@@ -55,6 +55,33 @@ Json gapJson(const NestedGap& gap) {
             {"outerPointMm", vector(gap.outerPointMm)}};
 }
 
+Json pointJson(const std::string& name, const Vec3& p) {
+    return {{"name", name}, {"pointMm", vector(p)}};
+}
+
+Json landmarksJson(const BemModel& model) {
+    if (!model.electrodes || !model.electrodes->landmarks) return nullptr;
+    const Landmarks& l = *model.electrodes->landmarks;
+    return {{"origin", model.electrodes->landmarkOrigin},
+            {"nasionMm", vector(l.nasionMm)},
+            {"leftEarMm", vector(l.leftEarMm)},
+            {"rightEarMm", vector(l.rightEarMm)},
+            {"nasionUncertaintyMm", number(l.nasionUncertaintyMm)},
+            {"earUncertaintyMm", number(l.earUncertaintyMm)}};
+}
+
+Json electrodesJson(const BemModel& model) {
+    if (!model.electrodes || model.electrodes->points.empty()) return nullptr;
+    const BemElectrodes& e = *model.electrodes;
+    Json points = Json::array();
+    for (const NamedPoint& p : e.points) points.push_back(pointJson(p.name, p.point));
+    return {{"computed", e.areComputed},
+            {"meanMovedMm", number(e.meanMovedMm)},
+            {"farthestMovedMm", number(e.farthestMovedMm)},
+            {"farthest", e.areComputed ? Json(nullptr) : Json(e.farthestName)},
+            {"points", points}};
+}
+
 }  // namespace
 
 Json bemInputJson(const BemModel& model) {
@@ -120,6 +147,8 @@ Json bemModelJson(const BemModel& model) {
             {"surfaces", surfaces},
             {"gaps", gaps},
             {"checks", checks},
+            {"landmarks", landmarksJson(model)},
+            {"electrodes", electrodesJson(model)},
             {"plausibility", notesJson(inLps(model.plausibility))},
             {"findings", findings}};
 }

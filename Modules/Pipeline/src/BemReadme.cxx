@@ -24,6 +24,11 @@ std::string conductivityTuple(const BemModelOptions& options) {
            formatNumber(c.scalp) + ")";
 }
 
+bool hasLandmarks(const BemModel& model) {
+    return model.electrodes && model.electrodes->landmarks &&
+           !model.electrodes->landmarks->areGuessed();
+}
+
 /// Rows of the table of files, for what else was asked for.
 std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
                         const std::string& frame) {
@@ -41,7 +46,8 @@ std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
         rows += "| `headmodel.mat` | FieldTrip | " + frame + "; millimetres |\n";
     }
     if (options.writesBrainstorm) {
-        rows += "| `tess_*_bem.mat` | Brainstorm | scanner RAS (\"world\", not SCS); metres |\n";
+        rows += std::string("| `tess_*_bem.mat` | Brainstorm | ") +
+                (hasLandmarks(model) ? "SCS" : "scanner RAS (\"world\", not SCS)") + "; metres |\n";
     }
     if (options.writesSimNibs) {
         rows += "| `csf.stl`, `bone.stl`, `skin.stl` | SimNIBS | scanner RAS; millimetres |\n";
@@ -49,11 +55,21 @@ std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
     if (options.writesCurry) {
         rows += "| `*.s0*` | Curry | " + frame + "; millimetres |\n";
     }
+    if (options.writesBesa) rows += "| `head.sfp` | BESA | " + frame + "; millimetres |\n";
+    if (model.electrodes && !model.electrodes->all().empty()) {
+        rows +=
+            "| `electrodes.tsv` with `coordsystem.json`, `electrodes.elc`, `electrodes.sfp` | "
+            "BIDS, ASA, "
+            "BESA | " +
+            frame + "; millimetres |\n| `electrodes-dig.fif` | MNE (read_dig_fif) | " + mri +
+            "; metres |\n";
+    }
     return rows;
 }
 
 /// How toolboxes take their files, for what else was asked for.
-std::string toolboxText(const BemFileOptions& options, bool isOne) {
+std::string toolboxText(const BemModel& model, const BemFileOptions& options) {
+    const bool isOne = model.options.boundaries.innerSkullOnly;
     std::string text;
     if (options.writesFif) {
         text +=
@@ -68,7 +84,7 @@ std::string toolboxText(const BemFileOptions& options, bool isOne) {
                         "headmodel = ft_headmodel_openmeeg(headmodel.bnd, 'conductivity', "
                         "headmodel.cond, 'tissue', headmodel.tissue);\n```\n";
     }
-    if (options.writesBrainstorm) {
+    if (options.writesBrainstorm && !hasLandmarks(model)) {
         text +=
             "\nBrainstorm takes the points of `tess_*_bem.mat` for SCS coordinates, which follow "
             "from nasion and ears; these are the scanner's: convert them with `cs_convert(sMri, "
@@ -134,7 +150,7 @@ std::string bemReadme(const BemModel& model, const BemFileOptions& options,
         "ico=None, conductivity=" +
         conductivityTuple(model.options) +
         ", subjects_dir='SUBJECTS_DIR')\nbem = mne.make_bem_solution(model)\n```\n";
-    return text + openMeegText(isOne, frame, unit) + toolboxText(options, isOne);
+    return text + openMeegText(isOne, frame, unit) + toolboxText(model, options);
 }
 
 }  // namespace adaptiso

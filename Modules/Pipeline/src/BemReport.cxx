@@ -1,6 +1,7 @@
 #include "adaptiso/Pipeline/BemReport.h"
 
 #include <algorithm>
+#include <array>
 
 #include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Pipeline/ImageFacts.h"
@@ -148,6 +149,49 @@ ReportTable fileTable(const std::vector<std::pair<std::string, std::uintmax_t>>&
     return table;
 }
 
+/// A small octahedron at every electrode and landmark.
+TriangleMesh electrodeMarks(const std::vector<NamedPoint>& points) {
+    constexpr double kRadiusMm = 3;
+    constexpr std::array<Triangle, 8> kFaces{
+        {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+    TriangleMesh marks;
+    for (const NamedPoint& point : points) {
+        const auto first = static_cast<VertexId>(marks.points.size());
+        for (int corner = 0; corner < 6; ++corner) {
+            Vec3 at = point.point;
+            at[corner / 2] += corner % 2 == 0 ? kRadiusMm : -kRadiusMm;
+            marks.points.push_back(at);
+        }
+        for (const Triangle& t : kFaces) {
+            marks.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        }
+    }
+    return marks;
+}
+
+void tellElectrodes(const BemModel& model, Report& report) {
+    if (!model.electrodes) return;
+    const BemElectrodes& placed = *model.electrodes;
+    const std::vector<NamedPoint> all = placed.all();
+    if (all.empty()) return;
+    ReportTable table{"Electrodes and landmarks", {"Name", "x, mm", "y, mm", "z, mm"}, {}};
+    for (const NamedPoint& p : all) {
+        table.rows.push_back({p.name, formatFixed(-p.point.x, 1), formatFixed(-p.point.y, 1),
+                              formatFixed(p.point.z, 1)});
+    }
+    report.tables.push_back(std::move(table));
+    if (placed.landmarks) {
+        const Landmarks& l = *placed.landmarks;
+        report.options.push_back(
+            {"Nasion and ears",
+             l.areGuessed() ? "guessed, to " + formatShort(l.nasionUncertaintyMm) + " mm and " +
+                                  formatShort(l.earUncertaintyMm) + " mm"
+             : placed.landmarkOrigin == "file" ? "as the electrodes' file has them"
+                                               : "as given"});
+    }
+    report.surfaces.push_back({"electrodes and landmarks", electrodeMarks(all)});
+}
+
 }  // namespace
 
 Report bemReport(const BemModel& model,
@@ -173,6 +217,7 @@ Report bemReport(const BemModel& model,
             headSurface(n, model.meshes.size()) <= HeadSurface::InnerSkull &&
             model.source != "surfaces";
     }
+    tellElectrodes(model, report);
     return report;
 }
 

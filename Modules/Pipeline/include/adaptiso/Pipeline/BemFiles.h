@@ -20,11 +20,22 @@ struct BemFileOptions {
     /// bem.fif and, of a model with a skin, head-dense.fif and head-sparse.fif: MNE's, in metres,
     /// in the frame of the FreeSurfer files.
     bool writesFif = false;
-    bool writesFieldTrip = false;   ///< headmodel.mat
-    bool writesBrainstorm = false;  ///< tess_*_bem.mat: scanner RAS, metres
-    bool writesSimNibs = false;     ///< csf.stl, bone.stl, skin.stl: scanner RAS
-    bool writesCurry = false;       ///< inner_skull.s02, ...
+    bool writesFieldTrip = false;  ///< headmodel.mat
+    bool writesBrainstorm =
+        false;  ///< tess_*_bem.mat: SCS of landmarks that are known, else scanner RAS; metres
+    bool writesSimNibs = false;  ///< csf.stl, bone.stl, skin.stl: scanner RAS
+    bool writesCurry = false;    ///< inner_skull.s02, ...
+    bool writesBesa = false;     ///< head.sfp: landmarks, electrodes and the skin's points
 };
+
+/// Of a model with electrodes: BIDS, ASA, BESA, FIFF, and a line of three numbers for OpenMEEG.
+inline constexpr const char* kElectrodesTsv = "electrodes.tsv";
+inline constexpr const char* kElectrodesJson = "coordsystem.json";
+inline constexpr const char* kElectrodesElc = "electrodes.elc";
+inline constexpr const char* kElectrodesSfp = "electrodes.sfp";
+inline constexpr const char* kElectrodesFif = "electrodes-dig.fif";
+inline constexpr const char* kElectrodesTxt = "electrodes.txt";
+inline constexpr const char* kBesaFile = "head.sfp";
 
 inline constexpr const char* kFiffModel = "bem.fif";
 inline constexpr const char* kFiffDenseHead = "head-dense.fif";

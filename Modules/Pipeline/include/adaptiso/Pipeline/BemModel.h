@@ -13,14 +13,28 @@
 #include "adaptiso/HeadModel/ConductivityModel.h"
 #include "adaptiso/HeadModel/Finding.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
+#include "adaptiso/HeadModel/Landmarks.h"
 #include "adaptiso/HeadModel/NestSurfaces.h"
 #include "adaptiso/HeadModel/Remesh.h"
+#include "adaptiso/MeshIO/PointFiles.h"
 #include "adaptiso/MeshQuality/Shape.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/Pipeline/FinishSurface.h"
 #include "adaptiso/Pipeline/HeadNotes.h"
 
 namespace adaptiso {
+
+/// What is to be put on the skin of a model.
+struct ElectrodeOptions {
+    std::optional<PointFile> file;         ///< electrodes as read
+    std::string fileName;                  ///< without folders
+    std::optional<CoordinateFrame> frame;  ///< of the file; else what it says, or by its landmarks
+    std::optional<PositionSystem> positions;  ///< computed from landmarks, instead of a file's
+    std::optional<Landmarks> landmarks;       ///< given
+    bool wantsLandmarks = false;              ///< even without electrodes
+
+    bool areWanted() const { return file || positions || landmarks || wantsLandmarks; }
+};
 
 /// What a head model is to be, whatever it is made from.
 struct BemModelOptions {
@@ -31,6 +45,7 @@ struct BemModelOptions {
     std::vector<std::int64_t> vertices;
     std::optional<EdgeLengthRange> edgeLengthMm;
     ConductivityModel conductivities;
+    ElectrodeOptions electrodes{};
     bool wantsHeadShape = false;  ///< the skin alone as well, for coregistration
 
     /// Between neighbours, from inside out.
@@ -83,6 +98,19 @@ struct HeadShape {
     TriangleMesh sparse;  ///< of the model, with at most 2,500 triangles
 };
 
+/// Electrodes and landmarks on a model's skin.
+struct BemElectrodes {
+    std::optional<Landmarks> landmarks;
+    std::string landmarkOrigin;      ///< "given", "file" or "guessed"
+    std::vector<NamedPoint> points;  ///< electrodes, LPS mm
+    bool areComputed = false;        ///< by a system of positions, not from a file
+    double meanMovedMm = 0, farthestMovedMm = 0;
+    std::string farthestName;
+
+    /// Electrodes, and landmarks as they are.
+    std::vector<NamedPoint> all() const;
+};
+
 /// A head model, or what is known of it so far: what it is made from, its surfaces, whether they
 /// keep what is promised of them.
 struct BemModel {
@@ -98,6 +126,7 @@ struct BemModel {
     std::vector<TriangleMesh> meshes;
     std::vector<BemSurface> surfaces;
     std::optional<HeadShape> headShape;  ///< LPS mm; if wanted, and there is a model with a skin
+    std::optional<BemElectrodes> electrodes;  ///< if wanted, and there is a model
     std::vector<NestedGap> gaps;
     std::vector<BemCheck> checks;
     std::vector<ToldNote> plausibility;  ///< what is unusual of adults' heads
