@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "Files.h"
+#include "FileBytes.h"
 #include "GiftiArrays.h"
 #include "adaptiso/Core/Errors.h"
 
@@ -11,7 +11,7 @@ namespace {
 
 using meshio::ByteSink;
 using meshio::escaped;
-using meshio::writeFile;
+using meshio::writeBytes;
 
 void encodeKey(const LabelKey& label, bool isSeen, ByteSink& sink) {
     sink << "<Label Key=\"" << std::int64_t{label.key} << "\"";
@@ -33,7 +33,7 @@ void writeGiftiLabels(std::span<const std::int32_t> labels, std::span<const Labe
     std::string bytes;
     bytes.reserve(labels.size_bytes());
     for (const std::int32_t label : labels) meshio::appendLittleEndian(label, bytes);
-    writeFile(path, [&](ByteSink& sink) {
+    writeBytes(path, [&](ByteSink& sink) {
         sink << meshio::kGiftiHead
              << "<GIFTI Version=\"1.0\" NumberOfDataArrays=\"1\">\n<MetaData/>\n<LabelTable>\n";
         bool hasNone = false;
@@ -50,7 +50,7 @@ void writeGiftiLabels(std::span<const std::int32_t> labels, std::span<const Labe
 }
 
 void writeMultiBlock(std::span<const VtkBlock> blocks, const std::filesystem::path& path) {
-    writeFile(path, [&](ByteSink& sink) {
+    writeBytes(path, [&](ByteSink& sink) {
         sink << "<?xml version=\"1.0\"?>\n<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\" "
                 "byte_order=\"LittleEndian\">\n<vtkMultiBlockDataSet>\n";
         std::int64_t index = 0;

@@ -1,15 +1,13 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <new>
 
 #include "ByteSource.h"
 #include "Codecs.h"
-#include "Files.h"
+#include "FileBytes.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
@@ -219,20 +217,9 @@ void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
     const TriangleMesh moved = movedTo(options, mesh, path.string());
     requireWritable(moved, format, options, path.string());
 
-    errno = 0;
-    std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-    if (!stream) {
-        throw FileError(path.string() + ": can't be made (" + meshio::systemReason() +
-                        "); check that the folder exists and may be written to");
-    }
-    meshio::ByteSink sink(stream);
-    codecOf(format.id).encode({moved, options}, sink);
-    sink.finish();
-    stream.close();
-    if (!stream) {
-        throw FileError(path.string() + ": can't be written (" + meshio::systemReason() +
-                        "); free space on the disk or write elsewhere");
-    }
+    meshio::writeBytes(path, [&](meshio::ByteSink& sink) {
+        codecOf(format.id).encode({moved, options}, sink);
+    });
 }
 
 MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name,

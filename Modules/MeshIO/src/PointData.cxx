@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "ByteSource.h"
-#include "Files.h"
+#include "FileBytes.h"
 #include "GiftiData.h"
 #include "adaptiso/Core/Errors.h"
 
@@ -213,7 +213,7 @@ PointData readPointData(const std::filesystem::path& path) {
 void writePointData(const PointData& data, std::int64_t triangles,
                     const std::filesystem::path& path) {
     requireWritable(data, path.string());
-    meshio::writeFile(path, [&](ByteSink& sink) {
+    meshio::writeBytes(path, [&](ByteSink& sink) {
         switch (data.format) {
             case PointDataFormat::FreeSurferCurv:
                 return encodeCurv(data, triangles, sink);

@@ -542,9 +542,13 @@ TissueLabels tissuesOf(const std::string& preset, const std::vector<std::int64_t
 
 BemFileOptions bemFilesOf(const std::string& unit, const std::string& frame, bool writesGifti,
                           bool writesVtp) {
-    return {choose<OpenMeegUnit>("units", unit,
-                                 {{"mm", OpenMeegUnit::Millimetres}, {"m", OpenMeegUnit::Metres}}),
-            frameOf(frame), writesGifti, writesVtp};
+    BemFileOptions options;
+    options.unit = choose<OpenMeegUnit>(
+        "units", unit, {{"mm", OpenMeegUnit::Millimetres}, {"m", OpenMeegUnit::Metres}});
+    options.frame = frameOf(frame);
+    options.writesGifti = writesGifti;
+    options.writesVtp = writesVtp;
+    return options;
 }
 
 void declareHeadModels(py::module_& module) {

@@ -1,19 +1,21 @@
-#include "Files.h"
+#include "FileBytes.h"
 
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
+#include <system_error>
 
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::meshio {
+namespace {
 
 std::string systemReason() {
     return errno != 0 ? std::strerror(errno) : "unknown reason";
 }
 
-/// The bytes of a regular file.
+}  // namespace
+
 std::string readBytes(const std::filesystem::path& path) {
     namespace fs = std::filesystem;
     std::error_code error;
@@ -40,18 +42,21 @@ std::string readBytes(const std::filesystem::path& path) {
     return bytes;
 }
 
-void writeFile(const std::filesystem::path& path, const std::function<void(ByteSink&)>& write) {
-    const auto fail = [&](const char* what) {
-        throw FileError(path.string() + ": can't be " + what + " (" + systemReason() + ")");
-    };
+void writeBytes(const std::filesystem::path& path, const std::function<void(ByteSink&)>& write) {
     errno = 0;
     std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-    if (!stream) fail("made");
+    if (!stream) {
+        throw FileError(path.string() + ": can't be made (" + systemReason() +
+                        "); check that the folder exists and may be written to");
+    }
     ByteSink sink(stream);
     write(sink);
     sink.finish();
     stream.close();
-    if (!stream) fail("written");
+    if (!stream) {
+        throw FileError(path.string() + ": can't be written (" + systemReason() +
+                        "); free space on the disk or write elsewhere");
+    }
 }
 
 }  // namespace adaptiso::meshio
