@@ -1,6 +1,7 @@
 #include "SimplifyBatch.h"
 
 #include "Common/Batch.h"
+#include "Common/Bids.h"
 #include "Common/Numbers.h"
 #include "OutputNames.h"
 
