@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <ctime>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -106,7 +107,8 @@ std::function<Made()> meshoptimizer(const TriangleMesh& mesh, const Arguments& a
 }
 
 nlohmann::ordered_json run(const Arguments& arguments) {
-    const TriangleMesh mesh = readMesh(arguments.mesh).mesh;
+    TriangleMesh mesh = readMesh(arguments.mesh).mesh;
+    mesh.normals = {};  // the others don't take them along
     const auto work = arguments.method == "adaptiso"  ? ours(mesh, arguments)
                       : arguments.method == "quadric" ? quadric(mesh, arguments)
                                                       : meshoptimizer(mesh, arguments);

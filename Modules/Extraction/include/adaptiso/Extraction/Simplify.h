@@ -58,8 +58,8 @@ struct Simplified {
 /// A closed oriented 2-manifold that does not cross itself stays one, with the same components and
 /// genus. Open borders stay open, within the bound. Where the input is no manifold, or crosses
 /// itself, it is kept as it is, and nothing new crosses. Triangles without area and doubled ones
-/// are dropped; so are vertices that no triangle uses. Normals are interpolated where the input has
-/// them.
+/// are dropped (the bound is of the others); so are vertices that no triangle uses. Normals are
+/// interpolated where the input has them.
 ///
 /// \pre  the mesh has a triangle; indices are in range, coordinates finite; one aim at least is
 ///       given, and all are in range   \throws InvalidInput otherwise

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Parallel.h"
@@ -38,13 +37,6 @@ MetricFrame frameOf(double voxel) {
     geometry.indexToPhysical.column[0].x = geometry.indexToPhysical.column[1].y =
         geometry.indexToPhysical.column[2].z = voxel;
     return MetricFrame(geometry);
-}
-
-bool isBefore(const Corners& a, const Corners& b) {
-    return std::lexicographical_compare(
-        a.begin(), a.end(), b.begin(), b.end(), [](const Vec3& p, const Vec3& q) {
-            return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
-        });
 }
 
 Corners cornersIn(const TriangleMesh& mesh, std::int64_t t) {

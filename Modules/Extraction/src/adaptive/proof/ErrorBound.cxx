@@ -32,15 +32,6 @@ double largestSampleDistance(const SimplifiedSurface& surface, const SurfaceLook
     return std::sqrt(result);
 }
 
-bool isBefore(const Corners& a, const Corners& b) {
-    for (int c = 0; c < 3; ++c) {
-        for (int axis = 0; axis < 3; ++axis) {
-            if (a[c][axis] != b[c][axis]) return a[c][axis] < b[c][axis];
-        }
-    }
-    return false;
-}
-
 /// Of the triangles that are to be proved.
 double areaOf(const SurfaceLookup& lookup, const ProofScope& scope) {
     double area = 0;

@@ -10,7 +10,6 @@
 #include <mutex>
 #include <optional>
 #include <span>
-#include <tuple>
 
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/Parameters.h"
@@ -26,11 +25,9 @@ Corners cornersOf(const SimplifiedSurface& surface, std::uint64_t t) {
     return {surface.points[c[0]], surface.points[c[1]], surface.points[c[2]]};
 }
 
-bool isBefore(const Corners& a, const Corners& b) {
-    return std::lexicographical_compare(
-        a.begin(), a.end(), b.begin(), b.end(), [](const Vec3& p, const Vec3& q) {
-            return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
-        });
+Corners cornersOf(const MeshParts& parts, std::size_t t) {
+    const MeshParts::Triangle& c = parts.triangles[t];
+    return {parts.points[c[0]], parts.points[c[1]], parts.points[c[2]]};
 }
 
 /// What is proved of some triangles.
@@ -237,16 +234,76 @@ private:
     std::vector<std::uint8_t> isMarked_;
 };
 
+/// What is proved, but for which triangles.
+struct Task {
+    const MeshParts& parts;
+    const SimplifiedSurface& surface;
+    double voxelMm, enoughMm, limitMm;
+};
+
+/// Calls f(triangle) for those of a piece of work that are not known.
+template <class F>
+void forEachUnknown(const std::vector<std::uint8_t>& isKnown, std::int64_t piece, std::size_t count,
+                    const F& f) {
+    const std::size_t begin = static_cast<std::size_t>(piece) * kPiece;
+    for (std::size_t t = begin; t < std::min(count, begin + kPiece); ++t) {
+        if (isKnown.empty() || isKnown[t] == 0) f(t);
+    }
+}
+
+/// Of the full surface to the simplified one.
+PartBound proveFine(const Task& task, const Target<std::uint64_t>& to,
+                    const std::vector<std::uint8_t>& isKnown, std::int64_t piece) {
+    OneWayProof<std::uint64_t> proof(to, task.voxelMm, task.enoughMm, task.limitMm);
+    forEachUnknown(isKnown, piece, task.parts.triangles.size(), [&](std::size_t t) {
+        const auto& [a, b, c] = task.parts.triangles[t];
+        const auto& standsFor = task.surface.sampleTriangle;
+        const std::array starts{standsFor[a], standsFor[b], standsFor[c]};
+        proof.include(
+            cornersOf(task.parts, t), starts, kStepsOfFine,
+            [](const Vec3& p, const Vec3& nearest, std::int64_t other) {
+                const auto triangle = static_cast<std::uint64_t>(other);
+                return PlaceBeyond{nearest, p, other < 0 ? PlaceBeyond::kNone : triangle, true};
+            });
+    });
+    return proof.result();
+}
+
+/// Of the simplified surface to the full one.
+PartBound proveSimplified(const Task& task, const Target<std::uint32_t>& to,
+                          const std::vector<std::uint8_t>& isKnown,
+                          const std::vector<std::uint32_t>& starts, std::int64_t piece) {
+    OneWayProof<std::uint32_t> proof(to, task.voxelMm, task.enoughMm, task.limitMm);
+    forEachUnknown(isKnown, piece, task.surface.triangles.size(), [&](std::size_t t) {
+        const Corners corners = cornersOf(task.surface, t);
+        const double faces =
+            norm(areaVector2(corners[0], corners[1], corners[2])) / (task.voxelMm * task.voxelMm);
+        const int steps = kFewSteps + static_cast<int>(std::min(kManySteps, kStepsPerFace * faces));
+        proof.include(corners, {&starts[t], 1}, steps,
+                      [&](const Vec3& p, const Vec3& nearest, std::int64_t) {
+                          return PlaceBeyond{p, nearest, t, false};
+                      });
+    });
+    return proof.result();
+}
+
+/// For each triangle of the simplified surface one of the full surface that it stands for.
+/// \param points  of the full surface, which are the first samples
+std::vector<std::uint32_t> startsOf(const SimplifiedSurface& surface,
+                                    const WalkableSurface<std::uint32_t>& fine,
+                                    std::size_t points) {
+    std::vector<std::uint32_t> starts(surface.triangles.size(), 0);
+    for (std::size_t v = points; v-- > 0;) {
+        starts[surface.sampleTriangle[v]] = fine.triangleAt(static_cast<std::uint32_t>(v));
+    }
+    return starts;
+}
+
 }  // namespace
 
 MeshProof::MeshProof(const TriangleMesh& input, const MeshParts& parts, const MetricFrame& frame,
                      double limitMm)
     : input_(input), parts_(parts), frame_(frame), limitMm_(limitMm) {}
-
-Corners MeshProof::fineCorners(std::size_t t) const {
-    const MeshParts::Triangle& c = parts_.triangles[t];
-    return {parts_.points[c[0]], parts_.points[c[1]], parts_.points[c[2]]};
-}
 
 double MeshProof::largestSampleDistance(const SimplifiedSurface& surface) const {
     constexpr std::int64_t kSamples = 1 << 14;
@@ -277,59 +334,24 @@ ErrorBound MeshProof::proveAgain(const SimplifiedSurface& surface, const Surface
 
 ErrorBound MeshProof::prove(const SimplifiedSurface& surface, const Scope& scope) {
     if (last_.empty()) provedMm_ = 0;
-    const std::int64_t fineCount = std::ssize(parts_.triangles),
-                       count = std::ssize(surface.triangles);
     if (fine_.isEmpty()) fine_.assign(parts_.points, parts_.triangles);
     const Target<std::uint32_t> fine{fine_, input_, parts_.origin,
                                      [&]() -> const AabbTree& { return *parts_.tree; }};
     SimplifiedTarget target(surface);
     const Target<std::uint64_t> simplified = target.target();
-    // where walks begin: the first samples are the points of the mesh
-    std::vector<std::uint32_t> startAt(surface.triangles.size(), 0);
-    for (std::size_t v = parts_.points.size(); v-- > 0;) {
-        startAt[surface.sampleTriangle[v]] = fine_.triangleAt(static_cast<std::uint32_t>(v));
-    }
-    const std::int64_t finePieces = (fineCount + kPiece - 1) / kPiece,
-                       pieces = (count + kPiece - 1) / kPiece;
+    const Task task{parts_, surface, frame_.voxelMm(), enoughMm_, limitMm_};
+    const std::vector<std::uint32_t> starts = startsOf(surface, fine_, parts_.points.size());
+    const std::int64_t finePieces = (std::ssize(parts_.triangles) + kPiece - 1) / kPiece,
+                       pieces = (std::ssize(surface.triangles) + kPiece - 1) / kPiece;
     std::vector<PartBound> results(finePieces + pieces);
-    const double voxelMm = frame_.voxelMm();
     parallelForPieces(finePieces + pieces, 1, [&](std::int64_t piece, std::int64_t) {
-        if (piece < finePieces) {
-            OneWayProof<std::uint64_t> proof(simplified, voxelMm, enoughMm_, limitMm_);
-            const std::int64_t end = std::min(fineCount, (piece + 1) * kPiece);
-            for (std::int64_t t = piece * kPiece; t < end; ++t) {
-                if (!scope.isFineKnown.empty() && scope.isFineKnown[t] != 0) continue;
-                const MeshParts::Triangle& c = parts_.triangles[t];
-                const std::array starts{surface.sampleTriangle[c[0]], surface.sampleTriangle[c[1]],
-                                        surface.sampleTriangle[c[2]]};
-                proof.include(fineCorners(t), starts, kStepsOfFine,
-                              [](const Vec3& p, const Vec3& nearest, std::int64_t other) {
-                                  const auto triangle = static_cast<std::uint64_t>(other);
-                                  return PlaceBeyond{
-                                      nearest, p, other < 0 ? PlaceBeyond::kNone : triangle, true};
-                              });
-            }
-            results[piece] = proof.result();
-            return;
-        }
-        OneWayProof<std::uint32_t> proof(fine, voxelMm, enoughMm_, limitMm_);
-        const std::int64_t end = std::min(count, (piece - finePieces + 1) * kPiece);
-        for (std::int64_t t = (piece - finePieces) * kPiece; t < end; ++t) {
-            if (!scope.isKnown.empty() && scope.isKnown[t] != 0) continue;
-            const Corners c = cornersOf(surface, t);
-            const double faces = norm(areaVector2(c[0], c[1], c[2])) / (voxelMm * voxelMm);
-            const int steps =
-                kFewSteps + static_cast<int>(std::min(kManySteps, kStepsPerFace * faces));
-            proof.include(c, {&startAt[t], 1}, steps,
-                          [&](const Vec3& p, const Vec3& nearest, std::int64_t) {
-                              return PlaceBeyond{p, nearest, static_cast<std::uint64_t>(t), false};
-                          });
-        }
-        results[piece] = proof.result();
+        results[piece] = piece < finePieces ? proveFine(task, simplified, scope.isFineKnown, piece)
+                                            : proveSimplified(task, fine, scope.isKnown, starts,
+                                                              piece - finePieces);
     });
     ErrorBound bound;
     double farthestMm = 0;
-    for (PartBound& result : results) {
+    for (const PartBound& result : results) {
         provedMm_ = std::max(provedMm_, result.provedMm);
         farthestMm = std::max(farthestMm, result.farthestMm);
         bound.beyondLimit.insert(bound.beyondLimit.end(), result.beyond.begin(),
@@ -418,7 +440,8 @@ void MeshProof::markFine(const std::vector<Corners>& changed, Scope& scope) cons
     parallelForPieces(
         std::ssize(scope.isFineKnown), kTriangles, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t t = begin; t < end; ++t) {
-                scope.isFineKnown[t] = static_cast<std::uint8_t>(!cubes.has(boxOf(fineCorners(t))));
+                scope.isFineKnown[t] =
+                    static_cast<std::uint8_t>(!cubes.has(boxOf(cornersOf(parts_, t))));
             }
         });
 }

@@ -34,7 +34,6 @@ private:
     void markFine(const std::vector<Corners>& changed, Scope& scope) const;
     ErrorBound prove(const SimplifiedSurface& surface, const Scope& scope);
     double largestSampleDistance(const SimplifiedSurface& surface) const;
-    Corners fineCorners(std::size_t t) const;
 
     const TriangleMesh& input_;
     const MeshParts& parts_;
