@@ -141,8 +141,19 @@ void warnOfCount(SimplifyRun& run) {
                            "holes and borders");
 }
 
+/// Every triangle has its corners for itself.
+bool isSoup(const TopologyReport& topology) {
+    return topology.triangles > 1 &&
+           topology.count(TopologyDefect::BoundaryEdge) == 3 * topology.triangles;
+}
+
 /// Open borders are what some surfaces have; all else is worth a warning.
 void warnOfFindings(SimplifyRun& run) {
+    if (isSoup(run.input.topology)) {
+        run.warnings.push_back(baseName(run.input.file) +
+                               ": no two triangles share a point, so that none can go; weld the "
+                               "points first (an .stl is welded when it is read)");
+    }
     for (const Finding& finding : run.findings) {
         if (!finding.isFault || finding.key == "borderEdges") continue;
         run.warnings.push_back(baseName(run.input.file) + ": " + finding.text());

@@ -90,6 +90,21 @@ class FreeSurfer(SimplifyTest):
         self.refused(BAD_INPUT, "none.curv: no such file", "lh.pial", "--max-error", "1", "-o",
                      "lh.vtp", "--data", "none.curv")
 
+    def test_in_a_batch_each_has_its_own(self):
+        for name in ("a", "b"):
+            self.path(name + ".ply").write_text(ply(BALL))
+            write_curv(self.path(name + ".curv"), [p[2] for p in BALL[0]])
+        arguments = ("a.ply", "b.ply", "--max-error", "0.2", "--data", "{name}.curv", "-o", "out/",
+                     "--skip-existing")
+        self.assertEqual(self.run_simplify(*arguments).returncode, 0)
+        self.assertTrue(self.path("out/a.curv").is_file() and self.path("out/b.curv").is_file())
+        self.assertEqual(self.run_simplify(*arguments).stdout.count("before "), 2)
+        write_curv(self.path("a.curv"), [p[1] for p in BALL[0]])
+        self.path("out/b.curv").unlink()
+        again = self.run_simplify(*arguments).stdout
+        self.assertRegex(again, "a.ply: .*made again: the input a.curv has changed")
+        self.assertRegex(again, "b.ply: .*made again: b.curv is gone")
+
     @unittest.skipIf(nibabel is None, "needs python3-nibabel")
     def test_nibabel_reads_them(self):
         _, (points, _, _) = self.simplified("--data", "lh.thickness", "--data", "lh.aparc.annot")

@@ -154,6 +154,15 @@ class Soundness(SimplifyTest):
         topology = self.check("out.vtp")["surfaces"][0]
         self.assertIn("manifoldEdges", topology["failed"])
 
+    def test_a_soup_is_told(self):
+        points, triangles = icosphere(10, 2)
+        corners = [points[v] for t in triangles for v in t]
+        alone = [(3 * n, 3 * n + 1, 3 * n + 2) for n in range(len(triangles))]
+        self.path("soup.ply").write_text(ply((corners, alone)))
+        report = self.simplify("soup.ply", "--max-error", "1", "-o", "out.ply")
+        self.assertRegex(report["warnings"][0], "^soup.ply: no two triangles share a point")
+        self.assertEqual(report["output"]["triangles"], 320)
+
     def test_require_sound_refuses_with_the_reason(self):
         points, triangles = icosphere(10, 2)
         self.write("hole.off", (points, triangles[1:]))

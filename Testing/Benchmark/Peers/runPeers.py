@@ -259,9 +259,10 @@ def main():
                 tell(f"{volume.name}: {volume.image} is not there, left out")
                 continue
             facts = bench.prepare(volume)
+            rows = measure(bench, arguments, volume, facts)  # may add facts
             report["volumes"].append({
                 "name": volume.name, "isovalue": volume.isovalue, "wanted": volume.triangles,
-                **facts, "rows": measure(bench, arguments, volume, facts)})
+                **facts, "rows": rows})
         if arguments.only:
             report["volumes"] = with_earlier(path, report["volumes"])
     path.write_text(json.dumps(report, indent=1) + "\n")
