@@ -32,6 +32,8 @@ struct BatchProgram {
     std::vector<std::string> outputOptions;
     /// Given to every run that has no --output; empty: none. With --bids the second.
     std::string defaultOutput, defaultBidsOutput;
+    /// The same where it depends on the item, in place of both.
+    std::function<std::string(const BatchItem&)> defaultOutputOf{};
     std::function<std::string(const std::filesystem::path&)> nameOf;
     /// findBidsScans() or findBidsSurfaces()
     std::function<std::vector<BatchItem>(const std::filesystem::path&,

@@ -144,18 +144,19 @@ void BatchPlan::prepareOutputs() {
 }
 
 /// The value of --output, or what stands for it where it is not given; empty: the program has none.
-std::string BatchPlan::outputPattern() const {
+std::string BatchPlan::outputPattern(const BatchItem& item) const {
     for (const std::string& option : batch_.runOptions) {
         const auto [name, value] = split(option);
         if (name != "--output") continue;
         return batch_.bids.empty() ? value : replaced(value, "{iso}", kIsoLabel);
     }
+    if (program_.defaultOutputOf) return program_.defaultOutputOf(item);
     return batch_.bids.empty() ? program_.defaultOutput : program_.defaultBidsOutput;
 }
 
 std::vector<std::string> BatchPlan::outputs(const BatchItem& item,
                                             const std::vector<std::string>& names) const {
-    const fs::path folder = fs::path(withName(outputPattern(), item.name)).parent_path();
+    const fs::path folder = fs::path(withName(outputPattern(item), item.name)).parent_path();
     std::vector<std::string> files;
     for (const std::string& name : names) {
         files.push_back((folder / withName(name, item.name)).string());
@@ -171,7 +172,7 @@ std::vector<std::string> BatchPlan::options(const BatchItem& item) const {
         options.push_back(isOutput(name) ? name + "=" + placed(item, value)
                                          : withName(option, item.name));
     }
-    const std::string output = outputPattern();
+    const std::string output = outputPattern(item);
     if (!output.empty()) options.push_back("--output=" + placed(item, output));
     return options;
 }
@@ -193,7 +194,7 @@ std::vector<PlannedRecord> BatchPlan::records(const BatchItem& item) const {
     }
     std::vector<PlannedRecord> planned;
     const std::vector<fs::path> files =
-        program_.surfaceFiles(placed(item, outputPattern()), values);
+        program_.surfaceFiles(placed(item, outputPattern(item)), values);
     for (std::size_t n = 0; n < files.size(); ++n) {
         PlannedRecord& record = planned.emplace_back();
         record.file = recordFile(item.folder, files[n], program_.name);

@@ -54,7 +54,7 @@ private:
     std::vector<std::string> options(const BatchItem& item) const;
     bool isOutput(const std::string& option) const;
     bool isInput(const std::string& option) const;
-    std::string outputPattern() const;
+    std::string outputPattern(const BatchItem& item) const;
 
     const BatchProgram& program_;
     const BatchOptions& batch_;

@@ -52,7 +52,8 @@ std::string surfaceHint(const fs::path& file) {
     } catch (const Error&) {
         return "";
     }
-    return "this is a surface, not an image; adaptiso-check and adaptiso-compare take surfaces";
+    return "this is a surface, not an image; adaptiso-check, adaptiso-compare and "
+           "adaptiso-simplify take surfaces";
 }
 
 }  // namespace adaptiso

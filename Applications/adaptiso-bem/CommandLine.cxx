@@ -18,6 +18,9 @@ constexpr const char* kInput = "Input (one of --t1, --labels, --probabilities, -
 constexpr const char* kHead = "Head";
 constexpr const char* kMesh = "Surfaces";
 constexpr const char* kOutput = "Output";
+constexpr const char* kElectrodes = "Electrodes and landmarks";
+constexpr const char* kToolboxes =
+    "Files for other programs, besides those of FreeSurfer and OpenMEEG";
 
 std::vector<std::string> parts(const std::string& text, char separator) {
     std::vector<std::string> result;
@@ -47,13 +50,15 @@ std::vector<double> numbers(const std::string& option, const std::string& text, 
 /// "brain=1,2,3"
 void addTissue(TissueLabels& tissues, const std::string& text) {
     const auto refuse = [&] {
-        throw UsageError("--tissue " + text +
-                         ": must be brain, skull or scalp, '=', and labels with commas between "
-                         "them: brain=1,2,3");
+        throw UsageError(
+            "--tissue " + text +
+            ": must be brain, csf, skull or scalp, '=', and labels with commas between "
+            "them: brain=1,2,3");
     };
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
     std::vector<std::int64_t>* const list = name == "brain"   ? &tissues.brain
+                                            : name == "csf"   ? &tissues.csf
                                             : name == "skull" ? &tissues.skull
                                             : name == "scalp" ? &tissues.scalp
                                                               : nullptr;
@@ -104,6 +109,17 @@ void declareInput(CLI::App& app, BemOptions& options) {
                    "skull removed); without it the brain is guessed")
         ->type_name("IMG")
         ->group(kInput);
+    app.add_option(
+           "--aseg", options.aseg,
+           "With --t1: FreeSurfer's or FastSurfer's aseg; the brain mask where there is none, "
+           "and with --layers 4 the brain's own surface")
+        ->type_name("IMG")
+        ->group(kInput);
+    app.add_option(
+           "--pial", options.pial,
+           "With --t1 and --layers 4: the cortex (lh.pial rh.pial), for the brain's own surface")
+        ->type_name("MESH...")
+        ->group(kInput);
     app.add_option("--labels", options.labels, "A segmentation; --tissue or --preset says of what")
         ->type_name("IMG")
         ->group(kInput);
@@ -112,16 +128,18 @@ void declareInput(CLI::App& app, BemOptions& options) {
            [&options](const std::vector<std::string>& texts) {
                for (const std::string& text : texts) addTissue(options.tissues, text);
            },
-           "Labels of a tissue: brain=1,2,3 (CSF included), skull=4, scalp=5; one --tissue each")
+           "Labels of a tissue: brain=1,2,3 (CSF included, or named apart: brain=1,2 csf=3), "
+           "skull=4, "
+           "scalp=5; one --tissue each")
         ->type_name("NAME=LABELS")
         ->allow_extra_args(false)
         ->group(kInput);
     app.add_option_function<std::string>(
            "--preset",
            [&options](const std::string& name) { options.tissues = tissuePreset(name); },
-           "The labels of SimNIBS's charm or headreco, or of FreeSurfer's aseg")
-        ->type_name("charm|headreco|aseg")
-        ->check(CLI::IsMember({"charm", "headreco", "aseg"}).description(""))
+           "The labels of SimNIBS's charm or headreco, of FreeSurfer's aseg, or of SAMSEG")
+        ->type_name("charm|headreco|aseg|samseg")
+        ->check(CLI::IsMember({"charm", "headreco", "aseg", "samseg"}).description(""))
         ->group(kInput);
     app.add_option("--probabilities", options.probabilities,
                    "Tissue maps in SPM's order: c1 c2 c3 c4 c5 [c6]")
@@ -131,7 +149,9 @@ void declareInput(CLI::App& app, BemOptions& options) {
         ->type_name("IMG")
         ->group(kInput);
     app.add_option("--surfaces", options.surfaces,
-                   "Ready surfaces, inside out: INNER OUTER SKIN (or INNER alone with --meg); "
+                   "Ready surfaces, inside out: INNER OUTER SKIN (INNER alone with --meg, BRAIN "
+                   "INNER OUTER "
+                   "SKIN with --layers 4); "
                    "checked, mended where need be, and kept as they are where not")
         ->type_name("MESH...")
         ->group(kInput);
@@ -144,24 +164,37 @@ void declareInput(CLI::App& app, BemOptions& options) {
 
 void declareHead(CLI::App& app, BemOptions& options) {
     BoundaryOptions& head = options.model.boundaries;
+    app.add_option_function<std::string>(
+           "--layers",
+           [&head](const std::string& count) {
+               head.withBrain = count == "4";
+               if (count == "1") head.innerSkullOnly = true;
+           },
+           "3 (default): inner skull, outer skull, skin; 4: the brain within the inner skull as "
+           "well, "
+           "CSF between them; 1: as --meg")
+        ->type_name("1|3|4")
+        ->check(CLI::IsMember({"1", "3", "4"}).description(""))
+        ->group(kHead);
     app.add_flag("--meg", head.innerSkullOnly, "The inner skull alone")->group(kHead);
     app.add_option_function<std::string>(
            "--min-gap",
            [&head](const std::string& text) {
-               const std::vector<double> gaps =
-                   numbers("--min-gap", text, ',', 1, 2, "one or two numbers of mm: SKULL,SCALP");
+               const std::vector<double> gaps = numbers(
+                   "--min-gap", text, ',', 1, 3, "one to three numbers of mm: SKULL,SCALP,CSF");
                head.minSkullMm = gaps.front();
-               head.minScalpMm = gaps.back();
+               head.minScalpMm = gaps.size() > 1 ? gaps[1] : gaps.front();
+               if (gaps.size() > 2) head.minCsfMm = gaps[2];
                constexpr double kLeast = CheckRules::kDefaultMinGapMm, kMost = 20;
-               if (!(std::min(head.minSkullMm, head.minScalpMm) >= kLeast) ||
-                   !(std::max(head.minSkullMm, head.minScalpMm) <= kMost)) {
+               const auto [least, most] = std::minmax_element(gaps.begin(), gaps.end());
+               if (!(*least >= kLeast) || !(*most <= kMost)) {
                    throw UsageError("--min-gap " + text + ": must be " + formatNumber(kLeast) +
                                     " mm or more, as adaptiso-check wants it, and at most " +
                                     formatNumber(kMost));
                }
            },
-           "Least thickness of skull and scalp, guaranteed (default: 2,2)")
-        ->type_name("MM[,MM]")
+           "Least thickness of skull, scalp and (with --layers 4) CSF, guaranteed (default: 2,2,1)")
+        ->type_name("MM[,MM[,MM]]")
         ->group(kHead);
     addLength(app, "--csf", head.csfMm, 20,
               "T1: from the brain mask to the inner skull (default: 2)", kHead);
@@ -175,6 +208,9 @@ void declareHead(CLI::App& app, BemOptions& options) {
     addNumber(app, "--skin-hu", head.skinHu, "HU", "CT: isovalue of skin (default: -300)", kHead);
     addLength(app, "--closing", head.closingMm, 30,
               "Gaps and canals narrower than twice this are closed (default: 10)", kHead);
+    addLength(app, "--sulci", head.sulciMm, 30,
+              "Sulci of the brain's own surface narrower than twice this are closed (default: 3)",
+              kHead);
     addLength(app, "--smoothing", head.smoothingMm, 10,
               "Standard deviation of the Gaussian that boundaries are smoothed with (default: 1.5)",
               kHead);
@@ -192,7 +228,9 @@ void declareSurfaces(CLI::App& app, BemOptions& options) {
     constexpr std::int64_t kMostVertices = 200'000;
     app.add_option("--vertices", options.model.vertices,
                    "Vertices of each surface, evenly spread: 642, 1281, 2562 or any number "
-                   "(default: 2562); or one number for each surface, inside out: N,N,N")
+                   "(default: 2562; with --layers 4 by the layers' thickness, 10,000 in all at "
+                   "most); or one "
+                   "number for each surface, inside out: N,N,N")
         ->type_name("N[,N,N]")
         ->delimiter(',')
         ->allow_extra_args(false)
@@ -215,17 +253,23 @@ void declareSurfaces(CLI::App& app, BemOptions& options) {
     app.add_option_function<std::string>(
            "--conductivity",
            [&options](const std::string& text) {
-               const std::vector<double> values = numbers(
-                   "--conductivity", text, ',', 3, 3, "three numbers: BRAIN,SKULL,SCALP in S/m");
-               options.model.conductivities = {values[0], values[1], values[2]};
+               const std::vector<double> values =
+                   numbers("--conductivity", text, ',', 3, 4,
+                           "three or four numbers: BRAIN,[CSF,]SKULL,SCALP in S/m");
+               ConductivityModel& sigma = options.model.conductivities;
+               sigma.brain = values.front();
+               options.namesCsf = values.size() == 4;
+               if (options.namesCsf) sigma.csf = values[1];
+               sigma.skull = values[values.size() - 2];
+               sigma.scalp = values.back();
                try {
                    checkConductivities(options.model.conductivities);
                } catch (const InvalidInput& error) {
                    throw UsageError("--conductivity " + text + ": " + error.what());
                }
            },
-           "Conductivities in S/m (default: 0.3,0.006,0.3)")
-        ->type_name("BRAIN,SKULL,SCALP")
+           "Conductivities in S/m (default: 0.3,0.006,0.3; with --layers 4: 0.3,1.79,0.006,0.3)")
+        ->type_name("BRAIN,[CSF,]SKULL,SCALP")
         ->group(kMesh);
 }
 
@@ -266,12 +310,84 @@ void declareOutput(CLI::App& app, BemOptions& options) {
         ->type_name("ras|lps|tkras")
         ->check(CLI::IsMember({"ras", "lps", "tkras"}).description(""))
         ->group(kOutput);
-    app.add_flag("--gifti", options.files.writesGifti, "Write .gii files too")->group(kOutput);
-    app.add_flag("--vtp", options.files.writesVtp, "Write .vtp files too")->group(kOutput);
     app.add_flag("--dry-run", options.isDryRun,
                  "Do and check everything, write nothing but the reports asked for by name")
         ->group(kOutput);
     declareReportOptions(app, options.report, kOutput);
+}
+
+/// "X,Y,Z" in scanner RAS mm
+void addPoint(CLI::App& app, const std::string& name, std::optional<Vec3>& target,
+              const std::string& description) {
+    app.add_option_function<std::string>(
+           name,
+           [&target, name](const std::string& text) {
+               const std::vector<double> p =
+                   numbers(name, text, ',', 3, 3, "three numbers of mm: X,Y,Z");
+               target = Vec3{p[0], p[1], p[2]};
+           },
+           description)
+        ->type_name("X,Y,Z")
+        ->group(kElectrodes);
+}
+
+void declareElectrodes(CLI::App& app, BemOptions& options) {
+    app.add_option(
+           "--electrodes", options.electrodes,
+           "Electrodes, moved onto the skin and written back: BIDS _electrodes.tsv (with its "
+           "_coordsystem.json), ASA .elc, BESA .sfp, FIFF .fif")
+        ->type_name("FILE")
+        ->group(kElectrodes);
+    app.add_option_function<std::string>(
+           "--electrodes-in",
+           [&options](const std::string& frame) {
+               ElectrodeOptions& electrodes = options.model.electrodes;
+               electrodes.frame = frame == "lps"     ? CoordinateFrame::Lps
+                                  : frame == "tkras" ? CoordinateFrame::TkRas
+                                                     : CoordinateFrame::Ras;
+           },
+           "Their frame (default: what the file says; else by its nasion and ears; else scanner "
+           "RAS)")
+        ->type_name("ras|lps|tkras")
+        ->check(CLI::IsMember({"ras", "lps", "tkras"}).description(""))
+        ->group(kElectrodes);
+    app.add_option_function<std::string>(
+           "--montage",
+           [&options](const std::string& system) {
+               options.model.electrodes.positions = system == "10-20"   ? PositionSystem::TenTwenty
+                                                    : system == "10-10" ? PositionSystem::TenTen
+                                                                        : PositionSystem::TenFive;
+           },
+           "Electrode positions of the 10-20, 10-10 or 10-05 system, computed on the skin from "
+           "nasion "
+           "and ears")
+        ->type_name("10-20|10-10|10-05")
+        ->check(CLI::IsMember({"10-20", "10-10", "10-05"}).description(""))
+        ->group(kElectrodes);
+    addPoint(app, "--nasion", options.nasion,
+             "Nasion, scanner RAS mm (default: the electrodes' file's, else guessed)");
+    addPoint(app, "--left-ear", options.leftEar, "Left preauricular point, the same");
+    addPoint(app, "--right-ear", options.rightEar, "Right preauricular point, the same");
+}
+
+void declareToolboxes(CLI::App& app, BemOptions& options) {
+    BemFileOptions& files = options.files;
+    const auto addFlag = [&](const char* name, bool& target, const char* description) {
+        app.add_flag(name, target, description)->group(kToolboxes);
+    };
+    addFlag("--fif", files.writesFif,
+            "MNE: bem.fif (all surfaces), head-dense.fif and head-sparse.fif (the skin, for "
+            "coregistration); with --subject in the subject's folder too");
+    addFlag("--fieldtrip", files.writesFieldTrip,
+            "FieldTrip: headmodel.mat (bnd, cond, tissue, unit, coordsys)");
+    addFlag("--brainstorm", files.writesBrainstorm,
+            "Brainstorm: tess_innerskull_bem.mat, ... (scanner RAS, metres)");
+    addFlag("--simnibs", files.writesSimNibs, "SimNIBS: csf.stl, bone.stl, skin.stl (scanner RAS)");
+    addFlag("--curry", files.writesCurry, "Curry: .s00 (skin) to .s02 (inner skull)");
+    addFlag("--besa", files.writesBesa,
+            "BESA: head.sfp (landmarks, electrodes, points of the skin)");
+    addFlag("--gifti", files.writesGifti, "Viewers: .gii");
+    addFlag("--vtp", files.writesVtp, "Viewers: .vtp");
 }
 
 /// What one option alone can't tell.
@@ -286,6 +402,17 @@ void checkCombinations(const BemOptions& options) {
     require(sources == 1,
             "one of --t1, --labels, --probabilities, --ct, --surfaces must be given, and one only");
     require(options.brainMask.empty() || !options.t1.empty(), "--brain-mask needs --t1");
+    require(options.aseg.empty() || !options.t1.empty(), "--aseg needs --t1");
+    const BoundaryOptions& layers = options.model.boundaries;
+    require(options.pial.empty() || (!options.t1.empty() && layers.withBrain),
+            "--pial needs --t1 and --layers 4");
+    require(!layers.withBrain || !layers.innerSkullOnly, "--layers 4 and --meg exclude each other");
+    require(
+        !layers.withBrain || options.ct.empty(),
+        "--layers 4 does not go with --ct: a CT does not show where the brain ends and CSF begins");
+    require(layers.withBrain || !options.namesCsf, "--conductivity: four numbers need --layers 4");
+    require(!layers.withBrain || options.labels.empty() || !options.tissues.csf.empty(),
+            "--layers 4 needs --tissue csf=... as well");
     require(options.volume.empty() || !options.surfaces.empty(), "--volume needs --surfaces");
     const bool namesTissues = !options.tissues.brain.empty() || options.tissues.othersAreBrain;
     require(options.labels.empty() || namesTissues,
@@ -293,9 +420,10 @@ void checkCombinations(const BemOptions& options) {
     require(options.labels.empty() || options.model.boundaries.innerSkullOnly ||
                 (!options.tissues.skull.empty() && !options.tissues.scalp.empty()),
             "--labels needs --tissue skull=... and scalp=... as well (or --meg)");
-    require(!options.labels.empty() ||
-                (!namesTissues && options.tissues.skull.empty() && options.tissues.scalp.empty()),
-            "--tissue and --preset need --labels");
+    require(
+        !options.labels.empty() || (!namesTissues && options.tissues.csf.empty() &&
+                                    options.tissues.skull.empty() && options.tissues.scalp.empty()),
+        "--tissue and --preset need --labels");
     require(
         options.surfaces.empty() || options.surfaces.size() == options.model.surfaceCount(),
         "--surfaces needs " + std::to_string(options.model.surfaceCount()) + " files, inside out");
@@ -313,6 +441,19 @@ void checkCombinations(const BemOptions& options) {
                                    head.skullHu > kSoftTissueHu),
             "--skin-hu must lie above air (-1000 HU) and below --skull-hu, and that above soft "
             "tissue (40 HU)");
+    const bool namesLandmarks = options.nasion || options.leftEar || options.rightEar;
+    const bool wantsElectrodes =
+        !options.electrodes.empty() || options.model.electrodes.positions || namesLandmarks;
+    require(options.electrodes.empty() || !options.model.electrodes.positions,
+            "--electrodes and --montage exclude each other");
+    require(!namesLandmarks || (options.nasion && options.leftEar && options.rightEar),
+            "--nasion, --left-ear and --right-ear need each other");
+    require(!wantsElectrodes || options.model.hasSkin(),
+            "electrodes and landmarks need a skin: not with --meg");
+    require(!options.model.electrodes.frame || !options.electrodes.empty(),
+            "--electrodes-in needs --electrodes");
+    require(!options.files.writesBesa || options.model.hasSkin(),
+            "--besa needs a skin: not with --meg");
     require(options.isDryRun || !options.output.empty(), "-o DIR is needed (or --dry-run)");
     require(options.subject.empty() == options.subjectsDir.empty(),
             "--subjects-dir and --subject need each other");
@@ -325,10 +466,15 @@ constexpr const char* kFooter = R"(Examples:
   adaptiso-bem --t1 T1.nii.gz --brain-mask brain.nii.gz -o model
       FreeSurfer and OpenMEEG files, README.md and report.json in the folder model
   adaptiso-bem --t1 T1.mgz --subjects-dir subjects --subject anna -o model
+  adaptiso-bem --t1 T1.mgz --aseg aseg.mgz --pial lh.pial rh.pial --layers 4 -o model
   adaptiso-bem --labels final_tissues.nii.gz --preset charm --vertices 642 -o model
   adaptiso-bem --probabilities c1.nii c2.nii c3.nii c4.nii c5.nii -o model
   adaptiso-bem --ct ct.nii.gz --meg -o model --report model.html
   adaptiso-bem --surfaces inner.stl outer.stl skin.stl --min-gap 3,2 -o model
+  adaptiso-bem --t1 T1.nii.gz --electrodes sub-1_electrodes.tsv -o model
+  adaptiso-bem --t1 T1.nii.gz --montage 10-10 --nasion 0,85,-35 --left-ear=-80,-28,-41 \
+      --right-ear 80,-28,-41 -o model
+  adaptiso-bem --t1 T1.nii.gz --fif --fieldtrip --brainstorm -o model
 
 Exit codes: 0 done, 1 no model could be guaranteed, or a warning with --strict
 (the folder holds report.json alone), 2 wrong usage, 3 bad input (or no memory
@@ -339,7 +485,10 @@ or disk left), 4 internal error. When it is above 1, nothing was written.)";
 Program bemProgram() {
     return {"adaptiso-bem",
             "Makes the nested surfaces of a boundary element head model (EEG: inner skull, outer "
-            "skull,\nouter skin; MEG: inner skull) for MNE, FreeSurfer and OpenMEEG.",
+            "skull,\nouter skin, or the brain within them as well; MEG: inner skull) for MNE, "
+            "FreeSurfer, OpenMEEG, FieldTrip, "
+            "Brainstorm, "
+            "SimNIBS\nand Curry.",
             kFooter};
 }
 
@@ -348,6 +497,8 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
     declareHead(app, options);
     declareSurfaces(app, options);
     declareOutput(app, options);
+    declareElectrodes(app, options);
+    declareToolboxes(app, options);
     declareCommonOptions(app, options.common, "of the model only the report is then written");
     app.callback([&options] { checkCombinations(options); });
 }

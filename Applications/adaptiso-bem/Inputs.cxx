@@ -1,9 +1,11 @@
 #include "Inputs.h"
 
+#include <optional>
 #include <utility>
 
 #include "Common/CommonFrame.h"
 #include "Common/Json.h"
+#include "Common/Naming.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
@@ -40,25 +42,49 @@ HeadBoundaries timed(BemRun& run, const std::string& option, const fs::path& pat
         return run.timer.time("boundaries", make);
     } catch (const InvalidInput& error) {
         const std::string what = error.what();
-        const bool isOfMask = what.starts_with("the brain mask");
-        throw InvalidInput((isOfMask ? "--brain-mask " + run.options.brainMask.string()
-                                     : option + " " + path.string()) +
-                           ": " + what);
+        const BemOptions& options = run.options;
+        std::string of = option + " " + path.string();
+        if (what.starts_with("the brain mask")) {
+            of = options.brainMask.empty() ? "--aseg " + options.aseg.string()
+                                           : "--brain-mask " + options.brainMask.string();
+        } else if (what.starts_with("a pial surface")) {
+            of = "--pial";
+        }
+        throw InvalidInput(of + ": " + what);
     }
+}
+
+/// Surfaces of the cortex, in the T1's space.
+std::vector<TriangleMesh> readPial(BemRun& run) {
+    std::vector<NamedMesh> files;
+    for (const fs::path& path : run.options.pial) {
+        files.push_back({path, readMesh(path)});
+        run.model.inputs.push_back(
+            {baseName(path), "pial surface", std::string(findMeshFormat(path).name)});
+    }
+    const CommonFrame common =
+        naming("--pial", [&] { return bringToOneFrame(files, run.model.image); });
+    run.model.warnings.insert(run.model.warnings.end(), common.warnings.begin(),
+                              common.warnings.end());
+    std::vector<TriangleMesh> surfaces;
+    for (NamedMesh& named : files) surfaces.push_back(std::move(named.file.mesh));
+    return surfaces;
 }
 
 HeadBoundaries fromT1(BemRun& run, const BoundaryOptions& boundaries) {
     const BemOptions& options = run.options;
-    const ReadVolume t1 =
-        run.timer.time("read", [&] { return readMainImage(options.t1, "t1", run); });
-    if (options.brainMask.empty()) {
-        return timed(run, "--t1", options.t1,
-                     [&] { return boundariesFromT1(t1.volume, std::nullopt, boundaries); });
-    }
-    const ReadVolume mask =
-        run.timer.time("read", [&] { return readImage(options.brainMask, "brain mask", run); });
+    std::optional<ReadVolume> t1, mask, aseg;
+    BrainSources brain;
+    run.timer.time("read", [&] {
+        t1 = readMainImage(options.t1, "t1", run);
+        if (!options.brainMask.empty()) mask = readImage(options.brainMask, "brain mask", run);
+        if (!options.aseg.empty()) aseg = readImage(options.aseg, "aseg", run);
+        if (!options.pial.empty()) brain.pial = readPial(run);
+    });
+    if (mask) brain.mask = mask->volume.view();
+    if (aseg) brain.aseg = aseg->volume.view();
     return timed(run, "--t1", options.t1,
-                 [&] { return boundariesFromT1(t1.volume, mask.volume.view(), boundaries); });
+                 [&] { return boundariesFromT1(t1->volume, brain, boundaries); });
 }
 
 HeadBoundaries fromProbabilities(BemRun& run, const BoundaryOptions& boundaries) {

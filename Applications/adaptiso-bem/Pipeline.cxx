@@ -1,6 +1,7 @@
 #include "Pipeline.h"
 
 #include <algorithm>
+#include <fstream>
 #include <iostream>
 #include <optional>
 #include <span>
@@ -9,6 +10,7 @@
 #include "BemRun.h"
 #include "Common/AtomicFolder.h"
 #include "Common/ExitCodes.h"
+#include "Common/Json.h"
 #include "Common/Naming.h"
 #include "Common/Progress.h"
 #include "Common/ResultOutput.h"
@@ -17,7 +19,9 @@
 #include "Inputs.h"
 #include "JsonReport.h"
 #include "TextReport.h"
-#include "adaptiso/HeadModel/ExportFreeSurfer.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/PointFiles.h"
+#include "adaptiso/Pipeline/BemElectrodes.h"
 #include "adaptiso/Pipeline/BemReport.h"
 #include "adaptiso/Pipeline/BemSurfaces.h"
 
@@ -37,8 +41,9 @@ std::string sourceOf(const BemOptions& options) {
 std::vector<fs::path> inputsOf(const BemOptions& options) {
     std::vector<fs::path> inputs = options.probabilities;
     inputs.insert(inputs.end(), options.surfaces.begin(), options.surfaces.end());
-    for (const fs::path& path :
-         {options.t1, options.brainMask, options.labels, options.ct, options.volume}) {
+    inputs.insert(inputs.end(), options.pial.begin(), options.pial.end());
+    for (const fs::path& path : {options.t1, options.brainMask, options.aseg, options.labels,
+                                 options.ct, options.volume, options.electrodes}) {
         if (!path.empty()) inputs.push_back(path);
     }
     return inputs;
@@ -50,17 +55,37 @@ bool hasJsonFile(const BemOptions& options) {
 
 /// The folder's own names when it may be replaced.
 OwnNames replaceable(const BemOptions& options) {
-    return options.mayReplace ? OwnNames(bemFileNames()) : OwnNames();
+    if (!options.mayReplace) return {};
+    const std::vector<std::string> names = bemFileNames();
+    return std::vector<std::string_view>(names.begin(), names.end());
 }
 
-/// Where --subject's surfaces go: SUBJECTS_DIR/SUBJECT/bem/<surface>.surf, one a surface.
-std::vector<fs::path> subjectPaths(const BemOptions& options) {
-    std::vector<fs::path> paths;
-    if (options.subject.empty()) return paths;
+/// What a subject gets: the folder's files, and their names in SUBJECTS_DIR/SUBJECT/bem.
+struct SubjectFile {
+    std::string name;
+    fs::path path;
+};
+
+std::vector<SubjectFile> subjectFiles(const BemOptions& options) {
+    std::vector<SubjectFile> files;
+    if (options.subject.empty()) return files;
     const fs::path folder = options.subjectsDir / options.subject / "bem";
     for (std::size_t n = 0; n < options.model.surfaceCount(); ++n) {
-        paths.push_back(folder / bemFileName(n, ".surf"));
+        const std::string name = bemFileName(options.model.surface(n), ".surf");
+        files.push_back({name, folder / name});
     }
+    if (!options.files.writesFif) return files;
+    // the names that mne.coregistration looks for
+    for (const char* name : {kFiffModel, kFiffDenseHead, kFiffSparseHead}) {
+        if (name != kFiffModel && !options.model.hasSkin()) continue;
+        files.push_back({name, folder / (options.subject + "-" + name)});
+    }
+    return files;
+}
+
+std::vector<fs::path> subjectPaths(const BemOptions& options) {
+    std::vector<fs::path> paths;
+    for (const SubjectFile& file : subjectFiles(options)) paths.push_back(file.path);
     return paths;
 }
 
@@ -124,19 +149,49 @@ std::vector<TriangleMesh> firstSurfaces(BemRun& run, const BemHooks& hooks,
                   [&] { return mendSurfaces(std::move(surfaces), run.model, hooks); });
 }
 
+/// What is known of electrodes and landmarks before there is a head.
+void readElectrodes(BemRun& run) {
+    const BemOptions& options = run.options;
+    ElectrodeOptions& wanted = run.model.options.electrodes;
+    wanted.wantsLandmarks = options.files.writesBesa;
+    if (!options.electrodes.empty()) {
+        wanted.file = readPoints(options.electrodes);
+        wanted.fileName = baseName(options.electrodes);
+        run.model.inputs.push_back({wanted.fileName, "electrodes", wanted.file->format});
+    }
+    if (!options.nasion) return;
+    const AffineTransform toLps = inverse(lpsToFrame(CoordinateFrame::Ras, {}));
+    Landmarks landmarks;
+    landmarks.nasionMm = toLps(*options.nasion);
+    landmarks.leftEarMm = toLps(*options.leftEar);
+    landmarks.rightEarMm = toLps(*options.rightEar);
+    wanted.landmarks = landmarks;
+}
+
+void putElectrodes(BemRun& run, const BemHooks& hooks) {
+    if (!run.model.hasModel() || !run.model.options.electrodes.areWanted()) return;
+    const fs::path& file = run.options.electrodes;
+    naming(file.empty() ? std::string("--montage") : "--electrodes " + file.string(),
+           [&] { placeElectrodes(run.model, hooks); });
+}
+
 /// Those from number `first` on.
 void tellWarnings(const BemRun& run, std::size_t first = 0) {
     printWarnings("adaptiso-bem", run.options.common, std::span(run.model.warnings).subspan(first));
 }
 
-/// The FreeSurfer surfaces once more, for the subject's own folder.
-std::vector<AtomicOutput> writeSubject(BemRun& run) {
-    const BemModel& model = run.model;
+/// Files of the model's folder once more, for the subject's own.
+std::vector<AtomicOutput> writeSubject(BemRun& run, const AtomicFolder& folder) {
     std::vector<AtomicOutput> outputs;
-    run.subjectFiles = subjectPaths(run.options);
-    for (std::size_t n = 0; n < run.subjectFiles.size(); ++n) {
-        outputs.emplace_back(run.subjectFiles[n]).write([&](const fs::path& path) {
-            writeFreeSurferSurface(model.meshes[n], path, model.tkRasVolume, model.tkRasName);
+    for (const SubjectFile& file : subjectFiles(run.options)) {
+        run.subjectFiles.push_back(file.path);
+        outputs.emplace_back(file.path).write([&](const fs::path& path) {
+            // the bytes alone: a file that is replaced keeps its mode
+            std::ifstream from(folder.path() / file.name, std::ios::binary);
+            std::ofstream to(path, std::ios::binary | std::ios::trunc);
+            to << from.rdbuf();
+            to.close();
+            if (!from || !to) throw FileError(path.string() + ": can't be written");
         });
     }
     return outputs;
@@ -202,7 +257,7 @@ void write(BemRun& run, ProgressLine& progress) {
     std::optional<AtomicFolder> folder;
     if (!options.isDryRun) {
         fillFolder(run, folder);
-        if (run.model.hasModel() && !run.failsStrict()) outputs = writeSubject(run);
+        if (run.model.hasModel() && !run.failsStrict()) outputs = writeSubject(run, *folder);
     }
     const std::unique_ptr<PictureFolder> pictures = show(run, outputs, folder);
     const std::string json = jsonReport(run);
@@ -224,8 +279,10 @@ int runBem(const BemOptions& options) {
     ProgressLine progress(options.common.isQuiet);
     BemRun run{options, {}};
     run.model.options = options.model;
+    run.model.options.wantsHeadShape = options.files.writesFif;
     run.model.source = sourceOf(options);
     checkOutputs(options);
+    readElectrodes(run);
 
     const BemHooks hooks{[&](std::string_view stage, const std::function<void()>& work) {
                              progress.show(stage);
@@ -238,6 +295,7 @@ int runBem(const BemOptions& options) {
     tellWarnings(run);
     const std::size_t told = run.model.warnings.size();
     finishBemModel(std::move(dense), run.model, hooks);
+    putElectrodes(run, hooks);
     progress.clear();
     tellWarnings(run, told);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,13 +23,18 @@ struct BemOptions {
     std::filesystem::path ct;
     std::vector<std::filesystem::path> surfaces;
 
-    std::filesystem::path brainMask;  ///< with t1
-    TissueLabels tissues;             ///< with labels
-    std::filesystem::path volume;     ///< with surfaces: the image whose tkRAS is written
-    ReadOptions read;                 ///< of the main image
+    std::filesystem::path brainMask;          ///< with t1
+    std::filesystem::path aseg;               ///< with t1
+    std::vector<std::filesystem::path> pial;  ///< with t1, of four layers
+    TissueLabels tissues;                     ///< with labels
+    std::filesystem::path volume;             ///< with surfaces: the image whose tkRAS is written
+    ReadOptions read;                         ///< of the main image
     BemModelOptions model;
+    bool namesCsf = false;  ///< the conductivity of CSF was given
     BemFileOptions files;
 
+    std::filesystem::path electrodes;               ///< a file; empty: none
+    std::optional<Vec3> nasion, leftEar, rightEar;  ///< scanner RAS mm
     std::filesystem::path output;
     bool mayReplace = false;
     std::filesystem::path subjectsDir;

@@ -14,9 +14,9 @@ std::string rasText(const Vec3& lps) {
            formatFixed(lps.z, 1) + ") mm RAS";
 }
 
-void printSurface(std::ostream& out, std::size_t n, const BemSurface& surface) {
-    out << toString(static_cast<HeadSurface>(n)) << ": " << formatCount(surface.topology.vertices)
-        << " vertices, " << formatCount(surface.topology.triangles) << " triangles, edges "
+void printSurface(std::ostream& out, HeadSurface which, const BemSurface& surface) {
+    out << toString(which) << ": " << formatCount(surface.topology.vertices) << " vertices, "
+        << formatCount(surface.topology.triangles) << " triangles, edges "
         << formatFixed(surface.shape.edgeMm.minimum, 1) << " to "
         << formatFixed(surface.shape.edgeMm.maximum, 1) << " mm, angles from "
         << formatFixed(surface.shape.minAngleDeg.minimum, 0) << " deg, volume "
@@ -27,11 +27,11 @@ void printSurface(std::ostream& out, std::size_t n, const BemSurface& surface) {
 
 void printReport(std::ostream& out, const BemRun& run) {
     for (std::size_t n = 0; n < run.model.surfaces.size() && !run.model.checks.empty(); ++n) {
-        printSurface(out, n, run.model.surfaces[n]);
+        printSurface(out, headSurface(n, run.model.surfaces.size()), run.model.surfaces[n]);
     }
     for (std::size_t n = 0; n < run.model.gaps.size(); ++n) {
-        out << toString(static_cast<HeadSurface>(n)) << " to "
-            << toString(static_cast<HeadSurface>(n + 1)) << ": at least "
+        out << bemSurfaceName(n, run.model.surfaces.size()) << " to "
+            << bemSurfaceName(n + 1, run.model.surfaces.size()) << ": at least "
             << formatFixed(run.model.gaps[n].mm, 2) << " mm, at "
             << rasText(run.model.gaps[n].innerPointMm) << '\n';
     }

@@ -190,6 +190,143 @@ class Frames(ClientTest):
         self.accepted()
 
 
+class Toolboxes(ClientTest):
+    """Off-centre spheres through every file format: what each client reads lies where the spheres are."""
+    def setUp(self):
+        super().setUp()
+        affine = np.diag([2.0, 2, 2, 1])
+        affine[:3, 3] = np.array(CENTRE) - 110
+        distance = np.linalg.norm(lattice((111, 111, 111), affine) - CENTRE, axis=-1)
+        save(self.path("seg.nii"), sum((distance <= r).astype(np.uint8) for r in RADII), affine)
+        self.conductivities = (0.33, 0.0041, 0.44)
+        self.arguments = ("--labels", "seg.nii", "--tissue", "brain=3", "--tissue", "skull=2",
+                          "--tissue", "scalp=1", "--vertices", 300, "--conductivity",
+                          ",".join(map(str, self.conductivities)))
+
+    def assert_sphere(self, points, triangles, radius, centre=CENTRE, is_outward=True):
+        points, triangles = np.asarray(points, float), np.asarray(triangles, int)
+        off = np.linalg.norm(points - np.asarray(centre), axis=1) - radius
+        self.assertLess(np.abs(off).max(), 1.5)  # voxels of 2 mm
+        self.assertLess(np.linalg.norm(points.mean(axis=0) - np.asarray(centre)), 1)
+        a, b, c = (points[triangles[:, n]] - np.asarray(centre) for n in range(3))
+        signed = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+        self.assertAlmostEqual((1 if is_outward else -1) * signed / (4 / 3 * np.pi * radius ** 3), 1,
+                               delta=0.04)  # 300 vertices lie on the sphere, faces within it
+
+    def test_fieldtrip(self):
+        from scipy.io import loadmat
+        for frame, coordsys, sign in (("ras", "scanras", (1, 1, 1)), ("lps", "scanlps", (-1, -1, 1))):
+            self.bem(*self.arguments, "--fieldtrip", "--coordinates", frame, "-o", frame)
+            model = loadmat(self.path(frame) / "headmodel.mat", simplify_cells=True)["headmodel"]
+            self.assertEqual(model["type"], "openmeeg")
+            self.assertEqual((model["unit"], model["coordsys"]), ("mm", coordsys))
+            self.assertEqual(list(model["tissue"]), ["scalp", "skull", "brain"])
+            np.testing.assert_allclose(model["cond"], self.conductivities[::-1])
+            self.assertEqual((model["skin_surface"], model["source"]), (1, 3))
+            for surface, radius in zip(model["bnd"], (92, 86, 80)):
+                self.assertEqual((surface["unit"], surface["coordsys"]), ("mm", coordsys))
+                self.assertEqual(surface["tri"].min(), 1)
+                self.assert_sphere(surface["pos"], surface["tri"] - 1, radius,
+                                   np.array(sign) * CENTRE)
+        self.bem(*self.arguments[:4], "--meg", "--vertices", 300, "--fieldtrip", "-o", "meg")
+        model = loadmat(self.path("meg/headmodel.mat"), simplify_cells=True)["headmodel"]
+        self.assertEqual(model["type"], "singleshell")
+        self.assert_sphere(model["bnd"]["pos"], model["bnd"]["tri"] - 1, 80)
+
+    def test_brainstorm(self):
+        from scipy.io import loadmat
+        self.bem(*self.arguments, "--brainstorm", "-o", "model")
+        for name, radius in (("innerskull", 80), ("outerskull", 86), ("head", 92)):
+            surface = loadmat(self.path(f"model/tess_{name}_bem.mat"), simplify_cells=True)
+            # metres; clockwise seen from outside
+            self.assert_sphere(1000 * surface["Vertices"], surface["Faces"] - 1, radius,
+                               is_outward=False)
+            outward = surface["Vertices"] - np.asarray(CENTRE) / 1000
+            self.assertTrue((np.einsum("ij,ij->i", outward, surface["VertNormals"]) > 0).all())
+            self.assertIn("not SCS", surface["Comment"])
+
+    def test_simnibs(self):
+        import meshio
+        self.bem(*self.arguments, "--simnibs", "--coordinates", "lps", "-o", "model")
+        for name, radius in (("csf", 80), ("bone", 86), ("skin", 92)):
+            surface = meshio.read(self.path(f"model/{name}.stl"))
+            self.assert_sphere(surface.points, surface.cells_dict["triangle"], radius)  # RAS always
+
+    def test_curry(self):
+        self.bem(*self.arguments, "--curry", "-o", "model")
+        for name, radius in (("inner_skull.s02", 80), ("outer_skull.s01", 86), ("outer_skin.s00", 92)):
+            text = self.path(f"model/{name}").read_text()
+            self.assertIn("CoordinateFrame: RAS mm", text)
+            lists = {key: np.array(text.split(f"{key} START_LIST")[1].split(f"{key} END_LIST")[0]
+                                   .split(), float).reshape(-1, 3)
+                     for key in ("LOCATION_LIST", "TRIANGLE_LIST")}
+            self.assert_sphere(lists["LOCATION_LIST"], lists["TRIANGLE_LIST"], radius)
+
+    def test_mne_without_a_freesurfer_folder(self):
+        self.bem(*self.arguments, "--fif", "-o", "model")
+        surfaces = mne.read_bem_surfaces(self.path("model/bem.fif"))
+        self.assertEqual([surface["id"] for surface in surfaces], [4, 3, 1])
+        np.testing.assert_allclose([surface["sigma"] for surface in surfaces],
+                                   self.conductivities[::-1])
+        for surface, name, radius in zip(surfaces, NAMES[::-1], (92, 86, 80)):
+            self.assertEqual(surface["coord_frame"], mne.io.constants.FIFF.FIFFV_COORD_MRI)
+            points, triangles = mne.read_surface(self.path(f"model/{name}.surf"))
+            np.testing.assert_allclose(1000 * surface["rr"], points, atol=1e-4)  # tkRAS, as .surf
+            np.testing.assert_array_equal(surface["tris"], triangles)
+        mne.make_bem_solution(surfaces)
+        dense, = mne.read_bem_surfaces(self.path("model/head-dense.fif"))
+        sparse, = mne.read_bem_surfaces(self.path("model/head-sparse.fif"))
+        self.assertEqual((dense["id"], sparse["id"]), (4, 4))
+        self.assertGreater(dense["ntri"], 20_000)
+        self.assertLessEqual(sparse["ntri"], 2500)
+        middle = 1000 * surfaces[0]["rr"].mean(axis=0)
+        for head in (dense, sparse):
+            off = np.linalg.norm(1000 * head["rr"] - middle, axis=1) - 92
+            self.assertLess(np.abs(off).max(), 2)
+
+    def test_mne_finds_the_heads_of_a_subject(self):
+        (self.path("subjects") / "anna" / "bem").mkdir(parents=True)
+        self.bem(*self.arguments, "--fif", "-o", "model", "--subjects-dir", "subjects", "--subject",
+                 "anna")
+        bem = self.path("subjects/anna/bem")
+        self.assertEqual((bem / "anna-head-dense.fif").read_bytes(),
+                         self.path("model/head-dense.fif").read_bytes())
+        surface = mne.get_head_surf("anna", source=("head-dense", "head"),
+                                    subjects_dir=self.path("subjects"))
+        self.assertGreater(surface["ntri"], 20_000)
+        self.assertEqual(len(mne.read_bem_surfaces(bem / "anna-bem.fif")), 3)
+
+    def test_mne_reads_electrodes(self):
+        x, y, z = CENTRE
+        self.bem(*self.arguments, "--montage", "10-20", "--nasion", f"{x},{y + 92},{z}",
+                 f"--left-ear={x - 92},{y},{z}", f"--right-ear={x + 92},{y},{z}", "-o", "model")
+        rows = self.path("model/electrodes.tsv").read_text().splitlines()[1:]
+        expected = {row.split("\t")[0]: np.array(row.split("\t")[1:], float) for row in rows}
+        np.testing.assert_allclose(expected["Cz"], CENTRE + np.array([0, 0, 92]), atol=3)
+        # .sfp says no unit: MNE takes its numbers for metres
+        for name, scale in (("electrodes.sfp", 1), ("electrodes.elc", 1000)):
+            montage = mne.channels.read_custom_montage(self.path("model") / name, head_size=None)
+            found = montage.get_positions()["ch_pos"]
+            for electrode, place in expected.items():
+                np.testing.assert_allclose(scale * found[electrode], place, atol=1e-3)
+        dig = mne.channels.read_dig_fif(self.path("model/electrodes-dig.fif")).get_positions()
+        self.assertEqual(dig["coord_frame"], "mri")
+        self.assertEqual(len(dig["ch_pos"]), 21)
+        skin, _ = mne.read_surface(self.path("model/outer_skin.surf"))  # tkRAS
+        middle = skin.mean(axis=0)
+        for place in dig["ch_pos"].values():
+            self.assertAlmostEqual(np.linalg.norm(1000 * place - middle), 92, delta=3)
+        np.testing.assert_allclose(1000 * dig["nasion"] - middle, (0, 92, 0), atol=2)
+
+    def test_the_same_bytes_again(self):
+        for name in ("one", "two"):
+            self.bem(*self.arguments, "--fif", "--fieldtrip", "--brainstorm", "--simnibs", "--curry",
+                     "-o", name)
+        for path in sorted(self.path("one").iterdir()):
+            if path.name != "report.json":
+                self.assertEqual(path.read_bytes(), (self.path("two") / path.name).read_bytes(), path)
+
+
 @unittest.skipUnless((TEMPLATES / "ch2.nii.gz").exists(), "needs Debian's mricron-data")
 class RealHead(ClientTest):
     def test_with_a_brain_mask(self):

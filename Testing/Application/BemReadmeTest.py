@@ -31,7 +31,7 @@ class Readme(ApplicationTest):
                               capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(self.names(), ["checked", "meg", "model", "page.html", "report.json",
-                                        "seg.nii.gz"])
+                                        "seg.nii.gz", "toolboxes"])
         self.assertTrue((self.path("meg") / "inner_skull.gii").exists())
         self.assertRegex(done.stdout, r'"model": true')
 

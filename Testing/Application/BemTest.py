@@ -42,6 +42,58 @@ class Model(BemTest):
                                    delta=0.04)
             self.assertAlmostEqual(volume(points, triangles) / surface["volumeMm3"], 1, 6)
 
+    def test_four_layers(self):
+        image = head(radii=(54, 60, 66, 72), values=(4, 1, 2, 3))
+        write_nifti(self.path("seg.nii"), image)
+        tissues = [word for pair in ("brain=4", "csf=1", "skull=2", "scalp=3")
+                   for word in ("--tissue", pair)]
+        arguments = ("--labels", "seg.nii", *tissues, "--layers", "4", "--voxel", "3",
+                     "--closing", "4", "--min-gap", "2,2,1.5")
+        self.bem(*arguments, "--vertices", "162", "--simnibs", "--curry", "--brainstorm", "--fif",
+                 "--fieldtrip", "-o", "model")
+        names = ("brain", *NAMES)
+        report = self.report()
+        self.assertEqual([s["name"] for s in report["surfaces"]], list(names))
+        self.assertEqual(report["options"]["layers"], 4)
+        self.assertEqual(report["options"]["conductivity"]["csf"], 1.79)
+        self.assertGreaterEqual(report["gaps"][0]["mm"], 1.5)
+        for name, radius in zip(names, (54, 60, 66, 72)):
+            points, _ = read_tri(self.path("model") / f"{name}.tri")
+            self.assertLess(max(abs(math.dist(p, (0, 0, 0)) - radius) for p in points), 2)
+        geometry = (self.path("model") / "model.geom").read_text()
+        for line in ("Interfaces 4", "Domain Brain: -Cortex", "Domain CSF: +Cortex -Inner",
+                     "Domain Skull: +Inner -Outer", "Domain Skin: +Outer -Scalp",
+                     "Domain Air: +Scalp"):
+            self.assertIn(line, geometry)
+        self.assertIn("CSF 1.79", (self.path("model") / "model.cond").read_text())
+        for name in ("gm.stl", "brain.s03", "tess_brain_bem.mat", "brain.surf"):
+            self.assertTrue((self.path("model") / name).exists(), name)
+
+        # without numbers: as many as the layers' thickness asks for, no more than solvers take
+        self.bem(*arguments, "-o", "by-thickness")
+        surfaces = self.report("by-thickness")["surfaces"]
+        self.assertLessEqual(sum(s["vertices"] for s in surfaces), 10000)
+        for surface in surfaces:  # every layer is 6 mm thick
+            self.assertAlmostEqual(surface["edgeMm"]["mean"], 6, delta=1)
+
+        self.bem("--surfaces", *(f"model/{name}.surf" for name in names), "--layers", "4", "-o", "again")
+        again = self.report("again")["surfaces"]
+        self.assertEqual([(s["vertices"], s["denseTriangles"]) for s in again], [(162, 0)] * 4)
+
+    def test_four_layers_are_refused_where_they_make_no_sense(self):
+        labels = self.labels()
+        self.fails(USAGE, r"--layers 4 needs --tissue csf", *labels, "--layers", "4", "-o", "m")
+        self.fails(USAGE, r"--layers 4 and --meg", *labels, "--layers", "4", "--meg", "-o", "m")
+        self.fails(USAGE, r"--layers 4 does not go with --ct", "--ct", "seg.nii", "--layers", "4", "-o",
+                   "m")
+        self.fails(USAGE, r"--pial needs --t1 and --layers 4", "--t1", "seg.nii", "--pial", "lh.pial",
+                   "-o", "m")
+        self.fails(USAGE, r"--aseg needs --t1", *labels, "--aseg", "seg.nii", "-o", "m")
+        self.fails(USAGE, r"four numbers need --layers 4", *labels, "--conductivity",
+                   "0.33,1.79,0.01,0.43", "-o", "m")
+        self.fails(USAGE, r"--surfaces needs 4 files", "--surfaces", "a.stl", "b.stl", "c.stl",
+                   "--layers", "4", "-o", "m")
+
     def test_frames_and_units(self):
         centre = (12, -8, 20)
         arguments = self.labels(image=head(centre=centre))
@@ -329,7 +381,7 @@ class BadInput(BemTest):
             "--brain-mask needs --t1": ("--ct", "a.nii", "--brain-mask", "a.nii", "-o", "m"),
             "--labels needs --preset": ("--labels", "a.nii", "-o", "m"),
             "skull=... and scalp=": ("--labels", "a.nii", "--tissue", "brain=1", "-o", "m"),
-            "must be brain, skull or scalp": ("--labels", "a.nii", "--tissue", "eyes=1", "-o", "m"),
+            "must be brain, csf, skull or scalp": ("--labels", "a.nii", "--tissue", "eyes=1", "-o", "m"),
             "labels with commas": ("--labels", "a.nii", "--tissue", "brain=1,x", "-o", "m"),
             "need --labels": ("--t1", "a.nii", "--preset", "charm", "-o", "m"),
             "--surfaces needs 3 files": ("--surfaces", "a.stl", "-o", "m"),
@@ -342,7 +394,7 @@ class BadInput(BemTest):
             "MIN:MAX": ("--t1", "a.nii", "-o", "m", "--edge-length", "9"),
             "0.5 mm or more": ("--t1", "a.nii", "-o", "m", "--min-gap", "0.4"),
             "one number, or 3": ("--t1", "a.nii", "-o", "m", "--vertices", "642,642"),
-            "one or two numbers": ("--t1", "a.nii", "-o", "m", "--min-gap", "1,2,3"),
+            "one to three numbers": ("--t1", "a.nii", "-o", "m", "--min-gap", "1,2,3,4"),
             "above 0 and at most 10": ("--t1", "a.nii", "-o", "m", "--conductivity", "0.3,0,0.3"),
             "--max-skull must be more": ("--t1", "a.nii", "-o", "m", "--max-skull", "1"),
             "--skull must lie between": ("--t1", "a.nii", "-o", "m", "--skull", "30"),
@@ -376,7 +428,9 @@ class BadInput(BemTest):
 
 class Report(BemTest):
     def test_keys_are_the_documented_ones(self):
-        self.bem(*self.labels(), "-o", "model")
+        skin = RADII[-1]
+        self.bem(*self.labels(), "--montage", "10-20", "--nasion", f"0,{skin},0",
+                 f"--left-ear=-{skin},0,0", "--right-ear", f"{skin},0,0", "-o", "model")
         section = README.read_text().split("## The report")[1]
         documented = set()
         for row in re.findall(r"^\| (`.*?`) \|", section, re.MULTILINE):

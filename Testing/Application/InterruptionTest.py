@@ -86,6 +86,7 @@ class AllPrograms(ApplicationTest):
             "adaptiso-mesh": ("ball.nii", "--iso", "100", "--iso", "90", "-o", "out/{iso}.vtp"),
             "adaptiso-check": ("ball.vtp", "--report", "out/page.html", "--pictures", "out/p"),
             "adaptiso-compare": ("ball.vtp", "ball.vtp", "--colored", "out/colored.vtp"),
+            "adaptiso-simplify": ("ball.vtp", "--max-error", "0.2", "-o", "out/small.vtp"),
             "adaptiso-bem": ("--surfaces", "s0.off", "s1.off", "s2.off", "-o", "out/model")}
 
     def run_program(self, program, *arguments, **options):

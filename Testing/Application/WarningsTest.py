@@ -38,7 +38,10 @@ class Warnings(WithWarnings):
             ("adaptiso-mesh", ("ball.nii", "--info"), CONFLICT),
             ("adaptiso-check", ("bare.off", "--volume", "ball.nii"), CONFLICT),
             ("adaptiso-compare", ("bare.off", "bare.off"),
-             "bare.off and bare.off don't say their coordinate frame"))
+             "bare.off and bare.off don't say their coordinate frame"),
+            ("adaptiso-simplify", ("bare.off", "--max-error", "1", "--coordinates", "ras", "-o",
+                                   "small.vtp"),
+             "bare.off does not say its coordinate frame"))
 
     def test_are_told_with_the_files_name_also_when_quiet(self):
         for program, arguments, pattern in self.RUNS:

@@ -1,4 +1,4 @@
-"""What the four programs say to a wrong command line: one line that names option or file, says what
+"""What the programs say to a wrong command line: one line that names option or file, says what
 is wrong and what to do, and no word of the programs' insides."""
 
 import re
@@ -16,6 +16,7 @@ INSIDES = re.compile(
 
 BALL = ("ball.nii", "--iso", "100")
 MESH, CHECK, COMPARE, BEM = ("adaptiso-mesh", "adaptiso-check", "adaptiso-compare", "adaptiso-bem")
+SIMPLIFY = "adaptiso-simplify"
 
 # (exit code, what the line must match, program, arguments)
 WRONG = [
@@ -26,6 +27,9 @@ WRONG = [
     (USAGE, "A is missing: adaptiso-compare takes A and B", COMPARE, ()),
     (USAGE, "B is missing: adaptiso-compare takes A and B", COMPARE, ("a.off",)),
     (USAGE, "one of --t1, --labels", BEM, ()),
+    (USAGE, "MESH is missing: the surface", SIMPLIFY, ()),
+    (USAGE, "--max-error, --triangles or --reduction is missing", SIMPLIFY, ("a.off",)),
+    (USAGE, "--output is missing: the file", SIMPLIFY, ("a.off", "--max-error", "1")),
     (USAGE, "--iso: its value is missing; give V|auto", MESH, ("ball.nii", "--iso")),
     (USAGE, "--json: its value is missing; give FILE", CHECK, ("a.off", "--json")),
     (USAGE, "--output: its value is missing; --json is an option", MESH,

@@ -17,66 +17,22 @@ import argparse
 import mne
 import numpy as np
 
+import layeredSphere
+
 RADII = np.array([0.080, 0.086, 0.092])  # m
 CONDUCTIVITIES = np.array([0.33, 0.0041, 0.33])  # S/m, from inside out
 ELECTRODES = 60
-TERMS = 300  # 0.9^300 of the largest is 2e-14
-
-
-def shell_factors(orders):
-    """f_n of a layered sphere: Mosher, Leahy and Lewis 1999, equations 11 to 14."""
-    product = np.tile(np.eye(2), (len(orders), 1, 1))
-    n = orders.astype(float)
-    for shell in range(len(RADII) - 1):
-        ratio = CONDUCTIVITIES[shell] / CONDUCTIVITIES[shell + 1]
-        radius = RADII[shell] / RADII[-1]
-        step = np.empty_like(product)
-        step[:, 0, 0] = n + (n + 1) * ratio
-        step[:, 0, 1] = (n + 1) * (ratio - 1) * radius ** -(2 * n + 1)
-        step[:, 1, 0] = n * (ratio - 1) * radius ** (2 * n + 1)
-        step[:, 1, 1] = (n + 1) + n * ratio
-        product = product @ step / (2 * n + 1)[:, None, None]
-    return n / (n * product[:, 1, 1] + (n + 1) * product[:, 1, 0])
-
-
-def legendre(cosines):
-    """P_n and its derivative, n = 1 ... TERMS, one row an order."""
-    values = np.ones((TERMS + 1, len(cosines)))
-    slopes = np.zeros_like(values)
-    values[1], slopes[1] = cosines, 1
-    for n in range(2, TERMS + 1):
-        values[n] = ((2 * n - 1) * cosines * values[n - 1] - (n - 1) * values[n - 2]) / n
-        slopes[n] = slopes[n - 2] + (2 * n - 1) * values[n - 1]
-    return values[1:], slopes[1:]
 
 
 def analytic(places, moments, electrodes):
     """Potentials (V) on the outermost sphere, one row a dipole."""
-    orders = np.arange(1, TERMS + 1)
-    factors = shell_factors(orders)
-    directions = electrodes / np.linalg.norm(electrodes, axis=1, keepdims=True)
-    potentials = []
-    for place, moment in zip(places, moments):
-        distance = np.linalg.norm(place)
-        axis = place / distance
-        radial = moment @ axis
-        cosines = directions @ axis
-        across = directions - cosines[:, None] * axis
-        values, slopes = legendre(cosines)
-        weights = (2 * orders + 1) / orders * (distance / RADII[-1]) ** (orders - 1) * factors
-        potentials.append(
-            (radial * ((weights * orders) @ values) + (across @ moment) * (weights @ slopes))
-            / (4 * np.pi * CONDUCTIVITIES[-1] * RADII[-1] ** 2))
-    return np.array(potentials)
+    return layeredSphere.potentials(layeredSphere.Layers(tuple(RADII), tuple(CONDUCTIVITIES)), places,
+                                    moments, electrodes)
 
 
 def spread_over_sphere(count):
     """Points of the golden spiral."""
-    steps = np.arange(count) + 0.5
-    z = 1 - 2 * steps / count
-    turn = np.pi * (1 + 5 ** 0.5) * steps
-    r = np.sqrt(1 - z * z)
-    return RADII[-1] * np.c_[r * np.cos(turn), r * np.sin(turn), z]
+    return layeredSphere.spread_over_sphere(count, RADII[-1])
 
 
 def electrode_info(electrodes):

@@ -26,11 +26,22 @@ void requireSound(const TriangleMesh& mesh) {
     if (!mesh.normals.empty() && mesh.normals.size() != mesh.points.size()) std::abort();
 }
 
-void decode(std::string_view bytes, bool keepsFaults) {
+/// What it promises of the values at points.
+void requireSound(const MeshFile& file) {
+    for (const PointArray& array : file.pointArrays) {
+        if (array.points() != file.mesh.points.size()) std::abort();
+        for (const char c : array.name) {
+            if (static_cast<unsigned char>(c) < ' ') std::abort();
+        }
+    }
+}
+
+void decode(std::string_view bytes, const MeshReadOptions& options) {
     static const MeshFormat& format = findMeshFormat("fuzzed" ADAPTISO_FUZZ_ENDING);
     try {
-        const MeshFile file = decodeMesh(bytes, format, "fuzzed", {.keepsFaults = keepsFaults});
-        if (!keepsFaults) requireSound(file.mesh);
+        const MeshFile file = decodeMesh(bytes, format, "fuzzed", options);
+        if (!options.keepsFaults) requireSound(file.mesh);
+        requireSound(file);
     } catch (const FileError& refusal) {
         fuzz::requireOneLine(refusal);
     }
@@ -41,7 +52,8 @@ void decode(std::string_view bytes, bool keepsFaults) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-    adaptiso::decode(bytes, false);
-    adaptiso::decode(bytes, true);
+    adaptiso::decode(bytes, {});
+    adaptiso::decode(bytes, {.keepsFaults = true});
+    adaptiso::decode(bytes, {.keepsPointArrays = true});
     return 0;
 }

@@ -10,7 +10,11 @@
 
 #include "InputFolder.h"
 #include "Seeds.h"
+#include "adaptiso/MeshIO/CurrySurface.h"
+#include "adaptiso/MeshIO/FiffSurfaces.h"
 #include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/MeshIO/PointData.h"
+#include "adaptiso/MeshIO/PointFiles.h"
 #include "adaptiso/MeshIO/VtkAdaptor.h"
 
 namespace adaptiso::fuzz {
@@ -20,6 +24,11 @@ TriangleMesh tetrahedron() {
     return {{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}},
             {{-0.6f, -0.6f, -0.5f}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
             {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
+
+std::string bytesOf(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 void addOwnFiles(Seeds& seeds) {
@@ -32,10 +41,69 @@ void addOwnFiles(Seeds& seeds) {
             options.volume = ImageGeometry{{10, 20, 30}, {-5, -20, -45}, Mat3::diagonal(1, 2, 3)};
             const auto file = folder.path() / ("mesh" + ending);
             writeMesh(tetrahedron(), file, options);
-            std::ifstream stream(file, std::ios::binary);
-            seeds.add(ending.substr(1), std::string(std::istreambuf_iterator<char>(stream), {}));
+            seeds.add(ending.substr(1), bytesOf(file));
         }
     }
+}
+
+/// Meshes with values at their points, and such values in files of their own.
+void addValues(Seeds& seeds) {
+    const InputFolder folder;
+    MeshWriteOptions options;
+    options.pointArrays = {{"depth", std::vector<double>{1, 2, 3, 4}},
+                           {"two", std::vector<double>(8), 2},
+                           {"labels", std::vector<std::int64_t>{-1, 2, 3, 4}},
+                           {"RGB", std::vector<Color>(4)}};
+    for (const MeshFormat& format : meshFormats()) {
+        if (!format.holdsPointArrays) continue;
+        const std::string ending(format.extensions.front());
+        const auto file = folder.path() / ("values" + ending);
+        writeMesh(tetrahedron(), file, options);
+        seeds.add(ending.substr(1), bytesOf(file));
+    }
+    const std::vector<float> numbers{1, 2, 3, 4};
+    const std::vector<std::int32_t> labels{1, 2, 3, 4};
+    PointData data{PointDataFormat::FreeSurferCurv, 4, {{{}, numbers, 1, {}}}, {}, {}, {}};
+    writePointData(data, 4, folder.path() / "lh.curv");
+    seeds.add("curv", bytesOf(folder.path() / "lh.curv"));
+    seeds.add("curv", std::string("\0\0\2\0\0\1\x00\x96\xFF\x38", 10));
+    data = {PointDataFormat::FreeSurferAnnot, 4, {{{}, labels, 1, {}}}, {}, {}, {}};
+    const std::string one("\0\0\0\1", 4), color(16, '\1');
+    data.annotTable = one + "\xFF\xFF\xFF\xFE" + one + one + "t" + one + one + one + "x" + color;
+    writePointData(data, 4, folder.path() / "lh.annot");
+    seeds.add("annot", bytesOf(folder.path() / "lh.annot"));
+    data = {PointDataFormat::Gifti, 4,  {},
+            {{1, "one", {}}},       {}, {{"AnatomicalStructurePrimary", "CortexLeft"}}};
+    data.arrays = {{"NIFTI_INTENT_SHAPE", numbers, 1, {{"Name", "depth"}}},
+                   {"NIFTI_INTENT_LABEL", labels, 1, {}},
+                   {"NIFTI_INTENT_NONE", std::vector<float>(8), 2, {}}};
+    writePointData(data, 4, folder.path() / "a.gii");
+    seeds.add("shape", bytesOf(folder.path() / "a.gii"));
+    seeds.add("shape",
+              "<GIFTI><LabelTable><Label Index=\"3\" Red=\"0.5\">a</Label></LabelTable><DataArray "
+              "Intent=\"NIFTI_INTENT_NONE\" DataType=\"NIFTI_TYPE_UINT8\" Encoding=\"ASCII\" "
+              "Dimensionality=\"2\" Dim0=\"2\" Dim1=\"2\" ArrayIndexingOrder=\"ColumnMajorOrder\">"
+              "<Data>1 2 3 4</Data></DataArray></GIFTI>");
+}
+
+void addSurfaceLists(Seeds& seeds) {
+    const InputFolder folder;
+    const FiffSurface surfaces[] = {{4, 0.33, tetrahedron()}, {1, 0.33, tetrahedron()}};
+    writeFiffSurfaces(surfaces, folder.path() / "a.fif");
+    seeds.add("fif", bytesOf(folder.path() / "a.fif"));
+    writeCurrySurface(tetrahedron(), folder.path() / "a.s00", "CoordinateFrame: RAS mm");
+    seeds.add("curry", bytesOf(folder.path() / "a.s00"));
+    const NamedPoint points[] = {{"Cz", PointKind::Electrode, {0, 0, 90}},
+                                 {"Nasion", PointKind::Nasion, {0, 95, 0}}};
+    const auto tsv = folder.path() / "electrodes.tsv", json = folder.path() / "coordsystem.json";
+    writeBidsElectrodes(points, tsv, json, CoordinateFrame::Ras);
+    seeds.add("tsv", bytesOf(tsv) + '\0' + bytesOf(json));
+    writeElc(points, folder.path() / "a.elc");
+    seeds.add("elc", bytesOf(folder.path() / "a.elc"));
+    writeSfp(points, folder.path() / "a.sfp");
+    seeds.add("sfp", bytesOf(folder.path() / "a.sfp"));
+    writeFiffPoints(points, folder.path() / "b.fif");
+    seeds.add("dig", bytesOf(folder.path() / "b.fif"));
 }
 
 void addVtkFiles(Seeds& seeds) {
@@ -113,6 +181,8 @@ void addForeignTexts(Seeds& seeds) {
 
 void addMeshSeeds(Seeds& seeds) {
     addOwnFiles(seeds);
+    addValues(seeds);
+    addSurfaceLists(seeds);
     addVtkFiles(seeds);
     addForeignTexts(seeds);
 }

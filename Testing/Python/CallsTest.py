@@ -130,6 +130,9 @@ def mesh(pools, options, pick):
     if made is not None:
         repr(made), made.is_closed, made.area, made.volume
         attempt("compare", adaptiso.compare, made, made, samples=10, threads=1)
+        attempt("simplify", adaptiso.simplify, made, max_error=pick([None, 0.5, 0, -1.0, "a"]),
+                triangles=pick([None, 20, 0, -3, 1e30]), reduction=pick([None, 0.5, 2]),
+                keep_borders=pick([False, True, None]), threads=1)
     found = attempt("check", adaptiso.check, (vertices, faces), threads=1)
     if found is not None:
         repr(found), found.failed, found.findings

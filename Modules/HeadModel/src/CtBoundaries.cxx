@@ -67,6 +67,9 @@ void requireHounsfield(const FloatImage& image, const BoundaryOptions& options) 
 
 HeadBoundaries boundariesFromCt(const VolumeView& ct, const BoundaryOptions& options) {
     checkOptions(options);
+    if (options.withBrain) {
+        throw InvalidInput("a CT does not show where the brain ends and CSF begins");
+    }
     if (!(options.skinHu < options.skullHu) || !(options.skinHu > kAirHu) ||
         !(options.skullHu > kSoftTissueHu)) {
         throw InvalidInput("skin at " + shortNumber(options.skinHu) + " HU and bone at " +

@@ -10,13 +10,18 @@
 namespace adaptiso {
 namespace {
 
-constexpr std::array<const char*, kHeadSurfaceCount> kInterfaces{"Inner", "Outer", "Scalp"};
-constexpr std::array<const char*, kHeadSurfaceCount> kDomains{"Brain", "Skull", "Skin"};
+constexpr std::array<const char*, kHeadSurfaceCount> kInterfaces{"Cortex", "Inner", "Outer",
+                                                                 "Scalp"};
 
-void requireCount(std::size_t surfaces, const char* function) {
-    if (surfaces == 1 || surfaces == kHeadSurfaceCount) return;
-    throw InvalidInput(std::string(function) + ": " + std::to_string(surfaces) +
-                       " surfaces, must be 1 or 3");
+const char* interfaceOf(std::size_t n, std::size_t count) {
+    return kInterfaces[static_cast<std::size_t>(headSurface(n, count))];
+}
+
+/// What lies within surface n. Without a brain's surface the inner skull holds the brain.
+const char* domainOf(std::size_t n, std::size_t count) {
+    constexpr std::array<const char*, kHeadSurfaceCount> kFour{"Brain", "CSF", "Skull", "Skin"};
+    constexpr std::array<const char*, 3> kThree{"Brain", "Skull", "Skin"};
+    return count == kHeadSurfaceCount ? kFour[n] : kThree[n];
 }
 
 std::string text(double value) {
@@ -28,28 +33,28 @@ std::string text(double value) {
 
 std::string openMeegGeometry(std::span<const std::string> triangleFiles) {
     const std::size_t count = triangleFiles.size();
-    requireCount(count, "openMeegGeometry");
+    headSurface(0, count);  // throws
     std::string geometry =
         std::string(openmeeg::kGeometryHeader) + "\n\nInterfaces " + std::to_string(count) + "\n\n";
     for (std::size_t n = 0; n < count; ++n) {
-        geometry += std::string("Interface ") + kInterfaces[n] + ": \"" + triangleFiles[n] + "\"\n";
+        geometry +=
+            std::string("Interface ") + interfaceOf(n, count) + ": \"" + triangleFiles[n] + "\"\n";
     }
     geometry += "\nDomains " + std::to_string(count + 1) + "\n\n";
     for (std::size_t n = 0; n < count; ++n) {
-        geometry += std::string("Domain ") + kDomains[n] + ":";
-        if (n > 0) geometry += std::string(" +") + kInterfaces[n - 1];
-        geometry += std::string(" -") + kInterfaces[n] + "\n";
+        geometry += std::string("Domain ") + domainOf(n, count) + ":";
+        if (n > 0) geometry += std::string(" +") + interfaceOf(n - 1, count);
+        geometry += std::string(" -") + interfaceOf(n, count) + "\n";
     }
-    return geometry + "Domain Air: +" + kInterfaces[count - 1] + "\n";
+    return geometry + "Domain Air: +" + interfaceOf(count - 1, count) + "\n";
 }
 
 std::string openMeegConductivities(std::size_t surfaces, const ConductivityModel& model) {
-    requireCount(surfaces, "openMeegConductivities");
     checkConductivities(model);
     std::string lines = std::string(openmeeg::kConductivityHeader) + "\n\n";
     for (std::size_t n = 0; n < surfaces; ++n) {
-        lines +=
-            std::string(kDomains[n]) + " " + text(model.within(static_cast<HeadSurface>(n))) + "\n";
+        lines += std::string(domainOf(n, surfaces)) + " " +
+                 text(model.within(headSurface(n, surfaces), surfaces)) + "\n";
     }
     return lines + "Air 0\n";
 }

@@ -6,12 +6,15 @@
 #include <utility>
 
 #include "BallTopology.h"
+#include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
 
 std::string_view toString(HeadSurface surface) {
     switch (surface) {
+        case HeadSurface::Brain:
+            return "brain";
         case HeadSurface::InnerSkull:
             return "inner_skull";
         case HeadSurface::OuterSkull:
@@ -22,6 +25,14 @@ std::string_view toString(HeadSurface surface) {
     throw InternalError("toString: unknown head surface");
 }
 
+HeadSurface headSurface(std::size_t n, std::size_t count) {
+    const bool isKnown = (count == 1 || count == 3 || count == kHeadSurfaceCount) && n < count;
+    if (!isKnown) {
+        throw InvalidInput("a head model has 1, 3 or 4 surfaces, not " + std::to_string(count));
+    }
+    return static_cast<HeadSurface>(count == kHeadSurfaceCount ? n : n + 1);
+}
+
 }  // namespace adaptiso
 
 namespace adaptiso::headmodel {
@@ -30,8 +41,8 @@ namespace {
 /// Rounds of smoothing and mending topology: what was mended gets smooth before it is final.
 constexpr int kMostRounds = 3;
 
-std::string nameOf(std::size_t surface) {
-    std::string name(toString(static_cast<HeadSurface>(surface)));
+std::string nameOf(HeadSurface surface) {
+    std::string name(toString(surface));
     std::replace(name.begin(), name.end(), '_', ' ');
     return name;
 }
@@ -64,7 +75,62 @@ std::vector<float> settled(std::vector<float> part, const ImageGeometry& grid, d
     return part;
 }
 
+/// Takes away what lies nearer than `gapMm` to the surface of `solid`, or outside of it.
+void keepWithin(std::vector<float>& part, const FractionField& solid, double gapMm) {
+    const double step = stepMm(solid.grid);
+    const double offset = gapMm + step / 2;  // distances are of voxels
+    const std::vector<float> depth =
+        depthMm(above(solid.part, kFractionIsovalue), solid.grid, {offset + step, step});
+    forVoxels(part, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) {
+            part[n] = std::min(part[n], partAtDepth(depth[n] - offset, step));
+        }
+    });
+}
+
+/// The part of a solid's grid that holds it, with room: a brain takes a third of a head's.
+FractionField cropped(const FractionField& solid, double roomMm) {
+    const FloatImage image{solid.grid, solid.part};
+    Index3 first, last;
+    if (!boundingIndices(image, kFractionIsovalue, first, last)) {
+        throw InvalidInput("the brain is empty");
+    }
+    const auto room = static_cast<std::int64_t>(std::ceil(roomMm / stepMm(solid.grid))) + 3;
+    FractionField part{solid.grid, {}};
+    for (int a = 0; a < 3; ++a) {
+        first[a] = std::max<std::int64_t>(first[a] - room, 0);
+        last[a] = std::min(last[a] + room, solid.grid.size[a] - 1);
+        part.grid.size[a] = last[a] - first[a] + 1;
+    }
+    part.grid.originMm =
+        solid.grid.toPhysical({static_cast<double>(first[0]), static_cast<double>(first[1]),
+                               static_cast<double>(first[2])});
+    part.part.reserve(static_cast<std::size_t>(part.grid.voxelCount()));
+    for (std::int64_t k = first[2]; k <= last[2]; ++k) {
+        for (std::int64_t j = first[1]; j <= last[1]; ++j) {
+            const auto row =
+                solid.part.begin() + first[0] + solid.grid.size[0] * (j + solid.grid.size[1] * k);
+            part.part.insert(part.part.end(), row, row + part.grid.size[0]);
+        }
+    }
+    return part;
+}
+
 }  // namespace
+
+std::vector<float> solidOf(std::vector<float> part, const ImageGeometry& grid,
+                           const std::vector<std::uint8_t>& faces, double closingMm) {
+    const Mask raw = largestComponent(above(part, kFractionIsovalue), grid.size);
+    const Mask solid = filledAtBorder(closed(raw, grid, closingMm), faces, grid.size);
+    const std::vector<float> reach = depthMm(raw, grid, DepthBand::within(2 * stepMm(grid)));
+    for (std::size_t n = 0; n < part.size(); ++n) {
+        if (solid[n] != 0 && raw[n] == 0) part[n] = 1;
+        // what was not taken: other pieces, and parts of voxels beside them
+        if (solid[n] == 0 && reach[n] < -1.5 * stepMm(grid)) part[n] = 0;
+        if (raw[n] != 0 && reach[n] > 1.5 * stepMm(grid)) part[n] = 1;
+    }
+    return part;
+}
 
 double marginMm(const BoundaryOptions& options) {
     // a dilation by the closing radius, or the layers outside a brain at the image's border
@@ -87,6 +153,11 @@ void checkOptions(const BoundaryOptions& options) {
     requireUpTo("minSkullMm", options.minSkullMm, 20);
     requireUpTo("minScalpMm", options.minScalpMm, 20);
     requireUpTo("csfMm", options.csfMm, 20);
+    requireUpTo("minCsfMm", options.minCsfMm, 20);
+    requireUpTo("sulciMm", options.sulciMm, 30);
+    if (options.withBrain && options.innerSkullOnly) {
+        throw InvalidInput("one surface and four were asked for");
+    }
     requireUpTo("cutNecksMm", options.cutNecksMm, 20);
     require(options.maxSkullMm > options.minSkullMm && options.maxSkullMm <= 200, "maxSkullMm",
             options.maxSkullMm, "more than minSkullMm and at most 200");
@@ -109,8 +180,16 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
                            {step, offset + step}),
                    offset, step);
         }
-        part = settled(std::move(part), raw.grid, options.smoothingMm, nameOf(n), result.notes);
+        part = settled(std::move(part), raw.grid, options.smoothingMm,
+                       nameOf(headSurface(n, raw.parts.size())), result.notes);
         result.solids.push_back({raw.grid, std::move(part)});
+    }
+    if (!raw.brain.empty()) {
+        keepWithin(raw.brain, result.solids.front(), options.minCsfMm);
+        FractionField brain = cropped({raw.grid, std::move(raw.brain)}, 3 * options.smoothingMm);
+        brain.part = settled(std::move(brain.part), brain.grid, options.smoothingMm,
+                             nameOf(HeadSurface::Brain), result.notes);
+        result.solids.insert(result.solids.begin(), std::move(brain));
     }
     return result;
 }

@@ -18,13 +18,19 @@ void checkOptions(const BoundaryOptions& options);
 struct RawBoundaries {
     ImageGeometry grid;
     std::vector<std::vector<float>> parts;
+    std::vector<float> brain{};  ///< within the first of them; empty: not wanted
     std::vector<std::string> notes;
     std::vector<std::string> warnings;
 };
 
+/// One raw solid of what belongs to it: its largest piece, closed, with its holes filled (those too
+/// that open at the image's border).
+std::vector<float> solidOf(std::vector<float> part, const ImageGeometry& grid,
+                           const std::vector<std::uint8_t>& faces, double closingMm);
+
 /// Smooths each solid, grows it to hold the one inside it with the least gap, and makes it a ball,
-/// from inside out; every change of topology is noted with its size.
-/// \throws InvalidInput  a solid is empty, or reaches the grid's border
+/// from inside out; a brain gives way to the CSF before. Every change of topology is noted with its
+/// size. \throws InvalidInput  a solid is empty, or reaches the grid's border
 HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options);
 
 /// Limits the outer skull to maxSkullMm from the inner skull (bone beyond it is face or neck) and

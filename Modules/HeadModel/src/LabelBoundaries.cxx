@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -24,22 +25,6 @@ bool holds(const std::vector<std::int64_t>& list, double sample) {
                        [&](std::int64_t label) { return sample == static_cast<double>(label); });
 }
 
-/// One raw solid: the part of every voxel that lies in it, its holes closed.
-std::vector<float> solidOf(const FloatImage& indicator, const ImageGeometry& grid,
-                           const std::vector<std::uint8_t>& faces, double closingMm) {
-    std::vector<float> part = resampled(indicator, grid, 0);
-    const Mask raw = largestComponent(above(part, kFractionIsovalue), grid.size);
-    const Mask solid = filledAtBorder(closed(raw, grid, closingMm), faces, grid.size);
-    const std::vector<float> reach = depthMm(raw, grid, DepthBand::within(2 * stepMm(grid)));
-    for (std::size_t n = 0; n < part.size(); ++n) {
-        if (solid[n] != 0 && raw[n] == 0) part[n] = 1;
-        // what was not taken: other pieces, and parts of voxels beside them
-        if (solid[n] == 0 && reach[n] < -1.5 * stepMm(grid)) part[n] = 0;
-        if (raw[n] != 0 && reach[n] > 1.5 * stepMm(grid)) part[n] = 1;
-    }
-    return part;
-}
-
 /// Interpolated slices of thick voxels need more smoothing than their grid has.
 double sigmaFor(const ImageGeometry& image, const BoundaryOptions& options) {
     const Vec3 spacing = image.spacingMm();
@@ -49,7 +34,7 @@ double sigmaFor(const ImageGeometry& image, const BoundaryOptions& options) {
 /// Tissues in another order than they were named give a model as well, but of no head: most of a
 /// layer must lie outside of the solid within it, and in its own.
 void requireOrder(const std::vector<FloatImage>& enclosed, const RawBoundaries& raw) {
-    constexpr std::array<const char*, kHeadSurfaceCount> kTissue{"brain", "skull", "scalp"};
+    constexpr std::array<const char*, 3> kTissue{"brain", "skull", "scalp"};
     for (std::size_t n = 1; n < enclosed.size(); ++n) {
         FloatImage layer = enclosed[n];
         for (std::size_t v = 0; v < layer.values.size(); ++v) {
@@ -74,7 +59,10 @@ void requireOrder(const std::vector<FloatImage>& enclosed, const RawBoundaries& 
     }
 }
 
-HeadBoundaries boundariesFrom(const std::vector<FloatImage>& enclosed, BoundaryOptions options) {
+/// \param enclosed  by inner skull, outer skull and skin
+/// \param brain     by the brain's own surface, if that is wanted
+HeadBoundaries boundariesFrom(const std::vector<FloatImage>& enclosed,
+                              const std::optional<FloatImage>& brain, BoundaryOptions options) {
     const ImageGeometry& image = enclosed.front().geometry;
     Index3 first, last;
     if (!boundingIndices(enclosed.back(), kFractionIsovalue, first, last)) {
@@ -84,22 +72,25 @@ HeadBoundaries boundariesFrom(const std::vector<FloatImage>& enclosed, BoundaryO
     raw.grid = workingGrid(image, first, last, options.stepMm, marginMm(options));
     const std::vector<std::uint8_t> faces = imageFaces(image, raw.grid);
     for (std::size_t n = 0; n < enclosed.size(); ++n) {
-        tell(options, "boundaries", static_cast<double>(n) / kHeadSurfaceCount);
+        tell(options, "boundaries", static_cast<double>(n) / static_cast<double>(enclosed.size()));
         const bool isSkin = n == 2;
         raw.parts.push_back(
-            solidOf(enclosed[n], raw.grid, faces,
+            solidOf(resampled(enclosed[n], raw.grid, 0), raw.grid, faces,
                     isSkin ? options.closingMm : std::min(kSeamMm, options.closingMm)));
+    }
+    if (brain) {
+        raw.brain = solidOf(resampled(*brain, raw.grid, 0), raw.grid, faces, options.sulciMm);
     }
     requireOrder(enclosed, raw);
     cutNecks(raw, options);
-    if (raw.parts.size() == kHeadSurfaceCount) limitOuterSkull(raw, options);
+    if (raw.parts.size() > 1) limitOuterSkull(raw, options);
     options.smoothingMm = sigmaFor(image, options);
     return finished(std::move(raw), options);
 }
 
 void requireDistinct(const TissueLabels& tissues) {
     std::set<std::int64_t> seen;
-    for (const auto* list : {&tissues.brain, &tissues.skull, &tissues.scalp}) {
+    for (const auto* list : {&tissues.brain, &tissues.csf, &tissues.skull, &tissues.scalp}) {
         for (const std::int64_t label : *list) {
             if (!seen.insert(label).second) {
                 throw InvalidInput("label " + std::to_string(label) + " is named twice");
@@ -120,13 +111,14 @@ void requireSome(const FloatImage& more, const FloatImage* less, const char* tis
 TissueLabels tissuePreset(std::string_view name) {
     // SimNIBS 4 charm: 1 white, 2 grey, 3 CSF, 4 bone, 5 scalp, 6 eyes, 7 compact and 8 spongy
     // bone, 9 blood, 10 muscle
-    if (name == "charm") return {{1, 2, 3, 9}, {4, 7, 8}, {5, 6, 10}};
+    if (name == "charm") return {{1, 2}, {4, 7, 8}, {5, 6, 10}, false, {3, 9}};
     // SimNIBS 3 headreco: the first six alone
-    if (name == "headreco") return {{1, 2, 3}, {4}, {5, 6}};
-    // FreeSurfer's colour table: 165 Skull, 258 Head-ExtraCerebral, 259 Eye-Fluid
-    if (name == "aseg") return {{}, {165}, {258, 259}, true};
+    if (name == "headreco") return {{1, 2}, {4}, {5, 6}, false, {3}};
+    // FreeSurfer's colour table: 165 Skull, 258 Head-ExtraCerebral, 259 Eye-Fluid; 24 CSF, 257
+    // CSF-ExtraCerebral
+    if (name == "aseg" || name == "samseg") return {{}, {165}, {258, 259}, true, {24, 257}};
     throw InvalidInput("tissuePreset: '" + std::string(name) +
-                       "' is none of charm, headreco, aseg");
+                       "' is none of charm, headreco, aseg, samseg");
 }
 
 HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels& tissues,
@@ -136,13 +128,23 @@ HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels
     const auto isBrain = [&](double sample) {
         if (holds(tissues.brain, sample)) return true;
         return tissues.othersAreBrain && sample != 0 && !std::isnan(sample) &&
-               !holds(tissues.skull, sample) && !holds(tissues.scalp, sample);
+               !holds(tissues.csf, sample) && !holds(tissues.skull, sample) &&
+               !holds(tissues.scalp, sample);
+    };
+    const auto isInCavity = [&](double sample) {
+        return isBrain(sample) || holds(tissues.csf, sample);
     };
     const auto isInSkull = [&](double sample) {
-        return isBrain(sample) || holds(tissues.skull, sample);
+        return isInCavity(sample) || holds(tissues.skull, sample);
     };
-    std::vector<FloatImage> enclosed{indicator(labels, isBrain)};
+    std::optional<FloatImage> brain;
+    std::vector<FloatImage> enclosed{indicator(labels, isInCavity)};
     requireSome(enclosed[0], nullptr, "brain");
+    if (options.withBrain) {
+        brain = indicator(labels, isBrain);
+        requireSome(*brain, nullptr, "brain");
+        requireSome(enclosed[0], &*brain, "CSF");
+    }
     if (!options.innerSkullOnly) {
         enclosed.push_back(indicator(labels, isInSkull));
         requireSome(enclosed[1], &enclosed[0], "skull");
@@ -151,13 +153,13 @@ HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels
         }));
         requireSome(enclosed[2], &enclosed[1], "scalp");
     }
-    return boundariesFrom(enclosed, options);
+    return boundariesFrom(enclosed, brain, options);
 }
 
 HeadBoundaries boundariesFromProbabilities(std::span<const VolumeView> maps,
                                            const BoundaryOptions& options) {
     checkOptions(options);
-    constexpr std::size_t kBrainMaps = 3, kMaps = 5;
+    constexpr std::size_t kTissueMaps = 2, kBrainMaps = 3, kMaps = 5;
     const std::size_t needed = options.innerSkullOnly ? kBrainMaps : kMaps;
     if (maps.size() < needed) {
         throw InvalidInput("there are " + std::to_string(maps.size()) + " maps, must be " +
@@ -174,20 +176,26 @@ HeadBoundaries boundariesFromProbabilities(std::span<const VolumeView> maps,
         full = std::max(full, valueRange(maps[n]).maximum);
     }
     std::vector<FloatImage> enclosed;
+    std::optional<FloatImage> brain;
     FloatImage sum = toFloat(maps[0], 0);
     for (std::size_t n = 0; n < needed; ++n) {
         if (n > 0) {
             const FloatImage more = toFloat(maps[n], 0);
             for (std::size_t v = 0; v < sum.values.size(); ++v) sum.values[v] += more.values[v];
         }
-        if (n + 1 < kBrainMaps) continue;
+        const bool isWholeBrain = n + 1 == kTissueMaps && options.withBrain;
+        if (n + 1 < kBrainMaps && !isWholeBrain) continue;
         FloatImage scaled = sum;
         for (float& value : scaled.values) {
             value = std::clamp(value / static_cast<float>(full), 0.0f, 1.0f);
         }
-        enclosed.push_back(std::move(scaled));
+        if (isWholeBrain) {
+            brain = std::move(scaled);
+        } else {
+            enclosed.push_back(std::move(scaled));
+        }
     }
-    return boundariesFrom(enclosed, options);
+    return boundariesFrom(enclosed, brain, options);
 }
 
 }  // namespace adaptiso

@@ -11,6 +11,7 @@
 #include "Voxelized.h"
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/HeadModel/HeadBoundaries.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso {
@@ -112,16 +113,18 @@ struct Asked {
 class Questions {
 public:
     Questions(const std::vector<Asked>& surfaces, const PlausibilityOptions& options)
-        : surfaces_(surfaces), options_(options) {}
+        : surfaces_(surfaces),
+          options_(options),
+          innerSkull_(options.areHeadLayers && surfaces.size() == kHeadSurfaceCount ? 1 : 0) {}
 
     std::vector<HeadNote> ask() && {
         for (std::size_t n = 0; n < surfaces_.size(); ++n) {
             const Asked& surface = surfaces_[n];
             if (surface.used.empty() || !surface.isOfHeadSize) continue;
-            if (n == 0 && options_.areNested) askNecks();
+            if (n == innerSkull_ && options_.areNested) askNecks();
             askFlat(n);
             askProportion(n);
-            if (n == 0 && options_.areHeadLayers && surface.volumeMm3) askVolume();
+            if (n == innerSkull_ && options_.areHeadLayers && surface.volumeMm3) askVolume();
         }
         for (std::size_t n = 0; options_.areNested && n + 1 < surfaces_.size(); ++n) {
             if (surfaces_[n].used.empty() || surfaces_[n + 1].used.empty()) continue;
@@ -140,7 +143,7 @@ private:
     }
 
     void askNecks() {
-        const Asked& surface = surfaces_.front();
+        const Asked& surface = surfaces_[innerSkull_];
         if (!surface.volumeMm3) return;
         // room for the closing, and no voxel of the solid at the grid's border
         const double room = kClosingMm + 4;
@@ -164,7 +167,7 @@ private:
                       fixed(necks.front().reachMm, 0) + " mm, " +
                       fixed(necks.front().mm3 / 1000, 1) + " cm3: a leak down a foramen?";
         }
-        HeadNote& note = add("necks", "no narrow neck", 0, !necks.empty(), finding);
+        HeadNote& note = add("necks", "no narrow neck", innerSkull_, !necks.empty(), finding);
         for (std::size_t n = 0; n < std::min(necks.size(), kMostPlaces); ++n) {
             note.pointsMm.push_back(necks[n].tipMm);
         }
@@ -313,10 +316,10 @@ private:
     }
 
     void askVolume() {
-        const double cm3 = *surfaces_.front().volumeMm3 / 1000;
+        const double cm3 = *surfaces_[innerSkull_].volumeMm3 / 1000;
         const bool isNoted =
             cm3 < UsualHead::kLeastInnerSkullCm3 || cm3 > UsualHead::kMostInnerSkullCm3;
-        add("innerSkullVolume", "volume of the inner skull", 0, isNoted,
+        add("innerSkullVolume", "volume of the inner skull", innerSkull_, isNoted,
             fixed(cm3, 0) + " cm3" + (isNoted ? "; adults have " : ", of adults' ") +
                 fixed(UsualHead::kLeastInnerSkullCm3, 0) + " to " +
                 fixed(UsualHead::kMostInnerSkullCm3, 0) + " cm3");
@@ -333,7 +336,8 @@ private:
                     tree.closestPoint(inner.mesh.points[inner.used[k]]).squaredDistanceMm2);
             }
         });
-        if (options_.areHeadLayers && surfaces_.size() == 3) askThickness(n, gap);
+        const bool hasAllLayers = surfaces_.size() == innerSkull_ + 3;
+        if (options_.areHeadLayers && hasAllLayers && n >= innerSkull_) askThickness(n, gap);
 
         std::vector<std::pair<double, VertexId>> coarse;
         for (std::size_t k = 0; k < gap.size(); ++k) {
@@ -366,8 +370,9 @@ private:
             isFirst = false;
         }
         if (upper.empty()) return;
-        const double least = n == 0 ? UsualHead::kLeastSkullMm : UsualHead::kLeastScalpMm;
-        const double most = n == 0 ? UsualHead::kMostSkullMm : UsualHead::kMostScalpMm;
+        const bool isSkull = n == innerSkull_;
+        const double least = isSkull ? UsualHead::kLeastSkullMm : UsualHead::kLeastScalpMm;
+        const double most = isSkull ? UsualHead::kMostSkullMm : UsualHead::kMostScalpMm;
         const double median = medianOf(upper);
         const bool isThin = median<least, isThick = median> most;
         std::string finding = "median " + fixed(median, 1) + " mm over the upper half (" +
@@ -375,8 +380,9 @@ private:
         finding += (isThin || isThick ? "adults have " : "of adults' ") + fixed(least, 0) + " to " +
                    fixed(most, 0) + " mm";
         HeadNote& note =
-            n == 0 ? add("skullThickness", "thickness of the skull", n, isThin || isThick, finding)
-                   : add("scalpThickness", "thickness of the scalp", n, isThin || isThick, finding);
+            isSkull
+                ? add("skullThickness", "thickness of the skull", n, isThin || isThick, finding)
+                : add("scalpThickness", "thickness of the scalp", n, isThin || isThick, finding);
         note.next = n + 1;
         if (isThin || isThick) {
             note.pointsMm.push_back(inner.mesh.points[inner.used[isThin ? thinnest : thickest]]);
@@ -399,6 +405,7 @@ private:
 
     const std::vector<Asked>& surfaces_;
     const PlausibilityOptions& options_;
+    std::size_t innerSkull_;
     std::vector<HeadNote> notes_;
 };
 

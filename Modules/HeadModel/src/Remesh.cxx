@@ -233,6 +233,16 @@ TriangleMesh finish(Remesher& remesher, std::int64_t vertices, double fitMm) {
 
 }  // namespace
 
+std::int64_t verticesForEdges(const TriangleMesh& surface, const RemeshOptions& options) {
+    checkOptions(options);
+    checkSurface(surface);
+    RemeshTarget target(surface);
+    Remesher remesher(target);
+    target.setSizes(adaptiveSizes(target, remesher, *options.edgeLengthMm, options.neighbours));
+    remesher.readSizes();
+    return std::max<std::int64_t>(12, remesher.verticesWanted());
+}
+
 Remeshed remeshForBem(const TriangleMesh& surface, const RemeshOptions& options) {
     checkOptions(options);
     checkSurface(surface);

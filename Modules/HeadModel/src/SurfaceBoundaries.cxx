@@ -54,9 +54,10 @@ Mask insideOf(const TriangleMesh& surface, const ImageGeometry& grid, double clo
     return isBall(solid, grid.size) ? solid : whole;
 }
 
-/// Parts of voxels, by distance from the surface itself where it is near the solid's.
-std::vector<float> partOf(const TriangleMesh& surface, const ImageGeometry& grid,
-                          double closingMm) {
+}  // namespace
+
+std::vector<float> headmodel::surfacePart(const TriangleMesh& surface, const ImageGeometry& grid,
+                                          double closingMm) {
     TriangleMesh outward = surface;
     outward.normals.clear();
     if (enclosedVolume(outward) < 0) flipOrientation(outward);
@@ -88,12 +89,12 @@ std::vector<float> partOf(const TriangleMesh& surface, const ImageGeometry& grid
     return part;
 }
 
-}  // namespace
-
 HeadBoundaries boundariesFromSurfaces(std::span<const TriangleMesh> surfaces,
                                       const BoundaryOptions& options) {
     checkOptions(options);
-    const std::size_t wanted = options.innerSkullOnly ? 1 : kHeadSurfaceCount;
+    const std::size_t wanted = options.innerSkullOnly ? 1
+                               : options.withBrain    ? kHeadSurfaceCount
+                                                      : 3;
     if (surfaces.size() != wanted) {
         throw InvalidInput("there are " + std::to_string(surfaces.size()) + " surfaces, must be " +
                            std::to_string(wanted));
@@ -102,8 +103,15 @@ HeadBoundaries boundariesFromSurfaces(std::span<const TriangleMesh> surfaces,
     raw.grid =
         gridAround(surfaces, options.stepMm > 0 ? options.stepMm : kStepMm, marginMm(options));
     for (const TriangleMesh& surface : surfaces) {
-        tell(options, "mend", static_cast<double>(raw.parts.size()) / kHeadSurfaceCount);
-        raw.parts.push_back(partOf(surface, raw.grid, options.closingMm));
+        tell(options, "mend", static_cast<double>(raw.parts.size()) / static_cast<double>(wanted));
+        const bool isBrain = options.withBrain && &surface == surfaces.data();
+        std::vector<float> part =
+            surfacePart(surface, raw.grid, isBrain ? options.sulciMm : options.closingMm);
+        if (isBrain) {
+            raw.brain = std::move(part);
+        } else {
+            raw.parts.push_back(std::move(part));
+        }
     }
     return finished(std::move(raw), options);
 }

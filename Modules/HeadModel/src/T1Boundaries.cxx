@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "BrainSurface.h"
 #include "FinishBoundaries.h"
 #include "Necks.h"
 #include "SkullBand.h"
@@ -299,9 +300,29 @@ std::vector<float> innerSkullPart(const Mask& brain, const Head& head,
     return part;
 }
 
+/// The brain by what is known of it, or guessed.
+Mask brainOf(const BrainSources& sources, const Head& head, std::vector<std::string>& notes) {
+    const bool isGuess = !sources.mask && !sources.aseg;
+    const Mask brain = sources.mask   ? above(brainPart(*sources.mask, head), kFractionIsovalue)
+                       : sources.aseg ? above(asegPart(*sources.aseg, head.grid), kFractionIsovalue)
+                                      : guessedBrain(head);
+    if (!isGuess) requirePlausibleMask(brain, head);
+    notes.push_back(
+        (isGuess ? "brain guessed by thresholds, give a mask if it is wrong: " : "brain mask: ") +
+        shortNumber(cm3Of(brain, head.grid)) + " cm3");
+    return brain;
+}
+
 }  // namespace
 
 HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<VolumeView>& brainMask,
+                                const BoundaryOptions& options) {
+    BrainSources sources;
+    sources.mask = brainMask;
+    return boundariesFromT1(t1, sources, options);
+}
+
+HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& sources,
                                 const BoundaryOptions& options) {
     checkOptions(options);
     if (!(options.skullMm >= options.minSkullMm && options.skullMm <= options.maxSkullMm)) {
@@ -316,14 +337,13 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<Volume
     raw.notes.push_back("skin at " + shortNumber(head.skinLevel) + ", brain tissue at " +
                         shortNumber(head.levels.tissue));
     tell(options, "brain", 0);
-    const Mask brain =
-        brainMask ? above(brainPart(*brainMask, head), kFractionIsovalue) : guessedBrain(head);
-    if (brainMask) requirePlausibleMask(brain, head);
-    raw.notes.push_back(
-        (brainMask ? "brain mask: " : "brain guessed by thresholds, give a mask if it is wrong: ") +
-        shortNumber(cm3Of(brain, head.grid)) + " cm3");
+    const Mask brain = brainOf(sources, head, raw.notes);
     raw.parts.push_back(innerSkullPart(brain, head, options));
     cutNecks(raw, options);
+    if (options.withBrain) {
+        raw.brain = brainSurfacePart(sources, {head.grid, head.t1, head.faces, head.levels, brain},
+                                     options, raw.notes);
+    }
     if (!options.innerSkullOnly) {
         tell(options, "skull", 0);
         std::vector<float> skin =

@@ -12,4 +12,10 @@ namespace adaptiso::headmodel {
 /// \pre triangles name points that are there and finite
 Mask voxelized(const TriangleMesh& surface, const ImageGeometry& grid);
 
+/// The inside of such a surface as parts of voxels, by distance from the surface itself where it is
+/// near the solid's. Tunnels that `closingMm` closes are filled. \throws InvalidInput  it encloses
+/// nothing
+std::vector<float> surfacePart(const TriangleMesh& surface, const ImageGeometry& grid,
+                               double closingMm);
+
 }  // namespace adaptiso::headmodel

@@ -27,9 +27,9 @@ void encodeGifti(const MeshRecord& record, ByteSink& sink);
 void encodeFreeSurfer(const MeshRecord& record, ByteSink& sink);
 void encodeOpenMeeg(const MeshRecord& record, ByteSink& sink);
 
-MeshFile decodeVtkXml(std::string_view bytes);
-MeshFile decodeVtkLegacy(std::string_view bytes);
-MeshFile decodePly(std::string_view bytes);
+MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options);
+MeshFile decodeVtkLegacy(std::string_view bytes, const MeshReadOptions& options);
+MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options);
 MeshFile decodeStl(std::string_view bytes);
 MeshFile decodeObj(std::string_view bytes);
 MeshFile decodeOff(std::string_view bytes);
@@ -37,8 +37,13 @@ MeshFile decodeGifti(std::string_view bytes);
 MeshFile decodeFreeSurfer(std::string_view bytes);
 MeshFile decodeOpenMeeg(std::string_view bytes);
 
-/// Who wrote the file and in which frame, on one line: "adaptiso surface, CoordinateFrame: RAS mm".
-std::string headerLine(CoordinateFrame frame);
+/// Who wrote the file and, unless it is not to say so, in which frame, on one line:
+/// "adaptiso surface, CoordinateFrame: RAS mm".
+std::string headerLine(const MeshWriteOptions& options);
+
+/// A name from a file as messages and other files can have it: control characters are '?', and it
+/// is cut at 200 bytes.
+std::string storedName(std::string_view name);
 
 /// A normal as a file has it, whatever its length. Damage where float can't hold it.
 Normal storedNormal(const Vec3& v);

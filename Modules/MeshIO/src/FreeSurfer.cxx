@@ -42,11 +42,12 @@ void encodeRow(std::string_view key, const Vec3& v, ByteSink& sink) {
     sink << key << v.x << " " << v.y << " " << v.z << "\n";
 }
 
-void encodeFooter(const ImageGeometry& volume, const std::string& name, ByteSink& sink) {
+void encodeFooter(const ImageGeometry& volume, bool isValid, const std::string& name,
+                  ByteSink& sink) {
     sink.bigEndian(kUseRealRasTag);
     sink.bigEndian(std::int32_t{0});
     sink.bigEndian(kGeometryTag);
-    sink << "valid = 1  # volume info valid\n";
+    sink << (isValid ? "valid = 1  # volume info valid\n" : "valid = 0  # volume info invalid\n");
     sink << "filename = " << (name.empty() ? "unknown" : name) << "\n";
     sink << "volume = " << volume.size[0] << " " << volume.size[1] << " " << volume.size[2] << "\n";
     encodeRow("voxelsize = ", volume.spacingMm(), sink);
@@ -129,7 +130,7 @@ Footer decodeFooter(ByteSource& source) {
 void encodeFreeSurfer(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
     const MeshWriteOptions& options = record.options;
-    sink << kTriangleMagic << headerLine(options.frame) << "\n\n";
+    sink << kTriangleMagic << headerLine(options) << "\n\n";
     sink.bigEndian(static_cast<std::int32_t>(mesh.points.size()));
     sink.bigEndian(static_cast<std::int32_t>(mesh.triangles.size()));
     for (const Vec3& p : mesh.points) {
@@ -139,8 +140,10 @@ void encodeFreeSurfer(const MeshRecord& record, ByteSink& sink) {
         for (const VertexId vertex : t) sink.bigEndian(static_cast<std::int32_t>(vertex));
     }
     const bool isTkRas = options.frame == CoordinateFrame::TkRas;
-    encodeFooter(isTkRas ? *options.volume : neutralVolume(options.frame),
-                 isTkRas ? options.volumeName : std::string(), sink);
+    const bool isValid = !isTkRas || options.volume.has_value();
+    encodeFooter(isTkRas && isValid ? *options.volume
+                                    : neutralVolume(isTkRas ? CoordinateFrame::Ras : options.frame),
+                 isValid, isTkRas ? options.volumeName : std::string(), sink);
 }
 
 MeshFile decodeFreeSurfer(std::string_view bytes) {

@@ -1,60 +1,17 @@
 #include "adaptiso/MeshIO/LabelFiles.h"
 
-#include <bit>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <functional>
 #include <limits>
 
-#include "ByteSink.h"
-#include "Packing.h"
+#include "FileBytes.h"
+#include "GiftiArrays.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
 
 using meshio::ByteSink;
-
-/// As an element or a quoted attribute has it.
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += c;
-        }
-    }
-    return result;
-}
-
-void writeFile(const std::filesystem::path& path, const std::function<void(ByteSink&)>& write) {
-    const auto fail = [&](const char* what) {
-        throw FileError(path.string() + ": can't be " + what + " (" +
-                        (errno != 0 ? std::strerror(errno) : "unknown reason") + ")");
-    };
-    errno = 0;
-    std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-    if (!stream) fail("made");
-    ByteSink sink(stream);
-    write(sink);
-    sink.finish();
-    stream.close();
-    if (!stream) fail("written");
-}
+using meshio::escaped;
+using meshio::writeBytes;
 
 void encodeKey(const LabelKey& label, bool isSeen, ByteSink& sink) {
     sink << "<Label Key=\"" << std::int64_t{label.key} << "\"";
@@ -75,30 +32,25 @@ void writeGiftiLabels(std::span<const std::int32_t> labels, std::span<const Labe
     }
     std::string bytes;
     bytes.reserve(labels.size_bytes());
-    for (std::int32_t label : labels) {
-        if (std::endian::native == std::endian::big) label = meshio::swappedBytes(label);
-        bytes.append(reinterpret_cast<const char*>(&label), sizeof(label));
-    }
-    writeFile(path, [&](ByteSink& sink) {
-        sink << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-                "<!DOCTYPE GIFTI SYSTEM \"http://www.nitrc.org/frs/download.php/115/gifti.dtd\">\n"
-                "<GIFTI Version=\"1.0\" NumberOfDataArrays=\"1\">\n<MetaData/>\n<LabelTable>\n";
+    for (const std::int32_t label : labels) meshio::appendLittleEndian(label, bytes);
+    writeBytes(path, [&](ByteSink& sink) {
+        sink << meshio::kGiftiHead
+             << "<GIFTI Version=\"1.0\" NumberOfDataArrays=\"1\">\n<MetaData/>\n<LabelTable>\n";
         bool hasNone = false;
         for (const LabelKey& label : table) hasNone = hasNone || label.key == 0;
         if (!hasNone) encodeKey({0, "???", {255, 255, 255}}, false, sink);
         for (const LabelKey& label : table) encodeKey(label, true, sink);
-        sink << "</LabelTable>\n<DataArray Intent=\"NIFTI_INTENT_LABEL\" "
-                "DataType=\"NIFTI_TYPE_INT32\" ArrayIndexingOrder=\"RowMajorOrder\" "
-                "Dimensionality=\"1\" Dim0=\""
-             << static_cast<std::int64_t>(labels.size())
-             << "\" Encoding=\"GZipBase64Binary\" Endian=\"LittleEndian\" ExternalFileName=\"\" "
-                "ExternalFileOffset=\"\">\n<MetaData/>\n<Data>"
-             << encodeBase64(meshio::deflated(bytes)) << "</Data>\n</DataArray>\n</GIFTI>\n";
+        sink << "</LabelTable>\n";
+        meshio::beginGiftiArray("NIFTI_INTENT_LABEL", "NIFTI_TYPE_INT32",
+                                {static_cast<std::int64_t>(labels.size()), 1}, sink);
+        sink << "<MetaData/>\n";
+        meshio::endGiftiArray(bytes, sink);
+        sink << "</GIFTI>\n";
     });
 }
 
 void writeMultiBlock(std::span<const VtkBlock> blocks, const std::filesystem::path& path) {
-    writeFile(path, [&](ByteSink& sink) {
+    writeBytes(path, [&](ByteSink& sink) {
         sink << "<?xml version=\"1.0\"?>\n<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\" "
                 "byte_order=\"LittleEndian\">\n<vtkMultiBlockDataSet>\n";
         std::int64_t index = 0;

@@ -1,15 +1,13 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <new>
 
 #include "ByteSource.h"
 #include "Codecs.h"
+#include "FileBytes.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
@@ -18,12 +16,18 @@ namespace adaptiso {
 namespace {
 
 using Encoder = void (*)(const meshio::MeshRecord&, meshio::ByteSink&);
-using Decoder = MeshFile (*)(std::string_view);
+using Decoder = MeshFile (*)(std::string_view, const MeshReadOptions&);
 
 struct Codec {
     Encoder encode;
     Decoder decode;
 };
+
+/// Of a format that holds no arrays: there is nothing to choose.
+template <MeshFile (*decode)(std::string_view)>
+MeshFile decodePlain(std::string_view bytes, const MeshReadOptions&) {
+    return decode(bytes);
+}
 
 Codec codecOf(MeshFormatId id) {
     switch (id) {
@@ -34,17 +38,17 @@ Codec codecOf(MeshFormatId id) {
         case MeshFormatId::Ply:
             return {meshio::encodePly, meshio::decodePly};
         case MeshFormatId::Stl:
-            return {meshio::encodeStl, meshio::decodeStl};
+            return {meshio::encodeStl, decodePlain<meshio::decodeStl>};
         case MeshFormatId::Obj:
-            return {meshio::encodeObj, meshio::decodeObj};
+            return {meshio::encodeObj, decodePlain<meshio::decodeObj>};
         case MeshFormatId::Off:
-            return {meshio::encodeOff, meshio::decodeOff};
+            return {meshio::encodeOff, decodePlain<meshio::decodeOff>};
         case MeshFormatId::Gifti:
-            return {meshio::encodeGifti, meshio::decodeGifti};
+            return {meshio::encodeGifti, decodePlain<meshio::decodeGifti>};
         case MeshFormatId::FreeSurfer:
-            return {meshio::encodeFreeSurfer, meshio::decodeFreeSurfer};
+            return {meshio::encodeFreeSurfer, decodePlain<meshio::decodeFreeSurfer>};
         case MeshFormatId::OpenMeeg:
-            return {meshio::encodeOpenMeeg, meshio::decodeOpenMeeg};
+            return {meshio::encodeOpenMeeg, decodePlain<meshio::decodeOpenMeeg>};
     }
     throw InternalError("codecOf: unknown mesh format");
 }
@@ -94,6 +98,16 @@ void requireSomething(TriangleMesh& mesh) {
     if (!findNormalsFault(mesh).empty()) mesh.normals.clear();
 }
 
+/// Arrays are read by the count of points that the file names.
+void requireOneEach(const MeshFile& file) {
+    for (const PointArray& array : file.pointArrays) {
+        if (array.points() == file.mesh.points.size()) continue;
+        meshio::damaged("its array " + meshio::printable(array.name) + " has values for " +
+                        std::to_string(array.points()) + " points, not " +
+                        std::to_string(file.mesh.points.size()));
+    }
+}
+
 constexpr double kFloatMax = std::numeric_limits<float>::max();
 
 void requireNeutralName(const std::string& name) {
@@ -116,16 +130,14 @@ void requireOneEach(const std::string& array, std::size_t values, std::size_t co
 
 void requireArrays(const MeshWriteOptions& options, const TriangleMesh& mesh,
                    const MeshFormat& format, const std::string& file) {
-    const bool hasArrays = !options.pointArrays.empty() || !options.cellArrays.empty();
-    if (hasArrays && format.id != MeshFormatId::VtkXml) {
-        throw InvalidInput(file + ": " + std::string(format.name) +
-                           " files hold no values at points" +
-                           (options.cellArrays.empty() ? "" : " and triangles") + "; write .vtp");
+    const bool fits = (options.pointArrays.empty() || format.holdsPointArrays) &&
+                      (options.cellArrays.empty() || format.id == MeshFormatId::VtkXml);
+    if (!fits) {
+        throw InvalidInput(file + ": " + std::string(format.name) + " files hold no values at " +
+                           (options.cellArrays.empty() ? "points" : "triangles") + "; write .vtp");
     }
     for (const PointArray& array : options.pointArrays) {
-        const std::size_t count =
-            std::visit([](const auto& values) { return values.size(); }, array.values);
-        requireOneEach(array.name, count, mesh.points.size(), "points", file);
+        requireOneEach(array.name, array.points(), mesh.points.size(), "points", file);
     }
     for (const CellArray& array : options.cellArrays) {
         requireOneEach(array.name, array.values.size(), mesh.triangles.size(), "triangles", file);
@@ -152,6 +164,7 @@ void requireWritable(const TriangleMesh& mesh, const MeshFormat& format,
 
 TriangleMesh movedTo(const MeshWriteOptions& options, const TriangleMesh& mesh,
                      const std::string& file) {
+    if (options.isInFrame) return mesh;
     try {
         return toFrame(mesh, options.frame, options.volume);
     } catch (const InvalidInput& error) {
@@ -168,43 +181,22 @@ void scaleToUnitLength(std::vector<Normal>& normals) {
     }
 }
 
-std::string systemReason() {
-    return errno != 0 ? std::strerror(errno) : "unknown reason";
-}
-
-/// The bytes of a regular file.
-std::string readBytes(const std::filesystem::path& path) {
-    namespace fs = std::filesystem;
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) {
-        throw FileError(path.string() + ": no such file; check the name");
-    }
-    if (!fs::is_regular_file(status)) {
-        throw FileError(path.string() + ": not a regular file; give a file on disk");
-    }
-    errno = 0;
-    std::ifstream stream(path, std::ios::binary);
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (!stream || error) {
-        throw FileError(path.string() + ": can't be opened (" + systemReason() +
-                        "); check its permissions");
-    }
-    std::string bytes(size, '\0');
-    stream.read(bytes.data(), static_cast<std::streamsize>(size));
-    if (static_cast<std::uintmax_t>(stream.gcount()) != size) {
-        throw FileError(path.string() + ": only " + std::to_string(stream.gcount()) + " of " +
-                        std::to_string(size) + " bytes can be read; check the disk");
-    }
-    return bytes;
-}
-
 }  // namespace
 
 namespace meshio {
 
-std::string headerLine(CoordinateFrame frame) {
-    return "adaptiso surface, " + frameMarker(frame);
+std::string headerLine(const MeshWriteOptions& options) {
+    const std::string line = "adaptiso surface";
+    return options.saysFrame ? line + ", " + frameMarker(options.frame) : line;
+}
+
+std::string storedName(std::string_view name) {
+    constexpr std::size_t kLongest = 200;
+    std::string stored(name.substr(0, kLongest));
+    for (char& c : stored) {
+        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
+    }
+    return stored;
 }
 
 Normal storedNormal(const Vec3& v) {
@@ -225,33 +217,23 @@ void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
     const TriangleMesh moved = movedTo(options, mesh, path.string());
     requireWritable(moved, format, options, path.string());
 
-    errno = 0;
-    std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-    if (!stream) {
-        throw FileError(path.string() + ": can't be made (" + systemReason() +
-                        "); check that the folder exists and may be written to");
-    }
-    meshio::ByteSink sink(stream);
-    codecOf(format.id).encode({moved, options}, sink);
-    sink.finish();
-    stream.close();
-    if (!stream) {
-        throw FileError(path.string() + ": can't be written (" + systemReason() +
-                        "); free space on the disk or write elsewhere");
-    }
+    meshio::writeBytes(path, [&](meshio::ByteSink& sink) {
+        codecOf(format.id).encode({moved, options}, sink);
+    });
 }
 
 MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name,
                     const MeshReadOptions& options) {
     const std::string prefix = std::string(name) + ": ";
     try {
-        MeshFile file = codecOf(format.id).decode(bytes);
+        MeshFile file = codecOf(format.id).decode(bytes, options);
         if (options.keepsFaults) {
             requireSomething(file.mesh);
         } else {
             const std::string fault = findFault(file.mesh, std::numeric_limits<double>::max());
             if (!fault.empty()) meshio::damaged(fault);
         }
+        requireOneEach(file);
         scaleToUnitLength(file.mesh.normals);
         return file;
     } catch (const FileError& error) {
@@ -263,7 +245,7 @@ MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::strin
 
 MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& options) {
     const MeshFormat& format = findMeshFormat(path);
-    return decodeMesh(readBytes(path), format, path.string(), options);
+    return decodeMesh(meshio::readBytes(path), format, path.string(), options);
 }
 
 }  // namespace adaptiso

@@ -114,7 +114,7 @@ private:
 
 void encodeObj(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
-    sink << "# " << headerLine(record.options.frame) << "\n";
+    sink << "# " << headerLine(record.options) << "\n";
     for (const Vec3& p : mesh.points) sink << "v " << p.x << " " << p.y << " " << p.z << "\n";
     for (const Normal& n : mesh.normals) {
         sink << "vn " << double{n.x} << " " << double{n.y} << " " << double{n.z} << "\n";

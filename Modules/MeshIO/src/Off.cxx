@@ -34,7 +34,7 @@ private:
 
 void encodeOff(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
-    sink << "OFF\n# " << headerLine(record.options.frame) << "\n";
+    sink << "OFF\n# " << headerLine(record.options) << "\n";
     sink << static_cast<std::int64_t>(mesh.points.size()) << " "
          << static_cast<std::int64_t>(mesh.triangles.size()) << " 0\n";
     for (const Vec3& p : mesh.points) sink << p.x << " " << p.y << " " << p.z << "\n";

@@ -1,6 +1,11 @@
-// PLY 1.0. Written: binary little endian, double coordinates, float normals, int vertex indices.
+// PLY 1.0. Written: binary little endian, double coordinates, float normals, int vertex indices;
+// other values of vertices as double, colours as uchar red, green, blue, whole numbers as uchar or
+// int where they fit.
 // Read: text and binary of either byte order, any property types, other elements passed over.
+#include <algorithm>
 #include <array>
+#include <limits>
+#include <set>
 #include <vector>
 
 #include "ByteSource.h"
@@ -191,32 +196,92 @@ void requireElementRoom(const Element& element, const ValueReader& values, std::
                 left + 1);  // the last value needs no space
 }
 
-void readVertices(const Element& element, ValueReader& values, TriangleMesh& mesh) {
-    static constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "nx", "ny", "nz"};
-    std::array<bool, 6> found{};
-    std::vector<std::size_t> slots;  // of each property: where it goes, 6 where nowhere
-    for (const Property& property : element.properties) {
-        std::size_t slot = 0;
-        while (slot < 6 && (property.isList || property.name != kNames[slot])) ++slot;
-        if (slot < 6) found[slot] = true;
-        slots.push_back(slot);
+bool isReal(Scalar type) {
+    return type == Scalar::Float32 || type == Scalar::Float64;
+}
+
+/// Where the values of a vertex go: its place, its normal, a colour, arrays of their own.
+class VertexRow {
+public:
+    VertexRow(const Element& element, bool keepsArrays) : properties_(element.properties) {
+        for (const Property& property : properties_) slots_.push_back(slotOf(property));
+        const auto has = [&](std::size_t first) {
+            return found_[first] && found_[first + 1] && found_[first + 2];
+        };
+        if (!has(0)) damaged("its vertices lack x, y or z");
+        hasNormals_ = has(3);
+        hasColors_ = keepsArrays && has(6);
+        if (!keepsArrays) return;
+        for (std::size_t p = 0; p < slots_.size(); ++p) {
+            const bool isArray = slots_[p] == kNowhere || (slots_[p] >= 6 && !hasColors_);
+            if (!isArray || properties_[p].isList) continue;
+            slots_[p] = kArrays + arrays_.size();
+            PointArray& array = arrays_.emplace_back();
+            array.name = storedName(properties_[p].name);
+            if (!isReal(properties_[p].type)) array.values = std::vector<std::int64_t>();
+        }
     }
-    if (!found[0] || !found[1] || !found[2]) damaged("its vertices lack x, y or z");
-    const bool hasNormals = found[3] && found[4] && found[5];
-    mesh.points.resize(element.count);
-    if (hasNormals) mesh.normals.resize(element.count);
-    for (std::int64_t i = 0; i < element.count; ++i) {
-        std::array<double, 7> row{};
-        for (std::size_t p = 0; p < slots.size(); ++p) {
-            if (slots[p] == 6) {
-                skipProperty(element.properties[p], values);
+
+    void read(ValueReader& values, TriangleMesh& mesh) {
+        std::array<double, kNowhere> row{};
+        for (std::size_t p = 0; p < slots_.size(); ++p) {
+            if (slots_[p] < kNowhere) {
+                row[slots_[p]] = values.real(properties_[p].type);
+            } else if (slots_[p] == kNowhere) {
+                skipProperty(properties_[p], values);
             } else {
-                row[slots[p]] = values.real(element.properties[p].type);
+                readInto(arrays_[slots_[p] - kArrays], properties_[p].type, values);
             }
         }
-        mesh.points[i] = {row[0], row[1], row[2]};
-        if (hasNormals) mesh.normals[i] = storedNormal({row[3], row[4], row[5]});
+        mesh.points.push_back({row[0], row[1], row[2]});
+        if (hasNormals_) mesh.normals.push_back(storedNormal({row[3], row[4], row[5]}));
+        if (hasColors_) colors_.push_back({shade(row[6]), shade(row[7]), shade(row[8])});
     }
+
+    /// The arrays, once all vertices are read.
+    std::vector<PointArray> take() {
+        if (hasColors_) arrays_.insert(arrays_.begin(), PointArray{"RGB", std::move(colors_)});
+        return std::move(arrays_);
+    }
+
+private:
+    static constexpr std::size_t kNowhere = 9, kArrays = 10;
+
+    std::size_t slotOf(const Property& property) {
+        static constexpr std::array<std::string_view, kNowhere> kNames{
+            "x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
+        std::size_t slot = 0;
+        while (slot < kNowhere && (property.isList || property.name != kNames[slot])) ++slot;
+        if (slot >= 6 && property.type != Scalar::UInt8) return kNowhere;
+        if (slot < kNowhere) found_[slot] = true;
+        return slot;
+    }
+
+    static std::uint8_t shade(double value) {
+        return value >= 0 && value <= 255 ? static_cast<std::uint8_t>(value) : std::uint8_t{0};
+    }
+
+    static void readInto(PointArray& array, Scalar type, ValueReader& values) {
+        if (auto* const numbers = std::get_if<std::vector<double>>(&array.values)) {
+            numbers->push_back(values.real(type));
+        } else {
+            std::get<std::vector<std::int64_t>>(array.values).push_back(values.integer(type));
+        }
+    }
+
+    const std::vector<Property>& properties_;
+    std::vector<std::size_t> slots_;  ///< of each property
+    std::array<bool, kNowhere> found_{};
+    bool hasNormals_ = false, hasColors_ = false;
+    std::vector<Color> colors_;
+    std::vector<PointArray> arrays_;
+};
+
+void readVertices(const Element& element, bool keepsArrays, ValueReader& values, MeshFile& file) {
+    VertexRow row(element, keepsArrays);
+    file.mesh.points.reserve(element.count);
+    for (std::int64_t i = 0; i < element.count; ++i) row.read(values, file.mesh);
+    for (PointArray& array : row.take()) file.pointArrays.push_back(std::move(array));
 }
 
 void readFaces(const Element& element, ValueReader& values, TriangleMesh& mesh) {
@@ -239,22 +304,101 @@ void readFaces(const Element& element, ValueReader& values, TriangleMesh& mesh) 
     }
 }
 
+/// A property to write: one component of an array.
+struct Column {
+    std::string name;
+    Scalar type;
+    const PointArray* array;
+    std::size_t component;
+};
+
+/// The smallest type that holds whole numbers; double where none does.
+Scalar typeFor(const std::vector<std::int64_t>& values) {
+    if (values.empty()) return Scalar::UInt8;
+    const auto [least, most] = std::ranges::minmax(values);
+    if (least >= 0 && most <= 255) return Scalar::UInt8;
+    constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+    return least >= -kMost && most <= kMost ? Scalar::Int32 : Scalar::Float64;
+}
+
+std::string_view nameOf(Scalar type) {
+    return type == Scalar::UInt8 ? "uchar" : type == Scalar::Int32 ? "int" : "double";
+}
+
+/// A word, and not one that is taken.
+std::string propertyName(const std::string& name, std::set<std::string>& taken) {
+    std::string word = name.empty() ? "values" : name;
+    for (char& c : word) {
+        if (c <= ' ' || c > '~') c = '_';
+    }
+    while (!taken.insert(word).second) word += '_';
+    return word;
+}
+
+std::vector<Column> columnsOf(const std::vector<PointArray>& arrays) {
+    std::set<std::string> taken{"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
+    std::vector<Column> columns;
+    bool hasColors = false;
+    for (const PointArray& array : arrays) {
+        const bool areColors = std::holds_alternative<std::vector<Color>>(array.values);
+        const auto* const whole = std::get_if<std::vector<std::int64_t>>(&array.values);
+        const Scalar type = areColors ? Scalar::UInt8 : whole ? typeFor(*whole) : Scalar::Float64;
+        const auto components = static_cast<std::size_t>(areColors ? 3 : array.components);
+        for (std::size_t c = 0; c < components; ++c) {
+            static constexpr std::array<const char*, 3> kShades{"red", "green", "blue"};
+            std::string name = array.name;
+            if (areColors) {
+                name = hasColors ? name + "_" + kShades[c] : kShades[c];
+            } else if (components > 1) {
+                name += "_" + std::to_string(c);
+            }
+            const bool isOwn = areColors && !hasColors;
+            columns.push_back({isOwn ? name : propertyName(name, taken), type, &array, c});
+        }
+        hasColors = hasColors || areColors;
+    }
+    return columns;
+}
+
+void encodeValue(const Column& column, std::size_t point, ByteSink& sink) {
+    const PointArray& array = *column.array;
+    if (const auto* const colors = std::get_if<std::vector<Color>>(&array.values)) {
+        sink.littleEndian((*colors)[point][column.component]);
+        return;
+    }
+    const std::size_t at = point * static_cast<std::size_t>(array.components) + column.component;
+    if (const auto* const numbers = std::get_if<std::vector<double>>(&array.values)) {
+        sink.littleEndian((*numbers)[at]);
+        return;
+    }
+    const std::int64_t value = std::get<std::vector<std::int64_t>>(array.values)[at];
+    if (column.type == Scalar::UInt8) sink.littleEndian(static_cast<std::uint8_t>(value));
+    if (column.type == Scalar::Int32) sink.littleEndian(static_cast<std::int32_t>(value));
+    if (column.type == Scalar::Float64) sink.littleEndian(static_cast<double>(value));
+}
+
 }  // namespace
 
 void encodePly(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
-    sink << "ply\nformat binary_little_endian 1.0\ncomment " << headerLine(record.options.frame)
+    const std::vector<Column> columns = columnsOf(record.options.pointArrays);
+    sink << "ply\nformat binary_little_endian 1.0\ncomment " << headerLine(record.options)
          << "\nelement vertex " << static_cast<std::int64_t>(mesh.points.size())
          << "\nproperty double x\nproperty double y\nproperty double z\n";
     if (!mesh.normals.empty()) sink << "property float nx\nproperty float ny\nproperty float nz\n";
+    for (const Column& column : columns) {
+        sink << "property " << nameOf(column.type) << " " << column.name << "\n";
+    }
     sink << "element face " << static_cast<std::int64_t>(mesh.triangles.size())
          << "\nproperty list uchar int vertex_indices\nend_header\n";
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
         for (int axis = 0; axis < 3; ++axis) sink.littleEndian(mesh.points[i][axis]);
-        if (mesh.normals.empty()) continue;
-        for (const float n : {mesh.normals[i].x, mesh.normals[i].y, mesh.normals[i].z}) {
-            sink.littleEndian(n);
+        if (!mesh.normals.empty()) {
+            for (const float n : {mesh.normals[i].x, mesh.normals[i].y, mesh.normals[i].z}) {
+                sink.littleEndian(n);
+            }
         }
+        for (const Column& column : columns) encodeValue(column, i, sink);
     }
     for (const Triangle& triangle : mesh.triangles) {
         sink.littleEndian(std::uint8_t{3});
@@ -264,7 +408,7 @@ void encodePly(const MeshRecord& record, ByteSink& sink) {
     }
 }
 
-MeshFile decodePly(std::string_view bytes) {
+MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options) {
     ByteSource source(bytes);
     const Header header = parseHeader(source);
     ValueReader values(source, header.encoding);
@@ -274,7 +418,7 @@ MeshFile decodePly(std::string_view bytes) {
         if (element.count == 0) continue;
         requireElementRoom(element, values, source.left());
         if (element.name == "vertex") {
-            readVertices(element, values, file.mesh);
+            readVertices(element, options.keepsPointArrays, values, file);
         } else if (element.name == "face") {
             readFaces(element, values, file.mesh);
         } else {

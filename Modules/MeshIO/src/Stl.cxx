@@ -135,7 +135,7 @@ bool looksBinary(std::string_view bytes) {
 
 void encodeStl(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
-    std::string header = headerLine(record.options.frame);
+    std::string header = headerLine(record.options);
     header.resize(kHeaderBytes, ' ');
     sink << header;
     sink.littleEndian(static_cast<std::uint32_t>(mesh.triangles.size()));

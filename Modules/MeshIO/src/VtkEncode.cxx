@@ -7,6 +7,7 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkStringArray.h>
+#include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
@@ -23,14 +24,24 @@ void addField(vtkPolyData& data, const char* name, std::string_view value) {
     data.GetFieldData()->AddArray(field);
 }
 
-vtkSmartPointer<vtkDataArray> toVtkArray(const std::vector<double>& values) {
-    auto array = vtkSmartPointer<vtkDoubleArray>::New();
-    array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+template <class Array, class T>
+vtkSmartPointer<vtkDataArray> filled(const std::vector<T>& values, int components) {
+    auto array = vtkSmartPointer<Array>::New();
+    array->SetNumberOfComponents(components);
+    array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / components);
     std::copy(values.begin(), values.end(), array->GetPointer(0));
     return array;
 }
 
-vtkSmartPointer<vtkDataArray> toVtkArray(const std::vector<Color>& colors) {
+vtkSmartPointer<vtkDataArray> toVtkArray(const std::vector<double>& values, int components) {
+    return filled<vtkDoubleArray>(values, components);
+}
+
+vtkSmartPointer<vtkDataArray> toVtkArray(const std::vector<std::int64_t>& values, int components) {
+    return filled<vtkTypeInt64Array>(values, components);
+}
+
+vtkSmartPointer<vtkDataArray> toVtkArray(const std::vector<Color>& colors, int) {
     auto array = vtkSmartPointer<vtkUnsignedCharArray>::New();
     array->SetNumberOfComponents(3);
     array->SetNumberOfTuples(static_cast<vtkIdType>(colors.size()));
@@ -41,8 +52,8 @@ vtkSmartPointer<vtkDataArray> toVtkArray(const std::vector<Color>& colors) {
 
 void addPointArrays(vtkPolyData& data, const std::vector<PointArray>& arrays) {
     for (const PointArray& array : arrays) {
-        const auto values =
-            std::visit([](const auto& each) { return toVtkArray(each); }, array.values);
+        const auto values = std::visit(
+            [&](const auto& each) { return toVtkArray(each, array.components); }, array.values);
         values->SetName(array.name.c_str());
         data.GetPointData()->AddArray(values);
     }
@@ -67,7 +78,9 @@ vtkSmartPointer<vtkPolyData> toLabelledPolyData(const MeshRecord& record) {
     auto data = toVtkPolyData(record.mesh);
     addPointArrays(*data, record.options.pointArrays);
     addCellArrays(*data, record.options.cellArrays);
-    addField(*data, kFrameFieldName, toString(record.options.frame));
+    if (record.options.saysFrame) {
+        addField(*data, kFrameFieldName, toString(record.options.frame));
+    }
     addField(*data, kVersionFieldName, "1");
     return data;
 }

@@ -6,6 +6,7 @@
 #include <vtkNew.h>
 #include <vtkPolyDataWriter.h>
 
+#include <charconv>
 #include <limits>
 #include <vector>
 
@@ -61,7 +62,8 @@ std::int64_t bytesOf(Stored type) {
 /// Walks through the sections of a file; keeps the surface and passes over the rest.
 class LegacyDecoder {
 public:
-    explicit LegacyDecoder(std::string_view bytes) : source_(bytes) {}
+    LegacyDecoder(std::string_view bytes, bool keepsArrays)
+        : source_(bytes), keepsArrays_(keepsArrays) {}
 
     MeshFile decode() {
         decodeHead();
@@ -106,12 +108,18 @@ private:
         } else if (section == "normals") {
             decodeNormals(line);
         } else if (section == "vectors") {
-            line.requireWord("a name");
-            skipNumbers(tuples_, 3, parseType(line.requireWord("a type")));
+            const std::string_view name = line.requireWord("a name");
+            decodeArray(name, tuples_, 3, parseType(line.requireWord("a type")));
         } else if (section == "scalars") {
-            skipScalars(line);
+            decodeScalars(line);
+        } else if (section == "color_scalars") {
+            const std::string_view name = line.requireWord("a name");
+            decodeColors(name, line.integerWord("components"));
+        } else if (section == "lookup_table") {
+            line.requireWord("a name");
+            skipNumbers(line.integerWord("the size of a table"), 4, Stored::UInt8);
         } else if (section == "field") {
-            skipField(line);
+            decodeField(line);
         } else if (section == "metadata") {
             skipMetadata();
         } else {
@@ -171,16 +179,94 @@ private:
         return readIntegers(count, parseType(line.requireWord("a type")), name);
     }
 
-    void skipScalars(ByteSource& line) {
-        line.requireWord("a name");
+    void decodeScalars(ByteSource& line) {
+        const std::string_view name = line.requireWord("a name");
         const Stored type = parseType(line.requireWord("a type"));
         const std::string_view components = line.word();
         if (lowerCase(source_.word()) != "lookup_table") damaged("its scalars lack a lookup table");
         source_.line();
-        skipNumbers(tuples_, components.empty() ? 1 : toInteger(components, "components"), type);
+        decodeArray(name, tuples_, components.empty() ? 1 : toInteger(components, "components"),
+                    type);
     }
 
-    void skipField(ByteSource& line) {
+    /// Colours, as bytes; in text as parts of 1. With a fourth component, which is passed over.
+    void decodeColors(std::string_view name, std::int64_t components) {
+        if (!isKept(tuples_, components) || components < 3) {
+            skipNumbers(tuples_, components, Stored::UInt8);
+            return;
+        }
+        requireNumbers(tuples_, components, Stored::UInt8, "colours");
+        std::vector<Color> colors(tuples_);
+        for (Color& color : colors) {
+            for (std::int64_t c = 0; c < components; ++c) {
+                const double value = isBinary_ ? source_.number<std::uint8_t>(std::endian::big)
+                                               : 255 * source_.realWord("a colour");
+                if (c < 3) color[c] = value >= 0 && value <= 255 ? std::uint8_t(value + 0.5) : 0;
+            }
+        }
+        file_.pointArrays.push_back({arrayName(name), std::move(colors)});
+    }
+
+    /// Blanks and the like are %20 in the names of arrays.
+    static std::string arrayName(std::string_view word) {
+        std::string name;
+        for (std::size_t i = 0; i < word.size(); ++i) {
+            int code = 0;
+            const char* const digits = word.data() + i + 1;
+            if (word[i] == '%' && i + 2 < word.size() &&
+                std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2 && code > 0) {
+                name += static_cast<char>(code);
+                i += 2;
+            } else {
+                name += word[i];
+            }
+        }
+        return storedName(name);
+    }
+
+    /// Values of points, as many as there are, and not more components than a tensor has.
+    bool isKept(std::int64_t tuples, std::int64_t components) const {
+        constexpr std::int64_t kMostComponents = 9;
+        return keepsArrays_ && isPointData_ && tuples == std::ssize(file_.mesh.points) &&
+               components >= 1 && components <= kMostComponents;
+    }
+
+    void decodeArray(std::string_view name, std::int64_t tuples, std::int64_t components,
+                     Stored type) {
+        if (!isKept(tuples, components)) {
+            skipNumbers(tuples, components, type);
+            return;
+        }
+        requireNumbers(tuples, components, type, "values");
+        PointArray array{arrayName(name), {}, static_cast<int>(components)};
+        const auto count = static_cast<std::size_t>(tuples * components);
+        if (type == Stored::UInt8 && components == 3) {
+            std::vector<Color> colors(tuples);
+            for (Color& color : colors) {
+                for (std::uint8_t& shade : color) {
+                    const std::int64_t value = wholeNumber(type);
+                    shade = value >= 0 && value <= 255 ? static_cast<std::uint8_t>(value) : 0;
+                }
+            }
+            array.components = 1;
+            array.values = std::move(colors);
+        } else if (type == Stored::Float || type == Stored::Double) {
+            std::vector<double> numbers(count);
+            for (double& number : numbers) number = realNumber(type);
+            array.values = std::move(numbers);
+        } else {
+            std::vector<std::int64_t> numbers(count);
+            for (std::int64_t& number : numbers) number = wholeNumber(type);
+            array.values = std::move(numbers);
+        }
+        file_.pointArrays.push_back(std::move(array));
+    }
+
+    std::int64_t wholeNumber(Stored type) {
+        return isBinary_ ? binaryInteger(type) : source_.integerWord("a whole number");
+    }
+
+    void decodeField(ByteSource& line) {
         line.requireWord("a name");
         const std::int64_t arrays = line.integerWord("the number of arrays");
         for (std::int64_t i = 0; i < arrays; ++i) {
@@ -197,7 +283,7 @@ private:
             if (lowerCase(type) == "string") {
                 skipStrings(tuples, components);
             } else {
-                skipNumbers(tuples, components, parseType(type));
+                decodeArray(name, tuples, components, parseType(type));
             }
         }
     }
@@ -299,6 +385,7 @@ private:
 
     ByteSource source_;
     MeshFile file_;
+    bool keepsArrays_;
     bool isBinary_ = false;
     bool hasOffsets_ = false;   ///< cells as offsets and connectivity (version 5)
     bool isPointData_ = false;  ///< the attributes at this place are of points
@@ -313,7 +400,7 @@ void encodeVtkLegacy(const MeshRecord& record, ByteSink& sink) {
                             record.mesh.points.size() <= kMost32BitTriangles;
     vtkNew<vtkPolyDataWriter> writer;
     writer->SetInputData(toLabelledPolyData(record));
-    writer->SetHeader(headerLine(record.options.frame).c_str());
+    writer->SetHeader(headerLine(record.options).c_str());
     writer->SetFileTypeToBinary();
     writer->SetFileVersion(fits32Bits ? vtkDataWriter::VTK_LEGACY_READER_VERSION_4_2
                                       : vtkDataWriter::VTK_LEGACY_READER_VERSION_5_1);
@@ -325,8 +412,8 @@ void encodeVtkLegacy(const MeshRecord& record, ByteSink& sink) {
                              static_cast<std::size_t>(writer->GetOutputStringLength()));
 }
 
-MeshFile decodeVtkLegacy(std::string_view bytes) {
-    return LegacyDecoder(bytes).decode();
+MeshFile decodeVtkLegacy(std::string_view bytes, const MeshReadOptions& options) {
+    return LegacyDecoder(bytes, options.keepsPointArrays).decode();
 }
 
 }  // namespace adaptiso::meshio

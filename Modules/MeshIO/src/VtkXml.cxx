@@ -7,6 +7,7 @@
 #include <vtkXMLPolyDataWriter.h>
 
 #include <algorithm>
+#include <deque>
 #include <vector>
 
 #include "ByteSource.h"
@@ -26,6 +27,8 @@ struct DataArray {
 /// Collects the arrays that make up the surface, up to the appended data.
 class VtpHandler : public XmlHandler {
 public:
+    explicit VtpHandler(bool keepsArrays) : keepsArrays_(keepsArrays) {}
+
     void onStart(const std::string& element, const XmlAttributes& attributes) override {
         if (path_.empty()) startFile(element, attributes);
         if (element == "Piece") startPiece(attributes);
@@ -46,6 +49,7 @@ public:
 
     XmlAttributes file, piece, appended;
     DataArray points, normals, connectivity, offsets, frame;
+    std::deque<DataArray> values;  ///< at points, where they are kept
 
 private:
     void startFile(const std::string& element, const XmlAttributes& attributes) {
@@ -73,6 +77,9 @@ private:
         if (parent == "Polys" && name == "offsets") array_ = &offsets;
         if (parent == "PointData" && !normalsName_.empty() && name == normalsName_) {
             array_ = &normals;
+        } else if (parent == "PointData" && keepsArrays_ &&
+                   attributeOr(attributes, "type", "String") != "String") {
+            array_ = &values.emplace_back();
         }
         if (parent == "FieldData" && name == kFrameFieldName) array_ = &frame;
         if (array_ == nullptr) return;
@@ -80,6 +87,7 @@ private:
         arrayDepth_ = path_.size() + 1;
     }
 
+    bool keepsArrays_;
     std::vector<std::string> path_;  ///< the elements around this place
     std::string normalsName_;
     DataArray* array_ = nullptr;
@@ -116,6 +124,12 @@ public:
         if (type == "Float64") return binaryNumbers<double, T>(array, count, what);
         if (type == "Int32") return binaryNumbers<std::int32_t, T>(array, count, what);
         if (type == "Int64") return binaryNumbers<std::int64_t, T>(array, count, what);
+        if (type == "Int8") return binaryNumbers<std::int8_t, T>(array, count, what);
+        if (type == "UInt8") return binaryNumbers<std::uint8_t, T>(array, count, what);
+        if (type == "Int16") return binaryNumbers<std::int16_t, T>(array, count, what);
+        if (type == "UInt16") return binaryNumbers<std::uint16_t, T>(array, count, what);
+        if (type == "UInt32") return binaryNumbers<std::uint32_t, T>(array, count, what);
+        if (type == "UInt64") return binaryNumbers<std::uint64_t, T>(array, count, what);
         unsupported("its " + std::string(what) + " have the type " + printable(type),
                     "save them as Float64 or Int64");
     }
@@ -284,6 +298,37 @@ void decodeTriangles(const VtpHandler& handler, ArrayReader& reader, TriangleMes
     }
 }
 
+/// \return  nothing for an array of more components than a tensor has
+std::optional<PointArray> decodePointArray(const DataArray& stored, std::int64_t points,
+                                           ArrayReader& reader) {
+    constexpr std::int64_t kMostComponents = 9;
+    const XmlAttributes& attributes = stored.attributes;
+    const std::int64_t components =
+        toInteger(attributeOr(attributes, "NumberOfComponents", "1"), "a number of components");
+    if (components < 1 || components > kMostComponents) return std::nullopt;
+    const std::string& type = requireAttribute(attributes, "type");
+    const std::string what = "values";
+    PointArray array{
+        storedName(attributeOr(attributes, "Name", "")), {}, static_cast<int>(components)};
+    if (type.starts_with("Float")) {
+        array.values = reader.numbers<double>(stored, components * points, what);
+        return array;
+    }
+    std::vector<std::int64_t> numbers =
+        reader.numbers<std::int64_t>(stored, components * points, what);
+    if (type != "UInt8" || components != 3) {
+        array.values = std::move(numbers);
+        return array;
+    }
+    std::vector<Color> colors(points);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        colors[i / 3][i % 3] = static_cast<std::uint8_t>(numbers[i] & 0xFF);
+    }
+    array.components = 1;
+    array.values = std::move(colors);
+    return array;
+}
+
 }  // namespace
 
 void encodeVtkXml(const MeshRecord& record, ByteSink& sink) {
@@ -299,8 +344,8 @@ void encodeVtkXml(const MeshRecord& record, ByteSink& sink) {
     sink << writer->GetOutputString();
 }
 
-MeshFile decodeVtkXml(std::string_view bytes) {
-    VtpHandler handler;
+MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options) {
+    VtpHandler handler(options.keepsPointArrays);
     const std::size_t end = parseXml(bytes, handler);
     if (handler.piece.empty()) damaged("it has no piece");
     ArrayReader reader(handler,
@@ -318,6 +363,11 @@ MeshFile decodeVtkXml(std::string_view bytes) {
         for (std::int64_t i = 0; i < points; ++i) {
             file.mesh.normals.push_back(
                 storedNormal({normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]}));
+        }
+    }
+    for (const DataArray& stored : handler.values) {
+        if (auto array = decodePointArray(stored, points, reader)) {
+            file.pointArrays.push_back(std::move(*array));
         }
     }
     decodeTriangles(handler, reader, file.mesh);

@@ -34,14 +34,6 @@ bool isConnecting(const TriangleMesh& mesh, const Triangle& t) {
     return isInRange(mesh, t) && !hasRepeatedIndex(t);
 }
 
-/// \pre indices in range
-bool isDegenerate(const TriangleMesh& mesh, const Triangle& t) {
-    if (hasRepeatedIndex(t)) return true;
-    const Vec3 &a = mesh.points[t[0]], &b = mesh.points[t[1]], &c = mesh.points[t[2]];
-    const double longest2 = std::max({squaredNorm(b - a), squaredNorm(c - b), squaredNorm(a - c)});
-    return norm(areaVector2(a, b, c)) <= kMinAltitude * longest2;  // false with NaN
-}
-
 /// The triangles round every vertex: those of vertex v are triangle[first[v]] ... in ascending
 /// order, up to triangle[first[v + 1]].
 /// \tparam Number  std::uint32_t where three times the triangles fit: the lists are then half as
@@ -410,6 +402,13 @@ std::optional<std::int64_t> TopologyReport::genus() const {
         sum += *genus;
     }
     return sum;
+}
+
+bool isDegenerate(const TriangleMesh& mesh, const Triangle& t) {
+    if (hasRepeatedIndex(t)) return true;
+    const Vec3 &a = mesh.points[t[0]], &b = mesh.points[t[1]], &c = mesh.points[t[2]];
+    const double longest2 = std::max({squaredNorm(b - a), squaredNorm(c - b), squaredNorm(a - c)});
+    return norm(areaVector2(a, b, c)) <= kMinAltitude * longest2;  // false with NaN
 }
 
 TopologyReport checkTopology(const TriangleMesh& mesh, const TopologyOptions& options) {

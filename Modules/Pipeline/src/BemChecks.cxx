@@ -79,15 +79,17 @@ ModelChecks askOfModel(std::span<const TriangleMesh> surfaces, std::span<const d
         const SurfaceFacts& facts = asked.facts.back();
         for (Check& check : judgeSurface(facts, bemRules())) {
             const Vec3 place = placeOf(check, facts, surfaces[n]);
-            asked.checks.push_back({bemSurfaceName(n), std::move(check), place});
+            asked.checks.push_back({bemSurfaceName(n, surfaces.size()), std::move(check), place});
         }
     }
     for (std::size_t n = 0; n + 1 < surfaces.size(); ++n) {
         asked.nesting.push_back(checkNesting(surfaces[n], surfaces[n + 1], {.maxPairs = 1}));
         const NestingReport& report = asked.nesting.back();
-        for (Check& check : judgeNesting(report, bemSurfaceName(n), bemSurfaceName(n + 1), {},
-                                         bemRules(gapsMm[n]))) {
-            asked.checks.push_back({bemSurfaceName(n) + " in " + bemSurfaceName(n + 1),
+        for (Check& check :
+             judgeNesting(report, bemSurfaceName(n, surfaces.size()),
+                          bemSurfaceName(n + 1, surfaces.size()), {}, bemRules(gapsMm[n]))) {
+            asked.checks.push_back({bemSurfaceName(n, surfaces.size()) + " in " +
+                                        bemSurfaceName(n + 1, surfaces.size()),
                                     std::move(check), report.gap.nearest.pointA});
         }
     }
@@ -123,8 +125,8 @@ void askWhatIsUsual(BemModel& model, const BemHooks& hooks) {
         asked.image = model.image;
         const AffineTransform toRas = lpsToFrame(CoordinateFrame::Ras, {});
         for (HeadNote& note : judgePlausibility(model.meshes, asked)) {
-            std::string subject = bemSurfaceName(note.surface);
-            if (note.next) subject += " in " + bemSurfaceName(*note.next);
+            std::string subject = bemSurfaceName(note.surface, model.meshes.size());
+            if (note.next) subject += " in " + bemSurfaceName(*note.next, model.meshes.size());
             ToldNote told{std::move(note), std::move(subject), CoordinateFrame::Ras, {}};
             for (const Vec3& p : told.note.pointsMm) told.placesMm.push_back(toRas(p));
             model.plausibility.push_back(std::move(told));

@@ -1,31 +1,24 @@
 #include "adaptiso/Pipeline/BemFiles.h"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
+#include "BemFileKinds.h"
 #include "BemReadme.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/HeadModel/ExportFreeSurfer.h"
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/HeadModel/ExportOpenMeeg.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
-#include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/MeshIO/PointFiles.h"
 
 namespace adaptiso {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<ImageGeometry> volumeOf(CoordinateFrame frame, const BemModel& model) {
-    return frame == CoordinateFrame::TkRas ? model.tkRasVolume : std::nullopt;
-}
-
-void writeGeneral(const TriangleMesh& surface, const fs::path& path, const BemModel& model,
-                  const BemFileOptions& options) {
-    MeshWriteOptions write;
-    write.frame = options.frame;
-    write.volume = volumeOf(write.frame, model);
-    writeMesh(surface, path, write);
-}
 
 void writeText(const fs::path& path, const std::string& text) {
     errno = 0;
@@ -37,37 +30,81 @@ void writeText(const fs::path& path, const std::string& text) {
                     (errno == 0 ? std::string() : std::string(": ") + std::strerror(errno)));
 }
 
-}  // namespace
-
-std::vector<std::string_view> bemFileNames() {
-    return {"inner_skull.surf", "outer_skull.surf", "outer_skin.surf", "inner_skull.tri",
-            "outer_skull.tri",  "outer_skin.tri",   "inner_skull.gii", "outer_skull.gii",
-            "outer_skin.gii",   "inner_skull.vtp",  "outer_skull.vtp", "outer_skin.vtp",
-            "model.geom",       "model.cond",       "report.json",     "spots.png",
-            "README.md"};
+std::vector<NamedPoint> pointsIn(CoordinateFrame frame, const BemModel& model) {
+    if (!model.electrodes) return {};
+    std::vector<NamedPoint> points = model.electrodes->all();
+    const AffineTransform move = lpsToFrame(frame, model.tkRasVolume);
+    for (NamedPoint& p : points) p.point = move(p.point);
+    return points;
 }
 
-std::string bemFileName(std::size_t surface, const char* extension) {
-    return bemSurfaceName(surface) + extension;
+void writeElectrodes(const BemModel& model, const BemFileOptions& options, const PlaceFile& place) {
+    const std::vector<NamedPoint> points = pointsIn(options.frame, model);
+    if (points.empty()) return;
+    const fs::path tsv = place(kElectrodesTsv);
+    writeBidsElectrodes(points, tsv, place(kElectrodesJson), options.frame);
+    writeElc(points, place(kElectrodesElc));
+    writeSfp(points, place(kElectrodesSfp));
+    const CoordinateFrame mri = model.tkRasVolume ? CoordinateFrame::TkRas : CoordinateFrame::Ras;
+    writeFiffPoints(pointsIn(mri, model), place(kElectrodesFif));
+    if (model.electrodes->points.empty()) return;
+    const double unit = options.unit == OpenMeegUnit::Metres ? 0.001 : 1;
+    std::string lines;
+    for (const NamedPoint& p : points) {
+        if (p.kind != PointKind::Electrode) continue;
+        const Vec3 at = unit * p.point;
+        lines +=
+            formatFixed(at.x, 6) + " " + formatFixed(at.y, 6) + " " + formatFixed(at.z, 6) + "\n";
+    }
+    writeText(place(kElectrodesTxt), lines);
+}
+
+/// Landmarks first, as BESA wants them.
+void writeBesa(const BemModel& model, const BemFileOptions& options, const PlaceFile& place) {
+    std::vector<NamedPoint> points = pointsIn(options.frame, model);
+    std::stable_partition(points.begin(), points.end(),
+                          [](const NamedPoint& p) { return p.kind != PointKind::Electrode; });
+    const AffineTransform move = lpsToFrame(options.frame, model.tkRasVolume);
+    std::int64_t number = 0;
+    for (const Vec3& p : model.meshes.back().points) {
+        points.push_back({"S" + std::to_string(++number), PointKind::Other, move(p)});
+    }
+    writeSfp(points, place(kBesaFile));
+}
+
+}  // namespace
+
+std::vector<std::string> bemFileNames() {
+    std::vector<std::string> names{"model.geom",   "model.cond",   "report.json",   "spots.png",
+                                   "README.md",    kFiffModel,     kFiffDenseHead,  kFiffSparseHead,
+                                   kFieldTripFile, kElectrodesTsv, kElectrodesJson, kElectrodesElc,
+                                   kElectrodesSfp, kElectrodesFif, kElectrodesTxt,  kBesaFile};
+    for (std::size_t n = 0; n < kHeadSurfaceCount; ++n) {
+        const HeadSurface surface = headSurface(n, kHeadSurfaceCount);
+        for (const char* extension : {".surf", ".tri", ".gii", ".vtp"}) {
+            names.push_back(bemFileName(surface, extension));
+        }
+        for (std::string& name :
+             std::array{simNibsName(surface), brainstormName(surface), curryName(surface)}) {
+            names.push_back(std::move(name));
+        }
+    }
+    return names;
+}
+
+std::string bemFileName(HeadSurface surface, const char* extension) {
+    return std::string(toString(surface)) + extension;
 }
 
 void writeBemFiles(const BemModel& model, const BemFileOptions& options, const std::string& maker,
                    const std::function<fs::path(const std::string&)>& place) {
     std::vector<std::string> triangleFiles;
     for (std::size_t n = 0; n < model.meshes.size(); ++n) {
-        const TriangleMesh& mesh = model.meshes[n];
-        writeFreeSurferSurface(mesh, place(bemFileName(n, ".surf")), model.tkRasVolume,
-                               model.tkRasName);
-        triangleFiles.push_back(bemFileName(n, ".tri"));
-        writeOpenMeegSurface(mesh, place(triangleFiles.back()), options.frame, options.unit,
-                             volumeOf(options.frame, model));
-        if (options.writesGifti) {
-            writeGeneral(mesh, place(bemFileName(n, ".gii")), model, options);
-        }
-        if (options.writesVtp) {
-            writeGeneral(mesh, place(bemFileName(n, ".vtp")), model, options);
-        }
+        triangleFiles.push_back(bemFileName(headSurface(n, model.meshes.size()), ".tri"));
     }
+    for (const BemFileKind& kind : bemFileKinds(model, options)) kind.write(place);
+    if (model.electrodes) writeElectrodes(model, options, place);
+    if (options.writesBesa) writeBesa(model, options, place);
     writeText(place("model.geom"), openMeegGeometry(triangleFiles));
     writeText(place("model.cond"),
               openMeegConductivities(model.meshes.size(), model.options.conductivities));

@@ -14,9 +14,9 @@ Json remeshJson(const BemSurface& surface) {
             {"maximumVertexDistanceMm", number(surface.remesh->maximumVertexDistanceMm)}};
 }
 
-Json surfaceJson(std::size_t n, const BemSurface& surface) {
+Json surfaceJson(const std::string& name, const BemSurface& surface) {
     const ShapeReport& shape = surface.shape;
-    return {{"name", bemSurfaceName(n)},
+    return {{"name", name},
             {"denseTriangles", surface.denseTriangles},
             {"vertices", surface.topology.vertices},
             {"triangles", surface.topology.triangles},
@@ -55,6 +55,33 @@ Json gapJson(const NestedGap& gap) {
             {"outerPointMm", vector(gap.outerPointMm)}};
 }
 
+Json pointJson(const std::string& name, const Vec3& p) {
+    return {{"name", name}, {"pointMm", vector(p)}};
+}
+
+Json landmarksJson(const BemModel& model) {
+    if (!model.electrodes || !model.electrodes->landmarks) return nullptr;
+    const Landmarks& l = *model.electrodes->landmarks;
+    return {{"origin", model.electrodes->landmarkOrigin},
+            {"nasionMm", vector(l.nasionMm)},
+            {"leftEarMm", vector(l.leftEarMm)},
+            {"rightEarMm", vector(l.rightEarMm)},
+            {"nasionUncertaintyMm", number(l.nasionUncertaintyMm)},
+            {"earUncertaintyMm", number(l.earUncertaintyMm)}};
+}
+
+Json electrodesJson(const BemModel& model) {
+    if (!model.electrodes || model.electrodes->points.empty()) return nullptr;
+    const BemElectrodes& e = *model.electrodes;
+    Json points = Json::array();
+    for (const NamedPoint& p : e.points) points.push_back(pointJson(p.name, p.point));
+    return {{"computed", e.areComputed},
+            {"meanMovedMm", number(e.meanMovedMm)},
+            {"farthestMovedMm", number(e.farthestMovedMm)},
+            {"farthest", e.areComputed ? Json(nullptr) : Json(e.farthestName)},
+            {"points", points}};
+}
+
 }  // namespace
 
 Json bemInputJson(const BemModel& model) {
@@ -76,30 +103,35 @@ Json bemOptionsJson(const BemModelOptions& options) {
     if (options.edgeLengthMm) {
         edges = {options.edgeLengthMm->minimumMm, options.edgeLengthMm->maximumMm};
     }
-    return {{"layers", options.surfaceCount()},
-            {"vertices", options.vertices.empty() ? Json(nullptr) : Json(options.vertices)},
-            {"edgeLengthMm", edges},
-            {"minGapMm", {b.minSkullMm, b.minScalpMm}},
-            {"smoothingMm", b.smoothingMm},
-            {"closingMm", b.closingMm},
-            {"cutNecksMm", b.cutNecksMm},
-            {"voxelMm", b.stepMm > 0 ? Json(b.stepMm) : Json(nullptr)},
-            {"csfMm", b.csfMm},
-            {"skullMm", b.skullMm},
-            {"maxSkullMm", b.maxSkullMm},
-            {"skullHu", b.skullHu},
-            {"skinHu", b.skinHu},
-            {"conductivity",
-             {{"brain", options.conductivities.brain},
-              {"skull", options.conductivities.skull},
-              {"scalp", options.conductivities.scalp}}}};
+    return {
+        {"layers", options.surfaceCount()},
+        {"vertices", options.vertices.empty() ? Json(nullptr) : Json(options.vertices)},
+        {"edgeLengthMm", edges},
+        {"minGapMm", {b.minSkullMm, b.minScalpMm}},
+        {"minCsfMm", b.minCsfMm},
+        {"sulciMm", b.sulciMm},
+        {"smoothingMm", b.smoothingMm},
+        {"closingMm", b.closingMm},
+        {"cutNecksMm", b.cutNecksMm},
+        {"voxelMm", b.stepMm > 0 ? Json(b.stepMm) : Json(nullptr)},
+        {"csfMm", b.csfMm},
+        {"skullMm", b.skullMm},
+        {"maxSkullMm", b.maxSkullMm},
+        {"skullHu", b.skullHu},
+        {"skinHu", b.skinHu},
+        {"conductivity",
+         {{"brain", options.conductivities.brain},
+          {"csf", options.boundaries.withBrain ? Json(options.conductivities.csf) : Json(nullptr)},
+          {"skull", options.conductivities.skull},
+          {"scalp", options.conductivities.scalp}}}};
 }
 
 Json bemModelJson(const BemModel& model) {
     Json surfaces = Json::array(), gaps = Json::array(), checks = Json::array();
     Json findings = Json::array();
     for (std::size_t n = 0; n < model.surfaces.size(); ++n) {
-        surfaces.push_back(surfaceJson(n, model.surfaces[n]));
+        surfaces.push_back(
+            surfaceJson(bemSurfaceName(n, model.surfaces.size()), model.surfaces[n]));
     }
     for (const NestedGap& gap : model.gaps) gaps.push_back(gapJson(gap));
     for (const BemCheck& check : model.checks) {
@@ -115,6 +147,8 @@ Json bemModelJson(const BemModel& model) {
             {"surfaces", surfaces},
             {"gaps", gaps},
             {"checks", checks},
+            {"landmarks", landmarksJson(model)},
+            {"electrodes", electrodesJson(model)},
             {"plausibility", notesJson(inLps(model.plausibility))},
             {"findings", findings}};
 }

@@ -20,8 +20,14 @@ std::string BemModel::failureText() const {
     return text;
 }
 
-std::string bemSurfaceName(std::size_t surface) {
-    return std::string(toString(static_cast<HeadSurface>(surface)));
+std::vector<double> BemModelOptions::minGapsMm() const {
+    const std::vector<double> all{boundaries.minCsfMm, boundaries.minSkullMm,
+                                  boundaries.minScalpMm};
+    return {all.end() - static_cast<std::ptrdiff_t>(surfaceCount() - 1), all.end()};
+}
+
+std::string bemSurfaceName(std::size_t surface, std::size_t count) {
+    return std::string(toString(headSurface(surface, count)));
 }
 
 }  // namespace adaptiso

@@ -18,9 +18,80 @@ std::string frameText(CoordinateFrame frame) {
 
 std::string conductivityTuple(const BemModelOptions& options) {
     const ConductivityModel& c = options.conductivities;
+    // MNE takes the inner three of four layers' surfaces: CSF counts as brain there
     if (options.boundaries.innerSkullOnly) return "(" + formatNumber(c.brain) + ",)";
     return "(" + formatNumber(c.brain) + ", " + formatNumber(c.skull) + ", " +
            formatNumber(c.scalp) + ")";
+}
+
+bool hasLandmarks(const BemModel& model) {
+    return model.electrodes && model.electrodes->landmarks &&
+           !model.electrodes->landmarks->areGuessed();
+}
+
+/// Rows of the table of files, for what else was asked for.
+std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
+                        const std::string& frame) {
+    const std::string mri = model.tkRasVolume ? "surface RAS (tkRAS) of the image" : "scanner RAS";
+    std::string rows;
+    if (options.writesGifti || options.writesVtp) {
+        rows += "| `*.gii`, `*.vtp` | viewers | " + frame + "; millimetres |\n";
+    }
+    if (options.writesFif) {
+        rows += std::string("| `bem.fif`") +
+                (model.headShape ? ", `head-dense.fif`, `head-sparse.fif`" : "") + " | MNE | " +
+                mri + " (\"MRI coordinates\"); metres |\n";
+    }
+    if (options.writesFieldTrip) {
+        rows += "| `headmodel.mat` | FieldTrip | " + frame + "; millimetres |\n";
+    }
+    if (options.writesBrainstorm) {
+        rows += std::string("| `tess_*_bem.mat` | Brainstorm | ") +
+                (hasLandmarks(model) ? "SCS" : "scanner RAS (\"world\", not SCS)") + "; metres |\n";
+    }
+    if (options.writesSimNibs) {
+        rows += "| `csf.stl`, `bone.stl`, `skin.stl` | SimNIBS | scanner RAS; millimetres |\n";
+    }
+    if (options.writesCurry) {
+        rows += "| `*.s0*` | Curry | " + frame + "; millimetres |\n";
+    }
+    if (options.writesBesa) rows += "| `head.sfp` | BESA | " + frame + "; millimetres |\n";
+    if (model.electrodes && !model.electrodes->all().empty()) {
+        rows +=
+            "| `electrodes.tsv` with `coordsystem.json`, `electrodes.elc`, `electrodes.sfp` | "
+            "BIDS, ASA, "
+            "BESA | " +
+            frame + "; millimetres |\n| `electrodes-dig.fif` | MNE (read_dig_fif) | " + mri +
+            "; metres |\n";
+    }
+    return rows;
+}
+
+/// How toolboxes take their files, for what else was asked for.
+std::string toolboxText(const BemModel& model, const BemFileOptions& options) {
+    const bool isOne = model.options.boundaries.innerSkullOnly;
+    std::string text;
+    if (options.writesFif) {
+        text +=
+            "\nMNE-Python without FreeSurfer's folders:\n```python\nimport mne\n"
+            "bem = mne.make_bem_solution(mne.read_bem_surfaces('bem.fif'))\n```\n";
+    }
+    if (options.writesFieldTrip) {
+        text += isOne ? "\nFieldTrip (`type` is singleshell, which needs no more):\n```matlab\n"
+                        "load headmodel.mat\n```\n"
+                      : "\nFieldTrip, with OpenMEEG (or ft_headmodel_dipoli, _bemcp):\n"
+                        "```matlab\nload headmodel.mat\n"
+                        "headmodel = ft_headmodel_openmeeg(headmodel.bnd, 'conductivity', "
+                        "headmodel.cond, 'tissue', headmodel.tissue);\n```\n";
+    }
+    if (options.writesBrainstorm && !hasLandmarks(model)) {
+        text +=
+            "\nBrainstorm takes the points of `tess_*_bem.mat` for SCS coordinates, which follow "
+            "from nasion and ears; these are the scanner's: convert them with `cs_convert(sMri, "
+            "'world', 'scs', Vertices)`, or import the `.gii` files as \"GIFTI / World "
+            "coordinates\".\n";
+    }
+    return text;
 }
 
 /// From the model to the gain matrix.
@@ -54,11 +125,15 @@ std::string bemReadme(const BemModel& model, const BemFileOptions& options,
     const bool isOne = model.options.boundaries.innerSkullOnly;
     const std::string frame = frameText(options.frame);
     const std::string unit = isMetres ? "metres" : "millimetres";
-    std::string text = "# Boundary element head model\nMade by " + maker + ". " +
-                       (isOne ? "One surface (inner skull), for MEG."
-                              : "Three surfaces: inner skull, outer skull, outer skin.") +
-                       " Each is closed, of genus 0, outward" +
-                       (isOne ? ".\n" : ", and lies strictly inside the next.\n");
+    std::string text =
+        "# Boundary element head model\nMade by " + maker + ". " +
+        (isOne ? "One surface (inner skull), for MEG."
+         : model.options.boundaries.withBrain
+             ? "Four surfaces: brain, inner skull (CSF lies between them), outer skull, "
+               "outer skin."
+             : "Three surfaces: inner skull, outer skull, outer skin.") +
+        " Each is closed, of genus 0, outward" +
+        (isOne ? ".\n" : ", and lies strictly inside the next.\n");
     text += "\n| files | for | frame and unit |\n|---|---|---|\n";
     text += std::string("| `*.surf` | FreeSurfer, MNE | ") +
             (model.tkRasVolume ? "surface RAS (tkRAS) of the image; the footer leads to scanner RAS"
@@ -66,9 +141,7 @@ std::string bemReadme(const BemModel& model, const BemFileOptions& options,
             "; millimetres |\n";
     text += "| `model.geom`, `model.cond`, `*.tri` | OpenMEEG | " + frame + "; " + unit +
             (isMetres ? " (potentials in volts)" : "") + " |\n";
-    if (options.writesGifti || options.writesVtp) {
-        text += "| `*.gii`, `*.vtp` | viewers | " + frame + "; millimetres |\n";
-    }
+    text += toolboxRows(model, options, frame);
     text += "| `report.json` | what was made, measured and checked | scanner LPS; millimetres |\n";
 
     text +=
@@ -77,7 +150,7 @@ std::string bemReadme(const BemModel& model, const BemFileOptions& options,
         "ico=None, conductivity=" +
         conductivityTuple(model.options) +
         ", subjects_dir='SUBJECTS_DIR')\nbem = mne.make_bem_solution(model)\n```\n";
-    return text + openMeegText(isOne, frame, unit);
+    return text + openMeegText(isOne, frame, unit) + toolboxText(model, options);
 }
 
 }  // namespace adaptiso

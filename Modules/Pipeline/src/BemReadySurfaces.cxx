@@ -80,7 +80,7 @@ bool isBall(const TriangleMesh& mesh) {
 }
 
 void note(BemModel& model, std::size_t n, const std::string& text) {
-    model.notes.push_back(bemSurfaceName(n) + ": " + text);
+    model.notes.push_back(bemSurfaceName(n, model.options.surfaceCount()) + ": " + text);
 }
 
 /// What is to be done to a surface. Does what leaves the surface where it is: drops what is of no
@@ -120,9 +120,9 @@ void findWrongSizes(const std::vector<TriangleMesh>& surfaces, BemModel& model) 
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
         for (const Check& check : askOfSurface(surfaces[n])) {
             if (check.key != "plausibleSize" || !check.breaksProfile()) continue;
-            model.findings.push_back(
-                {bemSurfaceName(n) + ": " + std::string(check.name) + ": " + check.finding,
-                 surfaces[n].points[surfaces[n].triangles[0][0]]});
+            model.findings.push_back({bemSurfaceName(n, surfaces.size()) + ": " +
+                                          std::string(check.name) + ": " + check.finding,
+                                      surfaces[n].points[surfaces[n].triangles[0][0]]});
         }
     }
 }

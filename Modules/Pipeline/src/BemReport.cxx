@@ -1,6 +1,7 @@
 #include "adaptiso/Pipeline/BemReport.h"
 
 #include <algorithm>
+#include <array>
 
 #include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Pipeline/ImageFacts.h"
@@ -8,12 +9,15 @@
 namespace adaptiso {
 namespace {
 
-std::string pairName(std::size_t inner) {
-    return bemSurfaceName(inner) + " in " + bemSurfaceName(inner + 1);
+std::string pairName(std::size_t inner, std::size_t count) {
+    return bemSurfaceName(inner, count) + " in " + bemSurfaceName(inner + 1, count);
 }
 
 void tellVerdict(const BemModel& model, Report& report) {
-    const std::string layers = model.options.surfaceCount() == 1 ? "one layer" : "three layers";
+    const std::size_t count = model.options.surfaceCount();
+    const std::string layers = count == 1   ? "one layer"
+                               : count == 3 ? "three layers"
+                                            : "four layers";
     report.title = "Head model of " + layers;
     if (model.hasModel()) {
         report.verdict = ReportVerdict::Passed;
@@ -54,7 +58,8 @@ void tellOptions(const BemModel& model, Report& report) {
     const BoundaryOptions& head = options.boundaries;
     std::string triangles = model.source == "surfaces"
                                 ? "as the surfaces came, where they could stay"
-                                : "2,562 vertices a surface (default)";
+                            : head.withBrain ? "by the layers' thickness, 10,000 vertices at most"
+                                             : "2,562 vertices a surface (default)";
     if (options.vertices.size() == 1) {
         triangles = formatCount(options.vertices.front()) + " vertices a surface";
     } else if (!options.vertices.empty()) {
@@ -74,11 +79,16 @@ void tellOptions(const BemModel& model, Report& report) {
             {"Skull, scalp at least",
              formatNumber(head.minSkullMm) + " mm, " + formatNumber(head.minScalpMm) + " mm"});
     }
+    if (head.withBrain) {
+        report.options.push_back({"CSF at least", formatNumber(head.minCsfMm) + " mm"});
+    }
     report.options.push_back({"Smoothing", formatNumber(head.smoothingMm) + " mm"});
     const ConductivityModel& sigma = options.conductivities;
-    report.options.push_back({"Conductivity", "brain " + formatNumber(sigma.brain) + ", skull " +
-                                                  formatNumber(sigma.skull) + ", scalp " +
-                                                  formatNumber(sigma.scalp) + " S/m"});
+    report.options.push_back(
+        {"Conductivity", "brain " + formatNumber(sigma.brain) +
+                             (head.withBrain ? ", CSF " + formatNumber(sigma.csf) : "") +
+                             ", skull " + formatNumber(sigma.skull) + ", scalp " +
+                             formatNumber(sigma.scalp) + " S/m"});
     report.options.push_back(
         {"FreeSurfer's files in", model.tkRasVolume ? "tkRAS mm" : "scanner RAS mm"});
 }
@@ -100,9 +110,9 @@ void tellSpots(const BemModel& model, Report& report) {
     }
     for (std::size_t n = 0; n < model.gaps.size(); ++n) {
         const NestedGap& gap = model.gaps[n];
-        report.spots.push_back(
-            {"smallest gap, " + formatFixed(gap.mm, 2) + " mm, of " + pairName(n),
-             0.5 * (gap.innerPointMm + gap.outerPointMm), false});
+        report.spots.push_back({"smallest gap, " + formatFixed(gap.mm, 2) + " mm, of " +
+                                    pairName(n, model.meshes.size()),
+                                0.5 * (gap.innerPointMm + gap.outerPointMm), false});
     }
 }
 
@@ -116,7 +126,7 @@ ReportTable surfaceTable(const BemModel& model) {
         const BemSurface& surface = model.surfaces[n];
         const auto& remesh = surface.remesh;
         table.rows.push_back(
-            {bemSurfaceName(n), formatCount(surface.topology.vertices),
+            {bemSurfaceName(n, model.meshes.size()), formatCount(surface.topology.vertices),
              formatCount(surface.topology.triangles), formatRounded(surface.areaMm2 / 100),
              formatRounded(surface.volumeMm3 / 1000),
              formatFixed(surface.shape.edgeMm.minimum, 1) + " to " +
@@ -139,6 +149,49 @@ ReportTable fileTable(const std::vector<std::pair<std::string, std::uintmax_t>>&
     return table;
 }
 
+/// A small octahedron at every electrode and landmark.
+TriangleMesh electrodeMarks(const std::vector<NamedPoint>& points) {
+    constexpr double kRadiusMm = 3;
+    constexpr std::array<Triangle, 8> kFaces{
+        {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+    TriangleMesh marks;
+    for (const NamedPoint& point : points) {
+        const auto first = static_cast<VertexId>(marks.points.size());
+        for (int corner = 0; corner < 6; ++corner) {
+            Vec3 at = point.point;
+            at[corner / 2] += corner % 2 == 0 ? kRadiusMm : -kRadiusMm;
+            marks.points.push_back(at);
+        }
+        for (const Triangle& t : kFaces) {
+            marks.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        }
+    }
+    return marks;
+}
+
+void tellElectrodes(const BemModel& model, Report& report) {
+    if (!model.electrodes) return;
+    const BemElectrodes& placed = *model.electrodes;
+    const std::vector<NamedPoint> all = placed.all();
+    if (all.empty()) return;
+    ReportTable table{"Electrodes and landmarks", {"Name", "x, mm", "y, mm", "z, mm"}, {}};
+    for (const NamedPoint& p : all) {
+        table.rows.push_back({p.name, formatFixed(-p.point.x, 1), formatFixed(-p.point.y, 1),
+                              formatFixed(p.point.z, 1)});
+    }
+    report.tables.push_back(std::move(table));
+    if (placed.landmarks) {
+        const Landmarks& l = *placed.landmarks;
+        report.options.push_back(
+            {"Nasion and ears",
+             l.areGuessed() ? "guessed, to " + formatShort(l.nasionUncertaintyMm) + " mm and " +
+                                  formatShort(l.earUncertaintyMm) + " mm"
+             : placed.landmarkOrigin == "file" ? "as the electrodes' file has them"
+                                               : "as given"});
+    }
+    report.surfaces.push_back({"electrodes and landmarks", electrodeMarks(all)});
+}
+
 }  // namespace
 
 Report bemReport(const BemModel& model,
@@ -159,10 +212,12 @@ Report bemReport(const BemModel& model,
             "The surfaces shown are those that the model was tried from; none was written.");
     }
     for (std::size_t n = 0; n < model.meshes.size(); ++n) {
-        report.surfaces.push_back({bemSurfaceName(n), model.meshes[n]});
+        report.surfaces.push_back({bemSurfaceName(n, model.meshes.size()), model.meshes[n]});
         report.surfaces.back().isWithinSkull =
-            static_cast<HeadSurface>(n) == HeadSurface::InnerSkull && model.source != "surfaces";
+            headSurface(n, model.meshes.size()) <= HeadSurface::InnerSkull &&
+            model.source != "surfaces";
     }
+    tellElectrodes(model, report);
     return report;
 }
 

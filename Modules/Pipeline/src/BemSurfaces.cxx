@@ -1,6 +1,8 @@
 #include "adaptiso/Pipeline/BemSurfaces.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
@@ -17,6 +19,16 @@ constexpr double kFitMm = 0.5;
 /// Files keep floats: a gap must not fall short by their rounding (3e-5 mm at 500 mm).
 constexpr double kRoundingMm = 1e-4;
 
+/// Of four surfaces the thinnest layer, the CSF, decides how short edges are: adaptive lengths,
+/// scaled until the whole model has no more vertices than solvers take.
+constexpr EdgeLengthRange kFourLayerEdgesMm{4, 8};
+constexpr std::int64_t kMostInAll = 10'000;
+
+bool choosesVertices(const BemModel& model) {
+    return model.options.boundaries.withBrain && model.options.vertices.empty() &&
+           !model.options.edgeLengthMm;
+}
+
 RemeshOptions remeshOptions(const BemModel& model, const std::vector<TriangleMesh>& dense,
                             std::size_t n) {
     const BemModelOptions& options = model.options;
@@ -24,6 +36,7 @@ RemeshOptions remeshOptions(const BemModel& model, const std::vector<TriangleMes
     // what is left of the voxels' stairs after smoothing; ready surfaces are taken at their word
     if (model.source != "surfaces") remesh.fitMm = kFitMm;
     remesh.edgeLengthMm = options.edgeLengthMm;
+    if (choosesVertices(model)) remesh.edgeLengthMm = kFourLayerEdgesMm;
     const std::int64_t usual = model.surfaces[n].ownVertices.value_or(kDefaultVertices);
     remesh.vertices = options.verticesOf(n).value_or(options.edgeLengthMm ? 0 : usual);
     if (n > 0) remesh.neighbours.push_back(&dense[n - 1]);
@@ -32,15 +45,39 @@ RemeshOptions remeshOptions(const BemModel& model, const std::vector<TriangleMes
 }
 
 /// Edges in a wrong unit ask for billions of triangles. \throws InvalidInput
-void requireFewVertices(const TriangleMesh& mesh, const BemModelOptions& options, std::size_t n) {
+void requireFewVertices(const TriangleMesh& mesh, const BemModel& model, std::size_t n) {
+    const BemModelOptions& options = model.options;
     if (!options.edgeLengthMm || options.verticesOf(n)) return;
     // equilateral triangles, two a vertex, with the longest edges allowed
     const double longestMm = options.edgeLengthMm->maximumMm;
     const double least = surfaceArea(mesh) / (std::sqrt(3.0) / 2 * longestMm * longestMm);
     if (least <= kMostVertices) return;
     throw InvalidInput("edges of at most " + formatShort(longestMm) + " mm make more than " +
-                       formatCount(kMostVertices) + " vertices of " + bemSurfaceName(n) +
-                       "; they must be longer");
+                       formatCount(kMostVertices) + " vertices of " +
+                       bemSurfaceName(n, model.surfaces.size()) + "; they must be longer");
+}
+
+/// How many vertices each surface gets: by the lengths, or all with the same share of the most.
+void chooseVertices(const std::vector<TriangleMesh>& dense, BemModel& model) {
+    std::vector<std::int64_t> wanted;
+    for (std::size_t n = 0; n < dense.size(); ++n) {
+        RemeshOptions remesh = remeshOptions(model, dense, n);
+        remesh.vertices = 0;
+        wanted.push_back(verticesForEdges(dense[n], remesh));
+    }
+    const std::int64_t all = std::accumulate(wanted.begin(), wanted.end(), std::int64_t{0});
+    if (all > kMostInAll) {
+        model.notes.push_back("edges as long as the layers beside them are thick (" +
+                              formatShort(kFourLayerEdgesMm.minimumMm) + " to " +
+                              formatShort(kFourLayerEdgesMm.maximumMm) + " mm) take " +
+                              formatCount(all) + " vertices; all edges are " +
+                              formatFixed(std::sqrt(static_cast<double>(all) / kMostInAll), 2) +
+                              " times as long, for " + formatCount(kMostInAll));
+    }
+    for (std::size_t n = 0; n < wanted.size(); ++n) {
+        if (all > kMostInAll) wanted[n] = std::max<std::int64_t>(42, wanted[n] * kMostInAll / all);
+        model.surfaces[n].ownVertices = wanted[n];
+    }
 }
 
 /// Ready surfaces keep their triangles unless others are asked for.
@@ -62,11 +99,11 @@ std::vector<TriangleMesh> remeshed(const std::vector<TriangleMesh>& dense, BemMo
                 hooks.progress("remesh",
                                static_cast<double>(n) / static_cast<double>(dense.size()));
             }
-            requireFewVertices(dense[n], model.options, n);
+            requireFewVertices(dense[n], model, n);
             Remeshed result = remeshForBem(dense[n], remeshOptions(model, dense, n));
             model.surfaces[n].remesh = result.statistics;
             for (Finding& finding : result.findings) {
-                finding.what = bemSurfaceName(n) + ": " + finding.what;
+                finding.what = bemSurfaceName(n, model.surfaces.size()) + ": " + finding.what;
                 model.findings.push_back(std::move(finding));
             }
             surfaces.push_back(std::move(result.mesh));
@@ -79,6 +116,8 @@ std::vector<TriangleMesh> remeshed(const std::vector<TriangleMesh>& dense, BemMo
 std::vector<TriangleMesh> nested(const std::vector<TriangleMesh>& surfaces, BemModel& model,
                                  const BemHooks& hooks) {
     NestOptions nest;
+    // its distance to the sources is what potentials depend on most; the brain gives way
+    nest.fixedSurface = model.options.boundaries.withBrain ? 1 : 0;
     nest.minGapsMm.clear();
     for (const double gap : model.options.minGapsMm()) nest.minGapsMm.push_back(gap + kRoundingMm);
     NestResult result;
@@ -90,12 +129,30 @@ std::vector<TriangleMesh> nested(const std::vector<TriangleMesh>& surfaces, BemM
 
 /// Solvers take the square of the number of vertices in memory, the cube in time.
 void warnOfMany(BemModel& model) {
-    constexpr std::int64_t kMany = 10'000;
     std::int64_t vertices = 0;
     for (const TriangleMesh& surface : model.meshes) vertices += std::ssize(surface.points);
-    if (vertices <= kMany) return;
+    if (vertices <= kMostInAll) return;
     model.warnings.push_back(formatCount(vertices) +
                              " vertices in all; MNE warns above 10,000; ask for fewer");
+}
+
+/// The skin as it was found, and the model's with few triangles.
+HeadShape headShapeOf(TriangleMesh dense, BemModel& model) {
+    constexpr std::int64_t kVertices = 1252;  // 2,500 triangles, as MNE's own sparse heads have
+    HeadShape shape{std::move(dense), model.meshes.back()};
+    shape.dense.normals.clear();
+    if (std::ssize(shape.sparse.points) <= kVertices) return shape;
+    RemeshOptions remesh;
+    remesh.vertices = kVertices;
+    Remeshed sparse = remeshForBem(shape.sparse, remesh);
+    if (sparse.findings.empty()) {
+        shape.sparse = std::move(sparse.mesh);
+    } else {
+        model.notes.push_back("the sparse head has the triangles of " +
+                              bemSurfaceName(model.meshes.size() - 1, model.meshes.size()) + ": " +
+                              sparse.findings.front().what);
+    }
+    return shape;
 }
 
 }  // namespace
@@ -124,12 +181,22 @@ std::vector<TriangleMesh> extractSurfaces(const HeadBoundaries& boundaries, BemM
 
 void finishBemModel(std::vector<TriangleMesh> dense, BemModel& model, const BemHooks& hooks) {
     if (model.hasModel()) {
+        const bool comesDense = std::all_of(
+            model.surfaces.begin(), model.surfaces.end(),
+            [&](const BemSurface& surface) { return !staysAsItCame(surface, model.options); });
+        if (choosesVertices(model) && comesDense) {
+            hooks.stage("remesh", [&] { chooseVertices(dense, model); });
+        }
         std::vector<TriangleMesh> surfaces = remeshed(dense, model, hooks);
         if (model.hasModel() && surfaces.size() > 1) surfaces = nested(surfaces, model, hooks);
         if (model.hasModel()) model.meshes = std::move(surfaces);
     }
     if (model.hasModel()) checkModel(model, hooks);
     if (model.hasModel()) askWhatIsUsual(model, hooks);
+    if (model.hasModel() && model.options.wantsHeadShape && model.meshes.size() > 1) {
+        hooks.stage("remesh",
+                    [&] { model.headShape = headShapeOf(std::move(dense.back()), model); });
+    }
     warnOfMany(model);
     if (model.meshes.empty()) model.meshes = std::move(dense);
 }

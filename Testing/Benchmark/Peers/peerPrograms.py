@@ -58,6 +58,28 @@ def openvdb(adaptivity):
                adaptivity=adaptivity)
 
 
+def attributes(count=None):
+    return Row("FlyingEdges + vtkQuadricDecimation with normals", "peerVtk", "quadricAttributes",
+               triangles=count)
+
+
+def clustering(adaptivity):
+    return Row("FlyingEdges + vtkQuadricClustering", "peerVtk", "clustering",
+               adaptivity=adaptivity)
+
+
+def relative(label, method):
+    """Maker of rows of one of the thesis's relatives, by its coarseness."""
+    return lambda adaptivity: Row(label, "peerRelatives", method, adaptivity=adaptivity)
+
+
+RELATIVES = [relative("downsampling, then marching cubes", "downsample"),
+             relative("downsampling that keeps critical points", "critical"),
+             relative("adaptive marching cubes with crack patches", "cubes"),
+             relative("tetrahedral bisection", "bisection"),
+             relative("volume warping", "warping")]
+
+
 class Bench:
     def __init__(self, programs, folder, threads):
         self.programs, self.folder, self.threads = programs, folder, threads

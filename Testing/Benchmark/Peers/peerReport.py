@@ -61,6 +61,26 @@ def write_compare(report, out):
               [compare_cells(row, base) for row in volume["rows"]], out)
 
 
+def write_relatives(report, out):
+    for volume in report["volumes"]:
+        print(f"\n### {volume['name']} at {volume['isovalue']}, {volume['wanted']:,} triangles\n",
+              file=out)
+        rows = []
+        for row in volume["rows"]:
+            distance = row["distance"]["both"]
+            rows.append([row["label"], f"{row['triangles']:,}", f"{distance['mean']:.4f}",
+                         f"{distance['max']:.2f}",
+                         f"{row['openEdgesInside']} / "
+                         f"{row['nonManifoldEdges'] + row['nonManifoldVertices']} / "
+                         f"{row['crossingPairs']} / {row['degenerateTriangles']}",
+                         f"{statistics.median(row['seconds']):.2f}",
+                         f"{statistics.median(row['cpuSeconds']):.2f}"])
+        table(["method", "triangles", "mean", "max",
+               "open inside / non-manifold / crossing / degenerate", "s", "CPU s"], rows, out)
+        seeds = volume["seeds"]
+        print(f"\nseeds: {seeds}", file=out)
+
+
 def write_counts(report, out):
     header = ["volume, method"] + [f"{error} voxel" for error in peers.ERRORS]
     rows = []
@@ -150,7 +170,7 @@ def draw_growth(report, path):
 
 def write(folder, out):
     """Markdown of the JSON files that are there to `out`; plots as PNG files beside them."""
-    writers = {"compare": write_compare, "counts": write_counts, "growth": write_growth}
+    writers = {"compare": write_compare, "relatives": write_relatives, "counts": write_counts, "growth": write_growth}
     for name, writer in writers.items():
         path = folder / f"{name}.json"
         if path.exists():

@@ -1,6 +1,7 @@
 // vtkFlyingEdges3D without normals, alone and followed by VTK's decimators with their own defaults.
 #include <vtkDecimatePro.h>
 #include <vtkNew.h>
+#include <vtkQuadricClustering.h>
 #include <vtkQuadricDecimation.h>
 
 #include <algorithm>
@@ -28,8 +29,36 @@ vtkSmartPointer<vtkPolyData> decimated(Filter* filter, vtkPolyData* surface, con
     return filter->GetOutput();
 }
 
+/// Quadrics of place and normal together [Hoppe1999], as VTK has them.
+vtkSmartPointer<vtkPolyData> withAttributes(vtkPolyData* surface, const PeerTask& task) {
+    const vtkNew<vtkQuadricDecimation> filter;
+    filter->AttributeErrorMetricOn();
+    filter->NormalsAttributeOn();
+    return decimated(filter.Get(), surface, task);
+}
+
+/// Cells of 1 to 10 voxels a side, by `task.adaptivity`, each with one vertex.
+vtkSmartPointer<vtkPolyData> clustered(vtkImageData* image, vtkPolyData* surface,
+                                       const PeerTask& task) {
+    const vtkNew<vtkQuadricClustering> filter;
+    const double side =
+        (1 + 9 * task.adaptivity) * *std::min_element(image->GetSpacing(), image->GetSpacing() + 3);
+    double bounds[6];
+    surface->GetBounds(bounds);
+    const auto divisions = [&](int axis) {
+        return std::max(2, static_cast<int>((bounds[2 * axis + 1] - bounds[2 * axis]) / side + .5));
+    };
+    filter->AutoAdjustNumberOfDivisionsOff();
+    filter->SetNumberOfDivisions(divisions(0), divisions(1), divisions(2));
+    filter->SetInputData(surface);
+    filter->Update();
+    return filter->GetOutput();
+}
+
 vtkSmartPointer<vtkPolyData> make(vtkImageData* image, const PeerTask& task) {
-    const auto surface = flyingEdges(image, task.isovalue, false);
+    const auto surface = flyingEdges(image, task.isovalue, task.method == "quadricAttributes");
+    if (task.method == "quadricAttributes") return withAttributes(surface, task);
+    if (task.method == "clustering") return clustered(image, surface, task);
     if (task.method == "quadric") {
         return decimated(vtkNew<vtkQuadricDecimation>().Get(), surface, task);
     }
@@ -51,5 +80,7 @@ std::function<PeerSurface()> prepare(const VolumeView& volume, const PeerTask& t
 
 int main(int argc, char** argv) {
     using namespace adaptiso::benchmarks;
-    return runPeer(argc, argv, {"peerVtk", {"flyingEdges", "quadric", "pro"}, prepare});
+    return runPeer(
+        argc, argv,
+        {"peerVtk", {"flyingEdges", "quadric", "quadricAttributes", "pro", "clustering"}, prepare});
 }

@@ -2,6 +2,7 @@
 """Measures the adaptive method and its peers; every run is a process of its own.
 
   runPeers.py compare   all methods at one count of triangles, side by side: compare.json
+  runPeers.py relatives the methods that the thesis surveys, at one count: relatives.json
   runPeers.py counts    triangles that a largest distance of 0.1 to 1 voxel takes: counts.json
   runPeers.py pareto    all methods at several counts: pareto.json
   runPeers.py growth    ours on a gyroid of 64 to 512 samples a side: growth.json
@@ -39,14 +40,14 @@ def context(arguments):
             "loadAverage": float(open("/proc/loadavg").read().split()[0])}
 
 
-def adaptivity_for(bench, volume, count):
+def adaptivity_for(bench, volume, count, row_of=peers.openvdb):
     """The adaptivity that comes nearest to the count from above, or 1 where that does not reach."""
     low, high = 0.0, 1.0
-    if bench.run(volume, peers.openvdb(high))["triangles"] > count:
+    if bench.run(volume, row_of(high))["triangles"] > count:
         return high
     for _ in range(9):
         middle = (low + high) / 2
-        if bench.run(volume, peers.openvdb(middle))["triangles"] > count:
+        if bench.run(volume, row_of(middle))["triangles"] > count:
             low = middle
         else:
             high = middle
@@ -71,6 +72,18 @@ def compare(bench, arguments, volume, facts):
                                isovalue=volume.asked, triangles=volume.triangles, border_=each))
     rows += [peers.ours(m, border, border_=border) for m in ("mc", "boxes", "asc")]
     return bench.rows(volume, rows, arguments.repeats, tell=tell)
+
+
+def relatives(bench, arguments, volume, facts):
+    """The methods that the thesis surveys, those of libraries too, at the count of `compare`."""
+    rows = [peers.Row("FlyingEdges", "peerVtk", "flyingEdges"),
+            *decimators(bench, volume.triangles), peers.attributes(volume.triangles)]
+    for row_of in (peers.clustering, *peers.RELATIVES):
+        rows.append(row_of(adaptivity_for(bench, volume, volume.triangles, row_of)))
+        tell(f"{volume.name}: {rows[-1].label}, {rows[-1].options}")
+    rows.append(peers.ours("adaptive", "open", triangles=volume.triangles, border_="open"))
+    facts["seeds"] = bench.call("peerSeeds", bench.path(volume, "volume"), "--iso", volume.isovalue)
+    return bench.rows(volume, rows, arguments.repeats, meters_heap=False, tell=tell)
 
 
 def pareto(bench, arguments, volume, facts):
@@ -209,7 +222,8 @@ def growth(bench, arguments):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("command", choices=["compare", "counts", "pareto", "growth", "report"])
+    parser.add_argument("command", choices=["compare", "relatives", "counts", "pareto", "growth",
+                                            "report"])
     parser.add_argument("-o", "--output", type=pathlib.Path, default=TOP / "out" / "peers")
     parser.add_argument("--programs", type=pathlib.Path,
                         default=TOP / "build" / "benchmark" / "Testing" / "Benchmark" / "Peers")
@@ -235,7 +249,8 @@ def main():
     if arguments.command == "growth":
         report["sizes"] = growth(bench, arguments)
     else:
-        measure = {"compare": compare, "counts": counts, "pareto": pareto}[arguments.command]
+        measure = {"compare": compare, "relatives": relatives, "counts": counts,
+                   "pareto": pareto}[arguments.command]
         report["volumes"] = []
         for volume in peers.volumes(TOP):
             if arguments.only not in (None, volume.name):

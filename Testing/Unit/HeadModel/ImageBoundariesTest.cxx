@@ -70,6 +70,77 @@ TEST(BoundariesFromT1, FindSkinBrainAndSkullBandOfAPhantom) {
     for (const double gap : gapsOf(found)) EXPECT_GE(gap, 2 - 2);
 }
 
+/// A wavy surface around the brain of the phantom: sulci along z.
+Shape wavy(const Vec3& centre, double radiusMm, double depthMm) {
+    Shape shape;
+    shape.depthMm = [=](const Vec3& p) {
+        const Vec3 d = p - centre;
+        const double turns = std::cos(12 * std::atan2(d.y, d.x)) * std::hypot(d.x, d.y) / radiusMm;
+        return radiusMm - depthMm * (1 - turns) / 2 - norm(d);
+    };
+    return shape;
+}
+
+TEST(BoundariesFromT1, FindTheBrainsOwnSurface) {
+    const LargeHead head;
+    const Shape brain = wavy({3, -4, 8}, 66, 4);
+    std::vector<float> t1 = headT1(head.shapes, 0, head.geometry);
+    const std::vector<float> part = partInside(brain, head.geometry);
+    const std::vector<float> cavity = partInside(head.shapes.innerSkull, head.geometry);
+    constexpr float kCsf = 30, kBrain = 100;
+    for (std::size_t n = 0; n < t1.size(); ++n) {
+        if (cavity[n] == 1) t1[n] = kCsf + part[n] * (kBrain - kCsf);
+    }
+    std::vector<std::uint8_t> mask(t1.size()), aseg(t1.size());
+    for (std::size_t n = 0; n < t1.size(); ++n) {
+        mask[n] = cavity[n] == 1 ? 1 : 0;
+        // 3 cortex, 24 CSF around it, 258 outside of the head's brain would be
+        aseg[n] = mask[n] == 0 ? 0 : part[n] >= 0.5f ? 3 : 24;
+    }
+    BoundaryOptions options;
+    options.stepMm = 2;
+    options.smoothingMm = 2;
+    options.withBrain = true;
+    options.sulciMm = 2;
+    BrainSources byMask, byLabels, byPial;
+    byMask.mask = VolumeView(mask.data(), head.geometry);
+    byLabels.aseg = VolumeView(aseg.data(), head.geometry);
+    byPial.mask = byMask.mask;
+    byPial.pial = {surfaceOf({head.geometry, part})};
+    for (const BrainSources* sources : {&byMask, &byLabels, &byPial}) {
+        const HeadBoundaries found =
+            boundariesFromT1({t1.data(), head.geometry}, *sources, options);
+        ASSERT_EQ(found.solids.size(), 4u);
+        const SurfaceError error = surfaceError(found.solids[0], brain);
+        EXPECT_LE(error.largestMm, 3.0);  // a voxel of 2 mm, and what the Gaussian takes of a crest
+        EXPECT_LE(std::abs(error.meanMm), 1.0);  // half a voxel
+    }
+}
+
+TEST(BoundariesFromT1, RefuseAPialSurfaceOfAnotherSpace) {
+    const LargeHead head;
+    const std::vector<float> t1 = headT1(head.shapes, 2, head.geometry);
+    BoundaryOptions options;
+    options.stepMm = 2;
+    options.withBrain = true;
+    BrainSources sources;
+    sources.pial = {icosphere(2, {3, -4, 8}, 12)};  // 7 cm3
+    expectRefused(
+        [&] {
+            boundariesFromT1({t1.data(), head.geometry}, sources, options);
+        },
+        "a pial surface encloses");
+}
+
+TEST(BoundariesFromCt, RefuseFourLayers) {
+    const HeadShapes head = smallHead();
+    const ImageGeometry geometry = centredGeometry({84, 84, 84});
+    const std::vector<float> ct = headCt(head, geometry);
+    BoundaryOptions options = quick();
+    options.withBrain = true;
+    expectRefused([&] { boundariesFromCt({ct.data(), geometry}, options); }, "a CT does not show");
+}
+
 TEST(BoundariesFromT1, TakeABrainMaskOnAnotherGridAndASkullStrippedImage) {
     const LargeHead head;
     const std::vector<float> t1 = headT1(head.shapes, 2, head.geometry);

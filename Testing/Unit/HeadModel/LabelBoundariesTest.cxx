@@ -36,6 +36,76 @@ TEST(BoundariesFromLabels, FindBinarySpheresToAThirdOfAVoxelInEveryGeometry) {
     }
 }
 
+/// smallHead() with a brain of 4 CSF voxels less than the inner skull: 4 brain, 1 CSF.
+std::vector<std::uint8_t> fourTissues(const HeadShapes& head, const Shape& brain,
+                                      const ImageGeometry& geometry) {
+    std::vector<std::uint8_t> labels = headLabels(head, geometry);
+    const std::vector<float> part = partInside(brain, geometry);
+    for (std::size_t n = 0; n < labels.size(); ++n) {
+        if (labels[n] == 1 && part[n] >= 0.5f) labels[n] = 4;
+    }
+    return labels;
+}
+
+TEST(BoundariesFromLabels, FindABrainWithinCsf) {
+    const HeadShapes head = smallHead();
+    const Shape brain = sphere(kCentre, 22);
+    const ImageGeometry geometry = centredGeometry({84, 84, 84});
+    const std::vector<std::uint8_t> labels = fourTissues(head, brain, geometry);
+    BoundaryOptions options = quick();
+    options.withBrain = true;
+    const HeadBoundaries found =
+        boundariesFromLabels({labels.data(), geometry}, {{4}, {2}, {3}, false, {1}}, options);
+    ASSERT_EQ(found.solids.size(), 4u);
+    // half a voxel, as of the other spheres
+    EXPECT_LE(surfaceError(found.solids[0], brain).largestMm, 0.5);
+    EXPECT_LE(surfaceError(found.solids[1], head.innerSkull).largestMm, 0.5);
+    EXPECT_LE(surfaceError(found.solids[3], head.skin).largestMm, 0.5);
+
+    // the three around it are those of three layers, to the bit
+    const HeadBoundaries three =
+        boundariesFromLabels({labels.data(), geometry}, {{4}, {2}, {3}, false, {1}}, quick());
+    ASSERT_EQ(three.solids.size(), 3u);
+    for (std::size_t n = 0; n < 3; ++n) {
+        EXPECT_EQ(three.solids[n].part, found.solids[n + 1].part);
+    }
+}
+
+TEST(BoundariesFromLabels, LetTheBrainGiveWayToTheLeastCsf) {
+    const HeadShapes head = smallHead();
+    // touches the skull on one side
+    const Shape brain = sphere(kCentre + Vec3{4, 0, 0}, 22);
+    const ImageGeometry geometry = centredGeometry({84, 84, 84});
+    const std::vector<std::uint8_t> labels = fourTissues(head, brain, geometry);
+    BoundaryOptions options = quick();
+    options.withBrain = true;
+    options.minCsfMm = 2;
+    const HeadBoundaries found =
+        boundariesFromLabels({labels.data(), geometry}, {{4}, {2}, {3}, false, {1}}, options);
+    // to about a voxel, as of the other layers
+    EXPECT_GE(gapsOf(found).front(), 1.0);
+    EXPECT_LE(surfaceError(found.solids[1], head.innerSkull).largestMm, 0.5);
+}
+
+TEST(BoundariesFromLabels, RefuseFourLayersWithoutCsf) {
+    const HeadShapes head = smallHead();
+    const ImageGeometry geometry = centredGeometry({84, 84, 84});
+    const std::vector<std::uint8_t> labels = headLabels(head, geometry);
+    BoundaryOptions options = quick();
+    options.withBrain = true;
+    expectRefused(
+        [&] {
+            boundariesFromLabels({labels.data(), geometry}, numbered(), options);
+        },
+        "no label of the tissue CSF");
+    options.innerSkullOnly = true;
+    expectRefused(
+        [&] {
+            boundariesFromLabels({labels.data(), geometry}, numbered(), options);
+        },
+        "one surface and four");
+}
+
 TEST(BoundariesFromLabels, FindSpheresInThickSlices) {
     const HeadShapes head = smallHead();
     for (const ImageGeometry& geometry : {centredGeometry({160, 160, 30}, {0.5, 0.5, 2.7}),

@@ -213,7 +213,7 @@ TEST(ConductivityModel, RefusesWhatIsNoConductivityInSiemensPerMetre) {
     for (const double value : {0.0, -1.0, 300.0, std::numeric_limits<double>::quiet_NaN()}) {
         EXPECT_THROW(checkConductivities({.skull = value}), InvalidInput) << value;
     }
-    EXPECT_EQ(ConductivityModel{}.within(HeadSurface::OuterSkull), 0.006);
+    EXPECT_EQ(ConductivityModel{}.within(HeadSurface::OuterSkull, 3), 0.006);
 }
 
 TEST(FreeSurferSurface, LeadsBackToTheScanner) {

@@ -20,11 +20,12 @@ from ._images import Image, read
 from ._marching_cubes import marching_cubes
 from ._mesh import Mesh, load
 from ._quality import Check, Comparison, check, check_nested, compare
+from ._simplify import simplify
 from ._surface import Index, surface
 
 __all__ = ["Check", "Comparison", "Error", "HeadModel", "Image", "Index", "InternalError", "Mesh",
            "NoModel", "bem", "check", "check_nested", "compare", "load", "marching_cubes", "read",
-           "surface", "__version__"]
+           "simplify", "surface", "__version__"]
 
 # who wants to see the warnings says so by logging's own means
 _logging.getLogger("adaptiso").addHandler(_logging.NullHandler())

@@ -1,4 +1,4 @@
-from typing import Any, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 import numpy.typing as npt
@@ -40,6 +40,10 @@ class MeshData:
     def write(self, path: str, frame: Optional[str] = ...) -> None: ...
     def in_frame(self, frame: str) -> MeshData: ...
     def notebook(self, title: str) -> str: ...
+
+def simplify_mesh(mesh: MeshData, max_error: Optional[float], triangles: Optional[int],
+                  reduction: Optional[float], min_angle: float, keep_borders: bool, threads: int,
+                  progress: Any) -> Tuple[MeshData, Dict[str, Any]]: ...
 
 class ArrayVolume:
     def __init__(self, samples: npt.NDArray[Any], affine: npt.NDArray[np.float64],

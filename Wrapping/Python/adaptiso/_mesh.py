@@ -71,11 +71,13 @@ class Mesh:
         self._report: Optional[Dict[str, Any]] = None
 
     @classmethod
-    def _of(cls, data: _adaptiso.MeshData) -> "Mesh":
+    def _of(cls, data: _adaptiso.MeshData, report: Optional[Dict[str, Any]] = None) -> "Mesh":
         mesh = cls.__new__(cls)
         mesh._data = data
         mesh._normals = None
         mesh._report = None
+        if report is not None:
+            data.report = json.dumps(report)
         return mesh
 
     @property
@@ -100,14 +102,16 @@ class Mesh:
 
     @property
     def error_bound(self) -> Optional[float]:
-        """Proved: no point of the mesh lies farther (mm) from the surface of marching cubes, nor
-        that surface from the mesh. None of meshes that the method "adaptive" has not made."""
+        """Proved: no point of the mesh lies farther (mm) from the surface of marching cubes (of
+        `simplify`: from the mesh that it was given), nor that surface from the mesh. None of meshes
+        that neither the method "adaptive" nor `simplify` has made."""
         return self._data.error_bound
 
     @property
     def report(self) -> Dict[str, Any]:
         """How the mesh was made, and that it is sound: the report adaptiso-mesh/1, as
-        ``adaptiso-mesh --json`` writes it (of `surface`, with ``--search linear``). Empty of meshes that were not made from an image."""
+        ``adaptiso-mesh --json`` writes it (of `surface`, with ``--search linear``). Of `simplify`:
+        what was found of the mesh that it was given. Empty of other meshes."""
         if self._report is None:
             text = self._data.report
             self._report = json.loads(text) if text else {}

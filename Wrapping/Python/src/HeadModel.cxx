@@ -161,7 +161,7 @@ std::string HeadModelData::check(int threads) const {
     }
     for (std::size_t n = 0; n < meshes.size(); ++n) {
         asked.push_back(&meshes[n]);
-        names.push_back(bemSurfaceName(n));
+        names.push_back(bemSurfaceName(n, model_.meshes.size()));
     }
     CheckRules rules;
     rules.isNested = true;

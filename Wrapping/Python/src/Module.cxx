@@ -19,6 +19,7 @@
 #include "Judgements.h"
 #include "MeshData.h"
 #include "Resources.h"
+#include "Simplify.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Extraction/Extraction.h"
@@ -541,9 +542,13 @@ TissueLabels tissuesOf(const std::string& preset, const std::vector<std::int64_t
 
 BemFileOptions bemFilesOf(const std::string& unit, const std::string& frame, bool writesGifti,
                           bool writesVtp) {
-    return {choose<OpenMeegUnit>("units", unit,
-                                 {{"mm", OpenMeegUnit::Millimetres}, {"m", OpenMeegUnit::Metres}}),
-            frameOf(frame), writesGifti, writesVtp};
+    BemFileOptions options;
+    options.unit = choose<OpenMeegUnit>(
+        "units", unit, {{"mm", OpenMeegUnit::Millimetres}, {"m", OpenMeegUnit::Metres}});
+    options.frame = frameOf(frame);
+    options.writesGifti = writesGifti;
+    options.writesVtp = writesVtp;
+    return options;
 }
 
 void declareHeadModels(py::module_& module) {
@@ -621,6 +626,7 @@ PYBIND11_MODULE(_adaptiso, module) {
     declareMeshData(module);
     declareSurfaces(module);
     declareFilesAndChecks(module);
+    declareSimplify(module);
     declareHeadModels(module);
     module.def("before_fork", &beforeFork);
     module.def("after_fork_in_parent", &afterForkInParent);

@@ -5,81 +5,30 @@
 #include <limits>
 
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Parallel.h"
 #include "adaptive/Parameters.h"
+#include "adaptive/full/VolumeSurface.h"
 #include "adaptive/mending/SurfaceMender.h"
 #include "adaptive/proof/CrossingProof.h"
-#include "adaptive/proof/ErrorBound.h"
 #include "adaptive/rounds/Simplification.h"
-#include "filling/MeshRepair.h"
 
 namespace adaptiso::detail {
 namespace {
 
-/// Drops vertices without a triangle.
-void dropUnusedVertices(TriangleMesh& mesh) {
-    constexpr VertexId kUnused = -1;
-    std::vector<VertexId> number(mesh.points.size(), kUnused);
-    for (const auto& t : mesh.triangles) {
-        for (const VertexId v : t) number[v] = 0;
-    }
-    VertexId used = 0;
-    for (std::size_t v = 0; v < number.size(); ++v) {
-        if (number[v] == kUnused) continue;
-        number[v] = used++;
-        mesh.points[number[v]] = mesh.points[v];
-        mesh.normals[number[v]] = mesh.normals[v];
-    }
-    if (used == std::ssize(mesh.points)) return;
-    mesh.points.resize(used);
-    mesh.normals.resize(used);
-    for (auto& t : mesh.triangles) {
-        for (VertexId& v : t) v = number[v];
-    }
-}
-
-TriangleMesh toMesh(const SimplifiedSurface& surface, const ImageGeometry& geometry,
-                    const MetricFrame& frame, const LatticeSampler& sampler) {
-    TriangleMesh mesh;
-    constexpr std::int64_t kPiece = 4096;
-    mesh.points.resize(surface.points.size());
-    mesh.normals.resize(surface.points.size());
-    parallelForPieces(std::ssize(mesh.points), kPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t v = begin; v < end; ++v) {
-            const Vec3 index = frame.toIndex(surface.points[v]);
-            mesh.points[v] = geometry.toPhysical(index);
-            mesh.normals[v] = toNormal(sampler.normalAt(index));
-        }
-    });
-    mesh.triangles.reserve(surface.triangles.size());
-    const bool isMirrored = geometry.isMirrored();
-    for (const auto& t : surface.triangles) {
-        const auto id = [&](int c) { return static_cast<VertexId>(t[c]); };
-        mesh.triangles.push_back(isMirrored ? adaptiso::Triangle{id(0), id(2), id(1)}
-                                            : adaptiso::Triangle{id(0), id(1), id(2)});
-    }
-    dropUnusedVertices(mesh);
-    completeNormals(mesh);
-    return mesh;
-}
-
 /// Runs the simplification until what it promises is proved.
 class AdaptiveMethod {
 public:
-    AdaptiveMethod(const VolumeView& volume, const LatticeSampler& sampler, const Bricks& bricks,
-                   const ExtractionOptions& options)
-        : geometry_(volume.geometry()),
-          sampler_(sampler),
-          bricks_(bricks),
-          options_(options),
-          frame_(geometry_),
-          wanted_{options.adaptive.maxTriangles, options.adaptive.reduction},
-          boundMm_(boundOf(options.adaptive)),
-          proof_(sampler, bricks, frame_, boundMm_.value_or(std::numeric_limits<double>::max())) {
-        shape_.leastAngleDeg = options.adaptive.minAngleDeg;
+    AdaptiveMethod(const FullSurface& full, const AdaptiveOptions& options,
+                   const ProgressCallback& progress)
+        : full_(full),
+          progress_(progress),
+          frame_(full.frame()),
+          wanted_{options.maxTriangles, options.reduction},
+          boundMm_(boundOf(options)),
+          proof_(full.proof(boundMm_.value_or(std::numeric_limits<double>::max()))) {
+        shape_.leastAngleDeg = options.minAngleDeg;
     }
 
-    Extraction run() {
+    AdaptiveResult run() {
         Attempt attempt;
         for (int run = 0; run < kMostRuns; ++run) {
             report(run, 0);
@@ -92,8 +41,8 @@ public:
             learnFrom(attempt, run);
         }
         throw InternalError(
-            "extractSurface: the adaptive method could not prove its mesh sound and "
-            "within the bound; nothing is returned");
+            "the adaptive method could not prove its mesh sound and within the bound; nothing is "
+            "returned");
     }
 
 private:
@@ -146,30 +95,32 @@ private:
         }
     }
 
-    Extraction resultOf(Attempt& attempt) const {
-        Extraction result;
-        result.statistics = statisticsOf(attempt.surface, attempt.error);
+    AdaptiveResult resultOf(Attempt& attempt) const {
+        AdaptiveResult result;
         result.mesh = std::move(attempt.mesh);
-        if (!options_.computeNormals) result.mesh.normals = {};
+        result.errorBoundMm = attempt.error.largestMm;
+        if (wanted_.isGiven()) result.wantedTriangles = wanted_.of(attempt.surface.fineTriangles);
+        result.tableTriangles = attempt.surface.tableTriangles;
         return result;
     }
 
     void findCrossings(Attempt& attempt) const {
-        attempt.mesh = toMesh(attempt.surface, geometry_, frame_, sampler_);
+        attempt.mesh = full_.meshOf(attempt.surface);
         attempt.crossing = crossingTriangles(attempt.mesh);
+        full_.forgiveCrossings(attempt.mesh, attempt.crossing);
     }
 
     bool isBeyond(const ErrorBound& error) const { return boundMm_ && error.largestMm > *boundMm_; }
 
     /// What is proved of the surface, after places beyond the bound were mended.
     ErrorBound proveAndMend(SimplifiedSurface& surface) {
-        ErrorBound error = proof_.prove(surface);
+        ErrorBound error = proof_->prove(surface);
         if (wanted_.isGiven() || !isBeyond(error)) return error;
         SurfaceMender mender(surface, frame_, *boundMm_);
         for (int idle = 0; isBeyond(error) && idle < kMostIdleMends;) {
             const std::size_t before = error.beyondLimit.size();
             if (mender.mendDistances(error.beyondLimit) == 0) break;
-            error = proof_.proveAgain(surface, mender.takeChanges());
+            error = proof_->proveAgain(surface, mender.takeChanges());
             const bool isLess = static_cast<double>(error.beyondLimit.size()) <
                                 kMended * static_cast<double>(before);
             idle = isLess ? 0 : idle + 1;
@@ -208,7 +159,7 @@ private:
         for (const std::int64_t t : attempt.crossing) {
             const auto& [a, b, c] = attempt.mesh.triangles[t];
             const std::vector<Vec3>& points = attempt.mesh.points;
-            places.push_back(geometry_.toIndex((1.0 / 3) * (points[a] + points[b] + points[c])));
+            places.push_back(full_.indexOf((1.0 / 3) * (points[a] + points[b] + points[c])));
         }
         return places;
     }
@@ -231,15 +182,6 @@ private:
         lessons_.halfway.reset();
     }
 
-    ExtractionStatistics statisticsOf(const SimplifiedSurface& surface,
-                                      const ErrorBound& error) const {
-        ExtractionStatistics statistics;
-        statistics.errorBoundMm = error.largestMm;
-        if (wanted_.isGiven()) statistics.wantedTriangles = wanted_.of(surface.fineTriangles);
-        statistics.marchingCubesTriangles = surface.tableTriangles;
-        return statistics;
-    }
-
     /// Hardly fewer places lie beyond the bound than after the run before: what they need may have
     /// been lost before halfway.
     bool hasStalled(const ErrorBound& error) {
@@ -252,14 +194,13 @@ private:
     /// Makes what runs start from anew until that lies within the bound itself: at worst a run can
     /// then stay with it where it is tight.
     void mendHalfway(SimplifiedSurface& surface) {
-        ErrorProof proof(sampler_, bricks_, frame_, *boundMm_);
+        const std::unique_ptr<DistanceProof> proof = full_.proof(*boundMm_);
         for (int mend = 0; mend < kMostMends; ++mend) {
             surface.state() = lessons_.halfway->state;
-            const ErrorBound error = proof.prove(surface);
+            const ErrorBound error = proof->prove(surface);
             if (error.largestMm <= *boundMm_) return;
             lessons_.tight.add(indicesOf(error));
-            lessons_.halfway = Simplification(sampler_, bricks_, frame_, lessons_.tight, limits())
-                                   .toHalfway(surface);
+            lessons_.halfway = Simplification(full_, lessons_.tight, limits()).toHalfway(surface);
         }
     }
 
@@ -270,7 +211,7 @@ private:
 
     void report(int run, double fraction) const {
         // later runs mend what the first could not prove: they come on top
-        if (options_.progress) options_.progress(run == 0 ? "extract" : "refine", fraction);
+        if (progress_) progress_(run == 0 ? "extract" : "refine", fraction);
     }
 
     PatchLimits limits() const {
@@ -289,12 +230,12 @@ private:
     void fit(SimplifiedSurface& surface) const {
         PatchLimits closer = limits();
         closer.maxFittedMm = kFitDistance * closer.maxDistanceMm;
-        Simplification(sampler_, bricks_, frame_, lessons_.tight, closer).fit(surface);
+        Simplification(full_, lessons_.tight, closer).fit(surface);
     }
 
     /// \param last  of the run before
     SimplifiedSurface simplify(SimplifiedSurface last) {
-        Simplification simplification(sampler_, bricks_, frame_, lessons_.tight, limits());
+        Simplification simplification(full_, lessons_.tight, limits());
         if (!wanted_.isGiven()) {
             SimplifiedSurface surface = simplification.toLimits(std::move(last), lessons_.halfway);
             unfitted_ = surface.points;
@@ -303,29 +244,25 @@ private:
         }
         if (boundMm_) return simplification.toCount(wanted_, 0);
         // without a bound the count goes before closeness
-        const Index3& size = geometry_.size;
-        const Vec3 extent =
-            frame_.fromIndex({static_cast<double>(size[0]), static_cast<double>(size[1]),
-                              static_cast<double>(size[2])});
-        return simplification.toCount(wanted_, norm(extent));
+        return simplification.toCount(wanted_, full_.largestExtentMm());
     }
 
-    const ImageGeometry& geometry_;
-    const LatticeSampler& sampler_;
-    const Bricks& bricks_;
-    const ExtractionOptions& options_;
-    MetricFrame frame_;
+    const FullSurface& full_;
+    const ProgressCallback& progress_;
+    const MetricFrame& frame_;
     WantedCount wanted_;
     std::optional<double> boundMm_;
     StarLimits shape_;
     Lessons lessons_;
-    ErrorProof proof_;            ///< remembers what it proved last, to prove less the next time
-    std::vector<Vec3> unfitted_;  ///< vertices before they were fitted
+    std::unique_ptr<DistanceProof> proof_;  ///< remembers what it proved last, to prove less
+    std::vector<Vec3> unfitted_;            ///< vertices before they were fitted
 };
 
-void check(const AdaptiveOptions& options) {
-    const auto refuse = [](const std::string& what) {
-        throw InvalidInput("extractSurface: " + what);
+}  // namespace
+
+void requireInRange(const AdaptiveOptions& options, const char* function) {
+    const auto refuse = [&](const char* what) {
+        throw InvalidInput(std::string(function) + ": " + what);
     };
     if (options.maxErrorMm && !(*options.maxErrorMm > 0 && std::isfinite(*options.maxErrorMm))) {
         refuse("maxErrorMm must be a finite number above 0");
@@ -339,19 +276,27 @@ void check(const AdaptiveOptions& options) {
     }
 }
 
-}  // namespace
+AdaptiveResult simplifyWithin(const FullSurface& full, const AdaptiveOptions& options,
+                              const ProgressCallback& progress) {
+    return AdaptiveMethod(full, options, progress).run();
+}
 
 Extraction extractAdaptive(const VolumeView& volume, const SpanSpaceIndex& index,
                            const ExtractionOptions& options) {
-    check(options.adaptive);
+    requireInRange(options.adaptive, "extractSurface");
     const BlockQuery query = index.blocksAt(options.isovalue);
     const auto sampler = LatticeSampler::make(volume, options.isovalue, index.grid().border);
     const Bricks bricks(index.grid(), query.blocks);
     Extraction result;
+    result.statistics.errorBoundMm = 0;
     if (bricks.count() > 0) {
-        result = AdaptiveMethod(volume, *sampler, bricks, options).run();
-    } else {
-        result.statistics.errorBoundMm = 0;
+        AdaptiveResult made = simplifyWithin(VolumeSurface(volume.geometry(), *sampler, bricks),
+                                             options.adaptive, options.progress);
+        result.mesh = std::move(made.mesh);
+        if (!options.computeNormals) result.mesh.normals = {};
+        result.statistics.errorBoundMm = made.errorBoundMm;
+        result.statistics.wantedTriangles = made.wantedTriangles;
+        result.statistics.marchingCubesTriangles = made.tableTriangles;
     }
     result.statistics.blocksTotal = index.grid().blockCount();
     result.statistics.blocksActive = static_cast<std::int64_t>(query.blocks.size());

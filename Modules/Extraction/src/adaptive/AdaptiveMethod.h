@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "adaptiso/Extraction/Extraction.h"
+#include "adaptive/full/FullSurface.h"
 
 namespace adaptiso::detail {
 
@@ -8,5 +12,20 @@ namespace adaptiso::detail {
 /// brick. Arguments as in extractSurface.
 Extraction extractAdaptive(const VolumeView& volume, const SpanSpaceIndex& index,
                            const ExtractionOptions& options);
+
+/// \param function  named in the message \throws InvalidInput when an option is out of range
+void requireInRange(const AdaptiveOptions& options, const char* function);
+
+struct AdaptiveResult {
+    TriangleMesh mesh;
+    double errorBoundMm = 0;
+    std::optional<std::int64_t> wantedTriangles;  ///< where a count is asked for
+    std::int64_t tableTriangles = 0;              ///< SimplifiedSurface's
+};
+
+/// Simplifies any surface, with all that the adaptive method promises proved.
+/// \throws InternalError when that can't be
+AdaptiveResult simplifyWithin(const FullSurface& full, const AdaptiveOptions& options,
+                              const ProgressCallback& progress);
 
 }  // namespace adaptiso::detail

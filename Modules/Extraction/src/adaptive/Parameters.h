@@ -84,6 +84,12 @@ inline constexpr double kFlatPart = 1e-9, kFewFlat = 0.05;
 /// Another sheet is one whose normal differs by more: cosine of about 70 degrees.
 inline constexpr float kOtherSheetCosine = 0.3F;
 
+// ---- Meshes (MeshSurface) ----
+
+/// Triangles for each voxel's face of surface, by which a mesh gets voxels: marching cubes' on
+/// scans. Of them, the widest that they are made for the bound's sake.
+inline constexpr double kTrianglesPerFace = 3, kWidestVoxel = 3;
+
 // ---- Collapses (PatchSimplifier, ChangedStar, ErrorTracker, CrossingGuard) ----
 
 /// On a flat part all places are as good to the quadrics: shorter edges go first.

@@ -95,6 +95,7 @@ TEST(ChangedStar, IsNoGraphWhereItGoesRoundItsVertexTwice) {
     }
     patch.points.push_back({0, 0, 0.2});
     changed.star.count = kSteps;
+    changed.star.ring[kSteps] = changed.star.ring[0];
     changed.vertex = {0, 0, 0.25};
     ASSERT_TRUE(shapeStar(patch, {}, changed));
     EXPECT_FALSE(changed.isGraph);

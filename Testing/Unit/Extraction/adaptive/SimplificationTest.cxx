@@ -4,6 +4,7 @@
 
 #include "Support/Soundness.h"
 #include "Surfaces.h"
+#include "adaptive/full/VolumeSurface.h"
 #include "adaptive/proof/PieceBound.h"
 #include "adaptive/rounds/Simplification.h"
 
@@ -19,13 +20,12 @@ constexpr double kDistanceMm = 0.2, kRounding = 1e-5;  // samples are kept in si
 
 struct Ball {
     Scene scene = ballScene();
+    detail::VolumeSurface full{scene.volume.view().geometry(), *scene.sampler, scene.bricks};
     detail::TightPlaces tight;
     detail::PatchLimits limits;
 
     Ball() { limits.maxDistanceMm = kDistanceMm; }
-    Simplification simplification() const {
-        return {*scene.sampler, scene.bricks, scene.frame, tight, limits};
-    }
+    Simplification simplification() const { return {full, tight, limits}; }
 };
 
 double largestDistance(const SimplifiedSurface& surface) {

@@ -25,7 +25,7 @@ bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& change
     std::array<Vec3, Star::kMost> before;
     Vec3 mean;
     for (int i = 0; i < star.count; ++i) {
-        const Vec3 r = point(star.ring[i]), s = point(star.ring[(i + 1) % star.count]);
+        const Vec3 r = point(star.ring[i]), s = point(star.ring[i + 1]);
         before[i] = areaVector2(point(star.apex[i]), r, s);
         mean += before[i];
         changed.wedge[i].e1 = r - changed.vertex;
@@ -38,7 +38,7 @@ bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& change
     const Vec3 normal = normalized(mean);
     const Vec3 across = std::abs(normal.x) < std::abs(normal.y) ? cross(normal, {1, 0, 0})
                                                                 : cross(normal, {0, 1, 0});
-    changed.isGraph = true;
+    changed.isGraph = !star.isOpen;
     int turns = 0;        // how often the spokes pass the direction from which `across` grows
     double sharpest = 0;  // squared cosine
     for (int i = 0; i < star.count; ++i) {
@@ -74,7 +74,7 @@ bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& change
                                            squaredNorm(p - r), squaredNorm(areaVector2(p, q, r))));
     };
     for (int i = 0; i < star.count; ++i) {
-        addBefore(point(star.apex[i]), point(star.ring[i]), point(star.ring[(i + 1) % star.count]));
+        addBefore(point(star.apex[i]), point(star.ring[i]), point(star.ring[i + 1]));
     }
     for (int i = 0; i < star.removedCount; ++i) {
         const auto& t = patch.triangles[star.removed[i]];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "adaptive/Parameters.h"
 
@@ -53,8 +54,14 @@ void CrossingGuard::buildGrid() {
     stamp_.assign(patch_.triangles.size(), 0);
     box_.resize(patch_.triangles.size());
     hasBox_.assign(patch_.triangles.size(), 0);
-    CornerBox all{patch_.points[0], patch_.points[0]};
-    for (const Vec3& p : patch_.points) all.add(p);
+    // no star reaches beyond the patch's own triangles; what lies outside is in the outermost cubes
+    std::optional<CornerBox> own;
+    for (std::uint32_t t = 0; t < patch_.ownTriangles; ++t) {
+        if (patch_.triangles[t][0] == Patch::kGone) continue;
+        if (!own) own = boxOf(cornersOf(t));
+        for (const Vec3& p : cornersOf(t)) own->add(p);
+    }
+    const CornerBox all = own.value_or(CornerBox{});
     low_ = all.low;
     const Vec3 extent = all.high - all.low;
     std::size_t cubes = 1;
@@ -137,8 +144,8 @@ void CrossingGuard::commit(const ChangedStar& changed, bool isSingleSheet) {
         const std::uint32_t t = star.triangle[i];
         hasBox_[t] = 0;
         if (isSingleSheet && !looksEverywhere_) continue;
-        box_[t] = rounded(boxOf({changed.vertex, patch_.points[star.ring[i]],
-                                 patch_.points[star.ring[(i + 1) % star.count]]}));
+        box_[t] = rounded(
+            boxOf({changed.vertex, patch_.points[star.ring[i]], patch_.points[star.ring[i + 1]]}));
         hasBox_[t] = 1;
         enter(t);
     }
@@ -176,7 +183,7 @@ bool CrossingGuard::crossesNothing(const ChangedStar& changed) {
 bool CrossingGuard::fanIsClear(const ChangedStar& changed, int at) const {
     const Star& star = changed.star;
     const std::uint32_t r = star.ring[at];
-    if (!topology_.isMovable(r)) return false;
+    if (changed.star.isOpen || !topology_.isMovable(r) || topology_.isOnBorder(r)) return false;
     const Vec3 centre = patch_.points[r];
     struct Sector {
         Vec3 from, to, area2;
@@ -225,13 +232,13 @@ bool CrossingGuard::wedgesAreClear(const ChangedStar& changed) const {
     const Star& star = changed.star;
     const int n = star.count;
     const Vec3& p = changed.vertex;
-    const auto ring = [&](int i) { return patch_.points[star.ring[i % n]]; };
+    const auto ring = [&](int i) { return patch_.points[star.ring[i]]; };
     for (int i = 0; i < n; ++i) {
         for (int j = i + 1; j < n; ++j) {
             bool isClear = false;
             if (j == i + 1) {
                 isClear = touchAtEdgeOnly({ring(j), p, ring(i)}, {p, ring(j), ring(j + 1)});
-            } else if (i == 0 && j == n - 1) {
+            } else if (i == 0 && j == n - 1 && !star.isOpen) {
                 isClear = touchAtEdgeOnly({p, ring(0), ring(1)}, {ring(0), p, ring(j)});
             } else {
                 isClear =
@@ -245,7 +252,7 @@ bool CrossingGuard::wedgesAreClear(const ChangedStar& changed) const {
 
 bool CrossingGuard::isClear(const ChangedStar& changed, int wedge, std::uint32_t other) const {
     const Star& star = changed.star;
-    const std::uint32_t r = star.ring[wedge], s = star.ring[(wedge + 1) % star.count];
+    const std::uint32_t r = star.ring[wedge], s = star.ring[wedge + 1];
     const Vec3 &p = changed.vertex, &pr = patch_.points[r], &ps = patch_.points[s];
     const auto& o = patch_.triangles[other];
     const auto corner = [&](int c) { return patch_.points[o[c % 3]]; };
@@ -254,8 +261,7 @@ bool CrossingGuard::isClear(const ChangedStar& changed, int wedge, std::uint32_t
         if (o[c] == r) atR = c;
         if (o[c] == s) atS = c;
     }
-    const bool isInFan =
-        (atR >= 0 && fanIsClear_[wedge]) || (atS >= 0 && fanIsClear_[(wedge + 1) % star.count]);
+    const bool isInFan = (atR >= 0 && fanIsClear_[wedge]) || (atS >= 0 && fanIsClear_[wedge + 1]);
     if (isInFan) return true;
     if (atR >= 0 && atS >= 0) {
         return touchAtEdgeOnly({pr, ps, p}, {ps, pr, corner(3 - atR - atS)});
@@ -275,8 +281,7 @@ void CrossingGuard::collectNear(const ChangedStar& changed) {
     near_.clear();
     CornerBox whole{changed.vertex, changed.vertex};
     for (int i = 0; i < star.count; ++i) {
-        const Vec3 &r = patch_.points[star.ring[i]],
-                   &s = patch_.points[star.ring[(i + 1) % star.count]];
+        const Vec3 &r = patch_.points[star.ring[i]], &s = patch_.points[star.ring[i + 1]];
         CornerBox wedge = boxOf({changed.vertex, r, s});
         wedge.widen(gapMm_);
         const Box box = rounded(wedge);
@@ -287,23 +292,20 @@ void CrossingGuard::collectNear(const ChangedStar& changed) {
         whole.add(r);
         stamp_[star.triangle[i]] = now_;
     }
+    whole.add(patch_.points[star.ring[star.count]]);
     for (int i = 0; i < star.removedCount; ++i) stamp_[star.removed[i]] = now_;
     whole.widen(gapMm_);
     starBox_ = rounded(whole);
     for (int i = 0; i < star.count; ++i) fanIsClear_[i] = fanIsClear(changed, i);
+    fanIsClear_[star.count] = !star.isOpen && fanIsClear_[0];
     collectAroundRing(star);
     collectFromGrid();
 }
 
 void CrossingGuard::collectAroundRing(const Star& star) {
-    for (int i = 0; i < star.count; ++i) {
+    for (int i = 0; i < star.ringCount(); ++i) {
         if (!topology_.isMovable(star.ring[i])) continue;  // its triangles are in the grid's hands
-        const std::uint32_t begin = topology_.leaving(star.ring[i]);
-        std::uint32_t h = begin;
-        do {
-            addNear(h / 3);
-            h = topology_.twin(PatchTopology::previous(h));
-        } while (h != begin);
+        topology_.forEachLeaving(star.ring[i], [&](std::uint32_t h) { addNear(h / 3); });
     }
 }
 

@@ -84,7 +84,7 @@ private:
     std::vector<std::uint8_t> hasBox_;  ///< it is known
     Box starBox_{};
     std::array<std::array<float, Star::kMost>, 3> wedgeLow_{}, wedgeHigh_{};  ///< by axis
-    std::array<bool, Star::kMost> fanIsClear_{};  ///< of each vertex of the ring
+    std::array<bool, Star::kMost + 1> fanIsClear_{};  ///< of each vertex of the ring
 };
 
 }  // namespace adaptiso::detail

@@ -90,7 +90,7 @@ bool ErrorTracker::forEachTriangle(const Star& star, const F& f) const {
         if (!f(star.triangle[i], i)) return false;
     }
     for (int i = 0; i < star.removedCount; ++i) {
-        if (!f(star.removed[i], i == 0 ? 0 : star.secondWedge)) return false;
+        if (!f(star.removed[i], star.beside[i])) return false;
     }
     return true;
 }
@@ -110,7 +110,9 @@ SampleAssignment::Move ErrorTracker::nearest(const ChangedStar& changed, std::ui
         best.wedge = i;
         if (found.towards == 0 || (direction != 0 && found.towards != direction)) break;
         direction = found.towards;
-        i = (i + direction + n) % n;
+        i += direction;
+        if (changed.star.isOpen && (i < 0 || i == n)) break;
+        i = (i + n) % n;
     }
     return best;
 }
@@ -148,6 +150,7 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm,
                   (sample.tightness == 0 ? most : std::ldexp(most, -sample.tightness)))) {
                 return false;
             }
+            if (sample.isOnBorder && !borderIsNear(changed, move, most)) return false;
             result.sumOfSquares += squared;
             result.largestSquare = std::max(result.largestSquare, squared);
             result.moves.push_back(move);
@@ -166,6 +169,17 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm,
     if (height * height > squaredRoom_[std::min(nearest.room, roomUnseen)]) result.isCrowded = true;
     return tightened(height, nearest) <= maxDistanceMm &&
            ridgesAreNear(changed, result, maxDistanceMm);
+}
+
+/// A sample on the border is near what the border becomes, not just the surface.
+bool ErrorTracker::borderIsNear(const ChangedStar& changed, const SampleAssignment::Move& move,
+                                double squaredLimit) const {
+    if (!changed.star.isOpen) return true;
+    const Vec3 q = patch_.samples[move.sample].point() - changed.vertex;
+    const ChangedStar::Wedge& own = changed.wedge[move.wedge];
+    return squaredDistanceToSegment(q, changed.wedge[0].e1) <= squaredLimit ||
+           squaredDistanceToSegment(q, changed.wedge[changed.star.count - 1].e2) <= squaredLimit ||
+           squaredDistanceToSegment(q - own.e1, own.e2 - own.e1) <= squaredLimit;
 }
 
 /// Of the samples that are handed over, but for differences of a ten-thousandth.
@@ -203,8 +217,9 @@ bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, const SampleAssignm
         const ChangedStar::Wedge& w = changed.wedge[i];
         return std::sqrt(w.inverse) * cross(w.e1, w.e2);
     };
-    Vec3 before = normal(n - 1);
-    for (int i = 0; i < n; ++i) {
+    const int first = changed.star.isOpen ? 1 : 0;  // the spoke between two triangles
+    Vec3 before = normal((first + n - 1) % n);
+    for (int i = first; i < n; ++i) {
         const Vec3 after = normal(i);
         const bool isSharp = dot(before, after) < kRidgeCosine;
         before = after;

@@ -65,6 +65,8 @@ private:
     SampleAssignment::Move nearest(const ChangedStar& changed, std::uint32_t sample, int start,
                                    double& squaredDistance) const;
 
+    bool borderIsNear(const ChangedStar& changed, const SampleAssignment::Move& move,
+                      double squaredLimit) const;
     const Sample& sampleNearest(const Vec3& p, const SampleAssignment& assignment) const;
     bool ridgesAreNear(const ChangedStar& changed, const SampleAssignment& assignment,
                        double maxDistanceMm) const;

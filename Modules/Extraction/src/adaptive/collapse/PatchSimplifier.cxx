@@ -16,8 +16,13 @@ PatchSimplifier::PatchSimplifier(Patch& patch, const MetricFrame& frame, const P
       changes_(patch.points.size(), 0) {}
 
 QuadricMinimum PatchSimplifier::bestPlace(std::uint32_t a, std::uint32_t b) const {
-    return minimize(patch_.quadrics[a] + patch_.quadrics[b],
-                    0.5 * (patch_.points[a] + patch_.points[b]));
+    const Quadric sum = patch_.quadrics[a] + patch_.quadrics[b];
+    const Vec3 &p = patch_.points[a], &q = patch_.points[b];
+    const bool endsAtA = topology_.isOnBorder(a), endsAtB = topology_.isOnBorder(b);
+    if (!endsAtA && !endsAtB) return minimize(sum, 0.5 * (p + q));
+    // vertices of a border stay vertices of the border that it was
+    const double atA = std::max(sum.at(p), 0.0), atB = std::max(sum.at(q), 0.0);
+    return endsAtA && (!endsAtB || atA <= atB) ? QuadricMinimum{p, atA} : QuadricMinimum{q, atB};
 }
 
 void PatchSimplifier::propose(std::uint32_t halfEdge, double leastCost) {
@@ -39,7 +44,7 @@ void PatchSimplifier::setState(std::uint32_t v, Patch::State state) {
 
 /// What lies around the changed star may be tried again.
 void PatchSimplifier::markChanged(const Star& star) {
-    for (int i = 0; i < star.count; ++i) setState(star.ring[i], Patch::State::Open);
+    for (int i = 0; i < star.ringCount(); ++i) setState(star.ring[i], Patch::State::Open);
 }
 
 bool PatchSimplifier::isStale(const Candidate& c) const {
@@ -58,7 +63,7 @@ const PatchSimplifier::Change* PatchSimplifier::evaluateCollapse(std::uint32_t h
 
 const PatchSimplifier::Change* PatchSimplifier::evaluateFit(std::uint32_t vertex) {
     Change& change = change_;
-    if (!topology_.starOf(vertex, change.star.star)) return nullptr;
+    if (topology_.isOnBorder(vertex) || !topology_.starOf(vertex, change.star.star)) return nullptr;
     change.vertex = vertex;
     change.halfEdge = PatchTopology::kNone;
     change.star.vertex = patch_.points[vertex];
@@ -83,6 +88,7 @@ void PatchSimplifier::apply(const Change& change) {
         markChanged(change.star.star);
         setState(change.vertex, Patch::State::Open);
         patch_.quadrics[change.vertex] += patch_.quadrics[other];
+        if (change.star.star.isOpen) patch_.marks[change.vertex] = Patch::kBorder;
         ++changes_[change.vertex];
         ++changes_[other];
     }
@@ -116,8 +122,7 @@ void PatchSimplifier::settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, i
 void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* costs) {
     for (std::uint32_t h = 0; h < 3 * patch_.ownTriangles; ++h) {
         if (patch_.triangles[h / 3][0] == Patch::kGone) continue;
-        const std::uint32_t twin = topology_.twin(h);
-        if (twin == PatchTopology::kNone || h > twin) continue;
+        if (h > topology_.twin(h)) continue;
         const bool isTried = patch_.states[topology_.from(h)] == Patch::State::Tried &&
                              patch_.states[topology_.to(h)] == Patch::State::Tried;
         propose(h, isTried ? limits_.triedCost : -1);
@@ -138,12 +143,11 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
         apply(*change);
         ++made;
         if (costs != nullptr) costs->push_back(best.cost);
-        const std::uint32_t begin = topology_.leaving(best.a);
-        std::uint32_t h = begin;
-        do {
+        topology_.forEachLeaving(best.a, [&](std::uint32_t h) {
             propose(h, -1);
-            h = topology_.twin(PatchTopology::previous(h));
-        } while (h != begin);
+            const std::uint32_t arriving = PatchTopology::previous(h);
+            if (topology_.twin(arriving) == PatchTopology::kNone) propose(arriving, -1);
+        });
     }
     for (const Candidate& untried : queue_) {
         for (const std::uint32_t v : {untried.a, untried.b}) {

@@ -466,6 +466,7 @@ std::uint64_t SurfaceMender::addVertex(const Vec3& point) {
     surface_.points.push_back(point);
     surface_.quadrics.emplace_back();
     surface_.states.push_back(Patch::State::Open);
+    if (!surface_.marks.empty()) surface_.marks.push_back(Patch::kPlain);
     around_[v];
     return v;
 }

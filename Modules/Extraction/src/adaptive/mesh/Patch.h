@@ -19,9 +19,11 @@ struct Sample {
     std::array<std::int16_t, 3> direction{};  ///< of the normal, in parts of kUnit
     std::uint8_t room = SheetRoom::kAlone;    ///< to other sheets, see SheetRoom
     /// How often the square of the allowed distance is halved, see TightPlaces.
-    std::uint8_t tightness = 0;
+    std::uint8_t tightness : 7 = 0;  ///< up to kMostHalvings
+    bool isOnBorder : 1 = false;     ///< a vertex of an open border
 
     static constexpr double kUnit = 32767;
+    static constexpr std::uint8_t kMostHalvings = 0x7F;
 
     bool isAlone() const { return room == SheetRoom::kAlone; }
 
@@ -60,12 +62,16 @@ struct Patch {
         Fitted,  ///< no edge around it was collapsed since it was fitted
         Final    ///< stays
     };
-    std::vector<State> states;  ///< of each point
+    std::vector<State> states;         ///< of each point
+    std::vector<std::uint32_t> marks;  ///< of each point, see SurfaceState
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::uint32_t ownTriangles = 0;
 
     std::vector<Sample> samples;
     std::vector<std::uint32_t> sampleTriangle;  ///< the triangle that stands for each
+
+    static constexpr std::uint32_t kPlain = 0, kBorder = 1;
+    bool isBorder(std::uint32_t point) const { return !marks.empty() && marks[point] == kBorder; }
 
     /// New vertices stay in this box, in continuous index coordinates: so nothing that the patch
     /// makes can meet what other patches make at the same time in boxes of their own.

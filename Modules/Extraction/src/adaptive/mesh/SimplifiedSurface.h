@@ -16,6 +16,9 @@ struct SurfaceState {
     std::vector<Vec3> points;
     std::vector<StoredQuadric> quadrics;  ///< of each point, seen from it
     std::vector<Patch::State> states;     ///< of each point
+    /// Of each point: Patch::kPlain; Patch::kBorder on an open border that may be simplified;
+    /// above, a number of the point's own, by which it is known in the end. Empty: all are plain.
+    std::vector<std::uint32_t> marks;
     std::vector<Triangle> triangles;
     std::vector<std::uint64_t> sampleTriangle;  ///< the triangle that stands for each sample
 

@@ -10,23 +10,12 @@
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
 #include "adaptive/mesh/ZeroedTable.h"
+#include "adaptive/proof/DistanceProof.h"
 #include "adaptive/proof/PieceBound.h"
 #include "adaptive/proof/SurfaceLookup.h"
 #include "adaptive/proof/SurfaceWalk.h"
 
 namespace adaptiso::detail {
-
-/// A place where one of the two surfaces lies beyond the limit. Points in the metric frame.
-struct PlaceBeyond {
-    static constexpr std::uint64_t kNone = ~std::uint64_t{0};
-
-    Vec3 onSimplified, onFine;       ///< one of them is the place, the other the nearest point
-    std::uint64_t triangle = kNone;  ///< of the simplified surface; kNone where none was near
-    bool isOfFine = false;           ///< the place is one of the full-resolution surface
-
-    const Vec3& point() const { return isOfFine ? onFine : onSimplified; }
-    double squaredDistance() const { return squaredNorm(onSimplified - onFine); }
-};
 
 /// What is proved of the surfaces within a brick.
 struct BrickBound {

@@ -117,8 +117,11 @@ bool areClear(const TriangleMesh& mesh, const Fans& fans, std::int64_t a, std::i
 
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh) {
     if (mesh.triangles.empty()) return {};
+    return crossingTriangles(mesh, AabbTree(mesh));
+}
+
+std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh, const AabbTree& tree) {
     constexpr std::int64_t kPiece = 1024;
-    const AabbTree tree(mesh);
     const Fans fans(mesh);
     const BoundingBox box = boundingBox(mesh);
     const double gap = 1e-13 * (norm(box.maximum) + norm(box.minimum));  // rounding of coordinates

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
 namespace adaptiso::detail {
@@ -11,5 +12,8 @@ namespace adaptiso::detail {
 /// it is, whatever made it: pairs that no plane is found between (see Certificate.h) are looked at
 /// exactly, by MeshQuality's trianglesCross(). Cost: O(T log T), in parallel.
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh);
+
+/// The same with a tree that is there. \param tree  of the mesh
+std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh, const AabbTree& tree);
 
 }  // namespace adaptiso::detail

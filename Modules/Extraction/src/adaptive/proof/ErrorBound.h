@@ -6,34 +6,21 @@
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
 #include "adaptive/proof/BrickProof.h"
+#include "adaptive/proof/DistanceProof.h"
 #include "adaptive/proof/SurfaceLookup.h"
 
 namespace adaptiso::detail {
 
-struct ErrorBound {
-    /// No point of the full-resolution surface is farther from the simplified one, and none of the
-    /// latter from the former.
-    double largestMm = 0;
-    std::vector<PlaceBeyond> beyondLimit;
-};
-
-/// Proves bounds by going over both surfaces brick by brick, the full-resolution one made anew.
-/// Nothing of what the simplification believed is trusted, except for where to look first.
-///
-/// What was proved of one surface holds for the next as far as both are the same: a triangle of
-/// both lies as near to the full-resolution surface as before, and a piece of the latter has not
-/// lost what is near it where no triangle came or went within the limit.
-class ErrorProof {
+/// The proof for a volume: goes over both surfaces brick by brick, the full-resolution one made
+/// anew.
+class ErrorProof final : public DistanceProof {
 public:
     /// \param limitMm  what is farther than that is noted in ErrorBound::beyondLimit
     ErrorProof(const LatticeSampler& sampler, const Bricks& bricks, const MetricFrame& frame,
                double limitMm);
 
-    /// What was proved of the last surface is not proved again.
-    ErrorBound prove(const SimplifiedSurface& surface);
-
-    /// The same of the last surface after some changes.
-    ErrorBound proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes);
+    ErrorBound prove(const SimplifiedSurface& surface) override;
+    ErrorBound proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes) override;
 
 private:
     ProofScope scopeOf(const SurfaceLookup& lookup) const;

@@ -88,6 +88,14 @@ public:
         for (const auto& l : halfEdges_.from(vertex)) f(l.halfEdge / 3);
     }
 
+    bool isEmpty() const { return triangles_.empty(); }
+
+    /// Calls f(triangle) for those that share a corner with one; for some of them several times.
+    template <class F>
+    void forEachBeside(Index t, const F& f) const {
+        for (const Index corner : triangles_[t]) forEachAt(corner, f);
+    }
+
     /// The triangle with these corners in this order; kNone where there is none.
     Index find(Index a, Index b, Index c) const {
         for (const auto& l : halfEdges_.from(a)) {

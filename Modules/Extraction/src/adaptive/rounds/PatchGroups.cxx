@@ -11,6 +11,8 @@ namespace adaptiso::detail {
 namespace {
 
 constexpr std::int64_t kPiece = 1 << 14;
+/// Beyond that many cubes in the bounding box only those that hold vertices are kept.
+constexpr double kMostCubes = 1 << 20;
 
 }  // namespace
 
@@ -25,7 +27,27 @@ PatchCubes::PatchCubes(const SurfaceState& surface, const PatchCut& cut, const M
     }
     low_ = cubeAtIndex(low);
     const Index3 last = cubeAtIndex(high);
-    for (int a = 0; a < 3; ++a) count_[a] = last[a] - low_[a] + 1;
+    double cubes = 1;
+    for (int a = 0; a < 3; ++a) {
+        count_[a] = last[a] - low_[a] + 1;
+        cubes *= static_cast<double>(count_[a]);
+    }
+    if (cubes <= kMostCubes) {
+        total_ = static_cast<std::size_t>(count_[0] * count_[1] * count_[2]);
+    } else {
+        listCubes(surface);
+    }
+}
+
+void PatchCubes::listCubes(const SurfaceState& surface) {
+    sparse_.reserve(surface.points.size());
+    for (const Vec3& p : surface.points) {
+        const Index3 cube = cubeAt(p);
+        sparse_.push_back({cube[2], cube[1], cube[0]});
+    }
+    std::sort(sparse_.begin(), sparse_.end());
+    sparse_.erase(std::unique(sparse_.begin(), sparse_.end()), sparse_.end());
+    total_ = sparse_.size();
 }
 
 Index3 PatchCubes::cubeAtIndex(const Vec3& index) const {
@@ -37,10 +59,28 @@ Index3 PatchCubes::cubeAtIndex(const Vec3& index) const {
     return cube;
 }
 
+std::optional<std::uint32_t> PatchCubes::find(const Index3& cube) const {
+    if (!sparse_.empty()) {
+        const Place place{cube[2], cube[1], cube[0]};
+        const auto at = std::lower_bound(sparse_.begin(), sparse_.end(), place);
+        if (at == sparse_.end() || *at != place) return {};
+        return static_cast<std::uint32_t>(at - sparse_.begin());
+    }
+    for (int a = 0; a < 3; ++a) {
+        if (cube[a] < low_[a] || cube[a] >= low_[a] + count_[a]) return {};
+    }
+    return placeOf(cube);
+}
+
 void PatchCubes::setBounds(std::size_t number, Patch& patch) const {
-    const auto n = static_cast<std::int64_t>(number);
-    Index3 low{n % count_[0] + low_[0], n / count_[0] % count_[1] + low_[1],
+    Index3 low;
+    if (!sparse_.empty()) {
+        low = {sparse_[number][2], sparse_[number][1], sparse_[number][0]};
+    } else {
+        const auto n = static_cast<std::int64_t>(number);
+        low = {n % count_[0] + low_[0], n / count_[0] % count_[1] + low_[1],
                n / (count_[0] * count_[1]) + low_[2]};
+    }
     for (std::int64_t& along : low) along = along * cut_.side + cut_.shift;
     patch.setBox(low, cut_.side);
 }
@@ -121,13 +161,8 @@ void PatchGroups::collectObstacles() {
                 high[a] = c == 0 ? cube[a] : std::max(high[a], cube[a]);
             }
         }
-        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-            for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-                for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-                    obstacles_[cubes_.numberOf({x, y, z})].push_back(i);
-                }
-            }
-        }
+        cubes_.forEachBetween(low, high,
+                              [&](std::uint32_t cube) { obstacles_[cube].push_back(i); });
     }
 }
 
@@ -177,6 +212,7 @@ Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
         patch.points.push_back(surface_.points[v]);
         patch.quadrics.push_back(surface_.quadrics[v].about(surface_.points[v]));
         patch.states.push_back(surface_.states[v]);
+        if (!surface_.marks.empty()) patch.marks.push_back(surface_.marks[v]);
     }
     const auto own = triangles_.of(n);
     patch.triangles.reserve(own.size() + obstacles_[n].size());
@@ -207,6 +243,7 @@ void PatchGroups::addObstacles(std::size_t n, Patch& patch, PatchScratch& scratc
             patch.points.push_back(surface_.points[v]);
             patch.quadrics.emplace_back();
             patch.states.push_back(Patch::State::Open);
+            if (!surface_.marks.empty()) patch.marks.push_back(Patch::kPlain);
             scratch.outsideVertices.push_back(v);
             number = static_cast<std::uint32_t>(patch.points.size());
         }
@@ -229,6 +266,7 @@ void PatchGroups::putBack(std::size_t n, const Patch& patch, const PatchScratch&
     const auto members = vertices_.of(n);
     for (std::size_t v = 0; v < members.size(); ++v) {
         surface.states[members[v]] = patch.states[v];
+        if (!patch.marks.empty()) surface.marks[members[v]] = patch.marks[v];
         // those that other patches look at have not changed, and must not be written
         if (surface.points[members[v]] == patch.points[v]) continue;
         surface.points[members[v]] = patch.points[v];

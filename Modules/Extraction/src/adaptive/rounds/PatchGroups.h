@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,28 +19,66 @@ struct PatchCut {
     std::int64_t shift = 0;
 };
 
-/// The cubes of a cut that can hold the surface.
+/// The cubes of a cut that can hold the surface, by numbers that grow with x, then y, then z: those
+/// of its bounding box, or where that has many, those that hold vertices.
 class PatchCubes {
 public:
     PatchCubes(const SurfaceState& surface, const PatchCut& cut, const MetricFrame& frame);
 
-    std::size_t count() const {
-        return static_cast<std::size_t>(count_[0] * count_[1] * count_[2]);
-    }
+    std::size_t count() const { return total_; }
     Index3 cubeAt(const Vec3& p) const { return cubeAtIndex(frame_.toIndex(p)); }
+    /// Of a cube, if it is one of them.
+    std::optional<std::uint32_t> find(const Index3& cube) const;
+    /// \pre it is one of them
     std::uint32_t numberOf(const Index3& cube) const {
-        return static_cast<std::uint32_t>(
-            cube[0] - low_[0] + count_[0] * (cube[1] - low_[1] + count_[1] * (cube[2] - low_[2])));
+        return sparse_.empty() ? placeOf(cube) : *find(cube);
     }
+    /// Calls f(number) for those from a first to a last one, along each axis.
+    template <class F>
+    void forEachBetween(const Index3& first, const Index3& last, const F& f) const;
     void setBounds(std::size_t number, Patch& patch) const;
 
 private:
+    using Place = std::array<std::int64_t, 3>;  ///< of a cube: z, y, x
+
     Index3 cubeAtIndex(const Vec3& index) const;
+    std::uint32_t placeOf(const Index3& cube) const {
+        return static_cast<std::uint32_t>(
+            cube[0] - low_[0] + count_[0] * (cube[1] - low_[1] + count_[1] * (cube[2] - low_[2])));
+    }
+    void listCubes(const SurfaceState& surface);
 
     PatchCut cut_;
     const MetricFrame& frame_;
     Index3 low_{0, 0, 0}, count_{1, 1, 1};
+    std::vector<Place> sparse_;  ///< those that hold vertices, ascending; empty: all of the box
+    std::size_t total_ = 1;
 };
+
+template <class F>
+void PatchCubes::forEachBetween(const Index3& first, const Index3& last, const F& f) const {
+    double cubes = 1;
+    for (int a = 0; a < 3; ++a) cubes *= static_cast<double>(last[a] - first[a] + 1);
+    if (!sparse_.empty() && cubes > static_cast<double>(total_)) {
+        for (std::uint32_t n = 0; n < total_; ++n) {
+            bool isBetween = true;
+            for (int a = 0; a < 3; ++a) {
+                isBetween =
+                    isBetween && sparse_[n][2 - a] >= first[a] && sparse_[n][2 - a] <= last[a];
+            }
+            if (isBetween) f(n);
+        }
+        return;
+    }
+    for (std::int64_t z = first[2]; z <= last[2]; ++z) {
+        for (std::int64_t y = first[1]; y <= last[1]; ++y) {
+            for (std::int64_t x = first[0]; x <= last[0]; ++x) {
+                const std::optional<std::uint32_t> number = find({x, y, z});
+                if (number) f(*number);
+            }
+        }
+    }
+}
 
 /// Numbers 0 .. n sorted by a small key, in their order where it is equal; those whose key is too
 /// large are left out.

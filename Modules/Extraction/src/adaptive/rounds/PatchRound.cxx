@@ -43,6 +43,9 @@ void removeGone(SurfaceState& surface) {
         [&] { keep(surface.quadrics); }, [&] { keep(surface.points); },
         [&] { keep(surface.states); },
         [&] {
+            if (!surface.marks.empty()) keep(surface.marks);
+        },
+        [&] {
             for (std::uint64_t& t : surface.sampleTriangle) t = newTriangle[t];
         });
 }
@@ -84,19 +87,22 @@ PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
     return trial;
 }
 
-void PatchRound::run(const PatchWork& work) {
+void PatchRound::run(const PatchWork& work, CollapseCosts* costs) {
+    if (costs != nullptr) costs->assign(groups_.count(), {});
     const std::vector<std::int64_t> quota = groups_.shares(work.mostCollapses);
     tbb::enumerable_thread_specific<PatchScratch> scratches;
-    parallelForPieces(static_cast<std::int64_t>(groups_.count()), 1,
-                      [&](std::int64_t n, std::int64_t) {
-                          if (groups_.isIdle(n)) return;
-                          PatchScratch& scratch = scratches.local();
-                          Patch patch = groups_.take(n, scratch);
-                          PatchSimplifier simplifier(patch, frame_, work.limits);
-                          if (work.collapses) simplifier.collapseEdges(quota[n], nullptr);
-                          if (work.fits) simplifier.fitVertices();
-                          groups_.putBack(n, patch, scratch, surface_);
-                      });
+    parallelForPieces(
+        static_cast<std::int64_t>(groups_.count()), 1, [&](std::int64_t n, std::int64_t) {
+            if (groups_.isIdle(n)) return;
+            PatchScratch& scratch = scratches.local();
+            Patch patch = groups_.take(n, scratch);
+            PatchSimplifier simplifier(patch, frame_, work.limits);
+            if (work.collapses) {
+                simplifier.collapseEdges(quota[n], costs == nullptr ? nullptr : &(*costs)[n]);
+            }
+            if (work.fits) simplifier.fitVertices();
+            groups_.putBack(n, patch, scratch, surface_);
+        });
     if (work.collapses) removeGone(surface_);
 }
 

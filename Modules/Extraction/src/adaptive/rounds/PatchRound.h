@@ -37,7 +37,8 @@ public:
     PatchTrial tryOut(const PatchLimits& limits, bool triesAll) const;
 
     /// Once.
-    void run(const PatchWork& work);
+    /// \param costs  gets those of the collapses, patch by patch; may be null
+    void run(const PatchWork& work, CollapseCosts* costs = nullptr);
 
 private:
     SimplifiedSurface& surface_;

@@ -18,11 +18,10 @@ double costStep(std::int64_t triangles, std::int64_t target) {
 
 }  // namespace
 
-Simplification::Simplification(const LatticeSampler& sampler, const Bricks& bricks,
-                               const MetricFrame& frame, const TightPlaces& tight,
+Simplification::Simplification(const FullSurface& full, const TightPlaces& tight,
                                const PatchLimits& limits)
-    : sampler_(sampler), bricks_(bricks), frame_(frame), tight_(tight), limits_(limits) {
-    const double voxel = frame.voxelMm();
+    : full_(full), frame_(full.frame()), tight_(tight), limits_(limits) {
+    const double voxel = frame_.voxelMm();
     costUnit_ = voxel * voxel * voxel * voxel;
 }
 
@@ -46,7 +45,7 @@ Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
     const double mostCost = kHalfwayCost * voxel * voxel * distanceMm * distanceMm;
     limits_.maxDistanceMm *= kHalfwayDistance;
     limits_.maxCost = kFirstCost * costUnit_;
-    surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
+    surface = full_.firstRound(tight_, limits_, nullptr);
     for (const double cost : kBoundCosts) {
         if (cost * costUnit_ > mostCost) break;
         roundUpTo(cost * costUnit_, surface);
@@ -135,11 +134,11 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
     limits_.maxCost = cost * costUnit_;
     rounds_ = fits_ = 0;
     isTied_ = false;
-    SimplifiedSurface surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, &costs);
+    SimplifiedSurface surface = full_.firstRound(tight_, limits_, &costs);
     const std::int64_t target = wanted.of(surface.fineTriangles);
     if (surface.triangleCount() < target) {
         limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
-        surface = simplifyBricks(sampler_, bricks_, frame_, tight_, limits_, nullptr);
+        surface = full_.firstRound(tight_, limits_, nullptr);
     }
     for (;;) {
         for (int idle = 0; surface.triangleCount() > target && idle < 2;) {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "adaptive/rounds/BrickRound.h"
+#include "adaptive/full/FullSurface.h"
 #include "adaptive/rounds/PatchRound.h"
 
 namespace adaptiso::detail {
@@ -37,8 +37,7 @@ struct Halfway {
 /// surface get coarser together.
 class Simplification {
 public:
-    Simplification(const LatticeSampler& sampler, const Bricks& bricks, const MetricFrame& frame,
-                   const TightPlaces& tight, const PatchLimits& limits);
+    Simplification(const FullSurface& full, const TightPlaces& tight, const PatchLimits& limits);
 
     /// As few triangles as the limits allow; vertices are not fitted.
     /// \param last     of the run before, when that went through `halfway`
@@ -65,8 +64,7 @@ private:
     void goFarther(SimplifiedSurface& surface);
     void roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost);
 
-    const LatticeSampler& sampler_;
-    const Bricks& bricks_;
+    const FullSurface& full_;
     const MetricFrame& frame_;
     const TightPlaces& tight_;
     PatchLimits limits_;

@@ -57,7 +57,7 @@ bool TightPlaces::has(const MetricFrame& frame, const Sample& sample) const {
 void TightPlaces::apply(const MetricFrame& frame, Sample& sample) const {
     if (tightness_.empty() && crossings_.empty()) return;
     const Index3 cube = cubeAt(frame.toIndex(sample.point()));
-    sample.tightness = tightnessAt(cube);
+    sample.tightness = tightnessAt(cube) & Sample::kMostHalvings;
     if (crossings_.contains(cube)) sample.room = 0;
 }
 

@@ -14,15 +14,20 @@
 
 namespace adaptiso {
 
-/// The boundaries of a three-layer head model, from inside out.
-enum class HeadSurface { InnerSkull, OuterSkull, OuterSkin };
-inline constexpr int kHeadSurfaceCount = 3;
+/// The boundaries of a head model, from inside out. Between brain and inner skull lies the CSF.
+enum class HeadSurface { Brain, InnerSkull, OuterSkull, OuterSkin };
+inline constexpr std::size_t kHeadSurfaceCount = 4;
 
-/// "inner_skull", "outer_skull", "outer_skin": the names that MNE's files have.
+/// "brain", "inner_skull", "outer_skull", "outer_skin": the names that MNE's files have.
 std::string_view toString(HeadSurface surface);
+
+/// Surface n, from inside out, of a model of `count`: the inner skull alone (1), all but the brain
+/// (3), or all (4). \pre n < count \throws InvalidInput  another count
+HeadSurface headSurface(std::size_t n, std::size_t count);
 
 struct BoundaryOptions {
     bool innerSkullOnly = false;  ///< MEG: one surface
+    bool withBrain = false;       ///< four surfaces; not with innerSkullOnly
 
     /// Side of the working grid's voxels, mm; 0: the image's own voxels if they are cubes of 0.7
     /// to 1.5 mm, else 1 mm.
@@ -34,8 +39,14 @@ struct BoundaryOptions {
     /// Closing (radius, mm) of the skin and of the brain: gaps, sulci, canals narrower than twice
     /// this are filled.
     double closingMm = 10;
-    double minSkullMm = 2;   ///< least thickness of the skull; thinner places are pushed outwards
-    double minScalpMm = 2;   ///< the same for the scalp
+    double minSkullMm = 2;  ///< least thickness of the skull; thinner places are pushed outwards
+    double minScalpMm = 2;  ///< the same for the scalp
+    /// Least thickness of the CSF between brain and inner skull; the brain gives way. Real CSF is
+    /// thinner where the head rests: no usual number of triangles resolves that.
+    double minCsfMm = 1;
+    /// Closing (radius, mm) of the brain's own surface: sulci narrower than twice this are filled,
+    /// as edges of some mm can't follow them.
+    double sulciMm = 3;
     double maxSkullMm = 20;  ///< bone farther from the inner skull (face, neck) counts as scalp
     /// Necks of the inner skull, as leaks down a foramen are, that a ball of this radius (mm) can't
     /// enter and that reach more than 10 mm are cut off. Wider than any foramen but the foramen
@@ -54,7 +65,7 @@ struct BoundaryOptions {
 /// handle (a ball), each inside the next with at least the gaps asked for (to about a voxel; the
 /// mesh steps that follow see to the rest).
 struct HeadBoundaries {
-    std::vector<FractionField> solids;  ///< inner skull, or all three by HeadSurface
+    std::vector<FractionField> solids;  ///< by headSurface()
     std::vector<std::string> notes;     ///< what was guessed or changed, one line each
     std::vector<std::string> warnings;  ///< what makes the result doubtful
 };
@@ -77,24 +88,43 @@ struct HeadBoundaries {
 HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<VolumeView>& brainMask,
                                 const BoundaryOptions& options = {});
 
+/// What is known of the brain besides a T1. All in the same space.
+struct BrainSources {
+    std::optional<VolumeView> mask;  ///< as above
+    /// Labels of FreeSurfer or FastSurfer (aseg): all but 0, CSF and what lies outside of the brain
+    /// are the brain. It is the mask as well where there is none.
+    std::optional<VolumeView> aseg;
+    std::vector<TriangleMesh> pial;  ///< closed surfaces of the cortex, LPS mm
+};
+
+/// The same, and with options.withBrain the brain's own surface: what lies within the pial surfaces
+/// and aseg's labels or, where the cortex is not told by either, what of the mask (or of the guess)
+/// is brighter than half of the brain's level, as CSF is not. Sulci narrower than 2 sulciMm are
+/// filled, and the surface keeps minCsfMm from the inner skull.
+/// \throws InvalidInput  as above; pial surfaces that enclose nothing in this head
+HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& brain,
+                                const BoundaryOptions& options = {});
+
 /// Which labels of a segmentation belong to what. Each list is a tissue of its own: the inner
 /// skull encloses `brain`, the outer skull brain and `skull`, the skin all of them.
 struct TissueLabels {
-    std::vector<std::int64_t> brain;  ///< brain and CSF
+    std::vector<std::int64_t> brain;  ///< brain and CSF; with options.withBrain the brain alone
     std::vector<std::int64_t> skull;
     std::vector<std::int64_t> scalp;
     /// Labels not named above that are not 0 count as brain (FreeSurfer's aseg).
     bool othersAreBrain = false;
+    std::vector<std::int64_t> csf{};  ///< within the inner skull, outside of the brain
 };
 
-/// "charm", "headreco" (SimNIBS) or "aseg" (FreeSurfer's aseg and SAMSEG's, whose skull is 165 and
-/// whose scalp is 258 and 259). \throws InvalidInput  another name
+/// "charm", "headreco" (SimNIBS), or "aseg" and "samseg" (FreeSurfer's aseg and SAMSEG's, whose
+/// skull is 165, whose scalp is 258 and 259, and whose CSF is 24 and 257). \throws InvalidInput
+/// another name
 TissueLabels tissuePreset(std::string_view name);
 
 /// From a label map. Labels become parts of voxels by smoothing and interpolating each boundary's
 /// own indicator, so that surfaces are not stairs.
 /// \throws InvalidInput  a tissue has no label in the image; labels listed for two tissues; tissues
-///                       that don't lie round each other in their order
+///                       that don't lie round each other in their order; withBrain without CSF
 HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels& tissues,
                                     const BoundaryOptions& options = {});
 
@@ -108,12 +138,12 @@ HeadBoundaries boundariesFromProbabilities(std::span<const VolumeView> maps,
 
 /// From a CT in Hounsfield units: skin at skinHu, bone at skullHu; the inner skull is the cavity
 /// of the bone that a ball of 18 mm radius cannot leave.
-/// \throws InvalidInput  no head, no bone, or no cavity in it
+/// \throws InvalidInput  no head, no bone, or no cavity in it; withBrain: a CT shows no cortex
 HeadBoundaries boundariesFromCt(const VolumeView& ct, const BoundaryOptions& options = {});
 
-/// From three surfaces (or the inner skull alone) that need mending: each is made a solid again by
-/// majority of its winding along three axes, so that holes, crossings and stray pieces go.
-/// \param surfaces  1 or 3, LPS mm, inside out
+/// From three or four surfaces (or the inner skull alone) that need mending: each is made a solid
+/// again by majority of its winding along three axes, so that holes, crossings and stray pieces go.
+/// \param surfaces  as many as the options ask for, LPS mm, inside out
 /// \throws InvalidInput  another number; a surface without volume
 HeadBoundaries boundariesFromSurfaces(std::span<const TriangleMesh> surfaces,
                                       const BoundaryOptions& options = {});

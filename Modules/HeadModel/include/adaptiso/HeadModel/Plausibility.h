@@ -46,7 +46,7 @@ struct HeadNote {
 
 struct PlausibilityOptions {
     bool areNested = true;      ///< they lie in each other, the innermost first
-    bool areHeadLayers = true;  ///< inner skull (alone, or with outer skull and skin)
+    bool areHeadLayers = true;  ///< 1, 3 or 4 of them: headSurface()
     /// The image that they were made from, in the surfaces' frame (LPS): how much lies on its
     /// faces. Without: how much lies on one plane across an axis.
     std::optional<ImageGeometry> image;

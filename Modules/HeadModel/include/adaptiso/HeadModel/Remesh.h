@@ -62,4 +62,9 @@ struct Remeshed {
 /// number of threads.
 Remeshed remeshForBem(const TriangleMesh& surface, const RemeshOptions& options = {});
 
+/// How many vertices options.edgeLengthMm asks for, before anything is remeshed: within some
+/// percent of what remeshForBem() gives when no number is wanted. \pre as remeshForBem(), and
+/// options.edgeLengthMm is set
+std::int64_t verticesForEdges(const TriangleMesh& surface, const RemeshOptions& options);
+
 }  // namespace adaptiso

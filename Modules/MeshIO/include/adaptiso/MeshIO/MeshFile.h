@@ -19,10 +19,17 @@ namespace adaptiso {
 /// An RGB colour.
 using Color = std::array<std::uint8_t, 3>;
 
-/// A number, or a colour, for every point of a mesh.
+/// Values at the points of a mesh: numbers, colours, or whole numbers, which may be labels.
 struct PointArray {
     std::string name;  ///< as ParaView and PyVista list it
-    std::variant<std::vector<double>, std::vector<Color>> values;
+    std::variant<std::vector<double>, std::vector<Color>, std::vector<std::int64_t>> values;
+    int components = 1;  ///< numbers for each point, one after the other; 1 of colours
+
+    /// Points that it has values for.
+    std::size_t points() const {
+        const auto size = [](const auto& each) { return each.size(); };
+        return std::visit(size, values) / static_cast<std::size_t>(components);
+    }
 };
 
 /// A whole number for every triangle of a mesh.
@@ -39,11 +46,17 @@ struct MeshWriteOptions {
     /// FreeSurfer footer only: the volume's file name, without folder and without anything that
     /// names a patient. Empty: "unknown". Printable ASCII without space, '/', '\\', '='.
     std::string volumeName;
-    /// VTK XML only: written beside the mesh, the first as the active scalars. readMesh() leaves
-    /// them aside.
+    /// Where the format holds them (MeshFormat::holdsPointArrays): written with the mesh, in VTK's
+    /// formats the first as the active scalars. PLY has no names with blanks and no arrays of
+    /// several components: blanks become _, and components arrays of their own.
     std::vector<PointArray> pointArrays{};
     /// VTK XML only: written beside the mesh, as Int32.
     std::vector<CellArray> cellArrays{};
+    /// The mesh is in `frame` already, as readMesh() gives it, and is written as it is. TkRas and
+    /// Voxel then do without `volume`.
+    bool isInFrame = false;
+    /// The file says which frame it holds, where its format can.
+    bool saysFrame = true;
 };
 
 /// Writes a surface in the format that the file's name asks for (findMeshFormat()).
@@ -56,7 +69,8 @@ struct MeshWriteOptions {
 /// `volume`. With Ras or Lps the footer describes a neutral volume (256^3, 1 mm) so placed that
 /// its tkRAS is the very frame written: FreeSurfer, freeview and nibabel, which go from tkRAS to
 /// scanner RAS through the footer, find the right place; MNE, which does not look at it, needs
-/// TkRas. (The other way to say it, tag 2 useRealRAS = 1, makes nibabel and MNE drop the footer.)
+/// TkRas. TkRas without a volume has a footer that says of itself that it is not valid. (The other
+/// way to say it, tag 2 useRealRAS = 1, makes nibabel and MNE drop the footer.)
 ///
 /// OpenMEEG's .tri holds normals always: area-weighted ones where the mesh has none. It says
 /// neither frame nor unit. STL holds triangles only: vertices that no triangle uses are lost.
@@ -76,6 +90,7 @@ struct MeshReadOptions {
     /// finite, triangles that name points which aren't there. Normals that are not one a point, or
     /// not finite, are then left out.
     bool keepsFaults = false;
+    bool keepsPointArrays = false;  ///< else they are passed over
 };
 
 /// What a file holds, as stored: nothing is moved to another frame.
@@ -84,6 +99,9 @@ struct MeshFile {
     TriangleMesh mesh;
     std::optional<CoordinateFrame> frame;  ///< if the file says so
     std::optional<ImageGeometry> volume;   ///< from a FreeSurfer surface's footer (frame TkRas)
+    /// One value a point each; names hold no control characters. PLY's red, green and blue are one
+    /// array of colours, "RGB". Arrays of text are passed over.
+    std::vector<PointArray> pointArrays{};
 };
 
 /// Reads a triangle surface in the format that the file's name says.

@@ -103,6 +103,10 @@ struct TopologyOptions {
 /// vertex of memory. The same mesh gives the same report, whatever the number of threads.
 TopologyReport checkTopology(const TriangleMesh& mesh, const TopologyOptions& options = {});
 
+/// A triangle has no area, as checkTopology judges it.
+/// \pre its indices name points of `mesh`
+bool isDegenerate(const TriangleMesh& mesh, const Triangle& triangle);
+
 /// For every vertex, the smallest vertex number of the piece that it belongs to (as
 /// checkTopology's SurfaceComponent::firstVertex); its own when no triangle uses it.
 std::vector<VertexId> findComponentRoots(const TriangleMesh& mesh);

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
@@ -18,13 +17,41 @@ struct BemFileOptions {
     CoordinateFrame frame = CoordinateFrame::Ras;  ///< of all files but FreeSurfer's
     bool writesGifti = false;
     bool writesVtp = false;
+    /// bem.fif and, of a model with a skin, head-dense.fif and head-sparse.fif: MNE's, in metres,
+    /// in the frame of the FreeSurfer files.
+    bool writesFif = false;
+    bool writesFieldTrip = false;  ///< headmodel.mat
+    bool writesBrainstorm =
+        false;  ///< tess_*_bem.mat: SCS of landmarks that are known, else scanner RAS; metres
+    bool writesSimNibs = false;  ///< csf.stl, bone.stl, skin.stl: scanner RAS
+    bool writesCurry = false;    ///< inner_skull.s02, ...
+    bool writesBesa = false;     ///< head.sfp: landmarks, electrodes and the skin's points
 };
 
-/// Every name that a model's folder may hold.
-std::vector<std::string_view> bemFileNames();
+/// Of a model with electrodes: BIDS, ASA, BESA, FIFF, and a line of three numbers for OpenMEEG.
+inline constexpr const char* kElectrodesTsv = "electrodes.tsv";
+inline constexpr const char* kElectrodesJson = "coordsystem.json";
+inline constexpr const char* kElectrodesElc = "electrodes.elc";
+inline constexpr const char* kElectrodesSfp = "electrodes.sfp";
+inline constexpr const char* kElectrodesFif = "electrodes-dig.fif";
+inline constexpr const char* kElectrodesTxt = "electrodes.txt";
+inline constexpr const char* kBesaFile = "head.sfp";
 
-/// "inner_skull.surf" of surface 0
-std::string bemFileName(std::size_t surface, const char* extension);
+inline constexpr const char* kFiffModel = "bem.fif";
+inline constexpr const char* kFiffDenseHead = "head-dense.fif";
+inline constexpr const char* kFiffSparseHead = "head-sparse.fif";
+inline constexpr const char* kFieldTripFile = "headmodel.mat";
+
+/// Of a surface's file: "csf.stl", "tess_innerskull_bem.mat", "inner_skull.s02".
+std::string simNibsName(HeadSurface surface);
+std::string brainstormName(HeadSurface surface);
+std::string curryName(HeadSurface surface);
+
+/// Every name that a model's folder may hold.
+std::vector<std::string> bemFileNames();
+
+/// "inner_skull.surf"
+std::string bemFileName(HeadSurface surface, const char* extension);
 
 /// Writes the model's files: FreeSurfer surfaces, OpenMEEG's set, what else is asked for, and
 /// README.md.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -14,8 +13,10 @@
 #include "adaptiso/HeadModel/ConductivityModel.h"
 #include "adaptiso/HeadModel/Finding.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
+#include "adaptiso/HeadModel/Landmarks.h"
 #include "adaptiso/HeadModel/NestSurfaces.h"
 #include "adaptiso/HeadModel/Remesh.h"
+#include "adaptiso/MeshIO/PointFiles.h"
 #include "adaptiso/MeshQuality/Shape.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/Pipeline/FinishSurface.h"
@@ -23,25 +24,41 @@
 
 namespace adaptiso {
 
+/// What is to be put on the skin of a model.
+struct ElectrodeOptions {
+    std::optional<PointFile> file;         ///< electrodes as read
+    std::string fileName;                  ///< without folders
+    std::optional<CoordinateFrame> frame;  ///< of the file; else what it says, or by its landmarks
+    std::optional<PositionSystem> positions;  ///< computed from landmarks, instead of a file's
+    std::optional<Landmarks> landmarks;       ///< given
+    bool wantsLandmarks = false;              ///< even without electrodes
+
+    bool areWanted() const { return file || positions || landmarks || wantsLandmarks; }
+};
+
 /// What a head model is to be, whatever it is made from.
 struct BemModelOptions {
     BoundaryOptions boundaries;  ///< layers, gaps, thicknesses, isovalues
-    /// One number for all surfaces or one for each; empty: 2,562, or by edge length.
+    /// One number for all surfaces or one for each; empty: by edge length or, without that, 2,562
+    /// of each of three surfaces, and of four as many as the layers' thickness asks for, 10,000 in
+    /// all at most.
     std::vector<std::int64_t> vertices;
     std::optional<EdgeLengthRange> edgeLengthMm;
     ConductivityModel conductivities;
+    ElectrodeOptions electrodes{};
+    bool wantsHeadShape = false;  ///< the skin alone as well, for coregistration
 
-    /// Of skull and scalp.
-    std::array<double, 2> minGapsMm() const {
-        return {boundaries.minSkullMm, boundaries.minScalpMm};
-    }
+    /// Between neighbours, from inside out.
+    std::vector<double> minGapsMm() const;
     std::optional<std::int64_t> verticesOf(std::size_t surface) const {
         if (vertices.empty()) return std::nullopt;
         return vertices.size() == 1 ? vertices.front() : vertices[surface];
     }
     std::size_t surfaceCount() const {
-        return boundaries.innerSkullOnly ? 1 : std::size_t{kHeadSurfaceCount};
+        return boundaries.innerSkullOnly ? 1 : boundaries.withBrain ? kHeadSurfaceCount : 3;
     }
+    HeadSurface surface(std::size_t n) const { return headSurface(n, surfaceCount()); }
+    bool hasSkin() const { return surfaceCount() > 1; }
 };
 
 /// What the model is made from, for the reports.
@@ -75,6 +92,25 @@ struct BemCheck {
     std::optional<Vec3> pointMm;  ///< LPS, where it is not kept
 };
 
+/// The skin alone, for coregistration.
+struct HeadShape {
+    TriangleMesh dense;   ///< as finely as it was found
+    TriangleMesh sparse;  ///< of the model, with at most 2,500 triangles
+};
+
+/// Electrodes and landmarks on a model's skin.
+struct BemElectrodes {
+    std::optional<Landmarks> landmarks;
+    std::string landmarkOrigin;      ///< "given", "file" or "guessed"
+    std::vector<NamedPoint> points;  ///< electrodes, LPS mm
+    bool areComputed = false;        ///< by a system of positions, not from a file
+    double meanMovedMm = 0, farthestMovedMm = 0;
+    std::string farthestName;
+
+    /// Electrodes, and landmarks as they are.
+    std::vector<NamedPoint> all() const;
+};
+
 /// A head model, or what is known of it so far: what it is made from, its surfaces, whether they
 /// keep what is promised of them.
 struct BemModel {
@@ -89,6 +125,8 @@ struct BemModel {
     /// Inside out, LPS mm. Where there is no model: what it was tried from.
     std::vector<TriangleMesh> meshes;
     std::vector<BemSurface> surfaces;
+    std::optional<HeadShape> headShape;  ///< LPS mm; if wanted, and there is a model with a skin
+    std::optional<BemElectrodes> electrodes;  ///< if wanted, and there is a model
     std::vector<NestedGap> gaps;
     std::vector<BemCheck> checks;
     std::vector<ToldNote> plausibility;  ///< what is unusual of adults' heads
@@ -111,7 +149,7 @@ struct BemHooks {
     }
 };
 
-/// "inner_skull" of surface 0
-std::string bemSurfaceName(std::size_t surface);
+/// "inner_skull" of surface 0 of three.
+std::string bemSurfaceName(std::size_t surface, std::size_t count);
 
 }  // namespace adaptiso

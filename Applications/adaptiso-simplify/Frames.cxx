@@ -1,0 +1,57 @@
+#include "Frames.h"
+
+#include <cmath>
+
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+namespace {
+
+bool needsVolume(CoordinateFrame frame) {
+    return frame == CoordinateFrame::TkRas || frame == CoordinateFrame::Voxel;
+}
+
+}  // namespace
+
+FrameChange changeFrame(const MeshFile& input, std::optional<CoordinateFrame> wanted,
+                        const MeshFormat& output) {
+    FrameChange change;
+    change.isSaid = input.frame || wanted;
+    const CoordinateFrame from = input.frame.value_or(CoordinateFrame::Ras);
+    change.frame = wanted.value_or(from);
+    const bool isTakenForRas = !input.frame && (wanted || output.holdsVolumeGeometry);
+    if (isTakenForRas) change.assumed = "does not say its coordinate frame; taken for RAS mm";
+    if (change.frame == from) return change;
+    for (const CoordinateFrame frame : {from, change.frame}) {
+        if (!needsVolume(frame) || input.volume) continue;
+        throw InvalidInput("is in " + std::string(toString(from)) +
+                           ", and does not say the volume by which it would be in " +
+                           std::string(toString(change.frame)));
+    }
+    change.move = lpsToFrame(change.frame, input.volume) * inverse(lpsToFrame(from, input.volume));
+    return change;
+}
+
+PageFrame pageFrame(const MeshFile& input) {
+    const CoordinateFrame frame = input.frame.value_or(CoordinateFrame::Ras);
+    if (!needsVolume(frame) || input.volume) {
+        return {inverse(lpsToFrame(frame, input.volume)),
+                input.frame ? "scanner RAS mm" : "the file's own frame, taken for RAS mm"};
+    }
+    return {inverse(lpsToFrame(CoordinateFrame::Ras, std::nullopt)),
+            frame == CoordinateFrame::TkRas ? "FreeSurfer's tkRAS mm" : "voxel indices"};
+}
+
+double roundingOf(CoordinatePrecision precision, double largest) {
+    switch (precision) {
+        case CoordinatePrecision::Float32:
+            return std::ldexp(largest, -24);
+        case CoordinatePrecision::NineDigits:
+            return 5e-9 * largest;
+        case CoordinatePrecision::Float64:
+            return std::ldexp(largest, -50);  // of the sums that a move to another frame takes
+    }
+    throw InternalError("roundingOf: unknown precision");
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/MeshFile.h"
+
+namespace adaptiso {
+
+/// How the points of a file go to those of another.
+struct FrameChange {
+    CoordinateFrame frame{};              ///< of the output
+    bool isSaid = true;                   ///< the output may say so
+    std::optional<AffineTransform> move;  ///< none: the points stay as they are, to the bit
+    std::string assumed;                  ///< a warning, without the file's name; empty: none
+
+    TriangleMesh apply(const TriangleMesh& mesh) const {
+        return move ? transformed(mesh, *move) : mesh;
+    }
+    TriangleMesh undo(TriangleMesh mesh) const {
+        return move ? transformed(mesh, inverse(*move)) : std::move(mesh);
+    }
+};
+
+/// \param input   a file as read
+/// \param wanted  none: the input's frame
+/// \throws InvalidInput  the files does not say of which volume a frame is
+FrameChange changeFrame(const MeshFile& input, std::optional<CoordinateFrame> wanted,
+                        const MeshFormat& output);
+
+/// A frame that a page can show: LPS mm, or what is like it but for where it lies.
+struct PageFrame {
+    AffineTransform toLps;
+    std::string name;  ///< of what points are told in
+};
+
+PageFrame pageFrame(const MeshFile& input);
+
+/// The most that a coordinate changes when it is written, of one as large as `largest`.
+double roundingOf(CoordinatePrecision precision, double largest);
+
+}  // namespace adaptiso

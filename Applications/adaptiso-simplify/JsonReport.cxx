@@ -1,0 +1,97 @@
+#include "JsonReport.h"
+
+#include "Common/CommonOptions.h"
+#include "Common/Json.h"
+
+namespace adaptiso {
+namespace {
+
+Json surfaceJson(const SurfaceSummary& surface) {
+    const TopologyReport& topology = surface.topology;
+    return {{"file", baseName(surface.file)},
+            {"format", surface.format->name},
+            {"coordinates", surface.frame ? Json(frameWord(*surface.frame)) : Json(nullptr)},
+            {"triangles", surface.triangles},
+            {"vertices", surface.vertices},
+            {"components", std::ssize(topology.components)},
+            {"genus", orNull(topology.genus())},
+            {"closed", topology.isClosed()},
+            {"areaMm2", number(surface.areaMm2)}};
+}
+
+Json findingsJson(const std::vector<Finding>& findings) {
+    Json list = Json::array();
+    for (const Finding& finding : findings) {
+        list.push_back({{"what", finding.key},
+                        {"count", finding.count},
+                        {"firstMm", finding.placeMm ? vector(*finding.placeMm) : Json(nullptr)},
+                        {"dropped", finding.isDropped}});
+    }
+    return list;
+}
+
+Json inputJson(const SimplifyRun& run) {
+    Json json = surfaceJson(run.input);
+    json["sound"] = isSound(run.findings);
+    json["findings"] = findingsJson(run.findings);
+    return json;
+}
+
+Json optionsJson(const SimplifyCommand& command) {
+    return {{"maxErrorMm", orNull(command.aim.maxErrorMm)},
+            {"triangles", orNull(command.aim.maxTriangles)},
+            {"reduction", orNull(command.aim.reduction)},
+            {"minAngleDeg", number(command.aim.minAngleDeg)},
+            {"keepBorders", command.aim.keepBorders},
+            {"requireSound", command.requiresSound},
+            {"threads", orNull(command.common.threads)},
+            {"strict", command.common.isStrict}};
+}
+
+Json outputJson(const SimplifyRun& run) {
+    if (run.failsSoundness()) return nullptr;
+    Json json = surfaceJson(run.output);
+    json["bytes"] = run.bytes;
+    json["written"] = run.writesSurface();
+    json["wantedTriangles"] = orNull(run.statistics.wantedTriangles);
+    json["countMet"] = orNull(run.countMet());
+    json["errorBoundMm"] = number(run.statistics.errorBoundMm);
+    json["roundingMm"] = number(run.roundingMm);
+    json["verification"] = {{"samples", run.verification->samples},
+                            {"maxMm", number(run.verification->maxMm)}};
+    json["values"] = run.keptArrays;
+    return json;
+}
+
+Json dataJson(const SimplifyRun& run) {
+    Json list = Json::array();
+    for (const DataSummary& data : run.data) {
+        list.push_back({{"file", baseName(data.file)},
+                        {"output", baseName(data.output)},
+                        {"format", toString(data.format)},
+                        {"arrays", data.arrays},
+                        {"labels", data.areLabels}});
+    }
+    return list;
+}
+
+}  // namespace
+
+std::string jsonReport(const SimplifyRun& run) {
+    const Json report{{"schema", "adaptiso-simplify/1"},
+                      {"program", {{"name", "adaptiso-simplify"}, {"version", programVersion()}}},
+                      {"input", inputJson(run)},
+                      {"options", optionsJson(run.command)},
+                      {"output", outputJson(run)},
+                      {"data", dataJson(run)},
+                      {"warnings", run.warnings},
+                      {"failedBySoundness", run.failsSoundness()},
+                      {"failedByWarnings", run.failsStrict()},
+                      {"reportFailure", reportFailureJson(run.reportFailure)},
+                      {"seconds", secondsJson(run.timer)},
+                      {"peakMemoryMb", peakMemoryMb()}};
+    // a file's name need not be UTF-8: what is not becomes U+FFFD
+    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace adaptiso

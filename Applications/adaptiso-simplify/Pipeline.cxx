@@ -1,0 +1,342 @@
+#include "Pipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "Common/AtomicOutput.h"
+#include "Common/ExitCodes.h"
+#include "Common/InputKind.h"
+#include "Common/Json.h"
+#include "Common/Naming.h"
+#include "Common/Numbers.h"
+#include "Common/Progress.h"
+#include "Common/ResultOutput.h"
+#include "Common/RunApp.h"
+#include "Common/Warnings.h"
+#include "Frames.h"
+#include "JsonReport.h"
+#include "OutputNames.h"
+#include "PointTransfer.h"
+#include "ReportPage.h"
+#include "SimplifyBatch.h"
+#include "SimplifyRun.h"
+#include "TextReport.h"
+#include "Verification.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kProgram = "adaptiso-simplify";
+
+/// The stages of a run, as progress, `seconds` of the report and README.md name them.
+constexpr const char* kRead = "read";
+constexpr const char* kCheck = "check";
+constexpr const char* kSimplify = "simplify";
+constexpr const char* kValues = "values";
+constexpr const char* kWrite = "write";
+constexpr const char* kVerify = "verify";
+constexpr const char* kReport = "report";
+
+const MeshFormat& formatOf(const fs::path& path) {
+    try {
+        return findMeshFormat(path);
+    } catch (const InvalidInput& error) {
+        const std::string hint = imageHint(path);
+        throw UsageError(hint.empty() ? error.what() : path.string() + ": " + hint);
+    }
+}
+
+/// Values in files of their own belong to points by number.
+void requirePointOrder(const SimplifyRun& run, const fs::path& data) {
+    for (const SurfaceSummary* surface : {&run.input, &run.output}) {
+        if (surface->format->sharesVertices) continue;
+        throw UsageError("--data " + data.string() + ": " + std::string(surface->format->name) +
+                         " keeps no order of points, which its values would go by");
+    }
+}
+
+/// Everything about the files that can be told from their names.
+void checkNames(SimplifyRun& run) {
+    const SimplifyCommand& command = run.command;
+    run.input.file = command.input;
+    run.input.format = &formatOf(command.input);
+    run.output.file = surfaceFile(command.output, command.input);
+    run.output.format = &formatOf(run.output.file);
+    std::vector<fs::path> inputs{command.input}, outputs{run.output.file};
+    for (const fs::path& data : command.data) {
+        requirePointOrder(run, data);
+        run.data.push_back({data, dataFile(data, run.output.file), findPointDataFormat(data)});
+        inputs.push_back(data);
+        outputs.push_back(run.data.back().output);
+    }
+    if (command.common.wantsJson() && !command.common.wantsJsonOnStdout()) {
+        outputs.emplace_back(command.common.json);
+    }
+    if (!command.report.page.empty()) outputs.push_back(command.report.page);
+    checkReportOutputs(command.report, inputs);
+    std::set<fs::path> known;
+    for (const fs::path& output : outputs) {
+        if (!known.insert(fs::weakly_canonical(fs::absolute(output))).second) {
+            throw UsageError(output.string() + ": is the name of another output too");
+        }
+        for (const fs::path& input : inputs) checkNotInput(output, input);
+        checkOutput(output);
+    }
+}
+
+void summarize(const TriangleMesh& mesh, SurfaceSummary& summary) {
+    summary.triangles = std::ssize(mesh.triangles);
+    summary.vertices = std::ssize(mesh.points);
+    summary.areaMm2 = surfaceArea(mesh);
+}
+
+std::vector<PointData> readData(const SimplifyRun& run) {
+    std::vector<PointData> all;
+    for (const DataSummary& summary : run.data) {
+        PointData data = readPointData(summary.file);
+        if (data.points != run.input.vertices) {
+            throw InvalidInput(baseName(summary.file) + ": has values for " +
+                               formatCount(data.points) + " points; " + baseName(run.input.file) +
+                               " has " + formatCount(run.input.vertices));
+        }
+        all.push_back(std::move(data));
+    }
+    return all;
+}
+
+/// Puts what crosses before what is dropped, as it is kept.
+void addCrossing(const TriangleMesh& mesh, const std::vector<std::int64_t>& triangles,
+                 std::vector<Finding>& findings) {
+    std::optional<Finding> crossing = crossingFinding(mesh, triangles);
+    if (!crossing) return;
+    const auto at = std::find_if(findings.begin(), findings.end(),
+                                 [](const Finding& finding) { return finding.isDropped; });
+    findings.insert(at, std::move(*crossing));
+}
+
+/// What is not sound of the input. What crosses is looked for only where that may end the run;
+/// else simplify() tells.
+void check(const TriangleMesh& mesh, SimplifyRun& run) {
+    run.input.topology = checkTopology(mesh);
+    run.findings = findTopologyFaults(run.input.topology);
+    if (run.command.requiresSound && isSound(run.findings)) {
+        addCrossing(mesh, findCrossing(mesh), run.findings);
+    }
+}
+
+/// Where a count could not be met. With --max-error as well the bound may end it before: that was
+/// asked for.
+void warnOfCount(SimplifyRun& run) {
+    if (run.countMet().value_or(true) || run.command.aim.maxErrorMm) return;
+    run.warnings.push_back(baseName(run.output.file) + ": has " +
+                           formatCount(run.output.triangles) + " triangles, not " +
+                           formatCount(*run.statistics.wantedTriangles) +
+                           " as asked for: these are the fewest reached with all its pieces, "
+                           "holes and borders");
+}
+
+/// Open borders are what some surfaces have; all else is worth a warning.
+void warnOfFindings(SimplifyRun& run) {
+    for (const Finding& finding : run.findings) {
+        if (!finding.isFault || finding.key == "borderEdges") continue;
+        run.warnings.push_back(baseName(run.input.file) + ": " + finding.text());
+    }
+}
+
+Simplified simplifySurface(const TriangleMesh& mesh, SimplifyRun& run, ProgressLine& progress) {
+    SimplifyOptions options = run.command.aim;
+    options.progress = progress.callback();
+    Simplified result = naming(baseName(run.input.file), [&] { return simplify(mesh, options); });
+    run.statistics = result.statistics;
+    if (!run.command.requiresSound) {
+        addCrossing(mesh, result.statistics.crossingTriangles, run.findings);
+    }
+    return result;
+}
+
+/// Values at points, taken to the result.
+struct TakenValues {
+    std::vector<PointArray> arrays;  ///< that the surface's own file holds
+    std::vector<PointData> data;
+};
+
+TakenValues takeValues(const MeshFile& input, const std::vector<PointData>& data,
+                       const TriangleMesh& result, SimplifyRun& run) {
+    TakenValues taken;
+    const bool holdsArrays = run.output.format->holdsPointArrays;
+    if (!holdsArrays && !input.pointArrays.empty()) {
+        std::string names;
+        for (const PointArray& array : input.pointArrays) {
+            names += (names.empty() ? "" : ", ") + array.name;
+        }
+        run.warnings.push_back(baseName(run.output.file) + ": " +
+                               std::string(run.output.format->name) +
+                               " holds no values at points; left out: " + names);
+    }
+    if (data.empty() && (!holdsArrays || input.pointArrays.empty())) return taken;
+    const PointTransfer transfer(input.mesh, result);
+    if (holdsArrays) {
+        for (const PointArray& array : input.pointArrays) {
+            taken.arrays.push_back(transfer(array));
+            run.keptArrays.push_back(array.name);
+        }
+    }
+    for (std::size_t n = 0; n < data.size(); ++n) {
+        taken.data.push_back(transfer(data[n]));
+        run.data[n].arrays = std::ssize(data[n].arrays);
+        run.data[n].areLabels =
+            std::all_of(data[n].arrays.begin(), data[n].arrays.end(),
+                        [](const PointValues& array) { return array.areLabels(); });
+    }
+    return taken;
+}
+
+double largestCoordinate(const TriangleMesh& mesh) {
+    double largest = 0;
+    for (const Vec3& p : mesh.points) {
+        largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    }
+    return largest;
+}
+
+/// Writes surface and values under their temporary names. \return  the surface as it can be read
+MeshFile writeFiles(const TriangleMesh& mesh, TakenValues values, const MeshFile& input,
+                    const FrameChange& change, SimplifyRun& run,
+                    std::vector<AtomicOutput>& outputs) {
+    MeshWriteOptions write;
+    write.frame = change.frame;
+    write.volume = input.volume;
+    write.pointArrays = std::move(values.arrays);
+    write.isInFrame = true;
+    write.saysFrame = change.isSaid;
+    AtomicOutput& output = outputs.emplace_back(run.output.file);
+    output.write([&](const fs::path& path) { writeMesh(mesh, path, write); });
+    const fs::path written = output.temporary();
+    run.bytes = fs::file_size(written);
+    for (std::size_t n = 0; n < values.data.size(); ++n) {
+        outputs.emplace_back(run.data[n].output).write([&](const fs::path& path) {
+            writePointData(values.data[n], std::ssize(mesh.triangles), path);
+        });
+    }
+    return readMesh(written);
+}
+
+/// Everything from the simplified surface on; the surface is then under its temporary name.
+void finish(Simplified result, const MeshFile& input, const std::vector<PointData>& data,
+            const FrameChange& change, SimplifyRun& run, ProgressLine& progress,
+            std::vector<AtomicOutput>& outputs) {
+    progress.show(kValues);
+    TakenValues values =
+        run.timer.time(kValues, [&] { return takeValues(input, data, result.mesh, run); });
+    progress.show(kWrite);
+    MeshFile written = run.timer.time(kWrite, [&] {
+        if (!run.output.format->holdsNormals) result.mesh.normals.clear();
+        const TriangleMesh moved = change.apply(result.mesh);
+        const double largest = std::max(largestCoordinate(moved), largestCoordinate(result.mesh));
+        run.roundingMm = std::sqrt(3.0) * roundingOf(run.output.format->precision, largest);
+        return writeFiles(moved, std::move(values), input, change, run, outputs);
+    });
+    progress.show(kVerify);
+    run.timer.time(kVerify, [&] {
+        summarize(written.mesh, run.output);
+        verify({input.mesh, result.mesh, change.undo(std::move(written.mesh)), run.roundingMm},
+               run);
+    });
+}
+
+std::string refusal(const SimplifyRun& run) {
+    std::string text;
+    for (const Finding& finding : run.findings) {
+        if (finding.isFault) text += (text.empty() ? "" : "; ") + finding.text();
+    }
+    return baseName(run.input.file) +
+           ": is not sound, as --require-sound asks for, so no surface was written: " + text;
+}
+
+int exitCode(const SimplifyRun& run) {
+    if (!run.failsSoundness()) {
+        return strictVerdict(kProgram, run.command.common, run.warnings, kNotWritten, kExitOk);
+    }
+    printError(kProgram, refusal(run));
+    return kExitCheckFailed;
+}
+
+FrameChange chooseFrame(const MeshFile& input, SimplifyRun& run) {
+    const FrameChange change = naming(baseName(run.input.file), [&] {
+        return changeFrame(input, run.command.frame, *run.output.format);
+    });
+    if (change.frame == CoordinateFrame::Voxel && !run.output.format->holdsVoxelFrame) {
+        throw UsageError(run.output.file.string() + ": " + std::string(run.output.format->name) +
+                         " holds points in mm only, not voxel indices");
+    }
+    if (!change.assumed.empty()) {
+        run.warnings.push_back(baseName(run.input.file) + " " + change.assumed);
+    }
+    if (change.isSaid) run.output.frame = change.frame;
+    return change;
+}
+
+}  // namespace
+
+int runSimplify(const SimplifyCommand& command) {
+    if (command.isBatch()) return runSimplifyBatch(command);
+    const ThreadLimit threads(command.common);
+    ProgressLine progress(command.common.isQuiet);
+    SimplifyRun run{command};
+    checkNames(run);
+
+    progress.show(kRead);
+    const MeshFile input =
+        run.timer.time(kRead, [&] { return readMesh(command.input, {.keepsPointArrays = true}); });
+    run.input.frame = input.frame;
+    summarize(input.mesh, run.input);
+    if (!(run.input.areaMm2 > 0)) {
+        throw InvalidInput(command.input.string() +
+                           ": its triangles have no area, so there is nothing to simplify");
+    }
+    const std::vector<PointData> data = run.timer.time(kRead, [&] { return readData(run); });
+    const FrameChange change = chooseFrame(input, run);
+    progress.show(kCheck);
+    run.timer.time(kCheck, [&] { check(input.mesh, run); });
+
+    ReportResult page;  // its folder goes, if empty, after what lies in it
+    std::vector<AtomicOutput> outputs;
+    TriangleMesh shown;
+    if (!run.failsSoundness()) {
+        Simplified result =
+            run.timer.time(kSimplify, [&] { return simplifySurface(input.mesh, run, progress); });
+        if (command.report.isWanted()) shown = result.mesh;
+        finish(std::move(result), input, data, change, run, progress, outputs);
+        warnOfFindings(run);
+        warnOfCount(run);
+    }
+    if (!run.writesSurface()) outputs.clear();
+    if (command.report.isWanted()) {
+        progress.show(kReport);
+        page = run.timer.time(kReport, [&] {
+            return writeReport([&] { return makeReport(run, input, std::move(shown)); }, kProgram,
+                               command.report, outputs);
+        });
+        run.reportFailure = page.failure;
+    }
+    const std::string json = command.common.wantsJson() ? jsonReport(run) : "";
+    if (command.common.wantsJson() && !command.common.wantsJsonOnStdout()) {
+        outputs.emplace_back(command.common.json).writeText(json);
+    }
+    progress.clear();
+    printWarnings(kProgram, command.common, run.warnings);
+    printResults(command.common, json, [&](std::ostream& out) { printReport(out, run); });
+    AtomicOutput::commit(outputs);
+    const std::string written =
+        run.writesSurface() ? run.output.file.string() + " is written" : "no surface is written";
+    const int code = exitCode(run);
+    return tellReportFailure(kProgram, written, page.failure, code);
+}
+
+}  // namespace adaptiso

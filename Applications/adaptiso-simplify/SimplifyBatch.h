@@ -1,0 +1,10 @@
+#pragma once
+
+#include "Pipeline.h"
+
+namespace adaptiso {
+
+/// Runs adaptiso-simplify for each of many surfaces. \return, \throws as runBatch()
+int runSimplifyBatch(const SimplifyCommand& command);
+
+}  // namespace adaptiso

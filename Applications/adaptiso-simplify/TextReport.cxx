@@ -1,0 +1,70 @@
+#include "TextReport.h"
+
+#include <ostream>
+#include <string>
+#include <string_view>
+
+#include "Common/Json.h"
+#include "Common/Numbers.h"
+#include "Common/RunApp.h"
+
+namespace adaptiso {
+namespace {
+
+std::string frameText(const std::optional<CoordinateFrame>& frame) {
+    return frame ? std::string(toString(*frame)) : "frame not said";
+}
+
+void printInput(std::ostream& out, const SimplifyRun& run) {
+    const SurfaceSummary& input = run.input;
+    out << oneLine(input.file.string()) << ": " << formatCount(input.triangles) << " triangles, "
+        << input.format->name << ", " << frameText(input.frame) << '\n';
+    if (isSound(run.findings)) out << "  closed, 2-manifold, oriented, nothing crosses\n";
+    for (const Finding& finding : run.findings) out << "  " << finding.text() << '\n';
+}
+
+void printOutput(std::ostream& out, const SimplifyRun& run) {
+    const SurfaceSummary& output = run.output;
+    const double percent =
+        100.0 * static_cast<double>(output.triangles) / static_cast<double>(run.input.triangles);
+    out << oneLine(output.file.string()) << (run.writesSurface() ? "" : " (not written)") << ": "
+        << formatCount(output.triangles) << " triangles (" << formatFixed(percent, 1) << " %), "
+        << output.format->name << ", " << frameText(output.frame) << '\n';
+    out << "  no point farther than " << formatShort(run.statistics.errorBoundMm)
+        << " mm from the input, nor it from this one (proved; farthest of "
+        << formatCount(run.verification->samples)
+        << " points measured: " << formatShort(run.verification->maxMm) << " mm)\n";
+    if (!run.countMet().value_or(true)) {
+        out << "  " << formatCount(*run.statistics.wantedTriangles)
+            << " triangles were asked for; the "
+            << (run.command.aim.maxErrorMm ? "bound of --max-error"
+                                           : "surface, with all its pieces, holes and borders,")
+            << " does not allow as few\n";
+    }
+    for (const std::string& name : run.keptArrays) {
+        out << "  with the values " << oneLine(name) << '\n';
+    }
+}
+
+}  // namespace
+
+void printReport(std::ostream& out, const SimplifyRun& run) {
+    printInput(out, run);
+    if (!run.failsSoundness()) {
+        printOutput(out, run);
+        for (const DataSummary& data : run.data) {
+            out << oneLine(data.output.string()) << (run.writesSurface() ? "" : " (not written)")
+                << ": " << (data.areLabels ? "labels" : "values") << " of "
+                << oneLine(baseName(data.file)) << ", " << toString(data.format) << '\n';
+        }
+    }
+    out << formatFixed(run.timer.total(), 2) << " s (";
+    std::string_view separator;
+    for (const auto& [stage, seconds] : run.timer.stages()) {
+        out << separator << stage << ' ' << formatFixed(seconds, 2);
+        separator = ", ";
+    }
+    out << "), peak memory " << formatRounded(peakMemoryMb()) << " MB\n";
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <iosfwd>
+
+#include "SimplifyRun.h"
+
+namespace adaptiso {
+
+/// What the program prints when nothing else is asked for.
+void printReport(std::ostream& out, const SimplifyRun& run);
+
+}  // namespace adaptiso

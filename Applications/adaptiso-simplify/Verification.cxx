@@ -1,0 +1,90 @@
+#include "Verification.h"
+
+#include <optional>
+#include <string>
+
+#include "Common/Json.h"
+#include "Common/Numbers.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr double kRounding = 1e-9;  // of the bound: sums of distances
+
+std::int64_t eulerCharacteristic(const TopologyReport& topology) {
+    std::int64_t sum = 0;
+    for (const auto& component : topology.components) sum += component.eulerCharacteristic();
+    return sum;
+}
+
+std::int64_t crossingPairs(const TriangleMesh& mesh) {
+    return findSelfIntersections(mesh, {.maxPairs = 0}).pairCount;
+}
+
+/// Nothing but open borders is wrong with it: pieces and handles mean something.
+bool isManifoldSurface(const TopologyReport& topology) {
+    return topology.isManifold() && topology.isOriented() &&
+           topology.count(TopologyDefect::DegenerateTriangle) == 0 &&
+           topology.count(TopologyDefect::DuplicateTriangle) == 0;
+}
+
+/// What is wrong with `topology`, that of the result; empty: nothing.
+std::string topologyFault(const TopologyReport& before, const TopologyReport& topology) {
+    const auto hasMore = [&](TopologyDefect defect) {
+        return topology.count(defect) > before.count(defect);
+    };
+    if (hasMore(TopologyDefect::DegenerateTriangle)) return "a triangle has no area";
+    if (hasMore(TopologyDefect::DuplicateTriangle)) return "a triangle is there twice";
+    if (!isManifoldSurface(before)) return {};
+    if (!isManifoldSurface(topology)) return "it is no oriented 2-manifold";
+    if (before.isClosed() != topology.isClosed()) return "it is not closed as the input is";
+    if (before.components.size() != topology.components.size() ||
+        eulerCharacteristic(before) != eulerCharacteristic(topology)) {
+        return "its pieces or holes are not the input's";
+    }
+    return {};
+}
+
+/// What is wrong with a surface that was made of the run's input; empty: nothing.
+std::string soundnessFault(const VerifiedSurface& surface, const TriangleMesh& mesh,
+                           const TopologyReport& topology, const SimplifyRun& run) {
+    std::string fault = topologyFault(run.input.topology, topology);
+    if (!fault.empty()) return fault;
+    const std::int64_t pairs = crossingPairs(mesh);
+    const std::int64_t before = pairs == 0 ? 0 : crossingPairs(surface.input);
+    if (pairs <= before) return {};
+    return formatCount(pairs) + " pairs of triangles cross, " + formatCount(before) +
+           " of the input";
+}
+
+[[noreturn]] void fail(const std::string& what) {
+    throw InternalError("the surface breaks its promise: " + what);
+}
+
+}  // namespace
+
+void verify(const VerifiedSurface& surface, SimplifyRun& run) {
+    run.output.topology = checkTopology(surface.written);
+    const std::string fault = soundnessFault(surface, surface.written, run.output.topology, run);
+    if (!fault.empty()) {
+        const std::string own =
+            soundnessFault(surface, surface.result, checkTopology(surface.result), run);
+        if (!own.empty()) fail(own);
+        throw InvalidInput(baseName(run.output.file) + ": " + std::string(run.output.format->name) +
+                           " keeps too few digits of this surface's coordinates, with which " +
+                           fault + "; write .vtp or .ply");
+    }
+    const DistanceReport distance = surfaceDistance(surface.written, surface.input);
+    const double maxMm = distance.combined.maxMm,
+                 boundMm = (1 + kRounding) * run.statistics.errorBoundMm + surface.roundingMm;
+    if (!(maxMm <= boundMm)) {
+        fail("a point lies " + formatNumber(maxMm) + " mm from the input, not " +
+             formatNumber(boundMm));
+    }
+    run.verification = Verification{distance.aToB.samples + distance.bToA.samples, maxMm};
+}
+
+}  // namespace adaptiso

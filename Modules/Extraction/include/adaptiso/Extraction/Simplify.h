@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "adaptiso/Core/Progress.h"
+#include "adaptiso/Core/TriangleMesh.h"
+
+namespace adaptiso {
+
+/// What simplify() aims at. With a bound and a count, triangles are dropped until either stops it.
+///
+/// Lengths are in the mesh's own unit, which need not be the millimetre: nothing depends on the
+/// scale.
+struct SimplifyOptions {
+    /// Two-sided: no point of the input is farther from the result, no point of the result farther
+    /// from the input. \pre > 0
+    std::optional<double> maxErrorMm;
+    std::optional<std::int64_t> maxTriangles;  ///< as accurate as can be at this count. \pre >= 0
+    /// Share of the triangles to drop, 0 to 1: a count by another name.
+    std::optional<double> reduction;
+    /// Angles below this are not made, at the price of more triangles. \pre 0 to 40
+    double minAngleDeg = 0;
+    /// Vertices on open borders stay, bit by bit.
+    bool keepBorders = false;
+    ProgressCallback progress;  ///< called as the work goes on; may be empty
+};
+
+/// What was found of the input, and what is proved of the result.
+struct SimplifyStatistics {
+    /// Of the input, without area: dropped. Where a corner lies on the opposite side the triangle
+    /// across it is split there, so that the surface does not open.
+    std::int64_t degenerateTriangles = 0;
+    std::int64_t duplicateTriangles = 0;  ///< of the input, with the corners of another: dropped
+    std::int64_t borderEdges = 0;         ///< of the input: with one triangle
+    /// Vertices of the input at edges with three triangles or more, or with two that face opposite
+    /// sides, and those that join triangles by themselves alone: kept as they are.
+    std::vector<std::int64_t> nonManifoldVertices;
+    std::vector<std::int64_t> crossingTriangles;  ///< of the input, that cross others: kept
+    /// The proved bound of the distance between input and result, both ways.
+    double errorBoundMm = 0;
+    /// The count that maxTriangles and reduction ask for, where they do. The mesh has more
+    /// triangles when the bound (maxErrorMm), the surface's topology or what is kept does not allow
+    /// as few.
+    std::optional<std::int64_t> wantedTriangles;
+};
+
+struct Simplified {
+    TriangleMesh mesh;
+    SimplifyStatistics statistics;
+};
+
+/// A mesh with fewer triangles, the adaptive method's on any triangle mesh: quadric edge collapse
+/// [Garland1997], each held by samples of the input, with the distance proved at the end.
+///
+/// A closed oriented 2-manifold that does not cross itself stays one, with the same components and
+/// genus. Open borders stay open, within the bound. Where the input is no manifold, or crosses
+/// itself, it is kept as it is, and nothing new crosses. Triangles without area and doubled ones
+/// are dropped; so are vertices that no triangle uses. Normals are interpolated where the input has
+/// them.
+///
+/// \pre  the mesh has a triangle; indices are in range, coordinates finite; one aim at least is
+///       given, and all are in range   \throws InvalidInput otherwise
+/// The same input gives the same bytes, whatever the number of threads.
+Simplified simplify(const TriangleMesh& mesh, const SimplifyOptions& options);
+
+/// A point of a surface: a triangle and the weights of its corners, which add up to 1.
+struct SurfacePoint {
+    std::int64_t triangle = 0;
+    std::array<double, 3> weight{};
+};
+
+/// For each point of `mesh` the nearest one of `onto`: where values at the vertices of a surface
+/// are to be read for a simplified one.
+/// \pre  `onto` has a triangle, coordinates are finite   \throws InvalidInput otherwise
+std::vector<SurfacePoint> nearestPoints(const TriangleMesh& mesh, const TriangleMesh& onto);
+
+}  // namespace adaptiso

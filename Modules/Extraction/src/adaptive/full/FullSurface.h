@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptive/collapse/PatchSimplifier.h"
+#include "adaptive/mesh/MetricFrame.h"
+#include "adaptive/mesh/SimplifiedSurface.h"
+#include "adaptive/proof/DistanceProof.h"
+#include "adaptive/rounds/TightPlaces.h"
+
+namespace adaptiso::detail {
+
+/// The full-resolution surface that the adaptive method simplifies: of a volume (VolumeSurface), or
+/// a mesh (MeshSurface).
+class FullSurface {
+public:
+    explicit FullSurface(const MetricFrame& frame) : frame_(frame) {}
+    FullSurface(const FullSurface&) = delete;
+    FullSurface& operator=(const FullSurface&) = delete;
+    virtual ~FullSurface() = default;
+
+    const MetricFrame& frame() const { return frame_; }
+
+    /// The surface after a first round within the limits.
+    /// \param costs  gets those of the collapses, patch by patch; may be null
+    virtual SimplifiedSurface firstRound(const TightPlaces& tight, const PatchLimits& limits,
+                                         CollapseCosts* costs) const = 0;
+
+    /// \param limitMm  what is farther than that is noted in ErrorBound::beyondLimit
+    virtual std::unique_ptr<DistanceProof> proof(double limitMm) const = 0;
+
+    /// In physical coordinates. Triangles keep their numbers.
+    virtual TriangleMesh meshOf(const SimplifiedSurface& surface) const = 0;
+
+    /// A point of meshOf(), as a continuous index of the frame.
+    virtual Vec3 indexOf(const Vec3& point) const = 0;
+
+    /// Of triangles of meshOf() that cross others, leaves those that did so from the beginning
+    /// out.
+    virtual void forgiveCrossings(const TriangleMesh& mesh,
+                                  std::vector<std::int64_t>& crossing) const = 0;
+
+    /// No two points of the surface are farther apart, mm.
+    virtual double largestExtentMm() const = 0;
+
+private:
+    MetricFrame frame_;
+};
+
+}  // namespace adaptiso::detail

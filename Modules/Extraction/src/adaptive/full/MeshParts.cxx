@@ -1,0 +1,293 @@
+#include "adaptive/full/MeshParts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
+#include "adaptive/full/FlatTriangles.h"
+#include "adaptive/mesh/HalfEdges.h"
+#include "adaptive/mesh/Patch.h"
+#include "adaptive/proof/CrossingProof.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr std::int64_t kPiece = 1 << 12;
+
+void requireSimplifiable(const TriangleMesh& mesh) {
+    const auto refuse = [](const std::string& what) { throw InvalidInput("simplify: " + what); };
+    constexpr auto kMost = std::numeric_limits<std::uint32_t>::max() / 3;
+    if (mesh.triangles.size() >= kMost || mesh.points.size() >= kMost) {
+        refuse("the mesh has more than " + std::to_string(kMost) + " triangles or points");
+    }
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+        const Vec3& p = mesh.points[v];
+        if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
+        refuse("vertex " + std::to_string(v) + " has a coordinate that is not finite");
+    }
+    const auto points = static_cast<VertexId>(mesh.points.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (const VertexId v : mesh.triangles[t]) {
+            if (v >= 0 && v < points) continue;
+            refuse("triangle " + std::to_string(t) + " names vertex " + std::to_string(v) +
+                   ", the mesh has " + std::to_string(points));
+        }
+    }
+    if (!mesh.normals.empty() && mesh.normals.size() != mesh.points.size()) {
+        refuse("the mesh has not one normal for each vertex");
+    }
+}
+
+/// Of triangles, those that have the corners of one before them, whichever way round.
+std::vector<std::uint8_t> findDuplicateTriangles(const std::vector<Triangle>& triangles,
+                                                 std::size_t points) {
+    const std::size_t count = triangles.size();
+    // by its smallest corner, as the others it shares a bucket with are few
+    const Buckets<std::uint32_t, std::uint32_t> bySmallest(points, [&](const auto& give) {
+        for (std::uint32_t t = 0; t < count; ++t) {
+            const auto& [a, b, c] = triangles[t];
+            give(static_cast<std::size_t>(std::min({a, b, c})), t);
+        }
+    });
+    std::vector<std::uint8_t> isDuplicate(count, 0);
+    const auto sorted = [&](std::uint32_t t) {
+        Triangle corners = triangles[t];
+        std::sort(corners.begin(), corners.end());
+        return corners;
+    };
+    parallelForPieces(
+        static_cast<std::int64_t>(points), kPiece, [&](std::int64_t begin, std::int64_t end) {
+            std::vector<std::pair<Triangle, std::uint32_t>> here;
+            for (std::int64_t v = begin; v < end; ++v) {
+                here.clear();
+                for (const std::uint32_t t : bySmallest.of(static_cast<std::size_t>(v))) {
+                    here.emplace_back(sorted(t), t);
+                }
+                std::sort(here.begin(), here.end());
+                for (std::size_t i = 1; i < here.size(); ++i) {
+                    if (here[i].first == here[i - 1].first) isDuplicate[here[i].second] = 1;
+                }
+            }
+        });
+    return isDuplicate;
+}
+
+/// Along an axis where the points are no farther apart than from 0, the middle: both differ by a
+/// factor of two at most, and their difference is exact (Sterbenz's lemma).
+Vec3 originFor(const TriangleMesh& mesh) {
+    const BoundingBox box = boundingBox(mesh);
+    Vec3 origin;
+    for (int a = 0; a < 3; ++a) {
+        const double low = box.minimum[a], high = box.maximum[a], middle = low + 0.5 * (high - low);
+        if (std::min(std::abs(low), std::abs(high)) > high - low && low * high > 0) {
+            origin[a] = middle;
+        }
+    }
+    return origin;
+}
+
+/// Takes a mesh apart, step by step.
+class Cutter {
+public:
+    Cutter(const TriangleMesh& mesh, bool keepsBorders)
+        : mesh_(mesh), keepsBorders_(keepsBorders) {}
+
+    MeshParts run() {
+        parts_.origin = originFor(mesh_);
+        takeTriangles();
+        halfEdges_.assign(parts_.points.size(), parts_.triangles);
+        halfEdges_.match(parts_.triangles, twin_);
+        const std::vector<std::int64_t> crossing = findCrossings();
+        cutEdges();
+        cutPoints();
+        keepCrossings(crossing);
+        if (keepsBorders_) {
+            for (const std::uint64_t h : parts_.borderEdges) {
+                keep(from(static_cast<std::uint32_t>(h)));
+                keep(to(static_cast<std::uint32_t>(h)));
+            }
+        }
+        return std::move(parts_);
+    }
+
+private:
+    static constexpr std::uint32_t kNone = HalfEdges<std::uint32_t>::kNone;
+
+    std::uint32_t from(std::uint32_t h) const { return parts_.triangles[h / 3][h % 3]; }
+    static std::uint32_t next(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+    static std::uint32_t previous(std::uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+    std::uint32_t to(std::uint32_t h) const { return from(next(h)); }
+
+    /// Those with an area, each once; with the points that they use.
+    void takeTriangles() {
+        const AreaTriangles withArea = withoutFlatTriangles(mesh_);
+        const std::vector<std::uint8_t> isDuplicate =
+            findDuplicateTriangles(withArea.triangles, mesh_.points.size());
+        parts_.degenerate = withArea.flat;
+        std::vector<std::uint32_t> number(mesh_.points.size(), kNone);
+        for (std::size_t t = 0; t < withArea.triangles.size(); ++t) {
+            if (withArea.isLeftOut[t] != 0) continue;
+            if (isDuplicate[t] != 0) {
+                ++parts_.duplicate;
+                continue;
+            }
+            const auto& [a, b, c] = withArea.triangles[t];
+            parts_.triangles.push_back({static_cast<std::uint32_t>(a),
+                                        static_cast<std::uint32_t>(b),
+                                        static_cast<std::uint32_t>(c)});
+            parts_.inputTriangle.push_back(static_cast<std::uint32_t>(t));
+            number[a] = number[b] = number[c] = 0;
+        }
+        isWhole_ = withArea.flat == 0 && parts_.duplicate == 0;
+        if (isWhole_) parts_.inputTriangle = {};
+        if (parts_.triangles.empty()) {
+            throw InvalidInput("simplify: the mesh has no triangle with an area");
+        }
+        for (std::size_t v = 0; v < number.size(); ++v) {
+            if (number[v] == kNone) continue;
+            number[v] = static_cast<std::uint32_t>(parts_.points.size());
+            parts_.points.push_back(mesh_.points[v] - parts_.origin);
+            inputPoint_.push_back(static_cast<std::uint32_t>(v));
+        }
+        for (auto& t : parts_.triangles) {
+            for (std::uint32_t& v : t) v = number[v];
+        }
+    }
+
+    std::int64_t countOf(std::uint32_t a, std::uint32_t b) const {
+        const auto leaving = halfEdges_.from(a);
+        return std::count_if(leaving.begin(), leaving.end(),
+                             [&](const auto& l) { return l.to == b; });
+    }
+
+    /// Edges with more than two triangles, or two that face opposite sides, lose their twins.
+    void cutEdges() {
+        isCut_.assign(twin_.size(), 0);
+        parallelForPieces(
+            static_cast<std::int64_t>(twin_.size()), kPiece,
+            [&](std::int64_t begin, std::int64_t end) {
+                for (auto h = static_cast<std::uint32_t>(begin); h < end; ++h) {
+                    const std::uint32_t a = from(h), b = to(h);
+                    isCut_[h] = static_cast<std::uint8_t>(countOf(a, b) > 1 || countOf(b, a) > 1);
+                }
+            });
+        for (std::uint32_t h = 0; h < twin_.size(); ++h) {
+            if (isCut_[h] != 0) {
+                twin_[h] = kNone;
+            } else if (twin_[h] == kNone) {
+                parts_.borderEdges.push_back(h);
+            }
+        }
+    }
+
+    /// How many triangles the fan of h has, which starts at the point.
+    std::size_t fanSize(std::uint32_t h) const {
+        std::size_t count = 0;
+        std::uint32_t g = h;
+        do {
+            ++count;
+            g = twin_[previous(g)];
+        } while (g != kNone && g != h);
+        if (g == h) return count;
+        for (g = twin_[h]; g != kNone; g = twin_[g]) {
+            ++count;
+            g = next(g);
+        }
+        return count;
+    }
+
+    /// Points at cut edges, and those that join several fans, become one point for each fan.
+    void cutPoints() {
+        const auto count = static_cast<std::int64_t>(parts_.points.size());
+        std::vector<std::uint8_t> isSingular(parts_.points.size(), 0);
+        parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
+            for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
+                const auto leaving = halfEdges_.from(v);
+                bool isWhole = fanSize(leaving.front().halfEdge) == leaving.size();
+                for (const auto& l : leaving) {
+                    isWhole =
+                        isWhole && isCut_[l.halfEdge] == 0 && isCut_[previous(l.halfEdge)] == 0;
+                }
+                isSingular[v] = static_cast<std::uint8_t>(!isWhole);
+            }
+        });
+        for (std::uint32_t v = 0; v < count; ++v) {
+            if (isSingular[v] == 0) continue;
+            parts_.nonManifold.push_back(inputPoint_[v]);
+            split(v, Patch::kBorder + static_cast<std::uint32_t>(parts_.nonManifold.size()));
+        }
+    }
+
+    void split(std::uint32_t v, std::uint32_t mark) {
+        std::vector<std::uint32_t> left;
+        for (const auto& l : halfEdges_.from(v)) left.push_back(l.halfEdge);
+        for (bool isFirst = true; !left.empty(); isFirst = false) {
+            std::uint32_t number = v;
+            if (!isFirst) {
+                number = static_cast<std::uint32_t>(parts_.points.size());
+                parts_.points.push_back(parts_.points[v]);
+            }
+            keep(number);
+            parts_.marks.resize(parts_.points.size(), Patch::kPlain);
+            parts_.marks[number] = mark;
+            std::vector<std::uint32_t> fan{left.front()};
+            for (std::size_t i = 0; i < fan.size(); ++i) {
+                const std::uint32_t after = twin_[previous(fan[i])];
+                const std::uint32_t twin = twin_[fan[i]];
+                for (const std::uint32_t g : {after, twin == kNone ? kNone : next(twin)}) {
+                    if (g != kNone && std::find(fan.begin(), fan.end(), g) == fan.end()) {
+                        fan.push_back(g);
+                    }
+                }
+            }
+            for (const std::uint32_t h : fan) {
+                parts_.triangles[h / 3][h % 3] = number;
+                std::erase(left, h);
+            }
+        }
+    }
+
+    void keep(std::uint32_t v) {
+        parts_.isKept.resize(parts_.points.size(), 0);
+        parts_.isKept[v] = 1;
+    }
+
+    std::vector<std::int64_t> findCrossings() {
+        parts_.tree = std::make_shared<const AabbTree>(mesh_);
+        if (isWhole_) return crossingTriangles(mesh_, *parts_.tree);
+        TriangleMesh left;
+        left.points = parts_.points;
+        for (const auto& [a, b, c] : parts_.triangles) left.triangles.push_back({a, b, c});
+        return crossingTriangles(left);
+    }
+
+    void keepCrossings(const std::vector<std::int64_t>& crossing) {
+        parts_.crossing = crossing;
+        for (const std::int64_t t : crossing) {
+            for (const std::uint32_t v : parts_.triangles[t]) keep(v);
+        }
+        if (!parts_.isKept.empty()) parts_.isKept.resize(parts_.points.size(), 0);
+        if (!parts_.marks.empty()) parts_.marks.resize(parts_.points.size(), Patch::kPlain);
+    }
+
+    const TriangleMesh& mesh_;
+    bool keepsBorders_;
+    MeshParts parts_;
+    std::vector<std::uint32_t> inputPoint_;  ///< of each point
+    bool isWhole_ = true;                    ///< no triangle of the input was left out or changed
+    HalfEdges<std::uint32_t> halfEdges_;
+    std::vector<std::uint32_t> twin_;
+    std::vector<std::uint8_t> isCut_;  ///< of each half-edge
+};
+
+}  // namespace
+
+MeshParts takeApart(const TriangleMesh& mesh, bool keepsBorders) {
+    requireSimplifiable(mesh);
+    return Cutter(mesh, keepsBorders).run();
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,249 @@
+#include "adaptive/full/MeshSurface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Parallel.h"
+#include "adaptive/Parameters.h"
+#include "adaptive/proof/MeshProof.h"
+#include "adaptive/rounds/BorderMarks.h"
+#include "adaptive/rounds/PatchRound.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr std::int64_t kPiece = 1 << 12;
+
+/// The side of a voxel of the volume that such triangles would come from: marching cubes makes
+/// about three triangles for each voxel's face that the surface covers.
+double voxelOf(const MeshParts& parts, std::optional<double> boundMm) {
+    std::vector<float> areas(parts.triangles.size());
+    for (std::size_t t = 0; t < areas.size(); ++t) {
+        const MeshParts::Triangle& c = parts.triangles[t];
+        areas[t] = static_cast<float>(
+            0.5 * norm(areaVector2(parts.points[c[0]], parts.points[c[1]], parts.points[c[2]])));
+    }
+    const auto middle = areas.begin() + std::ssize(areas) / 2;
+    std::nth_element(areas.begin(), middle, areas.end());
+    const double voxel = std::sqrt(kTrianglesPerFace * static_cast<double>(*middle));
+    // single sheets are looked for within a voxel, and serve distances of half of it
+    return std::clamp(boundMm.value_or(0) / kSheetDistance, voxel, kWidestVoxel * voxel);
+}
+
+MetricFrame frameOf(double voxel) {
+    ImageGeometry geometry;
+    for (int a = 0; a < 3; ++a) geometry.indexToPhysical.column[a] = {};
+    geometry.indexToPhysical.column[0].x = geometry.indexToPhysical.column[1].y =
+        geometry.indexToPhysical.column[2].z = voxel;
+    return MetricFrame(geometry);
+}
+
+bool isBefore(const Corners& a, const Corners& b) {
+    return std::lexicographical_compare(
+        a.begin(), a.end(), b.begin(), b.end(), [](const Vec3& p, const Vec3& q) {
+            return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+        });
+}
+
+Corners cornersIn(const TriangleMesh& mesh, std::int64_t t) {
+    const Triangle& c = mesh.triangles[t];
+    return {mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]};
+}
+
+}  // namespace
+
+MeshSurface::MeshSurface(const TriangleMesh& input, const MeshParts& parts,
+                         std::optional<double> boundMm)
+    : FullSurface(frameOf(voxelOf(parts, boundMm))), input_(input), parts_(parts) {
+    for (const std::int64_t t : parts.crossing) {
+        Corners corners = cornersOf(static_cast<std::size_t>(t));
+        for (Vec3& p : corners) p = p + parts.origin;
+        crossing_.push_back(corners);
+    }
+    std::sort(crossing_.begin(), crossing_.end(), isBefore);
+}
+
+SimplifiedSurface MeshSurface::firstRound(const TightPlaces& tight, const PatchLimits& limits,
+                                          CollapseCosts* costs) const {
+    SimplifiedSurface surface = whole(tight);
+    PatchRound(surface, {}, frame()).run({limits}, costs);
+    return surface;
+}
+
+/// The mesh as it is.
+SimplifiedSurface MeshSurface::whole(const TightPlaces& tight) const {
+    SimplifiedSurface surface;
+    surface.points = parts_.points;
+    surface.marks = parts_.marks;
+    surface.triangles.reserve(parts_.triangles.size());
+    for (const auto& [a, b, c] : parts_.triangles) surface.triangles.push_back({a, b, c});
+    surface.fineTriangles = surface.tableTriangles = std::ssize(surface.triangles);
+    {
+        const Around around(parts_.points.size(), [&](const auto& give) {
+            for (std::uint32_t t = 0; t < parts_.triangles.size(); ++t) {
+                for (const std::uint32_t v : parts_.triangles[t]) give(v, t);
+            }
+        });
+        const std::vector<Vec3> areas = addPoints(around, surface);
+        addSamples(around, areas, surface);
+    }
+    tight.apply(frame(), surface.samples);
+    for (std::size_t v = 0; v < surface.points.size(); ++v) {
+        const bool isKept = !parts_.isKept.empty() && parts_.isKept[v] != 0;
+        if (isKept || tight.isFrozen(frame().toIndex(surface.points[v]))) {
+            surface.states[v] = Patch::State::Final;
+        }
+    }
+    if (!parts_.borderEdges.empty()) markBorders(parts_.borderEdges, surface);
+    return surface;
+}
+
+/// Quadrics and states. \return the sum of the area vectors around each point
+std::vector<Vec3> MeshSurface::addPoints(const Around& around, SimplifiedSurface& surface) const {
+    const std::size_t count = parts_.points.size();
+    std::vector<Vec3> areas(count);
+    surface.quadrics.resize(count);
+    surface.states.assign(count, Patch::State::Open);
+    parallelForPieces(static_cast<std::int64_t>(count), kPiece,
+                      [&](std::int64_t begin, std::int64_t end) {
+                          for (std::int64_t v = begin; v < end; ++v) {
+                              Quadric sum;
+                              for (const std::uint32_t t : around.of(v)) {
+                                  const Corners c = cornersOf(t);
+                                  const Vec3 area2 = areaVector2(c[0], c[1], c[2]);
+                                  sum += Quadric::ofTriangle(area2, c[0]);
+                                  areas[v] += area2;
+                              }
+                              surface.quadrics[v] = StoredQuadric::of(sum, parts_.points[v]);
+                          }
+                      });
+    return areas;
+}
+
+/// To other sheets, of each point.
+std::vector<std::uint8_t> MeshSurface::roomsOf(const SimplifiedSurface& surface,
+                                               const std::vector<Vec3>& areas) const {
+    const PatchCubes cubes(surface, {}, frame());
+    const Buckets<std::uint32_t, std::uint32_t> inCube(cubes.count(), [&](const auto& give) {
+        for (std::uint32_t v = 0; v < surface.points.size(); ++v) {
+            give(cubes.numberOf(cubes.cubeAt(surface.points[v])), v);
+        }
+    });
+    std::vector<std::uint8_t> rooms(surface.points.size(), SheetRoom::kAlone);
+    parallelForPieces(
+        static_cast<std::int64_t>(cubes.count()), 1, [&](std::int64_t number, std::int64_t) {
+            const auto own = inCube.of(static_cast<std::size_t>(number));
+            if (own.empty()) return;
+            std::vector<Vec3> points, normals;
+            const auto add = [&](std::uint32_t v) {
+                points.push_back(surface.points[v]);
+                normals.push_back(areas[v]);
+            };
+            for (const std::uint32_t v : own) add(v);
+            CornerBox box{points[0], points[0]};
+            for (const Vec3& p : points) box.add(p);
+            box.widen(frame().narrowestMm());
+            const Index3 at = cubes.cubeAt(points[0]);
+            for (int n = 0; n < 27; ++n) {
+                const auto other =
+                    cubes.find({at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1});
+                if (!other || *other == number) continue;
+                for (const std::uint32_t v : inCube.of(*other)) {
+                    const Vec3& p = surface.points[v];
+                    if (box.overlaps({p, p})) add(v);
+                }
+            }
+            std::vector<std::uint8_t> room(points.size(), SheetRoom::kAlone);
+            std::fill_n(room.begin(), own.size(), std::uint8_t{0});
+            SheetRoom::fillIn(points, normals, frame(), room);
+            for (std::size_t i = 0; i < own.size(); ++i) rooms[own[i]] = room[i];
+        });
+    return rooms;
+}
+
+/// All points; and the middles of triangles in which the surface bends, as a ridge could pass
+/// unseen there.
+void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& areas,
+                             SimplifiedSurface& surface) const {
+    const std::vector<std::uint8_t> rooms = roomsOf(surface, areas);
+    surface.samples.resize(parts_.points.size());
+    surface.sampleTriangle.resize(parts_.points.size());
+    parallelForPieces(std::ssize(surface.samples), kPiece,
+                      [&](std::int64_t begin, std::int64_t end) {
+                          for (std::int64_t v = begin; v < end; ++v) {
+                              Sample& sample = surface.samples[v];
+                              sample.setPoint(parts_.points[v]);
+                              sample.setNormal(areas[v]);
+                              sample.room = rooms[v];
+                              surface.sampleTriangle[v] = around.of(v).front();
+                          }
+                      });
+    std::vector<std::uint8_t> isBent(parts_.triangles.size());
+    parallelForPieces(std::ssize(isBent), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t t = begin; t < end; ++t) {
+            const MeshParts::Triangle& v = parts_.triangles[t];
+            const Vec3 a = normalized(areas[v[0]]), b = normalized(areas[v[1]]),
+                       c = normalized(areas[v[2]]);
+            isBent[t] = static_cast<std::uint8_t>(
+                !(std::min({dot(a, b), dot(b, c), dot(c, a)}) > kBentCosine));
+        }
+    });
+    for (std::size_t t = 0; t < isBent.size(); ++t) {
+        if (isBent[t] == 0) continue;
+        const Corners c = cornersOf(t);
+        const MeshParts::Triangle& v = parts_.triangles[t];
+        Sample& middle = surface.samples.emplace_back();
+        middle.setPoint((1.0 / 3) * (c[0] + c[1] + c[2]));
+        middle.setNormal(areaVector2(c[0], c[1], c[2]));
+        middle.room = std::min({rooms[v[0]], rooms[v[1]], rooms[v[2]]});
+        surface.sampleTriangle.push_back(t);
+    }
+}
+
+std::unique_ptr<DistanceProof> MeshSurface::proof(double limitMm) const {
+    return std::make_unique<MeshProof>(input_, parts_, frame(), limitMm);
+}
+
+/// Points that were cut apart become one again.
+TriangleMesh MeshSurface::meshOf(const SimplifiedSurface& surface) const {
+    constexpr VertexId kUnused = -1, kUsed = 0;
+    std::vector<VertexId> number(surface.points.size(), kUnused),
+        ofMark(parts_.nonManifold.size(), kUnused);
+    for (const auto& t : surface.triangles) {
+        for (const std::uint64_t v : t) number[v] = kUsed;
+    }
+    TriangleMesh mesh;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+        if (number[v] == kUnused) continue;
+        const std::uint32_t mark = surface.marks.empty() ? Patch::kPlain : surface.marks[v];
+        VertexId* known = mark > Patch::kBorder ? &ofMark[mark - Patch::kBorder - 1] : nullptr;
+        if (known != nullptr && *known != kUnused) {
+            number[v] = *known;
+            continue;
+        }
+        number[v] = std::ssize(mesh.points);
+        if (known != nullptr) *known = number[v];
+        mesh.points.push_back(surface.points[v] + parts_.origin);
+    }
+    mesh.triangles.reserve(surface.triangles.size());
+    for (const auto& [a, b, c] : surface.triangles) {
+        mesh.triangles.push_back({number[a], number[b], number[c]});
+    }
+    return mesh;
+}
+
+void MeshSurface::forgiveCrossings(const TriangleMesh& mesh,
+                                   std::vector<std::int64_t>& crossing) const {
+    std::erase_if(crossing, [&](std::int64_t t) {
+        return std::binary_search(crossing_.begin(), crossing_.end(), cornersIn(mesh, t), isBefore);
+    });
+}
+
+double MeshSurface::largestExtentMm() const {
+    const BoundingBox box = boundingBox(input_);
+    return norm(box.maximum - box.minimum);
+}
+
+}  // namespace adaptiso::detail

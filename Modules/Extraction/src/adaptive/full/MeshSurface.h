@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "adaptiso/Core/Buckets.h"
+#include "adaptive/full/FullSurface.h"
+#include "adaptive/full/MeshParts.h"
+#include "adaptive/proof/PieceBound.h"
+
+namespace adaptiso::detail {
+
+/// A mesh as the surface that is simplified. Its frame is the mesh's own, moved to MeshParts'
+/// origin; its voxels are about as large as those of a volume whose marching cubes surface has
+/// triangles of that size.
+class MeshSurface final : public FullSurface {
+public:
+    /// Keeps references to both.
+    /// \param boundMm  distances that the surface is to keep, if any
+    MeshSurface(const TriangleMesh& input, const MeshParts& parts, std::optional<double> boundMm);
+
+    SimplifiedSurface firstRound(const TightPlaces& tight, const PatchLimits& limits,
+                                 CollapseCosts* costs) const override;
+    std::unique_ptr<DistanceProof> proof(double limitMm) const override;
+    /// Without normals.
+    TriangleMesh meshOf(const SimplifiedSurface& surface) const override;
+    Vec3 indexOf(const Vec3& point) const override {
+        return frame().toIndex(point - parts_.origin);
+    }
+    void forgiveCrossings(const TriangleMesh& mesh,
+                          std::vector<std::int64_t>& crossing) const override;
+    double largestExtentMm() const override;
+
+private:
+    using Around = Buckets<std::uint32_t, std::uint32_t>;
+
+    SimplifiedSurface whole(const TightPlaces& tight) const;
+    std::vector<Vec3> addPoints(const Around& around, SimplifiedSurface& surface) const;
+    std::vector<std::uint8_t> roomsOf(const SimplifiedSurface& surface,
+                                      const std::vector<Vec3>& areas) const;
+    void addSamples(const Around& around, const std::vector<Vec3>& areas,
+                    SimplifiedSurface& surface) const;
+    Corners cornersOf(std::size_t t) const {
+        const MeshParts::Triangle& c = parts_.triangles[t];
+        return {parts_.points[c[0]], parts_.points[c[1]], parts_.points[c[2]]};
+    }
+
+    const TriangleMesh& input_;
+    const MeshParts& parts_;
+    std::vector<Corners> crossing_;  ///< triangles of the input that cross others, sorted
+};
+
+}  // namespace adaptiso::detail

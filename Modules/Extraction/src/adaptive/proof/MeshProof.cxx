@@ -1,0 +1,426 @@
+#include "adaptive/proof/MeshProof.h"
+
+#include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <tuple>
+
+#include "adaptiso/Core/Parallel.h"
+#include "adaptive/Parameters.h"
+#include "adaptive/proof/PieceBound.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr std::int64_t kPiece = 256;
+
+Corners cornersOf(const SimplifiedSurface& surface, std::uint64_t t) {
+    const SurfaceState::Triangle& c = surface.triangles[t];
+    return {surface.points[c[0]], surface.points[c[1]], surface.points[c[2]]};
+}
+
+bool isBefore(const Corners& a, const Corners& b) {
+    return std::lexicographical_compare(
+        a.begin(), a.end(), b.begin(), b.end(), [](const Vec3& p, const Vec3& q) {
+            return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+        });
+}
+
+/// What is proved of some triangles.
+struct PartBound {
+    double provedMm = 0;    ///< of all that lies within the limit
+    double farthestMm = 0;  ///< of the rest
+    std::vector<PlaceBeyond> beyond;
+};
+
+/// A surface that the distance to is proved: for walks, and for searches where walks fail.
+template <class Index>
+struct Target {
+    const WalkableSurface<Index>& walkable;
+    const TriangleMesh& mesh;  ///< for searches
+    Vec3 origin;               ///< of the frame, in the mesh's coordinates
+    std::function<const AabbTree&()> tree;
+};
+
+/// Bounds how far triangles of one surface are from another; keeps its working memory.
+template <class Index>
+class OneWayProof {
+public:
+    OneWayProof(const Target<Index>& to, double voxelMm, double enoughMm, double limitMm)
+        : to_(to), looseMm_(kLooseBound * voxelMm), limitMm_(limitMm), bound_(enoughMm) {}
+
+    /// \param starts  triangles of the other surface that are thought to be near: one or more
+    /// \param makePlace  (point, nearest point, nearest triangle) -> PlaceBeyond
+    template <class MakePlace>
+    void include(const Corners& piece, std::span<const Index> starts, int steps,
+                 const MakePlace& makePlace) {
+        if (bound_.boundMm() > looseMm_) {
+            walk_.coverLoosely(piece, to_.walkable, starts[0], bound_.squaredBound(), steps);
+        } else {
+            walk_.cover(ConvexPiece(piece), to_.walkable, starts[0], bound_.squaredBound(), steps);
+        }
+        if (walk_.left().empty()) return;
+        collectAround(starts);
+        for (const ConvexPiece& left : walk_.left()) {
+            for (int i = 2; i < left.count(); ++i) {
+                const Corners part{left.corner(0), left.corner(i - 1), left.corner(i)};
+                bound_.nearby() = around_;
+                if (!bound_.isWithin(part)) search(part, makePlace);
+            }
+        }
+    }
+
+    PartBound result() {
+        result_.provedMm = bound_.boundMm();
+        return std::move(result_);
+    }
+
+private:
+    /// The triangles where walks start, and those that share a corner with them.
+    void collectAround(std::span<const Index> starts) {
+        numbers_.clear();
+        for (const Index t : starts) {
+            to_.walkable.forEachBeside(t, [&](Index beside) { numbers_.push_back(beside); });
+        }
+        std::sort(numbers_.begin(), numbers_.end());
+        const auto end = std::unique(numbers_.begin(), numbers_.end());
+        around_.clear();
+        for (auto at = numbers_.begin(); at != end; ++at) {
+            around_.push_back(to_.walkable.cornersOf(*at));
+        }
+    }
+
+    /// Among all triangles that can be as near as the bound; where those are not near enough, among
+    /// all that can be nearer than what the corners are known to be.
+    template <class MakePlace>
+    void search(const Corners& piece, const MakePlace& makePlace) {
+        collectWithin(bound_.boundMm(), piece);
+        if (!near_.empty() && bound_.isWithin(piece)) return;
+        double reachMm = bound_.boundMm();
+        for (const Vec3& corner : piece) {
+            const ClosestPoint nearest = to_.tree().closestPoint(corner + to_.origin);
+            reachMm = std::max(reachMm, std::sqrt(nearest.squaredDistanceMm2));
+        }
+        collectWithin(reachMm, piece);
+        includeNear(piece, makePlace);
+    }
+
+    void collectWithin(double distanceMm, const Corners& piece) {
+        constexpr double kRounding = 1 + 1e-9;
+        CornerBox box = boxOf(piece);
+        box.widen(kRounding * distanceMm);
+        near_.clear();
+        bound_.nearby().clear();
+        const BoundingBox inMesh{box.low + to_.origin, box.high + to_.origin};
+        to_.tree().forEachOverlap(inMesh, [&](std::int64_t t) {
+            near_.push_back(t);
+            const adaptiso::Triangle& c = to_.mesh.triangles[t];
+            bound_.nearby().push_back({to_.mesh.points[c[0]] - to_.origin,
+                                       to_.mesh.points[c[1]] - to_.origin,
+                                       to_.mesh.points[c[2]] - to_.origin});
+        });
+    }
+
+    template <class MakePlace>
+    void includeNear(const Corners& piece, const MakePlace& makePlace) {
+        PieceBound atMost(limitMm_);
+        const double limit = atMost.squaredBound();
+        const PieceBound before = bound_.withoutNearby();
+        bound_.include(piece);
+        if (bound_.squaredBound() <= limit) return;
+        // it grew by more than it had to: try the limit itself
+        atMost.nearby() = bound_.nearby();
+        const double reached = bound_.boundMm();
+        atMost.include(piece);
+        if (atMost.squaredBound() <= limit) {
+            bound_ = atMost.withoutNearby();
+            return;
+        }
+        result_.farthestMm = std::max(result_.farthestMm, reached);
+        const FarPoint& far = atMost.farthest();
+        result_.beyond.push_back(
+            makePlace(far.point, far.onOther, far.hasNearest ? near_[far.nearest] : -1));
+        bound_ = before;
+    }
+
+    const Target<Index>& to_;
+    double looseMm_, limitMm_;
+    PieceBound bound_;
+    SurfaceWalk walk_;
+    std::vector<Index> numbers_;
+    std::vector<Corners> around_;     ///< where walks start
+    std::vector<std::int64_t> near_;  ///< of the mesh, as bound_.nearby()
+    PartBound result_;
+};
+
+/// A simplified surface as a target, for the time of a proof.
+class SimplifiedTarget {
+public:
+    explicit SimplifiedTarget(const SimplifiedSurface& surface) : surface_(surface) {
+        walkable_.assign(surface.points, surface.triangles);
+    }
+    Target<std::uint64_t> target() {
+        return {walkable_, mesh_, {}, [this]() -> const AabbTree& { return tree(); }};
+    }
+
+private:
+    const AabbTree& tree() {
+        std::call_once(treeIsBuilt_, [&] {
+            mesh_.points = surface_.points;
+            for (const auto& [a, b, c] : surface_.triangles) {
+                mesh_.triangles.push_back(
+                    {static_cast<VertexId>(a), static_cast<VertexId>(b), static_cast<VertexId>(c)});
+            }
+            // while it waits for its own tasks a thread must not take one that asks for the tree
+            tbb::this_task_arena::isolate([&] { tree_.emplace(mesh_); });
+        });
+        return *tree_;
+    }
+
+    const SimplifiedSurface& surface_;
+    WalkableSurface<std::uint64_t> walkable_;
+    TriangleMesh mesh_;
+    std::once_flag treeIsBuilt_;
+    std::optional<AabbTree> tree_;
+};
+
+/// Cubes of space, some of them marked: by a hash, so that now and then another one counts as
+/// marked, too.
+class MarkedCubes {
+public:
+    explicit MarkedCubes(double sideMm) : sideMm_(sideMm), isMarked_(kSlots) {}
+
+    void mark(const CornerBox& box) {
+        isAll_ = isAll_ || !forEachSlot(box, [&](std::size_t slot) { isMarked_[slot] = 1; });
+    }
+    bool has(const CornerBox& box) const {
+        bool isFound = false;
+        const auto look = [&](std::size_t slot) { isFound = isFound || isMarked_[slot] != 0; };
+        return isAll_ || !forEachSlot(box, look) || isFound;
+    }
+
+private:
+    static constexpr std::size_t kSlots = std::size_t{1} << 22;
+    static constexpr double kMostCubes = 4096;
+
+    /// \return false where the box overlaps too many
+    template <class F>
+    bool forEachSlot(const CornerBox& box, const F& f) const {
+        const auto at = [&](double mm) {
+            return static_cast<std::int64_t>(std::floor(mm / sideMm_));
+        };
+        const Vec3 extent = (1 / sideMm_) * (box.high - box.low);
+        if ((extent.x + 1) * (extent.y + 1) * (extent.z + 1) > kMostCubes) return false;
+        for (std::int64_t z = at(box.low.z); z <= at(box.high.z); ++z) {
+            for (std::int64_t y = at(box.low.y); y <= at(box.high.y); ++y) {
+                for (std::int64_t x = at(box.low.x); x <= at(box.high.x); ++x) {
+                    f(slotOf({x, y, z}));
+                }
+            }
+        }
+        return true;
+    }
+    static std::size_t slotOf(const Index3& cube) {
+        const auto part = [&](int a) { return static_cast<std::size_t>(cube[a]); };
+        return (part(0) * 73856093 ^ part(1) * 19349663 ^ part(2) * 83492791) % kSlots;
+    }
+
+    double sideMm_;
+    bool isAll_ = false;
+    std::vector<std::uint8_t> isMarked_;
+};
+
+}  // namespace
+
+MeshProof::MeshProof(const TriangleMesh& input, const MeshParts& parts, const MetricFrame& frame,
+                     double limitMm)
+    : input_(input), parts_(parts), frame_(frame), limitMm_(limitMm) {}
+
+Corners MeshProof::fineCorners(std::size_t t) const {
+    const MeshParts::Triangle& c = parts_.triangles[t];
+    return {parts_.points[c[0]], parts_.points[c[1]], parts_.points[c[2]]};
+}
+
+double MeshProof::largestSampleDistance(const SimplifiedSurface& surface) const {
+    constexpr std::int64_t kSamples = 1 << 14;
+    const std::int64_t count = std::ssize(surface.samples);
+    std::vector<double> largest((count + kSamples - 1) / kSamples, 0);
+    parallelForPieces(count, kSamples, [&](std::int64_t begin, std::int64_t end) {
+        double& here = largest[begin / kSamples];
+        for (std::int64_t s = begin; s < end; ++s) {
+            here = std::max(
+                here, squaredDistanceToTriangle(surface.samples[s].point(),
+                                                cornersOf(surface, surface.sampleTriangle[s])));
+        }
+    });
+    return std::sqrt(*std::max_element(largest.begin(), largest.end()));
+}
+
+ErrorBound MeshProof::prove(const SimplifiedSurface& surface) {
+    // bounds are as tight as the largest sample's distance, or as a hundredth of a voxel
+    enoughMm_ =
+        std::min(limitMm_, std::max(largestSampleDistance(surface), 0.01 * frame_.narrowestMm()));
+    return prove(surface, scopeOf(surface));
+}
+
+ErrorBound MeshProof::proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes) {
+    if (last_.empty()) return prove(surface);
+    return prove(surface, scopeOf(surface, changes));
+}
+
+ErrorBound MeshProof::prove(const SimplifiedSurface& surface, const Scope& scope) {
+    if (last_.empty()) provedMm_ = 0;
+    const std::int64_t fineCount = std::ssize(parts_.triangles),
+                       count = std::ssize(surface.triangles);
+    if (fine_.isEmpty()) fine_.assign(parts_.points, parts_.triangles);
+    const Target<std::uint32_t> fine{fine_, input_, parts_.origin,
+                                     [&]() -> const AabbTree& { return *parts_.tree; }};
+    SimplifiedTarget target(surface);
+    const Target<std::uint64_t> simplified = target.target();
+    // where walks begin: the first samples are the points of the mesh
+    std::vector<std::uint32_t> startAt(surface.triangles.size(), 0);
+    for (std::size_t v = parts_.points.size(); v-- > 0;) {
+        startAt[surface.sampleTriangle[v]] = fine_.triangleAt(static_cast<std::uint32_t>(v));
+    }
+    const std::int64_t finePieces = (fineCount + kPiece - 1) / kPiece,
+                       pieces = (count + kPiece - 1) / kPiece;
+    std::vector<PartBound> results(finePieces + pieces);
+    const double voxelMm = frame_.voxelMm();
+    parallelForPieces(finePieces + pieces, 1, [&](std::int64_t piece, std::int64_t) {
+        if (piece < finePieces) {
+            OneWayProof<std::uint64_t> proof(simplified, voxelMm, enoughMm_, limitMm_);
+            const std::int64_t end = std::min(fineCount, (piece + 1) * kPiece);
+            for (std::int64_t t = piece * kPiece; t < end; ++t) {
+                if (!scope.isFineKnown.empty() && scope.isFineKnown[t] != 0) continue;
+                const MeshParts::Triangle& c = parts_.triangles[t];
+                const std::array starts{surface.sampleTriangle[c[0]], surface.sampleTriangle[c[1]],
+                                        surface.sampleTriangle[c[2]]};
+                proof.include(fineCorners(t), starts, kStepsOfFine,
+                              [](const Vec3& p, const Vec3& nearest, std::int64_t other) {
+                                  const auto triangle = static_cast<std::uint64_t>(other);
+                                  return PlaceBeyond{
+                                      nearest, p, other < 0 ? PlaceBeyond::kNone : triangle, true};
+                              });
+            }
+            results[piece] = proof.result();
+            return;
+        }
+        OneWayProof<std::uint32_t> proof(fine, voxelMm, enoughMm_, limitMm_);
+        const std::int64_t end = std::min(count, (piece - finePieces + 1) * kPiece);
+        for (std::int64_t t = (piece - finePieces) * kPiece; t < end; ++t) {
+            if (!scope.isKnown.empty() && scope.isKnown[t] != 0) continue;
+            const Corners c = cornersOf(surface, t);
+            const double faces = norm(areaVector2(c[0], c[1], c[2])) / (voxelMm * voxelMm);
+            const int steps =
+                kFewSteps + static_cast<int>(std::min(kManySteps, kStepsPerFace * faces));
+            proof.include(c, {&startAt[t], 1}, steps,
+                          [&](const Vec3& p, const Vec3& nearest, std::int64_t) {
+                              return PlaceBeyond{p, nearest, static_cast<std::uint64_t>(t), false};
+                          });
+        }
+        results[piece] = proof.result();
+    });
+    ErrorBound bound;
+    double farthestMm = 0;
+    for (PartBound& result : results) {
+        provedMm_ = std::max(provedMm_, result.provedMm);
+        farthestMm = std::max(farthestMm, result.farthestMm);
+        bound.beyondLimit.insert(bound.beyondLimit.end(), result.beyond.begin(),
+                                 result.beyond.end());
+    }
+    bound.largestMm = std::max(provedMm_, farthestMm);
+    if (limitMm_ < std::numeric_limits<double>::max()) remember(surface, bound.beyondLimit);
+    return bound;
+}
+
+void MeshProof::remember(const SimplifiedSurface& surface, std::vector<PlaceBeyond> beyond) {
+    last_.resize(surface.triangles.size());
+    for (std::size_t t = 0; t < last_.size(); ++t) last_[t] = cornersOf(surface, t);
+    isWithin_.assign(last_.size(), 1);
+    for (const PlaceBeyond& place : beyond) {
+        if (!place.isOfFine) isWithin_[place.triangle] = 0;
+    }
+    beyond_ = std::move(beyond);
+}
+
+/// What is to be proved: the new triangles, and the full surface near those that came or went and
+/// where it lay beyond the limit.
+MeshProof::Scope MeshProof::scopeOf(const SimplifiedSurface& surface) const {
+    Scope scope;
+    if (last_.empty()) return scope;
+    std::vector<Corners> known;
+    for (std::size_t t = 0; t < last_.size(); ++t) {
+        if (isWithin_[t] != 0) known.push_back(last_[t]);
+    }
+    tbb::parallel_sort(known.begin(), known.end(), isBefore);
+    std::vector<std::uint8_t> isStillThere(known.size(), 0);
+    std::vector<Corners> changed;
+    scope.isKnown.assign(surface.triangles.size(), 0);
+    for (std::size_t t = 0; t < scope.isKnown.size(); ++t) {
+        const Corners corners = cornersOf(surface, t);
+        const auto at = std::lower_bound(known.begin(), known.end(), corners, isBefore);
+        if (at != known.end() && *at == corners) {
+            isStillThere[at - known.begin()] = 1;
+            scope.isKnown[t] = 1;
+        } else {
+            changed.push_back(corners);
+        }
+    }
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        if (isStillThere[i] == 0) changed.push_back(known[i]);
+    }
+    for (std::size_t t = 0; t < last_.size(); ++t) {
+        if (isWithin_[t] == 0) changed.push_back(last_[t]);
+    }
+    markFine(changed, scope);
+    return scope;
+}
+
+MeshProof::Scope MeshProof::scopeOf(const SimplifiedSurface& surface,
+                                    const SurfaceChanges& changes) const {
+    Scope scope;
+    scope.isKnown = isWithin_;
+    scope.isKnown.resize(surface.triangles.size(), 0);
+    for (const std::uint64_t t : changes.triangles) {
+        if (t < scope.isKnown.size()) scope.isKnown[t] = 0;
+    }
+    std::vector<Corners> changed = changes.before;
+    for (std::size_t t = 0; t < scope.isKnown.size(); ++t) {
+        if (scope.isKnown[t] == 0) changed.push_back(cornersOf(surface, t));
+    }
+    markFine(changed, scope);
+    return scope;
+}
+
+/// Finds the triangles of the full surface near some triangles, and near the last places beyond the
+/// limit: by cubes that those reach into.
+void MeshProof::markFine(const std::vector<Corners>& changed, Scope& scope) const {
+    // where much has changed nearly all is near it
+    if (changed.size() > scope.isKnown.size() / 4) return;
+    MarkedCubes cubes(std::max(kNearCube * frame_.voxelMm(), limitMm_));
+    const auto mark = [&](const Corners& corners) {
+        constexpr double kRounding = 1 + 1e-9;
+        CornerBox box = boxOf(corners);
+        box.widen(kRounding * limitMm_);
+        cubes.mark(box);
+    };
+    for (const Corners& corners : changed) mark(corners);
+    for (const PlaceBeyond& place : beyond_) mark({place.point(), place.point(), place.point()});
+    scope.isFineKnown.assign(parts_.triangles.size(), 0);
+    constexpr std::int64_t kTriangles = 1 << 12;
+    parallelForPieces(
+        std::ssize(scope.isFineKnown), kTriangles, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t t = begin; t < end; ++t) {
+                scope.isFineKnown[t] = static_cast<std::uint8_t>(!cubes.has(boxOf(fineCorners(t))));
+            }
+        });
+}
+
+}  // namespace adaptiso::detail

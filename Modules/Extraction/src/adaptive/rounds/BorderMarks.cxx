@@ -1,0 +1,60 @@
+#include "adaptive/rounds/BorderMarks.h"
+
+#include "adaptive/mesh/HalfEdges.h"
+
+namespace adaptiso::detail {
+namespace {
+
+/// Weighted by the squared length of the edge, as a triangle's is by its area.
+Quadric borderQuadric(const Vec3& a, const Vec3& b, const Vec3& area2) {
+    const Vec3 edge = b - a;
+    return Quadric::ofTriangle(2 * norm(edge) * cross(edge, normalized(area2)), a);
+}
+
+void addTo(StoredQuadric& quadric, const Quadric& more, const Vec3& point) {
+    const StoredQuadric stored = StoredQuadric::of(more, point);
+    for (std::size_t n = 0; n < stored.number.size(); ++n) quadric.number[n] += stored.number[n];
+}
+
+void markSamples(SimplifiedSurface& surface) {
+    for (std::size_t s = 0; s < surface.samples.size(); ++s) {
+        Sample& sample = surface.samples[s];
+        for (const std::uint64_t v : surface.triangles[surface.sampleTriangle[s]]) {
+            if (surface.marks[v] != Patch::kPlain &&
+                Sample::positionOf(surface.points[v]) == sample.position) {
+                sample.isOnBorder = true;
+            }
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> openHalfEdges(const SurfaceState& surface) {
+    HalfEdges<std::uint64_t> halfEdges;
+    halfEdges.assign(surface.points.size(), surface.triangles);
+    std::vector<std::uint64_t> twin, open;
+    halfEdges.match(surface.triangles, twin);
+    for (std::uint64_t h = 0; h < twin.size(); ++h) {
+        if (twin[h] == HalfEdges<std::uint64_t>::kNone) open.push_back(h);
+    }
+    return open;
+}
+
+void markBorders(std::span<const std::uint64_t> halfEdges, SimplifiedSurface& surface) {
+    surface.marks.resize(surface.points.size(), Patch::kPlain);
+    for (const std::uint64_t h : halfEdges) {
+        const SurfaceState::Triangle& t = surface.triangles[h / 3];
+        const Vec3 area2 =
+            areaVector2(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]);
+        const std::uint64_t a = t[h % 3], b = t[(h + 1) % 3];
+        const Quadric q = borderQuadric(surface.points[a], surface.points[b], area2);
+        for (const std::uint64_t v : {a, b}) {
+            if (surface.marks[v] == Patch::kPlain) surface.marks[v] = Patch::kBorder;
+            addTo(surface.quadrics[v], q, surface.points[v]);
+        }
+    }
+    markSamples(surface);
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/PointFiles.h"
+
+namespace adaptiso {
+
+/// Nasion and the points before the ears, LPS mm.
+struct Landmarks {
+    Vec3 nasionMm, leftEarMm, rightEarMm;
+    /// How far off they may be; 0 where they were given.
+    double nasionUncertaintyMm = 0, earUncertaintyMm = 0;
+
+    bool areGuessed() const { return earUncertaintyMm > 0; }
+};
+
+/// Landmarks by the shape of a head that is upright in its image, or why there are none.
+///
+/// Nasion: in the middle plane, the deepest place of the profile between nose and forehead; where
+/// no nose stands out by 5 mm (a defaced scan, a face cut off), by proportion. Ears: by proportion
+/// to the inner skull (0.57 of its length behind its front, 0.69 of it below its top, as in
+/// FreeSurfer's average head), where the skin is there: tragus and lobes are not looked for, so 12
+/// mm is all that can be promised of them. \param innerSkull, skin  closed, LPS mm
+struct GuessedLandmarks {
+    std::optional<Landmarks> landmarks;
+    std::string reason;  ///< why there are none
+};
+GuessedLandmarks guessLandmarks(const TriangleMesh& innerSkull, const TriangleMesh& skin);
+
+/// The rigid move that takes one head's landmarks to another's: the axes that they span (from ear
+/// to ear, to the nasion, up), their origin on the line between the ears below the nasion. \throws
+/// InvalidInput  landmarks that span no plane
+AffineTransform byLandmarks(const Landmarks& from, const Landmarks& to);
+
+/// LPS mm -> Brainstorm's coordinates (SCS), mm: x from the middle between the ears to the nasion,
+/// y to the left in the plane of the three, z up. \throws InvalidInput  as above
+AffineTransform toBrainstorm(const Landmarks& landmarks);
+
+/// Which positions: 21, 73 or 277.
+enum class PositionSystem { TenTwenty, TenTen, TenFive };
+
+/// The positions of the 10-20 system and its extensions [Jurcak2007, Oostenveld2001] on a skin:
+/// shares of arcs in planes through landmarks. Cz halves both the arc from nasion to inion and that
+/// from ear to ear. The inion is taken where the line from the nasion between the ears leaves the
+/// head. \param skin  closed, LPS mm \throws InvalidInput  landmarks farther than 30 mm from the
+/// skin, or a plane that does not cut it
+std::vector<NamedPoint> standardPositions(const TriangleMesh& skin, const Landmarks& landmarks,
+                                          PositionSystem system);
+
+/// Points on the nearest place of the skin, in their order.
+struct OntoSkin {
+    std::vector<Vec3> pointsMm;
+    double meanMm = 0, farthestMm = 0;  ///< moved
+    std::size_t farthest = 0;           ///< which
+};
+/// \pre points is not empty
+OntoSkin projectedOntoSkin(const std::vector<Vec3>& pointsMm, const TriangleMesh& skin);
+
+}  // namespace adaptiso

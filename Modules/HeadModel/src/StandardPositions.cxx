@@ -1,0 +1,187 @@
+#include <array>
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "FinishBoundaries.h"
+#include "SkinArcs.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/HeadModel/Landmarks.h"
+
+namespace adaptiso {
+
+using namespace headmodel;
+
+namespace {
+
+Arc requireArc(const TriangleMesh& skin, const Vec3& from, const Vec3& by, const Vec3& to) {
+    std::optional<Arc> arc = arcThrough(skin, from, by, to);
+    if (!arc) {
+        throw InvalidInput(
+            "no arc of the skin leads through the landmarks; are nasion and ears right?");
+    }
+    return *std::move(arc);
+}
+
+/// The arcs that all positions follow from.
+struct Frame {
+    Vec3 nasion, inion, leftEar, rightEar, vertex;
+
+    Arc midline(const TriangleMesh& skin) const { return requireArc(skin, nasion, vertex, inion); }
+    Arc across(const TriangleMesh& skin) const {
+        return requireArc(skin, leftEar, vertex, rightEar);
+    }
+};
+
+Frame frameOf(const TriangleMesh& skin, const Landmarks& landmarks) {
+    constexpr double kMostMm = 30;
+    const OntoSkin onto =
+        projectedOntoSkin({landmarks.nasionMm, landmarks.leftEarMm, landmarks.rightEarMm}, skin);
+    if (onto.farthestMm > kMostMm) {
+        throw InvalidInput("a landmark lies " + shortNumber(onto.farthestMm) +
+                           " mm from the skin, must be at most 30; is it of this head, in the "
+                           "same space?");
+    }
+    Frame frame{onto.pointsMm[0], {}, onto.pointsMm[1], onto.pointsMm[2], {}};
+    const Vec3 middle = 0.5 * (frame.leftEar + frame.rightEar);
+    const Vec3 back = normalized(middle - frame.nasion);
+    const Vec3 up = normalized(cross(frame.rightEar - frame.leftEar, frame.nasion - middle));
+    const RayHits behind = rayHits(skin, middle, back), above = rayHits(skin, middle, up);
+    if (behind.mm.empty() || above.mm.empty()) {
+        throw InvalidInput("nasion and ears do not lie round the head; are left and right right?");
+    }
+    frame.inion = middle + behind.mm.back() * back;
+    frame.vertex = middle + above.mm.back() * up;
+    constexpr int kMostRounds = 20;
+    constexpr double kEnoughMm = 0.01;
+    for (int round = 0; round < kMostRounds; ++round) {
+        const Vec3 before = frame.vertex;
+        frame.vertex = frame.midline(skin).at(0.5);
+        frame.vertex = frame.across(skin).at(0.5);
+        if (norm(frame.vertex - before) < kEnoughMm) break;
+    }
+    return frame;
+}
+
+/// A row from ear to ear, at a share of the way from front to back.
+struct Row {
+    int percent;
+    const char* lateral;  ///< of 7 and 8
+    const char* medial;   ///< of the rest
+};
+constexpr std::array<Row, 15> kRows{{{15, "AFp", "AFp"},
+                                     {20, "AF", "AF"},
+                                     {25, "AFF", "AFF"},
+                                     {30, "F", "F"},
+                                     {35, "FFT", "FFC"},
+                                     {40, "FT", "FC"},
+                                     {45, "FTT", "FCC"},
+                                     {50, "T", "C"},
+                                     {55, "TTP", "CCP"},
+                                     {60, "TP", "CP"},
+                                     {65, "TPP", "CPP"},
+                                     {70, "P", "P"},
+                                     {75, "PPO", "PPO"},
+                                     {80, "PO", "PO"},
+                                     {85, "POO", "POO"}}};
+
+const std::set<std::string>& tenTwenty() {
+    static const std::set<std::string> names{"Fp1", "Fpz", "Fp2", "F7", "F3", "Fz", "F4",
+                                             "F8",  "T7",  "C3",  "Cz", "C4", "T8", "P7",
+                                             "P3",  "Pz",  "P4",  "P8", "O1", "Oz", "O2"};
+    return names;
+}
+
+bool isIn(PositionSystem system, const std::string& name, bool isTenFive) {
+    if (system == PositionSystem::TenFive) return true;
+    if (system == PositionSystem::TenTwenty) return tenTwenty().contains(name);
+    if (isTenFive) return false;
+    // of the rows AF and PO the 10-10 system has every other position
+    static const std::set<std::string> left{"AF1", "AF2", "AF5", "AF6", "PO1", "PO2", "PO5", "PO6"};
+    return !left.contains(name);
+}
+
+class Positions {
+public:
+    Positions(const TriangleMesh& skin, const Landmarks& landmarks, PositionSystem system)
+        : skin_(skin), system_(system), frame_(frameOf(skin, landmarks)) {}
+
+    std::vector<NamedPoint> all() && {
+        const Arc midline = frame_.midline(skin_), across = frame_.across(skin_);
+        const Vec3 front = midline.at(0.1), back = midline.at(0.9);
+        const Arc left = requireArc(skin_, front, across.at(0.1), back);
+        const Arc right = requireArc(skin_, front, across.at(0.9), back);
+        add("Fpz", front);
+        addRing("Fp", 0.1, left, right);
+        for (const Row& row : kRows) {
+            const double share = row.percent / 100.0;
+            addRow(row, row.percent == 50 ? across.at(0.1) : left.at(share),
+                   row.percent == 50 ? across.at(0.9) : right.at(share), midline.at(share));
+        }
+        addRing("O", 0.9, left, right);
+        add("Oz", back);
+        addLowerRing();
+        return std::move(positions_);
+    }
+
+private:
+    void add(const std::string& name, const Vec3& point, bool isTenFive = false) {
+        if (isIn(system_, name, isTenFive)) {
+            positions_.push_back({name, PointKind::Electrode, point});
+        }
+    }
+
+    void addRing(const std::string& name, double share, const Arc& left, const Arc& right) {
+        add(name + "1", left.at(share));
+        add(name + "2", right.at(share));
+        add(name + "1h", left.at(share < 0.5 ? share / 2 : (1 + share) / 2), true);
+        add(name + "2h", right.at(share < 0.5 ? share / 2 : (1 + share) / 2), true);
+    }
+
+    void addRow(const Row& row, const Vec3& left, const Vec3& right, const Vec3& middle) {
+        const bool isTenFive = row.percent % 10 != 0;
+        const Arc arc = requireArc(skin_, left, middle, right);
+        const Arc toMiddle[2] = {requireArc(skin_, left, arc.at(0.25), middle),
+                                 requireArc(skin_, right, arc.at(0.75), middle)};
+        add(std::string(row.medial) + "z", middle, isTenFive);
+        for (int step = 0; step < 8; ++step) {
+            // 7, 7h, 5, 5h, 3, 3h, 1, 1h from the side to the middle
+            const int number = 7 - 2 * (step / 2);
+            const char* const prefix = number == 7 ? row.lateral : row.medial;
+            for (int side = 0; side < 2; ++side) {
+                add(prefix + std::to_string(number + side) + (step % 2 != 0 ? "h" : ""),
+                    toMiddle[side].at(step / 8.0), isTenFive || step % 2 != 0);
+            }
+        }
+    }
+
+    /// Through nasion, ears and inion.
+    void addLowerRing() {
+        const Arc left = requireArc(skin_, frame_.nasion, frame_.leftEar, frame_.inion);
+        const Arc right = requireArc(skin_, frame_.nasion, frame_.rightEar, frame_.inion);
+        constexpr std::array<std::pair<int, const char*>, 5> kNames{
+            {{30, "F"}, {40, "FT"}, {50, "T"}, {60, "TP"}, {70, "P"}}};
+        for (const auto& [percent, name] : kNames) {
+            const double share = percent / 100.0;
+            add(std::string(name) + "9", percent == 50 ? frame_.leftEar : left.at(share));
+            add(std::string(name) + "10", percent == 50 ? frame_.rightEar : right.at(share));
+        }
+        add("Nz", frame_.nasion);
+        add("Iz", frame_.inion);
+    }
+
+    const TriangleMesh& skin_;
+    PositionSystem system_;
+    Frame frame_;
+    std::vector<NamedPoint> positions_;
+};
+
+}  // namespace
+
+std::vector<NamedPoint> standardPositions(const TriangleMesh& skin, const Landmarks& landmarks,
+                                          PositionSystem system) {
+    return Positions(skin, landmarks, system).all();
+}
+
+}  // namespace adaptiso

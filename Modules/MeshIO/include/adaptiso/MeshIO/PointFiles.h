@@ -1,0 +1,61 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adaptiso/Core/Geometry.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
+
+namespace adaptiso {
+
+/// What a digitized point is.
+enum class PointKind { Nasion, LeftEar, RightEar, Electrode, Other };
+
+struct NamedPoint {
+    std::string name;  ///< UTF-8 without control characters; never empty
+    PointKind kind = PointKind::Electrode;
+    Vec3 point;
+};
+
+/// Points of a head as a file has them.
+struct PointFile {
+    std::vector<NamedPoint> points;        ///< in mm where the unit is known
+    std::string format;                    ///< "BIDS electrodes", "ASA .elc", ...
+    bool saysUnit = false;                 ///< else the numbers are as stored
+    std::optional<CoordinateFrame> frame;  ///< none: not said, or one of its own (see frameName)
+    std::string frameName;                 ///< as the file calls it; may be empty
+};
+
+/// Reads electrodes, landmarks and head points:
+///   _electrodes.tsv  of BIDS: columns name, x, y, z ("n/a": left out), tabs between them; unit,
+///   frame and
+///                    landmarks from the _coordsystem.json beside it: EEGCoordinateSystem,
+///                    EEGCoordinateUnits, AnatomicalLandmarkCoordinates (NAS, LPA, RPA)
+///   .elc             of ASA: UnitPosition, Positions, Labels
+///   .sfp             of BESA and EGI: name x y z; it says no unit
+///   .fif             FIFF's digitizer block: metres, in head or MRI coordinates
+/// Landmarks are told by their names (NAS, Nz, fidNz, LPA, fidT9, ...), upper case or lower.
+/// Files are taken for hostile: at most 100,000 points, none of them not finite.
+/// \throws FileError  "<file>: what is wrong; what to do"
+PointFile readPoints(const std::filesystem::path& path);
+
+/// The same from bytes in memory; of BIDS without and with the bytes of _coordsystem.json.
+/// \param extension  ".tsv", ".elc", ".sfp" or ".fif"
+PointFile decodePoints(std::string_view bytes, std::string_view extension, std::string_view name,
+                       const std::optional<std::string>& coordinateSystem = std::nullopt);
+
+/// Writes points (mm, in `frame`) in all of these formats but for the folder's names:
+/// electrodes.tsv and coordsystem.json hold electrodes and landmarks, .elc electrodes and landmarks
+/// by name, .sfp all, .fif all, in metres, in MRI coordinates: its points are to be in tkRAS.
+/// \throws FileError  the file can't be written
+void writeBidsElectrodes(std::span<const NamedPoint> points, const std::filesystem::path& tsv,
+                         const std::filesystem::path& json, CoordinateFrame frame);
+void writeElc(std::span<const NamedPoint> points, const std::filesystem::path& path);
+void writeSfp(std::span<const NamedPoint> points, const std::filesystem::path& path);
+void writeFiffPoints(std::span<const NamedPoint> points, const std::filesystem::path& path);
+
+}  // namespace adaptiso

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "ByteSink.h"
+
+namespace adaptiso::meshio {
+
+/// The bytes of a regular file. \throws FileError  "<file>: what is wrong; what to do"
+std::string readBytes(const std::filesystem::path& path);
+
+/// Makes a file, or replaces what is in it, with what `write` hands to the sink.
+/// \throws FileError  "<file>: what is wrong; what to do"
+void writeBytes(const std::filesystem::path& path, const std::function<void(ByteSink&)>& write);
+
+}  // namespace adaptiso::meshio

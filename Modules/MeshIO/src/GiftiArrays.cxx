@@ -1,0 +1,51 @@
+#include "GiftiArrays.h"
+
+#include "adaptiso/Core/Text.h"
+
+namespace adaptiso::meshio {
+
+GiftiShape shapeOf(const XmlAttributes& attributes, std::string_view what) {
+    const std::string dimensions = attributeOr(attributes, "Dimensionality", "1");
+    if (dimensions != "1" && dimensions != "2") {
+        unsupported("its " + std::string(what) + " have " + printable(dimensions) + " dimensions",
+                    "save them with a row for each point");
+    }
+    GiftiShape shape;
+    shape.rows = toInteger(requireAttribute(attributes, "Dim0"), "Dim0");
+    if (dimensions == "2") shape.columns = toInteger(requireAttribute(attributes, "Dim1"), "Dim1");
+    if (shape.rows < 0 || shape.columns < 0) damaged("the size of its arrays is negative");
+    return shape;
+}
+
+bool isPackedGifti(const std::string& encoding, std::string_view what) {
+    if (encoding == "GZipBase64Binary") return true;
+    if (encoding == "Base64Binary") return false;
+    unsupported("its " + std::string(what) + " have the encoding " + printable(encoding),
+                "save it with GZipBase64Binary");
+}
+
+void beginGiftiArray(std::string_view intent, std::string_view type, const GiftiShape& shape,
+                     ByteSink& sink) {
+    const bool isFlat = shape.columns == 1;
+    sink << "<DataArray Intent=\"" << intent << "\" DataType=\"" << type
+         << "\" ArrayIndexingOrder=\"RowMajorOrder\" Dimensionality=\"" << (isFlat ? "1" : "2")
+         << "\" Dim0=\"" << shape.rows;
+    if (!isFlat) sink << "\" Dim1=\"" << shape.columns;
+    sink << "\" Encoding=\"GZipBase64Binary\" Endian=\"LittleEndian\""
+            " ExternalFileName=\"\" ExternalFileOffset=\"\">\n";
+}
+
+void endGiftiArray(const std::string& bytes, ByteSink& sink) {
+    sink << "<Data>" << encodeBase64(deflated(bytes)) << "</Data>\n</DataArray>\n";
+}
+
+void requireGiftiType(const GiftiArray& array, std::string_view type, std::string_view what) {
+    if (array.attributes.empty()) damaged("it has no " + std::string(what));
+    const std::string& found = requireAttribute(array.attributes, "DataType");
+    if (found != type) {
+        unsupported("its " + std::string(what) + " are " + printable(found),
+                    "save them as " + std::string(type));
+    }
+}
+
+}  // namespace adaptiso::meshio

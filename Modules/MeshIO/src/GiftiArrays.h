@@ -1,0 +1,109 @@
+#pragma once
+
+// What GIFTI surfaces and GIFTI data have in common: arrays of numbers in XML.
+
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "ByteSink.h"
+#include "ByteSource.h"
+#include "Packing.h"
+#include "Xml.h"
+
+namespace adaptiso::meshio {
+
+inline constexpr std::string_view kGiftiHead =
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+    "<!DOCTYPE GIFTI SYSTEM \"http://www.nitrc.org/frs/download.php/115/gifti.dtd\">\n";
+
+/// A DataArray as the file has it.
+struct GiftiArray {
+    XmlAttributes attributes;
+    std::string text;
+};
+
+/// Rows and columns of an array of one or two dimensions.
+struct GiftiShape {
+    std::int64_t rows = 0, columns = 1;
+};
+
+GiftiShape shapeOf(const XmlAttributes& attributes, std::string_view what);
+
+/// The encoding says that numbers are packed (true), or base64 alone. \throws FileError  neither
+bool isPackedGifti(const std::string& encoding, std::string_view what);
+
+/// Appends the bytes of a number as these files have them.
+template <class T>
+void appendLittleEndian(T value, std::string& bytes) {
+    if (std::endian::native == std::endian::big) value = swappedBytes(value);
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+
+/// The numbers of an array in the order in which they are stored.
+template <class Stored, class T>
+std::vector<T> decodeGiftiNumbers(const GiftiArray& array, const GiftiShape& shape,
+                                  std::string_view what) {
+    const std::string& encoding = requireAttribute(array.attributes, "Encoding");
+    requireRoom("columns", shape.columns, 1, array.text.size());  // so that no product overflows
+    const std::int64_t columns = shape.columns, count = shape.rows * columns;
+    std::vector<T> numbers;
+    if (columns == 0) return numbers;
+    if (encoding == "ASCII") {
+        requireRoom(what, shape.rows, 2 * columns - 1, array.text.size());  // "0 0 0"
+        ByteSource words(array.text);
+        for (std::int64_t i = 0; i < count; ++i) {
+            if constexpr (std::is_integral_v<Stored>) {
+                numbers.push_back(static_cast<T>(words.integerWord(what)));
+            } else {
+                numbers.push_back(static_cast<T>(words.realWord(what)));
+            }
+        }
+        return numbers;
+    }
+    const bool isPacked = isPackedGifti(encoding, what);
+    const auto rowBytes = columns * static_cast<std::int64_t>(sizeof(Stored));
+    constexpr std::int64_t kBestRatio = 1032;  // of deflate
+    const std::string stored = decodeBase64(array.text);
+    requireRoom(what, shape.rows, rowBytes, isPacked ? kBestRatio * stored.size() : stored.size());
+    if (isPacked) requirePlausibleSize(stored.size(), shape.rows * rowBytes);
+    const std::string bytes = isPacked ? inflated(stored, shape.rows * rowBytes) : stored;
+    const bool isBig = attributeOr(array.attributes, "Endian", "LittleEndian") == "BigEndian";
+    numbers.reserve(count);
+    for (std::int64_t i = 0; i < count; ++i) {
+        numbers.push_back(static_cast<T>(loadAs<Stored>(
+            bytes.data() + i * sizeof(Stored), isBig ? std::endian::big : std::endian::little)));
+    }
+    return numbers;
+}
+
+/// decodeGiftiNumbers() row by row, whatever the array's order.
+template <class Stored, class T>
+std::vector<T> decodeGiftiRows(const GiftiArray& array, const GiftiShape& shape,
+                               std::string_view what) {
+    std::vector<T> numbers = decodeGiftiNumbers<Stored, T>(array, shape, what);
+    const bool byColumns =
+        attributeOr(array.attributes, "ArrayIndexingOrder", "RowMajorOrder") == "ColumnMajorOrder";
+    if (!byColumns || shape.columns == 1) return numbers;
+    std::vector<T> rows(numbers.size());
+    for (std::int64_t row = 0; row < shape.rows; ++row) {
+        for (std::int64_t column = 0; column < shape.columns; ++column) {
+            rows[row * shape.columns + column] = numbers[column * shape.rows + row];
+        }
+    }
+    return rows;
+}
+
+/// The element's start, up to where its metadata stand. One dimension where there is one column.
+void beginGiftiArray(std::string_view intent, std::string_view type, const GiftiShape& shape,
+                     ByteSink& sink);
+/// Its data, packed, and its end.
+void endGiftiArray(const std::string& bytes, ByteSink& sink);
+
+/// Refuses an array that is missing or holds numbers of another type than "NIFTI_TYPE_...".
+void requireGiftiType(const GiftiArray& array, std::string_view type, std::string_view what);
+
+}  // namespace adaptiso::meshio

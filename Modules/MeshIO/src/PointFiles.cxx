@@ -1,0 +1,405 @@
+#include "adaptiso/MeshIO/PointFiles.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "ByteSource.h"
+#include "Fiff.h"
+#include "FileBytes.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+
+using namespace meshio;
+using Json = nlohmann::json;
+
+namespace {
+
+constexpr std::size_t kMostPoints = 100'000;
+constexpr double kMetreMm = 1000;
+
+PointKind kindOf(std::string_view name) {
+    constexpr std::array kNasion{"nas", "nasion", "nz", "fidnz", "fidn"};
+    constexpr std::array kLeft{"lpa", "fidt9", "fidl", "leftear"};
+    constexpr std::array kRight{"rpa", "fidt10", "fidr", "rightear"};
+    std::string plain;
+    for (const char c : lowerCase(name)) {
+        if (c != '_' && c != ' ' && c != '-') plain += c;
+    }
+    const auto isIn = [&](const auto& names) {
+        return std::find(names.begin(), names.end(), plain) != names.end();
+    };
+    return isIn(kNasion)  ? PointKind::Nasion
+           : isIn(kLeft)  ? PointKind::LeftEar
+           : isIn(kRight) ? PointKind::RightEar
+                          : PointKind::Electrode;
+}
+
+void add(PointFile& file, std::string_view name, const Vec3& point, PointKind kind) {
+    if (file.points.size() == kMostPoints) damaged("it holds more than 100,000 points");
+    if (!std::isfinite(squaredNorm(point))) damaged("a point is not finite");
+    const bool isPlain = std::all_of(name.begin(), name.end(), [](char c) {
+        return static_cast<unsigned char>(c) >= ' ' && c != '\x7f';
+    });
+    if (name.empty() || name.size() > 100 || !isPlain) {
+        damaged("a point has the name " + printable(name));
+    }
+    file.points.push_back({std::string(name), kind, point});
+}
+
+double unitMm(std::string_view word) {
+    const std::string unit = lowerCase(word);
+    if (unit == "mm") return 1;
+    if (unit == "cm") return 10;
+    if (unit == "m") return kMetreMm;
+    unsupported("its unit is " + printable(word), "it must be mm, cm or m");
+}
+
+void scale(PointFile& file, double mm) {
+    file.saysUnit = true;
+    for (NamedPoint& point : file.points) point.point = mm * point.point;
+}
+
+std::vector<std::string_view> cellsOf(std::string_view line) {
+    std::vector<std::string_view> cells;
+    for (std::size_t begin = 0;;) {
+        const std::size_t end = line.find('\t', begin);
+        cells.push_back(trimmed(line.substr(begin, end == line.npos ? end : end - begin)));
+        if (end == line.npos) return cells;
+        begin = end + 1;
+    }
+}
+
+/// Frames that BIDS names; most others follow from landmarks.
+std::optional<CoordinateFrame> bidsFrame(std::string_view name) {
+    const std::string lower = lowerCase(name);
+    if (lower == "scanras") return CoordinateFrame::Ras;
+    if (lower == "scanlps" || lower == "dicom") return CoordinateFrame::Lps;
+    return std::nullopt;
+}
+
+std::string textOf(const Json& object, const char* key) {
+    const auto found = object.find(key);
+    return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+Vec3 vectorOf(const Json& value) {
+    if (!value.is_array() || value.size() != 3 ||
+        !std::all_of(value.begin(), value.end(), [](const Json& n) { return n.is_number(); })) {
+        damaged("a landmark of its coordinate system has no three numbers");
+    }
+    return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+}
+
+/// What _coordsystem.json says of the points read, and its landmarks.
+void applyCoordinateSystem(const std::string& text, PointFile& file) {
+    const Json json = Json::parse(text, nullptr, false);
+    if (!json.is_object()) damaged("its coordinate system (_coordsystem.json) is no JSON object");
+    file.frameName = textOf(json, "EEGCoordinateSystem");
+    file.frame = bidsFrame(file.frameName);
+    const std::string unit = textOf(json, "EEGCoordinateUnits");
+    if (!unit.empty() && lowerCase(unit) != "n/a") scale(file, unitMm(unit));
+    const std::string own = textOf(json, "AnatomicalLandmarkCoordinateSystem");
+    if (!own.empty() && own != file.frameName) return;  // of another space
+    const auto landmarks = json.find("AnatomicalLandmarkCoordinates");
+    if (landmarks == json.end() || !landmarks->is_object()) return;
+    const std::string landmarkUnit = textOf(json, "AnatomicalLandmarkCoordinateUnits");
+    const std::string& used = landmarkUnit.empty() ? unit : landmarkUnit;
+    const double mm = file.saysUnit && !used.empty() ? unitMm(used) : 1;
+    for (const auto& [name, value] : landmarks->items()) {
+        const PointKind kind = kindOf(name);
+        if (kind != PointKind::Electrode) add(file, name, mm * vectorOf(value), kind);
+    }
+}
+
+PointFile decodeTsv(std::string_view bytes) {
+    ByteSource source(bytes);
+    PointFile file;
+    file.format = "BIDS electrodes";
+    const std::vector<std::string_view> header = cellsOf(source.line());
+    std::array<std::size_t, 4> columns{};
+    constexpr std::array<std::string_view, 4> kNames{"name", "x", "y", "z"};
+    for (std::size_t n = 0; n < 4; ++n) {
+        const auto found = std::find(header.begin(), header.end(), kNames[n]);
+        if (found == header.end()) {
+            damaged("its first line names no column '" + std::string(kNames[n]) + "'");
+        }
+        columns[n] = static_cast<std::size_t>(found - header.begin());
+    }
+    while (!source.atEnd()) {
+        const std::string_view line = source.line();
+        if (trimmed(line).empty()) continue;
+        const std::vector<std::string_view> cells = cellsOf(line);
+        if (cells.size() != header.size()) {
+            damaged("a row has " + std::to_string(cells.size()) + " cells, the first line " +
+                    std::to_string(header.size()));
+        }
+        Vec3 point;
+        bool isKnown = true;
+        for (int a = 0; a < 3; ++a) {
+            const std::string_view cell = cells[columns[static_cast<std::size_t>(a) + 1]];
+            isKnown = isKnown && cell != "n/a";
+            if (isKnown) point[a] = toReal(cell, "a coordinate");
+        }
+        const std::string_view name = cells[columns[0]];
+        if (isKnown) add(file, name, point, kindOf(name));
+    }
+    return file;
+}
+
+PointFile decodeElc(std::string_view bytes) {
+    ByteSource source(bytes);
+    PointFile file;
+    file.format = "ASA .elc";
+    std::vector<std::string> names;
+    std::vector<Vec3> points;
+    double mm = 0;
+    enum { Header, Positions, Labels } part = Header;
+    while (!source.atEnd()) {
+        const std::string_view line = trimmed(source.line());
+        if (line.empty() || line.front() == '#') continue;
+        ByteSource words(line);
+        const std::string_view first = words.word();
+        if (first == "UnitPosition") {
+            mm = unitMm(words.requireWord("a unit"));
+        } else if (first == "Positions") {
+            part = Positions;
+        } else if (first == "Labels") {
+            part = Labels;
+        } else if (part == Positions) {
+            const std::size_t colon = line.find(':');
+            if (colon != line.npos) names.emplace_back(trimmed(line.substr(0, colon)));
+            ByteSource numbers(colon == line.npos ? line : line.substr(colon + 1));
+            Vec3 point;
+            for (int a = 0; a < 3; ++a) point[a] = numbers.realWord("a coordinate");
+            points.push_back(point);
+        } else if (part == Labels) {
+            for (std::string_view word = first; !word.empty(); word = words.word()) {
+                names.emplace_back(word);
+            }
+        }
+        if (points.size() > kMostPoints || names.size() > kMostPoints) {
+            damaged("it holds more than 100,000 points");
+        }
+    }
+    if (names.size() != points.size()) {
+        damaged("it has " + std::to_string(points.size()) + " positions and " +
+                std::to_string(names.size()) + " labels");
+    }
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        add(file, names[n], points[n], kindOf(names[n]));
+    }
+    if (mm > 0) scale(file, mm);
+    return file;
+}
+
+PointFile decodeSfp(std::string_view bytes) {
+    ByteSource source(bytes);
+    PointFile file;
+    file.format = "BESA .sfp";
+    while (!source.atEnd()) {
+        const std::string_view line = trimmed(source.line());
+        if (line.empty() || line.front() == '#') continue;
+        ByteSource words(line);
+        const std::string_view name = words.word();
+        Vec3 point;
+        for (int a = 0; a < 3; ++a) point[a] = words.realWord("a coordinate");
+        add(file, name, point, kindOf(name));
+    }
+    return file;
+}
+
+/// The points of the first digitizer block.
+PointFile decodeFiff(std::string_view bytes) {
+    const fiff::Content content = fiff::decode(bytes);
+    PointFile file;
+    file.format = "FIFF digitizer points";
+    std::size_t block = 1;
+    while (block < content.blocks.size() && content.blocks[block].kind != fiff::kIsotrak) ++block;
+    if (block >= content.blocks.size()) {
+        unsupported("it holds no digitizer points", "give a file of electrodes");
+    }
+    std::int32_t frame = fiff::kFrameHead;
+    if (const fiff::Tag* tag = content.find(block, fiff::kMneCoordFrame)) frame = fiff::toInt(*tag);
+    if (frame == fiff::kFrameMri) file.frame = CoordinateFrame::TkRas;
+    file.frameName = frame == fiff::kFrameMri    ? "MRI"
+                     : frame == fiff::kFrameHead ? "head"
+                                                 : "FIFF frame " + std::to_string(frame);
+    for (const fiff::Tag& tag : content.tags) {
+        if (tag.block != block || tag.kind != fiff::kDigPoint) continue;
+        const fiff::DigitizedPoint point = fiff::toPoint(tag);
+        constexpr std::int32_t kCardinal = 1, kElectrode = 3;
+        std::string digits = std::to_string(point.number);
+        if (digits.size() < 3) digits.insert(0, 3 - digits.size(), '0');
+        if (point.kind == kCardinal && point.number >= 1 && point.number <= 3) {
+            constexpr std::array<const char*, 3> kNames{"LPA", "Nasion", "RPA"};
+            const char* const name = kNames[static_cast<std::size_t>(point.number - 1)];
+            add(file, name, point.metres, kindOf(name));
+        } else if (point.kind == kElectrode) {
+            add(file, "EEG" + digits, point.metres, PointKind::Electrode);
+        } else {
+            add(file, "extra" + digits, point.metres, PointKind::Other);
+        }
+    }
+    scale(file, kMetreMm);
+    return file;
+}
+
+PointFile decoded(std::string_view bytes, std::string_view extension) {
+    if (extension == ".tsv") return decodeTsv(bytes);
+    if (extension == ".elc") return decodeElc(bytes);
+    if (extension == ".sfp") return decodeSfp(bytes);
+    if (extension == ".fif") return decodeFiff(bytes);
+    unsupported("electrodes are not read from '" + std::string(extension) + "' files",
+                "give _electrodes.tsv, .elc, .sfp or .fif");
+}
+
+/// "sub-1_electrodes.tsv" -> "sub-1_coordsystem.json"; BIDS may leave out what is the same for all.
+std::optional<std::string> coordinateSystemBeside(const std::filesystem::path& tsv) {
+    namespace fs = std::filesystem;
+    std::string stem = tsv.stem().string();
+    const std::string suffix = "electrodes";
+    if (!stem.ends_with(suffix)) return std::nullopt;
+    stem.resize(stem.size() - suffix.size());
+    std::vector<fs::path> tried{tsv.parent_path() / (stem + "coordsystem.json")};
+    const std::size_t space = stem.find("_space-");
+    if (space != stem.npos) {
+        tried.push_back(tsv.parent_path() / (stem.substr(0, space) + "_coordsystem.json"));
+    }
+    std::error_code error;
+    for (const fs::path& path : tried) {
+        if (fs::is_regular_file(path, error)) return readBytes(path);
+    }
+    return std::nullopt;
+}
+
+const char* bidsName(CoordinateFrame frame) {
+    return frame == CoordinateFrame::Ras ? "ScanRAS" : "Other";
+}
+
+Json numbersOf(const Vec3& p) {
+    return {p.x, p.y, p.z};
+}
+
+std::string coordinateSystemText(std::span<const NamedPoint> points, CoordinateFrame frame) {
+    Json json{{"EEGCoordinateSystem", bidsName(frame)}, {"EEGCoordinateUnits", "mm"}};
+    const std::string description = frameMarker(frame);
+    if (frame != CoordinateFrame::Ras) json["EEGCoordinateSystemDescription"] = description;
+    Json landmarks = Json::object();
+    for (const NamedPoint& point : points) {
+        if (point.kind == PointKind::Nasion) landmarks["NAS"] = numbersOf(point.point);
+        if (point.kind == PointKind::LeftEar) landmarks["LPA"] = numbersOf(point.point);
+        if (point.kind == PointKind::RightEar) landmarks["RPA"] = numbersOf(point.point);
+    }
+    if (!landmarks.empty()) {
+        json["AnatomicalLandmarkCoordinates"] = landmarks;
+        json["AnatomicalLandmarkCoordinateSystem"] = bidsName(frame);
+        json["AnatomicalLandmarkCoordinateUnits"] = "mm";
+    }
+    return json.dump(2) + "\n";
+}
+
+ByteSink& operator<<(ByteSink& sink, const Vec3& p) {
+    return sink << p.x << " " << p.y << " " << p.z;
+}
+
+}  // namespace
+
+PointFile decodePoints(std::string_view bytes, std::string_view extension, std::string_view name,
+                       const std::optional<std::string>& coordinateSystem) {
+    try {
+        PointFile file = decoded(bytes, extension);
+        if (coordinateSystem) applyCoordinateSystem(*coordinateSystem, file);
+        if (file.points.empty()) damaged("it holds no point");
+        return file;
+    } catch (const FileError& error) {
+        throw FileError(std::string(name) + ": " + error.what());
+    } catch (const std::bad_alloc&) {
+        throw FileError(std::string(name) +
+                        ": the points do not fit into memory; use a larger machine");
+    }
+}
+
+PointFile readPoints(const std::filesystem::path& path) {
+    const std::string extension = lowerCase(path.extension().string());
+    std::optional<std::string> coordinateSystem;
+    if (extension == ".tsv") coordinateSystem = coordinateSystemBeside(path);
+    return decodePoints(readBytes(path), extension, path.string(), coordinateSystem);
+}
+
+void writeBidsElectrodes(std::span<const NamedPoint> points, const std::filesystem::path& tsv,
+                         const std::filesystem::path& json, CoordinateFrame frame) {
+    writeBytes(tsv, [&](ByteSink& sink) {
+        sink << "name\tx\ty\tz\n";
+        for (const NamedPoint& point : points) {
+            if (point.kind != PointKind::Electrode) continue;
+            const Vec3& p = point.point;
+            sink << point.name << "\t" << p.x << "\t" << p.y << "\t" << p.z << "\n";
+        }
+    });
+    writeBytes(json, [&](ByteSink& sink) { sink << coordinateSystemText(points, frame); });
+}
+
+void writeElc(std::span<const NamedPoint> points, const std::filesystem::path& path) {
+    writeBytes(path, [&](ByteSink& sink) {
+        sink << "# ASA electrode file\nReferenceLabel avg\nUnitPosition mm\nNumberPositions= "
+             << static_cast<std::int64_t>(points.size()) << "\nPositions\n";
+        for (const NamedPoint& point : points) sink << point.point << "\n";
+        sink << "Labels\n";
+        for (const NamedPoint& point : points) {
+            std::string name = point.name;  // words are between spaces
+            std::replace(name.begin(), name.end(), ' ', '_');
+            sink << name << "\n";
+        }
+    });
+}
+
+void writeSfp(std::span<const NamedPoint> points, const std::filesystem::path& path) {
+    writeBytes(path, [&](ByteSink& sink) {
+        for (const NamedPoint& point : points) {
+            std::string name = point.name;
+            std::replace(name.begin(), name.end(), ' ', '_');
+            if (point.kind == PointKind::Nasion) name = "FidNz";
+            if (point.kind == PointKind::LeftEar) name = "FidT9";
+            if (point.kind == PointKind::RightEar) name = "FidT10";
+            sink << name << "\t" << point.point.x << "\t" << point.point.y << "\t" << point.point.z
+                 << "\n";
+        }
+    });
+}
+
+void writeFiffPoints(std::span<const NamedPoint> points, const std::filesystem::path& path) {
+    writeBytes(path, [&](ByteSink& sink) {
+        fiff::Writer writer(sink);
+        writer.begin(fiff::kIsotrak);
+        writer.put(fiff::kMneCoordFrame, fiff::kFrameMri);
+        std::int32_t electrodes = 0, others = 0;
+        for (const NamedPoint& point : points) {
+            const Vec3 metres = (1 / kMetreMm) * point.point;
+            constexpr std::int32_t kCardinal = 1, kElectrode = 3, kExtra = 4;
+            switch (point.kind) {
+                case PointKind::LeftEar:
+                    writer.putPoint(kCardinal, 1, metres);
+                    break;
+                case PointKind::Nasion:
+                    writer.putPoint(kCardinal, 2, metres);
+                    break;
+                case PointKind::RightEar:
+                    writer.putPoint(kCardinal, 3, metres);
+                    break;
+                case PointKind::Electrode:
+                    writer.putPoint(kElectrode, ++electrodes, metres);
+                    break;
+                case PointKind::Other:
+                    writer.putPoint(kExtra, ++others, metres);
+                    break;
+            }
+        }
+        writer.end(fiff::kIsotrak);
+        writer.finish();
+    });
+}
+
+}  // namespace adaptiso

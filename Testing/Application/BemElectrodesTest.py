@@ -1,0 +1,139 @@
+"""Electrodes and landmarks of adaptiso-bem: formats, frames, projection, positions, refusals."""
+
+import json
+import math
+
+from support import BAD_INPUT, USAGE, main
+from bemSupport import RADII, BemTest
+
+SKIN = RADII[-1]
+LANDMARKS = ("--nasion", f"0,{SKIN},0", f"--left-ear=-{SKIN},0,0", "--right-ear", f"{SKIN},0,0")
+# the phantom's voxels are of 4 mm, and chords of 19 mm lie up to 0.6 mm inside of its skin
+NEAR = 2.6
+
+
+def directions():
+    return {"Cz": (0, 0, 1), "C3": (-0.6, 0, 0.8), "Fz": (0, 0.6, 0.8), "O2": (0.28, -0.96, 0)}
+
+
+class Electrodes(BemTest):
+    def table(self, folder="model"):
+        rows = (self.path(folder) / "electrodes.tsv").read_text().splitlines()
+        self.assertEqual(rows[0], "name\tx\ty\tz")
+        cells = [row.split("\t") for row in rows[1:]]
+        return {row[0]: tuple(map(float, row[1:])) for row in cells}
+
+    def write_bids(self, scale=1.0, system="ScanRAS", unit="mm", landmarks=None):
+        lines = ["name\tx\ty\tz\ttype"]
+        for name, d in directions().items():
+            lines.append("\t".join([name, *(str(scale * 80 * v) for v in d), "cup"]))
+        self.path("sub-1_electrodes.tsv").write_text("\n".join([*lines, "EOG\tn/a\tn/a\tn/a\tcup", ""]))
+        system = {"EEGCoordinateSystem": system, "EEGCoordinateUnits": unit}
+        if landmarks:
+            system["AnatomicalLandmarkCoordinates"] = landmarks
+        self.path("sub-1_coordsystem.json").write_text(json.dumps(system))
+
+    def assert_on_skin(self, table):
+        for name, d in directions().items():
+            self.assertLess(math.dist(table[name], [SKIN * v for v in d]), NEAR, name)
+
+    def test_bids_electrodes_are_moved_onto_the_skin(self):
+        self.write_bids(scale=0.1, unit="cm")
+        done = self.bem(*self.labels(), "--electrodes", "sub-1_electrodes.tsv", "-o", "model")
+        self.assert_on_skin(self.table())
+        report = self.report()
+        self.assertEqual([p["name"] for p in report["electrodes"]["points"]], list(directions()))
+        self.assertFalse(report["electrodes"]["computed"])
+        # 80 mm from the middle, the skin at 72
+        self.assertAlmostEqual(report["electrodes"]["farthestMovedMm"], 8, delta=NEAR)
+        self.assertRegex(done.stdout, r"4 moved onto the skin, by \d+\.\d mm on average, the farthest")
+        self.assertIsNone(report["landmarks"])
+        self.assertIn("ScanRAS", (self.path("model") / "coordsystem.json").read_text())
+        lines = (self.path("model") / "electrodes.txt").read_text().splitlines()
+        for line, place in zip(lines, self.table().values(), strict=True):
+            self.assertLess(math.dist(tuple(map(float, line.split())), place), 1e-5)
+
+    def test_what_was_written_is_read_again(self):
+        self.write_bids()
+        self.bem(*self.labels(), "--electrodes", "sub-1_electrodes.tsv", *LANDMARKS, "-o", "model")
+        expected = self.table()
+        for name in ("electrodes.tsv", "electrodes.elc", "electrodes.sfp", "electrodes-dig.fif"):
+            with self.subTest(name):
+                frame = () if name.endswith((".tsv", ".fif")) else ("--electrodes-in", "ras")
+                self.bem(*self.labels(), "--electrodes", f"model/{name}", *frame, "-o", "again",
+                         "--force")
+                again = self.table("again")
+                for a, b in zip(expected.values(), again.values()):
+                    self.assertLess(math.dist(a, b), 0.01)  # on the skin already
+                origin = self.report("again")["landmarks"]
+                self.assertEqual(origin["origin"], "file")
+                self.assertLess(math.dist(origin["nasionMm"], (0, -SKIN, 0)), 0.01)  # LPS
+
+    def test_a_frame_of_its_own_follows_from_landmarks(self):
+        # CTF: x to the nose, y to the left; cm; no unit is said
+        lines = [f"FidNz {SKIN / 10} 0 0", f"FidT9 0 {SKIN / 10} 0", f"FidT10 0 -{SKIN / 10} 0"]
+        for name, (x, y, z) in directions().items():
+            lines.append(f"{name} {8 * y} {-8 * x} {8 * z}")
+        self.path("cap.sfp").write_text("\n".join(lines) + "\n")
+        done = self.bem(*self.labels(), "--electrodes", "cap.sfp", *LANDMARKS, "-o", "model")
+        self.assert_on_skin(self.table())
+        self.assertIn("cap.sfp does not say its unit; taken for cm", done.stderr)
+
+    def test_positions_of_the_systems(self):
+        for system, count in (("10-20", 21), ("10-10", 73), ("10-05", 277)):
+            self.bem(*self.labels(), "--montage", system, *LANDMARKS, "-o", "model", "--force")
+            table = self.table()
+            self.assertEqual(len(table), count)
+            self.assertLess(math.dist(table["Cz"], (0, 0, SKIN)), NEAR)
+            s, c = math.sin(math.radians(36)), math.cos(math.radians(36))
+            self.assertLess(math.dist(table["C3"], (-SKIN * s, 0, SKIN * c)), 2 * NEAR)
+            self.assertLess(math.dist(table["Fz"], (0, SKIN * s, SKIN * c)), 2 * NEAR)
+        self.assertTrue(self.report()["electrodes"]["computed"])
+
+    def test_guesses_are_told(self):
+        arguments = self.labels()
+        # a ball has no nose, and its ears are above the image's end: nothing is guessed
+        done = self.run_bem(*arguments, "--montage", "10-20", "-o", "model")
+        if done.returncode == 0:
+            self.assertRegex(done.stderr, r"guessed by the shape of the head: nasion to \d+ mm")
+            self.assertGreaterEqual(self.report()["landmarks"]["earUncertaintyMm"], 10)
+        else:
+            self.assertEqual(done.returncode, BAD_INPUT)
+            self.assertIn("positions need nasion and ears", done.stderr)
+
+    def test_brainstorms_coordinates(self):
+        self.bem(*self.labels(), "--brainstorm", "--besa", *LANDMARKS, "-o", "model")
+        self.assertIn("| Brainstorm | SCS; metres |", (self.path("model") / "README.md").read_text())
+        first = (self.path("model") / "head.sfp").read_text().splitlines()[:4]
+        self.assertEqual([line.split("\t")[0] for line in first], ["FidNz", "FidT9", "FidT10", "S1"])
+
+    def test_a_page_shows_them(self):
+        self.bem(*self.labels(), "--montage", "10-20", *LANDMARKS, "--dry-run", "--report", "page.html")
+        page = self.path("page.html").read_text()
+        self.assertIn("Electrodes and landmarks", page)
+        self.assertIn("T7", page)
+
+    def test_refusals(self):
+        labels = self.labels()
+        self.write_bids(scale=2)
+        self.fails(BAD_INPUT, r"--electrodes sub-1_electrodes.tsv: the electrode \w+ lies \d+ mm from the "
+                   r"skin, must be at most 60", *labels, "--electrodes", "sub-1_electrodes.tsv", "-o", "m")
+        self.path("bad.elc").write_text("Positions\n1 2 3\nLabels\n")
+        self.fails(BAD_INPUT, r"bad.elc: it has 1 positions and 0 labels", *labels, "--electrodes",
+                   "bad.elc", "-o", "m")
+        self.path("cap.xyz").write_text("1 2 3 Cz\n")
+        self.fails(BAD_INPUT, r"cap.xyz: electrodes are not read from '.xyz' files", *labels,
+                   "--electrodes", "cap.xyz", "-o", "m")
+        self.fails(USAGE, r"--nasion, --left-ear and --right-ear need each other", *labels, "--nasion",
+                   "0,1,2", "-o", "m")
+        self.fails(USAGE, r"--electrodes and --montage exclude", *labels, "--electrodes", "bad.elc",
+                   "--montage", "10-20", "-o", "m")
+        self.fails(USAGE, r"need a skin: not with --meg", *labels, "--meg", "--montage", "10-20", "-o",
+                   "m")
+        self.fails(BAD_INPUT, r"--montage: a landmark lies \d+ mm from the skin", *labels, "--montage",
+                   "10-20", "--nasion", "0,200,0", "--left-ear=-72,0,0", "--right-ear", "72,0,0", "-o",
+                   "m")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,421 @@
+// simplify(): truth known on paper, then random meshes, whole and broken on purpose. Nothing here
+// shares code with what simplifies.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <random>
+#include <set>
+#include <string>
+
+#include "Support/AnalyticVolumes.h"
+#include "Support/Meshes.h"
+#include "Support/Soundness.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/Extraction/Simplify.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
+#include "adaptiso/MeshQuality/Topology.h"
+
+namespace adaptiso::testing {
+namespace {
+
+SimplifyOptions within(double maxErrorMm) {
+    SimplifyOptions options;
+    options.maxErrorMm = maxErrorMm;
+    return options;
+}
+SimplifyOptions downTo(std::int64_t triangles) {
+    SimplifyOptions options;
+    options.maxTriangles = triangles;
+    return options;
+}
+
+double largestDistanceMm(const TriangleMesh& a, const TriangleMesh& b) {
+    return surfaceDistance(a, b, {.samples = 20000}).combined.maxMm;
+}
+
+/// Samples never see more than the truth, and the bound is the truth at least.
+void expectBoundHolds(const TriangleMesh& input, const Simplified& result) {
+    constexpr double kRounding = 1e-9;
+    EXPECT_LE(largestDistanceMm(input, result.mesh),
+              result.statistics.errorBoundMm * (1 + kRounding) + kRounding);
+}
+
+std::int64_t genusOf(const TriangleMesh& mesh) {
+    const TopologyReport report = checkTopology(mesh);
+    return report.components.size() == 1 ? report.components[0].genus().value_or(-1) : -1;
+}
+
+std::set<std::array<double, 3>> placesOf(const TriangleMesh& mesh) {
+    std::set<std::array<double, 3>> places;
+    for (const Vec3& p : mesh.points) places.insert({p.x, p.y, p.z});
+    return places;
+}
+
+/// The points on open borders.
+std::set<std::array<double, 3>> borderOf(const TriangleMesh& mesh) {
+    std::map<std::pair<VertexId, VertexId>, int> count;
+    for (const Triangle& t : mesh.triangles) {
+        for (int c = 0; c < 3; ++c) {
+            const auto [a, b] = std::minmax(t[c], t[(c + 1) % 3]);
+            ++count[{a, b}];
+        }
+    }
+    std::set<std::array<double, 3>> places;
+    for (const auto& [edge, triangles] : count) {
+        if (triangles != 1) continue;
+        for (const VertexId v : {edge.first, edge.second}) {
+            places.insert({mesh.points[v].x, mesh.points[v].y, mesh.points[v].z});
+        }
+    }
+    return places;
+}
+
+/// The upper half of a sphere, a disc with one border, at a height through vertices or not.
+TriangleMesh cap(int subdivisions, double radiusMm, double heightMm = 0.01) {
+    TriangleMesh mesh = icosphere(subdivisions, {}, radiusMm);
+    std::erase_if(mesh.triangles, [&](const Triangle& t) {
+        return std::any_of(t.begin(), t.end(),
+                           [&](VertexId v) { return mesh.points[v].z < heightMm; });
+    });
+    return mesh;
+}
+
+std::set<std::array<std::array<double, 3>, 3>> trianglesOf(
+    const TriangleMesh& mesh, const std::vector<std::int64_t>& numbers) {
+    std::set<std::array<std::array<double, 3>, 3>> places;
+    for (const std::int64_t t : numbers) {
+        std::array<std::array<double, 3>, 3> corners{};
+        for (int c = 0; c < 3; ++c) {
+            const Vec3& p = mesh.points[mesh.triangles[t][c]];
+            corners[c] = {p.x, p.y, p.z};
+        }
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()),
+                    corners.end());
+        places.insert(corners);
+    }
+    return places;
+}
+
+/// The corners of all triangles that cross others.
+std::set<std::array<std::array<double, 3>, 3>> crossingOf(const TriangleMesh& mesh) {
+    SelfIntersectionOptions options;
+    options.maxPairs = 1'000'000;
+    std::vector<std::int64_t> numbers;
+    for (const TrianglePair& pair : findSelfIntersections(mesh, options).pairs) {
+        numbers.insert(numbers.end(), pair.begin(), pair.end());
+    }
+    return trianglesOf(mesh, numbers);
+}
+
+}  // namespace
+
+TEST(Simplify, KeepsASphereWithinTheBoundSoundAndWhole) {
+    const TriangleMesh sphere = icosphere(5, {3, -2, 50}, 20);
+    const Simplified result = simplify(sphere, within(0.2));
+    expectSound(result.mesh);
+    expectBoundHolds(sphere, result);
+    EXPECT_LE(result.statistics.errorBoundMm, 0.2);
+    EXPECT_EQ(genusOf(result.mesh), 0);
+    // a sagitta of 0.2 mm allows edges of about 2 sqrt(2 r s) = 5.7 mm
+    EXPECT_LT(result.mesh.triangles.size(), 900U);
+    EXPECT_EQ(result.statistics.borderEdges, 0);
+    EXPECT_TRUE(result.statistics.crossingTriangles.empty());
+    EXPECT_TRUE(result.statistics.nonManifoldVertices.empty());
+}
+
+TEST(Simplify, MakesTheCountOfATorusWithItsGenus) {
+    TriangleMesh torus = torusMesh(160, 80, 30, 10);
+    torus.normals = {};
+    const Simplified result = simplify(torus, downTo(2000));
+    expectSound(result.mesh);
+    EXPECT_EQ(result.mesh.triangles.size(), 2000U);
+    EXPECT_EQ(result.statistics.wantedTriangles, 2000);
+    EXPECT_EQ(genusOf(result.mesh), 1);
+    expectBoundHolds(torus, result);
+    EXPECT_LT(result.statistics.errorBoundMm, 0.5);
+    EXPECT_TRUE(result.mesh.normals.empty());
+}
+
+TEST(Simplify, InterpolatesNormalsWhereThereAreSome) {
+    const Simplified result = simplify(icosphere(4, {}, 10), within(0.1));
+    ASSERT_EQ(result.mesh.normals.size(), result.mesh.points.size());
+    for (std::size_t v = 0; v < result.mesh.points.size(); ++v) {
+        EXPECT_GT(dot(toVec3(result.mesh.normals[v]), normalized(result.mesh.points[v])), 0.99);
+    }
+}
+
+TEST(Simplify, LeavesTwelveTrianglesOfACubeCutFine) {
+    // each face 20 x 20 squares: nothing but the edges bends
+    const auto volume = sampled<float>(box({}, {8, 8, 8}), centredGeometry({24, 24, 24}));
+    ExtractionOptions options;
+    options.isovalue = volume.isovalue;
+    options.method = Method::MarchingCubes;
+    TriangleMesh cube = extractSurface(volume.volume.view(), options).mesh;
+    const Simplified result = simplify(cube, within(0.05));
+    expectSound(result.mesh);
+    expectBoundHolds(cube, result);
+    EXPECT_LT(result.mesh.triangles.size(), cube.triangles.size() / 20);
+}
+
+TEST(Simplify, ThinsOpenBordersWithinTheBound) {
+    // half a torus: a tube with a circle of 80 edges at either end
+    TriangleMesh tube = torusMesh(160, 80, 30, 10);
+    std::erase_if(tube.triangles, [&](const Triangle& t) {
+        return std::any_of(t.begin(), t.end(),
+                           [&](VertexId v) { return tube.points[v].y < -1e-9; });
+    });
+    const Simplified result = simplify(tube, within(0.2));
+    expectBoundHolds(tube, result);
+    const TopologyReport report = checkTopology(result.mesh);
+    EXPECT_TRUE(report.isManifold());
+    EXPECT_TRUE(report.isOriented());
+    ASSERT_EQ(report.components.size(), 1U);
+    EXPECT_EQ(report.components[0].eulerCharacteristic(), 0);
+    EXPECT_EQ(result.statistics.borderEdges, 160);
+    // a sagitta of 0.2 mm at a radius of 10 mm allows 16 edges to a circle
+    EXPECT_LT(report.components[0].boundaryEdges, 56);
+    EXPECT_LT(result.mesh.triangles.size(), tube.triangles.size() / 10);
+    const auto before = borderOf(tube), after = borderOf(result.mesh);
+    EXPECT_TRUE(std::includes(before.begin(), before.end(), after.begin(), after.end()));
+    EXPECT_TRUE(crossingOf(result.mesh).empty());
+}
+
+TEST(Simplify, ThinsAFlatSquareToAFewTriangles) {
+    TriangleMesh square = planeMesh(40, 40);
+    square.normals = {};
+    const Simplified result = simplify(square, within(0.01));
+    EXPECT_LE(result.mesh.triangles.size(), 8U);
+    expectBoundHolds(square, result);
+    for (const auto& corner : {std::array{0., 0., 0.}, std::array{40., 0., 0.},
+                               std::array{0., 40., 0.}, std::array{40., 40., 0.}}) {
+        EXPECT_TRUE(placesOf(result.mesh).contains(corner));
+    }
+}
+
+TEST(Simplify, KeepsBordersToTheBitWhenAskedTo) {
+    TriangleMesh disc = cap(5, 20);
+    for (Vec3& p : disc.points) p = p + Vec3{1234.56789, -77.7, 0.1};
+    SimplifyOptions options = within(0.2);
+    options.keepBorders = true;
+    const Simplified result = simplify(disc, options);
+    EXPECT_EQ(borderOf(result.mesh), borderOf(disc));
+    EXPECT_LT(result.mesh.triangles.size(), disc.triangles.size() / 4);
+}
+
+TEST(Simplify, KeepsWhatIsNoManifoldAndSaysWhere) {
+    const TriangleMesh touching = twoSpheresTouchingAtAVertex();
+    const Simplified atVertex = simplify(touching, within(0.01));
+    EXPECT_EQ(atVertex.statistics.nonManifoldVertices.size(), 1U);
+    EXPECT_EQ(checkTopology(atVertex.mesh).count(TopologyDefect::NonManifoldVertex), 1);
+
+    const TriangleMesh fin = threeTrianglesOnAnEdge();
+    const Simplified atEdge = simplify(fin, within(0.5));
+    EXPECT_EQ(atEdge.statistics.nonManifoldVertices.size(), 2U);
+    EXPECT_EQ(checkTopology(atEdge.mesh).count(TopologyDefect::NonManifoldEdge), 1);
+
+    const Simplified turned = simplify(withFlippedTriangle(icosphere(4, {}, 10)), within(0.1));
+    EXPECT_EQ(turned.statistics.nonManifoldVertices.size(), 3U);
+    EXPECT_EQ(checkTopology(turned.mesh).count(TopologyDefect::InconsistentEdge), 3);
+    EXPECT_LT(turned.mesh.triangles.size(), 2000U);
+}
+
+TEST(Simplify, KeepsTrianglesThatCrossAndMakesNoOthersCross) {
+    TriangleMesh spheres = crossingSpheres(5);
+    spheres.normals = {};
+    const auto before = crossingOf(spheres);
+    ASSERT_FALSE(before.empty());
+    const Simplified result = simplify(spheres, within(0.01));
+    EXPECT_EQ(trianglesOf(spheres, result.statistics.crossingTriangles), before);
+    const auto after = crossingOf(result.mesh);
+    EXPECT_EQ(after, before);
+    EXPECT_LT(result.mesh.triangles.size(), spheres.triangles.size() / 2);
+    expectBoundHolds(spheres, result);
+}
+
+TEST(Simplify, DropsTrianglesWithoutAreaAndDoubledOnes) {
+    const TriangleMesh sphere = icosphere(4, {}, 10);
+    const Simplified doubled = simplify(withDuplicateTriangle(sphere), within(0.1));
+    EXPECT_EQ(doubled.statistics.duplicateTriangles, 1);
+    expectSound(doubled.mesh);
+    const Simplified flat = simplify(withZeroAreaTriangle(sphere), within(0.1));
+    EXPECT_EQ(flat.statistics.degenerateTriangles, 1);
+    expectSound(flat.mesh);
+    const Simplified repeated = simplify(withRepeatedIndex(sphere), within(0.1));
+    EXPECT_EQ(repeated.statistics.degenerateTriangles, 1);
+    expectSound(repeated.mesh);
+    expectSound(simplify(withUnusedVertex(sphere), within(0.1)).mesh);
+}
+
+TEST(Simplify, RefusesWhatIsNoMesh) {
+    const TriangleMesh sphere = icosphere(2);
+    EXPECT_THROW(simplify(withNanCoordinate(sphere), within(0.1)), InvalidInput);
+    EXPECT_THROW(simplify(withIndexOutOfRange(sphere), within(0.1)), InvalidInput);
+    EXPECT_THROW(simplify({}, within(0.1)), InvalidInput);
+    TriangleMesh line;
+    line.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    line.triangles = {{0, 1, 2}};
+    EXPECT_THROW(simplify(line, within(0.1)), InvalidInput);
+    EXPECT_THROW(simplify(sphere, {}), InvalidInput);
+    EXPECT_THROW(simplify(sphere, within(0)), InvalidInput);
+    EXPECT_THROW(simplify(sphere, within(std::numeric_limits<double>::quiet_NaN())), InvalidInput);
+    EXPECT_THROW(simplify(sphere, downTo(-1)), InvalidInput);
+}
+
+TEST(Simplify, DoesNotDependOnTheUnit) {
+    const TriangleMesh inMm = torusMesh(80, 40, 30, 10);
+    const Simplified expected = simplify(inMm, within(0.25));
+    for (const int power : {-30, 30}) {  // about a billionth, and a billion
+        TriangleMesh scaled = inMm;
+        for (Vec3& p : scaled.points) p = std::ldexp(1.0, power) * p;
+        const Simplified result = simplify(scaled, within(std::ldexp(0.25, power)));
+        EXPECT_EQ(result.mesh.triangles, expected.mesh.triangles);
+        EXPECT_EQ(result.statistics.errorBoundMm,
+                  std::ldexp(expected.statistics.errorBoundMm, power));
+    }
+}
+
+TEST(Simplify, WorksFarFromTheOrigin) {
+    const TriangleMesh sphere = icosphere(5, {1e6, -2e6, 3e6}, 20);
+    const Simplified result = simplify(sphere, within(0.2));
+    expectSound(result.mesh);
+    expectBoundHolds(sphere, result);
+    EXPECT_LT(result.mesh.triangles.size(), 900U);
+}
+
+TEST(Simplify, WorksOnPartsThatLieFarApart) {
+    const TriangleMesh parts = merged({icosphere(4, {}, 1), icosphere(4, {1e5, 2e5, -1e5}, 1),
+                                       icosphere(2, {-3e5, 0, 0}, 0.001)});
+    const Simplified result = simplify(parts, within(0.02));
+    expectSound(result.mesh);
+    EXPECT_EQ(checkTopology(result.mesh).components.size(), 3U);
+    EXPECT_LT(result.mesh.triangles.size(), parts.triangles.size() / 4);
+}
+
+TEST(Simplify, TakesTrianglesOfManySizes) {
+    // a coarse box around a fine sphere: a few triangles reach across all cubes
+    TriangleMesh parts =
+        merged({icosphere(5, {}, 10), cubeMesh({-400, -300, -500}, {400, 300, 500})});
+    const Simplified result = simplify(parts, within(0.1));
+    expectSound(result.mesh);
+    EXPECT_EQ(checkTopology(result.mesh).components.size(), 2U);
+    expectBoundHolds(parts, result);
+}
+
+TEST(Simplify, GivesTheSameBytesForAnyNumberOfThreads) {
+    const TriangleMesh torus = torusMesh(120, 60, 30, 10);
+    const Simplified expected = simplify(torus, within(0.1));
+    for (const std::size_t threads : {1U, 3U}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        EXPECT_EQ(simplify(torus, within(0.1)).mesh, expected.mesh);
+    }
+}
+
+TEST(Simplify, GivesAMeshBackThatHasNothingToDrop) {
+    TriangleMesh cube = cubeMesh({5, 5, 5}, {6, 7, 8});
+    const Simplified result = simplify(cube, downTo(1'000'000));
+    EXPECT_EQ(result.mesh.triangles.size(), 12U);
+    EXPECT_EQ(placesOf(result.mesh), placesOf(cube));
+}
+
+namespace {
+
+/// A random surface, at times broken on purpose: opened, with vertices pushed about so that it
+/// crosses itself, with vertices joined so that it is no manifold.
+TriangleMesh randomMesh(std::mt19937& random) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const auto below = [&](int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); };
+    std::vector<TriangleMesh> parts;
+    for (int n = 0; n <= below(3); ++n) {
+        TriangleMesh part =
+            below(2) == 0 ? icosphere(1 + below(3), {}, 4 + below(6))
+                          : torusMesh(6 + below(30), 4 + below(20), 6 + below(4), 1 + below(4));
+        const Vec3 by{8 * uniform(random), 8 * uniform(random), 8 * uniform(random)};
+        parts.push_back(translated(std::move(part), by));
+    }
+    TriangleMesh mesh = merged(parts);
+    mesh.normals = {};
+    const double jitter = below(2) == 0 ? 0 : 0.5 * std::abs(uniform(random));
+    for (Vec3& p : mesh.points) {
+        p = p + jitter * Vec3{uniform(random), uniform(random), uniform(random)};
+    }
+    if (below(2) == 0) {
+        std::erase_if(mesh.triangles, [&](const Triangle&) { return below(20) == 0; });
+    }
+    if (below(4) == 0) {
+        const auto other = static_cast<VertexId>(below(static_cast<int>(mesh.points.size())));
+        for (Triangle& t : mesh.triangles) {
+            for (VertexId& v : t) v = v == mesh.triangles[0][0] ? other : v;
+        }
+    }
+    return mesh;
+}
+
+}  // namespace
+
+TEST(Simplify, KeepsItsPromisesOnRandomMeshes) {
+    const char* more = std::getenv("ADAPTISO_RANDOM_MESHES");
+    const unsigned seeds = more == nullptr ? 150 : static_cast<unsigned>(std::stoul(more));
+    for (unsigned seed = 0; seed < seeds; ++seed) {
+        SCOPED_TRACE(seed);
+        std::mt19937 random(seed);
+        const TriangleMesh mesh = randomMesh(random);
+        const bool isToCount = seed % 3 == 0;
+        const Simplified result =
+            simplify(mesh, isToCount ? downTo(std::ssize(mesh.triangles) / 5) : within(0.3));
+        expectBoundHolds(mesh, result);
+        EXPECT_LE(result.statistics.errorBoundMm, isToCount ? 1e9 : 0.3);
+        const auto before = crossingOf(mesh), after = crossingOf(result.mesh);
+        EXPECT_TRUE(std::includes(before.begin(), before.end(), after.begin(), after.end()));
+        const TopologyReport was = checkTopology(mesh), is = checkTopology(result.mesh);
+        const auto isKept = [&](TopologyDefect defect) {
+            EXPECT_EQ(is.count(defect), was.count(defect)) << toString(defect);
+        };
+        if (was.count(TopologyDefect::DegenerateTriangle) == 0 &&
+            was.count(TopologyDefect::DuplicateTriangle) == 0) {
+            isKept(TopologyDefect::NonManifoldEdge);
+            isKept(TopologyDefect::InconsistentEdge);
+            isKept(TopologyDefect::NonManifoldVertex);
+            EXPECT_EQ(is.components.size(), was.components.size());
+            for (std::size_t n = 0; n < std::min(is.components.size(), was.components.size());
+                 ++n) {
+                EXPECT_EQ(is.components[n].isClosed(), was.components[n].isClosed());
+            }
+            EXPECT_EQ(
+                is.vertices - is.edges + is.triangles - is.count(TopologyDefect::UnusedVertex),
+                was.vertices - was.edges + was.triangles - was.count(TopologyDefect::UnusedVertex));
+        }
+        EXPECT_EQ(is.count(TopologyDefect::DegenerateTriangle), 0);
+        EXPECT_EQ(is.count(TopologyDefect::UnusedVertex), 0);
+        if (::testing::Test::HasFailure()) break;
+    }
+}
+
+TEST(NearestPoints, FindsVerticesAndMiddles) {
+    const TriangleMesh cube = cubeMesh();
+    TriangleMesh points;
+    points.points = {{0, 0, 0}, {0.5, 0.5, 1.5}, {0.25, 0.5, 0.5}};
+    const std::vector<SurfacePoint> found = nearestPoints(points, cube);
+    const std::vector<Vec3> expected{{0, 0, 0}, {0.5, 0.5, 1}, {0, 0.5, 0.5}};
+    for (std::size_t n = 0; n < found.size(); ++n) {
+        const Triangle& t = cube.triangles[found[n].triangle];
+        Vec3 p;
+        double sum = 0;
+        for (int c = 0; c < 3; ++c) {
+            p += found[n].weight[c] * cube.points[t[c]];
+            sum += found[n].weight[c];
+            EXPECT_GE(found[n].weight[c], 0);
+        }
+        EXPECT_NEAR(norm(p - expected[n]), 0, 1e-12);
+        EXPECT_NEAR(sum, 1, 1e-12);
+    }
+}
+
+}  // namespace adaptiso::testing

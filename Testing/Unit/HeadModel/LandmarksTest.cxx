@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include "Support/Meshes.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/HeadModel/Landmarks.h"
+
+namespace adaptiso {
+namespace {
+
+using testing::icosphere;
+
+constexpr Vec3 kCentre{3, -2, 5};
+constexpr double kRadiusMm = 92;
+
+/// Of a sphere, nasion and ears on its equator: everything is known on paper.
+Landmarks onEquator() {
+    Landmarks landmarks;
+    landmarks.nasionMm = kCentre + Vec3{0, -kRadiusMm, 0};
+    landmarks.leftEarMm = kCentre + Vec3{kRadiusMm, 0, 0};
+    landmarks.rightEarMm = kCentre + Vec3{-kRadiusMm, 0, 0};
+    return landmarks;
+}
+
+std::map<std::string, Vec3> positionsOn(const TriangleMesh& skin, PositionSystem system) {
+    std::map<std::string, Vec3> positions;
+    for (const NamedPoint& point : standardPositions(skin, onEquator(), system)) {
+        positions[point.name] = point.point - kCentre;
+    }
+    return positions;
+}
+
+/// The direction at an angle from the vertex (degrees), towards an azimuth from the nasion to the
+/// left.
+Vec3 direction(double fromTop, double azimuth) {
+    const double t = fromTop * std::numbers::pi / 180, a = azimuth * std::numbers::pi / 180;
+    return {std::sin(t) * std::sin(a), -std::sin(t) * std::cos(a), std::cos(t)};
+}
+
+TEST(StandardPositions, OfASphereAreWhereAnglesSay) {
+    const TriangleMesh skin = icosphere(5, kCentre, kRadiusMm);
+    const auto positions = positionsOn(skin, PositionSystem::TenTen);
+    // arcs of 180 degrees: ten percent are 18 degrees; the ring through Fpz, T7, Oz lies 72 degrees
+    // from the vertex, on which ten percent of a half are 18 degrees of azimuth
+    const std::map<std::string, Vec3> expected{
+        {"Cz", direction(0, 0)},    {"Fz", direction(36, 0)},    {"Fpz", direction(72, 0)},
+        {"Pz", direction(36, 180)}, {"Oz", direction(72, 180)},  {"C3", direction(36, 90)},
+        {"T7", direction(72, 90)},  {"T8", direction(72, -90)},  {"Fp1", direction(72, 18)},
+        {"F7", direction(72, 54)},  {"F8", direction(72, -54)},  {"O2", direction(72, -162)},
+        {"T9", direction(90, 90)},  {"F10", direction(90, -54)}, {"Iz", direction(90, 180)}};
+    for (const auto& [name, at] : expected) {
+        ASSERT_TRUE(positions.contains(name)) << name;
+        // chords of 3 mm lie 0.01 mm inside of the sphere
+        EXPECT_LE(norm(positions.at(name) - kRadiusMm * at), 0.2) << name;
+    }
+    // F3 lies on the arc F7 - Fz - F8, half way
+    const Vec3 half = positions.at("F3");
+    EXPECT_NEAR(norm(half - positions.at("F7")), norm(half - positions.at("Fz")), 0.3);
+}
+
+TEST(StandardPositions, AreAsManyAsTheSystemsHaveAndNamedOnce) {
+    const TriangleMesh skin = icosphere(4, kCentre, kRadiusMm);
+    const std::map<PositionSystem, std::size_t> counts{{PositionSystem::TenTwenty, 21},
+                                                       {PositionSystem::TenTen, 73},
+                                                       {PositionSystem::TenFive, 277}};
+    for (const auto& [system, count] : counts) {
+        EXPECT_EQ(standardPositions(skin, onEquator(), system).size(), count);
+        EXPECT_EQ(positionsOn(skin, system).size(), count);
+    }
+}
+
+TEST(StandardPositions, AreMirroredWhereTheHeadIs) {
+    const auto positions = positionsOn(icosphere(5, kCentre, kRadiusMm), PositionSystem::TenFive);
+    for (const auto& [left, right] : {std::pair{"F5h", "F6h"}, std::pair{"CCP3", "CCP4"},
+                                      std::pair{"FTT7h", "FTT8h"}, std::pair{"O1h", "O2h"}}) {
+        const Vec3 a = positions.at(left), b = positions.at(right);
+        EXPECT_LE(norm(a - Vec3{-b.x, b.y, b.z}), 0.2) << left;
+    }
+}
+
+TEST(StandardPositions, RefuseLandmarksOfAnotherHead) {
+    const TriangleMesh skin = icosphere(3, kCentre + Vec3{0, 0, 120}, kRadiusMm);
+    EXPECT_THROW(standardPositions(skin, onEquator(), PositionSystem::TenTwenty), InvalidInput);
+}
+
+TEST(Landmarks, TakeOneHeadToAnother) {
+    const Landmarks from = onEquator();
+    Landmarks to;
+    const AffineTransform turn{{{{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}}}, {10, 20, 30}};
+    to.nasionMm = turn(from.nasionMm);
+    to.leftEarMm = turn(from.leftEarMm);
+    to.rightEarMm = turn(from.rightEarMm);
+    const AffineTransform found = byLandmarks(from, to);
+    for (const Vec3& p : {Vec3{1, 2, 3}, Vec3{-40, 5, 60}}) {
+        EXPECT_LE(norm(found(p) - turn(p)), 1e-9);
+    }
+    Landmarks flat = from;
+    flat.nasionMm = kCentre;
+    EXPECT_THROW(byLandmarks(flat, to), InvalidInput);
+}
+
+TEST(Landmarks, GiveBrainstormsAxes) {
+    const AffineTransform scs = toBrainstorm(onEquator());
+    EXPECT_LE(norm(scs(onEquator().nasionMm) - Vec3{kRadiusMm, 0, 0}), 1e-9);
+    EXPECT_LE(norm(scs(onEquator().leftEarMm) - Vec3{0, kRadiusMm, 0}), 1e-9);
+    EXPECT_LE(norm(scs(kCentre + Vec3{0, 0, 10}) - Vec3{0, 0, 10}), 1e-9);
+}
+
+TEST(OntoSkin, TellsTheFarthestMoved) {
+    const TriangleMesh skin = icosphere(5, {}, 90);
+    const OntoSkin onto = projectedOntoSkin({{0, 0, 95}, {0, -80, 0}, {90, 0, 0}}, skin);
+    EXPECT_EQ(onto.farthest, 1u);
+    EXPECT_NEAR(onto.farthestMm, 10, 0.1);  // chords
+    EXPECT_NEAR(onto.meanMm, 5, 0.1);
+    EXPECT_LE(norm(onto.pointsMm[0] - Vec3{0, 0, 90}), 0.1);
+}
+
+TEST(GuessedLandmarks, OfASphereAreToldToBeByProportion) {
+    const TriangleMesh inner = icosphere(4, kCentre, 75), skin = icosphere(5, kCentre, 110);
+    const GuessedLandmarks guess = guessLandmarks(inner, skin);
+    ASSERT_TRUE(guess.landmarks);
+    EXPECT_GE(guess.landmarks->nasionUncertaintyMm, 10);  // no nose
+    EXPECT_GE(guess.landmarks->earUncertaintyMm, 10);
+    EXPECT_GT(guess.landmarks->leftEarMm.x, kCentre.x);  // LPS
+    EXPECT_LT(guess.landmarks->nasionMm.y, kCentre.y);
+    // nothing below the vault
+    const TriangleMesh shallow = icosphere(5, kCentre + Vec3{0, 0, 60}, 70);
+    EXPECT_FALSE(guessLandmarks(inner, shallow).landmarks);
+    EXPECT_FALSE(guessLandmarks(inner, shallow).reason.empty());
+}
+
+}  // namespace
+}  // namespace adaptiso

@@ -1,0 +1,60 @@
+#include "Simplify.h"
+
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "Calls.h"
+#include "MeshData.h"
+#include "adaptiso/Extraction/Simplify.h"
+
+namespace adaptiso::python {
+namespace {
+
+py::dict toDict(const SimplifyStatistics& statistics) {
+    py::dict found;
+    found["degenerate_triangles"] = statistics.degenerateTriangles;
+    found["duplicate_triangles"] = statistics.duplicateTriangles;
+    found["border_edges"] = statistics.borderEdges;
+    found["non_manifold_vertices"] = statistics.nonManifoldVertices;
+    found["crossing_triangles"] = statistics.crossingTriangles;
+    found["wanted_triangles"] = statistics.wantedTriangles;
+    return found;
+}
+
+py::tuple simplifyMesh(const MeshData& data, SimplifyOptions options, int threads,
+                       py::object progress) {
+    Watcher watcher(std::move(progress));
+    options.progress = watcher.callback();
+    Simplified result;
+    watcher.run(threads, [&] { result = simplify(data.mesh(), options); });
+    auto made =
+        std::make_shared<MeshData>(MeshData::asStored(std::move(result.mesh), data.frame()));
+    if (data.image()) made->setImage(*data.image());
+    made->setErrorBoundMm(result.statistics.errorBoundMm);
+    return py::make_tuple(std::move(made), toDict(result.statistics));
+}
+
+}  // namespace
+
+void declareSimplify(py::module_& module) {
+    module.def(
+        "simplify_mesh",
+        [](const MeshData& mesh, std::optional<double> maxError,
+           std::optional<std::int64_t> triangles, std::optional<double> reduction, double minAngle,
+           bool keepBorders, int threads, py::object progress) {
+            SimplifyOptions options;
+            options.maxErrorMm = maxError;
+            options.maxTriangles = triangles;
+            options.reduction = reduction;
+            options.minAngleDeg = minAngle;
+            options.keepBorders = keepBorders;
+            return simplifyMesh(mesh, std::move(options), threads, std::move(progress));
+        },
+        py::arg("mesh"), py::arg("max_error"), py::arg("triangles"), py::arg("reduction"),
+        py::arg("min_angle"), py::arg("keep_borders"), py::arg("threads"), py::arg("progress"));
+}
+
+}  // namespace adaptiso::python
