@@ -40,6 +40,19 @@ void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& 
     addCount(app, "--volume-index", options.volumeIndex, 0, kAnyCount,
              "Which volume of a 4-D image (time points, echoes), counted from 0")
         ->group(group);
+    addCount(app, "--level", options.level, 0, kAnyCount,
+             "Which resolution of an OME-Zarr, 0 the finest (default)")
+        ->group(group);
+    addCount(app, "--channel", options.channel, 0, kAnyCount,
+             "Which channel of an OME-Zarr with several, counted from 0")
+        ->group(group);
+    addCount(app, "--time", options.timePoint, 0, kAnyCount,
+             "Which time point of an OME-Zarr with several, counted from 0")
+        ->group(group);
+    app.add_flag("--refuse-missing-chunks", options.refusesMissingChunks,
+                 "Refuse a Zarr in which chunks are missing; else the fill value stands for them, "
+                 "with a warning")
+        ->group(group);
     app.add_flag("--resample-slices", options.resampleSlices,
                  "Blend unevenly spaced DICOM slices linearly onto even steps, in place of "
                  "refusing them")
@@ -52,6 +65,13 @@ ReadVolume readImage(const std::filesystem::path& file, const ReadOptions& optio
         if (options.series && read.format != "DICOM") {
             throw InvalidInput("--series " + *options.series + ": " + file.string() + " is " +
                                read.format + ", which has no series; leave --series out");
+        }
+        const bool asksForZarr =
+            options.level || options.channel || options.timePoint || options.refusesMissingChunks;
+        if (asksForZarr && read.format.find("Zarr") == std::string::npos) {
+            throw InvalidInput(
+                "--level, --channel, --time, --refuse-missing-chunks: " + file.string() + " is " +
+                read.format + ", and these are for Zarr; leave them out");
         }
         return read;
     } catch (const FileError&) {
@@ -66,7 +86,8 @@ CLI::Option* declareVolume(CLI::App& app, std::filesystem::path& volume, ReadOpt
     CLI::Option* const option =
         app.add_option("--volume", volume, description)->type_name("IMG")->group(group);
     declareReadOptions(app, options, group);
-    for (const char* const name : {"--series", "--volume-index", "--resample-slices"}) {
+    for (const char* const name : {"--series", "--volume-index", "--level", "--channel", "--time",
+                                   "--refuse-missing-chunks", "--resample-slices"}) {
         app.get_option(name)->needs(option);
     }
     return option;

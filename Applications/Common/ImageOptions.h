@@ -17,7 +17,8 @@ struct ImageOptions {
     bool showsPhi = false;     ///< either tells what may identify the patient too
 };
 
-/// Adds --series, --volume-index and --resample-slices. Large images are mapped.
+/// Adds --series, --volume-index, --resample-slices, and those of Zarr (--level, --channel, --time,
+/// --refuse-missing-chunks). Large images are mapped.
 void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& group);
 
 /// Reads an image as readVolume() does. A surface given for it is told as one, and --series for

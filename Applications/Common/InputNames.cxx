@@ -27,7 +27,13 @@ std::string inputStem(const fs::path& input) {
     if (fs::is_directory(input, error)) {
         path = fs::canonical(input, error);  // the name that ".", ".." and "scan/" stand for
         if (error || path == path.root_path()) return "volume";
-        return path.filename().string();
+        const std::string name = path.filename().string(), lower = lowerCase(name);
+        for (const std::string_view extension : {".ome.zarr", ".zarr"}) {
+            if (lower.size() > extension.size() && lower.ends_with(extension)) {
+                return name.substr(0, name.size() - extension.size());
+            }
+        }
+        return name;
     }
     const std::string name = path.filename().string(), lower = lowerCase(name);
     for (const std::string_view extension : kImageExtensions) {

@@ -28,8 +28,10 @@ std::int64_t nanoseconds(const timespec& time) {
     return std::int64_t{time.tv_sec} * kPerSecond + time.tv_nsec;
 }
 
+/// Of nobody's business: what Zarr keeps its metadata in is no such file.
 bool isHidden(const fs::path& path) {
-    return path.filename().native().starts_with('.');
+    const std::string& name = path.filename().native();
+    return name.starts_with('.') && name != ".zarray" && name != ".zattrs" && name != ".zgroup";
 }
 
 /// The regular files of a folder, by name. \param isDeep  those of its folders too

@@ -60,6 +60,9 @@ Product newProduct(const BidsOptions& options, const std::string& name, const Si
 
 void addOptions(Product& product, std::vector<std::string> options, const std::string& output,
                 const std::string& pictures) {
+    // by name, so that their order is no difference; several of one name stay in theirs
+    const auto name = [](const std::string& option) { return option.substr(0, option.find('=')); };
+    std::ranges::stable_sort(options, {}, name);
     std::vector<std::string>& all = product.batch.runOptions;
     std::move(options.begin(), options.end(), std::back_inserter(all));
     all.push_back(std::string(kOutputOption) + "=" + output);

@@ -189,6 +189,11 @@ class MadeAgain(BidsTest):
         os.utime(self.surface)
         self.assertEqual(self.again("--threads", 1, "--jobs", 2), {"sub-01": False, "sub-02": False})
 
+    def test_the_order_of_options_is_no_change(self):
+        for what in ("largest,iso=100.5", "iso=100.50,largest"):
+            self.assertEqual(self.again(what=("--surfaces", what, "--no-pictures")),
+                             {"sub-01": False, "sub-02": False})
+
     def test_other_options_replace_what_was_made_by_these(self):
         what = ("--surfaces", "iso=100.5", "--no-pictures")
         self.assertEqual(self.again(what=what)["sub-01"], "other options were given")

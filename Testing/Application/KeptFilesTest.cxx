@@ -69,6 +69,16 @@ TEST_F(KeptFilesTest, SurvivesJson) {
     EXPECT_THROW(keptFileOf(Json::array()), Json::exception);
 }
 
+TEST_F(KeptFilesTest, AFolderOfZarrIsItsHiddenMetadataToo) {
+    put("scan.zarr/.zarray", "{}");
+    put("scan.zarr/0.0.0", "chunk");
+    const fs::path scan = folder_ / "scan.zarr";
+    const KeptFile kept = keptInput(scan, {});
+    EXPECT_EQ(kept.files, 2u);
+    put("scan.zarr/.zarray", "[]");  // of another shape, say
+    EXPECT_EQ(changeOf(kept, keptInput(scan, {})), FileChange::Changed);
+}
+
 TEST_F(KeptFilesTest, AFolderIsAllThatIsSeenInIt) {
     put("scan/1", "one");
     put("scan/sub/2", "two");

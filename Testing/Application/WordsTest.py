@@ -76,6 +76,8 @@ WRONG = [
     (USAGE, "--report: its value is empty", BEM, ("--t1", "ball.nii", "-o", "m", "--report=")),
     # isovalues
     (USAGE, "--iso abc: must be a finite number, or auto", MESH, ("ball.nii", "--iso", "abc")),
+    (USAGE, "--level -1: must be", MESH, (*BALL, "--level", "-1")),
+    (BAD_INPUT, "--level, .*ball.nii is NIfTI-1, and these are for Zarr", MESH, (*BALL, "--level", "1")),
     (USAGE, "--iso nan: must be a finite number", MESH, ("ball.nii", "--iso", "nan")),
     (USAGE, "--iso inf: must be a finite number", MESH, ("ball.nii", "--iso", "inf")),
     (USAGE, "--iso -inf: must be a finite number", MESH, ("ball.nii", "--iso=-inf")),

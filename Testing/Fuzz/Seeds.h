@@ -23,6 +23,7 @@ private:
 void addImageSeeds(Seeds& seeds);
 void addDicomSeeds(Seeds& seeds);
 void addMeshSeeds(Seeds& seeds);
+void addZarrSeeds(Seeds& seeds);
 void addFenceSeeds(Seeds& seeds);
 void addIndexSeeds(Seeds& seeds);
 void addOpenMeegSeeds(Seeds& seeds);

@@ -98,6 +98,7 @@ int main(int argc, char** argv) {
         adaptiso::fuzz::addImageSeeds(seeds);
         adaptiso::fuzz::addDicomSeeds(seeds);
         adaptiso::fuzz::addMeshSeeds(seeds);
+        adaptiso::fuzz::addZarrSeeds(seeds);
         adaptiso::fuzz::addFenceSeeds(seeds);
         adaptiso::fuzz::addIndexSeeds(seeds);
         adaptiso::fuzz::addOpenMeegSeeds(seeds);

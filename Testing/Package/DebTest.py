@@ -83,6 +83,9 @@ class Packages(ApplicationTest):
             self.assertEqual(wanted - files, set())
             page = gzip.decompress((self.prefix / f"usr/share/man/man1/{program}.1.gz").read_bytes())
             self.assertIn(program.upper().replace("-", "\\-"), page.decode())
+        cohort = self.prefix / "usr/share/doc/adaptiso/examples/cohort"
+        for script in ("submit.sh", "slurm/status.py"):
+            self.assertTrue(os.access(cohort / script, os.X_OK), script)
         for package in self.debs:
             self.assertIn(f"usr/share/doc/{package}/copyright", files)
             changes = gzip.decompress(

@@ -11,6 +11,7 @@
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "Readers.h"
+#include "ZarrScene.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso {
@@ -75,7 +76,11 @@ void warnOfOddSamples(ReadVolume& read) {
 
 ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
     std::error_code error;
-    if (fs::is_directory(input, error)) return detail::readDicomFolder(input, options);
+    if (fs::is_directory(input, error)) {
+        if (detail::isZarrFolder(input)) return detail::readZarr(input, options);
+        detail::refuseN5(input);
+        return detail::readDicomFolder(input, options);
+    }
     detail::requireRegularFile(input);
 
     const std::string head = detail::readHead(input, kHeadBytes);
@@ -99,7 +104,7 @@ ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
                        "decompress it, e.g. with gunzip");
     }
     detail::refuse(input, "not a format that is read here",
-                   "give NIfTI, NRRD, MetaImage, MGH, or DICOM");
+                   "give NIfTI, NRRD, MetaImage, MGH, DICOM, or a folder of Zarr");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ ReadVolume readNrrd(const std::filesystem::path& file, const ReadOptions& option
 ReadVolume readMetaImage(const std::filesystem::path& file, const ReadOptions& options);
 ReadVolume readMgh(const std::filesystem::path& file, const ReadOptions& options);
 ReadVolume readDicomFile(const std::filesystem::path& file, const ReadOptions& options);
+ReadVolume readZarr(const std::filesystem::path& folder, const ReadOptions& options);
 ReadVolume readDicomFolder(const std::filesystem::path& folder, const ReadOptions& options);
 
 /// What the first bytes of a file (inflated, at most 548) say.

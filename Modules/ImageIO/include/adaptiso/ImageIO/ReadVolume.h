@@ -19,6 +19,14 @@ struct ReadOptions {
     /// Which volume of a 4-D image to read, counted from 0. Unset: the image must hold one.
     std::optional<std::int64_t> volumeIndex{};
 
+    /// Which resolution of an OME-Zarr to read, 0 the finest (unset), and which of its channels and
+    /// time points, counted from 0. Unset: it must hold one.
+    std::optional<std::int64_t> level{}, channel{}, timePoint{};
+
+    /// A chunk of a Zarr that is not there (ENOENT) holds the fill value, by its specification, and
+    /// a warning tells how many there are. Set: they are refused.
+    bool refusesMissingChunks = false;
+
     /// DICOM slices that lie unevenly are blended linearly, each from its two neighbours, onto even
     /// steps of their usual distance; the samples become float. Unset: they are refused.
     bool resampleSlices = false;
@@ -39,7 +47,8 @@ struct ReadOptions {
 /// should know about the reading.
 struct ReadVolume {
     Volume volume;
-    std::string format;  ///< "NIfTI-1", "NIfTI-2", "NRRD", "MetaImage", "MGH", "DICOM"
+    std::string format;  ///< "NIfTI-1", "NIfTI-2", "NRRD", "MetaImage", "MGH", "DICOM", "Zarr 3",
+                         ///< "OME-Zarr 0.4"
     std::vector<std::string> warnings;  ///< one line each, without the file's name
 };
 
@@ -57,6 +66,12 @@ struct ReadVolume {
 ///   DICOM      slices, frames (each with its own position) and mosaic tiles sorted along the
 ///              normal; the step from slice to slice is kept as it is, so gantry tilt stays in the
 ///              geometry as shear, with a warning
+///   Zarr       a folder, version 2 or 3: one array (1 mm, with a warning) or an OME-Zarr of
+///   version
+///              0.4 or 0.5: scale and translation of the level, then of the image, units to mm; x,
+///              y and z taken for LPS, with a warning. Chunks raw or packed by gzip, zlib, zstd,
+///              blosc, lz4, with crc32c, in shards or not; all else is refused by name. Each is
+///              read once; beside the image, each thread holds one, packed and unpacked
 ///
 /// Samples keep their type. Scaled ones (NIfTI scl_slope, DICOM rescale, MetaImage
 /// ElementToIntensityFunction) become float32, or float64 where float32 could not hold the stored

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ZarrCodecs.h"
+#include "ZarrStore.h"
+#include "adaptiso/Core/Volume.h"
+
+namespace adaptiso::detail {
+
+/// An index, a size or a stride for each dimension of an array.
+using ZarrIndex = std::vector<std::uint64_t>;
+
+/// How the samples of a chunk become bytes.
+struct ZarrEncoding {
+    std::vector<std::size_t> order;  ///< dimensions of the array, the slowest first
+    std::endian byteOrder = std::endian::little;
+    std::vector<ZarrCodec> codecs{};
+};
+
+/// Chunks that are kept together in files of an index and inner chunks.
+struct ZarrSharding {
+    ZarrIndex shard;  ///< samples of a file
+    std::endian indexOrder = std::endian::little;
+    bool hasIndexSum = false;
+    bool isIndexAtEnd = true;
+};
+
+/// What the metadata of an array say, of version 2 (.zarray) or 3 (zarr.json).
+struct ZarrArray {
+    int version = 3;
+    std::string path;  ///< in the store; empty: the root
+    ZarrIndex shape, chunk;
+    PixelType type{};
+    std::array<std::byte, 8> fill{};  ///< a sample as it lies in memory
+    ZarrEncoding encoding;
+    std::optional<ZarrSharding> sharding{};
+    bool hasKeyPrefix = false;              ///< "c/0/0/0"
+    char separator = '/';                   ///< between the numbers of a chunk
+    std::vector<std::string> dimensions{};  ///< names; empty: none are given
+
+    std::size_t rank() const { return shape.size(); }
+    /// Samples of a chunk, of an inner one where there are shards.
+    std::uint64_t chunkSamples() const;
+    std::string key(const ZarrIndex& file) const;
+};
+
+/// Reads an array's metadata; none: there is no array at that path.
+/// \throws FileError  they are damaged, or ask for what is not read here, by name
+std::optional<ZarrArray> readZarrArray(const ZarrStore& store, const std::string& path);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,398 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <new>
+#include <optional>
+#include <utility>
+
+#include "FileFault.h"
+#include "Readers.h"
+#include "Samples.h"
+#include "ZarrArray.h"
+#include "ZarrScene.h"
+#include "ZarrStore.h"
+#include "adaptiso/Core/Parallel.h"
+
+// Zarr's specifications 2 and 3 with sharding, OME-NGFF 0.4 and 0.5.
+namespace adaptiso::detail {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Which dimensions of the array are x, y and z, and where the others are cut.
+struct Cut {
+    std::array<std::size_t, 3> space{};  ///< dimension of x, y, z
+    ZarrIndex fixed;                     ///< index in each other dimension
+
+    bool isSpace(std::size_t dimension) const {
+        return std::find(space.begin(), space.end(), dimension) != space.end();
+    }
+};
+
+/// The index asked for in a dimension that is none of space.
+std::uint64_t chosenIndex(const fs::path& root, const ZarrAxis& axis, std::uint64_t extent,
+                          const ReadOptions& options) {
+    const bool isChannel = axis.kind == ZarrAxis::Kind::Channel;
+    const bool isTime = axis.kind == ZarrAxis::Kind::Time;
+    const std::optional<std::int64_t> asked = isChannel ? options.channel
+                                              : isTime  ? options.timePoint
+                                                        : options.volumeIndex;
+    const char* const option = isChannel ? "--channel" : isTime ? "--time" : "--volume-index";
+    const char* const what = isChannel ? "channel" : isTime ? "time point" : "volume";
+    if (!asked && extent == 1) return 0;
+    if (!asked || *asked < 0 || static_cast<std::uint64_t>(*asked) >= extent) {
+        refuse(root,
+               asked ? fmt::format("there is no {} {}: it holds {}", what, *asked, extent)
+                     : fmt::format("holds {} {}s", extent, what),
+               fmt::format("choose one, 0 to {} ({})", extent - 1, option));
+    }
+    return static_cast<std::uint64_t>(*asked);
+}
+
+/// The dimension that is called x, y or z, or the place that it has by custom.
+std::array<std::size_t, 3> spaceOf(const fs::path& root, const ZarrArray& array,
+                                   const ZarrScene& scene) {
+    std::vector<std::size_t> found;
+    std::vector<std::string> names;
+    for (std::size_t n = 0; n < array.rank(); ++n) {
+        if (!scene.axes.empty() && scene.axes[n].kind != ZarrAxis::Kind::Space) continue;
+        if (scene.axes.empty() && n + 3 < array.rank()) continue;
+        found.push_back(n);
+        names.push_back(!scene.axes.empty()        ? scene.axes[n].name
+                        : array.dimensions.empty() ? std::string()
+                                                   : array.dimensions[n]);
+    }
+    if (found.size() != 3) {
+        refuse(root, fmt::format("is an image of {} dimensions in space", found.size()),
+               "a surface needs three");
+    }
+    std::array<std::size_t, 3> space{found[2], found[1], found[0]};  // the fastest is x
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto named = std::find(names.begin(), names.end(), std::string(1, "xyz"[axis]));
+        if (named == names.end()) return {found[2], found[1], found[0]};
+        space[axis] = found[static_cast<std::size_t>(named - names.begin())];
+    }
+    return space;
+}
+
+Cut cutOf(const fs::path& root, const ZarrArray& array, const ZarrScene& scene,
+          const ReadOptions& options) {
+    if (!scene.axes.empty() && scene.axes.size() != array.rank()) {
+        refuse(root,
+               fmt::format("its metadata contradict each other: {} axes, {} dimensions",
+                           scene.axes.size(), array.rank()),
+               "repair them");
+    }
+    Cut cut{spaceOf(root, array, scene), ZarrIndex(array.rank(), 0)};
+    for (std::size_t n = 0; n < array.rank(); ++n) {
+        if (cut.isSpace(n)) continue;
+        const ZarrAxis axis = scene.axes.empty() ? ZarrAxis{} : scene.axes[n];
+        cut.fixed[n] = chosenIndex(root, axis, array.shape[n], options);
+    }
+    return cut;
+}
+
+ImageGeometry geometryOf(const ZarrArray& array, const Cut& cut, ZarrScene& scene) {
+    ImageGeometry geometry;
+    geometry.indexToPhysical = Mat3::diagonal(1, 1, 1);
+    bool hasUnits = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t n = cut.space[axis];
+        geometry.size[axis] = static_cast<std::int64_t>(array.shape[n]);
+        if (scene.axes.empty()) continue;
+        hasUnits = hasUnits && scene.axes[n].toMm.has_value();
+        const double toMm = scene.axes[n].toMm.value_or(1);
+        const auto of = static_cast<int>(axis);
+        geometry.indexToPhysical.column[of][of] = toMm * scene.scale[n];
+        geometry.originMm[of] = toMm * scene.shift[n];
+    }
+    if (scene.axes.empty()) {
+        scene.warnings.emplace_back(
+            "an array says neither the size of its voxels nor where they lie; 1 mm was taken");
+    } else if (!hasUnits) {
+        scene.warnings.emplace_back("its axes have no unit; millimetres were taken");
+    }
+    scene.warnings.emplace_back(
+        "the format names no anatomical directions: x, y and z were taken for LPS");
+    return geometry;
+}
+
+/// Copies the samples of chunks to where they lie in the image.
+class Assembly {
+public:
+    Assembly(const ZarrStore& store, const ZarrArray& array, const Cut& cut, std::byte* out)
+        : store_(store),
+          array_(array),
+          cut_(cut),
+          out_(out),
+          sampleBytes_(bytesPerPixel(array.type)),
+          strides_(array.rank()) {
+        std::uint64_t stride = 1;
+        for (std::size_t n = array.rank(); n-- > 0;) {
+            strides_[array.encoding.order[n]] = stride;
+            stride *= array.chunk[array.encoding.order[n]];
+        }
+        const ZarrIndex& file = array.sharding ? array.sharding->shard : array.chunk;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t n = cut.space[axis];
+            files_[axis] = (array.shape[n] - 1) / file[n] + 1;
+        }
+    }
+
+    /// Of files that hold chunks: of each axis.
+    const std::array<std::uint64_t, 3>& files() const { return files_; }
+    std::int64_t missing() const { return missing_; }
+    std::int64_t chunks() const { return chunks_; }
+
+    /// \throws FileError  a chunk that is there can't be read, is damaged, too short or too long
+    void addFile(std::uint64_t number) {
+        const ZarrIndex& side = array_.sharding ? array_.sharding->shard : array_.chunk;
+        ZarrIndex index(array_.rank());
+        for (std::size_t n = 0; n < array_.rank(); ++n) index[n] = cut_.fixed[n] / side[n];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            index[cut_.space[axis]] = number % files_[axis];
+            number /= files_[axis];
+        }
+        const std::optional<ZarrFile> file = store_.open(array_.key(index));
+        for (std::size_t n = 0; n < array_.rank(); ++n) index[n] *= side[n];  // first sample
+        if (array_.sharding) {
+            addShard(file, index);
+        } else {
+            ++chunks_;
+            addChunk(file, 0, file ? file->size() : 0, index);
+        }
+    }
+
+private:
+    using Bytes = std::vector<std::byte>;
+
+    std::uint64_t chunkBytes() const { return array_.chunkSamples() * sampleBytes_; }
+
+    /// A chunk that lies in a file, or the fill value where there is none.
+    void addChunk(const std::optional<ZarrFile>& file, std::uint64_t offset, std::uint64_t size,
+                  const ZarrIndex& first) {
+        if (!file) {
+            ++missing_;
+            place(nullptr, first, array_.chunk);
+            return;
+        }
+        if (size > zarrPackedLimit(chunkBytes())) {
+            refuse(
+                file->path(),
+                fmt::format("holds {} bytes, more than a chunk of {} can take", size, chunkBytes()),
+                "get the dataset again");
+        }
+        Bytes bytes(static_cast<std::size_t>(size));
+        file->read(offset, bytes.data(), bytes.size());
+        bytes =
+            unpackZarrChunk(std::move(bytes), array_.encoding.codecs, chunkBytes(), file->path());
+        if (array_.encoding.byteOrder != std::endian::native) {
+            swapBytes(bytes.data(), bytes.size(), sampleBytes_);
+        }
+        place(bytes.data(), first, array_.chunk);
+    }
+
+    /// Inner chunks in the order of their numbers, the last dimension the fastest.
+    void addShard(const std::optional<ZarrFile>& file, const ZarrIndex& first) {
+        const ZarrSharding& sharding = *array_.sharding;
+        if (!file) return addMissingShard(first);
+        ZarrIndex counts(array_.rank());
+        std::uint64_t count = 1;
+        for (std::size_t n = 0; n < array_.rank(); ++n) {
+            counts[n] = sharding.shard[n] / array_.chunk[n];
+            count = requireProduct(store_.root(), count, counts[n]);
+        }
+        const std::vector<std::uint64_t> index = readIndex(*file, count);
+        ZarrIndex inner(array_.rank(), 0);
+        for (std::uint64_t number = 0; number < count; ++number) {
+            addInner(file, index, number, first, inner);
+            for (std::size_t n = array_.rank(); n-- > 0 && ++inner[n] == counts[n];) inner[n] = 0;
+        }
+    }
+
+    /// As large as its metadata may say, it is filled at once.
+    void addMissingShard(const ZarrIndex& first) {
+        std::int64_t count = 1;
+        for (const std::size_t n : cut_.space) {
+            const std::uint64_t side =
+                std::min(array_.sharding->shard[n], array_.shape[n] - first[n]);
+            count *= static_cast<std::int64_t>((side - 1) / array_.chunk[n] + 1);
+        }
+        chunks_ += count;
+        missing_ += count;
+        place(nullptr, first, array_.sharding->shard);
+    }
+
+    void addInner(const std::optional<ZarrFile>& file, const std::vector<std::uint64_t>& index,
+                  std::uint64_t number, const ZarrIndex& first, const ZarrIndex& inner) {
+        ZarrIndex at(array_.rank());
+        for (std::size_t n = 0; n < array_.rank(); ++n) {
+            at[n] = first[n] + inner[n] * array_.chunk[n];
+            const bool isAside = cut_.isSpace(n)
+                                     ? at[n] >= array_.shape[n]
+                                     : cut_.fixed[n] / array_.chunk[n] != at[n] / array_.chunk[n];
+            if (isAside) return;
+        }
+        ++chunks_;
+        constexpr std::uint64_t kNone = ~std::uint64_t{0};
+        const bool isThere = !(index[2 * number] == kNone && index[2 * number + 1] == kNone);
+        if (!isThere) return addChunk(std::nullopt, 0, 0, at);
+        const std::uint64_t offset = index[2 * number], size = index[2 * number + 1];
+        if (offset > file->size() || size > file->size() - offset) {
+            refuse(file->path(), "is damaged: its index leads out of it", "get the dataset again");
+        }
+        addChunk(file, offset, size, at);
+    }
+
+    /// Offset and size of each inner chunk.
+    std::vector<std::uint64_t> readIndex(const ZarrFile& file, std::uint64_t count) const {
+        const ZarrSharding& sharding = *array_.sharding;
+        constexpr std::uint64_t kEntry = 16, kSum = 4;
+        const std::uint64_t sumBytes = sharding.hasIndexSum ? kSum : 0;
+        if (count > file.size() / kEntry || count * kEntry + sumBytes > file.size()) {
+            refuse(file.path(), "is too short for the index of its chunks",
+                   "get the dataset again");
+        }
+        Bytes bytes(static_cast<std::size_t>(count * kEntry + sumBytes));
+        file.read(sharding.isIndexAtEnd ? file.size() - bytes.size() : 0, bytes.data(),
+                  bytes.size());
+        if (sharding.hasIndexSum) {
+            const std::array<ZarrCodec, 1> sum{ZarrCodec::Crc32c};
+            bytes = unpackZarrChunk(std::move(bytes), sum, count * kEntry, file.path());
+        }
+        if (sharding.indexOrder != std::endian::native) {
+            swapBytes(bytes.data(), bytes.size(), sizeof(std::uint64_t));
+        }
+        std::vector<std::uint64_t> index(static_cast<std::size_t>(2 * count));
+        std::memcpy(index.data(), bytes.data(), bytes.size());
+        return index;
+    }
+
+    /// Copies what of a chunk lies in the image. \param samples  nullptr: the fill value
+    void place(const std::byte* samples, const ZarrIndex& first, const ZarrIndex& side) {
+        std::array<std::uint64_t, 3> begin{}, count{}, size{}, step{};
+        std::uint64_t base = 0;
+        for (std::size_t n = 0; n < array_.rank(); ++n) {
+            if (samples != nullptr && !cut_.isSpace(n)) {
+                base += (cut_.fixed[n] - first[n]) * strides_[n];
+            }
+        }
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t n = cut_.space[axis];
+            size[axis] = array_.shape[n];
+            begin[axis] = first[n];
+            count[axis] = std::min(side[n], array_.shape[n] - first[n]);
+            step[axis] = strides_[n];
+        }
+        const auto outAt = [&](std::uint64_t y, std::uint64_t z) {
+            const std::uint64_t at = ((begin[2] + z) * size[1] + begin[1] + y) * size[0] + begin[0];
+            return out_ + at * sampleBytes_;
+        };
+        const bool isWhole = count[0] == size[0] && count[1] == size[1];
+        if (samples == nullptr && isWhole) return fill(outAt(0, 0), count[0] * count[1] * count[2]);
+        for (std::uint64_t z = 0; z < count[2]; ++z) {
+            for (std::uint64_t y = 0; y < count[1]; ++y) {
+                if (samples == nullptr) {
+                    fill(outAt(y, z), count[0]);
+                } else {
+                    const std::uint64_t from = base + z * step[2] + y * step[1];
+                    placeRow(samples, from, step[0], outAt(y, z), count[0]);
+                }
+            }
+        }
+    }
+
+    void placeRow(const std::byte* samples, std::uint64_t from, std::uint64_t step, std::byte* to,
+                  std::uint64_t count) const {
+        if (step == 1) {
+            std::memcpy(to, samples + from * sampleBytes_, count * sampleBytes_);
+            return;
+        }
+        for (std::uint64_t x = 0; x < count; ++x) {
+            std::memcpy(to + x * sampleBytes_, samples + (from + x * step) * sampleBytes_,
+                        sampleBytes_);
+        }
+    }
+
+    /// The fill value, once and then what is there again and again.
+    void fill(std::byte* to, std::uint64_t count) const {
+        const std::uint64_t bytes = count * sampleBytes_;
+        std::memcpy(to, array_.fill.data(), sampleBytes_);
+        for (std::uint64_t done = sampleBytes_; done < bytes;) {
+            const std::uint64_t piece = std::min(done, bytes - done);
+            std::memcpy(to + done, to, piece);
+            done += piece;
+        }
+    }
+
+    const ZarrStore& store_;
+    const ZarrArray& array_;
+    const Cut& cut_;
+    std::byte* const out_;
+    const std::size_t sampleBytes_;
+    ZarrIndex strides_;  ///< of each dimension in a chunk as it is stored, in samples
+    std::array<std::uint64_t, 3> files_{};
+    std::atomic<std::int64_t> missing_{0}, chunks_{0};
+};
+
+/// Reads each file once, several at a time unless chunks are so large that memory would be short.
+void assemble(const ZarrStore& store, const ZarrArray& array, Assembly& assembly) {
+    constexpr std::uint64_t kMostFiles = std::uint64_t{1} << 20;
+    constexpr std::uint64_t kLargeChunk = std::uint64_t{64} << 20;  // bytes
+    std::uint64_t files = 1;
+    for (const std::uint64_t count : assembly.files()) {
+        files = requireProduct(store.root(), files, count);
+    }
+    if (files > kMostFiles) {
+        refuse(store.root(),
+               fmt::format("consists of {} files, more than the {} that are read here", files,
+                           kMostFiles),
+               "take a coarser level (--level), or write it in larger chunks or shards");
+    }
+    const bool isSerial = array.chunkSamples() * bytesPerPixel(array.type) > kLargeChunk;
+    const auto count = static_cast<std::int64_t>(files);
+    parallelForPieces(count, isSerial ? count : 1, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) assembly.addFile(static_cast<std::uint64_t>(n));
+    });
+}
+
+}  // namespace
+
+ReadVolume readZarr(const fs::path& folder, const ReadOptions& options) {
+    const ZarrStore store(folder);
+    ZarrScene scene = findZarrScene(store, options.level.value_or(0));
+    const std::optional<ZarrArray> array = readZarrArray(store, scene.path);
+    if (!array) {
+        refuse(folder / scene.path, "there is no array, which the metadata name",
+               "get the dataset again");
+    }
+    const Cut cut = cutOf(folder, *array, scene, options);
+    const ImageGeometry geometry = geometryOf(*array, cut, scene);
+    const std::uint64_t bytes = requireImageBytes(folder, geometry.size, array->type);
+    requireUsableGeometry(folder, geometry);
+    SampleBuffer samples = allocateSamples(folder, bytes);
+    Assembly assembly(store, *array, cut, samples.get());
+    try {
+        assemble(store, *array, assembly);
+    } catch (const std::bad_alloc&) {
+        refuse(folder, "needs more memory for its chunks than there is",
+               "use a machine with more memory");
+    }
+    if (assembly.missing() > 0) {
+        const std::string text =
+            fmt::format("{} of its {} chunks are not there", assembly.missing(), assembly.chunks());
+        if (options.refusesMissingChunks) {
+            refuse(folder, text, "get the whole dataset, or leave --refuse-missing-chunks out");
+        }
+        scene.warnings.push_back(text + "; the fill value stands for them");
+    }
+    const std::string format =
+        scene.axes.empty() ? fmt::format("Zarr {}", array->version) : scene.format;
+    return {makeVolume(std::move(samples), array->type, geometry), format,
+            std::move(scene.warnings)};
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ZarrStore.h"
+
+namespace adaptiso::detail {
+
+/// What a dimension of an array is.
+struct ZarrAxis {
+    enum class Kind { Space, Channel, Time, Other };
+    Kind kind = Kind::Other;
+    std::string name;            ///< "z"
+    std::optional<double> toMm;  ///< of a unit of space; none: it is not said
+};
+
+/// One image of a hierarchy, in one of its resolutions.
+struct ZarrScene {
+    std::string format;                ///< "Zarr 2", "OME-Zarr 0.4"
+    std::string path;                  ///< of the array
+    std::vector<ZarrAxis> axes;        ///< of its dimensions; empty: nothing says what they are
+    std::vector<double> scale, shift;  ///< of each dimension, in its units: scale * index + shift
+    std::int64_t levels = 1;
+    std::vector<std::string> warnings;
+};
+
+/// What lies at the root of a store: an array, or the multiscales of an OME-Zarr of version 0.4 or
+/// 0.5. \param level  of resolution, 0 the finest
+/// \throws FileError  it holds neither, is of another version, or has not that level
+ZarrScene findZarrScene(const ZarrStore& store, std::int64_t level);
+
+/// The folder holds what Zarr's metadata are kept in.
+bool isZarrFolder(const std::filesystem::path& folder);
+
+/// Zarr's forerunner, told by name. \throws FileError  the folder holds it
+void refuseN5(const std::filesystem::path& folder);
+
+}  // namespace adaptiso::detail
