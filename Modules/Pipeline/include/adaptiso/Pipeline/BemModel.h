@@ -16,6 +16,7 @@
 #include "adaptiso/HeadModel/Landmarks.h"
 #include "adaptiso/HeadModel/NestSurfaces.h"
 #include "adaptiso/HeadModel/Remesh.h"
+#include "adaptiso/HeadModel/Tetrahedra.h"
 #include "adaptiso/MeshIO/PointFiles.h"
 #include "adaptiso/MeshQuality/Shape.h"
 #include "adaptiso/MeshQuality/Topology.h"
@@ -111,6 +112,13 @@ struct BemElectrodes {
     std::vector<NamedPoint> all() const;
 };
 
+/// The layers of a model in tetrahedra.
+struct BemTetrahedra {
+    std::string mesher;    ///< "tetgen" or "gmsh"
+    TetrahedralMesh mesh;  ///< LPS mm
+    TetrahedraReport report;
+};
+
 /// A head model, or what is known of it so far: what it is made from, its surfaces, whether they
 /// keep what is promised of them.
 struct BemModel {
@@ -126,6 +134,7 @@ struct BemModel {
     std::vector<TriangleMesh> meshes;
     std::vector<BemSurface> surfaces;
     std::optional<HeadShape> headShape;  ///< LPS mm; if wanted, and there is a model with a skin
+    std::optional<BemTetrahedra> tetrahedra;  ///< if wanted, and there is a model
     std::optional<BemElectrodes> electrodes;  ///< if wanted, and there is a model
     std::vector<NestedGap> gaps;
     std::vector<BemCheck> checks;
