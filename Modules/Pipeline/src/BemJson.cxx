@@ -34,6 +34,7 @@ Json surfaceJson(const std::string& name, const BemSurface& surface) {
              {{"minimum", number(shape.minAngleDeg.minimum)},
               {"p5", number(shape.minAngleDeg.p5)},
               {"median", number(shape.minAngleDeg.median)}}},
+            {"seenShare", surface.seen ? number(surface.seen->share) : Json(nullptr)},
             {"remesh", remeshJson(surface)},
             {"nesting",
              {{"movedVertices", surface.move.movedVertices},
