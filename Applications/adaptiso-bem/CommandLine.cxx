@@ -18,6 +18,7 @@ constexpr const char* kInput = "Input (one of --t1, --labels, --probabilities, -
 constexpr const char* kHead = "Head";
 constexpr const char* kMesh = "Surfaces";
 constexpr const char* kOutput = "Output";
+constexpr const char* kTetrahedra = "Tetrahedra";
 constexpr const char* kElectrodes = "Electrodes and landmarks";
 constexpr const char* kToolboxes =
     "Files for other programs, besides those of FreeSurfer and OpenMEEG";
@@ -370,6 +371,29 @@ void declareElectrodes(CLI::App& app, BemOptions& options) {
     addPoint(app, "--right-ear", options.rightEar, "Right preauricular point, the same");
 }
 
+void declareTetrahedra(CLI::App& app, BemOptions& options) {
+    app.add_option(
+           "--tetrahedra", options.mesher,
+           "Fill the layers with tetrahedra by this program, which must be installed: head.msh "
+           "(SimNIBS), head-4.1.msh, head.vtu, head.dgf")
+        ->type_name("tetgen|gmsh")
+        ->check(CLI::IsMember({"tetgen", "gmsh"}).description(""))
+        ->group(kTetrahedra);
+    app.add_option_function<std::string>(
+           "--element-size",
+           [&options](const std::string& text) {
+               options.elementMm = numbers("--element-size", text, ',', 1, 1, "0.5 to 50 mm")[0];
+               if (!(options.elementMm >= 0.5 && options.elementMm <= 50)) {
+                   throw UsageError("--element-size " + text + ": must be 0.5 to 50 mm");
+               }
+           },
+           "Longest edge of an equilateral tetrahedron (default: 5); at the surfaces elements are "
+           "as small "
+           "as their triangles")
+        ->type_name("MM")
+        ->group(kTetrahedra);
+}
+
 void declareToolboxes(CLI::App& app, BemOptions& options) {
     BemFileOptions& files = options.files;
     const auto addFlag = [&](const char* name, bool& target, const char* description) {
@@ -471,6 +495,7 @@ constexpr const char* kFooter = R"(Examples:
   adaptiso-bem --probabilities c1.nii c2.nii c3.nii c4.nii c5.nii -o model
   adaptiso-bem --ct ct.nii.gz --meg -o model --report model.html
   adaptiso-bem --surfaces inner.stl outer.stl skin.stl --min-gap 3,2 -o model
+  adaptiso-bem --labels seg.nii.gz --preset charm --layers 4 --tetrahedra tetgen -o model
   adaptiso-bem --t1 T1.nii.gz --electrodes sub-1_electrodes.tsv -o model
   adaptiso-bem --t1 T1.nii.gz --montage 10-10 --nasion 0,85,-35 --left-ear=-80,-28,-41 \
       --right-ear 80,-28,-41 -o model
@@ -498,6 +523,7 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
     declareSurfaces(app, options);
     declareOutput(app, options);
     declareElectrodes(app, options);
+    declareTetrahedra(app, options);
     declareToolboxes(app, options);
     declareCommonOptions(app, options.common, "of the model only the report is then written");
     app.callback([&options] { checkCombinations(options); });

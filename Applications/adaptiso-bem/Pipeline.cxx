@@ -18,6 +18,7 @@
 #include "Common/Warnings.h"
 #include "Inputs.h"
 #include "JsonReport.h"
+#include "Tetrahedra.h"
 #include "TextReport.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/PointFiles.h"
@@ -282,6 +283,7 @@ int runBem(const BemOptions& options) {
     run.model.options.wantsHeadShape = options.files.writesFif;
     run.model.source = sourceOf(options);
     checkOutputs(options);
+    requireMesher(options.mesher);
     readElectrodes(run);
 
     const BemHooks hooks{[&](std::string_view stage, const std::function<void()>& work) {
@@ -296,6 +298,7 @@ int runBem(const BemOptions& options) {
     const std::size_t told = run.model.warnings.size();
     finishBemModel(std::move(dense), run.model, hooks);
     putElectrodes(run, hooks);
+    if (run.model.hasModel() && !options.mesher.empty()) makeTetrahedra(run, hooks);
     progress.clear();
     tellWarnings(run, told);
 

@@ -35,6 +35,8 @@ struct BemOptions {
 
     std::filesystem::path electrodes;               ///< a file; empty: none
     std::optional<Vec3> nasion, leftEar, rightEar;  ///< scanner RAS mm
+    std::string mesher;                             ///< "tetgen" or "gmsh"; empty: no tetrahedra
+    double elementMm = 5;                           ///< longest edge of an equilateral tetrahedron
     std::filesystem::path output;
     bool mayReplace = false;
     std::filesystem::path subjectsDir;

@@ -76,8 +76,8 @@ std::vector<float> asegPart(const VolumeView& aseg, const ImageGeometry& grid) {
 }
 
 std::vector<float> brainSurfacePart(const BrainSources& sources, const BrainInT1& head,
-                                    const BoundaryOptions& options,
-                                    std::vector<std::string>& notes) {
+                                    const BoundaryOptions& options, std::vector<std::string>& notes,
+                                    std::vector<Vec3>& seenMm) {
     std::vector<float> part;
     if (sources.aseg) {
         part = asegPart(*sources.aseg, head.grid);
@@ -89,6 +89,7 @@ std::vector<float> brainSurfacePart(const BrainSources& sources, const BrainInT1
         unite(part, pialPart(sources.pial, head.grid));
         notes.push_back("brain surface: holds the pial surfaces");
     }
+    seenMm = sidesOf(above(part, kFractionIsovalue), head.grid, head.faces);
     return solidOf(std::move(part), head.grid, head.faces, options.sulciMm);
 }
 

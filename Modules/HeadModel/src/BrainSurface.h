@@ -26,7 +26,7 @@ struct BrainInT1 {
 /// The raw solid of the brain's own surface, as boundariesFromT1() says. Adds how it was found to
 /// `notes`. \throws InvalidInput  pial surfaces that enclose nothing
 std::vector<float> brainSurfacePart(const BrainSources& sources, const BrainInT1& head,
-                                    const BoundaryOptions& options,
-                                    std::vector<std::string>& notes);
+                                    const BoundaryOptions& options, std::vector<std::string>& notes,
+                                    std::vector<Vec3>& seenMm);
 
 }  // namespace adaptiso::headmodel

@@ -110,6 +110,8 @@ HeadBoundaries boundariesFromCt(const VolumeView& ct, const BoundaryOptions& opt
         skull = both(filled(skull, grid.size), head);
         raw.parts.push_back(partByLevel(skull, hu, options.skullHu, kSoftTissueHu, faces, grid));
         raw.parts.push_back(partByLevel(head, hu, options.skinHu, kAirHu, faces, grid));
+        const std::vector<Vec3> bonesSides = sidesOf(bone, grid, faces);
+        raw.seenMm = {bonesSides, bonesSides, sidesOf(filled(solid, grid.size), grid, faces)};
         limitOuterSkull(raw, options);
     }
     return finished(std::move(raw), options);

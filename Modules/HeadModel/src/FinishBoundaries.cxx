@@ -132,6 +132,28 @@ std::vector<float> solidOf(std::vector<float> part, const ImageGeometry& grid,
     return part;
 }
 
+std::vector<Vec3> sidesOf(const Mask& mask, const ImageGeometry& grid,
+                          const std::vector<std::uint8_t>& faces) {
+    const std::array<std::int64_t, 3> stride{1, grid.size[0], grid.size[0] * grid.size[1]};
+    std::vector<Vec3> places;
+    for (std::int64_t k = 1; k + 1 < grid.size[2]; ++k) {
+        for (std::int64_t j = 1; j + 1 < grid.size[1]; ++j) {
+            for (std::int64_t i = 1; i + 1 < grid.size[0]; ++i) {
+                const std::int64_t n = i + grid.size[0] * (j + grid.size[1] * k);
+                if (mask[n] == 0) continue;
+                const bool isSide = std::any_of(stride.begin(), stride.end(), [&](std::int64_t s) {
+                    return (mask[n - s] == 0 && faces[n - s] != 0) ||
+                           (mask[n + s] == 0 && faces[n + s] != 0);
+                });
+                if (!isSide) continue;
+                places.push_back(grid.toPhysical(
+                    {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)}));
+            }
+        }
+    }
+    return places;
+}
+
 double marginMm(const BoundaryOptions& options) {
     // a dilation by the closing radius, or the layers outside a brain at the image's border
     const double layers = options.csfMm + options.minSkullMm + options.minScalpMm;
@@ -168,6 +190,7 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
     const std::array<double, 2> gaps{options.minSkullMm, options.minScalpMm};
     HeadBoundaries result;
     result.notes = std::move(raw.notes);
+    result.seenMm = std::move(raw.seenMm);
     result.warnings = std::move(raw.warnings);
     for (std::size_t n = 0; n < raw.parts.size(); ++n) {
         tell(options, "smooth", static_cast<double>(n) / static_cast<double>(raw.parts.size()));
@@ -190,6 +213,9 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
         brain.part = settled(std::move(brain.part), brain.grid, options.smoothingMm,
                              nameOf(HeadSurface::Brain), result.notes);
         result.solids.insert(result.solids.begin(), std::move(brain));
+        if (!result.seenMm.empty()) {
+            result.seenMm.insert(result.seenMm.begin(), std::move(raw.brainSeenMm));
+        }
     }
     return result;
 }

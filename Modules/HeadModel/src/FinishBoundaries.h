@@ -18,6 +18,8 @@ void checkOptions(const BoundaryOptions& options);
 struct RawBoundaries {
     ImageGeometry grid;
     std::vector<std::vector<float>> parts;
+    std::vector<std::vector<Vec3>> seenMm{};  ///< of the parts, as HeadBoundaries has it
+    std::vector<Vec3> brainSeenMm{};
     std::vector<float> brain{};  ///< within the first of them; empty: not wanted
     std::vector<std::string> notes;
     std::vector<std::string> warnings;
@@ -27,6 +29,11 @@ struct RawBoundaries {
 /// that open at the image's border).
 std::vector<float> solidOf(std::vector<float> part, const ImageGeometry& grid,
                            const std::vector<std::uint8_t>& faces, double closingMm);
+
+/// The centres of the voxels of a mask beside others of the image that are not in it: where the
+/// image shows its side.
+std::vector<Vec3> sidesOf(const Mask& mask, const ImageGeometry& grid,
+                          const std::vector<std::uint8_t>& faces);
 
 /// Smooths each solid, grows it to hold the one inside it with the least gap, and makes it a ball,
 /// from inside out; a brain gives way to the CSF before. Every change of topology is noted with its

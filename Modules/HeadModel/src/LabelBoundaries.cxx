@@ -78,7 +78,14 @@ HeadBoundaries boundariesFrom(const std::vector<FloatImage>& enclosed,
             solidOf(resampled(enclosed[n], raw.grid, 0), raw.grid, faces,
                     isSkin ? options.closingMm : std::min(kSeamMm, options.closingMm)));
     }
+    for (const FloatImage& one : enclosed) {
+        raw.seenMm.push_back(sidesOf(
+            largestComponent(above(resampled(one, raw.grid, 0), kFractionIsovalue), raw.grid.size),
+            raw.grid, faces));
+    }
     if (brain) {
+        raw.brainSeenMm =
+            sidesOf(above(resampled(*brain, raw.grid, 0), kFractionIsovalue), raw.grid, faces);
         raw.brain = solidOf(resampled(*brain, raw.grid, 0), raw.grid, faces, options.sulciMm);
     }
     requireOrder(enclosed, raw);

@@ -222,6 +222,11 @@ SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
     }
     dropOutliers(rays, spread(rays, answers, grid, options.skullMm), answers);
     const std::vector<float> thickness = spread(rays, answers, grid, options.skullMm);
+    for (std::size_t n = 0; n < rays.size(); ++n) {
+        if (!answers[n].thicknessMm) continue;
+        const Vec3 end = rays[n].start + (*answers[n].thicknessMm / step) * rays[n].direction;
+        band.seenMm.push_back(grid.toPhysical(end));
+    }
 
     const double most = *std::max_element(thickness.begin(), thickness.end());
     band.outerSkull = depthMm(above(innerSkull, kFractionIsovalue), grid, {step, most + step});

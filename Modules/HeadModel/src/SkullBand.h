@@ -10,6 +10,7 @@ namespace adaptiso::headmodel {
 /// What the search for the skull in a T1 found.
 struct SkullBand {
     std::vector<float> outerSkull;  ///< raw part of voxels inside the outer skull
+    std::vector<Vec3> seenMm;       ///< where rays show the outer skull
     double seenFraction = 0;        ///< of the rays towards the scalp, those that show the band
     double medianThicknessMm = 0;   ///< over the rays that do
 };

@@ -300,6 +300,13 @@ std::vector<float> innerSkullPart(const Mask& brain, const Head& head,
     return part;
 }
 
+/// Where tissue meets the air around the head: not in the airways, nor where the image ends.
+std::vector<Vec3> skinSides(const Head& head) {
+    Mask tissue = above(head.t1, head.skinLevel);
+    for (std::size_t n = 0; n < tissue.size(); ++n) tissue[n] &= head.mask[n];
+    return sidesOf(filled(tissue, head.grid.size), head.grid, head.faces);
+}
+
 /// The brain by what is known of it, or guessed.
 Mask brainOf(const BrainSources& sources, const Head& head, std::vector<std::string>& notes) {
     const bool isGuess = !sources.mask && !sources.aseg;
@@ -342,7 +349,7 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
     cutNecks(raw, options);
     if (options.withBrain) {
         raw.brain = brainSurfacePart(sources, {head.grid, head.t1, head.faces, head.levels, brain},
-                                     options, raw.notes);
+                                     options, raw.notes, raw.brainSeenMm);
     }
     if (!options.innerSkullOnly) {
         tell(options, "skull", 0);
@@ -362,6 +369,8 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
                                    " % of the rays to the scalp: the brain or its mask may lie "
                                    "wrong, or the image be too noisy; look at the result");
         }
+        // no T1 shows the inner skull: CSF and bone are dark alike
+        raw.seenMm = {{}, std::move(band.seenMm), skinSides(head)};
         raw.parts.push_back(std::move(band.outerSkull));
         raw.parts.push_back(std::move(skin));
         head = {};  // a whole head's worth of memory

@@ -59,6 +59,19 @@ void writeElectrodes(const BemModel& model, const BemFileOptions& options, const
     writeText(place(kElectrodesTxt), lines);
 }
 
+void writeTetrahedra(const BemModel& model, const BemFileOptions& options, const PlaceFile& place) {
+    TetrahedralMesh mesh = model.tetrahedra->mesh;
+    const AffineTransform move = lpsToFrame(options.frame, model.tkRasVolume);
+    for (Vec3& p : mesh.points) p = move(p);
+    if (determinant(move.linear) < 0) {
+        for (auto& t : mesh.tetrahedra) std::swap(t[2], t[3]);
+    }
+    writeMsh22(mesh, place(kMsh22File));
+    writeMsh41(mesh, place(kMsh41File));
+    writeVtu(mesh, place(kVtuFile));
+    writeDgf(mesh, place(kDgfFile));
+}
+
 /// Landmarks first, as BESA wants them.
 void writeBesa(const BemModel& model, const BemFileOptions& options, const PlaceFile& place) {
     std::vector<NamedPoint> points = pointsIn(options.frame, model);
@@ -78,7 +91,8 @@ std::vector<std::string> bemFileNames() {
     std::vector<std::string> names{"model.geom",   "model.cond",   "report.json",   "spots.png",
                                    "README.md",    kFiffModel,     kFiffDenseHead,  kFiffSparseHead,
                                    kFieldTripFile, kElectrodesTsv, kElectrodesJson, kElectrodesElc,
-                                   kElectrodesSfp, kElectrodesFif, kElectrodesTxt,  kBesaFile};
+                                   kElectrodesSfp, kElectrodesFif, kElectrodesTxt,  kBesaFile,
+                                   kMsh22File,     kMsh41File,     kVtuFile,        kDgfFile};
     for (std::size_t n = 0; n < kHeadSurfaceCount; ++n) {
         const HeadSurface surface = headSurface(n, kHeadSurfaceCount);
         for (const char* extension : {".surf", ".tri", ".gii", ".vtp"}) {
@@ -105,6 +119,7 @@ void writeBemFiles(const BemModel& model, const BemFileOptions& options, const s
     for (const BemFileKind& kind : bemFileKinds(model, options)) kind.write(place);
     if (model.electrodes) writeElectrodes(model, options, place);
     if (options.writesBesa) writeBesa(model, options, place);
+    if (model.tetrahedra) writeTetrahedra(model, options, place);
     writeText(place("model.geom"), openMeegGeometry(triangleFiles));
     writeText(place("model.cond"),
               openMeegConductivities(model.meshes.size(), model.options.conductivities));

@@ -34,6 +34,7 @@ Json surfaceJson(const std::string& name, const BemSurface& surface) {
              {{"minimum", number(shape.minAngleDeg.minimum)},
               {"p5", number(shape.minAngleDeg.p5)},
               {"median", number(shape.minAngleDeg.median)}}},
+            {"seenShare", surface.seen ? number(surface.seen->share) : Json(nullptr)},
             {"remesh", remeshJson(surface)},
             {"nesting",
              {{"movedVertices", surface.move.movedVertices},
@@ -80,6 +81,28 @@ Json electrodesJson(const BemModel& model) {
             {"farthestMovedMm", number(e.farthestMovedMm)},
             {"farthest", e.areComputed ? Json(nullptr) : Json(e.farthestName)},
             {"points", points}};
+}
+
+Json tetrahedraJson(const BemModel& model) {
+    if (!model.tetrahedra) return nullptr;
+    const TetrahedraReport& report = model.tetrahedra->report;
+    Json layers = Json::array();
+    for (std::size_t n = 0; n < report.counts.size(); ++n) {
+        const std::int32_t tissue =
+            tissueNumber(headSurface(n, report.counts.size()), report.counts.size());
+        layers.push_back({{"tissue", tissueName(tissue)},
+                          {"number", tissue},
+                          {"tetrahedra", report.counts[n]},
+                          {"volumeMm3", number(report.volumesMm3[n])},
+                          {"betweenSurfacesMm3", number(report.expectedMm3[n])}});
+    }
+    return {{"mesher", model.tetrahedra->mesher},
+            {"points", std::ssize(model.tetrahedra->mesh.points)},
+            {"layers", layers},
+            {"dihedralDeg",
+             {{"minimum", number(report.leastDihedralDeg)}, {"p5", number(report.p5DihedralDeg)}}},
+            {"radiusEdge",
+             {{"maximum", number(report.mostRadiusEdge)}, {"p95", number(report.p95RadiusEdge)}}}};
 }
 
 }  // namespace
@@ -147,6 +170,7 @@ Json bemModelJson(const BemModel& model) {
             {"surfaces", surfaces},
             {"gaps", gaps},
             {"checks", checks},
+            {"tetrahedra", tetrahedraJson(model)},
             {"landmarks", landmarksJson(model)},
             {"electrodes", electrodesJson(model)},
             {"plausibility", notesJson(inLps(model.plausibility))},

@@ -55,6 +55,13 @@ std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
     if (options.writesCurry) {
         rows += "| `*.s0*` | Curry | " + frame + "; millimetres |\n";
     }
+    if (model.tetrahedra) {
+        rows +=
+            "| `head.msh` (2.2), `head-4.1.msh`, `head.vtu`, `head.dgf` | SimNIBS and Gmsh, Gmsh, "
+            "viewers, DUNE; "
+            "tissues 2 brain, 3 CSF, 4 skull, 5 scalp | " +
+            frame + "; millimetres |\n";
+    }
     if (options.writesBesa) rows += "| `head.sfp` | BESA | " + frame + "; millimetres |\n";
     if (model.electrodes && !model.electrodes->all().empty()) {
         rows +=

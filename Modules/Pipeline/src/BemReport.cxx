@@ -117,11 +117,11 @@ void tellSpots(const BemModel& model, Report& report) {
 }
 
 ReportTable surfaceTable(const BemModel& model) {
-    ReportTable table{
-        "Surfaces",
-        {"Surface", "Vertices", "Triangles", "Area, cm²", "Volume, cm³", "Edges, mm",
-         "Smallest angle", "From the dense surface, mm (mean, most)", "Moved to nest, mm"},
-        {}};
+    ReportTable table{"Surfaces",
+                      {"Surface", "Vertices", "Triangles", "Area, cm²", "Volume, cm³", "Edges, mm",
+                       "Smallest angle", "From the dense surface, mm (mean, most)",
+                       "Moved to nest, mm", "Seen in the image"},
+                      {}};
     for (std::size_t n = 0; n < model.surfaces.size(); ++n) {
         const BemSurface& surface = model.surfaces[n];
         const auto& remesh = surface.remesh;
@@ -136,7 +136,8 @@ ReportTable surfaceTable(const BemModel& model) {
                           formatFixed(remesh->maximumVertexDistanceMm, 2)
                     : "as it came",
              surface.move.movedVertices > 0 ? "up to " + formatFixed(surface.move.maximumMm, 2)
-                                            : "–"});
+                                            : "–",
+             surface.seen ? formatRounded(100 * surface.seen->share) + " % of the area" : "–"});
     }
     return table;
 }
@@ -213,9 +214,19 @@ Report bemReport(const BemModel& model,
     }
     for (std::size_t n = 0; n < model.meshes.size(); ++n) {
         report.surfaces.push_back({bemSurfaceName(n, model.meshes.size()), model.meshes[n]});
+        if (n < model.surfaces.size() && model.surfaces[n].seen) {
+            report.surfaces.back().valuesMm = model.surfaces[n].seen->distanceMm;
+        }
         report.surfaces.back().isWithinSkull =
             headSurface(n, model.meshes.size()) <= HeadSurface::InnerSkull &&
             model.source != "surfaces";
+    }
+    if (!model.seenMm.empty() && model.hasModel()) {
+        report.notes.push_back(
+            "Colours: how far a surface lies from the nearest place where the image shows it, up "
+            "to " +
+            formatShort(kFarFromSeenMm) + " mm; beyond " + formatShort(kSeenWithinMm) +
+            " mm it is a guess (closed, filled, cut, or as thick as usual).");
     }
     tellElectrodes(model, report);
     return report;

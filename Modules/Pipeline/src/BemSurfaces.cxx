@@ -163,6 +163,7 @@ std::vector<TriangleMesh> extractSurfaces(const HeadBoundaries& boundaries, BemM
     model.warnings.insert(model.warnings.end(), boundaries.warnings.begin(),
                           boundaries.warnings.end());
     std::vector<TriangleMesh> surfaces;
+    model.seenMm = boundaries.seenMm;
     for (const FractionField& solid : boundaries.solids) {
         hooks.stage("extract", [&] {
             const SpanSpaceIndex index = SpanSpaceIndex::build(solid.view(), {});
@@ -193,6 +194,13 @@ void finishBemModel(std::vector<TriangleMesh> dense, BemModel& model, const BemH
     }
     if (model.hasModel()) checkModel(model, hooks);
     if (model.hasModel()) askWhatIsUsual(model, hooks);
+    for (std::size_t n = 0; model.hasModel() && n < model.seenMm.size(); ++n) {
+        model.surfaces[n].seen = seenOf(model.meshes[n], model.seenMm[n]);
+        model.notes.push_back(
+            bemSurfaceName(n, model.meshes.size()) + ": " +
+            formatRounded(100 * model.surfaces[n].seen->share) +
+            " % of its area was seen in the image, the rest follows from what is near");
+    }
     if (model.hasModel() && model.options.wantsHeadShape && model.meshes.size() > 1) {
         hooks.stage("remesh",
                     [&] { model.headShape = headShapeOf(std::move(dense.back()), model); });

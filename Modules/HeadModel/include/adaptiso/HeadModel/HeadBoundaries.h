@@ -68,6 +68,10 @@ struct HeadBoundaries {
     std::vector<FractionField> solids;  ///< by headSurface()
     std::vector<std::string> notes;     ///< what was guessed or changed, one line each
     std::vector<std::string> warnings;  ///< what makes the result doubtful
+    /// For each solid the places (LPS mm) where the image itself shows its surface: sides of
+    /// labels, levels that are passed, ends of the skull's dark band. The rest was closed, filled,
+    /// cut, grown or taken as usual. Empty where nobody looked (surfaces).
+    std::vector<std::vector<Vec3>> seenMm{};
 };
 
 /// From a T1-weighted image, alone or with a brain mask (brain > 0.5 of the mask's range or, of a

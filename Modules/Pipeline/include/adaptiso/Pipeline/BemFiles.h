@@ -36,6 +36,11 @@ inline constexpr const char* kElectrodesSfp = "electrodes.sfp";
 inline constexpr const char* kElectrodesFif = "electrodes-dig.fif";
 inline constexpr const char* kElectrodesTxt = "electrodes.txt";
 inline constexpr const char* kBesaFile = "head.sfp";
+/// Of a model with tetrahedra, in BemFileOptions::frame, mm.
+inline constexpr const char* kMsh22File = "head.msh";
+inline constexpr const char* kMsh41File = "head-4.1.msh";
+inline constexpr const char* kVtuFile = "head.vtu";
+inline constexpr const char* kDgfFile = "head.dgf";
 
 inline constexpr const char* kFiffModel = "bem.fif";
 inline constexpr const char* kFiffDenseHead = "head-dense.fif";

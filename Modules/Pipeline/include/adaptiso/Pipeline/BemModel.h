@@ -16,6 +16,8 @@
 #include "adaptiso/HeadModel/Landmarks.h"
 #include "adaptiso/HeadModel/NestSurfaces.h"
 #include "adaptiso/HeadModel/Remesh.h"
+#include "adaptiso/HeadModel/Seen.h"
+#include "adaptiso/HeadModel/Tetrahedra.h"
 #include "adaptiso/MeshIO/PointFiles.h"
 #include "adaptiso/MeshQuality/Shape.h"
 #include "adaptiso/MeshQuality/Topology.h"
@@ -82,6 +84,7 @@ struct BemSurface {
     double volumeMm3 = 0;
     double solidAngleShare = 0;
     Vec3 extentMm;
+    std::optional<SeenSurface> seen{};  ///< of the final mesh; none where nobody looked
 };
 
 /// A promise about the model, kept or not.
@@ -111,6 +114,13 @@ struct BemElectrodes {
     std::vector<NamedPoint> all() const;
 };
 
+/// The layers of a model in tetrahedra.
+struct BemTetrahedra {
+    std::string mesher;    ///< "tetgen" or "gmsh"
+    TetrahedralMesh mesh;  ///< LPS mm
+    TetrahedraReport report;
+};
+
 /// A head model, or what is known of it so far: what it is made from, its surfaces, whether they
 /// keep what is promised of them.
 struct BemModel {
@@ -125,7 +135,9 @@ struct BemModel {
     /// Inside out, LPS mm. Where there is no model: what it was tried from.
     std::vector<TriangleMesh> meshes;
     std::vector<BemSurface> surfaces;
-    std::optional<HeadShape> headShape;  ///< LPS mm; if wanted, and there is a model with a skin
+    std::vector<std::vector<Vec3>> seenMm;  ///< as HeadBoundaries has it
+    std::optional<HeadShape> headShape;     ///< LPS mm; if wanted, and there is a model with a skin
+    std::optional<BemTetrahedra> tetrahedra;  ///< if wanted, and there is a model
     std::optional<BemElectrodes> electrodes;  ///< if wanted, and there is a model
     std::vector<NestedGap> gaps;
     std::vector<BemCheck> checks;

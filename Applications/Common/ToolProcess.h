@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace adaptiso {
+
+/// Whether a program of this name is in PATH.
+bool isInstalled(const std::string& program);
+
+/// How a program of others ended.
+struct ToolResult {
+    int exitCode = 0;
+    int signal = 0;      ///< that ended it; 0: none
+    std::string output;  ///< its stdout and stderr
+
+    bool isGood() const { return exitCode == 0 && signal == 0; }
+    /// The last line of what it said, or how it ended.
+    std::string reason() const;
+};
+
+/// Runs a program that is in PATH, in a folder, with nothing on its stdin, and waits for it. It
+/// ends when this process does. \throws FileError  it can't be started
+ToolResult runTool(const std::string& program, const std::vector<std::string>& arguments,
+                   const std::filesystem::path& folder);
+
+/// A folder of its own, gone with the object.
+class ScratchFolder {
+public:
+    /// \throws FileError
+    ScratchFolder();
+    ~ScratchFolder();
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+}  // namespace adaptiso

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "BemRun.h"
+#include "adaptiso/Pipeline/BemModel.h"
+
+namespace adaptiso {
+
+/// Fills the model's layers with tetrahedra by the mesher asked for, run as a program (stage
+/// "tetrahedra"), and checks them; what does not hold becomes a finding. \pre run.model.hasModel()
+/// \throws FileError  the mesher is not installed, fails, or writes what can't be read
+void makeTetrahedra(BemRun& run, const BemHooks& hooks);
+
+/// \throws FileError  the mesher asked for is not installed
+void requireMesher(const std::string& mesher);
+
+}  // namespace adaptiso

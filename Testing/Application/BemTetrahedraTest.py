@@ -1,0 +1,108 @@
+"""Tetrahedra of adaptiso-bem by tetgen and gmsh, as programs: what meshio and gmsh read back, and what is said
+where a mesher is missing. What is not installed is skipped by name."""
+
+import math
+import os
+import shutil
+import subprocess
+import unittest
+
+from support import BAD_INPUT, USAGE, main, write_nifti
+from bemSupport import BEM, BemTest, head
+
+try:
+    import meshio
+    import numpy as np
+except ImportError:
+    meshio = None
+
+MESHERS = [mesher for mesher in ("tetgen", "gmsh") if shutil.which(mesher)]
+RADII = (54, 60, 66, 72)
+FOUR = [word for pair in ("brain=4", "csf=1", "skull=2", "scalp=3") for word in ("--tissue", pair)]
+
+
+class Tetrahedra(BemTest):
+    def four_layers(self):
+        write_nifti(self.path("seg.nii"), head(radii=RADII, values=(4, 1, 2, 3)))
+        return ("--labels", "seg.nii", *FOUR, "--layers", "4", "--voxel", "3", "--vertices", "200",
+                "--closing", "4")
+
+    def test_meshers_fill_the_layers(self):
+        for mesher in MESHERS:
+            with self.subTest(mesher):
+                self.bem(*self.four_layers(), "--tetrahedra", mesher, "--element-size", "8", "-o", mesher)
+                report = self.report(mesher)
+                self.assertEqual(report["tetrahedra"]["mesher"], mesher)
+                layers = report["tetrahedra"]["layers"]
+                self.assertEqual([(l["tissue"], l["number"]) for l in layers],
+                                 [("brain", 2), ("csf", 3), ("skull", 4), ("scalp", 5)])
+                within = 0
+                for layer, radius in zip(layers, RADII):
+                    ball = 4 / 3 * math.pi * radius ** 3
+                    # 200 vertices lie on the sphere, faces within it; voxels of 4 mm
+                    self.assertAlmostEqual(layer["volumeMm3"] / (ball - within), 0.97, delta=0.13)
+                    self.assertAlmostEqual(layer["volumeMm3"] / layer["betweenSurfacesMm3"], 1, 4)
+                    within = ball
+                self.assertGreater(report["tetrahedra"]["dihedralDeg"]["minimum"], 1)
+                self.assertTrue(all(check["passed"] for check in report["checks"]))
+
+    @unittest.skipUnless(meshio, "needs python3-meshio")
+    def test_meshio_reads_all_formats_alike(self):
+        if not MESHERS:
+            self.skipTest("needs tetgen or gmsh")
+        self.bem(*self.four_layers(), "--tetrahedra", MESHERS[0], "--element-size", "10", "-o", "model")
+        total = sum(l["tetrahedra"] for l in self.report()["tetrahedra"]["layers"])
+        centroids = []
+        for name, key in (("head.msh", "gmsh:physical"), ("head-4.1.msh", "gmsh:physical"),
+                          ("head.vtu", "tissue")):
+            mesh = meshio.read(self.path("model") / name)
+            cells = np.concatenate([c.data for c in mesh.cells if c.type == "tetra"])
+            tissues = np.concatenate([data for data, c in zip(mesh.cell_data[key], mesh.cells)
+                                      if c.type == "tetra"])
+            self.assertEqual(len(cells), total)
+            self.assertEqual(set(tissues), {2, 3, 4, 5})
+            corners = mesh.points[cells]
+            volumes = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0],
+                                                     corners[:, 2] - corners[:, 0]),
+                                corners[:, 3] - corners[:, 0]) / 6
+            self.assertGreater(volumes.min(), 0)
+            distance = np.linalg.norm(corners.mean(axis=1), axis=1)
+            self.assertLess(distance[tissues == 2].max(), 56)
+            self.assertGreater(distance[tissues == 5].min(), 62)
+            centroids.append(sorted(map(tuple, np.round(corners.mean(axis=1), 4))))
+        self.assertEqual(centroids[0], centroids[1])
+        self.assertEqual(centroids[0], centroids[2])
+        if shutil.which("gmsh"):
+            done = subprocess.run(["gmsh", "-check", "head-4.1.msh"], cwd=self.path("model"), text=True,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120)
+            self.assertNotIn("Error", done.stdout)
+
+    def test_a_missing_mesher_is_told_at_once(self):
+        labels = self.labels()
+        done = subprocess.run([BEM, *map(str, labels), "--tetrahedra", "tetgen", "-o", "m"],
+                              cwd=self.folder, text=True, capture_output=True,
+                              env={**os.environ, "PATH": str(self.folder)})
+        self.assertEqual(done.returncode, BAD_INPUT)
+        self.assertIn("tetgen is not installed; on Debian: apt install tetgen", done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1)
+
+    def test_a_mesher_that_fails_is_told(self):
+        fake = self.path("tetgen")
+        fake.write_text("#!/bin/sh\necho 'Error: self-intersection'\nexit 3\n")
+        fake.chmod(0o755)
+        labels = self.labels()
+        done = subprocess.run([BEM, *map(str, labels), "--tetrahedra", "tetgen", "-o", "m"],
+                              cwd=self.folder, text=True, capture_output=True,
+                              env={**os.environ, "PATH": f"{self.folder}:/usr/bin:/bin"})
+        self.assertEqual(done.returncode, BAD_INPUT)
+        self.assertIn("tetgen: made no tetrahedra (exit code 3, 'Error: self-intersection')", done.stderr)
+        self.assertFalse(self.path("m").exists())
+
+    def test_usage(self):
+        self.fails(USAGE, r"--tetrahedra", *self.labels(), "--tetrahedra", "cgal", "-o", "m")
+        self.fails(USAGE, r"--element-size 0.1: must be 0.5 to 50 mm", *self.labels(), "--element-size",
+                   "0.1", "-o", "m")
+
+
+if __name__ == "__main__":
+    main()
