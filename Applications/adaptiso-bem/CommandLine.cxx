@@ -511,9 +511,8 @@ Program bemProgram() {
     return {"adaptiso-bem",
             "Makes the nested surfaces of a boundary element head model (EEG: inner skull, outer "
             "skull,\nouter skin, or the brain within them as well; MEG: inner skull) for MNE, "
-            "FreeSurfer, OpenMEEG, FieldTrip, "
-            "Brainstorm, "
-            "SimNIBS\nand Curry.",
+            "FreeSurfer,\nOpenMEEG, FieldTrip, Brainstorm, SimNIBS, Curry and BESA; electrodes and "
+            "tetrahedra for them.",
             kFooter};
 }
 
