@@ -1,4 +1,4 @@
-"""What issue 3 asks of the thesis's tables, and whether what was measured meets it."""
+"""What is asked of the thesis's tables, and whether what was measured meets it."""
 import math
 
 # (volume, isovalue, method, block size, key of the row, least or None, most)
@@ -53,7 +53,7 @@ def targets(runs):
 
 
 def write_targets(out, entries):
-    out.write("### What issue 3 asks\n| volume | method | N | figure | asked | here | met |\n"
+    out.write("### What is asked of them\n| volume | method | N | figure | asked | here | met |\n"
               "|---|---|---:|---|---:|---:|---|\n")
     for t in entries:
         form = ",.0f" if t["figure"] == "triangles" else ".3g"
