@@ -114,7 +114,8 @@ TEST(PatchSimplifier, LeavesFinalVertices) {
     for (std::size_t v = 0; v < before.size(); ++v) {
         if (before[v].z > 0) patch.states[v] = Patch::State::Final;
     }
-    PatchSimplifier simplifier(patch, unitFrame(), limits(0.5));
+    const detail::MetricFrame frame = unitFrame();
+    PatchSimplifier simplifier(patch, frame, limits(0.5));
     simplifier.collapseEdges(kAll, nullptr);
     simplifier.fitVertices();
     const TriangleMesh mesh = meshOf(patch);
@@ -127,7 +128,8 @@ TEST(PatchSimplifier, LeavesFinalVertices) {
 
 TEST(PatchSimplifier, FitsVerticesToTheSamples) {
     Patch patch = spherePatch();
-    PatchSimplifier simplifier(patch, unitFrame(), limits(0.5));
+    const detail::MetricFrame frame = unitFrame();
+    PatchSimplifier simplifier(patch, frame, limits(0.5));
     simplifier.collapseEdges(kAll, nullptr);
     const auto sumOfSquares = [&] {
         double sum = 0;
