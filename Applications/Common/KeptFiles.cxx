@@ -30,7 +30,7 @@ std::int64_t nanoseconds(const timespec& time) {
 
 /// Of nobody's business: what Zarr keeps its metadata in is no such file.
 bool isHidden(const fs::path& path) {
-    const std::string& name = path.filename().native();
+    const std::string name = path.filename().native();
     return name.starts_with('.') && name != ".zarray" && name != ".zattrs" && name != ".zgroup";
 }
 
