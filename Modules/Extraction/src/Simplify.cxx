@@ -1,6 +1,9 @@
 #include "adaptiso/Extraction/Simplify.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
 #include <utility>
 
 #include "adaptiso/Core/AabbTree.h"
@@ -37,26 +40,9 @@ SurfacePoint surfacePointAt(const Vec3& p, const TriangleMesh& mesh, std::int64_
     return {triangle, {u / sum, v / sum, w / sum}};
 }
 
-std::vector<Normal> normalsFrom(const TriangleMesh& input, const TriangleMesh& mesh) {
-    std::vector<Normal> normals(mesh.points.size());
-    const std::vector<SurfacePoint> places = nearestPoints(mesh, input);
-    for (std::size_t v = 0; v < normals.size(); ++v) {
-        const Triangle& t = input.triangles[places[v].triangle];
-        Vec3 sum;
-        for (int c = 0; c < 3; ++c) {
-            const Normal& n = input.normals[t[c]];
-            sum += places[v].weight[c] * Vec3{n.x, n.y, n.z};
-        }
-        normals[v] = toNormal(sum);
-    }
-    return normals;
-}
-
-}  // namespace
-
-std::vector<SurfacePoint> nearestPoints(const TriangleMesh& mesh, const TriangleMesh& onto) {
-    if (onto.triangles.empty()) throw InvalidInput("nearestPoints: the surface has no triangle");
-    const AabbTree tree(onto);
+/// \param tree  of `onto`
+std::vector<SurfacePoint> nearestPoints(const TriangleMesh& mesh, const TriangleMesh& onto,
+                                        const AabbTree& tree) {
     std::vector<SurfacePoint> places(mesh.points.size());
     parallelForPieces(std::ssize(places), kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t v = begin; v < end; ++v) {
@@ -70,18 +56,64 @@ std::vector<SurfacePoint> nearestPoints(const TriangleMesh& mesh, const Triangle
     return places;
 }
 
-Simplified simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
-    const AdaptiveOptions aims = aimsOf(options);
-    detail::requireInRange(aims, "simplify");
-    if (!aims.maxErrorMm && !aims.maxTriangles && !aims.reduction) {
-        throw InvalidInput("simplify: neither maxErrorMm nor maxTriangles nor reduction is set");
+/// \param tree  of `input`
+std::vector<Normal> normalsFrom(const TriangleMesh& input, const TriangleMesh& mesh,
+                                const AabbTree& tree) {
+    std::vector<Normal> normals;
+    normals.reserve(mesh.points.size());
+    for (const SurfacePoint& place : nearestPoints(mesh, input, tree)) {
+        Vec3 sum;
+        for (int c = 0; c < 3; ++c) {
+            const VertexId v = input.triangles[place.triangle][c];
+            sum += place.weight[c] * toVec3(input.normals[v]);
+        }
+        normals.push_back(toNormal(sum));
     }
+    return normals;
+}
+
+/// By a power of two, which changes no digit.
+void scale(TriangleMesh& mesh, int exponent) {
+    for (Vec3& p : mesh.points) {
+        p = {std::ldexp(p.x, exponent), std::ldexp(p.y, exponent), std::ldexp(p.z, exponent)};
+    }
+}
+
+/// The power of two that brings a mesh of a very large or very small unit to about 1; else 0.
+/// Quadrics are fourth powers of lengths in single precision.
+int exponentTowardsOne(const TriangleMesh& mesh) {
+    constexpr int kFarFromOne = 24;
+    if (mesh.points.empty()) return 0;
+    const BoundingBox box = boundingBox(mesh);
+    const Vec3 extent = box.maximum - box.minimum;
+    const double largest = std::max({extent.x, extent.y, extent.z});
+    if (!std::isfinite(largest) || !(largest > 0)) return 0;
+    const int exponent = std::ilogb(largest);
+    return std::abs(exponent) > kFarFromOne ? -exponent : 0;
+}
+
+/// A distance in double precision is known to 1e-15 of the coordinates or so.
+void requireProvable(const TriangleMesh& mesh, const SimplifyOptions& options) {
+    constexpr double kLeastPart = 1e-12;
+    if (!options.maxErrorMm || mesh.points.empty()) return;
+    const BoundingBox box = boundingBox(mesh);
+    if (*options.maxErrorMm < kLeastPart * norm(box.maximum - box.minimum)) {
+        throw InvalidInput(
+            "simplify: maxErrorMm is less than 1e-12 of the mesh's diagonal; rounding of "
+            "coordinates is as large");
+    }
+}
+
+Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& options) {
+    requireProvable(mesh, options);
     detail::MeshParts parts = detail::takeApart(mesh, options.keepBorders);
     detail::AdaptiveResult made = detail::simplifyWithin(
-        detail::MeshSurface(mesh, parts, options.maxErrorMm), aims, options.progress);
+        detail::MeshSurface(mesh, parts, options.maxErrorMm), aimsOf(options), options.progress);
     Simplified result;
     result.mesh = std::move(made.mesh);
-    if (!mesh.normals.empty()) result.mesh.normals = normalsFrom(mesh, result.mesh);
+    if (!mesh.normals.empty()) {
+        result.mesh.normals = normalsFrom(mesh, result.mesh, *parts.tree);
+    }
     SimplifyStatistics& statistics = result.statistics;
     statistics.degenerateTriangles = parts.degenerate;
     statistics.duplicateTriangles = parts.duplicate;
@@ -93,6 +125,35 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
     }
     statistics.errorBoundMm = made.errorBoundMm;
     statistics.wantedTriangles = made.wantedTriangles;
+    return result;
+}
+
+}  // namespace
+
+std::vector<SurfacePoint> nearestPoints(const TriangleMesh& mesh, const TriangleMesh& onto) {
+    if (onto.triangles.empty()) throw InvalidInput("nearestPoints: the surface has no triangle");
+    return nearestPoints(mesh, onto, AabbTree(onto));
+}
+
+Simplified simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
+    const AdaptiveOptions aims = aimsOf(options);
+    detail::requireInRange(aims, "simplify");
+    if (!aims.maxErrorMm && !aims.maxTriangles && !aims.reduction) {
+        throw InvalidInput("simplify: neither maxErrorMm nor maxTriangles nor reduction is set");
+    }
+    const int exponent = exponentTowardsOne(mesh);
+    if (exponent == 0) return simplifyNearOne(mesh, options);
+    TriangleMesh scaled = mesh;
+    scale(scaled, exponent);
+    SimplifyOptions scaledOptions = options;
+    if (options.maxErrorMm) {
+        constexpr double kLeast = std::numeric_limits<double>::min(), kBeyondAll = 1e6;
+        scaledOptions.maxErrorMm =
+            std::clamp(std::ldexp(*options.maxErrorMm, exponent), kLeast, kBeyondAll);
+    }
+    Simplified result = simplifyNearOne(scaled, scaledOptions);
+    scale(result.mesh, -exponent);
+    result.statistics.errorBoundMm = std::ldexp(result.statistics.errorBoundMm, -exponent);
     return result;
 }
 

@@ -272,7 +272,7 @@ TEST(Simplify, RefusesWhatIsNoMesh) {
 TEST(Simplify, DoesNotDependOnTheUnit) {
     const TriangleMesh inMm = torusMesh(80, 40, 30, 10);
     const Simplified expected = simplify(inMm, within(0.25));
-    for (const int power : {-30, 30}) {  // about a billionth, and a billion
+    for (const int power : {-300, -30, 30, 300}) {
         TriangleMesh scaled = inMm;
         for (Vec3& p : scaled.points) p = std::ldexp(1.0, power) * p;
         const Simplified result = simplify(scaled, within(std::ldexp(0.25, power)));
@@ -280,6 +280,34 @@ TEST(Simplify, DoesNotDependOnTheUnit) {
         EXPECT_EQ(result.statistics.errorBoundMm,
                   std::ldexp(expected.statistics.errorBoundMm, power));
     }
+}
+
+TEST(Simplify, TakesBoundsLargerAndSmallerThanAllThereIs) {
+    const TriangleMesh sphere = icosphere(3, {}, 10);
+    EXPECT_THROW(simplify(sphere, within(1e-300)), InvalidInput);
+    for (const double bound : {1e300, 1e-10}) {
+        const Simplified result = simplify(sphere, within(bound));
+        expectSound(result.mesh);
+        EXPECT_EQ(checkTopology(result.mesh).components.size(), 1U);
+    }
+    TriangleMesh beyondAll = sphere;
+    for (Vec3& p : beyondAll.points) p = 1.7e307 * p;
+    EXPECT_THROW(simplify(beyondAll, within(1)), InvalidInput);
+}
+
+TEST(Simplify, GivesACountUpThatNoDistanceLeadsTo) {
+    // most triangles cross others, and stay
+    TriangleMesh mesh = icosphere(4, {}, 10);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> push(-0.6, 0.6);
+    for (Vec3& p : mesh.points) p = p + Vec3{push(random), push(random), push(random)};
+    mesh.normals = {};
+    const Simplified result = simplify(mesh, downTo(100));
+    EXPECT_GT(result.mesh.triangles.size(), 100U);
+    EXPECT_EQ(result.statistics.wantedTriangles, 100);
+    EXPECT_EQ(crossingOf(result.mesh), crossingOf(mesh));
+    expectBoundHolds(mesh, result);
+    EXPECT_LT(result.statistics.errorBoundMm, 10);  // not as far as the mesh is wide
 }
 
 TEST(Simplify, WorksFarFromTheOrigin) {

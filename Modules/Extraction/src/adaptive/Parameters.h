@@ -47,6 +47,10 @@ inline constexpr std::array kBoundCosts{3e-3, 1.8e-2, 0.108, 0.648, 3.888};
 /// The surface that later runs start from: costs below this part of the square of the allowed
 /// distance, distances below this part of it.
 inline constexpr double kHalfwayCost = 2, kHalfwayDistance = 0.25;
+/// A larger distance helped towards a count when it leaves less than this part of the triangles
+/// that are still too many; after so many in a row that did not, the count is given up.
+inline constexpr double kHelped = 0.95;
+inline constexpr int kMostHelpless = 3;
 /// Limit of cost after the allowed distance has grown on the way to a count.
 inline constexpr double kCostAfterDistance = 0.01;
 /// A round that leaves more than this part of the triangles was hardly worth it.
@@ -89,6 +93,8 @@ inline constexpr float kOtherSheetCosine = 0.3F;
 /// Triangles for each voxel's face of surface, by which a mesh gets voxels: marching cubes' on
 /// scans. Of them, the widest that they are made for the bound's sake.
 inline constexpr double kTrianglesPerFace = 3, kWidestVoxel = 3;
+/// Of the mesh's extent: below it places could not be numbered in 64 bits.
+inline constexpr double kLeastVoxel = 1e-15;
 
 // ---- Collapses (PatchSimplifier, ChangedStar, ErrorTracker, CrossingGuard) ----
 

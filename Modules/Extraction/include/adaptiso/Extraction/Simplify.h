@@ -16,7 +16,7 @@ namespace adaptiso {
 /// scale.
 struct SimplifyOptions {
     /// Two-sided: no point of the input is farther from the result, no point of the result farther
-    /// from the input. \pre > 0
+    /// from the input. \pre > 0, at least 1e-12 of the mesh's diagonal
     std::optional<double> maxErrorMm;
     std::optional<std::int64_t> maxTriangles;  ///< as accurate as can be at this count. \pre >= 0
     /// Share of the triangles to drop, 0 to 1: a count by another name.

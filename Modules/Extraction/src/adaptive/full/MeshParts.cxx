@@ -28,6 +28,10 @@ void requireSimplifiable(const TriangleMesh& mesh) {
         if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
         refuse("vertex " + std::to_string(v) + " has a coordinate that is not finite");
     }
+    if (!mesh.points.empty()) {
+        const BoundingBox box = boundingBox(mesh);
+        if (!std::isfinite(norm(box.maximum - box.minimum))) refuse("the mesh is too large");
+    }
     const auto points = static_cast<VertexId>(mesh.points.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         for (const VertexId v : mesh.triangles[t]) {

@@ -18,15 +18,18 @@ constexpr std::int64_t kPiece = 1 << 12;
 /// The side of a voxel of the volume that such triangles would come from: marching cubes makes
 /// about three triangles for each voxel's face that the surface covers.
 double voxelOf(const MeshParts& parts, std::optional<double> boundMm) {
-    std::vector<float> areas(parts.triangles.size());
+    std::vector<double> areas(parts.triangles.size());
     for (std::size_t t = 0; t < areas.size(); ++t) {
         const MeshParts::Triangle& c = parts.triangles[t];
-        areas[t] = static_cast<float>(
-            0.5 * norm(areaVector2(parts.points[c[0]], parts.points[c[1]], parts.points[c[2]])));
+        areas[t] =
+            0.5 * norm(areaVector2(parts.points[c[0]], parts.points[c[1]], parts.points[c[2]]));
     }
     const auto middle = areas.begin() + std::ssize(areas) / 2;
     std::nth_element(areas.begin(), middle, areas.end());
-    const double voxel = std::sqrt(kTrianglesPerFace * static_cast<double>(*middle));
+    CornerBox box{parts.points[0], parts.points[0]};
+    for (const Vec3& p : parts.points) box.add(p);
+    const double voxel =
+        std::max(std::sqrt(kTrianglesPerFace * *middle), kLeastVoxel * norm(box.high - box.low));
     // single sheets are looked for within a voxel, and serve distances of half of it
     return std::clamp(boundMm.value_or(0) / kSheetDistance, voxel, kWidestVoxel * voxel);
 }

@@ -140,7 +140,8 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
         limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
         surface = full_.firstRound(tight_, limits_, nullptr);
     }
-    for (;;) {
+    for (int helpless = 0; helpless < kMostHelpless;) {
+        const std::int64_t above = surface.triangleCount() - target;
         for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
             const std::int64_t before = surface.triangleCount();
             cost *= costStep(before, target);
@@ -149,6 +150,9 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
             if (cost > kLastCost) idle = surface.triangleCount() == before ? idle + 1 : 0;
         }
         if (surface.triangleCount() <= target || limits_.maxDistanceMm >= farthestMm) break;
+        const bool helped = static_cast<double>(surface.triangleCount() - target) <
+                            kHelped * static_cast<double>(above);
+        helpless = helped ? 0 : helpless + 1;
         goFarther(surface);
         cost = kCostAfterDistance;
     }
