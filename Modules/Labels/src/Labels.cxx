@@ -147,7 +147,8 @@ LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options)
     LabelResult result = makeWalls(grid, volume.geometry(), options);
     const auto wanted = simplification(options, volume.geometry(), result.statistics.fullTriangles);
     if (wanted) {
-        SimplifiedWalls walls = simplifyWalls(result.complex, volume.geometry(), *wanted);
+        SimplifiedWalls walls =
+            simplifyWalls(std::move(result.complex), volume.geometry(), *wanted);
         result.complex = std::move(walls.complex);
         result.statistics.errorBoundMm = walls.errorBoundMm;
         result.statistics.wantedTriangles = wanted->maxTriangles;

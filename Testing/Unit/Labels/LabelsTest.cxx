@@ -244,6 +244,46 @@ TEST(ExtractLabels, HoldsForRoundWallsThatMeet) {
     }
 }
 
+/// Cells of random sites, in a long map: it is simplified in several cubes side by side.
+Map longCells(const ImageGeometry& geometry, std::uint64_t seed) {
+    std::vector<Vec3> sites(60);
+    for (Vec3& site : sites) {
+        Vec3 index;
+        for (int axis = 0; axis < 3; ++axis) {
+            index[axis] = static_cast<double>(nextRandom(seed) %
+                                              static_cast<std::uint64_t>(geometry.size[axis]));
+        }
+        site = geometry.toPhysical(index);
+    }
+    return Map::inSpace(geometry, [&](const Vec3& p) {
+        const auto nearest = std::ranges::min_element(
+            sites, {}, [&](const Vec3& site) { return squaredNorm(p - site); });
+        return static_cast<Label>(nearest - sites.begin()) % 9;
+    });
+}
+
+TEST(ExtractLabels, HoldsWhereCubesThatAreSimplifiedSideBySideMeet) {
+    for (const double maxErrorMm : {0.05, 0.15, 0.6}) {
+        LabelOptions options;
+        options.maxErrorMm = maxErrorMm;
+        EXPECT_TRUE(keepsPromises(longCells(centredGeometry({200, 14, 13}), 3), options));
+        EXPECT_TRUE(
+            keepsPromises(longCells(shearedGeometry({9, 150, 12}, {1, 1.2, 3}), 4), options));
+        EXPECT_TRUE(
+            keepsPromises(noise(mirroredGeometry({4, 3, 170}, {0.9, 0.9, 4}), 4, 5), options));
+    }
+}
+
+TEST(ExtractLabels, LeavesNoTrianglesWhereCubesMeet) {
+    // a slab from end to end: its walls need as many triangles in three cubes as in one
+    const auto triangles = [](std::int64_t length) {
+        const Map map(centredGeometry({length, 20, 12}),
+                      [](const Index3& i) { return i[2] < 6 ? 1 : 2; });
+        return extractLabels(map.view(), {}).complex.triangles.size();
+    };
+    EXPECT_LT(triangles(190), triangles(60) + 120);
+}
+
 // Bars of the measures: what a smooth wall through the labels of a ball can be expected to have.
 // The voxels themselves are 0.3 % (radius 10) and less away from the ball's volume.
 TEST(ExtractLabels, GivesBallsTheirVolumeAndArea) {
@@ -405,8 +445,8 @@ TEST(ExtractLabels, GivesChosenRegionsTheWallsOfTheWholeMap) {
 
 TEST(ExtractLabels, GivesTheSameBytesForAnyNumberOfThreads) {
     const Map map = noise(obliqueGeometry({20, 16, 18}, {1, 1.5, 2}), 4, 3);
-    const Map balls = halfBalls(15);
-    for (const Map* of : {&map, &balls}) {
+    const Map balls = halfBalls(15), cells = longCells(centredGeometry({200, 14, 13}), 8);
+    for (const Map* of : {&map, &balls, &cells}) {
         const LabelComplex many = extractLabels(of->view(), {}).complex;
         const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
         EXPECT_EQ(extractLabels(of->view(), {}).complex, many);
