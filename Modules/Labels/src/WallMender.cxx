@@ -208,7 +208,9 @@ void WallMender::forgetChanged() {
     }
     near_.assign(mesh_, gone, boundMm_);
     for (Id t = 0; t < mesh_.fullTriangles(); ++t) {
-        if (isFullProved_[t] != 0 && near_.isOneNear(t)) isFullProved_[t] = 0;
+        if (isFullProved_[t] == 0 || mesh_.isTriangleAlive(t)) continue;
+        const bool isGoneNow = t >= mesh_.firstTriangle() && isLast_[t] != 0;
+        if (isGoneNow || near_.isOneNear(t)) isFullProved_[t] = 0;
     }
     isProved_.resize(mesh_.triangleCount(), 0);
     isLast_.resize(mesh_.triangleCount(), 0);
@@ -234,10 +236,11 @@ void WallMender::blameNear(const WallPlace& place) {
 
 /// The full walls near triangles of a mesh.
 WallSurface WallMender::fullNear(const std::vector<Id>& triangles) {
-    near_.assign(mesh_, triangles, limitMm_ + collapser_.voxelMm());
+    const bool areMany = 8 * triangles.size() > mesh_.fullTriangles();
+    if (!areMany) near_.assign(mesh_, triangles, limitMm_ + collapser_.voxelMm());
     std::vector<Id> numbers;
     for (Id t = 0; t < mesh_.fullTriangles(); ++t) {
-        if (near_.isOneNear(t)) numbers.push_back(t);
+        if (areMany || near_.isOneNear(t)) numbers.push_back(t);
     }
     return {mesh_, std::move(numbers)};
 }
@@ -270,8 +273,10 @@ void WallMender::findBeyond() {
     }
     if (full.empty()) return;
     // of the walls only what is near those is asked
-    near_.assign(mesh_, full, limitMm_ + collapser_.voxelMm());
-    std::erase_if(alive, [&](Id t) { return !near_.isOneNear(t); });
+    if (4 * full.size() < mesh_.fullTriangles()) {
+        near_.assign(mesh_, full, limitMm_ + collapser_.voxelMm());
+        std::erase_if(alive, [&](Id t) { return !near_.isOneNear(t); });
+    }
     const WallSurface simple(mesh_, std::move(alive));
     const WallBound ofFull = proveNear(mesh_, full, starts, simple, limitMm_, mayGrow_);
     for (const Id t : full) isFullProved_[t] = 1;
