@@ -114,6 +114,11 @@ void declareWalls(CLI::App& app, LabelsOptions& options) {
               "The share F of the full resolution's triangles to drop, 0 to 1")
         ->type_name("F")
         ->group(kWalls);
+    addNumber(app, "--min-angle", options.minAngleDeg, {.least = 0, .most = 40, .unit = "degrees"},
+              "Make no angle below DEG (0 to 40), at the price of more triangles: for meshers "
+              "(default: 0)")
+        ->type_name("DEG")
+        ->group(kWalls);
 }
 
 void declareOutput(CLI::App& app, LabelsOptions& options) {

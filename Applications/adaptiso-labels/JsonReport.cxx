@@ -33,6 +33,7 @@ Json optionsJson(const LabelsOptions& options) {
             {"maxErrorMm", orNull(options.maxErrorMm)},
             {"maxTriangles", orNull(options.maxTriangles)},
             {"reduction", orNull(options.reduction)},
+            {"minAngleDeg", options.minAngleDeg},
             {"strict", options.common.isStrict}};
 }
 

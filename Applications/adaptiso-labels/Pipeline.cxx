@@ -125,6 +125,7 @@ LabelComplex extract(const VolumeView& map, LabelsRun& run, ProgressLine& progre
     extraction.maxErrorMm = options.maxErrorMm;
     extraction.maxTriangles = options.maxTriangles;
     extraction.reduction = options.reduction;
+    extraction.minAngleDeg = options.minAngleDeg;
     extraction.progress = progress.callback();
     if (!options.labels.empty()) {
         for (const Region& region : run.regions) extraction.labels.push_back(region.label);

@@ -29,6 +29,7 @@ struct LabelsOptions {
     std::optional<double> maxErrorMm;
     std::optional<std::int64_t> maxTriangles;
     std::optional<double> reduction;
+    double minAngleDeg = 0;
     std::filesystem::path output;  ///< a folder; empty: "<input>-labels" in the current one
     bool mayReplace = false;
     std::string format = ".vtp";           ///< of the regions' files, an extension

@@ -25,6 +25,7 @@ SimplifiedWalls simplifyWalls(LabelComplex&& full, const ImageGeometry& geometry
     WallAim aim;
     aim.limitMm = options.maxErrorMm.value_or(0.05 * h);
     aim.mayGrow = !options.maxErrorMm;
+    aim.minAngleDeg = options.minAngleDeg;
     aim.enough = options.maxTriangles.value_or(0);
     SimplifiedWalls walls;
     WholeWalls whole(std::move(full), geometry);

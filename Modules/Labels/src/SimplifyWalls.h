@@ -11,6 +11,7 @@ namespace adaptiso::detail {
 struct SimplifyOptions {
     std::optional<double> maxErrorMm;  ///< > 0
     std::optional<std::int64_t> maxTriangles;
+    double minAngleDeg = 0;  ///< no smaller one is made
     ProgressCallback progress;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "adaptiso/Core/AabbTree.h"
 
@@ -17,14 +18,26 @@ double squaredDistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
     return squaredNorm(p - a - t * e);
 }
 
+/// Of a triangle's smallest angle.
+double largestCosine(const std::array<Vec3, 3>& c) {
+    double largest = -1;
+    for (int n = 0; n < 3; ++n) {
+        const Vec3 a = c[(n + 1) % 3] - c[n], b = c[(n + 2) % 3] - c[n];
+        largest = std::max(largest, dot(a, b) / std::sqrt(squaredNorm(a) * squaredNorm(b)));
+    }
+    return largest;
+}
+
 }  // namespace
 
-WallCollapser::WallCollapser(const WallPatch& patch, const ImageGeometry& geometry)
+WallCollapser::WallCollapser(const WallPatch& patch, const ImageGeometry& geometry,
+                             double minAngleDeg)
     : patch_(patch),
       mesh_(patch),
       centres_(geometry),
       firstNew_(static_cast<Id>(mesh_.pointCount())),
       voxelMm_(std::cbrt(geometry.voxelVolumeMm3())),
+      largestCosine_(std::cos(minAngleDeg * std::numbers::pi / 180)),
       quadrics_(mesh_.pointCount()),
       origin_(mesh_.pointCount(), kNone),
       tried_(mesh_.pointCount(), -1),
@@ -234,6 +247,7 @@ void WallCollapser::keepVolume(Id u, Id v, Plan& plan) const {
 
 bool WallCollapser::keepsShape(Id u, Id v, const Vec3& point) const {
     constexpr double kLeastCosine = 0.3, kLeastRoundness = 0.06;
+    double sharpest = -1;
     for (std::size_t i = 0; i < kept_; ++i) {
         const auto& t = mesh_.triangle(star_[i]).v;
         auto c = mesh_.cornersOf(star_[i]);
@@ -249,8 +263,11 @@ bool WallCollapser::keepsShape(Id u, Id v, const Vec3& point) const {
         const Vec3 now = areaVector2(c[0], c[1], c[2]);
         if (!(dot(before, now) > kLeastCosine * norm(before) * norm(now))) return false;
         if (!(roundness(now) > std::min(kLeastRoundness, 0.7 * was))) return false;
+        if (largestCosine_ < 1) sharpest = std::max(sharpest, largestCosine(c));
     }
-    return true;
+    return sharpest <= largestCosine_ || std::any_of(star_.begin(), star_.end(), [&](Id t) {
+               return largestCosine(mesh_.cornersOf(t)) >= sharpest;
+           });
 }
 
 bool WallCollapser::sweepsCentre(const Vec3& point) const {

@@ -20,7 +20,7 @@ public:
     static constexpr Id kNone = WallMesh::kNone;
 
     /// \param patch  must live as long
-    WallCollapser(const WallPatch& patch, const ImageGeometry& geometry);
+    WallCollapser(const WallPatch& patch, const ImageGeometry& geometry, double minAngleDeg);
 
     const WallMesh& mesh() const { return mesh_; }
     double voxelMm() const { return voxelMm_; }
@@ -104,6 +104,7 @@ private:
     SweptCentres centres_;
     Id firstNew_;  ///< vertex that a collapse made
     double voxelMm_;
+    double largestCosine_;  ///< of an angle that may be made
     std::vector<Quadric> quadrics_;
     std::vector<Id> origin_;         ///< of each vertex, one of the full walls near it
     std::vector<double> tried_;      ///< of each vertex: its edges up to this cost did not collapse

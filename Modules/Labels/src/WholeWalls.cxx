@@ -301,7 +301,7 @@ WholeWalls::Made WholeWalls::simplifyOne(const CubeCut& cut, const Lists& lists,
     if (lists.own.of(cube).empty()) return made;
     Numbers numbers;
     const WallPatch patch = patchOf(cut, lists, cube, numbers);
-    WallCollapser collapser(patch, geometry_);
+    WallCollapser collapser(patch, geometry_, aim.minAngleDeg);
     made.boundMm = simplifyPatch(collapser, aim);
     const WallMesh& mesh = collapser.mesh();
     const Id firstPoint = mesh.firstPoint(), firstTriangle = mesh.firstTriangle();

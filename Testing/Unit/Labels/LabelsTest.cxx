@@ -423,6 +423,32 @@ TEST(ExtractLabels, ReachesAWantedCountAndStatesItsDistance) {
     EXPECT_EQ(extractLabels(map.view(), options).complex, full.complex);
 }
 
+/// Triangles with an angle below one.
+std::int64_t countSharper(const LabelComplex& complex, double degrees) {
+    const double cosine = std::cos(degrees * std::numbers::pi / 180);
+    return std::ranges::count_if(complex.triangles, [&](const Triangle& t) {
+        for (int c = 0; c < 3; ++c) {
+            const Vec3 at = complex.points[t[c]], a = complex.points[t[(c + 1) % 3]] - at,
+                       b = complex.points[t[(c + 2) % 3]] - at;
+            if (dot(a, b) > cosine * norm(a) * norm(b)) return true;
+        }
+        return false;
+    });
+}
+
+TEST(ExtractLabels, MakesNoAngleBelowTheOneAskedFor) {
+    const Map map = halfBalls(20);
+    LabelOptions options;
+    const LabelComplex any = extractLabels(map.view(), options).complex;
+    EXPECT_GT(countSharper(any, 20), 0);
+    options.minAngleDeg = 20;
+    const LabelComplex round = extractLabels(map.view(), options).complex;
+    EXPECT_EQ(countSharper(round, 19.999), 0);
+    EXPECT_GE(round.triangles.size(), any.triangles.size());
+    EXPECT_LT(round.triangles.size(), 2 * any.triangles.size());
+    EXPECT_TRUE(keepsPromises(map, options));
+}
+
 TEST(ExtractLabels, GivesChosenRegionsTheWallsOfTheWholeMap) {
     const Map map = noise(obliqueGeometry({9, 8, 7}, {1, 1.5, 2}), 5, 77);
     const LabelComplex all = extractLabels(map.view(), {}).complex;
@@ -495,6 +521,8 @@ TEST(ExtractLabels, RefusesOptionsThatBreakTheirRules) {
     refuses([](LabelOptions& o) { o.maxErrorMm = std::nan(""); });
     refuses([](LabelOptions& o) { o.maxTriangles = -1; });
     refuses([](LabelOptions& o) { o.reduction = 1.5; });
+    refuses([](LabelOptions& o) { o.minAngleDeg = 41; });
+    refuses([](LabelOptions& o) { o.minAngleDeg = std::nan(""); });
     refuses([](LabelOptions& o) { o.labels = {2}; });
     refuses([](LabelOptions& o) { o.labels = {1, 1}; });
     refuses([](LabelOptions& o) { o.labels = {0}; });
