@@ -298,7 +298,7 @@ void WholeWalls::addFull(const Lists& lists, std::int64_t cube, WallPatch& patch
 WholeWalls::Made WholeWalls::simplifyOne(const CubeCut& cut, const Lists& lists, std::int64_t cube,
                                          const WallAim& aim) const {
     Made made;
-    if (lists.own.of(cube).empty()) return made;
+    if (lists.own.of(cube).empty() && lists.beside.of(cube).empty()) return made;
     Numbers numbers;
     const WallPatch patch = patchOf(cut, lists, cube, numbers);
     WallCollapser collapser(patch, geometry_, aim.minAngleDeg);

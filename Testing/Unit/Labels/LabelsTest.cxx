@@ -274,6 +274,16 @@ TEST(ExtractLabels, HoldsWhereCubesThatAreSimplifiedSideBySideMeet) {
     }
 }
 
+TEST(ExtractLabels, HoldsWhereARegionOnlyReachesIntoACube) {
+    // all of the triangles that a cube has may reach out of it
+    for (std::int64_t length = 126; length < 134; ++length) {
+        const Map map(centredGeometry({length, length, 3}), [&](const Index3& i) {
+            return i[0] >= 55 && i[0] < 65 && i[1] >= 55 && i[1] < 65 && i[2] == 1 ? 1 : 0;
+        });
+        ASSERT_TRUE(keepsPromises(map)) << length;
+    }
+}
+
 TEST(ExtractLabels, LeavesNoTrianglesWhereCubesMeet) {
     // a slab from end to end: its walls need as many triangles in three cubes as in one
     const auto triangles = [](std::int64_t length) {
