@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "Common/Numbers.h"
+#include "LayerFiles.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/LabelFiles.h"
@@ -89,6 +90,7 @@ bool isOwnFile(std::string_view name) {
     constexpr std::string_view kRegions = "regions/", kAll = "all/";
     if (name.starts_with(kRegions)) return isRegionFile(name.substr(kRegions.size()), false);
     if (name.starts_with(kAll)) return isRegionFile(name.substr(kAll.size()), true);
+    if (isLayerFile(name)) return true;
     constexpr std::string_view kNames[] = {"walls.vtp",     "all.vtm",     "all.surf.gii",
                                            "all.label.gii", "regions.tsv", "report.json"};
     return std::ranges::find(kNames, name) != std::end(kNames);
@@ -153,6 +155,7 @@ void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, Lab
                 for (const fs::path& path : paths) writeMesh(surface, path, writeOptions(run));
             });
         }
+        if (run.options.writesLayers) writeLayers(complex, run, folder);
         writeMultiBlock(blocks, folder.place("all.vtm"));
         folder.writeText("regions.tsv", regionsTable(run));
         // VTK makes ready what all its writers share when the first of them is used: by one thread

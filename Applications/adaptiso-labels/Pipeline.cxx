@@ -119,6 +119,25 @@ Volume readMap(LabelsRun& run, LabelCensus& census) {
     return mergeLabels(std::move(read.volume), options.merges);
 }
 
+/// \throws InvalidInput  a region has no conductivity, or the map has no such region
+void checkConductivities(const LabelsRun& run) {
+    const std::map<Label, double>& given = run.options.conductivities;
+    if (given.empty()) return;
+    const std::string file = baseName(run.options.input);
+    for (const Region& region : run.regions) {
+        if (!given.contains(region.label)) {
+            throw InvalidInput(file + ": " + run.nameOf(region.label) +
+                               " has no conductivity in --conductivities");
+        }
+    }
+    for (const auto& [label, value] : given) {
+        if (run.find(label) == nullptr) {
+            throw InvalidInput(file + ": has no region " + std::to_string(label) +
+                               ", which --conductivities names");
+        }
+    }
+}
+
 LabelComplex extract(const VolumeView& map, LabelsRun& run, ProgressLine& progress) {
     const LabelsOptions& options = run.options;
     LabelOptions extraction;
@@ -203,6 +222,7 @@ int runLabels(const LabelsOptions& options) {
     const Volume volume = run.timer.time(kRead, [&] { return readMap(run, census); });
     const VolumeView& map = volume.view();
     run.timer.time(kRead, [&] { nameRegions(chooseLabels(census, options), census, run); });
+    checkConductivities(run);
     progress.clear();
     printWarnings(kProgram, options.common, run.warnings);
     const std::size_t told = run.warnings.size();

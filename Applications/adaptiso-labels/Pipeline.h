@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,8 @@ struct LabelsOptions {
     std::optional<std::int64_t> maxTriangles;
     std::optional<double> reduction;
     double minAngleDeg = 0;
+    bool writesLayers = false;               ///< the walls for OpenMEEG
+    std::map<Label, double> conductivities;  ///< of regions, S/m; empty: none are written
     std::filesystem::path output;  ///< a folder; empty: "<input>-labels" in the current one
     bool mayReplace = false;
     std::string format = ".vtp";           ///< of the regions' files, an extension
