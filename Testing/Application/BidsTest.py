@@ -158,6 +158,18 @@ class Participants(BidsTest):
                 self.assertEqual(done.returncode, code, done.stdout + done.stderr)
                 self.assertRegex(done.stdout, "(?m)^done    .*sub-02_T1w.nii")
 
+    def test_a_run_that_fails_leaves_the_surface_that_is_as_it_should_be(self):
+        what = ("--surfaces", "iso=100.5,iso=60.5", "--no-pictures")
+        self.bids(OK, "participant", "--participant-label", "01", "02", what=what)
+        anat = self.path("out/sub-01/anat")
+        (anat / "sub-01_desc-iso60p5_mesh.vtp").unlink()
+        before = (anat / "sub-01_desc-iso100p5_mesh.vtp").read_bytes()
+        done = subprocess.run([self.wrapped("exit 4"), "study", "out", "participant",
+                               "--participant-label", "01", "02", *what], cwd=self.folder,
+                              text=True, capture_output=True, timeout=300)
+        self.assertEqual(done.returncode, 4, done.stdout + done.stderr)
+        self.assertEqual((anat / "sub-01_desc-iso100p5_mesh.vtp").read_bytes(), before)
+
     def test_electrodes_are_inputs_too(self):
         what = ("--bem", "--bem-options", "vertices=162,162,162,electrodes=cap.tsv", "--no-pictures")
         self.path("cap.tsv").write_text("name\tx\ty\tz\nCz\t0\t0\t9\n")
