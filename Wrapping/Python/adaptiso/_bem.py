@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, count, flag, is_path, number, path as checked_path,
+from ._arguments import (Progress, count, flag, is_path, listed, number, path as checked_path,
                          progress as checked_progress, shown, threads as checked_threads, word)
 from ._images import Samples, base_name, read_only, samples_of
 from ._mesh import Mesh, load
@@ -445,7 +445,7 @@ def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, probabi
         if len(source.surfaces) != layers:
             raise Error(f"surfaces: are {len(source.surfaces)}, must be {layers}, from inside out")
         return source
-    images = _listed(kind, probabilities) if kind == "probabilities" else [given[kind]]
+    images = listed(kind, probabilities) if kind == "probabilities" else [given[kind]]
     if not images:
         raise Error("probabilities: no map is given; must be grey, white, CSF, bone, soft tissue")
     source.images.extend(_image(kind, image, affine, source) for image in images)
@@ -472,7 +472,7 @@ def _image(name: str, image: Any, affine: Any, source: _Source) -> Samples:
 def _surfaces(name: str, surfaces: Any, source: _Source) -> List[Mesh]:
     role = "surface" if name == "surfaces" else "pial surface"
     meshes = []
-    for surface in _listed(name, surfaces):
+    for surface in listed(name, surfaces):
         file = base_name(checked_path(name, surface)) if is_path(surface) else ""
         source.inputs.append([file, role, "file" if file else type(surface).__name__])
         if isinstance(surface, Mesh):
@@ -489,12 +489,6 @@ def _surfaces(name: str, surfaces: Any, source: _Source) -> List[Mesh]:
     if len({mesh.frame for mesh in meshes}) > 1:
         raise Error(f"{name}: are not in one frame; load those in tkras with volume=")
     return meshes
-
-
-def _listed(name: str, value: Any) -> List[Any]:
-    if is_path(value) or isinstance(value, (np.ndarray, Mesh)) or not hasattr(value, "__iter__"):
-        raise Error(f"{name} {shown(value)}: must be a sequence")
-    return list(value)
 
 
 def _length(name: str, value: Any, most: float) -> float:
@@ -514,7 +508,7 @@ def _layers(layers: Any, meg: Any) -> int:
 
 def _conductivities(value: Any, layers: int) -> Tuple[float, ...]:
     """Of brain, CSF, skull, scalp. \\raises Error"""
-    values = [number("conductivity", part) for part in _listed("conductivity", value)]
+    values = [number("conductivity", part) for part in listed("conductivity", value)]
     if len(values) == 3:
         values.insert(1, _CSF)
     elif len(values) != 4:
@@ -542,10 +536,7 @@ def _point(name: str, value: Any) -> Point:
 
 
 def _exactly(size: int, name: str, value: Any) -> List[Any]:
-    try:
-        parts = list(value)
-    except TypeError:
-        parts = []
+    parts = listed(name, value, f"{size} numbers")
     if len(parts) != size:
         raise Error(f"{name} {shown(value)}: must be {size} numbers")
     return parts
@@ -588,7 +579,7 @@ def _electrodes(electrodes: Any, frame: Any, montage: Any, landmarks: Any,
 def _vertices(value: Any, layers: int) -> List[int]:
     if value is None:
         return []
-    parts = _listed("vertices", value) if hasattr(value, "__iter__") else [value]
+    parts = listed("vertices", value) if hasattr(value, "__iter__") else [value]
     if len(parts) not in (1, layers):
         raise Error(f"vertices {shown(value)}: must be one number, or {layers}")
     return [count("vertices", part, 42, 200000) for part in parts]
@@ -597,7 +588,7 @@ def _vertices(value: Any, layers: int) -> List[int]:
 def _edge_length(value: Any) -> Optional[Tuple[float, float]]:
     if value is None:
         return None
-    parts = [number("edge_length", part) for part in _listed("edge_length", value)]
+    parts = [number("edge_length", part) for part in listed("edge_length", value)]
     if len(parts) != 2 or not 0 < parts[0] <= parts[1]:
         raise Error(f"edge_length {shown(value)}: must be two lengths in mm, 0 < shortest <= "
                     "longest")
@@ -634,7 +625,8 @@ def _tissues(value: Any, is_needed: bool, layers: int) -> Tuple[str, Dict[str, L
     needed = {1: ("brain",), 3: ("brain", "skull", "scalp"), 4: TISSUES}[layers]
     for name in TISSUES:
         labels = value.get(name, [])
-        labels = list(labels) if hasattr(labels, "__iter__") else [labels]
+        labels = (listed(f"tissues, {name}", labels) if hasattr(labels, "__iter__")
+                  else [labels])
         lists[name] = [count(f"tissues, {name}", label, -2**63, 2**63 - 1) for label in labels]
         if not lists[name] and name in needed:
             raise Error(f"tissues: {name} has no label")

@@ -103,18 +103,20 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
         raise Error(f"series {shown(series)}: must be a number or a SeriesInstanceUID")
     numbers = {key: None if value is None else count(key, value) for key, value in (
         ("volume_index", volume_index), ("level", level), ("channel", channel), ("time", time))}
-    flags = {"all_chunks": flag("all_chunks", all_chunks),
-             "resample_slices": flag("resample_slices", resample_slices)}
+    whole, resample = flag("all_chunks", all_chunks), flag("resample_slices", resample_slices)
+    is_of_zarr = whole or any(numbers[key] is not None for key in ("level", "channel", "time"))
     if not hasattr(_adaptiso, "read_image"):
-        others = [series, level, channel, time, all_chunks or None, resample_slices or None]
         return _read_by_nibabel(name, numbers["volume_index"],
-                                any(other is not None for other in others))
-    if any(numbers[key] is not None for key in ("level", "channel", "time")) or all_chunks:
-        if not os.path.isdir(name):
-            raise Error(f"{name}: level, channel, time and all_chunks are for a Zarr, a folder")
+                                series is not None or resample or is_of_zarr)
+    no_zarr = f"{name}: is no Zarr, which level, channel, time and all_chunks are for"
+    if is_of_zarr and not os.path.isdir(name):
+        raise Error(no_zarr)
     with _reading:
         array, affine, kind, warnings = _adaptiso.read_image(
-            name, None if series is None else str(series), **numbers, **flags)
+            name, None if series is None else str(series), **numbers, all_chunks=whole,
+            resample_slices=resample)
+    if is_of_zarr and "Zarr" not in kind:
+        raise Error(no_zarr)
     for warning in warnings:
         logger.warning("%s: %s", base_name(name), warning)
     return Image(array, affine, warnings, kind)

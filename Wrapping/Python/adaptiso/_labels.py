@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, count, is_path, optional_number, path as checked_path,
+from ._arguments import (Progress, count, is_path, listed, optional_number, path as checked_path,
                          progress as checked_progress, shown, threads as checked_threads, word)
 from ._images import base_name, read_only, samples_of
 from ._mesh import FRAMES, Faces, Mesh, Vertices, save_whole
@@ -225,8 +225,9 @@ class _Names:
         """What `label` is called, and its colour."""
         name, color = self.table.get(label, ("", None))
         if color is None:
-            color = _adaptiso.label_color(label)
-        return name or f"region {label}", (color[0], color[1], color[2])
+            red, green, blue = _adaptiso.label_color(label)
+            color = (red, green, blue)
+        return name or f"region {label}", color
 
 
 def labels(image: Any, *, max_error: Optional[float] = None, triangles: Optional[int] = None,
@@ -310,9 +311,8 @@ def labels(image: Any, *, max_error: Optional[float] = None, triangles: Optional
 def _chosen(labels: Any) -> List[int]:
     if labels is None:
         return []
-    if isinstance(labels, (str, bytes)) or not hasattr(labels, "__iter__"):
-        raise Error(f"labels {shown(labels)}: must be a sequence of whole numbers")
-    chosen = sorted({count("labels", label, -_MOST, _MOST) for label in labels})
+    parts = listed("labels", labels, "a sequence of whole numbers")
+    chosen = sorted({count("labels", label, -_MOST, _MOST) for label in parts})
     if not chosen or 0 in chosen:
         raise Error(f"labels {shown(labels)}: must be one or more, without 0, the outside")
     return chosen
