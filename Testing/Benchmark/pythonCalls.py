@@ -66,26 +66,35 @@ PEAK = r"""
 import re, sys, adaptiso, numpy as np
 def peak():
     return int(re.search(r"VmHWM:\s+(\d+) kB", open("/proc/self/status").read())[1]) * 1024
-order, method = sys.argv[1:]
-index = np.indices((256, 256, 256), dtype=np.float32, sparse=True)
-volume = np.array(-sum((x - 127.5) ** 2 for x in index), np.float32, order=order)
+order, method, side, dtype = sys.argv[1:]
+side = int(side)
+index = np.indices((side,) * 3, dtype=np.float32, sparse=True)
+# the distance in voxels, up to 220 of them
+volume = np.empty((side,) * 3, dtype, order=order)
+for k in range(side):
+    volume[:, :, k] = 220 - np.sqrt(sum((x[:, :, min(k, x.shape[2] - 1)] - (side - 1) / 2) ** 2 for x in index)) * 220 / side
 adaptiso.surface(np.asfortranarray(volume[:8, :8, :8]), volume[4, 4, 4], threads=1)
 open("/proc/self/clear_refs", "w").write("5")
 before = peak()
-mesh = adaptiso.surface(volume, -(60 ** 2.0), method=method, threads=1)
+mesh = adaptiso.surface(volume, 220 - 220 * 60 / 256 + 0.2, method=method, threads=1)
 print(peak() - before, mesh._data.bytes, volume.nbytes)
 """
 
 
 def peak_memory():
-    for method in ("mc", "boxes", "adaptive"):
-        for order in "FC":
-            done = subprocess.run([sys.executable, "-c", PEAK, order, method], text=True,
-                                  check=True, capture_output=True)
-            taken, mesh, volume = (int(number) / 1e6 for number in done.stdout.split())
-            print(f"peak of a call on 256^3 float32 ({volume:.0f} MB), {order} order, {method}: "
-                  f"{taken:.1f} MB above the volume, for a mesh of {mesh:.1f} MB "
-                  f"((volume + call) / (volume + mesh) = {(volume + taken) / (volume + mesh):.3f})")
+    """Of spheres of a quarter of the volume's width, each in a process of its own."""
+    for side, dtype, order, method in (
+            (256, "f4", "F", "mc"), (256, "f4", "C", "mc"), (256, "f4", "F", "boxes"),
+            (256, "f4", "F", "adaptive"), (256, "f4", "C", "adaptive"), (512, "f4", "F", "mc"),
+            (512, "f4", "F", "adaptive"), (640, "f4", "F", "adaptive"), (512, "u1", "F", "mc"),
+            (512, "u1", "F", "adaptive")):
+        done = subprocess.run([sys.executable, "-c", PEAK, order, method, str(side), dtype], text=True,
+                              check=True, capture_output=True)
+        taken, mesh, volume = (int(number) / 1e6 for number in done.stdout.split())
+        print(f"peak of a call on {side}^3 {dtype} ({volume:.0f} MB), {order} order, {method}: "
+              f"{taken:.1f} MB above the volume, for a mesh of {mesh:.1f} MB "
+              f"((volume + call) / (volume + mesh) = {(volume + taken) / (volume + mesh):.3f})",
+              flush=True)
 
 
 if __name__ == "__main__":
