@@ -31,22 +31,44 @@ def ball(n, center):
     return np.asfortranarray(-np.sqrt(sum((x - center) ** 2 for x in index)))
 
 
+def in_python(volume, level, method, repeats):
+    """Processor seconds of a call in its own thread, and of these outside of C++: medians. They are what
+    a call needs on a machine that does other things meanwhile too."""
+    made = adaptiso._adaptiso.make_surface
+    inside = []
+
+    def timed(*arguments, **options):
+        start = time.thread_time()
+        mesh = made(*arguments, **options)
+        inside.append(time.thread_time() - start)
+        return mesh
+
+    totals = []
+    adaptiso._adaptiso.make_surface = timed
+    try:
+        for _ in range(repeats):
+            start = time.thread_time()
+            adaptiso.surface(volume, level, method=method, threads=1)
+            totals.append(time.thread_time() - start)
+    finally:
+        adaptiso._adaptiso.make_surface = made
+    outside = [total - own for total, own in zip(totals, inside)]
+    return statistics.median(totals), statistics.median(outside)
+
+
 def call_overhead():
-    """A call on 16^3 less the seconds that C++ reports of its own work."""
+    """A call on 16^3 less what C++ takes of it."""
     volume = ball(16, 7.5)
     for method in ("mc", "adaptive"):
-        overheads, totals = [], []
-        for _ in range(300):
-            start = time.perf_counter()
-            mesh = adaptiso.surface(volume, -5, method=method, threads=1)
-            total = time.perf_counter() - start
-            totals.append(total)
-            overheads.append(total - mesh.report["seconds"]["total"])
-        print(f"call on 16^3, {method}: {1e3 * statistics.median(totals):.3f} ms, of that not in "
-              f"C++ {1e3 * statistics.median(overheads):.3f} ms (least {1e3 * min(overheads):.3f})")
+        wall, least = seconds(lambda: adaptiso.surface(volume, -5, method=method, threads=1), 300)
+        total, outside = in_python(volume, -5, method, 300)
+        print(f"call on 16^3, {method}: {1e3 * wall:.3f} ms (least {1e3 * least:.3f}); of the "
+              f"processor {1e3 * total:.3f} ms, of that outside of C++ {1e3 * outside:.3f}")
 
 
 def four_threads():
+    """Also by processor time, which other programs do not change: what holds the interpreter's lock can't
+    run side by side, the rest can."""
     volumes = [ball(96, 47 + n) for n in range(4)]
 
     def make(volume):
@@ -58,34 +80,49 @@ def four_threads():
 
     one, _ = seconds(lambda: [make(volume) for volume in volumes], 5)
     four, _ = seconds(by_threads, 5)
+    start = time.process_time()
+    by_threads()
+    spent = time.process_time() - start
+    total, outside = in_python(volumes[0], -35, "adaptive", 5)
     print(f"four volumes of 96^3: one after the other {one:.2f} s, four threads {four:.2f} s: "
-          f"{one / four:.2f} x")
+          f"{one / four:.2f} x; of the processor {4 * total:.2f} s alone, {spent:.2f} s side by side; "
+          f"of a call {outside / total:.2%} in Python, so at most "
+          f"{1 / (outside / total + (1 - outside / total) / 2):.2f} x on two cores")
 
 
 PEAK = r"""
 import re, sys, adaptiso, numpy as np
 def peak():
     return int(re.search(r"VmHWM:\s+(\d+) kB", open("/proc/self/status").read())[1]) * 1024
-order, method = sys.argv[1:]
-index = np.indices((256, 256, 256), dtype=np.float32, sparse=True)
-volume = np.array(-sum((x - 127.5) ** 2 for x in index), np.float32, order=order)
+order, method, side, dtype = sys.argv[1:]
+side = int(side)
+index = np.indices((side,) * 3, dtype=np.float32, sparse=True)
+# the distance in voxels, up to 220 of them
+volume = np.empty((side,) * 3, dtype, order=order)
+for k in range(side):
+    volume[:, :, k] = 220 - np.sqrt(sum((x[:, :, min(k, x.shape[2] - 1)] - (side - 1) / 2) ** 2 for x in index)) * 220 / side
 adaptiso.surface(np.asfortranarray(volume[:8, :8, :8]), volume[4, 4, 4], threads=1)
 open("/proc/self/clear_refs", "w").write("5")
 before = peak()
-mesh = adaptiso.surface(volume, -(60 ** 2.0), method=method, threads=1)
+mesh = adaptiso.surface(volume, 220 - 220 * 60 / 256 + 0.2, method=method, threads=1)
 print(peak() - before, mesh._data.bytes, volume.nbytes)
 """
 
 
 def peak_memory():
-    for method in ("mc", "boxes", "adaptive"):
-        for order in "FC":
-            done = subprocess.run([sys.executable, "-c", PEAK, order, method], text=True,
-                                  check=True, capture_output=True)
-            taken, mesh, volume = (int(number) / 1e6 for number in done.stdout.split())
-            print(f"peak of a call on 256^3 float32 ({volume:.0f} MB), {order} order, {method}: "
-                  f"{taken:.1f} MB above the volume, for a mesh of {mesh:.1f} MB "
-                  f"((volume + call) / (volume + mesh) = {(volume + taken) / (volume + mesh):.3f})")
+    """Of spheres of a quarter of the volume's width, each in a process of its own."""
+    for side, dtype, order, method in (
+            (256, "f4", "F", "mc"), (256, "f4", "C", "mc"), (256, "f4", "F", "boxes"),
+            (256, "f4", "F", "adaptive"), (256, "f4", "C", "adaptive"), (512, "f4", "F", "mc"),
+            (512, "f4", "F", "adaptive"), (640, "f4", "F", "adaptive"), (512, "u1", "F", "mc"),
+            (512, "u1", "F", "adaptive")):
+        done = subprocess.run([sys.executable, "-c", PEAK, order, method, str(side), dtype], text=True,
+                              check=True, capture_output=True)
+        taken, mesh, volume = (int(number) / 1e6 for number in done.stdout.split())
+        print(f"peak of a call on {side}^3 {dtype} ({volume:.0f} MB), {order} order, {method}: "
+              f"{taken:.1f} MB above the volume, for a mesh of {mesh:.1f} MB "
+              f"((volume + call) / (volume + mesh) = {(volume + taken) / (volume + mesh):.3f})",
+              flush=True)
 
 
 if __name__ == "__main__":

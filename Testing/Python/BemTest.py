@@ -193,6 +193,115 @@ class Bytes(InFolder):
         self.assertEqual([path.name for path in self.folder.iterdir()], ["model"])
 
 
+FOUR = {"brain": [1], "csf": [2], "skull": [3], "scalp": [4]}
+
+
+def four_spheres():
+    return spheres((1, 2, 3, 4), (52, 60, 66, 72))
+
+
+class FourLayers(InFolder):
+    def test_the_brain_is_a_sphere_within_the_skull(self):
+        model = adaptiso.bem(labels=four_spheres(), tissues=FOUR, affine=affine(), layers=4,
+                             conductivity=(0.33, 1.7, 0.0041, 0.43), **QUICK)
+        self.assertEqual(tuple(model.surfaces), ("brain", *NAMES))
+        for mesh, radius in zip(model.surfaces.values(), (52, *RADII)):
+            distance = np.linalg.norm(mesh.vertices, axis=1)
+            self.assertLess(abs(distance.mean() - radius), 0.7)
+        self.assertTrue(model.check)
+        self.assertEqual(model.report["options"]["layers"], 4)
+        # MNE has three: all within the inner skull conducts as the brain
+        self.assertEqual([(surface["id"], surface["sigma"]) for surface in model.to_mne()],
+                         [(4, 0.43), (3, 0.0041), (1, 0.33)])
+        self.assertIn("brain of 162 vertices", repr(model))
+
+    @needs("nibabel")
+    def test_bytes_are_the_program_s(self):
+        import nibabel
+        nibabel.save(nibabel.Nifti1Image(four_spheres(), affine()), self.folder / "seg.nii")
+        theirs, ours = self.folder / "theirs", self.folder / "ours"
+        named = ["--tissue", "brain=1", "--tissue", "csf=2", "--tissue", "skull=3", "--tissue", "scalp=4"]
+        program("adaptiso-bem", "--labels", self.folder / "seg.nii", *named, "--layers", 4, *ARGUMENTS,
+                "--montage", "10-20", "--nasion", "0,71,-9", "--left-ear=-70,0,-15", "--right-ear",
+                "70,0,-15", "--fif", "--fieldtrip", "--brainstorm", "--simnibs", "--curry", "--besa",
+                "-o", theirs)
+        model = adaptiso.bem(
+            labels=self.folder / "seg.nii", tissues=FOUR, layers=4, montage="10-20", head_shape=True,
+            landmarks={"nasion": (0, 71, -9), "left_ear": (-70, 0, -15), "right_ear": (70, 0, -15)},
+            **QUICK)
+        model.save(ours, fif=True, fieldtrip=True, brainstorm=True, simnibs=True, curry=True, besa=True)
+        self.assertEqual(sorted(file.name for file in ours.iterdir()),
+                         sorted(file.name for file in theirs.iterdir()))
+        for file in theirs.iterdir():
+            if file.suffix not in (".json", ".md") or file.name == "coordsystem.json":
+                self.assertEqual((ours / file.name).read_bytes(), file.read_bytes(), file.name)
+
+    @needs("nibabel")
+    def test_pial_surfaces_and_aseg_are_taken_as_by_the_program(self):
+        import nibabel
+        t1, mask = phantom()
+        distance = np.linalg.norm(np.stack(np.indices((44,) * 3), -1) * STEP - STEP * 21.5, axis=-1)
+        pial = adaptiso.surface(np.asfortranarray(-distance), -48, affine=affine())
+        aseg = np.where(distance < 50, 3, np.where(mask == 1, 24, 0)).astype(np.uint8)  # 24: CSF
+        pial.save(self.folder / "lh.vtp")
+        for name, samples in (("t1", t1), ("mask", mask), ("aseg", aseg)):
+            nibabel.save(nibabel.Nifti1Image(np.asfortranarray(samples), affine()),
+                         self.folder / f"{name}.nii")
+        for options, arguments, note in (
+                ({"brain_mask": mask, "pial": [pial]}, ["--brain-mask", "mask.nii", "--pial", "lh.vtp"],
+                 "brain surface: holds the pial surfaces"),
+                ({"aseg": aseg}, ["--aseg", "aseg.nii"], "brain surface: by the labels")):
+            model = adaptiso.bem(t1=t1, affine=affine(), layers=4, **options, **QUICK)
+            self.assertIn(note, model.report["notes"])
+            model.save(self.folder / "ours", replace=True)
+            paths = [self.folder / word if "." in word else word for word in arguments]
+            program("adaptiso-bem", "--t1", self.folder / "t1.nii", *paths, "--layers", 4, *ARGUMENTS,
+                    "-o", self.folder / "theirs", "--force")
+            for name in ("brain", *NAMES):
+                self.assertEqual((self.folder / "ours" / f"{name}.tri").read_bytes(),
+                                 (self.folder / "theirs" / f"{name}.tri").read_bytes(), name)
+        places = np.linalg.norm(model.surfaces["brain"].vertices, axis=1)
+        self.assertLess(abs(places.mean() - 50), 1)  # voxels of 4 mm
+
+
+class Electrodes(unittest.TestCase):
+    def test_places_by_name_come_onto_the_skin(self):
+        places = {"Cz": (0, 0, 80), "T7": (-90.0, 0, 0)}
+        model = adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), electrodes=places,
+                             **QUICK)
+        self.assertEqual(list(model.electrodes), ["Cz", "T7"])
+        for name, place in places.items():
+            on_skin = np.array(model.electrodes[name])
+            self.assertLess(abs(np.linalg.norm(on_skin) - 72), 2)
+            cosine = on_skin @ np.array(place) / np.linalg.norm(on_skin) / np.linalg.norm(place)
+            self.assertGreater(cosine, 0.995)
+        self.assertEqual(model.landmarks, {})
+
+    def test_a_montage_has_its_positions(self):
+        model = adaptiso.bem(
+            labels=spheres(), tissues=TISSUES, affine=affine(), montage="10-20",
+            landmarks={"nasion": (0, 72, 0), "left_ear": (-72, 0, 0), "right_ear": (72, 0, 0)}, **QUICK)
+        self.assertEqual(len(model.electrodes), 21)
+        self.assertGreater(model.electrodes["Cz"][2], 70)
+        self.assertEqual(set(model.landmarks), {"Nasion", "LPA", "RPA"})
+        np.testing.assert_allclose(model.landmarks["LPA"], (-72, 0, 0))
+
+    def test_what_cannot_be_used_is_refused(self):
+        common = {"labels": spheres(), "tissues": TISSUES, "affine": affine(), **QUICK}
+        for options in ({"electrodes": {"Cz": (0, 0)}}, {"electrodes": {3: (0, 0, 80)}},
+                        {"electrodes": {"Cz": (0, 0, 800)}}, {"electrodes": "nowhere.elc"},
+                        {"electrodes": {"Cz": (0, 0, 80)}, "montage": "10-20"}, {"montage": "10-30"},
+                        {"electrodes": {}}, {"landmarks": {"nasion": (0, 1, 2)}}, {"landmarks": "here"},
+                        {"meg": True, "montage": "10-20"}, {"layers": 4}, {"layers": 2},
+                        {"electrodes_in": "ras"}, {"aseg": spheres()}, {"pial": []},
+                        {"conductivity": (1, 1, 1, 1)}, {"layers": 4, "meg": True}):
+            with self.assertRaises(adaptiso.Error, msg=str(options)) as caught:
+                adaptiso.bem(**{**common, **options})
+            self.assertNotIn("\n", str(caught.exception))
+        with self.assertRaisesRegex(adaptiso.Error, "landmarks="):
+            adaptiso.bem(**common).save("nowhere", besa=True)
+
+
 class Failures(unittest.TestCase):
     def test_a_model_that_cannot_be_is_an_error_that_shows_where(self):
         metres = [(points, faces) for points, faces in (

@@ -146,6 +146,25 @@ def marching_cubes(pools, options, pick):
             mask=pick([None, pick(pools["image"])]))
 
 
+def labels(pools, options, pick):
+    image = pick(pools["image"])
+    if isinstance(image, np.ndarray) and image.dtype.kind == "f" and pick((True, True, False)):
+        with np.errstate(all="ignore"):
+            image = np.round(image)
+    named = {name: pick(options[name]) for name in ("max_error", "triangles", "reduction")
+             if pick(range(4)) == 0}
+    if pick(range(4)) == 0:
+        named["affine"] = pick(pools["affine"])
+    if pick(range(8)) == 0:
+        named["labels"] = pick(([1], [2, 1], pick(options["triangles"]), pick(pools["level"])))
+    walls = attempt("labels", adaptiso.labels, image, threads=1, **named)
+    if walls is not None:
+        repr(walls), walls.regions, walls.error_bound
+        label = pick(list(walls.regions) + [pick(options["triangles"])])
+        mesh = attempt("region", walls.region, label)
+        assert mesh is None or mesh.volume > 0
+
+
 def bem(pools, options, pick):
     """Mostly refused: what is made up is no head."""
     if not hasattr(adaptiso, "bem"):
@@ -162,12 +181,12 @@ def bem(pools, options, pick):
         named["tissues"] = pick(({"brain": [1], "skull": [2], "scalp": [3]}, "aseg",
                                  pick(options["method"])))
     if pick((True, False)):
-        named[pick(("vertices", "min_gap", "csf", "conductivity", "voxel", "edge_length", "meg"))] = (
+        named[pick(("vertices", "min_gap", "layers", "aseg", "pial", "electrodes", "montage", "landmarks", "csf", "conductivity", "voxel", "edge_length", "meg"))] = (
             pick(options["max_error"]))
     attempt("bem", adaptiso.bem, **named)
 
 
-ATTEMPTS = 10 * [surface] + 2 * [index] + 4 * [mesh] + 3 * [marching_cubes] + [bem]
+ATTEMPTS = 10 * [surface] + 2 * [index] + 4 * [mesh] + 3 * [marching_cubes] + [labels, bem]
 
 
 class Calls(unittest.TestCase):

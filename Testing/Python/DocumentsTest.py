@@ -20,7 +20,8 @@ class Docstrings(unittest.TestCase):
     def test_examples_run(self):
         tried = 0
         for name in ("adaptiso", *(f"adaptiso.{part}" for part in (
-                "_bem", "_images", "_surface", "_mesh", "_quality", "_marching_cubes"))):
+                "_bem", "_images", "_labels", "_surface", "_mesh", "_quality", "_marching_cubes",
+                "_simplify"))):
             module = sys.modules[name]
             result = doctest.testmod(module)
             self.assertEqual(result.failed, 0, name)
@@ -40,7 +41,7 @@ class Docstrings(unittest.TestCase):
                         self.assertTrue(inspect.getdoc(value), f"{name}.{member}")
 
     def test_every_parameter_is_documented(self):
-        for function in (adaptiso.surface, adaptiso.bem, adaptiso.read, adaptiso.check, adaptiso.check_nested,
+        for function in (adaptiso.surface, adaptiso.bem, adaptiso.labels, adaptiso.simplify, adaptiso.read, adaptiso.check, adaptiso.check_nested,
                          adaptiso.compare, adaptiso.marching_cubes, adaptiso.load):
             text = inspect.getdoc(function)
             for parameter in inspect.signature(function).parameters:

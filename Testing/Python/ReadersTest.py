@@ -1,5 +1,7 @@
-"""Images read by nibabel, as a package built without readers (ADAPTISO_PYTHON_READERS=OFF) does."""
+"""Images read by nibabel, as a package built without readers (ADAPTISO_PYTHON_READERS=OFF) does; Zarr's
+levels, channels and time points."""
 
+import json
 import unittest
 
 import adaptiso
@@ -72,6 +74,68 @@ class WithoutReaders(InFolder):
         ours = self.by_own(BRAIN)
         self.assertEqual(adaptiso.surface(BRAIN, 100, method="boxes"),
                          adaptiso.surface(ours, 100, method="boxes"))
+
+
+@unittest.skipUnless(hasattr(_adaptiso, "read_image"), "built without readers")
+class Zarr(InFolder):
+    """An OME-Zarr of two time points, two channels and two levels, written here byte by byte."""
+
+    def setUp(self):
+        super().setUp()
+        self.root = self.folder / "image.zarr"
+        self.root.mkdir()
+        (self.root / ".zgroup").write_text('{"zarr_format": 2}')
+        axes = [{"name": "t", "type": "time"}, {"name": "c", "type": "channel"},
+                *({"name": n, "type": "space", "unit": "millimeter"} for n in "zyx")]
+        self.levels, datasets = [], []
+        for level, side in enumerate((8, 4)):
+            samples = np.random.default_rng(level).integers(0, 9, (2, 2, side, side, side), np.uint8)
+            self.levels.append(samples)
+            scale = [1, 1, 2.0**level, 2.0**level, 2.0**level]
+            datasets.append({"path": str(level), "coordinateTransformations": [
+                {"type": "scale", "scale": scale}]})
+            folder = self.root / str(level)
+            folder.mkdir()
+            (folder / ".zarray").write_text(json.dumps({
+                "zarr_format": 2, "shape": samples.shape, "chunks": [1, 1, side, side, side],
+                "dtype": "|u1", "compressor": None, "filters": None, "fill_value": 7, "order": "C"}))
+            for t in range(2):
+                for c in range(2):
+                    (folder / f"{t}.{c}.0.0.0").write_bytes(samples[t, c].tobytes())
+        (self.root / ".zattrs").write_text(json.dumps({"multiscales": [
+            {"version": "0.4", "name": "image", "axes": axes, "datasets": datasets}]}))
+
+    def test_level_channel_and_time_are_chosen(self):
+        for level, time, channel in ((None, 0, 1), (1, 1, 0), (0, 1, 1)):
+            image = adaptiso.read(self.root, level=level, time=time, channel=channel)
+            truth = self.levels[level or 0][time, channel].T  # x fastest
+            np.testing.assert_array_equal(image.array, truth)
+            self.assertEqual(abs(image.affine[0, 0]), 2.0**(level or 0))
+            self.assertIn("Zarr", image.format)
+        mesh = adaptiso.surface(adaptiso.read(self.root, level=1, time=0, channel=0), 5)
+        self.assertTrue(mesh.is_closed)
+
+    def test_what_has_to_be_chosen_is_asked_for(self):
+        for options in ({}, {"time": 0}, {"channel": 5, "time": 0}, {"level": 2, "time": 0, "channel": 0},
+                        {"level": -1}, {"time": "first"}, {"all_chunks": 1}):
+            with self.assertRaises(adaptiso.Error) as caught:
+                adaptiso.read(self.root, **options)
+            self.assertNotIn("\n", str(caught.exception))
+
+    def test_missing_chunks_are_told_or_refused(self):
+        (self.root / "0" / "0.0.0.0.0").unlink()
+        with self.assertLogs("adaptiso", "WARNING"):
+            image = adaptiso.read(self.root, channel=0, time=0)
+        self.assertTrue((image.array == 7).all())
+        with self.assertRaises(adaptiso.Error):
+            adaptiso.read(self.root, channel=0, time=0, all_chunks=True)
+
+    def test_other_files_have_no_levels(self):
+        mesh_file = self.folder / "a.nrrd"
+        mesh_file.write_text("NRRD0004")
+        for options in ({"level": 0}, {"channel": 0}, {"time": 0}, {"all_chunks": True}):
+            with self.assertRaisesRegex(adaptiso.Error, "is no Zarr"):
+                adaptiso.read(mesh_file, **options)
 
 
 if __name__ == "__main__":

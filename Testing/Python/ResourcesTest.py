@@ -38,7 +38,7 @@ class Memory(unittest.TestCase):
     @has_own_memory
     def test_samples_are_copied_neither_in_nor_out(self):
         """By marching cubes of a sphere, in C order as in Fortran order."""
-        for order, radius in (("F", 50), ("C", 50), ("F", 20)):
+        for order, radius in (("F", 50), ("C", 50), ("F", 40)):
             taken, mesh, volume = map(int, in_child(PEAK + f"""
 import adaptiso, numpy as np
 index = np.indices((200, 200, 200), dtype=np.float32, sparse=True)
@@ -49,11 +49,27 @@ before = peak()
 mesh = adaptiso.surface(volume, -({radius} ** 2.0), method="mc", threads=1)
 print(peak() - before, mesh._data.bytes, volume.nbytes)
 """).split())
-            # the mesh and the ranges of all blocks (8 bytes for 64 samples, 0.03 of the volume), then
-            # the mesh and its check (1.7 meshes, measured)
-            self.assertLess(taken, 1.8 * mesh + 0.035 * volume, order)
-            if radius == 20:
+            # the mesh (42 bytes a triangle) and its check (16), and some hundred kB
+            self.assertLess(taken, 1.45 * mesh + 0.015 * volume, order)
+            if radius == 40:
                 self.assertLess(volume + taken, 1.05 * (volume + mesh), order)
+
+
+    @has_own_memory
+    def test_the_default_method_holds_its_samples_and_no_index(self):
+        taken, mesh, volume = map(int, in_child(PEAK + """
+import adaptiso, numpy as np
+index = np.indices((320, 320, 320), dtype=np.float32, sparse=True)
+volume = np.array(-sum((x - 159.5) ** 2 for x in index), np.float32, order="F")
+adaptiso.surface(np.asfortranarray(volume[:8, :8, :8]), volume[4, 4, 4], threads=1)
+reset()
+before = peak()
+mesh = adaptiso.surface(volume, -(60 ** 2.0), threads=1)
+print(peak() - before, mesh._data.bytes, volume.nbytes)
+""").split())
+        # 7.2 MB measured, whatever the volume's size; its kd-tree alone would be 10 MB
+        self.assertLess(taken, 8.5e6)
+        self.assertLess(volume + taken, 1.065 * (volume + mesh))
 
 
 class References(unittest.TestCase):

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Numbers.h"
+#include "adaptiso/SpanSpace/BlocksAt.h"
 #include "adaptive/AdaptiveMethod.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "boxes/BoxesMethod.h"
@@ -54,39 +56,56 @@ void requireNoNeedles(const ImageGeometry& geometry) {
                        formatShort(thinMm) + " mm thin, must be at most 10,000 times as long");
 }
 
-}  // namespace
-
-Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
-                          const ExtractionOptions& options) {
+void requireUsable(const VolumeView& volume, const ExtractionOptions& options) {
     if (!std::isfinite(options.isovalue)) {
         throw InvalidInput("extractSurface: the isovalue is not a finite number");
     }
-    const Index3& size = volume.geometry().size;
     requireMethod(options.discretized, "discretized", Method::DiscretizedMarchingCubes,
                   options.method);
     requireMethod(options.adaptive, "adaptive", Method::Adaptive, options.method);
-    if (index.grid().volumeSize != size || index.pixelType() != volume.pixelType()) {
-        throw InvalidInput("extractSurface: the index was built from another volume");
+    if (options.method == Method::Adaptive) {
+        detail::requireInRange(options.adaptive, "extractSurface");
     }
+    const Index3& size = volume.geometry().size;
     if (*std::max_element(size.begin(), size.end()) > detail::EdgeKey::kMaximumExtent) {
         throw InvalidInput("the image has more than " +
                            std::to_string(detail::EdgeKey::kMaximumExtent) +
                            " voxels along an axis; crop or resample it");
     }
     requireNoNeedles(volume.geometry());
-    if (options.method == Method::Adaptive) return detail::extractAdaptive(volume, index, options);
+}
+
+/// \param query  the grid's blocks that the isovalue touches
+Extraction extractFrom(const VolumeView& volume, const BlockGrid& grid, BlockQuery query,
+                       const ExtractionOptions& options) {
+    if (options.method == Method::Adaptive) {
+        return detail::extractAdaptive(volume, grid, std::move(query), options);
+    }
     Extraction result = options.method == Method::MarchingCubes
-                            ? detail::extractMarchingCubes(volume, index, options)
-                            : detail::extractBoxes(volume, index, options);
+                            ? detail::extractMarchingCubes(volume, grid, std::move(query), options)
+                            : detail::extractBoxes(volume, grid, std::move(query), options);
     if (!options.computeNormals) result.mesh.normals = {};
     return result;
 }
 
+}  // namespace
+
+Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
+                          const ExtractionOptions& options) {
+    requireUsable(volume, options);
+    if (index.grid().volumeSize != volume.geometry().size ||
+        index.pixelType() != volume.pixelType()) {
+        throw InvalidInput("extractSurface: the index was built from another volume");
+    }
+    return extractFrom(volume, index.grid(), index.blocksAt(options.isovalue), options);
+}
+
 Extraction extractSurface(const VolumeView& volume, const ExtractionOptions& options,
                           Border border) {
-    IndexOptions indexed;
-    indexed.border = border;
-    return extractSurface(volume, SpanSpaceIndex::build(volume, indexed), options);
+    requireUsable(volume, options);
+    const BlockGrid grid =
+        BlockGrid::make(volume.geometry().size, IndexOptions{}.blockSize, border);
+    return extractFrom(volume, grid, findBlocksAt(volume, grid, options.isovalue), options);
 }
 
 }  // namespace adaptiso

@@ -74,6 +74,43 @@ struct VertexFacts {
     std::uint32_t inconsistentEdges = 0;
     std::uint32_t duplicateTriangles = 0;
     bool isNonManifold = false;
+
+    bool isPlain() const { return *this == VertexFacts{.edges = edges}; }
+    friend bool operator==(const VertexFacts&, const VertexFacts&) = default;
+};
+
+/// The facts of all vertices: what is more than edges is kept of those vertices alone that have it,
+/// which are few.
+class AllFacts {
+public:
+    explicit AllFacts(std::int64_t count) : edges_(static_cast<std::size_t>(count)) {}
+
+    /// \param others  gets the vertex when it has more than edges
+    void set(VertexId v, const VertexFacts& facts,
+             std::vector<std::pair<VertexId, VertexFacts>>& others) {
+        edges_[v] = facts.edges;
+        if (!facts.isPlain()) others.emplace_back(v, facts);
+    }
+    /// \pre pieces are added in the order of their vertices
+    void add(const std::vector<std::pair<VertexId, VertexFacts>>& others) {
+        others_.insert(others_.end(), others.begin(), others.end());
+    }
+    /// Calls f(vertex, facts), by vertex.
+    template <class F>
+    void forEach(const F& f) const {
+        auto next = others_.begin();
+        for (VertexId v = 0; v < std::ssize(edges_); ++v) {
+            if (next != others_.end() && next->first == v) {
+                f(v, next++->second);
+            } else {
+                f(v, VertexFacts{.edges = edges_[v]});
+            }
+        }
+    }
+
+private:
+    std::vector<std::uint32_t> edges_;
+    std::vector<std::pair<VertexId, VertexFacts>> others_;
 };
 
 /// Looks at the star of one vertex after the other; keeps its buffers.
@@ -188,16 +225,19 @@ private:
 };
 
 template <class Number>
-std::vector<VertexFacts> inspectVertices(const TriangleMesh& mesh,
-                                         const VertexTriangles<Number>& around) {
-    const auto count = static_cast<std::int64_t>(mesh.points.size());
-    std::vector<VertexFacts> facts(mesh.points.size());
+AllFacts inspectVertices(const TriangleMesh& mesh, const VertexTriangles<Number>& around) {
+    const std::int64_t count = std::ssize(mesh.points);
+    AllFacts facts(count);
+    std::vector<std::vector<std::pair<VertexId, VertexFacts>>> others((count + kGrain - 1) /
+                                                                      kGrain);
     parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
         StarInspector inspector(mesh, around);
         for (VertexId v = begin; v < end; ++v) {
-            facts[v] = inspector.inspect(v, [](TopologyDefect, std::int64_t, const Triangle&) {});
+            facts.set(v, inspector.inspect(v, [](TopologyDefect, std::int64_t, const Triangle&) {}),
+                      others[begin / kGrain]);
         }
     });
+    for (const auto& piece : others) facts.add(piece);
     return facts;
 }
 
@@ -244,19 +284,18 @@ private:
 
 template <class Number>
 void recordVertexDefects(const TriangleMesh& mesh, const VertexTriangles<Number>& around,
-                         const std::vector<VertexFacts>& facts, DefectRecorder& recorder) {
+                         const AllFacts& facts, DefectRecorder& recorder) {
     StarInspector inspector(mesh, around);
     const auto keep = [&](TopologyDefect defect, std::int64_t triangle, const Triangle& vertices) {
         recorder.keepExample(defect, triangle, vertices);
     };
-    for (std::size_t n = 0; n < facts.size(); ++n) {
-        const auto v = static_cast<VertexId>(n);
+    facts.forEach([&](VertexId v, const VertexFacts& of) {
         const std::array<std::pair<TopologyDefect, std::int64_t>, 5> found{{
-            {TopologyDefect::BoundaryEdge, facts[n].boundaryEdges},
-            {TopologyDefect::NonManifoldEdge, facts[n].nonManifoldEdges},
-            {TopologyDefect::InconsistentEdge, facts[n].inconsistentEdges},
-            {TopologyDefect::DuplicateTriangle, facts[n].duplicateTriangles},
-            {TopologyDefect::NonManifoldVertex, facts[n].isNonManifold ? 1 : 0},
+            {TopologyDefect::BoundaryEdge, of.boundaryEdges},
+            {TopologyDefect::NonManifoldEdge, of.nonManifoldEdges},
+            {TopologyDefect::InconsistentEdge, of.inconsistentEdges},
+            {TopologyDefect::DuplicateTriangle, of.duplicateTriangles},
+            {TopologyDefect::NonManifoldVertex, of.isNonManifold ? 1 : 0},
         }};
         bool isWanted = false;
         for (const auto& [defect, number] : found) {
@@ -264,7 +303,7 @@ void recordVertexDefects(const TriangleMesh& mesh, const VertexTriangles<Number>
             isWanted = isWanted || (number > 0 && recorder.wantsExample(defect));
         }
         if (isWanted) inspector.inspect(v, keep);
-    }
+    });
 }
 
 template <class Number>
@@ -302,12 +341,11 @@ void recordTriangleDefects(const TriangleMesh& mesh, DefectRecorder& recorder) {
 template <class Number>
 std::vector<SurfaceComponent> measureComponents(const TriangleMesh& mesh,
                                                 const std::vector<Number>& first,
-                                                const std::vector<VertexFacts>& facts) {
+                                                const AllFacts& facts) {
     std::vector<VertexId> component = findComponentRoots(mesh);
     std::vector<SurfaceComponent> components;
-    for (std::size_t n = 0; n < facts.size(); ++n) {
-        const auto v = static_cast<VertexId>(n);
-        if (first[v] == first[v + 1]) continue;
+    facts.forEach([&](VertexId v, const VertexFacts& of) {
+        if (first[v] == first[v + 1]) return;
         // Labels become component numbers as we pass: a root comes before the rest of its piece.
         if (component[v] == v) {
             component[v] = static_cast<std::int64_t>(components.size());
@@ -317,11 +355,11 @@ std::vector<SurfaceComponent> measureComponents(const TriangleMesh& mesh,
         }
         SurfaceComponent& piece = components[component[v]];
         ++piece.vertices;
-        piece.edges += facts[n].edges;
-        piece.boundaryEdges += facts[n].boundaryEdges;
-        piece.isManifold = piece.isManifold && !facts[n].isNonManifold;
-        piece.isOriented = piece.isOriented && facts[n].inconsistentEdges == 0;
-    }
+        piece.edges += of.edges;
+        piece.boundaryEdges += of.boundaryEdges;
+        piece.isManifold = piece.isManifold && !of.isNonManifold;
+        piece.isOriented = piece.isOriented && of.inconsistentEdges == 0;
+    });
     for (const Triangle& t : mesh.triangles) {
         if (!isConnecting(mesh, t)) continue;
         SurfaceComponent& piece = components[component[t[0]]];
@@ -339,7 +377,7 @@ std::vector<SurfaceComponent> measureComponents(const TriangleMesh& mesh,
 template <class Number>
 void inspect(const TriangleMesh& mesh, const TopologyOptions& options, TopologyReport& report) {
     VertexTriangles<Number> around = collectVertexTriangles<Number>(mesh);
-    const std::vector<VertexFacts> facts = inspectVertices(mesh, around);
+    const AllFacts facts = inspectVertices(mesh, around);
 
     DefectRecorder recorder(mesh, options, report);
     recordVertexDefects(mesh, around, facts, recorder);

@@ -46,6 +46,44 @@ void accumulateRow(const T* row, std::int64_t count, T* low, T* high) {
     }
 }
 
+/// The ranges of the blocks of a row along i.
+template <class T>
+class RowRanges {
+public:
+    RowRanges(const TypedVolumeView<T>& volume, const BlockGrid& grid)
+        : volume_(volume), grid_(grid), low_(grid.volumeSize[0]), high_(grid.volumeSize[0]) {}
+
+    /// Calls f(block, minimum, maximum) for every block of a row: first over y and z for every x
+    /// (vectorizes), then along x.
+    template <class F>
+    void forEachBlock(std::int64_t row, const F& f) {
+        const SampleSpan y = samplesOf(grid_, 1, row % grid_.blocks[1]);
+        const SampleSpan z = samplesOf(grid_, 2, row / grid_.blocks[1]);
+        std::fill(low_.begin(), low_.end(), highestValue<T>());
+        std::fill(high_.begin(), high_.end(), outsideValue<T>());
+        for (std::int64_t k = z.begin; k < z.end; ++k) {
+            for (std::int64_t j = y.begin; j < y.end; ++j) {
+                accumulateRow(&volume_.at(0, j, k), grid_.volumeSize[0], low_.data(), high_.data());
+            }
+        }
+        for (std::int64_t b = 0; b < grid_.blocks[0]; ++b) {
+            const SampleSpan x = samplesOf(grid_, 0, b);
+            const bool touchesOutside = x.leavesVolume || y.leavesVolume || z.leavesVolume;
+            f(row * grid_.blocks[0] + b,
+              touchesOutside ? outsideValue<T>()
+                             : *std::min_element(&low_[x.begin], low_.data() + x.end),
+              *std::max_element(&high_[x.begin], high_.data() + x.end));
+        }
+    }
+
+private:
+    const TypedVolumeView<T>& volume_;
+    const BlockGrid& grid_;
+    std::vector<T> low_, high_;  ///< of the row's samples at every i
+};
+
+constexpr std::int64_t kRows = 4;  ///< of blocks, in a piece
+
 }  // namespace
 
 template <class T>
@@ -53,53 +91,76 @@ BlockRanges<T> computeBlockRanges(const TypedVolumeView<T>& volume, const BlockG
     BlockRanges<T> ranges;
     ranges.minimum.resize(grid.blockCount());
     ranges.maximum.resize(grid.blockCount());
-    const std::int64_t width = grid.volumeSize[0];
-
-    // a row of blocks at a time: first over y and z for every x (vectorizes), then along x
-    parallelForPieces(
-        grid.blocks[1] * grid.blocks[2], 4, [&](std::int64_t begin, std::int64_t end) {
-            std::vector<T> low(width), high(width);
-            for (std::int64_t row = begin; row < end; ++row) {
-                const SampleSpan y = samplesOf(grid, 1, row % grid.blocks[1]);
-                const SampleSpan z = samplesOf(grid, 2, row / grid.blocks[1]);
-                std::fill(low.begin(), low.end(), highestValue<T>());
-                std::fill(high.begin(), high.end(), outsideValue<T>());
-                for (std::int64_t k = z.begin; k < z.end; ++k) {
-                    for (std::int64_t j = y.begin; j < y.end; ++j) {
-                        accumulateRow(&volume.at(0, j, k), width, low.data(), high.data());
-                    }
-                }
-                for (std::int64_t b = 0; b < grid.blocks[0]; ++b) {
-                    const SampleSpan x = samplesOf(grid, 0, b);
-                    const std::int64_t block = row * grid.blocks[0] + b;
-                    const bool touchesOutside = x.leavesVolume || y.leavesVolume || z.leavesVolume;
-                    ranges.minimum[block] =
-                        touchesOutside ? outsideValue<T>()
-                                       : *std::min_element(&low[x.begin], low.data() + x.end);
-                    ranges.maximum[block] = *std::max_element(&high[x.begin], high.data() + x.end);
-                }
-            }
-        });
+    parallelForPieces(grid.blocks[1] * grid.blocks[2], kRows,
+                      [&](std::int64_t begin, std::int64_t end) {
+                          RowRanges<T> rows(volume, grid);
+                          for (std::int64_t row = begin; row < end; ++row) {
+                              rows.forEachBlock(row, [&](std::int64_t block, T minimum, T maximum) {
+                                  ranges.minimum[block] = minimum;
+                                  ranges.maximum[block] = maximum;
+                              });
+                          }
+                      });
     return ranges;
+}
+
+template <class T>
+std::vector<std::uint32_t> blocksAround(const TypedVolumeView<T>& volume, const BlockGrid& grid,
+                                        T threshold) {
+    const std::int64_t count = grid.blocks[1] * grid.blocks[2];
+    std::vector<std::vector<std::uint32_t>> pieces((count + kRows - 1) / kRows);
+    parallelForPieces(count, kRows, [&](std::int64_t begin, std::int64_t end) {
+        RowRanges<T> rows(volume, grid);
+        for (std::int64_t row = begin; row < end; ++row) {
+            rows.forEachBlock(row, [&](std::int64_t block, T minimum, T maximum) {
+                if (minimum < threshold && maximum >= threshold) {
+                    pieces[begin / kRows].push_back(static_cast<std::uint32_t>(block));
+                }
+            });
+        }
+    });
+    std::vector<std::uint32_t> blocks;
+    for (const auto& piece : pieces) blocks.insert(blocks.end(), piece.begin(), piece.end());
+    return blocks;
 }
 
 template BlockRanges<std::uint8_t> computeBlockRanges(const TypedVolumeView<std::uint8_t>&,
                                                       const BlockGrid&);
+template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::uint8_t>&,
+                                                 const BlockGrid&, std::uint8_t);
 template BlockRanges<std::int8_t> computeBlockRanges(const TypedVolumeView<std::int8_t>&,
                                                      const BlockGrid&);
+template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::int8_t>&,
+                                                 const BlockGrid&, std::int8_t);
 template BlockRanges<std::uint16_t> computeBlockRanges(const TypedVolumeView<std::uint16_t>&,
                                                        const BlockGrid&);
+template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::uint16_t>&,
+                                                 const BlockGrid&, std::uint16_t);
 template BlockRanges<std::int16_t> computeBlockRanges(const TypedVolumeView<std::int16_t>&,
                                                       const BlockGrid&);
+template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::int16_t>&,
+                                                 const BlockGrid&, std::int16_t);
 template BlockRanges<std::uint32_t> computeBlockRanges(const TypedVolumeView<std::uint32_t>&,
                                                        const BlockGrid&);
+template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::uint32_t>&,
+                                                 const BlockGrid&, std::uint32_t);
 template BlockRanges<std::int32_t> computeBlockRanges(const TypedVolumeView<std::int32_t>&,
                                                       const BlockGrid&);
+template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::int32_t>&,
+                                                 const BlockGrid&, std::int32_t);
 template BlockRanges<std::uint64_t> computeBlockRanges(const TypedVolumeView<std::uint64_t>&,
                                                        const BlockGrid&);
+template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::uint64_t>&,
+                                                 const BlockGrid&, std::uint64_t);
 template BlockRanges<std::int64_t> computeBlockRanges(const TypedVolumeView<std::int64_t>&,
                                                       const BlockGrid&);
+template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::int64_t>&,
+                                                 const BlockGrid&, std::int64_t);
 template BlockRanges<float> computeBlockRanges(const TypedVolumeView<float>&, const BlockGrid&);
+template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<float>&, const BlockGrid&,
+                                                 float);
 template BlockRanges<double> computeBlockRanges(const TypedVolumeView<double>&, const BlockGrid&);
+template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<double>&, const BlockGrid&,
+                                                 double);
 
 }  // namespace adaptiso::detail

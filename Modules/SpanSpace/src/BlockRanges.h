@@ -20,4 +20,9 @@ struct BlockRanges {
 template <class T>
 BlockRanges<T> computeBlockRanges(const TypedVolumeView<T>& volume, const BlockGrid& grid);
 
+/// The blocks with minimum < threshold <= maximum, ascending, without keeping any range.
+template <class T>
+std::vector<std::uint32_t> blocksAround(const TypedVolumeView<T>& volume, const BlockGrid& grid,
+                                        T threshold);
+
 }  // namespace adaptiso::detail

@@ -4,6 +4,7 @@
 
 #include "SpanSpaceIndexImpl.h"
 #include "adaptiso/Core/Isovalue.h"
+#include "adaptiso/SpanSpace/BlocksAt.h"
 
 namespace adaptiso {
 namespace {
@@ -23,6 +24,20 @@ std::vector<std::uint32_t> blocksAtBorder(const BlockGrid& grid) {
         }
     }
     return found;
+}
+
+/// What `search` finds for an isovalue that some values of T reach and others do not.
+/// \param search  (threshold, found) -> ranges looked at
+template <class T, class Search>
+BlockQuery query(const BlockGrid& grid, double isovalue, const Search& search) {
+    BlockQuery result;
+    const IsovalueTest<T> inside(isovalue);
+    if (inside.kind == IsovalueTest<T>::Kind::All) {
+        result.blocks = blocksAtBorder(grid);
+    } else if (inside.kind == IsovalueTest<T>::Kind::Some) {
+        result.nodesVisited = search(inside.threshold, result.blocks);
+    }
+    return result;
 }
 
 }  // namespace
@@ -71,19 +86,23 @@ PixelType SpanSpaceIndex::pixelType() const {
 }
 
 BlockQuery SpanSpaceIndex::blocksAt(double isovalue) const {
-    BlockQuery query;
-    std::visit(
+    return std::visit(
         [&]<class T>(const std::unique_ptr<const detail::BlockSearch<T>>& search) {
-            const IsovalueTest<T> inside(isovalue);
-            if (inside.kind == IsovalueTest<T>::Kind::None) return;
-            if (inside.kind == IsovalueTest<T>::Kind::All) {
-                query.blocks = blocksAtBorder(impl_->grid);
-                return;
-            }
-            query.nodesVisited = search->search(inside.threshold, query.blocks);
+            return query<T>(impl_->grid, isovalue,
+                            [&](T threshold, std::vector<std::uint32_t>& found) {
+                                return search->search(threshold, found);
+                            });
         },
         impl_->search);
-    return query;
+}
+
+BlockQuery findBlocksAt(const VolumeView& volume, const BlockGrid& grid, double isovalue) {
+    return dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
+        return query<T>(grid, isovalue, [&](T threshold, std::vector<std::uint32_t>& found) {
+            found = detail::blocksAround(view, grid, threshold);
+            return grid.blockCount();
+        });
+    });
 }
 
 std::size_t SpanSpaceIndex::memoryBytes() const {

@@ -3,8 +3,41 @@
 #include <cmath>
 
 #include "BlocksByDefinition.h"
+#include "adaptiso/SpanSpace/BlocksAt.h"
 
 namespace adaptiso::testing {
+namespace {
+
+/// Extremes of the type, infinities and NaN among the samples.
+template <class T>
+void expectTheIndexsBlocks(std::uint64_t seed) {
+    std::uint64_t state = seed;
+    const Volume volume = hardSamples<T>(randomSize(state, 20), seed);
+    for (const int blockSize : kBlockSizes) {
+        for (const Border border : kBorders) {
+            const SpanSpaceIndex index =
+                SpanSpaceIndex::build(volume, {blockSize, border, BlockSearchKind::Linear});
+            for (const double isovalue : {-1e30, -1.0, 0.0, 0.5, 3.0, 11.0, 12.0, 1e19, 1e30}) {
+                const BlockQuery found = findBlocksAt(volume, index.grid(), isovalue);
+                EXPECT_EQ(found.blocks, index.blocksAt(isovalue).blocks) << isovalue;
+                EXPECT_EQ(found.nodesVisited, index.blocksAt(isovalue).nodesVisited) << isovalue;
+            }
+        }
+    }
+}
+
+}  // namespace
+
+TEST(FindBlocksAt, FindsWithoutAnIndexWhatOneFinds) {
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        expectTheIndexsBlocks<std::uint8_t>(seed);
+        expectTheIndexsBlocks<std::int16_t>(seed);
+        expectTheIndexsBlocks<std::uint64_t>(seed);
+        expectTheIndexsBlocks<float>(seed);
+        expectTheIndexsBlocks<double>(seed);
+    }
+}
+
 TEST(SpanSpaceIndex, FindsTheBlocksThatAScanFinds) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         std::uint64_t state = seed;

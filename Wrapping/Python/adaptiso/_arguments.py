@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import os
-from typing import Any, Callable, Optional, Sequence, TypeVar
+from typing import Any, Callable, List, Optional, Sequence, TypeVar
 
 from ._adaptiso import Error
 
@@ -56,6 +56,17 @@ def count(name: str, value: Any, least: int = 0, most: int = _LARGEST_COUNT) -> 
     if not least <= result <= most:
         raise Error(f"{name} {shown(value)}: must be {rule}")
     return result
+
+
+def listed(name: str, value: Any, rule: str = "a sequence") -> List[Any]:
+    """The parts of a sequence, which text is not. \\raises Error"""
+    try:
+        parts = None if isinstance(value, (str, bytes, os.PathLike)) else list(value)
+    except TypeError:  # no sequence, or an array without axes
+        parts = None
+    if parts is None:
+        raise Error(f"{name} {shown(value)}: must be {rule}")
+    return parts
 
 
 def flag(name: str, value: Any) -> bool:

@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, count, flag, is_path, number, path as checked_path,
+from ._arguments import (Progress, count, flag, is_path, listed, number, path as checked_path,
                          progress as checked_progress, shown, threads as checked_threads, word)
 from ._images import Samples, base_name, read_only, samples_of
 from ._mesh import Mesh, load
@@ -22,17 +22,21 @@ from ._quality import Check
 
 logger = logging.getLogger("adaptiso")
 
-PRESETS = ("charm", "headreco", "aseg")
-TISSUES = ("brain", "skull", "scalp")
+PRESETS = ("charm", "headreco", "aseg", "samseg")
+TISSUES = ("brain", "csf", "skull", "scalp")
+MONTAGES = ("10-20", "10-10", "10-05")
+#: From inside out; models have the last one to three of them, or all.
+SURFACES = ("brain", "inner_skull", "outer_skull", "outer_skin")
 
 #: MNE's numbers of the surfaces (FIFFV_BEM_SURF_ID_*) and of the frame (FIFFV_COORD_MRI).
 _MNE_SURFACES = {"inner_skull": 1, "outer_skull": 3, "outer_skin": 4}
 _MNE_MRI = 5
 
-#: What a folder of a model may hold, as adaptiso-bem has it.
-_OWN_FILES = frozenset(
-    [f"{name}.{kind}" for name in _MNE_SURFACES for kind in ("surf", "tri", "gii", "vtp")]
-    + ["model.geom", "model.cond", "report.json", "spots.png", "README.md"])
+#: S/m [Baumann1997]
+_CSF = 1.79
+_LANDMARKS = ("nasion", "left_ear", "right_ear")
+
+Point = Tuple[float, float, float]
 
 
 class NoModel(Error):
@@ -55,9 +59,14 @@ class HeadModel:
     Attributes
     ----------
     surfaces : dict of str to Mesh
-        "inner_skull", "outer_skull", "outer_skin", from inside out (of MEG the first alone), in
-        scanner RAS mm. Each is closed, in one piece, of genus 0, and does not cross itself; each
+        "inner_skull", "outer_skull", "outer_skin", from inside out (of MEG the first alone, of four
+        layers "brain" before them), in scanner RAS mm. Each is closed, in one piece, of genus 0, and does not cross itself; each
         lies strictly inside the next, with the gaps asked for.
+    electrodes : dict of str to (float, float, float)
+        On the skin, by name, scanner RAS mm; empty where none were asked for.
+    landmarks : dict of str to (float, float, float)
+        "Nasion", "LPA", "RPA", scanner RAS mm, where they are known; as exact as they were given,
+        or, where they were guessed, as the warnings say.
     check : Check
         That this is so, found anew.
     report : dict
@@ -80,8 +89,20 @@ class HeadModel:
     def surfaces(self) -> Dict[str, Mesh]:
         """The surfaces by name, from inside out, in scanner RAS mm."""
         if self._surfaces is None:
-            self._surfaces = dict(zip(_MNE_SURFACES, map(Mesh._of, self._data.surfaces)))
+            meshes = list(map(Mesh._of, self._data.surfaces))
+            names = ("inner_skull",) if len(meshes) == 1 else SURFACES[-len(meshes):]
+            self._surfaces = dict(zip(names, meshes))
         return self._surfaces
+
+    @property
+    def electrodes(self) -> Dict[str, Point]:
+        """Electrodes on the skin, by name, scanner RAS mm."""
+        return dict(self._data.electrodes)
+
+    @property
+    def landmarks(self) -> Dict[str, Point]:
+        """Nasion, LPA and RPA, scanner RAS mm; empty where they are not known."""
+        return dict(self._data.landmarks)
 
     @property
     def check(self) -> Check:
@@ -101,27 +122,34 @@ class HeadModel:
         """The surfaces as ``mne.make_bem_model`` gives them, for ``mne.make_bem_solution``.
 
         In metres, in MNE's frame "MRI": FreeSurfer's surface RAS (tkRAS) of the image, or of the
-        volume that FreeSurfer makes of it. Needs no FreeSurfer folder and no ``SUBJECTS_DIR``.
+        volume that FreeSurfer makes of it. Needs no FreeSurfer folder and no ``SUBJECTS_DIR``. Of
+        four layers MNE takes three: all within the inner skull has the brain's conductivity.
 
         Returns
         -------
         list of dict
             From outside in, as MNE has them.
         """
+        brain, _, skull, scalp = self._conductivity
+        sigmas = {"inner_skull": brain, "outer_skull": skull, "outer_skin": scalp}
         list_ = []
         for name, mesh in reversed(list(self.surfaces.items())):
+            if name not in _MNE_SURFACES:
+                continue
             knows_tkras = self._data.has_volume and mesh.frame != "tkras"
             data = mesh._data.in_frame("tkras") if knows_tkras else mesh._data
-            sigma = self._conductivity[list(_MNE_SURFACES).index(name)]
+            sigma = sigmas[name]
             list_.append({"rr": data.vertices / 1000, "tris": data.faces.astype(np.int32),
                           "np": len(data.vertices), "ntri": len(data.faces),
                           "id": _MNE_SURFACES[name], "sigma": sigma, "coord_frame": _MNE_MRI})
         return list_
 
     def save(self, folder: Any, *, replace: bool = False, units: str = "mm", frame: str = "ras",
-             gifti: bool = False, vtp: bool = False) -> None:
-        """Write the folder that adaptiso-bem writes: files for FreeSurfer, MNE and OpenMEEG, a
-        README.md that says how to use them, and report.json.
+             gifti: bool = False, vtp: bool = False, fif: bool = False, fieldtrip: bool = False,
+             brainstorm: bool = False, simnibs: bool = False, curry: bool = False,
+             besa: bool = False) -> None:
+        """Write the folder that adaptiso-bem writes: files for FreeSurfer, MNE and OpenMEEG,
+        electrodes where there are, a README.md that says how to use them, and report.json.
 
         The folder is whole or not there; its files are read back and checked. The surfaces are the
         program's to the byte.
@@ -138,6 +166,10 @@ class HeadModel:
             Of all files but FreeSurfer's (.surf), which are in tkRAS.
         gifti, vtp : bool
             Write .gii and .vtp files too.
+        fif, fieldtrip, brainstorm, simnibs, curry, besa : bool
+            Write the files of MNE (bem.fif; head-dense.fif and head-sparse.fif of a model made with
+            ``head_shape=True``), FieldTrip, Brainstorm, SimNIBS, Curry and BESA too, as the
+            program's options of these names do. BESA's needs landmarks.
 
         Raises
         ------
@@ -145,17 +177,23 @@ class HeadModel:
             The folder is there and may not be replaced, or can't be written.
         """
         target = os.path.realpath(checked_path("folder", folder))
-        options = (word("units", units, ("mm", "m")), word("frame", frame, ("ras", "lps", "tkras")),
-                   flag("gifti", gifti), flag("vtp", vtp))
+        options: Dict[str, Any] = {"units": word("units", units, ("mm", "m")),
+                                   "frame": word("frame", frame, ("ras", "lps", "tkras"))}
+        for name, value in (("gifti", gifti), ("vtp", vtp), ("fif", fif), ("fieldtrip", fieldtrip),
+                            ("brainstorm", brainstorm), ("simnibs", simnibs), ("curry", curry),
+                            ("besa", besa)):
+            options[name] = flag(name, value)
         if not self._data.has_model:
             raise Error("there is no model to save")
         if frame == "tkras" and not self._data.has_volume:
             raise Error("frame tkras: the model does not know its image; give volume= to bem")
+        if besa and not self._data.landmarks:
+            raise Error("besa: the model has no landmarks; give landmarks= to bem")
         _require_replaceable(target, flag("replace", replace))
         temporary = f"{target}-{uuid.uuid4().hex}"
         try:
             os.mkdir(temporary)
-            self._data.write(temporary, *options)
+            self._data.write(temporary, options)
             _put_in_place(temporary, target)
         except OSError as error:
             raise Error(f"{target}: can't be written: {error.strerror}") from None
@@ -194,23 +232,43 @@ class _Source(NamedTuple):
     kind: str
     images: List[Samples]
     mask: Optional[Samples]
+    aseg: Optional[Samples]
+    pial: List[Mesh]
     surfaces: List[Mesh]
     inputs: List[List[str]]
     warnings: List[str]
 
+    def as_dict(self, preset: str, tissues: Dict[str, List[int]]) -> Dict[str, Any]:
+        """What C++ takes."""
+        return {"kind": self.kind, "images": [image.volume for image in self.images],
+                "brain_mask": None if self.mask is None else self.mask.volume,
+                "aseg": None if self.aseg is None else self.aseg.volume,
+                "pial": [mesh._data for mesh in self.pial],
+                "surfaces": [mesh._data for mesh in self.surfaces], "inputs": self.inputs,
+                "warnings": self.warnings, "preset": preset, "tissues": tissues}
 
-def bem(t1: Any = None, *, brain_mask: Any = None, labels: Any = None,
+    def all_images(self) -> List[Samples]:
+        """Every image that is looked at."""
+        return self.images + [image for image in (self.mask, self.aseg) if image is not None]
+
+
+def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
+        pial: Optional[Sequence[Any]] = None, labels: Any = None,
         tissues: Union[str, Mapping[str, Sequence[int]], None] = None,
         probabilities: Optional[Sequence[Any]] = None, ct: Any = None,
         surfaces: Optional[Sequence[Any]] = None, volume: Any = None, affine: Any = None,
-        vertices: Union[int, Sequence[int], None] = None,
+        layers: int = 3, vertices: Union[int, Sequence[int], None] = None,
         edge_length: Optional[Tuple[float, float]] = None, meg: bool = False,
-        min_gap: Union[float, Tuple[float, float]] = 2, csf: float = 2, skull: float = 6,
+        min_gap: Union[float, Sequence[float]] = (2, 2, 1), csf: float = 2, skull: float = 6,
         max_skull: float = 20, skull_hu: float = 300, skin_hu: float = -300, closing: float = 10,
-        smoothing: float = 1.5, cut_necks: float = 8, voxel: Optional[float] = None,
-        conductivity: Tuple[float, float, float] = (0.3, 0.006, 0.3), threads: int = 0,
+        sulci: float = 3, smoothing: float = 1.5, cut_necks: float = 8,
+        voxel: Optional[float] = None, conductivity: Sequence[float] = (0.3, 0.006, 0.3),
+        electrodes: Union[Mapping[str, Point], Any] = None, electrodes_in: Optional[str] = None,
+        montage: Optional[str] = None, landmarks: Union[Mapping[str, Point], str, None] = None,
+        head_shape: bool = False, threads: int = 0,
         progress: Optional[Progress] = None) -> HeadModel:
-    """Make the nested surfaces of a head model: inner skull, outer skull, outer skin.
+    """Make the nested surfaces of a head model: inner skull, outer skull, outer skin, and with four
+    layers the brain; electrodes on the skin.
 
     What the program adaptiso-bem does: the same samples and options give the same surfaces, to the
     byte, for any number of threads. One of `t1`, `labels`, `probabilities`, `ct` and `surfaces` is
@@ -223,11 +281,16 @@ def bem(t1: Any = None, *, brain_mask: Any = None, labels: Any = None,
     brain_mask : image, optional
         With `t1`: the brain, from any brain extraction (a mask, or the T1 with the skull removed).
         Without it the brain is guessed, good enough for a clean T1; look at the result.
+    aseg : image, optional
+        With `t1`: FreeSurfer's or FastSurfer's aseg: the brain mask where there is none, and with
+        four layers the brain's own surface.
+    pial : sequence, optional
+        With `t1` and four layers: the cortex, as `surfaces`: ``["lh.pial", "rh.pial"]``.
     labels : image, optional
         A segmentation; `tissues` says of what.
-    tissues : {"charm", "headreco", "aseg"} or dict, optional
+    tissues : {"charm", "headreco", "aseg", "samseg"} or dict, optional
         With `labels`: whose they are, or ``{"brain": [1, 2, 3], "skull": [4], "scalp": [5]}``; CSF
-        belongs to the brain.
+        belongs to the brain, or with four layers is named apart: ``"csf": [3]``.
     probabilities : sequence of images, optional
         Tissue maps in SPM's order: grey, white, CSF, bone, soft tissue.
     ct : image, optional
@@ -239,15 +302,17 @@ def bem(t1: Any = None, *, brain_mask: Any = None, labels: Any = None,
         With `surfaces`: the image they belong to, for tkRAS.
     affine : array_like of shape (4, 4), optional
         Of images that are plain arrays: voxel indices to scanner RAS mm.
+    layers : {3, 4, 1}
+        4: the brain's own surface as well, CSF between it and the inner skull; 1: as `meg`.
     vertices : int or sequence of int, optional
         Of each surface, evenly spread, 42 to 200,000; or one number for each, from inside out.
-        Default: 2562.
+        Default: 2562; with four layers by the layers' thickness, 10,000 in all at most.
     edge_length : (float, float), optional
         Shortest and longest edge, mm: short where a surface bends or another is near.
     meg : bool
         The inner skull alone.
-    min_gap : float or (float, float)
-        Least thickness of skull and scalp, mm, 0.5 to 20; guaranteed.
+    min_gap : float or sequence of two or three floats
+        Least thickness of skull, scalp and, with four layers, CSF, mm, 0.5 to 20; guaranteed.
     csf : float
         T1: from the brain to the inner skull, mm.
     skull : float
@@ -258,6 +323,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, labels: Any = None,
         CT: isovalues of bone and skin, Hounsfield units.
     closing : float
         Gaps and canals narrower than twice this are closed, mm.
+    sulci : float
+        Sulci of the brain's own surface narrower than twice this are closed, mm.
     smoothing : float
         Standard deviation of the Gaussian that boundaries are smoothed with, mm.
     cut_necks : float
@@ -266,8 +333,21 @@ def bem(t1: Any = None, *, brain_mask: Any = None, labels: Any = None,
     voxel : float, optional
         Side of the voxels that the head is worked on, mm. Default: the image's own if they are
         cubes of 0.7 to 1.5 mm, else 1.
-    conductivity : (float, float, float)
-        Of brain, skull and scalp, S/m.
+    conductivity : sequence of three or four floats
+        Of brain, skull and scalp, S/m; with four layers of brain, CSF, skull and scalp (default of
+        CSF: 1.79).
+    electrodes : path or mapping of str to (float, float, float), optional
+        Electrodes, moved onto the skin: a file (BIDS, ASA .elc, BESA .sfp, FIFF), or places by
+        name, scanner RAS mm.
+    electrodes_in : {"ras", "lps", "tkras"}, optional
+        The frame of the file. Default: what it says; else by its nasion and ears; else RAS.
+    montage : {"10-20", "10-10", "10-05"}, optional
+        Instead of `electrodes`: the positions of this system, computed on the skin.
+    landmarks : mapping of "nasion", "left_ear", "right_ear" to (float, float, float), or "guess"
+        Scanner RAS mm. Default: those of the electrodes' file; guessed, with a warning, where they
+        are needed or this is "guess".
+    head_shape : bool
+        Keep the skin alone as well, as finely as it was found, for ``save(folder, fif=True)``.
     threads : int
         0: as many as the machine has.
     progress : callable, optional
@@ -302,48 +382,47 @@ def bem(t1: Any = None, *, brain_mask: Any = None, labels: Any = None,
     >>> [surface["id"] for surface in model.to_mne()]
     [4, 3, 1]
     """
-    is_meg = flag("meg", meg)
-    layers = 1 if is_meg else 3
-    gaps = _gaps(min_gap)
+    count_ = _layers(layers, meg)
     options: Dict[str, Any] = {
-        "meg": is_meg,
-        "vertices": _vertices(vertices, layers),
+        "layers": count_,
+        "vertices": _vertices(vertices, count_),
         "edge_length": _edge_length(edge_length),
-        "min_gap": gaps,
+        "min_gap": _gaps(min_gap),
         "csf": _length("csf", csf, 20),
         "skull": _length("skull", skull, 200),
         "max_skull": _length("max_skull", max_skull, 200),
         "skull_hu": number("skull_hu", skull_hu),
         "skin_hu": number("skin_hu", skin_hu),
         "closing": _length("closing", closing, 30),
+        "sulci": _length("sulci", sulci, 30),
         "smoothing": _length("smoothing", smoothing, 10),
         "cut_necks": _length("cut_necks", cut_necks, 20),
         "voxel": 0.0 if voxel is None else _length("voxel", voxel, 5),
-        "conductivity": _three("conductivity", conductivity),
-        "threads": checked_threads(threads),
-        "progress": checked_progress(progress),
+        "conductivity": _conductivities(conductivity, count_),
+        "head_shape": flag("head_shape", head_shape),
+        **_electrodes(electrodes, electrodes_in, montage, landmarks, count_),
     }
+    given_threads, told = checked_threads(threads), checked_progress(progress)
     _require_thicknesses(options, t1 is not None, ct is not None)
-    preset, lists = _tissues(tissues, labels is not None, is_meg)
-    source = _source(t1, brain_mask, labels, probabilities, ct, surfaces, volume, affine, layers)
+    if count_ == 4 and ct is not None:
+        raise Error("layers 4: a CT does not show where the brain ends and CSF begins")
+    preset, lists = _tissues(tissues, labels is not None, count_)
+    source = _source(t1, brain_mask, aseg, pial, labels, probabilities, ct, surfaces, volume,
+                     affine, count_)
     with contextlib.ExitStack() as meanwhile:
-        for image in source.images + ([] if source.mask is None else [source.mask]):
+        for image in source.all_images():
             meanwhile.enter_context(read_only(image.user))
-        data = _adaptiso.make_bem(
-            source=source.kind, images=[image.volume for image in source.images],
-            brain_mask=None if source.mask is None else source.mask.volume, preset=preset,
-            tissues=lists, surfaces=[surface._data for surface in source.surfaces],
-            inputs=source.inputs, warnings=source.warnings, **options)
+        data = _adaptiso.make_bem(source.as_dict(preset, lists), options, given_threads, told)
     for warning in data.warnings[len(source.warnings):]:
         logger.warning("bem: %s", warning)
-    model = HeadModel(data, options["conductivity"], options["threads"])
+    model = HeadModel(data, options["conductivity"], given_threads)
     if not data.has_model:
         raise NoModel(f"no model: {data.failure}", model)
     return model
 
 
-def _source(t1: Any, brain_mask: Any, labels: Any, probabilities: Any, ct: Any, surfaces: Any,
-            volume: Any, affine: Any, layers: int) -> _Source:
+def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, probabilities: Any,
+            ct: Any, surfaces: Any, volume: Any, affine: Any, layers: int) -> _Source:
     """The one that is given. \\raises Error"""
     given = {"t1": t1, "labels": labels, "probabilities": probabilities, "ct": ct,
              "surfaces": surfaces}
@@ -351,24 +430,30 @@ def _source(t1: Any, brain_mask: Any, labels: Any, probabilities: Any, ct: Any, 
     if len(kinds) != 1:
         raise Error("one of t1, labels, probabilities, ct and surfaces must be given, and one only")
     kind = kinds[0]
-    if brain_mask is not None and kind != "t1":
-        raise Error("brain_mask: needs t1")
+    for name, value in (("brain_mask", brain_mask), ("aseg", aseg), ("pial", pial)):
+        if value is not None and kind != "t1":
+            raise Error(f"{name}: needs t1")
+    if pial is not None and layers != 4:
+        raise Error("pial: needs layers=4")
     if volume is not None and kind != "surfaces":
         raise Error("volume: needs surfaces")
-    source = _Source(kind, [], None, [], [], [])
+    source = _Source(kind, [], None, None, [], [], [], [])
     if kind == "surfaces":
         if volume is not None:
             source.images.append(_image("volume", volume, affine, source))
-        source.surfaces.extend(_surfaces(surfaces, layers, source))
+        source.surfaces.extend(_surfaces("surfaces", surfaces, source))
+        if len(source.surfaces) != layers:
+            raise Error(f"surfaces: are {len(source.surfaces)}, must be {layers}, from inside out")
         return source
-    images = _listed(kind, probabilities) if kind == "probabilities" else [given[kind]]
+    images = listed(kind, probabilities) if kind == "probabilities" else [given[kind]]
     if not images:
         raise Error("probabilities: no map is given; must be grey, white, CSF, bone, soft tissue")
     source.images.extend(_image(kind, image, affine, source) for image in images)
-    mask = None
-    if brain_mask is not None:
-        mask = _image("brain_mask", brain_mask, affine, source)
-    return source._replace(mask=mask)
+    mask = None if brain_mask is None else _image("brain_mask", brain_mask, affine, source)
+    labelled = None if aseg is None else _image("aseg", aseg, affine, source)
+    if pial is not None:
+        source.pial.extend(_surfaces("pial", pial, source))
+    return source._replace(mask=mask, aseg=labelled)
 
 
 def _image(name: str, image: Any, affine: Any, source: _Source) -> Samples:
@@ -384,11 +469,12 @@ def _image(name: str, image: Any, affine: Any, source: _Source) -> Samples:
     return samples
 
 
-def _surfaces(surfaces: Any, layers: int, source: _Source) -> List[Mesh]:
+def _surfaces(name: str, surfaces: Any, source: _Source) -> List[Mesh]:
+    role = "surface" if name == "surfaces" else "pial surface"
     meshes = []
-    for surface in _listed("surfaces", surfaces):
-        file = base_name(checked_path("surfaces", surface)) if is_path(surface) else ""
-        source.inputs.append([file, "surface", "file" if file else type(surface).__name__])
+    for surface in listed(name, surfaces):
+        file = base_name(checked_path(name, surface)) if is_path(surface) else ""
+        source.inputs.append([file, role, "file" if file else type(surface).__name__])
         if isinstance(surface, Mesh):
             meshes.append(surface)
         elif file:
@@ -398,19 +484,11 @@ def _surfaces(surfaces: Any, layers: int, source: _Source) -> List[Mesh]:
         elif hasattr(surface, "vertices") and hasattr(surface, "faces"):
             meshes.append(Mesh(surface.vertices, surface.faces))
         else:
-            raise Error(f"surfaces {shown(surface)}: must be a Mesh, (vertices, faces), or a file's "
+            raise Error(f"{name} {shown(surface)}: must be a Mesh, (vertices, faces), or a file's "
                         "name")
-    if len(meshes) != layers:
-        raise Error(f"surfaces: are {len(meshes)}, must be {layers}, from inside out")
     if len({mesh.frame for mesh in meshes}) > 1:
-        raise Error("surfaces: are not in one frame; load those in tkras with volume=")
+        raise Error(f"{name}: are not in one frame; load those in tkras with volume=")
     return meshes
-
-
-def _listed(name: str, value: Any) -> List[Any]:
-    if is_path(value) or isinstance(value, (np.ndarray, Mesh)) or not hasattr(value, "__iter__"):
-        raise Error(f"{name} {shown(value)}: must be a sequence")
-    return list(value)
 
 
 def _length(name: str, value: Any, most: float) -> float:
@@ -418,25 +496,90 @@ def _length(name: str, value: Any, most: float) -> float:
                   lambda length: 0 <= length <= most)
 
 
-def _three(name: str, value: Any) -> Tuple[float, ...]:
-    values = tuple(number(name, part) for part in _listed(name, value))
-    if len(values) != 3:
-        raise Error(f"{name} {shown(value)}: must be three numbers: brain, skull, scalp")
-    return values
+def _layers(layers: Any, meg: Any) -> int:
+    """Surfaces of the model. \\raises Error"""
+    number_ = count("layers", layers, 1, 4)
+    if number_ == 2:
+        raise Error("layers 2: must be 1, 3 or 4")
+    if flag("meg", meg) and number_ == 4:
+        raise Error("meg: is one layer, not 4")
+    return 1 if meg else number_
+
+
+def _conductivities(value: Any, layers: int) -> Tuple[float, ...]:
+    """Of brain, CSF, skull, scalp. \\raises Error"""
+    values = [number("conductivity", part) for part in listed("conductivity", value)]
+    if len(values) == 3:
+        values.insert(1, _CSF)
+    elif len(values) != 4:
+        raise Error(f"conductivity {shown(value)}: must be three numbers: brain, skull, scalp; or "
+                    "four: brain, CSF, skull, scalp")
+    elif layers != 4:
+        raise Error("conductivity: four numbers need layers=4")
+    return tuple(values)
 
 
 def _gaps(value: Any) -> Tuple[float, ...]:
     parts = list(value) if isinstance(value, (tuple, list)) else [value, value]
-    if len(parts) != 2:
-        raise Error(f"min_gap {shown(value)}: must be one number, or two: skull, scalp")
+    if len(parts) == 2:
+        parts.append(1)
+    if len(parts) != 3:
+        raise Error(f"min_gap {shown(value)}: must be one number, or two or three: skull, scalp, "
+                    "CSF")
     return tuple(number("min_gap", part, "a number from 0.5 to 20, in mm",
                         lambda gap: 0.5 <= gap <= 20) for part in parts)
+
+
+def _point(name: str, value: Any) -> Point:
+    x, y, z = (number(name, part) for part in _exactly(3, name, value))
+    return x, y, z
+
+
+def _exactly(size: int, name: str, value: Any) -> List[Any]:
+    parts = listed(name, value, f"{size} numbers")
+    if len(parts) != size:
+        raise Error(f"{name} {shown(value)}: must be {size} numbers")
+    return parts
+
+
+def _electrodes(electrodes: Any, frame: Any, montage: Any, landmarks: Any,
+                layers: int) -> Dict[str, Any]:
+    """What C++ takes of electrodes and landmarks. \\raises Error"""
+    options: Dict[str, Any] = {"electrodes": None, "electrodes_name": "", "electrodes_in": None,
+                               "montage": None, "landmarks": None,
+                               "guesses_landmarks": landmarks == "guess"}
+    if electrodes is not None and montage is not None:
+        raise Error("electrodes and montage: exclude each other")
+    if layers == 1 and (electrodes is not None or montage is not None or landmarks is not None):
+        raise Error("electrodes, montage and landmarks: need a skin, not one layer")
+    if isinstance(electrodes, Mapping):
+        for name in electrodes:
+            if not isinstance(name, str) or not name.isprintable() or not name:
+                raise Error(f"electrodes {shown(name)}: must be text")
+        options["electrodes"] = [(name, _point(f"electrodes, {name}", place))
+                                 for name, place in electrodes.items()]
+        options["electrodes_name"] = "electrodes"
+    elif electrodes is not None:
+        options["electrodes"] = checked_path("electrodes", electrodes)
+        options["electrodes_name"] = base_name(options["electrodes"])
+    if frame is not None:
+        if electrodes is None or isinstance(electrodes, Mapping):
+            raise Error("electrodes_in: needs a file of electrodes")
+        options["electrodes_in"] = word("electrodes_in", frame, ("ras", "lps", "tkras"))
+    if montage is not None:
+        options["montage"] = word("montage", montage, MONTAGES)
+    if isinstance(landmarks, Mapping) and set(landmarks) == set(_LANDMARKS):
+        options["landmarks"] = [_point(name, landmarks[name]) for name in _LANDMARKS]
+    elif landmarks is not None and not options["guesses_landmarks"]:
+        raise Error(f"landmarks {shown(landmarks)}: must be 'guess', or a dict of "
+                    + ", ".join(_LANDMARKS))
+    return options
 
 
 def _vertices(value: Any, layers: int) -> List[int]:
     if value is None:
         return []
-    parts = _listed("vertices", value) if hasattr(value, "__iter__") else [value]
+    parts = listed("vertices", value) if hasattr(value, "__iter__") else [value]
     if len(parts) not in (1, layers):
         raise Error(f"vertices {shown(value)}: must be one number, or {layers}")
     return [count("vertices", part, 42, 200000) for part in parts]
@@ -445,7 +588,7 @@ def _vertices(value: Any, layers: int) -> List[int]:
 def _edge_length(value: Any) -> Optional[Tuple[float, float]]:
     if value is None:
         return None
-    parts = [number("edge_length", part) for part in _listed("edge_length", value)]
+    parts = [number("edge_length", part) for part in listed("edge_length", value)]
     if len(parts) != 2 or not 0 < parts[0] <= parts[1]:
         raise Error(f"edge_length {shown(value)}: must be two lengths in mm, 0 < shortest <= "
                     "longest")
@@ -464,26 +607,28 @@ def _require_thicknesses(options: Dict[str, Any], is_t1: bool, is_ct: bool) -> N
                     "soft tissue (40 HU)")
 
 
-def _tissues(value: Any, is_needed: bool, is_meg: bool) -> Tuple[str, List[List[int]]]:
-    """A preset's name, or the labels of brain, skull and scalp. \\raises Error"""
+def _tissues(value: Any, is_needed: bool, layers: int) -> Tuple[str, Dict[str, List[int]]]:
+    """A preset's name, or the labels of each tissue. \\raises Error"""
+    lists: Dict[str, List[int]] = {name: [] for name in TISSUES}
     if value is None:
         if is_needed:
             raise Error("labels: need tissues, whose they are or which labels: 'charm', "
                         "{'brain': [1], 'skull': [2], 'scalp': [3]}")
-        return "", [[], [], []]
+        return "", lists
     if not is_needed:
         raise Error("tissues: need labels")
     if isinstance(value, str):
-        return word("tissues", value, PRESETS), [[], [], []]
+        return word("tissues", value, PRESETS), lists
     if not isinstance(value, Mapping) or not set(value) <= set(TISSUES):
         raise Error(f"tissues {shown(value)}: must be one of {', '.join(PRESETS)}, or a dict of "
-                    "brain, skull and scalp")
-    lists = []
+                    "brain, csf, skull and scalp")
+    needed = {1: ("brain",), 3: ("brain", "skull", "scalp"), 4: TISSUES}[layers]
     for name in TISSUES:
         labels = value.get(name, [])
-        labels = list(labels) if hasattr(labels, "__iter__") else [labels]
-        lists.append([count(f"tissues, {name}", label, -2**63, 2**63 - 1) for label in labels])
-        if not lists[-1] and (name == "brain" or not is_meg):
+        labels = (listed(f"tissues, {name}", labels) if hasattr(labels, "__iter__")
+                  else [labels])
+        lists[name] = [count(f"tissues, {name}", label, -2**63, 2**63 - 1) for label in labels]
+        if not lists[name] and name in needed:
             raise Error(f"tissues: {name} has no label")
     return "", lists
 
@@ -496,9 +641,10 @@ def _require_replaceable(target: str, replace: bool) -> None:
     names = os.listdir(target)
     if names and not replace:
         raise Error(f"{target}: exists and is not empty; replace=True replaces a model")
+    own = frozenset(_adaptiso.bem_file_names())  # as adaptiso-bem has it
     for name in names:
         file = os.path.join(target, name)
-        if name not in _OWN_FILES or os.path.islink(file) or not os.path.isfile(file):
+        if name not in own or os.path.islink(file) or not os.path.isfile(file):
             raise Error(f"{target}: holds {name}, which is not of a model; it is not replaced")
 
 

@@ -53,8 +53,9 @@ class Image(NamedTuple):
 
 
 def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int] = None,
-         resample_slices: bool = False) -> Image:
-    """Read a scan: NIfTI, NRRD, MetaImage, MGH, or DICOM (a file, a folder, a DICOMDIR).
+         level: Optional[int] = None, channel: Optional[int] = None, time: Optional[int] = None,
+         all_chunks: bool = False, resample_slices: bool = False) -> Image:
+    """Read a scan: NIfTI, NRRD, MetaImage, MGH, Zarr, or DICOM (a file, a folder, a DICOMDIR).
 
     Files are taken for hostile: every length is checked, nothing is padded or guessed, and
     DICOM's compressed pixels are decoded in a child process, so that a damaged file is an
@@ -69,6 +70,12 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
         Number or SeriesInstanceUID of the DICOM series to take where a folder holds several.
     volume_index : int, optional
         Which volume of a 4-D image to take, from 0.
+    level : int, optional
+        Which resolution of an OME-Zarr to take; default 0, the finest.
+    channel, time : int, optional
+        Which channel and time point of an OME-Zarr to take, from 0, where it has several.
+    all_chunks : bool
+        Refuse a Zarr with chunks that are missing; else they hold the fill value, with a warning.
     resample_slices : bool, optional
         Blend DICOM slices that lie unevenly onto even steps; without it they are refused.
 
@@ -94,22 +101,31 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
     name = path("file", file)
     if series is not None and not isinstance(series, (str, int)):
         raise Error(f"series {shown(series)}: must be a number or a SeriesInstanceUID")
-    index = None if volume_index is None else count("volume_index", volume_index)
-    resample = flag("resample_slices", resample_slices)
+    numbers = {key: None if value is None else count(key, value) for key, value in (
+        ("volume_index", volume_index), ("level", level), ("channel", channel), ("time", time))}
+    whole, resample = flag("all_chunks", all_chunks), flag("resample_slices", resample_slices)
+    is_of_zarr = whole or any(numbers[key] is not None for key in ("level", "channel", "time"))
     if not hasattr(_adaptiso, "read_image"):
-        return _read_by_nibabel(name, index, series is not None or resample)
+        return _read_by_nibabel(name, numbers["volume_index"],
+                                series is not None or resample or is_of_zarr)
+    no_zarr = f"{name}: is no Zarr, which level, channel, time and all_chunks are for"
+    if is_of_zarr and not os.path.isdir(name):
+        raise Error(no_zarr)
     with _reading:
         array, affine, kind, warnings = _adaptiso.read_image(
-            name, None if series is None else str(series), index, resample)
+            name, None if series is None else str(series), **numbers, all_chunks=whole,
+            resample_slices=resample)
+    if is_of_zarr and "Zarr" not in kind:
+        raise Error(no_zarr)
     for warning in warnings:
         logger.warning("%s: %s", base_name(name), warning)
     return Image(array, affine, warnings, kind)
 
 
-def _read_by_nibabel(name: str, volume_index: Optional[int], wants_dicom: bool) -> Image:
+def _read_by_nibabel(name: str, volume_index: Optional[int], wants_more: bool) -> Image:
     """What `read` gives in a package that was built without readers (ADAPTISO_PYTHON_READERS)."""
-    if wants_dicom:
-        raise Error(f"{name}: DICOM is not read by this build of adaptiso")
+    if wants_more:
+        raise Error(f"{name}: DICOM and Zarr are not read by this build of adaptiso")
     if not os.path.exists(name):
         raise Error(f"{name}: there is no such file")
     try:

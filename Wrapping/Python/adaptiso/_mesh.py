@@ -7,7 +7,7 @@ import json
 import logging
 import os
 import uuid
-from typing import Any, Dict, Optional, Tuple
+from typing import Any, Callable, Dict, Optional, Tuple
 
 import numpy as np
 import numpy.typing as npt
@@ -156,25 +156,10 @@ class Mesh:
             An unknown extension, a frame that the format can't hold or that needs an image that
             the mesh does not know, a file that can't be written.
         """
-        name = os.path.realpath(checked_path("path", path))
+        name = checked_path("path", path)
         if frame is not None:
             word("frame", frame, FRAMES)
-        if os.path.exists(name) and not os.path.isfile(name):
-            raise Error(f"{name}: is no regular file; give another name")
-        folder, file = os.path.split(name)
-        stem, extension = os.path.splitext(file)
-        temporary = os.path.join(folder, f".{stem[:80]}-{uuid.uuid4().hex}{extension}")
-        try:
-            self._data.write(temporary, frame)
-            os.replace(temporary, name)
-        except BaseException as error:
-            with contextlib.suppress(OSError):
-                os.unlink(temporary)
-            if isinstance(error, Error):
-                raise Error(str(error).replace(temporary, name)) from None
-            if isinstance(error, OSError):
-                raise Error(f"{name}: can't be written: {error.strerror}") from None
-            raise
+        save_whole(name, lambda temporary: self._data.write(temporary, frame))
 
     def to_vtk(self) -> Any:
         """The mesh as a vtkPolyData, in RAS mm; shares the vertices' memory.
@@ -309,6 +294,27 @@ def load(path: Any, *, volume: Any = None) -> Mesh:
     if assumed:
         logger.warning("%s: %s", base_name(name), assumed)
     return Mesh._of(data)
+
+
+def save_whole(path: str, write: Callable[[str], None]) -> None:
+    """Writes a file by `write` under a temporary name beside it, and renames it. \\raises Error"""
+    name = os.path.realpath(path)
+    if os.path.exists(name) and not os.path.isfile(name):
+        raise Error(f"{name}: is no regular file; give another name")
+    folder, file = os.path.split(name)
+    stem, extension = os.path.splitext(file)
+    temporary = os.path.join(folder, f".{stem[:80]}-{uuid.uuid4().hex}{extension}")
+    try:
+        write(temporary)
+        os.replace(temporary, name)
+    except BaseException as error:
+        with contextlib.suppress(OSError):
+            os.unlink(temporary)
+        if isinstance(error, Error):
+            raise Error(str(error).replace(temporary, name)) from None
+        if isinstance(error, OSError):
+            raise Error(f"{name}: can't be written: {error.strerror}") from None
+        raise
 
 
 def mesh_data_of(value: Any, keeps_faults: bool) -> _adaptiso.MeshData:

@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Sequence
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, count, flag, is_path, optional_number, path as checked_path,
+from ._arguments import (Progress, count, flag, is_path, listed, optional_number, path as checked_path,
                          progress as checked_progress, shown, threads as checked_threads, word)
 from ._images import base_name
 from ._mesh import Mesh, mesh_data_of
@@ -192,9 +192,7 @@ def check_nested(meshes: Sequence[Any], profile: str = "bem", *, min_gap: Option
     >>> adaptiso.check_nested([outer, inner], "print").failed
     ['surface 1 in surface 2: strictlyNested']
     """
-    if isinstance(meshes, (str, bytes, Mesh)) or not hasattr(meshes, "__iter__"):
-        raise Error(f"meshes {shown(meshes)}: must be a sequence of surfaces, from inside out")
-    surfaces = list(meshes)
+    surfaces = listed("meshes", meshes, "a sequence of surfaces, from inside out")
     if len(surfaces) < 2:
         raise Error(f"meshes: are {len(surfaces)}, must be two or more")
     told = _names(surfaces, names)

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/TriangleMesh.h"
@@ -41,5 +42,17 @@ struct ArrayVolume {
 /// The samples that `volume` holds as an array, which keeps them: i, j, k, in Fortran order,
 /// read-only.
 py::array toArray(const Volume& volume);
+
+/// Rows of three numbers that `owner` keeps; nobody may write to them.
+template <class Value, class Row>
+py::array viewRows(const std::vector<Row>& rows, const py::object& owner) {
+    static_assert(sizeof(Row) == 3 * sizeof(Value));
+    py::array array(
+        py::dtype::of<Value>(), {static_cast<py::ssize_t>(rows.size()), py::ssize_t{3}},
+        {static_cast<py::ssize_t>(sizeof(Row)), static_cast<py::ssize_t>(sizeof(Value))},
+        rows.data(), owner);
+    array.attr("setflags")(py::arg("write") = false);
+    return array;
+}
 
 }  // namespace adaptiso::python

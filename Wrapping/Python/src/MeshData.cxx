@@ -6,21 +6,25 @@
 #include "Resources.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
-#include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/Pipeline/SurfaceJson.h"
 #include "adaptiso/Report/Page.h"
 #include "adaptiso/Report/Pictures.h"
 
 namespace adaptiso::python {
-namespace {
 
-/// LPS to RAS and back: both axes turn, so triangles stay as they are.
-void turnXY(TriangleMesh& mesh) {
-    for (Vec3& p : mesh.points) {
+void turnXY(std::vector<Vec3>& points) {
+    for (Vec3& p : points) {
         p.x = -p.x;
         p.y = -p.y;
     }
+}
+
+namespace {
+
+/// Both axes turn, so triangles stay as they are.
+void turnXY(TriangleMesh& mesh) {
+    python::turnXY(mesh.points);
     for (Normal& n : mesh.normals) {
         n.x = -n.x;
         n.y = -n.y;
@@ -171,9 +175,11 @@ std::string MeshData::report() {
     return report_;
 }
 
-void MeshData::write(const std::string& path, std::optional<CoordinateFrame> frame) const {
+void MeshData::write(const std::string& path, std::optional<CoordinateFrame> frame,
+                     std::vector<CellArray> cellArrays) const {
     const MeshFormat& format = findMeshFormat(path);
     MeshWriteOptions options;
+    options.cellArrays = std::move(cellArrays);
     options.frame =
         frame.value_or(frame_ == CoordinateFrame::TkRas ? frame_ : defaultFrame(format));
     if (options.frame == CoordinateFrame::Voxel && !format.holdsVoxelFrame) {

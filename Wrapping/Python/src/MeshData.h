@@ -13,6 +13,7 @@
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/Pipeline/FinishSurface.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
@@ -41,6 +42,9 @@ struct SurfaceHistory {
     std::vector<std::pair<std::string, double>> seconds;
     double peakMemoryMb = 0;
 };
+
+/// LPS to RAS and back.
+void turnXY(std::vector<Vec3>& points);
 
 /// A mesh whose arrays Python looks at. Points are in scanner RAS mm (or in `frame`): LPS with the
 /// signs of x and y turned in place, which gives the very same numbers back when it is turned
@@ -83,7 +87,9 @@ public:
     void setReport(std::string report) { report_ = std::move(report); }
 
     /// Writes a file in place, in `frame` or in the format's own.
-    void write(const std::string& path, std::optional<CoordinateFrame> frame) const;
+    /// \param cellArrays  as MeshWriteOptions has them
+    void write(const std::string& path, std::optional<CoordinateFrame> frame,
+               std::vector<CellArray> cellArrays = {}) const;
 
     /// The mesh in the viewer of report pages, for a notebook. \pre it has triangles
     std::string notebook(const std::string& title) const;

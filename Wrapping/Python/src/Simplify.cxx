@@ -1,4 +1,4 @@
-#include "Simplify.h"
+#include "adaptiso/Extraction/Simplify.h"
 
 #include <pybind11/stl.h>
 
@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "Calls.h"
+#include "Declarations.h"
 #include "MeshData.h"
-#include "adaptiso/Extraction/Simplify.h"
 
 namespace adaptiso::python {
 namespace {

@@ -342,13 +342,15 @@ AdaptiveResult simplifyWithin(const FullSurface& full, const AdaptiveOptions& op
     return AdaptiveMethod(full, options, progress).run();
 }
 
-Extraction extractAdaptive(const VolumeView& volume, const SpanSpaceIndex& index,
+Extraction extractAdaptive(const VolumeView& volume, const BlockGrid& grid, BlockQuery query,
                            const ExtractionOptions& options) {
-    requireInRange(options.adaptive, "extractSurface");
-    const BlockQuery query = index.blocksAt(options.isovalue);
-    const auto sampler = LatticeSampler::make(volume, options.isovalue, index.grid().border);
-    const Bricks bricks(index.grid(), query.blocks);
+    const auto sampler = LatticeSampler::make(volume, options.isovalue, grid.border);
+    const Bricks bricks(grid, query.blocks);
     Extraction result;
+    result.statistics.blocksTotal = grid.blockCount();
+    result.statistics.blocksActive = std::ssize(query.blocks);
+    result.statistics.indexNodesVisited = query.nodesVisited;
+    query.blocks = {};  // the bricks have them
     result.statistics.errorBoundMm = 0;
     if (bricks.count() > 0) {
         AdaptiveResult made = simplifyWithin(VolumeSurface(volume.geometry(), *sampler, bricks),
@@ -360,9 +362,6 @@ Extraction extractAdaptive(const VolumeView& volume, const SpanSpaceIndex& index
         result.statistics.adaptiveWork = made.work;
         result.statistics.marchingCubesTriangles = made.tableTriangles;
     }
-    result.statistics.blocksTotal = index.grid().blockCount();
-    result.statistics.blocksActive = static_cast<std::int64_t>(query.blocks.size());
-    result.statistics.indexNodesVisited = query.nodesVisited;
     return result;
 }
 

@@ -9,8 +9,9 @@
 namespace adaptiso::detail {
 
 /// The adaptive method: error-bounded simplification of the marching cubes surface, brick by
-/// brick. Arguments as in extractSurface.
-Extraction extractAdaptive(const VolumeView& volume, const SpanSpaceIndex& index,
+/// brick. The blocks are the grid's that the isovalue touches; the
+/// rest is as in extractSurface.
+Extraction extractAdaptive(const VolumeView& volume, const BlockGrid& grid, BlockQuery query,
                            const ExtractionOptions& options);
 
 /// \param function  named in the message \throws InvalidInput when an option is out of range

@@ -57,14 +57,12 @@ Extraction extractWithBlocks(const VolumeView& volume, ActiveBlocks active,
 
 }  // namespace
 
-Extraction extractBoxes(const VolumeView& volume, const SpanSpaceIndex& index,
+Extraction extractBoxes(const VolumeView& volume, const BlockGrid& grid, BlockQuery query,
                         const ExtractionOptions& options) {
-    BlockQuery query = index.blocksAt(options.isovalue);
-    const std::int64_t visited = query.nodesVisited;
-    ActiveBlocks active(index.grid(), std::move(query.blocks));
+    ActiveBlocks active(grid, std::move(query.blocks));
     const std::int64_t activeCount = active.count();
     Extraction result;
-    switch (index.grid().blockSize) {
+    switch (grid.blockSize) {
         case 2:
             result = extractWithBlocks<2>(volume, std::move(active), options);
             break;
@@ -78,9 +76,9 @@ Extraction extractBoxes(const VolumeView& volume, const SpanSpaceIndex& index,
             result = extractWithBlocks<16>(volume, std::move(active), options);
             break;
     }
-    result.statistics.blocksTotal = index.grid().blockCount();
+    result.statistics.blocksTotal = grid.blockCount();
     result.statistics.blocksActive = activeCount;
-    result.statistics.indexNodesVisited = visited;
+    result.statistics.indexNodesVisited = query.nodesVisited;
     return result;
 }
 

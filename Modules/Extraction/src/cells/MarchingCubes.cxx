@@ -237,10 +237,8 @@ Extraction march(const LatticeSampler& sampler, const ActiveBlocks& active,
 
 }  // namespace
 
-Extraction extractMarchingCubes(const VolumeView& volume, const SpanSpaceIndex& index,
+Extraction extractMarchingCubes(const VolumeView& volume, const BlockGrid& grid, BlockQuery query,
                                 const ExtractionOptions& options) {
-    BlockQuery query = index.blocksAt(options.isovalue);
-    const BlockGrid& grid = index.grid();
     const ActiveBlocks active(grid, std::move(query.blocks));
     const auto sampler = LatticeSampler::make(volume, options.isovalue, grid.border);
     const ImageGeometry& geometry = volume.geometry();

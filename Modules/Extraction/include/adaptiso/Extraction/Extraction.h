@@ -112,8 +112,8 @@ struct Extraction {
 Extraction extractSurface(const VolumeView& volume, const SpanSpaceIndex& index,
                           const ExtractionOptions& options);
 
-/// As above, with an index of its own: for one isovalue of a volume. Who wants several builds the
-/// index once.
+/// As above, without an index: for one isovalue of a volume, with no memory for blocks that it does
+/// not touch. Who wants several isovalues builds an index once.
 /// \param border  closed: the surface is closed where the inside reaches the volume's border
 Extraction extractSurface(const VolumeView& volume, const ExtractionOptions& options,
                           Border border = Border::Closed);

@@ -1,11 +1,13 @@
 #include "adaptive/rounds/BrickRound.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <unordered_map>
+#include <utility>
 
-#include "adaptiso/Core/Parallel.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
@@ -198,162 +200,94 @@ BrickSurface simplifyBrick(const FineSurface& fine, const Index3& lowIndex,
     return result;
 }
 
-/// Joins bricks at their walls; empties them on the way.
+/// Joins bricks at their walls, one after the other, so that few of them are there at a time.
+/// Vertices of the whole are numbered in the order in which bricks first have them.
 class Joiner {
 public:
-    Joiner(std::vector<BrickSurface>& bricks, const MetricFrame& frame, const TightPlaces& tight)
-        : bricks_(bricks), frame_(frame), tight_(tight), number_(bricks.size()) {}
+    Joiner(const MetricFrame& frame, const TightPlaces& tight) : frame_(frame), tight_(tight) {}
+
+    /// \pre the bricks come in their order
+    void add(const BrickSurface& brick) {
+        const auto firstTriangle = static_cast<std::uint64_t>(whole_.triangles.size());
+        numberVertices(brick, firstTriangle);
+        for (const auto& t : brick.triangles) {
+            whole_.triangles.push_back({number_[t[0]], number_[t[1]], number_[t[2]]});
+        }
+        whole_.firstSample.push_back(whole_.samples.size());
+        whole_.samples.insert(whole_.samples.end(), brick.samples.begin(), brick.samples.end());
+        for (const std::uint32_t t : brick.sampleTriangle) {
+            whole_.sampleTriangle.push_back(firstTriangle + t);
+        }
+        whole_.fineTriangles += brick.fineTriangles;
+        whole_.tableTriangles += brick.tableTriangles;
+    }
 
     SimplifiedSurface join() {
-        collectWalls();
-        numberMembers();
-        tbb::parallel_invoke([&] { appendPoints(); }, [&] { appendQuadrics(); },
-                             [&] { appendTriangles(); }, [&] { appendSamples(); });
-        addWallSamples();
+        whole_.firstSample.push_back(whole_.samples.size());
+        std::sort(walls_.begin(), walls_.end(),
+                  [](const WallVertex& a, const WallVertex& b) { return a.edge < b.edge; });
+        for (const WallVertex& wall : walls_) addWallSample(wall);
         return std::move(whole_);
     }
 
 private:
-    /// What a brick has of a vertex on a wall.
-    struct WallEntry {
-        std::uint64_t edge;
-        std::uint32_t brick, vertex, triangle;
-        Vec3 normal;
+    /// What is known of a vertex on walls; those of the bricks before, all together.
+    struct WallVertex {
+        std::uint64_t edge, vertex, triangle;
+        Vec3 normal;  ///< sum of the bricks'
         std::uint8_t room;
-        StoredQuadric quadric;
     };
-    static constexpr std::uint64_t kShared = ~std::uint64_t{0};
 
-    void collectWalls() {
-        for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
-            for (const auto& w : bricks_[b].walls) {
-                walls_.push_back({w.edge, b, w.vertex, w.triangle, w.normal, w.room,
-                                  bricks_[b].quadrics[w.vertex]});
-            }
-            bricks_[b].walls = {};
-            number_[b].assign(bricks_[b].points.size(), 0);
+    /// Gives the brick's vertices their numbers in the whole, and appends those that are new: at a
+    /// wall the first brick keeps the vertex, the others add their quadrics to it.
+    void numberVertices(const BrickSurface& brick, std::uint64_t firstTriangle) {
+        constexpr std::uint64_t kNew = ~std::uint64_t{0};
+        number_.assign(brick.points.size(), kNew);
+        for (const auto& wall : brick.walls) {
+            const auto known = wallAt_.find(wall.edge);
+            if (known != wallAt_.end()) number_[wall.vertex] = walls_[known->second].vertex;
         }
-        std::sort(walls_.begin(), walls_.end(), [](const WallEntry& a, const WallEntry& b) {
-            return a.edge != b.edge ? a.edge < b.edge : a.brick < b.brick;
-        });
-        // the first brick at a wall vertex keeps it
-        for (std::size_t i = 1; i < walls_.size(); ++i) {
-            if (walls_[i].edge == walls_[i - 1].edge) {
-                number_[walls_[i].brick][walls_[i].vertex] = kShared;
+        for (std::size_t v = 0; v < number_.size(); ++v) {
+            if (number_[v] == kNew) {
+                number_[v] = whole_.points.size();
+                whole_.points.push_back(brick.points[v]);
+                whole_.states.push_back(brick.states[v]);
+                whole_.quadrics.push_back(brick.quadrics[v]);
+            } else {
+                StoredQuadric& sum = whole_.quadrics[number_[v]];
+                for (std::size_t n = 0; n < sum.number.size(); ++n) {
+                    sum.number[n] += brick.quadrics[v].number[n];
+                }
             }
+        }
+        for (const auto& wall : brick.walls) {
+            const auto [at, isNew] = wallAt_.try_emplace(wall.edge, walls_.size());
+            if (isNew) {
+                walls_.push_back({wall.edge, number_[wall.vertex], firstTriangle + wall.triangle,
+                                  Vec3{}, SheetRoom::kAlone});
+            }
+            WallVertex& whole = walls_[at->second];
+            whole.normal += wall.normal;
+            whole.room = std::min(whole.room, wall.room);
         }
     }
 
-    /// Of the whole's vertices and triangles.
-    void numberMembers() {
-        firstTriangle_.push_back(0);
-        for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
-            for (std::uint64_t& number : number_[b]) {
-                if (number != kShared) number = vertices_++;
-            }
-            firstTriangle_.push_back(firstTriangle_.back() + bricks_[b].triangles.size());
-        }
-        for (std::size_t i = 0, first = 0; i < walls_.size(); ++i) {
-            if (walls_[i].edge != walls_[first].edge) first = i;
-            if (i != first) numberOf(walls_[i]) = numberOf(walls_[first]);
-        }
+    void addWallSample(const WallVertex& wall) {
+        Sample sample;
+        sample.room = wall.room;
+        sample.setPoint(whole_.points[wall.vertex]);
+        sample.setNormal(wall.normal);
+        tight_.apply(frame_, sample);
+        whole_.samples.push_back(sample);
+        whole_.sampleTriangle.push_back(wall.triangle);
+        whole_.wallEdges.push_back(wall.edge);
     }
 
-    std::uint64_t& numberOf(const WallEntry& wall) { return number_[wall.brick][wall.vertex]; }
-
-    /// Vertices of the whole are numbered in the order in which bricks first have them.
-    template <class F>
-    void forEachNewVertex(const F& f) {
-        std::uint64_t next = 0;
-        for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
-            for (std::uint32_t v = 0; v < number_[b].size(); ++v) {
-                if (number_[b][v] != next) continue;
-                f(bricks_[b], v);
-                ++next;
-            }
-        }
-    }
-
-    void appendPoints() {
-        whole_.points.reserve(vertices_);
-        whole_.states.reserve(vertices_);
-        forEachNewVertex([&](const BrickSurface& brick, std::uint32_t v) {
-            whole_.points.push_back(brick.points[v]);
-            whole_.states.push_back(brick.states[v]);
-        });
-        for (BrickSurface& brick : bricks_) brick.points = {};
-    }
-
-    void appendQuadrics() {
-        whole_.quadrics.reserve(vertices_);
-        forEachNewVertex([&](const BrickSurface& brick, std::uint32_t v) {
-            whole_.quadrics.push_back(brick.quadrics[v]);
-        });
-        for (BrickSurface& brick : bricks_) brick.quadrics = {};
-        for (std::size_t i = 1; i < walls_.size(); ++i) {
-            if (walls_[i].edge != walls_[i - 1].edge) continue;
-            StoredQuadric& sum = whole_.quadrics[numberOf(walls_[i])];
-            for (std::size_t n = 0; n < sum.number.size(); ++n) {
-                sum.number[n] += walls_[i].quadric.number[n];
-            }
-        }
-    }
-
-    void appendTriangles() {
-        whole_.triangles.reserve(firstTriangle_.back());
-        for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
-            const auto& number = number_[b];
-            for (const auto& t : bricks_[b].triangles) {
-                whole_.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
-            }
-            bricks_[b].triangles = {};
-            whole_.fineTriangles += bricks_[b].fineTriangles;
-            whole_.tableTriangles += bricks_[b].tableTriangles;
-        }
-    }
-
-    void appendSamples() {
-        std::size_t samples = walls_.size();
-        for (const BrickSurface& brick : bricks_) samples += brick.samples.size();
-        whole_.samples.reserve(samples);
-        whole_.sampleTriangle.reserve(samples);
-        for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
-            BrickSurface& brick = bricks_[b];
-            whole_.firstSample.push_back(whole_.samples.size());
-            whole_.samples.insert(whole_.samples.end(), brick.samples.begin(), brick.samples.end());
-            for (const std::uint32_t t : brick.sampleTriangle) {
-                whole_.sampleTriangle.push_back(firstTriangle_[b] + t);
-            }
-            brick.samples = {};
-            brick.sampleTriangle = {};
-        }
-        whole_.firstSample.push_back(whole_.samples.size());
-    }
-
-    void addWallSamples() {
-        for (std::size_t i = 0, j = 0; i < walls_.size(); i = j) {
-            Sample sample;
-            Vec3 normal;
-            for (j = i; j < walls_.size() && walls_[j].edge == walls_[i].edge; ++j) {
-                sample.room = std::min(sample.room, walls_[j].room);
-                normal += walls_[j].normal;
-            }
-            sample.setPoint(whole_.points[numberOf(walls_[i])]);
-            sample.setNormal(normal);
-            tight_.apply(frame_, sample);
-            whole_.samples.push_back(sample);
-            whole_.sampleTriangle.push_back(firstTriangle_[walls_[i].brick] + walls_[i].triangle);
-            whole_.wallEdges.push_back(walls_[i].edge);
-        }
-    }
-
-    std::vector<BrickSurface>& bricks_;
     const MetricFrame& frame_;
     const TightPlaces& tight_;
-    std::vector<std::vector<std::uint64_t>> number_;  ///< in the whole, of each brick's vertices
-    std::uint64_t vertices_ = 0;                      ///< of the whole
-    std::vector<std::uint64_t> firstTriangle_;        ///< of each brick, in the whole
-    std::vector<WallEntry> walls_;
+    std::vector<std::uint64_t> number_;  ///< in the whole, of a brick's vertices
+    std::vector<WallVertex> walls_;
+    std::unordered_map<std::uint64_t, std::size_t> wallAt_;  ///< by edge
     SimplifiedSurface whole_;
 };
 
@@ -366,22 +300,36 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
         BrickMesher mesher;
         FineSurface fine;
     };
-    std::vector<BrickSurface> surfaces(static_cast<std::size_t>(bricks.count()));
-    if (costs != nullptr) costs->assign(surfaces.size(), {});
-    {
-        tbb::enumerable_thread_specific<Tools> tools([&] {
-            return Tools{BrickMesher(sampler, bricks.grid()), {}};
-        });
-        parallelForPieces(bricks.count(), 1, [&](std::int64_t b, std::int64_t) {
-            Tools& mine = tools.local();
-            mine.mesher.mesh(bricks[b], mine.fine);
-            Index3 lowIndex = bricks[b].low;
-            for (std::int64_t& along : lowIndex) along -= bricks.grid().offset;
-            surfaces[b] = simplifyBrick(mine.fine, lowIndex, frame, tight, limits,
-                                        costs != nullptr ? &(*costs)[b] : nullptr);
-        });
-    }
-    return Joiner(surfaces, frame, tight).join();
+    if (costs != nullptr) costs->assign(static_cast<std::size_t>(bricks.count()), {});
+    tbb::enumerable_thread_specific<Tools> tools([&] {
+        return Tools{BrickMesher(sampler, bricks.grid()), {}};
+    });
+    const auto simplified = [&](std::int64_t b) {
+        Tools& mine = tools.local();
+        mine.mesher.mesh(bricks[b], mine.fine);
+        Index3 lowIndex = bricks[b].low;
+        for (std::int64_t& along : lowIndex) along -= bricks.grid().offset;
+        return simplifyBrick(mine.fine, lowIndex, frame, tight, limits,
+                             costs != nullptr ? &(*costs)[b] : nullptr);
+    };
+    Joiner joiner(frame, tight);
+    std::int64_t next = 0;
+    // bricks differ in what they take: some wait for the ones before them, so that none waits for
+    // work
+    const auto most = static_cast<std::size_t>(4 * tbb::this_task_arena::max_concurrency());
+    tbb::parallel_pipeline(
+        most,
+        tbb::make_filter<void, std::int64_t>(tbb::filter_mode::serial_in_order,
+                                             [&](tbb::flow_control& control) {
+                                                 if (next == bricks.count()) control.stop();
+                                                 return next++;
+                                             }) &
+            tbb::make_filter<std::int64_t, BrickSurface>(tbb::filter_mode::parallel, simplified) &
+            tbb::make_filter<BrickSurface, void>(
+                tbb::filter_mode::serial_in_order,
+                [&](const BrickSurface& brick) { joiner.add(brick); }));
+    tools.clear();
+    return joiner.join();
 }
 
 }  // namespace adaptiso::detail

@@ -23,7 +23,8 @@ namespace py = pybind11;
 struct HeadSources {
     std::string source;  ///< "t1", "labels", "probabilities", "ct", "surfaces"
     std::vector<std::shared_ptr<ArrayVolume>> images;  ///< with surfaces: the one they belong to
-    std::shared_ptr<ArrayVolume> brainMask;
+    std::shared_ptr<ArrayVolume> brainMask, aseg;      ///< with t1; may be null
+    std::vector<std::shared_ptr<MeshData>> pial;       ///< with t1: the cortex
     TissueLabels tissues;
     std::vector<std::shared_ptr<MeshData>> surfaces;  ///< inside out, in one frame
     std::vector<BemInput> inputs;                     ///< one for each of them

@@ -1,4 +1,4 @@
-#include "HeadModel.h"
+#include "HeadModelData.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -11,6 +11,7 @@
 #include "Resources.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/Pipeline/BemElectrodes.h"
 #include "adaptiso/Pipeline/BemJson.h"
 #include "adaptiso/Pipeline/BemReport.h"
 #include "adaptiso/Pipeline/BemSurfaces.h"
@@ -33,17 +34,46 @@ void addSeconds(std::vector<std::pair<std::string, double>>& stages, std::string
     }
 }
 
+/// tkRAS whose volume nothing tells.
+bool isLooseTkRas(const MeshData& surface) {
+    return surface.frame() == CoordinateFrame::TkRas && !surface.image();
+}
+
+bool areLoose(const HeadSources& sources) {
+    return sources.images.empty() &&
+           std::any_of(sources.surfaces.begin(), sources.surfaces.end(),
+                       [](const auto& surface) { return isLooseTkRas(*surface); });
+}
+
+/// A surface in LPS mm, without normals.
+/// \param volume  whose tkRAS it is in, where it is
+TriangleMesh inLps(const MeshData& surface, const std::optional<ImageGeometry>& volume) {
+    TriangleMesh mesh = fromFrame(surface.mesh(), surface.frame(), volume);
+    mesh.normals = {};
+    return mesh;
+}
+
+HeadBoundaries boundariesOfT1(const HeadSources& sources, const BoundaryOptions& options) {
+    const VolumeView& t1 = sources.images.front()->view;
+    BrainSources brain;
+    if (sources.brainMask) brain.mask = sources.brainMask->view;
+    if (sources.aseg) brain.aseg = sources.aseg->view;
+    for (const auto& surface : sources.pial) {
+        const ImageGeometry& image = surface->image() ? *surface->image() : t1.geometry();
+        brain.pial.push_back(inLps(*surface, frameVolume(CoordinateFrame::TkRas, image)));
+    }
+    return boundariesFromT1(t1, brain, options);
+}
+
 HeadBoundaries boundariesOf(const HeadSources& sources, const BoundaryOptions& options) {
+    if (sources.source == "t1") return boundariesOfT1(sources, options);
     std::vector<VolumeView> views;
     for (const auto& image : sources.images) views.push_back(image->view);
     if (sources.source == "labels") {
         return boundariesFromLabels(views.front(), sources.tissues, options);
     }
     if (sources.source == "probabilities") return boundariesFromProbabilities(views, options);
-    if (sources.source == "ct") return boundariesFromCt(views.front(), options);
-    std::optional<VolumeView> mask;
-    if (sources.brainMask) mask = sources.brainMask->view;
-    return boundariesFromT1(views.front(), mask, options);
+    return boundariesFromCt(views.front(), options);
 }
 
 /// What is wrong with an image, told with the name of the argument.
@@ -51,17 +81,13 @@ HeadBoundaries namedBoundaries(const HeadSources& sources, const BoundaryOptions
     try {
         return boundariesOf(sources, options);
     } catch (const InvalidInput& error) {
-        const bool isOfMask = std::string(error.what()).starts_with("the brain mask");
-        throw InvalidInput((isOfMask ? "brain_mask" : sources.source) + ": " + error.what());
+        const std::string what = error.what();
+        const std::string name = what.starts_with("the brain mask")
+                                     ? (sources.brainMask ? "brain_mask" : "aseg")
+                                 : what.starts_with("a pial surface") ? "pial"
+                                                                      : sources.source;
+        throw InvalidInput(name + ": " + what);
     }
-}
-
-/// tkRAS whose volume nothing tells.
-bool areLoose(const HeadSources& sources) {
-    return sources.images.empty() &&
-           std::any_of(sources.surfaces.begin(), sources.surfaces.end(), [](const auto& surface) {
-               return surface->frame() == CoordinateFrame::TkRas && !surface->image();
-           });
 }
 
 /// The surfaces in LPS mm; of loose tkRAS in the LPS of a stand-in, as the program has it.
@@ -70,15 +96,41 @@ std::vector<TriangleMesh> readyMeshes(const HeadSources& sources, BemModel& mode
     for (const auto& surface : sources.surfaces) {
         std::optional<ImageGeometry> volume = model.image ? model.image : surface->image();
         if (volume) volume = frameVolume(CoordinateFrame::TkRas, *volume);
-        const bool isTkRas = surface->frame() == CoordinateFrame::TkRas;
-        if (isTkRas && !volume) {
+        if (surface->frame() == CoordinateFrame::TkRas && !volume) {
             volume = conformedGeometry({{256, 256, 256}, {-128, -128, -128}, {}});
         }
         if (!model.tkRasVolume) model.tkRasVolume = volume;
-        meshes.push_back(fromFrame(surface->mesh(), surface->frame(), volume));
-        meshes.back().normals = {};
+        meshes.push_back(inLps(*surface, volume));
     }
     return meshes;
+}
+
+/// What the sources lead to, dense or as it came.
+std::vector<TriangleMesh> firstSurfaces(const HeadSources& sources, BemModel& model,
+                                        const BemHooks& hooks) {
+    if (sources.source != "surfaces") {
+        BoundaryOptions boundaries = model.options.boundaries;
+        boundaries.progress = hooks.progress;
+        HeadBoundaries found;
+        hooks.stage("boundaries", [&] { found = namedBoundaries(sources, boundaries); });
+        return extractSurfaces(found, model, hooks);
+    }
+    try {
+        return mendSurfaces(readyMeshes(sources, model), model, hooks);
+    } catch (const InvalidInput& error) {
+        throw InvalidInput(std::string("surfaces: ") + error.what());
+    }
+}
+
+void putElectrodes(BemModel& model, const BemHooks& hooks) {
+    const ElectrodeOptions& wanted = model.options.electrodes;
+    if (!model.hasModel() || !wanted.areWanted()) return;
+    try {
+        placeElectrodes(model, hooks);
+    } catch (const InvalidInput& error) {
+        throw InvalidInput((wanted.file ? "electrodes: " : "montage: ") +
+                           std::string(error.what()));
+    }
 }
 
 void writeText(const fs::path& path, const std::string& text) {
@@ -116,21 +168,8 @@ std::shared_ptr<HeadModelData> HeadModelData::make(const HeadSources& sources,
                                  addSeconds(data->seconds_, stage, secondsSince(start));
                              },
                              watcher.callback()};
-        std::vector<TriangleMesh> dense;
-        if (sources.source == "surfaces") {
-            try {
-                dense = mendSurfaces(readyMeshes(sources, model), model, hooks);
-            } catch (const InvalidInput& error) {
-                throw InvalidInput(std::string("surfaces: ") + error.what());
-            }
-        } else {
-            BoundaryOptions boundaries = options.boundaries;
-            boundaries.progress = hooks.progress;
-            HeadBoundaries found;
-            hooks.stage("boundaries", [&] { found = namedBoundaries(sources, boundaries); });
-            dense = extractSurfaces(found, model, hooks);
-        }
-        finishBemModel(std::move(dense), model, hooks);
+        finishBemModel(firstSurfaces(sources, model, hooks), model, hooks);
+        putElectrodes(model, hooks);
         watcher.tell("check", 1);
     });
     data->totalSeconds_ = secondsSince(begin);

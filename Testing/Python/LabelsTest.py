@@ -1,0 +1,191 @@
+"""labels(): the walls of a label map. Truth on paper, the bytes of adaptiso-labels, what is refused."""
+
+import json
+import pickle
+import unittest
+
+import adaptiso
+import numpy as np
+from support import InFolder, needs, program
+
+SHEARED = np.array([[-1, 0.2, 0, 20], [0, 1.5, 0.3, -30], [0.1, 0, 2, 12], [0, 0, 0, 1]],
+                   np.float32).astype(float)  # as NIfTI's sform holds it
+
+
+def boxes():
+    """Two boxes side by side, a third one on top of both, within 0."""
+    volume = np.zeros((16, 12, 14), np.int16, order="F")
+    volume[3:8, 3:9, 3:7], volume[8:13, 3:9, 3:7], volume[3:13, 3:9, 7:11] = 1, 2, 7
+    return volume
+
+
+class Truth(unittest.TestCase):
+    def setUp(self):
+        self.volume = boxes()
+        self.walls = adaptiso.labels(self.volume, max_error=0, affine=SHEARED)
+
+    def test_regions_have_the_volumes_of_their_voxels(self):
+        voxel = abs(np.linalg.det(SHEARED[:3, :3]))
+        self.assertEqual(list(self.walls.regions), [1, 2, 7])
+        for label, region in self.walls.regions.items():
+            truth = (self.volume == label).sum() * voxel
+            # walls are smooth at the boxes' edges: the program's test allows as much
+            self.assertAlmostEqual(region.volume, truth, delta=0.1 * truth)
+            self.assertEqual((region.label, region.euler_characteristic, region.components),
+                             (label, 2, 1))
+            self.assertEqual(region.name, f"region {label}")
+            self.assertAlmostEqual(sum(region.neighbours.values()), region.area, places=6)
+        self.assertEqual(set(self.walls.regions[1].neighbours), {0, 2, 7})
+        self.assertAlmostEqual(self.walls.regions[1].neighbours[2],
+                               self.walls.regions[2].neighbours[1], places=9)
+        self.assertEqual(self.walls.error_bound, 0)
+
+    def test_walls_are_shared_to_the_bit(self):
+        walls = self.walls
+        self.assertEqual((walls.vertices.dtype, walls.faces.dtype, walls.label0.dtype),
+                         (np.float64, np.int64, np.int32))
+        self.assertEqual(len(walls.label0), len(walls.faces))
+        for array in (walls.vertices, walls.faces, walls.label0, walls.label1):
+            self.assertFalse(array.flags.writeable)
+        self.assertTrue(((walls.label0 < walls.label1) | (walls.label1 == 0)).all())
+        for label in walls.regions:
+            mesh = walls.region(label)
+            own = (walls.label0 == label) | (walls.label1 == label)
+            self.assertEqual(len(mesh.faces), own.sum())
+            np.testing.assert_array_equal(mesh.vertices,
+                                          walls.vertices[np.unique(walls.faces[own])])
+            self.assertGreater(mesh.volume, 0)
+            self.assertEqual(adaptiso.check(mesh).failed, [])
+            self.assertAlmostEqual(mesh.volume, walls.regions[label].volume, places=6)
+        self.assertEqual(len(walls.walls.faces), len(walls.faces))
+
+    def test_views_outlive_the_walls(self):
+        walls = adaptiso.labels(self.volume)
+        label0, vertices = walls.label0, walls.vertices
+        copies = label0.copy(), vertices.copy()
+        del walls
+        np.testing.assert_array_equal(label0, copies[0])
+        np.testing.assert_array_equal(vertices, copies[1])
+
+    def test_orders_types_and_threads_give_the_same_walls(self):
+        truth = adaptiso.labels(self.volume)
+        for volume in (np.ascontiguousarray(self.volume), self.volume.astype(np.uint8),
+                       self.volume.astype(np.float32), self.volume.astype(">i4")):
+            for threads in (1, 2):
+                self.assertEqual(adaptiso.labels(volume, threads=threads), truth)
+
+    def test_bounds_and_counts_are_met(self):
+        self.assertLessEqual(adaptiso.labels(self.volume, max_error=0.4).error_bound, 0.4)
+        few = adaptiso.labels(self.volume, triangles=200)
+        self.assertLessEqual(len(few.faces), 200)
+        self.assertEqual(few.report["walls"]["wantedTriangles"], 200)
+        half = adaptiso.labels(self.volume, reduction=0.5)
+        self.assertLessEqual(len(half.faces), 0.5 * half.report["walls"]["fullTriangles"] + 1)
+
+    def test_some_regions_alone(self):
+        some = adaptiso.labels(self.volume, labels=[7, 2])
+        self.assertEqual(list(some.regions), [2, 7])
+        self.assertEqual(some.region(7), adaptiso.labels(self.volume).region(7))
+        with self.assertRaises(adaptiso.Error):
+            some.region(1)
+
+    def test_pickles_are_whole(self):
+        walls = adaptiso.labels(self.volume, affine=SHEARED, names={2: "two"})
+        again = pickle.loads(pickle.dumps(walls))
+        self.assertEqual(again, walls)
+        self.assertEqual(again.regions, walls.regions)
+        self.assertEqual(again.report, walls.report)
+        self.assertEqual(again.region(2), walls.region(2))
+        self.assertRegex(repr(again), r"^<adaptiso.LabelSurfaces of 3 regions, [\d,]+ triangles in "
+                                      r"walls, within 0\.\d+ mm, RAS mm>$")
+
+    def test_progress_is_told_and_can_stop(self):
+        told = []
+        adaptiso.labels(self.volume, progress=lambda stage, done: told.append(stage))
+        self.assertGreater(len(told), 0)
+
+        def stop(stage, done):
+            raise KeyboardInterrupt
+
+        with self.assertRaises(KeyboardInterrupt):
+            adaptiso.labels(self.volume, progress=stop)
+        self.assertTrue(self.volume.flags.writeable)
+
+
+class Refused(InFolder):
+    def test_with_one_line(self):
+        volume = boxes()
+        for call in (lambda: adaptiso.labels(volume * 0.5), lambda: adaptiso.labels(volume * 0),
+                     lambda: adaptiso.labels(volume, labels=[3]), lambda: adaptiso.labels(volume, labels=[]),
+                     lambda: adaptiso.labels(volume, labels=[0]), lambda: adaptiso.labels(volume, labels="1"),
+                     lambda: adaptiso.labels(volume, labels=[1.5]), lambda: adaptiso.labels(volume, labels=1),
+                     lambda: adaptiso.labels(volume, max_error=-1), lambda: adaptiso.labels(volume, triangles=-1),
+                     lambda: adaptiso.labels(volume, reduction=2), lambda: adaptiso.labels(volume, names=3),
+                     lambda: adaptiso.labels(volume, names={1: 2}), lambda: adaptiso.labels(volume, names={"a": "b"}),
+                     lambda: adaptiso.labels(volume, names=self.folder / "none.tsv"),
+                     lambda: adaptiso.labels(np.full((4, 4, 4), np.nan)), lambda: adaptiso.labels(volume[0]),
+                     lambda: adaptiso.labels(np.full((4, 4, 4), 2**40)), lambda: adaptiso.labels("nowhere.nii"),
+                     lambda: adaptiso.labels(volume).region("one"), lambda: adaptiso.labels(volume).region(2**70),
+                     lambda: adaptiso.labels(volume).save(self.folder / "a.ply"),
+                     lambda: adaptiso.labels(volume).save(self.folder / "a.vtp", frame="scanner"),
+                     lambda: adaptiso.labels(volume).save(self.folder / "no" / "a.vtp")):
+            with self.assertRaises(adaptiso.Error) as caught:
+                call()
+            self.assertNotIn("\n", str(caught.exception))
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+
+@needs("nibabel")
+class Bytes(InFolder):
+    """Those of adaptiso-labels, for the same input and options."""
+
+    def setUp(self):
+        super().setUp()
+        import nibabel
+        self.input = self.folder / "seg.nii"
+        nibabel.save(nibabel.Nifti1Image(boxes(), SHEARED), self.input)
+        (self.folder / "seg.tsv").write_text(
+            "index\tname\tcolor\n1\tleft\t#ff0000\n2\tright\t#00ff00\n7\ttop\t#0000ff\n")
+
+    def compare(self, arguments, **options):
+        folder = self.folder / "theirs"
+        program("adaptiso-labels", self.input, "-o", folder, "--force", "--quiet", *arguments)
+        frame = options.pop("frame", None)
+        for image, affine in ((self.input, None), (boxes(), SHEARED)):
+            walls = adaptiso.labels(image, affine=affine, **options)
+            walls.save(self.folder / "walls.vtp", frame=frame)
+            self.assertEqual((self.folder / "walls.vtp").read_bytes(),
+                             (folder / "walls.vtp").read_bytes())
+            for file in (folder / "regions").iterdir():
+                ours = self.folder / ("ours" + file.suffix)
+                walls.region(int(file.stem)).save(ours, frame=frame)
+                self.assertEqual(ours.read_bytes(), file.read_bytes(), file.name)
+        return walls, json.loads((folder / "report.json").read_text())
+
+    def test_of_walls_and_regions(self):
+        self.compare([])
+        self.compare(["--max-error", 0.4, "--format", "stl"], max_error=0.4)
+        self.compare(["--triangles", 300, "--coordinates", "lps"], triangles=300, frame="lps")
+        self.compare(["--reduction", 0.7, "--labels", "2,7"], reduction=0.7, labels=(2, 7))
+        self.compare(["--max-error", 0, "--coordinates", "voxel"], max_error=0, frame="voxel")
+
+    def test_the_report_says_the_same(self):
+        _, theirs = self.compare([])
+        ours = adaptiso.labels(self.input).report
+        self.assertEqual(ours["walls"], theirs["walls"])
+        for our, their in zip(ours["regions"], theirs["regions"]):
+            for key, value in our.items():
+                self.assertEqual(value, their[key], key)
+        self.assertEqual(len(ours["regions"]), len(theirs["regions"]))
+
+    def test_names_are_found_given_or_read(self):
+        self.assertEqual([region.name for region in adaptiso.labels(self.input).regions.values()],
+                         ["left", "right", "top"])
+        self.assertEqual(adaptiso.labels(self.input).regions[7].color, (0, 0, 255))
+        named = adaptiso.labels(boxes(), names=self.folder / "seg.tsv")
+        self.assertEqual(named.regions[2].name, "right")
+        self.assertEqual(adaptiso.labels(self.input, names={2: "two"}).regions[2].name, "two")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,347 @@
+"""Surfaces of all regions of a label map at once, from one set of walls."""
+
+from __future__ import annotations
+
+import json
+import logging
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _adaptiso
+from ._adaptiso import Error
+from ._arguments import (Progress, count, is_path, listed, optional_number, path as checked_path,
+                         progress as checked_progress, shown, threads as checked_threads, word)
+from ._images import base_name, read_only, samples_of
+from ._mesh import FRAMES, Faces, Mesh, Vertices, save_whole
+
+logger = logging.getLogger("adaptiso")
+
+LabelArray = npt.NDArray[np.int32]
+#: Labels beyond these are not told apart by single precision; 0 is the outside.
+_MOST = 2147483520
+
+
+class Region(NamedTuple):
+    """One region of a label map: an entry of `LabelSurfaces.regions`.
+
+    Attributes
+    ----------
+    label : int
+    name : str
+        By the table of names, or "region 5".
+    color : (int, int, int)
+        Red, green, blue, 0 to 255: the table's, or one far from those of labels near it.
+    volume : float
+        mm3 that the region's surface encloses.
+    area : float
+        mm2.
+    vertices, triangles : int
+        Of its surface.
+    euler_characteristic : int
+        2 for a ball, 0 for a ring, 4 for a shell.
+    components : int
+        Pieces of the surface; the wall of a cavity is one of its own.
+    neighbours : dict of int to float
+        mm2 shared with each other label, 0 (the outside) among them.
+    """
+
+    label: int
+    name: str
+    color: Tuple[int, int, int]
+    volume: float
+    area: float
+    vertices: int
+    triangles: int
+    euler_characteristic: int
+    components: int
+    neighbours: Dict[int, float]
+
+
+class LabelSurfaces:
+    """The walls between the regions of a label map, each stored once: what `labels` makes.
+
+    Where two regions meet, their surfaces have the same triangles. Nothing of it changes, so
+    threads may share it; it pickles.
+
+    Attributes
+    ----------
+    vertices : ndarray of float64, shape (n, 3)
+        Scanner RAS mm (of an array without affine: voxels).
+    faces : ndarray of int64, shape (m, 3)
+        Counter-clockwise seen from the second region: normals point from `label0` into `label1`.
+    label0, label1 : ndarray of int32, shape (m,)
+        The regions on both sides of each face: the smaller label first, 0 last.
+    regions : dict of int to Region
+        By label: names, measures, neighbours.
+    report : dict
+        ``walls`` and ``regions`` as ``adaptiso-labels --json`` has them.
+    """
+
+    __slots__ = ("_data", "_names", "_report", "_regions", "__weakref__")
+
+    def __init__(self, data: _adaptiso.LabelData, names: "_Names") -> None:
+        self._data = data
+        self._names = names
+        self._report: Optional[Dict[str, Any]] = None
+        self._regions: Optional[Dict[int, Region]] = None
+
+    @property
+    def vertices(self) -> Vertices:
+        """float64, shape (n, 3), mm: a read-only view of the walls' own memory."""
+        return self._data.vertices
+
+    @property
+    def faces(self) -> Faces:
+        """int64, shape (m, 3), rows of `vertices`: a read-only view of the walls' own memory."""
+        return self._data.faces
+
+    @property
+    def label0(self) -> LabelArray:
+        """int32, shape (m,): the region that a face's normal points out of; a read-only view."""
+        return self._data.label0
+
+    @property
+    def label1(self) -> LabelArray:
+        """int32, shape (m,): the region that a face's normal points into; a read-only view."""
+        return self._data.label1
+
+    @property
+    def report(self) -> Dict[str, Any]:
+        """``walls`` and ``regions`` as ``adaptiso-labels --json`` has them."""
+        if self._report is None:
+            report = json.loads(self._data.report)
+            for entry in report["regions"]:
+                name, color = self._names.of(entry["label"])
+                entry["name"], entry["color"] = name, "#%02x%02x%02x" % color
+            self._report = report
+        return self._report
+
+    @property
+    def regions(self) -> Dict[int, Region]:
+        """The regions, by label."""
+        if self._regions is None:
+            self._regions = {entry["label"]: self._region_of(entry)
+                             for entry in self.report["regions"]}
+        return self._regions
+
+    def _region_of(self, entry: Dict[str, Any]) -> Region:
+        label = entry["label"]
+        name, color = self._names.of(label)
+        neighbours = {other["label"]: other["areaMm2"] for other in entry["neighbours"]}
+        return Region(label, name, color, entry["volumeMm3"], entry["areaMm2"], entry["vertices"],
+                      entry["triangles"], entry["eulerCharacteristic"], entry["components"],
+                      neighbours)
+
+    @property
+    def error_bound(self) -> float:
+        """Proved: no point of a wall at full resolution is farther (mm) from the same wall here,
+        nor the other way round."""
+        return float(self.report["walls"]["errorBoundMm"])
+
+    @property
+    def walls(self) -> Mesh:
+        """All walls as one mesh: faces in the order of `label0` and `label1`. More than two faces
+        meet at edges where regions do."""
+        return Mesh._of(self._data.walls())
+
+    def region(self, label: int) -> Mesh:
+        """The surface of one region: closed, outward; its vertices are those of `vertices`, to the
+        bit, in their order.
+
+        Parameters
+        ----------
+        label : int
+
+        Raises
+        ------
+        Error
+            There is no such region.
+        """
+        number = count("label", label, -_MOST, _MOST)
+        if number not in self.regions:
+            raise Error(f"label {number}: is no region here")
+        mesh = self._data.region(number)
+        mesh.error_bound = self.error_bound
+        return Mesh._of(mesh)
+
+    def save(self, path: Any, frame: Optional[str] = None) -> None:
+        """Write the walls as a .vtp with the arrays label0 and label1 of its cells: walls.vtp of
+        the program adaptiso-labels, to the byte. The file is whole or not there. Regions are saved
+        by ``region(label).save(path)``, in any format.
+
+        Parameters
+        ----------
+        path : str or path
+            With the extension .vtp.
+        frame : {"ras", "lps", "tkras", "voxel"}, optional
+            Of the points written; default "ras".
+
+        Raises
+        ------
+        Error
+            Another extension, a frame that can't be had, a file that can't be written.
+        """
+        name = checked_path("path", path)
+        if not name.lower().endswith(".vtp"):
+            raise Error(f"{name}: walls are saved as .vtp; region(label).save(path) takes others")
+        if frame is not None:
+            word("frame", frame, FRAMES)
+        save_whole(name, lambda temporary: self._data.write(temporary, frame))
+
+    def __len__(self) -> int:
+        return len(self.regions)
+
+    def __repr__(self) -> str:
+        return (f"<adaptiso.LabelSurfaces of {len(self):,} regions, {len(self.faces):,} triangles "
+                f"in walls, within {self.error_bound:.4g} mm, RAS mm>")
+
+    def __eq__(self, other: object) -> bool:
+        """The same vertices, faces and labels."""
+        if not isinstance(other, LabelSurfaces):
+            return NotImplemented
+        return (np.array_equal(self.vertices, other.vertices)
+                and np.array_equal(self.faces, other.faces)
+                and np.array_equal(self.label0, other.label0)
+                and np.array_equal(self.label1, other.label1))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        data = self._data
+        both = np.stack([data.label0, data.label1], axis=1)
+        return _unpickled, (data.vertices, data.faces, both, data.shape, data.affine, data.report,
+                            self._names.table)
+
+
+class _Names:
+    """Names and colours of labels."""
+
+    def __init__(self, table: Mapping[int, Tuple[str, Optional[Tuple[int, int, int]]]]) -> None:
+        self.table = dict(table)
+
+    def of(self, label: int) -> Tuple[str, Tuple[int, int, int]]:
+        """What `label` is called, and its colour."""
+        name, color = self.table.get(label, ("", None))
+        if color is None:
+            red, green, blue = _adaptiso.label_color(label)
+            color = (red, green, blue)
+        return name or f"region {label}", color
+
+
+def labels(image: Any, *, max_error: Optional[float] = None, triangles: Optional[int] = None,
+           reduction: Optional[float] = None, labels: Optional[Iterable[int]] = None,
+           names: Union[Mapping[int, str], Any] = None, affine: Any = None, threads: int = 0,
+           progress: Optional[Progress] = None) -> LabelSurfaces:
+    """Make the surfaces of all regions of a segmentation at once: neighbours share one wall.
+
+    Each region's surface is closed, outward and 2-manifold; no two triangles of all walls cross;
+    every voxel's centre lies in the region of its label. The same samples, affine and options give
+    the bytes that the program adaptiso-labels gives, for any number of threads.
+
+    Parameters
+    ----------
+    image : ndarray of shape (I, J, K), nibabel, SimpleITK or ITK image, or path
+        Whole numbers, of any type; 0 is what lies outside of all regions. As for `surface`; an
+        array in C order is copied here.
+    max_error : float, optional
+        Largest distance in mm, both ways, of each wall to itself at full resolution; 0: the full
+        resolution. Default: 0.15 of the least distance between planes of voxels, unless
+        `triangles` or `reduction` is given.
+    triangles : int, optional
+        As near to the full resolution as so many triangles in all walls can be.
+    reduction : float, optional
+        Share of the full resolution's triangles to drop, 0 to 1.
+    labels : iterable of int, optional
+        The regions that are wanted; their walls are those that the whole map gives them. Default:
+        all.
+    names : path or mapping of int to str, optional
+        Names by label, or a table of names and colours (BIDS, FreeSurfer, ITK-SNAP, 3D Slicer,
+        MRIcron, FSL, GIFTI, JSON). Default: of a path, what lies beside the file.
+    affine : array_like of shape (4, 4), optional
+        Takes voxel indices to scanner RAS mm. Default: the image's own; of an array the identity.
+    threads, progress
+        As for `surface`.
+
+    Returns
+    -------
+    LabelSurfaces
+
+    Raises
+    ------
+    Error
+        An image that is no label map, labels that it does not have, an option that can't be used.
+
+    Examples
+    --------
+    Two halves of a box:
+
+    >>> import adaptiso, numpy as np
+    >>> box = np.zeros((12, 8, 8), np.uint8)
+    >>> box[2:6, 2:6, 2:6], box[6:10, 2:6, 2:6] = 1, 2
+    >>> walls = adaptiso.labels(box, names={1: "left", 2: "right"})
+    >>> [region.name for region in walls.regions.values()]
+    ['left', 'right']
+    >>> sorted(walls.regions[1].neighbours) == [0, 2]
+    True
+    >>> walls.region(1).is_closed, bool(adaptiso.check(walls.region(2)))
+    (True, True)
+    """
+    options: Dict[str, Any] = {
+        "max_error": optional_number("max_error", max_error, "a number from 0, in mm",
+                                     lambda value: value >= 0),
+        "triangles": None if triangles is None else count("triangles", triangles),
+        "reduction": optional_number("reduction", reduction, "a number from 0 to 1",
+                                     lambda value: 0 <= value <= 1),
+        "labels": _chosen(labels),
+        "threads": checked_threads(threads),
+        "progress": checked_progress(progress),
+    }
+    table = _names(names, image)
+    samples = samples_of(image, affine, True)
+    subject = samples.file or "image"
+    with read_only(samples.user):
+        data = _adaptiso.make_labels(samples.volume, subject=subject, **options)
+    if len(data.faces) == 0:
+        raise Error(f"{subject}: holds no label: all voxels are 0")
+    return LabelSurfaces(data, table)
+
+
+def _chosen(labels: Any) -> List[int]:
+    if labels is None:
+        return []
+    parts = listed("labels", labels, "a sequence of whole numbers")
+    chosen = sorted({count("labels", label, -_MOST, _MOST) for label in parts})
+    if not chosen or 0 in chosen:
+        raise Error(f"labels {shown(labels)}: must be one or more, without 0, the outside")
+    return chosen
+
+
+def _names(names: Any, image: Any) -> _Names:
+    """\\raises Error"""
+    if isinstance(names, Mapping):
+        for label, name in names.items():
+            if not isinstance(name, str):
+                raise Error(f"names {shown(name)}: must be text")
+            count("names", label, -_MOST, _MOST)
+        return _Names({int(label): (name, None) for label, name in names.items()})
+    if names is not None:
+        file = checked_path("names", names)
+        entries, warnings = _adaptiso.read_label_table(file)
+    elif is_path(image):
+        file = checked_path("image", image)
+        entries, warnings = _adaptiso.find_label_table(file)
+    else:
+        return _Names({})
+    for warning in warnings:
+        logger.warning("%s: %s", base_name(file), warning)
+    return _Names({value: (name, None if color is None else (color[0], color[1], color[2]))
+                   for value, name, _, color in entries})
+
+
+def _unpickled(vertices: Any, faces: Any, both: Any, shape: Any, affine: Any, report: str,
+               table: Any) -> LabelSurfaces:
+    data = _adaptiso.LabelData.from_arrays(vertices, faces, np.ascontiguousarray(both, np.int32),
+                                           list(shape), affine, report)
+    return LabelSurfaces(data, _Names(table))

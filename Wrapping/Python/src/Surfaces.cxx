@@ -1,0 +1,245 @@
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "Arrays.h"
+#include "Calls.h"
+#include "Declarations.h"
+#include "MeshData.h"
+#include "Resources.h"
+#include "Words.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/ImageIO/Otsu.h"
+#include "adaptiso/ImageIO/SampleStatistics.h"
+#include "adaptiso/Pipeline/FinishSurface.h"
+#include "adaptiso/SpanSpace/SpanSpaceIndex.h"
+
+namespace adaptiso::python {
+namespace {
+
+/// An index over an array's blocks.
+struct ArrayIndex {
+    SpanSpaceIndex index;
+    double seconds = 0;
+};
+
+std::shared_ptr<ArrayIndex> buildIndex(const ArrayVolume& volume, const IndexOptions& options,
+                                       int threads) {
+    const auto start = std::chrono::steady_clock::now();
+    std::shared_ptr<ArrayIndex> built;
+    runUnlocked(threads, [&] {
+        built =
+            std::make_shared<ArrayIndex>(ArrayIndex{SpanSpaceIndex::build(volume.view, options)});
+    });
+    built->seconds = secondsSince(start);
+    return built;
+}
+
+/// What surface() and Index.surface() take, apart from the image.
+struct SurfaceRequest {
+    std::optional<double> level;  ///< none: Otsu's method chooses
+    std::string method;
+    std::optional<double> maxErrorMm;
+    std::optional<std::int64_t> maxTriangles;
+    std::optional<double> reduction;
+    double minAngleDeg = 0;
+    bool largest = false;
+    double minVolumeMm3 = 0;
+    bool fillCavities = false;
+    int threads = 0;
+
+    ExtractionOptions extraction() const {
+        ExtractionOptions options;
+        options.method = methodOf(method);
+        options.adaptive.maxErrorMm = maxErrorMm;
+        options.adaptive.maxTriangles = maxTriangles;
+        options.adaptive.reduction = reduction;
+        options.adaptive.minAngleDeg = minAngleDeg;
+        if (options.method != Method::Adaptive && !(options.adaptive == AdaptiveOptions{})) {
+            throw InvalidInput(
+                "max_error, triangles, reduction and min_angle are for the method 'adaptive'");
+        }
+        return options;
+    }
+    ComponentSelection selection(Border border) const {
+        ComponentSelection selection;
+        selection.largestOnly = largest;
+        selection.minVolumeMm3 = minVolumeMm3;
+        selection.fillCavities = fillCavities;
+        if (border == Border::Open && (fillCavities || minVolumeMm3 > 0)) {
+            throw InvalidInput(
+                "min_volume and fill_cavities need closed surfaces, not border 'open'");
+        }
+        return selection;
+    }
+};
+
+std::string rangeText(const ValueRange& range) {
+    if (range.minimum > range.maximum) return "the image holds no numbers";
+    return "the range of the image is " + formatShort(range.minimum) + " to " +
+           formatShort(range.maximum);
+}
+
+double levelOf(const SurfaceRequest& request, const VolumeView& volume, const ValueRange& range) {
+    if (!request.level) {
+        try {
+            return otsuThreshold(volume);
+        } catch (const InvalidInput& error) {
+            throw InvalidInput("level 'auto': " + std::string(error.what()));
+        }
+    }
+    if (const auto fault = isovalueFault(*request.level, range)) {
+        throw InvalidInput("level " + formatNumber(*request.level) + ": " + *fault + "; " +
+                           rangeText(range));
+    }
+    return *request.level;
+}
+
+/// What of the history is known before there is a surface.
+/// \param built  an index, or null
+SurfaceHistory historyOf(const SurfaceRequest& request, const ArrayIndex* built, Border border,
+                         const ImageOrigin& origin) {
+    SurfaceHistory history;
+    history.extraction = request.extraction();
+    history.selection = request.selection(border);
+    history.index = {.border = border, .search = BlockSearchKind::Linear};
+    if (built != nullptr) {
+        history.index = built->index.options();
+        history.indexBytes = built->index.memoryBytes();
+    }
+    history.seconds.emplace_back("index", built != nullptr ? built->seconds : 0);
+    history.origin = origin;
+    history.threads = request.threads;
+    return history;
+}
+
+/// The surface before pieces are dropped. Without an index every block is looked at, which for one
+/// level is quicker than to build one, and keeps nothing.
+TriangleMesh extracted(const VolumeView& volume, const ArrayIndex* built,
+                       const SurfaceRequest& request, SurfaceHistory& history, Watcher& watcher) {
+    const auto start = std::chrono::steady_clock::now();
+    SurfaceRecord& record = history.record;
+    record.isAutomatic = !request.level;
+    record.isovalue = levelOf(request, volume, history.range);
+    ExtractionOptions options = history.extraction;
+    options.isovalue = record.isovalue;
+    options.progress = watcher.callback();
+    Extraction extraction = built != nullptr
+                                ? extractSurface(volume, built->index, options)
+                                : extractSurface(volume, options, history.index.border);
+    history.seconds.emplace_back("extract", secondsSince(start));
+    record.statistics = extraction.statistics;
+    record.extractedTriangles = std::ssize(extraction.mesh.triangles);
+    if (extraction.mesh.triangles.empty()) {
+        throw InvalidInput("level " + formatNumber(record.isovalue) +
+                           ": the surface is empty; no two neighbouring voxels lie on both sides");
+    }
+    return std::move(extraction.mesh);
+}
+
+TriangleMesh finished(TriangleMesh mesh, const SurfaceRequest& request, SurfaceHistory& history,
+                      Watcher& watcher) {
+    FinishOptions finish;
+    finish.selection = history.selection;
+    finish.method = history.extraction.method;
+    finish.border = history.index.border;
+    finish.countsCrossings = false;  // when the report is asked for
+    finish.runStage = [&](std::string_view stage, const std::function<void()>& work) {
+        watcher.tell(stage, 0);
+        const auto begin = std::chrono::steady_clock::now();
+        work();
+        history.seconds.emplace_back(stage, secondsSince(begin));
+    };
+    try {
+        return finishSurface(std::move(mesh), finish, history.record).mesh;
+    } catch (const NothingLeft& error) {
+        throw InvalidInput("min_volume " + formatNumber(request.minVolumeMm3) + ": " +
+                           error.what());
+    }
+}
+
+/// Makes a surface as adaptiso-mesh does, from the samples on.
+/// \param built  an index, or null
+std::shared_ptr<MeshData> makeSurface(ArrayVolume& volume, const ArrayIndex* built,
+                                      const std::string& border, const SurfaceRequest& request,
+                                      const ImageOrigin& origin, py::object progress) {
+    SurfaceHistory history = historyOf(request, built, borderOf(border), origin);
+    history.pixelType = volume.view.pixelType();
+    history.range = volume.valueRange(request.threads);
+    Watcher watcher(std::move(progress));
+    TriangleMesh mesh;
+    watcher.run(request.threads, [&] {
+        mesh = extracted(volume.view, built, request, history, watcher);
+        mesh = finished(std::move(mesh), request, history, watcher);
+        watcher.tell("check", 1);
+    });
+    history.peakMemoryMb = peakMemoryMb();
+    return MeshData::fromLps(std::move(mesh), volume.geometry, std::move(history));
+}
+
+}  // namespace
+
+void declareSurfaces(py::module_& module) {
+    py::class_<ArrayVolume, std::shared_ptr<ArrayVolume>>(module, "ArrayVolume")
+        .def(py::init([](const py::array& samples, const py::array_t<double>& affine,
+                         const std::vector<std::int64_t>& userShape,
+                         const py::array_t<double>& userAffine) {
+                 if (userShape.size() != 3) throw InvalidInput("image: must have three axes");
+                 return std::make_shared<ArrayVolume>(ArrayVolume::make(
+                     samples, affine, {userShape[0], userShape[1], userShape[2]}, userAffine));
+             }),
+             py::arg("samples"), py::arg("affine"), py::arg("user_shape"), py::arg("user_affine"))
+        .def("value_range",
+             [](ArrayVolume& self) {
+                 const ValueRange& range = self.valueRange(0);
+                 return py::make_tuple(range.minimum, range.maximum);
+             })
+        .def_property_readonly("address",
+                               [](const ArrayVolume& self) {
+                                   return reinterpret_cast<std::uintptr_t>(self.view.samples());
+                               })
+        .def("count_not_finite", [](const ArrayVolume& self) {
+            std::int64_t finite = 0;
+            runUnlocked(0, [&] { finite = countFinite(self.view); });
+            return self.view.geometry().voxelCount() - finite;
+        });
+    py::class_<ArrayIndex, std::shared_ptr<ArrayIndex>>(module, "ArrayIndex")
+        .def_property_readonly(
+            "blocks", [](const ArrayIndex& self) { return self.index.grid().blockCount(); })
+        .def_property_readonly("memory_bytes",
+                               [](const ArrayIndex& self) { return self.index.memoryBytes(); });
+    module.def(
+        "build_index",
+        [](const ArrayVolume& volume, const std::string& border, int threads) {
+            return buildIndex(volume, {.border = borderOf(border)}, threads);
+        },
+        py::arg("volume"), py::arg("border"), py::arg("threads"));
+    module.def(
+        "make_surface",
+        [](ArrayVolume& volume, const std::shared_ptr<ArrayIndex>& index, const std::string& border,
+           std::optional<double> level, const std::string& method, std::optional<double> maxError,
+           std::optional<std::int64_t> triangles, std::optional<double> reduction, double minAngle,
+           bool largest, double minVolume, bool fillCavities, int threads, py::object progress,
+           const std::string& file, const std::string& format,
+           const std::vector<std::string>& warnings) {
+            return makeSurface(volume, index.get(), border,
+                               {level, method, maxError, triangles, reduction, minAngle, largest,
+                                minVolume, fillCavities, threads},
+                               {file, format, warnings}, std::move(progress));
+        },
+        py::arg("volume"), py::arg("index"), py::arg("border"), py::arg("level"), py::arg("method"),
+        py::arg("max_error"), py::arg("triangles"), py::arg("reduction"), py::arg("min_angle"),
+        py::arg("largest"), py::arg("min_volume"), py::arg("fill_cavities"), py::arg("threads"),
+        py::arg("progress"), py::arg("file"), py::arg("format"), py::arg("warnings"));
+}
+
+}  // namespace adaptiso::python
