@@ -116,7 +116,7 @@ private:
     ErrorBound proveAndMend(SimplifiedSurface& surface) {
         ErrorBound error = proof_->prove(surface);
         if (wanted_.isGiven() || !isBeyond(error)) return error;
-        SurfaceMender mender(surface, frame_, *boundMm_);
+        SurfaceMender mender(surface, frame_, *boundMm_, full_.box());
         for (int idle = 0; isBeyond(error) && idle < kMostIdleMends;) {
             const std::size_t before = error.beyondLimit.size();
             if (mender.mendDistances(error.beyondLimit) == 0) break;
@@ -165,7 +165,7 @@ private:
     }
 
     bool mendCrossings(Attempt& attempt) const {
-        SurfaceMender mender(attempt.surface, frame_, *boundMm_);
+        SurfaceMender mender(attempt.surface, frame_, *boundMm_, full_.box());
         return mender.mendCrossings(attempt.crossing) > 0;
     }
 
@@ -220,6 +220,7 @@ private:
         PatchLimits limits;
         limits.shape = shape_;
         limits.leavesNoise = !wanted_.isGiven();
+        limits.box = full_.box();
         limits.maxDistanceMm =
             boundMm - std::min(kSlackVoxels * frame_.narrowestMm(), kSlackPart * boundMm);
         limits.provesAll = lessons_.provesAll || limits.maxDistanceMm > sheetMm;

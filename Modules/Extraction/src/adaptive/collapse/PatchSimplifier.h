@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "adaptive/collapse/CrossingGuard.h"
@@ -21,6 +22,7 @@ struct PatchLimits {
     StarLimits shape;
     bool provesAll = false;    ///< also stars that can cross nothing by what is known of them
     bool leavesNoise = false;  ///< bricks full of it stay at full resolution
+    std::optional<CornerBox> box{};  ///< that new vertices stay in, metric frame
 };
 
 /// Simplifies a patch in place by quadric edge collapses, cheapest first [Garland1997].
