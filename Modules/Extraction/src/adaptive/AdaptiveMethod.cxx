@@ -117,7 +117,8 @@ private:
         ErrorBound error = proof_->prove(surface);
         if (wanted_.isGiven() || !isBeyond(error)) return error;
         SurfaceMender mender(surface, frame_, *boundMm_, full_.box());
-        for (int idle = 0; isBeyond(error) && idle < kMostIdleMends;) {
+        for (int mend = 0, idle = 0;
+             isBeyond(error) && idle < kMostIdleMends && mend < kMostDistanceMends; ++mend) {
             const std::size_t before = error.beyondLimit.size();
             if (mender.mendDistances(error.beyondLimit) == 0) break;
             error = proof_->proveAgain(surface, mender.takeChanges());

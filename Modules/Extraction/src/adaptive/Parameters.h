@@ -27,6 +27,8 @@ inline constexpr double kSheetDistance = 0.5;
 inline constexpr int kMostRuns = 16, kMostCrossedRuns = 3;
 /// Rounds of mending crossings in one run; rounds of mending distances that may gain little.
 inline constexpr int kMostMends = 6, kMostIdleMends = 2;
+/// In all: what one mends another may undo, for ever.
+inline constexpr int kMostDistanceMends = 60;
 /// A round of mending gains little when it leaves more than this part of the places.
 inline constexpr double kMended = 0.8;
 /// Runs lead nowhere when they leave more than this part of the places of the run before.
