@@ -132,8 +132,8 @@ memory or disk left, or a piece that is missing), 4 internal error.)";
 
 Program giantProgram() {
     return {"adaptiso-giant",
-            "Makes a surface of a volume that no memory holds, tile by tile, on one machine or "
-            "many: closed, crossing nothing, within a proved distance.",
+            "Makes the surface of a volume that no memory holds, tile by tile: closed, within a "
+            "proved bound.",
             kFooter};
 }
 
