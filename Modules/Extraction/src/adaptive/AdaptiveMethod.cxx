@@ -7,6 +7,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/full/VolumeSurface.h"
+#include "adaptive/mending/LocalUndo.h"
 #include "adaptive/mending/SurfaceMender.h"
 #include "adaptive/proof/CrossingProof.h"
 #include "adaptive/rounds/Simplification.h"
@@ -116,9 +117,15 @@ private:
     ErrorBound proveAndMend(SimplifiedSurface& surface) {
         ErrorBound error = proof_->prove(surface);
         if (wanted_.isGiven() || !isBeyond(error)) return error;
+        mend(surface, error);
+        undo(surface, error);
+        return error;
+    }
+
+    /// \param error  what was proved; then what is
+    void mend(SimplifiedSurface& surface, ErrorBound& error) {
         SurfaceMender mender(surface, frame_, *boundMm_, full_.box());
-        for (int mend = 0, idle = 0;
-             isBeyond(error) && idle < kMostIdleMends && mend < kMostDistanceMends; ++mend) {
+        for (int idle = 0; isBeyond(error) && idle < kMostIdleMends;) {
             const std::size_t before = error.beyondLimit.size();
             if (mender.mendDistances(error.beyondLimit) == 0) break;
             error = proof_->proveAgain(surface, mender.takeChanges());
@@ -126,7 +133,40 @@ private:
                                 kMended * static_cast<double>(before);
             idle = isLess ? 0 : idle + 1;
         }
-        return error;
+        keepChanged(mender);
+    }
+
+    void keepChanged(const SurfaceMender& mender) {
+        const auto& changed = mender.changedTriangles();
+        mended_.insert(mended_.end(), changed.begin(), changed.end());
+    }
+
+    /// Takes the simplification back around places that mending did not help.
+    /// \param error  what was proved; then what is
+    void undo(SimplifiedSurface& surface, ErrorBound& error) {
+        double reachMm = kUndoReach * frame_.narrowestMm();
+        for (int n = 0; n < kMostUndos && isBeyond(error) && lessons_.halfway; ++n) {
+            const auto changes = LocalUndo(lessons_.halfway->state, surface)
+                                     .around(mended_, trianglesOf(error), pointsOf(error), reachMm);
+            if (changes) {
+                error = proof_->proveAgain(surface, *changes);
+                mend(surface, error);
+            }
+            reachMm *= 2;
+        }
+    }
+
+    static std::vector<std::uint64_t> trianglesOf(const ErrorBound& error) {
+        std::vector<std::uint64_t> triangles;
+        for (const PlaceBeyond& place : error.beyondLimit) {
+            if (place.triangle != PlaceBeyond::kNone) triangles.push_back(place.triangle);
+        }
+        return triangles;
+    }
+    static std::vector<Vec3> pointsOf(const ErrorBound& error) {
+        std::vector<Vec3> points;
+        for (const PlaceBeyond& place : error.beyondLimit) points.push_back(place.point());
+        return points;
     }
 
     /// \param places  continuous sample indices
@@ -149,9 +189,7 @@ private:
 
     std::vector<Vec3> indicesOf(const ErrorBound& error) const {
         std::vector<Vec3> indices;
-        for (const PlaceBeyond& place : error.beyondLimit) {
-            indices.push_back(frame_.toIndex(place.point()));
-        }
+        for (const Vec3& p : pointsOf(error)) indices.push_back(frame_.toIndex(p));
         return indices;
     }
     /// The middles of the triangles that cross, as continuous sample indices.
@@ -165,9 +203,11 @@ private:
         return places;
     }
 
-    bool mendCrossings(Attempt& attempt) const {
+    bool mendCrossings(Attempt& attempt) {
         SurfaceMender mender(attempt.surface, frame_, *boundMm_, full_.box());
-        return mender.mendCrossings(attempt.crossing) > 0;
+        const bool isMended = mender.mendCrossings(attempt.crossing) > 0;
+        keepChanged(mender);
+        return isMended;
     }
 
     /// Begins anew with more proved.
@@ -241,6 +281,7 @@ private:
         if (!wanted_.isGiven()) {
             SimplifiedSurface surface = simplification.toLimits(std::move(last), lessons_.halfway);
             unfitted_ = surface.points;
+            mended_.clear();
             fit(surface);
             return surface;
         }
@@ -256,8 +297,9 @@ private:
     std::optional<double> boundMm_;
     StarLimits shape_;
     Lessons lessons_;
-    std::unique_ptr<DistanceProof> proof_;  ///< remembers what it proved last, to prove less
-    std::vector<Vec3> unfitted_;            ///< vertices before they were fitted
+    std::unique_ptr<DistanceProof> proof_;        ///< remembers what it proved last, to prove less
+    std::vector<SurfaceState::Triangle> mended_;  ///< of this run, before and after
+    std::vector<Vec3> unfitted_;                  ///< vertices before they were fitted
 };
 
 }  // namespace

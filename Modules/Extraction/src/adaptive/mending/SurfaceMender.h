@@ -41,6 +41,8 @@ public:
 
     /// Since the last call of this function.
     SurfaceChanges takeChanges() { return std::exchange(changes_, {}); }
+    /// All triangles that were changed, before and after.
+    const std::vector<SurfaceState::Triangle>& changedTriangles() const { return changed_; }
 
 private:
     using Triangle = SurfaceState::Triangle;
@@ -64,7 +66,6 @@ private:
 
     bool collapseEdge(std::uint64_t triangle, int corner, const PlaceBeyond& place);
     bool mayMerge(const Edge& edge) const;
-    void removeGone();
 
     bool isInBox(const Vec3& p) const { return !box_ || box_->overlaps({p, p}); }
     bool facesAs(const Corners& now, const Corners& before) const;
@@ -98,6 +99,7 @@ private:
     std::set<std::array<std::uint64_t, 2>> turned_;  ///< edges that were: they do not come back
 
     SurfaceChanges changes_;
+    std::vector<Triangle> changed_;
 
     // of one call
     Numbers gone_;                                       ///< triangles that collapsed
