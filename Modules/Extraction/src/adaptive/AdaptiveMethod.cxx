@@ -33,6 +33,7 @@ public:
         Attempt attempt;
         for (int run = 0; run < kMostRuns; ++run) {
             report(run, 0);
+            ++work_.runs;
             attempt = {simplify(std::move(attempt.surface)), {}, {}, {}};
             report(run, 0.6);
             if (keepsPromises(attempt)) {
@@ -102,7 +103,18 @@ private:
         result.errorBoundMm = attempt.error.largestMm;
         if (wanted_.isGiven()) result.wantedTriangles = wanted_.of(attempt.surface.fineTriangles);
         result.tableTriangles = attempt.surface.tableTriangles;
+        result.work = work_;
+        result.work.trianglesKept = trianglesKept(attempt.surface);
         return result;
+    }
+
+    static std::int64_t trianglesKept(const SimplifiedSurface& surface) {
+        return std::count_if(
+            surface.triangles.begin(), surface.triangles.end(), [&](const auto& triangle) {
+                return std::all_of(triangle.begin(), triangle.end(), [&](std::uint64_t v) {
+                    return surface.states[v] == Patch::State::Final;
+                });
+            });
     }
 
     void findCrossings(Attempt& attempt) const {
@@ -127,7 +139,9 @@ private:
         SurfaceMender mender(surface, frame_, *boundMm_, full_.box());
         for (int idle = 0; isBeyond(error) && idle < kMostIdleMends;) {
             const std::size_t before = error.beyondLimit.size();
-            if (mender.mendDistances(error.beyondLimit) == 0) break;
+            const std::size_t mended = mender.mendDistances(error.beyondLimit);
+            if (mended == 0) break;
+            work_.placesMended += static_cast<std::int64_t>(mended);
             error = proof_->proveAgain(surface, mender.takeChanges());
             const bool isLess = static_cast<double>(error.beyondLimit.size()) <
                                 kMended * static_cast<double>(before);
@@ -146,9 +160,11 @@ private:
     void undo(SimplifiedSurface& surface, ErrorBound& error) {
         double reachMm = kUndoReach * frame_.narrowestMm();
         for (int n = 0; n < kMostUndos && isBeyond(error) && lessons_.halfway; ++n) {
+            const std::ptrdiff_t points = std::ssize(surface.points);
             const auto changes = LocalUndo(lessons_.halfway->state, surface)
                                      .around(mended_, trianglesOf(error), pointsOf(error), reachMm);
             if (changes) {
+                work_.verticesUndone += std::ssize(surface.points) - points;
                 error = proof_->proveAgain(surface, *changes);
                 mend(surface, error);
             }
@@ -205,9 +221,10 @@ private:
 
     bool mendCrossings(Attempt& attempt) {
         SurfaceMender mender(attempt.surface, frame_, *boundMm_, full_.box());
-        const bool isMended = mender.mendCrossings(attempt.crossing) > 0;
+        const std::size_t mended = mender.mendCrossings(attempt.crossing);
+        work_.placesMended += static_cast<std::int64_t>(mended);
         keepChanged(mender);
-        return isMended;
+        return mended > 0;
     }
 
     /// Begins anew with more proved.
@@ -297,6 +314,7 @@ private:
     std::optional<double> boundMm_;
     StarLimits shape_;
     Lessons lessons_;
+    AdaptiveWork work_;
     std::unique_ptr<DistanceProof> proof_;        ///< remembers what it proved last, to prove less
     std::vector<SurfaceState::Triangle> mended_;  ///< of this run, before and after
     std::vector<Vec3> unfitted_;                  ///< vertices before they were fitted
@@ -340,6 +358,7 @@ Extraction extractAdaptive(const VolumeView& volume, const SpanSpaceIndex& index
         if (!options.computeNormals) result.mesh.normals = {};
         result.statistics.errorBoundMm = made.errorBoundMm;
         result.statistics.wantedTriangles = made.wantedTriangles;
+        result.statistics.adaptiveWork = made.work;
         result.statistics.marchingCubesTriangles = made.tableTriangles;
     }
     result.statistics.blocksTotal = index.grid().blockCount();

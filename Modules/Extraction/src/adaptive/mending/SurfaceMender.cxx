@@ -7,12 +7,14 @@
 #include <utility>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
 namespace {
 
+constexpr std::int64_t kPiece = 1 << 14;
 constexpr std::size_t kSlots = std::size_t{1} << 16;
 
 std::array<double, 3> barycentric(const Vec3& p, const Corners& t) {
@@ -120,7 +122,18 @@ void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
             mayHaveCube_[hashSlot(cube)] = true;
         });
     }
-    for (std::uint64_t t = 0; t < isNear.size(); ++t) trackCubes(t);
+    // most triangles lie in none of the cubes
+    std::vector<std::uint8_t> mayBeIn(isNear.size());
+    parallelForPieces(std::ssize(mayBeIn), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t t = begin; t < end; ++t) {
+            forEachCube(boxOf(cornersOf(t)), [&](const Index3& cube) {
+                if (mayHaveCube_[hashSlot(cube)]) mayBeIn[t] = 1;
+            });
+        }
+    });
+    for (std::uint64_t t = 0; t < isNear.size(); ++t) {
+        if (mayBeIn[t] != 0) trackCubes(t);
+    }
     for (std::uint64_t s = 0; s < surface_.sampleTriangle.size(); ++s) {
         const std::uint64_t t = surface_.sampleTriangle[s];
         if (isNear[t]) samplesOf_[t].push_back(s);
