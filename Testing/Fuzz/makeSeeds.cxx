@@ -7,6 +7,8 @@
 #include "FenceAnswer.h"
 #include "Seeds.h"
 #include "SmallVolume.h"
+#include "adaptiso-giant/GiantPlan.h"
+#include "adaptiso-giant/PieceFile.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/SpanSpace/IndexFile.h"
 
@@ -86,6 +88,31 @@ void addLabelSeeds(Seeds& seeds) {
     seeds.add("labels", std::string(767, '\0') + "\xff");
 }
 
+void addGiantSeeds(Seeds& seeds) {
+    const VolumeView volume = smallVolume(0).view();
+    GiantPlan plan;
+    plan.version = "0";
+    plan.input = "/a.zarr";
+    plan.geometry = volume.geometry();
+    plan.pixelType = volume.pixelType();
+    plan.maxErrorMm = 0.1;
+    plan.side = TileCut::kStep;
+    plan.tiles = {{0, 0, 0}};
+    seeds.add("giant", std::string(1, '\1') + encodePlan(plan));
+    const double isovalue = 50;
+    for (const bool isOpen : {false, true}) {
+        Piece piece;
+        piece.summary.stage = "tile";
+        piece.summary.id = "0_0_0";
+        piece.mesh =
+            extractTile(volume, {0, 0, 0}, volume.geometry(), isovalue, plan.cut(), {0, 0, 0});
+        if (isOpen && !piece.mesh.triangles.empty()) piece.mesh.triangles.pop_back();
+        piece.mesh = withoutUnusedPoints(piece.mesh);
+        summarize(piece.mesh, volume.geometry(), piece.summary);
+        seeds.add("giant", std::string(1, '\0') + encodePiece(piece));
+    }
+}
+
 }  // namespace adaptiso::fuzz
 
 int main(int argc, char** argv) {
@@ -103,6 +130,7 @@ int main(int argc, char** argv) {
         adaptiso::fuzz::addIndexSeeds(seeds);
         adaptiso::fuzz::addOpenMeegSeeds(seeds);
         adaptiso::fuzz::addLabelSeeds(seeds);
+        adaptiso::fuzz::addGiantSeeds(seeds);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "makeSeeds: %s\n", error.what());
         return 3;

@@ -15,7 +15,8 @@ SOURCES = Path(os.environ["ADAPTISO_SOURCE"])
 VERSION = os.environ["ADAPTISO_VERSION"]
 MOMENT = 1700000000  # s since 1970: 2023-11-14 22:13:20 UTC
 PROGRAMS = ("adaptiso-mesh", "adaptiso-labels", "adaptiso-bem", "adaptiso-check",
-            "adaptiso-compare", "adaptiso-simplify", "adaptiso-bids")
+            "adaptiso-compare", "adaptiso-simplify", "adaptiso-bids",
+            "adaptiso-giant")
 
 
 def output(*command, **options):
@@ -86,6 +87,8 @@ class Packages(ApplicationTest):
         cohort = self.prefix / "usr/share/doc/adaptiso/examples/cohort"
         for script in ("submit.sh", "slurm/status.py"):
             self.assertTrue(os.access(cohort / script, os.X_OK), script)
+        giant = self.prefix / "usr/share/doc/adaptiso/examples/giant"
+        self.assertTrue(os.access(giant / "submit.sh", os.X_OK))
         for package in self.debs:
             self.assertIn(f"usr/share/doc/{package}/copyright", files)
             changes = gzip.decompress(

@@ -13,7 +13,8 @@ from support import BIN, ApplicationTest, main
 
 MADE = Path(os.environ["ADAPTISO_BUILD"]) / "Applications" / "manual"
 PROGRAMS = ("adaptiso-mesh", "adaptiso-labels", "adaptiso-bem", "adaptiso-check",
-            "adaptiso-compare", "adaptiso-simplify", "adaptiso-bids")
+            "adaptiso-compare", "adaptiso-simplify", "adaptiso-bids",
+            "adaptiso-giant")
 
 
 def output(*command, **options):

@@ -12,6 +12,7 @@
 #include "adaptive/AdaptiveMethod.h"
 #include "adaptive/full/MeshParts.h"
 #include "adaptive/full/MeshSurface.h"
+#include "adaptive/full/NearestNormals.h"
 
 namespace adaptiso {
 namespace {
@@ -56,9 +57,10 @@ std::vector<SurfacePoint> nearestPoints(const TriangleMesh& mesh, const Triangle
     return places;
 }
 
-/// \param tree  of `input`
-std::vector<Normal> normalsFrom(const TriangleMesh& input, const TriangleMesh& mesh,
-                                const AabbTree& tree) {
+}  // namespace
+
+std::vector<Normal> detail::normalsFrom(const TriangleMesh& input, const TriangleMesh& mesh,
+                                        const AabbTree& tree) {
     std::vector<Normal> normals;
     normals.reserve(mesh.points.size());
     for (const SurfacePoint& place : nearestPoints(mesh, input, tree)) {
@@ -71,6 +73,8 @@ std::vector<Normal> normalsFrom(const TriangleMesh& input, const TriangleMesh& m
     }
     return normals;
 }
+
+namespace {
 
 /// By a power of two, which changes no digit.
 void scale(TriangleMesh& mesh, int exponent) {
@@ -112,7 +116,7 @@ Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& opti
     Simplified result;
     result.mesh = std::move(made.mesh);
     if (!mesh.normals.empty()) {
-        result.mesh.normals = normalsFrom(mesh, result.mesh, *parts.tree);
+        result.mesh.normals = detail::normalsFrom(mesh, result.mesh, *parts.tree);
     }
     SimplifyStatistics& statistics = result.statistics;
     statistics.degenerateTriangles = parts.degenerate;

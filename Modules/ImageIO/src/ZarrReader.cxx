@@ -11,9 +11,7 @@
 #include "FileFault.h"
 #include "Readers.h"
 #include "Samples.h"
-#include "ZarrArray.h"
-#include "ZarrScene.h"
-#include "ZarrStore.h"
+#include "ZarrImage.h"
 #include "adaptiso/Core/Parallel.h"
 
 // Zarr's specifications 2 and 3 with sharding, OME-NGFF 0.4 and 0.5.
@@ -21,16 +19,6 @@ namespace adaptiso::detail {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Which dimensions of the array are x, y and z, and where the others are cut.
-struct Cut {
-    std::array<std::size_t, 3> space{};  ///< dimension of x, y, z
-    ZarrIndex fixed;                     ///< index in each other dimension
-
-    bool isSpace(std::size_t dimension) const {
-        return std::find(space.begin(), space.end(), dimension) != space.end();
-    }
-};
 
 /// The index asked for in a dimension that is none of space.
 std::uint64_t chosenIndex(const fs::path& root, const ZarrAxis& axis, std::uint64_t extent,
@@ -86,15 +74,15 @@ void requireAskedFor(const fs::path& root, const std::optional<std::int64_t>& as
            fmt::format("leave {} out", option));
 }
 
-Cut cutOf(const fs::path& root, const ZarrArray& array, const ZarrScene& scene,
-          const ReadOptions& options) {
+ZarrCut cutOf(const fs::path& root, const ZarrArray& array, const ZarrScene& scene,
+              const ReadOptions& options) {
     if (!scene.axes.empty() && scene.axes.size() != array.rank()) {
         refuse(root,
                fmt::format("its metadata contradict each other: {} axes, {} dimensions",
                            scene.axes.size(), array.rank()),
                "repair them");
     }
-    Cut cut{spaceOf(root, array, scene), ZarrIndex(array.rank(), 0)};
+    ZarrCut cut{spaceOf(root, array, scene), ZarrIndex(array.rank(), 0)};
     bool hasChannels = false, hasTimes = false, hasOthers = false;
     for (std::size_t n = 0; n < array.rank(); ++n) {
         if (cut.isSpace(n)) continue;
@@ -112,7 +100,7 @@ Cut cutOf(const fs::path& root, const ZarrArray& array, const ZarrScene& scene,
     return cut;
 }
 
-ImageGeometry geometryOf(const fs::path& root, const ZarrArray& array, const Cut& cut,
+ImageGeometry geometryOf(const fs::path& root, const ZarrArray& array, const ZarrCut& cut,
                          ZarrScene& scene) {
     ImageGeometry geometry;
     geometry.indexToPhysical = Mat3::diagonal(1, 1, 1);
@@ -141,42 +129,71 @@ ImageGeometry geometryOf(const fs::path& root, const ZarrArray& array, const Cut
     return geometry;
 }
 
-/// Copies the samples of chunks to where they lie in the image.
+/// The files of an array, shards or chunks, that a part of the image touches: those of x the
+/// fastest.
+class TouchedFiles {
+public:
+    TouchedFiles(const ZarrArray& array, const ZarrCut& cut, const ZarrRegion& region)
+        : array_(array), cut_(cut), side_(array.sharding ? array.sharding->shard : array.chunk) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::uint64_t side = side_[cut.space[axis]];
+            const auto first = static_cast<std::uint64_t>(region.first[axis]),
+                       size = static_cast<std::uint64_t>(region.size[axis]);
+            first_[axis] = first / side;
+            count_[axis] = (first + size - 1) / side - first_[axis] + 1;
+        }
+    }
+
+    /// Along each axis.
+    const std::array<std::uint64_t, 3>& counts() const { return count_; }
+
+    /// The place of a file among the array's.
+    ZarrIndex indexOf(std::uint64_t number) const {
+        ZarrIndex index(array_.rank());
+        for (std::size_t n = 0; n < array_.rank(); ++n) index[n] = cut_.fixed[n] / side_[n];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            index[cut_.space[axis]] = first_[axis] + number % count_[axis];
+            number /= count_[axis];
+        }
+        return index;
+    }
+    const ZarrIndex& side() const { return side_; }
+
+private:
+    const ZarrArray& array_;
+    const ZarrCut& cut_;
+    const ZarrIndex side_;  ///< of a file, samples
+    std::array<std::uint64_t, 3> first_{}, count_{};
+};
+
+/// Copies the samples of chunks to where they lie in the part of the image.
 class Assembly {
 public:
-    Assembly(const ZarrStore& store, const ZarrArray& array, const Cut& cut, std::byte* out)
-        : store_(store),
-          array_(array),
-          cut_(cut),
+    Assembly(const ZarrImage& image, const ZarrRegion& region, std::byte* out)
+        : store_(image.store),
+          array_(image.array),
+          cut_(image.cut),
+          region_(region),
+          touched_(array_, cut_, region),
           out_(out),
-          sampleBytes_(bytesPerPixel(array.type)),
-          strides_(array.rank()) {
+          sampleBytes_(bytesPerPixel(array_.type)),
+          strides_(array_.rank()) {
         std::uint64_t stride = 1;
-        for (std::size_t n = array.rank(); n-- > 0;) {
-            strides_[array.encoding.order[n]] = stride;
-            stride *= array.chunk[array.encoding.order[n]];
-        }
-        const ZarrIndex& file = array.sharding ? array.sharding->shard : array.chunk;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::size_t n = cut.space[axis];
-            files_[axis] = (array.shape[n] - 1) / file[n] + 1;
+        for (std::size_t n = array_.rank(); n-- > 0;) {
+            strides_[array_.encoding.order[n]] = stride;
+            stride *= array_.chunk[array_.encoding.order[n]];
         }
     }
 
     /// Of files that hold chunks: of each axis.
-    const std::array<std::uint64_t, 3>& files() const { return files_; }
+    const std::array<std::uint64_t, 3>& files() const { return touched_.counts(); }
     std::int64_t missing() const { return missing_; }
     std::int64_t chunks() const { return chunks_; }
 
     /// \throws FileError  a chunk that is there can't be read, is damaged, too short or too long
     void addFile(std::uint64_t number) {
-        const ZarrIndex& side = array_.sharding ? array_.sharding->shard : array_.chunk;
-        ZarrIndex index(array_.rank());
-        for (std::size_t n = 0; n < array_.rank(); ++n) index[n] = cut_.fixed[n] / side[n];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            index[cut_.space[axis]] = number % files_[axis];
-            number /= files_[axis];
-        }
+        const ZarrIndex& side = touched_.side();
+        ZarrIndex index = touched_.indexOf(number);
         const std::optional<ZarrFile> file = store_.open(array_.key(index));
         for (std::size_t n = 0; n < array_.rank(); ++n) index[n] *= side[n];  // first sample
         if (array_.sharding) {
@@ -237,10 +254,11 @@ private:
     /// As large as its metadata may say, it is filled at once.
     void addMissingShard(const ZarrIndex& first) {
         std::int64_t count = 1;
-        for (const std::size_t n : cut_.space) {
-            const std::uint64_t side =
-                std::min(array_.sharding->shard[n], array_.shape[n] - first[n]);
-            count *= static_cast<std::int64_t>((side - 1) / array_.chunk[n] + 1);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t n = cut_.space[axis];
+            const auto [begin, end] = within(axis, first, array_.sharding->shard);
+            const std::uint64_t side = array_.chunk[n];
+            count *= static_cast<std::int64_t>((end - 1) / side - begin / side + 1);
         }
         chunks_ += count;
         missing_ += count;
@@ -252,10 +270,13 @@ private:
         ZarrIndex at(array_.rank());
         for (std::size_t n = 0; n < array_.rank(); ++n) {
             at[n] = first[n] + inner[n] * array_.chunk[n];
-            const bool isAside = cut_.isSpace(n)
-                                     ? at[n] >= array_.shape[n]
-                                     : cut_.fixed[n] / array_.chunk[n] != at[n] / array_.chunk[n];
-            if (isAside) return;
+            if (!cut_.isSpace(n) && cut_.fixed[n] / array_.chunk[n] != at[n] / array_.chunk[n]) {
+                return;
+            }
+        }
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto [begin, end] = within(axis, at, array_.chunk);
+            if (begin >= end) return;
         }
         ++chunks_;
         constexpr std::uint64_t kNone = ~std::uint64_t{0};
@@ -292,7 +313,16 @@ private:
         return index;
     }
 
-    /// Copies what of a chunk lies in the image. \param samples  nullptr: the fill value
+    /// The samples of a chunk or a shard that lie in the part, along an axis: from begin to end.
+    std::pair<std::uint64_t, std::uint64_t> within(std::size_t axis, const ZarrIndex& first,
+                                                   const ZarrIndex& side) const {
+        const std::size_t n = cut_.space[axis];
+        const auto begin = static_cast<std::uint64_t>(region_.first[axis]),
+                   end = begin + static_cast<std::uint64_t>(region_.size[axis]);
+        return {std::max(first[n], begin), std::min(first[n] + side[n], end)};
+    }
+
+    /// Copies what of a chunk lies in the part. \param samples  nullptr: the fill value
     void place(const std::byte* samples, const ZarrIndex& first, const ZarrIndex& side) {
         std::array<std::uint64_t, 3> begin{}, count{}, size{}, step{};
         std::uint64_t base = 0;
@@ -303,10 +333,12 @@ private:
         }
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::size_t n = cut_.space[axis];
-            size[axis] = array_.shape[n];
-            begin[axis] = first[n];
-            count[axis] = std::min(side[n], array_.shape[n] - first[n]);
+            const auto [low, high] = within(axis, first, side);
+            size[axis] = static_cast<std::uint64_t>(region_.size[axis]);
+            begin[axis] = low - static_cast<std::uint64_t>(region_.first[axis]);
+            count[axis] = high - low;
             step[axis] = strides_[n];
+            if (samples != nullptr) base += (low - first[n]) * strides_[n];
         }
         const auto outAt = [&](std::uint64_t y, std::uint64_t z) {
             const std::uint64_t at = ((begin[2] + z) * size[1] + begin[1] + y) * size[0] + begin[0];
@@ -351,11 +383,12 @@ private:
 
     const ZarrStore& store_;
     const ZarrArray& array_;
-    const Cut& cut_;
+    const ZarrCut& cut_;
+    const ZarrRegion region_;
+    const TouchedFiles touched_;
     std::byte* const out_;
     const std::size_t sampleBytes_;
     ZarrIndex strides_;  ///< of each dimension in a chunk as it is stored, in samples
-    std::array<std::uint64_t, 3> files_{};
     std::atomic<std::int64_t> missing_{0}, chunks_{0};
 };
 
@@ -382,38 +415,73 @@ void assemble(const ZarrStore& store, const ZarrArray& array, Assembly& assembly
 
 }  // namespace
 
-ReadVolume readZarr(const fs::path& folder, const ReadOptions& options) {
+bool ZarrCut::isSpace(std::size_t dimension) const {
+    return std::find(space.begin(), space.end(), dimension) != space.end();
+}
+
+std::string ZarrImage::format() const {
+    return scene.axes.empty() ? fmt::format("Zarr {}", array.version) : scene.format;
+}
+
+ZarrImage openZarrImage(const fs::path& folder, const ReadOptions& options) {
     const ZarrStore store(folder);
     ZarrScene scene = findZarrScene(store, options.level.value_or(0));
-    const std::optional<ZarrArray> array = readZarrArray(store, scene.path);
+    std::optional<ZarrArray> array = readZarrArray(store, scene.path);
     if (!array) {
         refuse(folder / scene.path, "there is no array, which the metadata name",
                "get the dataset again");
     }
-    const Cut cut = cutOf(folder, *array, scene, options);
+    ZarrCut cut = cutOf(folder, *array, scene, options);
     const ImageGeometry geometry = geometryOf(folder, *array, cut, scene);
-    const std::uint64_t bytes = requireImageBytes(folder, geometry.size, array->type);
+    requireImageBytes(folder, geometry.size, array->type);
     requireUsableGeometry(folder, geometry);
+    return {store, std::move(scene), std::move(*array), std::move(cut), geometry};
+}
+
+ZarrPart readZarrPart(const ZarrImage& image, const ZarrRegion& region) {
+    const fs::path& folder = image.store.root();
+    std::uint64_t bytes = bytesPerPixel(image.array.type);
+    ImageGeometry geometry = image.geometry;
+    Vec3 first;
+    for (int a = 0; a < 3; ++a) {
+        bytes *= static_cast<std::uint64_t>(region.size[a]);
+        first[a] = static_cast<double>(region.first[a]);
+    }
+    if (region.first != Index3{0, 0, 0}) geometry.originMm = geometry.toPhysical(first);
+    geometry.size = region.size;
     SampleBuffer samples = allocateSamples(folder, bytes);
-    Assembly assembly(store, *array, cut, samples.get());
+    Assembly assembly(image, region, samples.get());
     try {
-        assemble(store, *array, assembly);
+        assemble(image.store, image.array, assembly);
     } catch (const std::bad_alloc&) {
         refuse(folder, "needs more memory for its chunks than there is",
                "use a machine with more memory");
     }
-    if (assembly.missing() > 0) {
+    return {makeVolume(std::move(samples), image.array.type, geometry), assembly.chunks(),
+            assembly.missing()};
+}
+
+void forEachZarrFile(const ZarrImage& image, const ZarrRegion& region,
+                     const std::function<void(const std::string&)>& f) {
+    const TouchedFiles touched(image.array, image.cut, region);
+    const std::array<std::uint64_t, 3>& counts = touched.counts();
+    for (std::uint64_t n = 0; n < counts[0] * counts[1] * counts[2]; ++n) {
+        f(image.array.key(touched.indexOf(n)));
+    }
+}
+
+ReadVolume readZarr(const fs::path& folder, const ReadOptions& options) {
+    ZarrImage image = openZarrImage(folder, options);
+    ZarrPart part = readZarrPart(image, {{0, 0, 0}, image.geometry.size});
+    if (part.missing > 0) {
         const std::string text =
-            fmt::format("{} of its {} chunks are not there", assembly.missing(), assembly.chunks());
+            fmt::format("{} of its {} chunks are not there", part.missing, part.chunks);
         if (options.refusesMissingChunks) {
             refuse(folder, text, "get the whole dataset, or leave --refuse-missing-chunks out");
         }
-        scene.warnings.push_back(text + "; the fill value stands for them");
+        image.scene.warnings.push_back(text + "; the fill value stands for them");
     }
-    const std::string format =
-        scene.axes.empty() ? fmt::format("Zarr {}", array->version) : scene.format;
-    return {makeVolume(std::move(samples), array->type, geometry), format,
-            std::move(scene.warnings)};
+    return {std::move(part.volume), image.format(), std::move(image.scene.warnings)};
 }
 
 }  // namespace adaptiso::detail

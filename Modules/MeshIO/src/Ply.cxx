@@ -4,12 +4,17 @@
 // Read: text and binary of either byte order, any property types, other elements passed over.
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <limits>
 #include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "ByteSource.h"
 #include "Codecs.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/MeshIO/PlyStream.h"
 
 namespace adaptiso::meshio {
 namespace {
@@ -377,35 +382,45 @@ void encodeValue(const Column& column, std::size_t point, ByteSink& sink) {
     if (column.type == Scalar::Float64) sink.littleEndian(static_cast<double>(value));
 }
 
+void encodeHeader(const MeshWriteOptions& options, std::int64_t points, bool hasNormals,
+                  const std::vector<Column>& columns, std::int64_t triangles, ByteSink& sink) {
+    sink << "ply\nformat binary_little_endian 1.0\ncomment " << headerLine(options)
+         << "\nelement vertex " << points
+         << "\nproperty double x\nproperty double y\nproperty double z\n";
+    if (hasNormals) sink << "property float nx\nproperty float ny\nproperty float nz\n";
+    for (const Column& column : columns) {
+        sink << "property " << nameOf(column.type) << " " << column.name << "\n";
+    }
+    sink << "element face " << triangles
+         << "\nproperty list uchar int vertex_indices\nend_header\n";
+}
+
+void encodePoint(const Vec3& point, ByteSink& sink) {
+    for (int axis = 0; axis < 3; ++axis) sink.littleEndian(point[axis]);
+}
+
+void encodeNormal(const Normal& normal, ByteSink& sink) {
+    for (const float n : {normal.x, normal.y, normal.z}) sink.littleEndian(n);
+}
+
+void encodeTriangle(const Triangle& triangle, ByteSink& sink) {
+    sink.littleEndian(std::uint8_t{3});
+    for (const VertexId vertex : triangle) sink.littleEndian(static_cast<std::int32_t>(vertex));
+}
+
 }  // namespace
 
 void encodePly(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
     const std::vector<Column> columns = columnsOf(record.options.pointArrays);
-    sink << "ply\nformat binary_little_endian 1.0\ncomment " << headerLine(record.options)
-         << "\nelement vertex " << static_cast<std::int64_t>(mesh.points.size())
-         << "\nproperty double x\nproperty double y\nproperty double z\n";
-    if (!mesh.normals.empty()) sink << "property float nx\nproperty float ny\nproperty float nz\n";
-    for (const Column& column : columns) {
-        sink << "property " << nameOf(column.type) << " " << column.name << "\n";
-    }
-    sink << "element face " << static_cast<std::int64_t>(mesh.triangles.size())
-         << "\nproperty list uchar int vertex_indices\nend_header\n";
+    encodeHeader(record.options, std::ssize(mesh.points), !mesh.normals.empty(), columns,
+                 std::ssize(mesh.triangles), sink);
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-        for (int axis = 0; axis < 3; ++axis) sink.littleEndian(mesh.points[i][axis]);
-        if (!mesh.normals.empty()) {
-            for (const float n : {mesh.normals[i].x, mesh.normals[i].y, mesh.normals[i].z}) {
-                sink.littleEndian(n);
-            }
-        }
+        encodePoint(mesh.points[i], sink);
+        if (!mesh.normals.empty()) encodeNormal(mesh.normals[i], sink);
         for (const Column& column : columns) encodeValue(column, i, sink);
     }
-    for (const Triangle& triangle : mesh.triangles) {
-        sink.littleEndian(std::uint8_t{3});
-        for (const VertexId vertex : triangle) {
-            sink.littleEndian(static_cast<std::int32_t>(vertex));
-        }
-    }
+    for (const Triangle& triangle : mesh.triangles) encodeTriangle(triangle, sink);
 }
 
 MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options) {
@@ -431,3 +446,61 @@ MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options) {
 }
 
 }  // namespace adaptiso::meshio
+
+namespace adaptiso {
+
+struct PlyStream::Impl {
+    Impl(const std::filesystem::path& to, std::ofstream&& opened, std::int64_t points,
+         std::int64_t triangles, bool withNormals)
+        : path(to),
+          file(std::move(opened)),
+          sink(file),
+          pointsLeft(points),
+          trianglesLeft(triangles),
+          hasNormals(withNormals) {}
+
+    std::filesystem::path path;
+    std::ofstream file;
+    meshio::ByteSink sink;
+    std::int64_t pointsLeft, trianglesLeft;
+    bool hasNormals;
+};
+
+PlyStream::PlyStream(const std::filesystem::path& path, const MeshWriteOptions& options,
+                     std::int64_t points, std::int64_t triangles, bool hasNormals) {
+    const std::int64_t most = findMeshFormat("a.ply").maxElements;
+    if (points > most || triangles > most) {
+        throw InvalidInput("PLY files hold at most " + std::to_string(most) +
+                           " points and triangles, the mesh has " +
+                           std::to_string(std::max(points, triangles)));
+    }
+    std::ofstream file(path, std::ios::binary);
+    if (!file) throw FileError(path.string() + ": can't be written");
+    impl_ = std::make_unique<Impl>(path, std::move(file), points, triangles, hasNormals);
+    meshio::encodeHeader(options, points, hasNormals, {}, triangles, impl_->sink);
+}
+
+PlyStream::~PlyStream() = default;
+
+void PlyStream::addPoint(const Vec3& point, const Normal& normal) {
+    --impl_->pointsLeft;
+    meshio::encodePoint(point, impl_->sink);
+    if (impl_->hasNormals) meshio::encodeNormal(normal, impl_->sink);
+}
+
+void PlyStream::addTriangle(const Triangle& triangle) {
+    --impl_->trianglesLeft;
+    meshio::encodeTriangle(triangle, impl_->sink);
+}
+
+void PlyStream::finish() {
+    if (impl_->pointsLeft != 0 || impl_->trianglesLeft != 0) {
+        throw InternalError("PlyStream: not what was announced was written");
+    }
+    impl_->sink.finish();
+    impl_->file.close();
+    if (!impl_->file)
+        throw FileError(impl_->path.string() + ": can't be written; the disk is full");
+}
+
+}  // namespace adaptiso

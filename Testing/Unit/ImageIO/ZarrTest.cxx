@@ -16,6 +16,7 @@
 
 #include "ZarrCodecs.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/ImageIO/ImageRegions.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso {
@@ -152,6 +153,35 @@ protected:
                 for (int x = 0; x < kX; ++x) ASSERT_EQ(view.at(x, y, z), valueAt(x, y, z));
             }
         }
+        expectParts();
+    }
+
+    /// What ImageRegions reads, over and beside the walls of chunks.
+    void expectParts() const {
+        const ImageRegions image = ImageRegions::open(root_, {});
+        EXPECT_TRUE(image.readsParts());
+        for (const auto& [first, size] : {std::pair<Index3, Index3>{{0, 0, 0}, {kX, kY, kZ}},
+                                          {{3, 3, 3}, {2, 2, 2}},
+                                          {{1, 4, 0}, {5, 2, 1}},
+                                          {{6, 5, 4}, {1, 1, 1}},
+                                          {{0, 0, 2}, {4, 4, 2}}}) {
+            const Volume part = image.read(first, size);
+            const TypedVolumeView<std::int16_t> view = part.view().as<std::int16_t>();
+            ASSERT_EQ(view.geometry.size, size);
+            const Vec3 low{static_cast<double>(first[0]), static_cast<double>(first[1]),
+                           static_cast<double>(first[2])};
+            EXPECT_EQ(view.geometry.originMm, image.geometry().toPhysical(low));
+            for (int z = 0; z < size[2]; ++z) {
+                for (int y = 0; y < size[1]; ++y) {
+                    for (int x = 0; x < size[0]; ++x) {
+                        ASSERT_EQ(view.at(x, y, z), valueAt(static_cast<int>(first[0]) + x,
+                                                            static_cast<int>(first[1]) + y,
+                                                            static_cast<int>(first[2]) + z));
+                    }
+                }
+            }
+            EXPECT_EQ(image.constantIn(first, size), std::nullopt);
+        }
     }
 
     void expectRefused(const std::string& reason, const ReadOptions& options = {}) const {
@@ -226,6 +256,27 @@ TEST_F(ZarrTest, Version3IsReadInEveryCodecAndTransposition) {
             EXPECT_EQ(read.format, "Zarr 3");
         }
     }
+}
+
+TEST_F(ZarrTest, PartsWithoutChunksAreKnownWithoutReading) {
+    put(".zarray", metadata2("null"));
+    put("1.1.1", chunkAt(1, 1, 1));
+    const ImageRegions image = ImageRegions::open(root_, {});
+    EXPECT_EQ(image.constantIn({0, 0, 0}, {4, 6, 5}), -9);
+    EXPECT_EQ(image.constantIn({0, 0, 0}, {5, 5, 5}), std::nullopt);
+    EXPECT_EQ(image.read({0, 0, 0}, {2, 2, 2}).view().as<std::int16_t>().at(1, 1, 1), -9);
+    // a chunk that is not looked at does not matter, one that changes does
+    const std::string before = image.stampOf({4, 4, 4}, {1, 1, 1}),
+                      aside = image.stampOf({0, 0, 0}, {4, 4, 4});
+    put("1.1.1", chunkAt(1, 1, 1) + Text(1, 'x'));
+    EXPECT_NE(image.stampOf({4, 4, 4}, {1, 1, 1}), before);
+    EXPECT_EQ(image.stampOf({0, 0, 0}, {4, 4, 4}), aside);
+    EXPECT_THROW(image.read({4, 4, 4}, {1, 1, 1}), FileError);
+    ReadOptions strict;
+    strict.refusesMissingChunks = true;
+    const ImageRegions refusing = ImageRegions::open(root_, strict);
+    EXPECT_EQ(refusing.constantIn({0, 0, 0}, {4, 6, 5}), std::nullopt);
+    EXPECT_THROW(refusing.read({0, 0, 0}, {1, 1, 1}), FileError);
 }
 
 TEST_F(ZarrTest, KeysAreAsTheMetadataSay) {

@@ -136,7 +136,7 @@ private:
 
     /// \param error  what was proved; then what is
     void mend(SimplifiedSurface& surface, ErrorBound& error) {
-        SurfaceMender mender(surface, frame_, *boundMm_);
+        SurfaceMender mender(surface, frame_, *boundMm_, full_.box());
         for (int idle = 0; isBeyond(error) && idle < kMostIdleMends;) {
             const std::size_t before = error.beyondLimit.size();
             const std::size_t mended = mender.mendDistances(error.beyondLimit);
@@ -220,7 +220,7 @@ private:
     }
 
     bool mendCrossings(Attempt& attempt) {
-        SurfaceMender mender(attempt.surface, frame_, *boundMm_);
+        SurfaceMender mender(attempt.surface, frame_, *boundMm_, full_.box());
         const std::size_t mended = mender.mendCrossings(attempt.crossing);
         work_.placesMended += static_cast<std::int64_t>(mended);
         keepChanged(mender);
@@ -278,6 +278,7 @@ private:
         PatchLimits limits;
         limits.shape = shape_;
         limits.leavesNoise = !wanted_.isGiven();
+        limits.box = full_.box();
         limits.maxDistanceMm =
             boundMm - std::min(kSlackVoxels * frame_.narrowestMm(), kSlackPart * boundMm);
         limits.provesAll = lessons_.provesAll || limits.maxDistanceMm > sheetMm;

@@ -8,11 +8,16 @@
 namespace adaptiso::detail {
 namespace {
 
-template <class T>
+/// \tparam isWindow  of the volume only a part is there, from the sample `first` on
+template <class T, bool isWindow>
 class TypedSampler final : public LatticeSampler {
 public:
-    TypedSampler(const TypedVolumeView<T>& volume, double isovalue, Border border)
+    /// \param volume  the samples that are there, with the geometry of the whole
+    TypedSampler(const TypedVolumeView<T>& volume, const Index3& first, const Index3& thereSize,
+                 double isovalue, Border border)
         : volume_(volume),
+          first_(first),
+          thereSize_(thereSize),
           inside_(isovalue),
           isovalue_(isovalue),
           closed_(border == Border::Closed),
@@ -29,7 +34,7 @@ public:
                 if (closed_ && (j < 0 || j >= size[1] || k < 0 || k >= size[2])) continue;
                 j = std::clamp<std::int64_t>(j, 0, size[1] - 1);
                 k = std::clamp<std::int64_t>(k, 0, size[2] - 1);
-                row = whole ? wholeRow(&volume_.at(first[0], j, k), count)
+                row = whole ? wholeRow(&sampleAt(first[0], j, k), count)
                             : clippedRow(first[0], j, k, count);
             }
         }
@@ -119,6 +124,13 @@ private:
         return std::isfinite(squaredNorm(normal)) ? normal : Vec3{};
     }
 
+    /// \pre it is there
+    const T& sampleAt(std::int64_t i, std::int64_t j, std::int64_t k) const {
+        if constexpr (!isWindow) return volume_.at(i, j, k);
+        return volume_.samples[i - first_[0] +
+                               thereSize_[0] * (j - first_[1] + thereSize_[1] * (k - first_[2]))];
+    }
+
     std::uint32_t wholeRow(const T* samples, int count) const {
         std::uint32_t row = 0;
         for (int x = 0; x < count; ++x) row |= static_cast<std::uint32_t>(inside_(samples[x])) << x;
@@ -130,7 +142,7 @@ private:
         std::uint32_t row = 0;
         for (int x = 0; x < count; ++x) {
             if (closed_ && (i + x < 0 || i + x >= width)) continue;
-            const T value = volume_.at(std::clamp<std::int64_t>(i + x, 0, width - 1), j, k);
+            const T value = sampleAt(std::clamp<std::int64_t>(i + x, 0, width - 1), j, k);
             row |= static_cast<std::uint32_t>(inside_(value)) << x;
         }
         return row;
@@ -148,9 +160,9 @@ private:
 
     T clamped(const Index3& p) const {
         const Index3& size = volume_.geometry.size;
-        return volume_.at(std::clamp<std::int64_t>(p[0], 0, size[0] - 1),
-                          std::clamp<std::int64_t>(p[1], 0, size[1] - 1),
-                          std::clamp<std::int64_t>(p[2], 0, size[2] - 1));
+        return sampleAt(std::clamp<std::int64_t>(p[0], 0, size[0] - 1),
+                        std::clamp<std::int64_t>(p[1], 0, size[1] - 1),
+                        std::clamp<std::int64_t>(p[2], 0, size[2] - 1));
     }
 
     /// Central difference per index step; one-sided on the volume's border.
@@ -170,6 +182,7 @@ private:
     }
 
     TypedVolumeView<T> volume_;
+    Index3 first_, thereSize_;  ///< of a window
     IsovalueTest<T> inside_;
     double isovalue_;
     bool closed_;
@@ -182,7 +195,18 @@ std::unique_ptr<LatticeSampler> LatticeSampler::make(const VolumeView& volume, d
                                                      Border border) {
     return dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
         return std::unique_ptr<LatticeSampler>(
-            std::make_unique<TypedSampler<T>>(view, isovalue, border));
+            std::make_unique<TypedSampler<T, false>>(view, Index3{}, Index3{}, isovalue, border));
+    });
+}
+
+std::unique_ptr<LatticeSampler> LatticeSampler::makeOfWindow(const VolumeView& window,
+                                                             const Index3& first,
+                                                             const ImageGeometry& whole,
+                                                             double isovalue) {
+    return dispatchPixelType(window, [&]<class T>(const TypedVolumeView<T>& view) {
+        const TypedVolumeView<T> volume{view.samples, whole};
+        return std::unique_ptr<LatticeSampler>(std::make_unique<TypedSampler<T, true>>(
+            volume, first, view.geometry.size, isovalue, Border::Closed));
     });
 }
 

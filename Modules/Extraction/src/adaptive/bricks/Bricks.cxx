@@ -94,6 +94,12 @@ void BrickMesher::mesh(const Brick& brick, FineSurface& surface) {
     forget(brick, surface);
 }
 
+void BrickMesher::meshWithoutSheets(const Brick& brick, FineSurface& surface) {
+    findsSheets_ = false;
+    meshBrick(brick, surface);
+    forget(brick, surface);
+}
+
 void BrickMesher::meshWithHalo(const Bricks& bricks, std::int64_t number, FineSurface& surface) {
     const Brick& brick = bricks[number];
     findsSheets_ = false;

@@ -79,6 +79,9 @@ public:
     /// The same brick always gives the same vertices and triangles in the same order.
     void mesh(const Brick& brick, FineSurface& surface);
 
+    /// The same, when nobody asks for FineVertex::isSingleSheet.
+    void meshWithoutSheets(const Brick& brick, FineSurface& surface);
+
     /// The brick's surface, and after it that of the cells up to kHalo around the brick. Single
     /// sheets are not looked for.
     void meshWithHalo(const Bricks& bricks, std::int64_t number, FineSurface& surface);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "adaptive/collapse/CrossingGuard.h"
@@ -19,8 +20,9 @@ struct PatchLimits {
     /// Of a sample from the triangles of a fitted vertex, unless some sample was as far before.
     double maxFittedMm = std::numeric_limits<double>::max();
     StarLimits shape;
-    bool provesAll = false;    ///< also stars that can cross nothing by what is known of them
-    bool leavesNoise = false;  ///< bricks full of it stay at full resolution
+    bool provesAll = false;          ///< also stars that can cross nothing by what is known of them
+    bool leavesNoise = false;        ///< bricks full of it stay at full resolution
+    std::optional<CornerBox> box{};  ///< that new vertices stay in, metric frame
 };
 
 /// Simplifies a patch in place by quadric edge collapses, cheapest first [Garland1997].

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptive/collapse/PatchSimplifier.h"
@@ -44,8 +45,15 @@ public:
     /// No two points of the surface are farther apart, mm.
     virtual double largestExtentMm() const = 0;
 
+    /// Where new vertices stay, metric frame; none: anywhere.
+    const std::optional<CornerBox>& box() const { return box_; }
+
+protected:
+    void keepIn(const CornerBox& box) { box_ = box; }
+
 private:
     MetricFrame frame_;
+    std::optional<CornerBox> box_;
 };
 
 }  // namespace adaptiso::detail

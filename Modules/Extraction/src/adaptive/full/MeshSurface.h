@@ -19,6 +19,9 @@ public:
     /// \param boundMm  distances that the surface is to keep, if any
     MeshSurface(const TriangleMesh& input, const MeshParts& parts, std::optional<double> boundMm);
 
+    /// New vertices are to stay in a box. \param box  as seen from parts.origin
+    void stayIn(const CornerBox& box) { keepIn(box); }
+
     SimplifiedSurface firstRound(const TightPlaces& tight, const PatchLimits& limits,
                                  CollapseCosts* costs) const override;
     std::unique_ptr<DistanceProof> proof(double limitMm) const override;

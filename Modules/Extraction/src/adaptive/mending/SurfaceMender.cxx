@@ -37,8 +37,12 @@ bool contains(const std::vector<std::uint64_t>& numbers, std::uint64_t number) {
 
 }  // namespace
 
-SurfaceMender::SurfaceMender(SimplifiedSurface& surface, const MetricFrame& frame, double limitMm)
-    : surface_(surface), squaredLimit_(limitMm * limitMm), cubeMm_(kNearCube * frame.voxelMm()) {}
+SurfaceMender::SurfaceMender(SimplifiedSurface& surface, const MetricFrame& frame, double limitMm,
+                             const std::optional<CornerBox>& box)
+    : surface_(surface),
+      squaredLimit_(limitMm * limitMm),
+      cubeMm_(kNearCube * frame.voxelMm()),
+      box_(box) {}
 
 std::size_t SurfaceMender::mendDistances(std::vector<PlaceBeyond> places) {
     std::erase_if(places, [](const PlaceBeyond& p) { return p.triangle == PlaceBeyond::kNone; });
@@ -197,7 +201,7 @@ std::uint64_t SurfaceMender::partAt(const PlaceBeyond& place) const {
 
 bool SurfaceMender::moveVertex(std::uint64_t vertex, const Vec3& step) {
     if (!isTracked(vertex) || surface_.states[vertex] == Patch::State::Final ||
-        isOnBorder(vertex)) {
+        isOnBorder(vertex) || !isInBox(surface_.points[vertex] + step)) {
         return false;
     }
     const Numbers& around = around_.at(vertex);
@@ -220,7 +224,7 @@ bool SurfaceMender::moveVertex(std::uint64_t vertex, const Vec3& step) {
 /// Splits the edge from a corner of the triangle to the next one, and the triangles at it.
 bool SurfaceMender::splitEdge(std::uint64_t triangle, int corner, const Vec3& point) {
     const std::optional<Edge> edge = edgeAt(triangle, corner);
-    if (!edge) return false;
+    if (!edge || !isInBox(point)) return false;
     const auto [a, b, c, d, twin] = *edge;
     const auto& at = surface_.points;
     const Corners first = cornersOf(triangle), second = cornersOf(twin);
@@ -247,8 +251,8 @@ bool SurfaceMender::splitTriangle(std::uint64_t triangle, const Vec3& point) {
     const Corners before = cornersOf(triangle);
     const std::vector<Corners> parts{
         {at[a], at[b], point}, {at[b], at[c], point}, {at[c], at[a], point}};
-    if (!facesAs(parts[0], before) || !facesAs(parts[1], before) || !facesAs(parts[2], before) ||
-        !isSound(parts, {triangle})) {
+    if (!isInBox(point) || !facesAs(parts[0], before) || !facesAs(parts[1], before) ||
+        !facesAs(parts[2], before) || !isSound(parts, {triangle})) {
         return false;
     }
     note(triangle);
@@ -302,7 +306,7 @@ bool SurfaceMender::collapseEdge(std::uint64_t triangle, int corner, const Place
     const double squared = place.squaredDistance();
     for (const Vec3& target : {place.onFine, 0.5 * (first + second), first, second}) {
         std::vector<Corners> parts;
-        bool isAllowed = true;
+        bool isAllowed = isInBox(target);
         for (const std::uint64_t t : replaced) {
             if (t == triangle || t == twin) continue;
             const Corners before = cornersOf(t);

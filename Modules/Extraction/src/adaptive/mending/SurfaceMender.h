@@ -27,7 +27,9 @@ namespace adaptiso::detail {
 class SurfaceMender {
 public:
     /// \param limitMm  the bound
-    SurfaceMender(SimplifiedSurface& surface, const MetricFrame& frame, double limitMm);
+    /// \param box      that new and moved vertices stay in, if any
+    SurfaceMender(SimplifiedSurface& surface, const MetricFrame& frame, double limitMm,
+                  const std::optional<CornerBox>& box = {});
 
     /// Mends the farthest places first, and skips those that the surface has left by then.
     /// \return how many were mended
@@ -65,6 +67,7 @@ private:
     bool collapseEdge(std::uint64_t triangle, int corner, const PlaceBeyond& place);
     bool mayMerge(const Edge& edge) const;
 
+    bool isInBox(const Vec3& p) const { return !box_ || box_->overlaps({p, p}); }
     bool facesAs(const Corners& now, const Corners& before) const;
     bool isSound(const std::vector<Corners>& triangles, const Numbers& replaced) const;
     bool staysNear(const std::vector<Corners>& triangles, const Numbers& replaced) const;
@@ -91,6 +94,7 @@ private:
 
     SimplifiedSurface& surface_;
     double squaredLimit_, cubeMm_;
+    std::optional<CornerBox> box_;
     double leastCosine_ = 0;                         ///< between the normals before and after
     std::set<std::array<std::uint64_t, 2>> turned_;  ///< edges that were: they do not come back
 

@@ -276,8 +276,11 @@ PartBound proveSimplified(const Task& task, const Target<std::uint32_t>& to,
     OneWayProof<std::uint32_t> proof(to, task.voxelMm, task.enoughMm, task.limitMm);
     forEachUnknown(isKnown, piece, task.surface.triangles.size(), [&](std::size_t t) {
         const Corners corners = cornersOf(task.surface, t);
+        const Vec3 extent = boxOf(corners).high - boxOf(corners).low;
+        // along a needle, which has no area, lie triangles too
         const double faces =
-            norm(areaVector2(corners[0], corners[1], corners[2])) / (task.voxelMm * task.voxelMm);
+            norm(areaVector2(corners[0], corners[1], corners[2])) / (task.voxelMm * task.voxelMm) +
+            norm(extent) / task.voxelMm;
         const int steps = kFewSteps + static_cast<int>(std::min(kManySteps, kStepsPerFace * faces));
         proof.include(corners, {&starts[t], 1}, steps,
                       [&](const Vec3& p, const Vec3& nearest, std::int64_t) {
@@ -287,15 +290,47 @@ PartBound proveSimplified(const Task& task, const Target<std::uint32_t>& to,
     return proof.result();
 }
 
+constexpr std::uint32_t kNoStart = 0xFFFFFFFF;
+
+/// Triangles that stand for no point begin where one beside them does: on a surface with open
+/// borders a walk from elsewhere may not arrive.
+void startBeside(const SimplifiedSurface& surface, std::vector<std::uint32_t>& starts) {
+    std::vector<std::uint32_t> atVertex(surface.points.size(), kNoStart);
+    const auto note = [&](std::size_t t) {
+        for (const std::uint64_t v : surface.triangles[t]) atVertex[v] = starts[t];
+    };
+    std::vector<std::size_t> left;
+    for (std::size_t t = starts.size(); t-- > 0;) {
+        if (starts[t] == kNoStart) {
+            left.push_back(t);
+        } else {
+            note(t);
+        }
+    }
+    for (std::size_t before = left.size() + 1; left.size() < before;) {
+        before = left.size();
+        std::erase_if(left, [&](std::size_t t) {
+            for (const std::uint64_t v : surface.triangles[t]) {
+                if (starts[t] == kNoStart) starts[t] = atVertex[v];
+            }
+            if (starts[t] == kNoStart) return false;
+            note(t);
+            return true;
+        });
+    }
+    for (const std::size_t t : left) starts[t] = 0;
+}
+
 /// For each triangle of the simplified surface one of the full surface that it stands for.
 /// \param points  of the full surface, which are the first samples
 std::vector<std::uint32_t> startsOf(const SimplifiedSurface& surface,
                                     const WalkableSurface<std::uint32_t>& fine,
                                     std::size_t points) {
-    std::vector<std::uint32_t> starts(surface.triangles.size(), 0);
+    std::vector<std::uint32_t> starts(surface.triangles.size(), kNoStart);
     for (std::size_t v = points; v-- > 0;) {
         starts[surface.sampleTriangle[v]] = fine.triangleAt(static_cast<std::uint32_t>(v));
     }
+    startBeside(surface, starts);
     return starts;
 }
 

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adaptiso/Core/Volume.h"
+#include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/Extraction/Tiles.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
+
+namespace adaptiso {
+
+/// What the steps of one surface agree on: the file plan.json of their folder.
+struct GiantPlan {
+    std::string version;          ///< of the program
+    std::filesystem::path input;  ///< absolute
+    ReadOptions read;             ///< level, channel, timePoint, volumeIndex, series, refusals
+    std::string format;           ///< "OME-Zarr 0.4"
+    ImageGeometry geometry;
+    PixelType pixelType{};
+    double isovalue = 0;
+    Method method = Method::Adaptive;
+    double maxErrorMm = 0;      ///< of Method::Adaptive
+    std::int64_t side = 0;      ///< of a tile, cells
+    std::vector<Index3> tiles;  ///< that may hold surface; x the fastest
+    std::vector<std::string> warnings;
+
+    TileCut cut() const { return {geometry.size, side}; }
+    bool isAdaptive() const { return method == Method::Adaptive; }
+    /// The seam boxes that lie in these tiles; none but of Method::Adaptive.
+    std::vector<Index3> seams() const;
+    /// Of its pieces, those that are the surface: seam boxes, or tiles.
+    std::vector<Index3> pieces() const { return isAdaptive() ? seams() : tiles; }
+
+    /// What two plans have in common whose pieces are the same: all but the lists.
+    std::string identity() const;
+
+    static std::filesystem::path fileIn(const std::filesystem::path& work);
+};
+
+std::string encodePlan(const GiantPlan& plan);
+
+/// \param name  for messages \throws FileError  it is no plan, or damaged
+GiantPlan decodePlan(std::string_view text, const std::string& name);
+
+/// "3_0_12"
+std::string idOf(const Index3& place);
+/// none: it is no such id
+std::optional<Index3> placeOf(std::string_view id);
+
+}  // namespace adaptiso

@@ -1,0 +1,213 @@
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <ostream>
+
+#include "Common/AtomicOutput.h"
+#include "Common/ExitCodes.h"
+#include "Common/Json.h"
+#include "Common/Progress.h"
+#include "Common/ResultOutput.h"
+#include "Common/RunApp.h"
+#include "Common/Sha256.h"
+#include "PieceUnion.h"
+#include "Steps.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/ImageIO/ImageRegions.h"
+
+namespace adaptiso {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Of the bound, what the first pass may use; the second has the rest.
+constexpr double kTileShare = 0.7;
+
+/// What a step did of the places it was asked for.
+struct StepCounts {
+    std::int64_t made = 0, found = 0, triangles = 0;
+};
+
+/// The places asked for, or all.
+std::vector<Index3> chosen(const GiantOptions& options, const std::vector<Index3>& all,
+                           const char* what) {
+    if (options.ids.empty()) return all;
+    std::vector<Index3> places;
+    for (const std::string& id : options.ids) {
+        const std::optional<Index3> place = placeOf(id);
+        if (!place || std::find(all.begin(), all.end(), *place) == all.end()) {
+            throw UsageError(id + ": the plan has no " + what + " of this name");
+        }
+        places.push_back(*place);
+    }
+    return places;
+}
+
+void writePiece(const fs::path& file, const Piece& piece) {
+    AtomicOutput output(file);
+    output.writeText(encodePiece(piece));
+    AtomicOutput::commit({&output, 1});
+}
+
+/// Makes the pieces of one stage, those that are not there yet from the same inputs.
+/// \param inputsOf  what a piece is made of, as a text
+/// \param make      (place, mesh, summary)
+template <class InputsOf, class Make>
+int runPieces(const GiantOptions& options, const GiantPlan& plan, const std::string& stage,
+              const std::vector<Index3>& places, const InputsOf& inputsOf, const Make& make) {
+    const std::string key = keyOf(plan);
+    StepCounts counts;
+    ProgressLine progress(options.common.isQuiet);
+    for (std::size_t n = 0; n < places.size(); ++n) {
+        progress.show(stage, static_cast<double>(n) / static_cast<double>(places.size()));
+        const Index3& place = places[n];
+        const std::string inputs = sha256Of(inputsOf(place));
+        const std::optional<PieceSummary> found = findPiece(options.work, stage, place, key);
+        if (found && found->inputs == inputs) {
+            ++counts.found;
+            counts.triangles += found->triangles;
+            continue;
+        }
+        Piece piece;
+        piece.summary.plan = key;
+        piece.summary.stage = stage;
+        piece.summary.id = idOf(place);
+        piece.summary.inputs = inputs;
+        piece.mesh = make(place, piece.summary);
+        summarize(piece.mesh, plan.geometry, piece.summary);
+        writePiece(pieceFile(options.work, stage, place), piece);
+        ++counts.made;
+        counts.triangles += piece.summary.triangles;
+    }
+    progress.clear();
+    const Json json{{"schema", "adaptiso-giant-step/1"},
+                    {"step", stage},
+                    {"made", counts.made},
+                    {"found", counts.found},
+                    {"triangles", counts.triangles},
+                    {"peakMemoryMb", peakMemoryMb()}};
+    deliverReport(options.common, plan.input, json.dump(2) + "\n", [&](std::ostream& out) {
+        out << stage << ": " << formatCount(counts.made) << " made, " << formatCount(counts.found)
+            << " found, " << formatCount(counts.triangles) << " triangles\n";
+    });
+    return kExitOk;
+}
+
+/// The image is still the one that was planned for.
+void requireSame(const GiantPlan& plan, const ImageRegions& image) {
+    if (image.geometry() == plan.geometry && image.pixelType() == plan.pixelType) return;
+    throw FileError(plan.input.string() + ": is not the image that was planned for; plan again");
+}
+
+TriangleMesh meshOfTile(const GiantPlan& plan, const ImageRegions& image, const Index3& tile,
+                        PieceSummary& summary) {
+    const TileCut cut = plan.cut();
+    TriangleMesh mesh;
+    {
+        const IndexBox box = cut.samplesOf(tile);
+        const Volume window = image.read(box.first, box.size());
+        mesh = extractTile(window, box.first, plan.geometry, plan.isovalue, cut, tile);
+    }
+    if (!plan.isAdaptive() || mesh.triangles.empty()) return mesh;
+    SimplifiedPart part =
+        simplifyInBox(mesh, {}, plan.geometry, cut.boxOf(tile), kTileShare * plan.maxErrorMm);
+    summary.errorBoundMm = part.errorBoundMm;
+    summary.isUnchanged = part.isUnchanged;
+    return std::move(part.mesh);
+}
+
+/// The tiles of the plan that a seam box lies in.
+std::vector<Index3> tilesAt(const GiantPlan& plan, const Index3& seam) {
+    const IndexBox at = plan.cut().tilesOfSeam(seam);
+    std::vector<Index3> tiles;
+    for (const Index3& tile : plan.tiles) {
+        bool isAt = true;
+        for (int a = 0; a < 3; ++a) isAt = isAt && tile[a] >= at.first[a] && tile[a] < at.end[a];
+        if (isAt) tiles.push_back(tile);
+    }
+    return tiles;
+}
+
+/// Names the tiles' files by their content's sums. \throws FileError  one is missing
+std::string inputsOfSeam(const GiantOptions& options, const GiantPlan& plan, const std::string& key,
+                         const Index3& seam) {
+    std::string text;
+    for (const Index3& tile : tilesAt(plan, seam)) {
+        const std::optional<PieceSummary> found = findPiece(options.work, "tile", tile, key);
+        if (!found) {
+            throw FileError(pieceFile(options.work, "tile", tile).string() +
+                            ": is not there, or of another plan; run: adaptiso-giant tile " +
+                            options.work.string() + " " + idOf(tile));
+        }
+        text += found->id + " " + found->inputs + "\n";
+    }
+    return text;
+}
+
+TriangleMesh meshOfSeam(const GiantOptions& options, const GiantPlan& plan, const Index3& seam,
+                        PieceSummary& summary) {
+    PieceUnion tiles;
+    double tileBoundMm = 0;
+    for (const Index3& tile : tilesAt(plan, seam)) {
+        const Piece piece = readPiece(pieceFile(options.work, "tile", tile));
+        tileBoundMm = std::max(tileBoundMm, piece.summary.errorBoundMm);
+        tiles.add(piece);
+    }
+    const TileCut cut = plan.cut();
+    SeamPart part = seamPartOf(tiles.mesh(), cut, seam);
+    const bool isFixed =
+        std::find(part.isFixed.begin(), part.isFixed.end(), 0) == part.isFixed.end();
+    SimplifiedPart made;
+    if (isFixed) {
+        made.mesh = std::move(part.mesh);
+        made.isKept = std::move(part.isFixed);
+    } else {
+        made = simplifyInBox(part.mesh, std::move(part.isFixed), plan.geometry, cut.seamBox(seam),
+                             plan.maxErrorMm - tileBoundMm);
+    }
+    summary.errorBoundMm = tileBoundMm + made.errorBoundMm;
+    summary.isUnchanged = made.isUnchanged;
+    return ownTriangles(made, cut, seam);
+}
+
+}  // namespace
+
+int runTileStep(const GiantOptions& options) {
+    const ThreadLimit threads(options.common);
+    const GiantPlan plan = readPlan(options.work);
+    const std::vector<Index3> places = chosen(options, plan.tiles, "tile");
+    ReadOptions read = plan.read;
+    read.mapFiles = true;
+    const ImageRegions image = ImageRegions::open(plan.input, read);
+    requireSame(plan, image);
+    const TileCut cut = plan.cut();
+    return runPieces(
+        options, plan, "tile", places,
+        [&](const Index3& tile) {
+            const IndexBox box = cut.samplesOf(tile);
+            return image.stampOf(box.first, box.size());
+        },
+        [&](const Index3& tile, PieceSummary& summary) {
+            return meshOfTile(plan, image, tile, summary);
+        });
+}
+
+int runSeamStep(const GiantOptions& options) {
+    const ThreadLimit threads(options.common);
+    const GiantPlan plan = readPlan(options.work);
+    if (!plan.isAdaptive()) {
+        throw UsageError("seam: the plan is of --method mc, whose tiles need none; join them");
+    }
+    const std::string key = keyOf(plan);
+    return runPieces(
+        options, plan, "seam", chosen(options, plan.seams(), "seam box"),
+        [&](const Index3& seam) { return inputsOfSeam(options, plan, key, seam); },
+        [&](const Index3& seam, PieceSummary& summary) {
+            return meshOfSeam(options, plan, seam, summary);
+        });
+}
+
+}  // namespace adaptiso

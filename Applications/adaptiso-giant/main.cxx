@@ -1,0 +1,8 @@
+#include "CommandLine.h"
+#include "Common/RunApp.h"
+#include "Pipeline.h"
+
+int main(int argc, char** argv) {
+    return adaptiso::runApp(argc, argv, adaptiso::giantProgram(), adaptiso::declareGiantOptions,
+                            adaptiso::runGiant);
+}

@@ -1,0 +1,86 @@
+#include <algorithm>
+
+#include "adaptiso/Extraction/Tiles.h"
+
+namespace adaptiso {
+namespace {
+
+struct Extent {
+    Vec3 low, high;
+};
+
+Extent extentOf(const TriangleMesh& mesh, const Triangle& t) {
+    Extent extent{mesh.points[t[0]], mesh.points[t[0]]};
+    for (const VertexId v : t) {
+        for (int a = 0; a < 3; ++a) {
+            extent.low[a] = std::min(extent.low[a], mesh.points[v][a]);
+            extent.high[a] = std::max(extent.high[a], mesh.points[v][a]);
+        }
+    }
+    return extent;
+}
+
+}  // namespace
+
+TriangleMesh withoutUnusedPoints(const TriangleMesh& mesh) {
+    constexpr VertexId kUnused = -1;
+    std::vector<VertexId> number(mesh.points.size(), kUnused);
+    for (const Triangle& t : mesh.triangles) {
+        for (const VertexId v : t) number[v] = 0;
+    }
+    TriangleMesh used;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+        if (number[v] == kUnused) continue;
+        number[v] = std::ssize(used.points);
+        used.points.push_back(mesh.points[v]);
+        if (!mesh.normals.empty()) used.normals.push_back(mesh.normals[v]);
+    }
+    used.triangles.reserve(mesh.triangles.size());
+    for (const auto& [a, b, c] : mesh.triangles) {
+        used.triangles.push_back({number[a], number[b], number[c]});
+    }
+    return used;
+}
+
+SeamPart seamPartOf(const TriangleMesh& tiles, const TileCut& cut, const Index3& seam) {
+    const ContinuousBox box = cut.seamBox(seam);
+    SeamPart part;
+    part.mesh.points = tiles.points;
+    part.mesh.normals = tiles.normals;
+    for (const Triangle& t : tiles.triangles) {
+        const Extent extent = extentOf(tiles, t);
+        bool isIn = true, touches = true;
+        for (int a = 0; a < 3; ++a) {
+            isIn = isIn && extent.low[a] > box.low[a] && extent.high[a] < box.high[a];
+            touches = touches && extent.high[a] >= box.low[a] && extent.low[a] <= box.high[a];
+        }
+        if (!touches) continue;
+        part.mesh.triangles.push_back(t);
+        part.isFixed.push_back(static_cast<std::uint8_t>(!isIn));
+    }
+    part.mesh = withoutUnusedPoints(part.mesh);
+    return part;
+}
+
+TriangleMesh ownTriangles(const SimplifiedPart& part, const TileCut& cut, const Index3& seam) {
+    TriangleMesh own;
+    own.points = part.mesh.points;
+    own.normals = part.mesh.normals;
+    for (std::size_t t = 0; t < part.mesh.triangles.size(); ++t) {
+        const auto& [a, b, c] = part.mesh.triangles[t];
+        if (part.isKept[t] != 0) {
+            // by its corners in an order of their places: the same in every box
+            std::array<Vec3, 3> corner{part.mesh.points[a], part.mesh.points[b],
+                                       part.mesh.points[c]};
+            std::sort(corner.begin(), corner.end(), [](const Vec3& p, const Vec3& q) {
+                return std::array{p.x, p.y, p.z} < std::array{q.x, q.y, q.z};
+            });
+            const Vec3 middle = (1.0 / 3) * (corner[0] + corner[1] + corner[2]);
+            if (cut.seamAt(middle) != seam) continue;
+        }
+        own.triangles.push_back(part.mesh.triangles[t]);
+    }
+    return withoutUnusedPoints(own);
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,236 @@
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <unordered_map>
+
+#include "Certificate.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Extraction/Tiles.h"
+#include "adaptive/AdaptiveMethod.h"
+#include "adaptive/full/MeshParts.h"
+#include "adaptive/full/MeshSurface.h"
+#include "adaptive/full/NearestNormals.h"
+#include "adaptive/mesh/HalfEdges.h"
+#include "adaptive/mesh/MetricFrame.h"
+
+namespace adaptiso {
+namespace {
+
+using namespace detail;
+
+/// New vertices keep this far from the box's walls, in cells: less than vertices of full resolution
+/// keep from them (kHair).
+constexpr double kWithin = 1e-4;
+
+/// How far the walls of an index box are from being axis-aligned in the metric frame, mm.
+Vec3 slantMm(const ImageGeometry& geometry) {
+    const MetricFrame frame(geometry);
+    Vec3 slant;
+    for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) {
+            if (a == b) continue;
+            Vec3 step;
+            step[b] = static_cast<double>(geometry.size[b]) + 2;
+            slant[a] += std::abs(frame.fromIndex(step)[a]);
+        }
+    }
+    return slant;
+}
+
+/// A box in the metric frame that lies in a box of the lattice.
+CornerBox boxWithin(const ContinuousBox& box, const ImageGeometry& geometry) {
+    const MetricFrame frame(geometry);
+    const Vec3 slant = slantMm(geometry);
+    CornerBox within;
+    for (int a = 0; a < 3; ++a) {
+        Vec3 low, high;
+        low[a] = box.low[a] + kWithin;
+        high[a] = box.high[a] - kWithin;
+        within.low[a] = frame.fromIndex(low)[a] + slant[a];
+        within.high[a] = frame.fromIndex(high)[a] - slant[a];
+    }
+    return within;
+}
+
+struct HashOfPoint {
+    std::size_t operator()(const Vec3& p) const {
+        std::size_t hash = 0;
+        for (int a = 0; a < 3; ++a) {
+            std::uint64_t bits = 0;
+            const double along = p[a] + 0.0;  // -0 is 0
+            std::memcpy(&bits, &along, sizeof bits);
+            hash = (hash ^ (bits ^ bits >> 29)) * 0x9E3779B97F4A7C15u;
+        }
+        return hash;
+    }
+};
+
+/// From its lowest corner on, so that one triangle has one name.
+Triangle rotated(const Triangle& t) {
+    const auto least = std::min_element(t.begin(), t.end()) - t.begin();
+    return {t[least], t[(least + 1) % 3], t[(least + 2) % 3]};
+}
+
+class PartSimplifier {
+public:
+    PartSimplifier(const TriangleMesh& mesh, std::vector<std::uint8_t> isKept,
+                   const ImageGeometry& geometry, const ContinuousBox& box)
+        : mesh_(mesh), isKept_(std::move(isKept)), frame_(geometry), box_(box) {
+        within_ = boxWithin(box, geometry);
+        if (isKept_.empty()) keepBorder();
+        metric_.triangles = mesh.triangles;
+        metric_.normals = mesh.normals;
+        metric_.points.reserve(mesh.points.size());
+        for (const Vec3& p : mesh.points) metric_.points.push_back(frame_.fromIndex(p));
+    }
+
+    SimplifiedPart run(double maxErrorMm) {
+        try {
+            MeshParts parts = takeApart(metric_, true);
+            if (parts.degenerate == 0 && parts.duplicate == 0) {
+                keepPoints(parts);
+                MeshSurface full(metric_, parts, maxErrorMm);
+                CornerBox moved = within_;
+                moved.low = moved.low - parts.origin;
+                moved.high = moved.high - parts.origin;
+                full.stayIn(moved);
+                AdaptiveOptions aims;
+                aims.maxErrorMm = maxErrorMm;
+                AdaptiveResult made = simplifyWithin(full, aims, {});
+                std::vector<Normal> normals = normalsFrom(metric_, made.mesh, *parts.tree);
+                SimplifiedPart part = taken(made, std::move(normals));
+                if (isGood(part)) return part;
+            }
+        } catch (const InternalError&) {  // nothing could be proved
+        }
+        return {mesh_, isKept_, 0, true};
+    }
+
+private:
+    void keepBorder() {
+        std::vector<std::uint8_t> isBorder(mesh_.points.size());
+        for (const VertexId v : borderOf(mesh_).vertices) isBorder[v] = 1;
+        isKept_.reserve(mesh_.triangles.size());
+        for (const auto& [a, b, c] : mesh_.triangles) {
+            isKept_.push_back(isBorder[a] | isBorder[b] | isBorder[c]);
+        }
+    }
+
+    void keepPoints(MeshParts& parts) const {
+        parts.isKept.resize(parts.points.size(), 0);
+        for (std::size_t t = 0; t < isKept_.size(); ++t) {
+            if (isKept_[t] == 0) continue;
+            for (const std::uint32_t v : parts.triangles[t]) parts.isKept[v] = 1;
+        }
+    }
+
+    /// In indices again. Points that are those of the input become those to the bit.
+    SimplifiedPart taken(AdaptiveResult& made, std::vector<Normal> normals) {
+        std::unordered_map<Vec3, VertexId, HashOfPoint> inputAt;
+        inputAt.reserve(metric_.points.size());
+        for (std::size_t v = 0; v < metric_.points.size(); ++v) {
+            inputAt.emplace(metric_.points[v], static_cast<VertexId>(v));
+        }
+        SimplifiedPart part;
+        part.errorBoundMm = made.errorBoundMm;
+        part.mesh.triangles = std::move(made.mesh.triangles);
+        inputOf_.clear();
+        for (std::size_t v = 0; v < made.mesh.points.size(); ++v) {
+            const Vec3& p = made.mesh.points[v];
+            const auto known = inputAt.find(p);
+            const bool isKnown = known != inputAt.end();
+            inputOf_.push_back(isKnown ? known->second : kNew);
+            part.mesh.points.push_back(isKnown ? mesh_.points[known->second] : frame_.toIndex(p));
+            if (!mesh_.normals.empty()) {
+                part.mesh.normals.push_back(isKnown ? mesh_.normals[known->second] : normals[v]);
+            }
+        }
+        return part;
+    }
+
+    /// What was to be kept is there, and what is new lies in the box. Says of each triangle whether
+    /// it was kept.
+    bool isGood(SimplifiedPart& part) const {
+        std::set<Triangle> kept;
+        for (std::size_t t = 0; t < isKept_.size(); ++t) {
+            if (isKept_[t] != 0) kept.insert(rotated(mesh_.triangles[t]));
+        }
+        std::size_t found = 0;
+        for (const auto& [a, b, c] : part.mesh.triangles) {
+            const Triangle old{inputOf_[a], inputOf_[b], inputOf_[c]};
+            const bool isOld = old[0] != kNew && old[1] != kNew && old[2] != kNew;
+            const bool isKept = isOld && kept.contains(rotated(old));
+            part.isKept.push_back(static_cast<std::uint8_t>(isKept));
+            found += static_cast<std::size_t>(isKept);
+        }
+        for (std::size_t v = 0; v < inputOf_.size(); ++v) {
+            if (inputOf_[v] != kNew) continue;
+            const Vec3& p = part.mesh.points[v];
+            for (int a = 0; a < 3; ++a) {
+                if (!(p[a] > box_.low[a] && p[a] < box_.high[a])) return false;
+            }
+        }
+        return found == kept.size();
+    }
+
+    static constexpr VertexId kNew = -1;
+
+    const TriangleMesh& mesh_;
+    std::vector<std::uint8_t> isKept_;
+    MetricFrame frame_;
+    ContinuousBox box_;
+    CornerBox within_;
+    TriangleMesh metric_;
+    std::vector<VertexId> inputOf_;  ///< of each point of the result
+};
+
+}  // namespace
+
+BorderEdges borderOf(const TriangleMesh& mesh) {
+    std::vector<std::array<std::uint64_t, 3>> triangles;
+    triangles.reserve(mesh.triangles.size());
+    for (const auto& [a, b, c] : mesh.triangles) {
+        triangles.push_back({static_cast<std::uint64_t>(a), static_cast<std::uint64_t>(b),
+                             static_cast<std::uint64_t>(c)});
+    }
+    HalfEdges<std::uint64_t> halfEdges;
+    halfEdges.assign(mesh.points.size(), triangles);
+    std::vector<std::uint64_t> twin;
+    halfEdges.match(triangles, twin);
+    BorderEdges border;
+    for (std::size_t h = 0; h < twin.size(); ++h) {
+        if (twin[h] != HalfEdges<std::uint64_t>::kNone) continue;
+        const Triangle& t = mesh.triangles[h / 3];
+        border.edges.push_back({t[h % 3], t[(h + 1) % 3]});
+        border.vertices.push_back(t[h % 3]);
+        border.vertices.push_back(t[(h + 1) % 3]);
+    }
+    std::sort(border.vertices.begin(), border.vertices.end());
+    border.vertices.erase(std::unique(border.vertices.begin(), border.vertices.end()),
+                          border.vertices.end());
+    return border;
+}
+
+SimplifiedPart simplifyInBox(const TriangleMesh& mesh, std::vector<std::uint8_t> isKept,
+                             const ImageGeometry& geometry, const ContinuousBox& box,
+                             double maxErrorMm) {
+    if (!canSimplifyInBoxes(geometry)) {
+        throw InvalidInput("simplifyInBox: the volume's axes are not at right angles");
+    }
+    if (mesh.triangles.empty()) return {};
+    return PartSimplifier(mesh, std::move(isKept), geometry, box).run(maxErrorMm);
+}
+
+bool canSimplifyInBoxes(const ImageGeometry& geometry) {
+    constexpr double kMost = 1;  // cells
+    const Vec3 slant = slantMm(geometry), spacing = geometry.spacingMm();
+    return slant.x <= kMost * spacing.x && slant.y <= kMost * spacing.y &&
+           slant.z <= kMost * spacing.z;
+}
+
+double narrowestSpacingMm(const ImageGeometry& geometry) {
+    return MetricFrame(geometry).narrowestMm();
+}
+
+}  // namespace adaptiso
