@@ -371,29 +371,6 @@ void declareElectrodes(CLI::App& app, BemOptions& options) {
     addPoint(app, "--right-ear", options.rightEar, "Right preauricular point, the same");
 }
 
-void declareTetrahedra(CLI::App& app, BemOptions& options) {
-    app.add_option(
-           "--tetrahedra", options.mesher,
-           "Fill the layers with tetrahedra by this program, which must be installed: head.msh "
-           "(SimNIBS), head-4.1.msh, head.vtu, head.dgf")
-        ->type_name("tetgen|gmsh")
-        ->check(CLI::IsMember({"tetgen", "gmsh"}).description(""))
-        ->group(kTetrahedra);
-    app.add_option_function<std::string>(
-           "--element-size",
-           [&options](const std::string& text) {
-               options.elementMm = numbers("--element-size", text, ',', 1, 1, "0.5 to 50 mm")[0];
-               if (!(options.elementMm >= 0.5 && options.elementMm <= 50)) {
-                   throw UsageError("--element-size " + text + ": must be 0.5 to 50 mm");
-               }
-           },
-           "Longest edge of an equilateral tetrahedron (default: 5); at the surfaces elements are "
-           "as small "
-           "as their triangles")
-        ->type_name("MM")
-        ->group(kTetrahedra);
-}
-
 void declareToolboxes(CLI::App& app, BemOptions& options) {
     BemFileOptions& files = options.files;
     const auto addFlag = [&](const char* name, bool& target, const char* description) {
@@ -522,7 +499,10 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
     declareSurfaces(app, options);
     declareOutput(app, options);
     declareElectrodes(app, options);
-    declareTetrahedra(app, options);
+    declareMesherOptions(app, options.tetrahedra,
+                         "head.msh (SimNIBS, DUNEuro), head-4.1.msh, head.vtu, head.dgf and "
+                         "head.geo (DUNEuro) with the conductivities",
+                         kTetrahedra);
     declareToolboxes(app, options);
     declareCommonOptions(app, options.common, "of the model only the report is then written");
     app.callback([&options] { checkCombinations(options); });

@@ -283,7 +283,7 @@ int runBem(const BemOptions& options) {
     run.model.options.wantsHeadShape = options.files.writesFif;
     run.model.source = sourceOf(options);
     checkOutputs(options);
-    requireMesher(options.mesher);
+    requireMesher(options.tetrahedra);
     readElectrodes(run);
 
     const BemHooks hooks{[&](std::string_view stage, const std::function<void()>& work) {
@@ -298,7 +298,7 @@ int runBem(const BemOptions& options) {
     const std::size_t told = run.model.warnings.size();
     finishBemModel(std::move(dense), run.model, hooks);
     putElectrodes(run, hooks);
-    if (run.model.hasModel() && !options.mesher.empty()) makeTetrahedra(run, hooks);
+    if (run.model.hasModel() && options.tetrahedra.isAsked()) makeTetrahedra(run, hooks);
     progress.clear();
     tellWarnings(run, told);
 

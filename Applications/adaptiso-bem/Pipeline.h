@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "Common/CommonOptions.h"
+#include "Common/Mesher.h"
 #include "Common/ReportOutput.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -35,8 +36,7 @@ struct BemOptions {
 
     std::filesystem::path electrodes;               ///< a file; empty: none
     std::optional<Vec3> nasion, leftEar, rightEar;  ///< scanner RAS mm
-    std::string mesher;                             ///< "tetgen" or "gmsh"; empty: no tetrahedra
-    double elementMm = 5;                           ///< longest edge of an equilateral tetrahedron
+    MesherOptions tetrahedra;
     std::filesystem::path output;
     bool mayReplace = false;
     std::filesystem::path subjectsDir;

@@ -28,5 +28,6 @@ void addFenceSeeds(Seeds& seeds);
 void addIndexSeeds(Seeds& seeds);
 void addOpenMeegSeeds(Seeds& seeds);
 void addLabelSeeds(Seeds& seeds);
+void addMesherSeeds(Seeds& seeds);
 
 }  // namespace adaptiso::fuzz
