@@ -11,6 +11,7 @@
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/LabelFiles.h"
 #include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/Tetrahedra/TetrahedraFiles.h"
 
 namespace adaptiso {
 namespace {
@@ -18,6 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kVtp = ".vtp";
+constexpr const char* kMsh22Name = "tetrahedra.msh";
+constexpr const char* kMsh41Name = "tetrahedra-4.1.msh";
+constexpr const char* kVtuName = "tetrahedra.vtu";
+constexpr const char* kDgfName = "tetrahedra.dgf";
 
 MeshWriteOptions writeOptions(const LabelsRun& run) {
     MeshWriteOptions write;
@@ -66,6 +71,17 @@ void writeJoined(const RegionSurfaces& surfaces, const fs::path& surfacePath,
     writeGiftiLabels(joined.labels, table, labelPath);
 }
 
+void writeTetrahedra(const LabelsRun& run, AtomicFolder& folder) {
+    if (!run.tetrahedra) return;
+    const AffineTransform move = lpsToFrame(run.frame, frameVolume(run.frame, run.map.geometry));
+    const TetrahedralMesh mesh = transformed(run.tetrahedra->mesh, move.linear, move.offset);
+    const std::vector<TetrahedraRegion>& regions = run.tetrahedra->regions;
+    writeMsh22(mesh, regions, folder.place(kMsh22Name));
+    writeMsh41(mesh, regions, folder.place(kMsh41Name));
+    writeVtu(mesh, folder.place(kVtuName));
+    writeDgf(mesh, regions, folder.place(kDgfName));
+}
+
 /// A field of a table: tabs and line ends would end it.
 std::string field(const std::string& text) {
     return text.empty() ? "n/a" : text;
@@ -89,8 +105,9 @@ bool isOwnFile(std::string_view name) {
     constexpr std::string_view kRegions = "regions/", kAll = "all/";
     if (name.starts_with(kRegions)) return isRegionFile(name.substr(kRegions.size()), false);
     if (name.starts_with(kAll)) return isRegionFile(name.substr(kAll.size()), true);
-    constexpr std::string_view kNames[] = {"walls.vtp",     "all.vtm",     "all.surf.gii",
-                                           "all.label.gii", "regions.tsv", "report.json"};
+    constexpr std::string_view kNames[] = {
+        "walls.vtp",   "all.vtm",  "all.surf.gii", "all.label.gii", "regions.tsv",
+        "report.json", kMsh22Name, kMsh41Name,     kVtuName,        kDgfName};
     return std::ranges::find(kNames, name) != std::end(kNames);
 }
 
@@ -154,6 +171,7 @@ void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, Lab
             });
         }
         writeMultiBlock(blocks, folder.place("all.vtm"));
+        writeTetrahedra(run, folder);
         folder.writeText("regions.tsv", regionsTable(run));
         // VTK makes ready what all its writers share when the first of them is used: by one thread
         works.back()();

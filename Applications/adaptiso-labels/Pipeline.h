@@ -8,6 +8,7 @@
 
 #include "Common/BatchOptions.h"
 #include "Common/CommonOptions.h"
+#include "Common/Mesher.h"
 #include "Common/ReportOutput.h"
 #include "LabelLists.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -29,6 +30,7 @@ struct LabelsOptions {
     std::optional<double> maxErrorMm;
     std::optional<std::int64_t> maxTriangles;
     std::optional<double> reduction;
+    MesherOptions tetrahedra;
     std::filesystem::path output;  ///< a folder; empty: "<input>-labels" in the current one
     bool mayReplace = false;
     std::string format = ".vtp";           ///< of the regions' files, an extension

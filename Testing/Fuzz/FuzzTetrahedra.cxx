@@ -36,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 : adaptiso::decodeTetgen(bytes.substr(0, cut),
                                          bytes.substr(std::min(cut + 1, size)), "input");
         requireSound(mesh);
-        const std::vector<adaptiso::TetrahedraRegion> regions{{2, "a", 1}, {3, "b", 1}};
+        const std::vector<adaptiso::TetrahedraRegion> regions{{2, "a", 1, 1}, {3, "b", 1, 1}};
         takeRegions(mesh, regions);
         requireSound(mesh);
         static_cast<void>(judgeTetrahedra(checkTetrahedra(mesh, regions), regions));

@@ -56,12 +56,14 @@ MesherInput headMesherInput(std::span<const TriangleMesh> surfaces) {
 
 std::vector<TetrahedraRegion> headRegions(std::span<const TriangleMesh> surfaces) {
     std::vector<TetrahedraRegion> regions;
-    double within = 0;
+    double within = 0, inner = 0;
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
         const std::int32_t tissue = tissueNumber(headSurface(n, surfaces.size()), surfaces.size());
         const double mm3 = enclosedVolume(surfaces[n]);
-        regions.push_back({tissue, std::string(tissueName(tissue)), mm3 - within});
+        regions.push_back({tissue, std::string(tissueName(tissue)), mm3 - within,
+                           inner + surfaceArea(surfaces[n])});
         within = mm3;
+        inner = surfaceArea(surfaces[n]);
     }
     return regions;
 }
@@ -71,7 +73,7 @@ std::vector<TetrahedraRegion> allTissues() {
     for (std::size_t n = 0; n < kHeadSurfaceCount; ++n) {
         const std::int32_t tissue =
             tissueNumber(headSurface(n, kHeadSurfaceCount), kHeadSurfaceCount);
-        regions.push_back({tissue, std::string(tissueName(tissue)), 0});
+        regions.push_back({tissue, std::string(tissueName(tissue)), 0, 0});
     }
     return regions;
 }

@@ -61,12 +61,8 @@ void writeElectrodes(const BemModel& model, const BemFileOptions& options, const
 }
 
 void writeTetrahedra(const BemModel& model, const BemFileOptions& options, const PlaceFile& place) {
-    TetrahedralMesh mesh = model.tetrahedra->mesh;
     const AffineTransform move = lpsToFrame(options.frame, model.tkRasVolume);
-    for (Vec3& p : mesh.points) p = move(p);
-    if (determinant(move.linear) < 0) {
-        for (auto& t : mesh.tetrahedra) std::swap(t[2], t[3]);
-    }
+    const TetrahedralMesh mesh = transformed(model.tetrahedra->mesh, move.linear, move.offset);
     const std::vector<TetrahedraRegion> regions = headRegions(model.meshes);
     writeMsh22(mesh, regions, place(kMsh22File));
     writeMsh41(mesh, regions, place(kMsh41File));

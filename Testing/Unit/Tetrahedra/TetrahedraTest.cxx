@@ -14,7 +14,7 @@ TetrahedralMesh equilateral() {
 
 TEST(Tetrahedra, AreMeasured) {
     TetrahedralMesh mesh = equilateral();
-    const std::vector<TetrahedraRegion> regions{{2, "brain", 8.0 / 3}};
+    const std::vector<TetrahedraRegion> regions{{2, "brain", 8.0 / 3, 0}};
     const TetrahedraReport report = checkTetrahedra(mesh, regions);
     EXPECT_EQ(report.unlabelled, 0);
     EXPECT_EQ(report.flat, 0);
@@ -41,15 +41,16 @@ TEST(Tetrahedra, EachFaultFailsItsCheck) {
     };
     using Names = std::vector<std::string>;
     TetrahedralMesh mesh = equilateral();
-    EXPECT_EQ(failed(mesh, {2, "brain", 2.7}), Names{"volume of brain as within its walls"});
+    EXPECT_EQ(failed(mesh, {2, "brain", 2.7, 0}), Names{"volume of brain as within its walls"});
+    EXPECT_EQ(failed(mesh, {2, "brain", 2.7, 40}), Names{});  // 0.033 mm3 of 40 mm2 of walls
     mesh.labels = {3};
-    EXPECT_EQ(failed(mesh, {2, "brain", 8.0 / 3}),
+    EXPECT_EQ(failed(mesh, {2, "brain", 8.0 / 3, 0}),
               (Names{"each of a region", "volume of brain as within its walls"}));
     mesh = equilateral();
     mesh.points.push_back({0, 0, 0});
     mesh.tetrahedra.push_back({0, 1, 4, 4});
     mesh.labels.push_back(2);
-    EXPECT_EQ(failed(mesh, {2, "brain", 8.0 / 3}), Names{"none flat or inverted"});
+    EXPECT_EQ(failed(mesh, {2, "brain", 8.0 / 3, 0}), Names{"none flat or inverted"});
 }
 
 TEST(Tetrahedra, OfNoRegionGoWithTheirPoints) {
@@ -57,7 +58,7 @@ TEST(Tetrahedra, OfNoRegionGoWithTheirPoints) {
     mesh.points.insert(mesh.points.begin(), {5, 5, 5});
     mesh.tetrahedra = {{1, 3, 2, 4}, {0, 1, 2, 3}};
     mesh.labels = {1, 2};
-    const std::vector<TetrahedraRegion> regions{{17, "inside", 8.0 / 3}};
+    const std::vector<TetrahedraRegion> regions{{17, "inside", 8.0 / 3, 0}};
     takeRegions(mesh, regions);
     EXPECT_EQ(mesh.points, equilateral().points);
     EXPECT_EQ(mesh.tetrahedra, equilateral().tetrahedra);
