@@ -43,8 +43,9 @@ std::vector<fs::path> inputsOf(const BemOptions& options) {
     std::vector<fs::path> inputs = options.probabilities;
     inputs.insert(inputs.end(), options.surfaces.begin(), options.surfaces.end());
     inputs.insert(inputs.end(), options.pial.begin(), options.pial.end());
-    for (const fs::path& path : {options.t1, options.brainMask, options.aseg, options.labels,
-                                 options.ct, options.volume, options.electrodes}) {
+    for (const fs::path& path :
+         {options.t1, options.brainMask, options.aseg, options.labels, options.headMask, options.ct,
+          options.volume, options.electrodes}) {
         if (!path.empty()) inputs.push_back(path);
     }
     return inputs;

@@ -28,6 +28,7 @@ struct BemOptions {
     std::filesystem::path aseg;               ///< with t1
     std::vector<std::filesystem::path> pial;  ///< with t1, of four layers
     TissueLabels tissues;                     ///< with labels
+    std::filesystem::path headMask;           ///< with labels: all that lies within the skin
     std::filesystem::path volume;             ///< with surfaces: the image whose tkRAS is written
     ReadOptions read;                         ///< of the main image
     BemModelOptions model;

@@ -33,26 +33,10 @@ from petsc4py import PETSc
 
 import layeredSphere
 from layeredSphere import FOUR
-from sphereImages import CENTRE, part_of_ball, save
+from sphereImages import CENTRE, four_spheres
 
-RADII = tuple(round(1000 * r) for r in FOUR.radii)  # mm
 ELECTRODES = 60
 FIRST_TISSUE = 2  # of head.msh: brain, CSF, skull, scalp
-
-
-def image(folder, kind, radii=RADII):
-    """Writes the image. returns adaptiso-bem's arguments"""
-    if kind == "labels":
-        labels = sum(part_of_ball(r, 1) for r in radii).astype(np.uint8)
-        save(folder / "labels.nii.gz", labels)
-        tissues = ("brain=4", "csf=3", "skull=2", "scalp=1")
-        return ["--labels", folder / "labels.nii.gz", *(w for t in tissues for w in ("--tissue", t))]
-    brain, inner, outer, skin = (part_of_ball(r, 10) for r in radii)
-    maps = (0.5 * brain, 0.5 * brain, inner - brain, outer - inner, skin - outer)
-    files = [folder / f"c{n + 1}.nii.gz" for n in range(5)]
-    for file, values in zip(files, maps):
-        save(file, values.astype(np.float32))
-    return ["--probabilities", *files]
 
 
 class Head:
@@ -158,7 +142,7 @@ def main():
     logging.getLogger().setLevel(logging.WARNING)  # the compiler of forms tells every step
     options.folder.mkdir(parents=True, exist_ok=True)
     model = options.folder / "model"
-    subprocess.run([options.program, *image(options.folder, options.image), "--layers", "4", "--tetrahedra",
+    subprocess.run([options.program, *four_spheres(options.folder, options.image, FOUR.radii), "--layers", "4", "--tetrahedra",
                     options.mesher, "-o", model, "--force", "--quiet", *further], check=True)
     describe(json.loads((model / "report.json").read_text()))
     head = read_head(model / "head.msh", options.degree)

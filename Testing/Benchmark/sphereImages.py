@@ -27,3 +27,20 @@ def part_of_ball(radius, points_a_side):
 
 def save(path, data):
     nibabel.save(nibabel.Nifti1Image(data, AFFINE), path)
+
+
+def four_spheres(folder, kind, radii):
+    """Writes an image of brain, CSF, skull and scalp, radii in m: labels, or partial volume. returns
+    adaptiso-bem's arguments"""
+    radii = [1000 * r for r in radii]
+    if kind == "labels":
+        labels = sum(part_of_ball(r, 1) for r in radii).astype(np.uint8)
+        save(folder / "labels.nii.gz", labels)
+        tissues = ("brain=4", "csf=3", "skull=2", "scalp=1")
+        return ["--labels", folder / "labels.nii.gz", *(w for t in tissues for w in ("--tissue", t))]
+    brain, inner, outer, skin = (part_of_ball(r, 10) for r in radii)
+    maps = (0.5 * brain, 0.5 * brain, inner - brain, outer - inner, skin - outer)
+    files = [folder / f"c{n + 1}.nii.gz" for n in range(5)]
+    for file, values in zip(files, maps):
+        save(file, values.astype(np.float32))
+    return ["--probabilities", *files]

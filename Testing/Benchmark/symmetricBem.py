@@ -11,7 +11,8 @@ equations, the first tested with constants, the second with linear functions; th
 layer's slope by integration by parts. Over the inner triangle integrals are in closed form [Wilton1984], over the
 outer one by three points, in 16 parts of it where the two are near.
 
-testSpheres() of Testing/Application/SymmetricBemTest.py holds it to what OpenMEEG gives. Needs python3-numba.
+Testing/Application/SymmetricBemTest.py holds it to the analytic series; on icospheres of 642 vertices it gives what
+OpenMEEG does. Needs python3-numba.
 """
 import numba
 import numpy as np
