@@ -43,6 +43,7 @@ void expectRefused(const std::string& nodes, const std::string& elements) {
     } catch (const FileError& error) {
         const std::string what = error.what();
         EXPECT_TRUE(what.starts_with("tetgen: ")) << what;
+        EXPECT_EQ(what.find('\v'), std::string::npos) << what;
         return;
     }
     ADD_FAILURE() << "was read";
@@ -55,6 +56,7 @@ TEST(MesherFiles, DamageIsToldInOneLine) {
     expectRefused(kNodes, "1 4 1\n0 0 1 2 3 1e300\n");
     expectRefused(kNodes, "1 4 1\n0 0 1 2 3 nan\n");
     expectRefused(kNodes, "1 4 1\n0 -9223372036854775808 1 2 3 1\n");
+    expectRefused("5 3 0 0\n0 1\v0 0 0\n", kElements);
     expectRefused("99999999999 3 0 0\n", kElements);
     EXPECT_THROW(decodeGmsh("$Nodes\n", "gmsh"), FileError);
 }
