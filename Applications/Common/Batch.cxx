@@ -103,8 +103,8 @@ private:
     std::vector<std::string> start(std::size_t n) {
         const BatchItem& item = items_[n];
         if (!item.folder.empty()) fs::create_directories(item.folder);
-        if (program_.removesFormer) removeFormerOutputs(n);
         earlier_.forgetInputs(n);  // they may have changed since they were looked at
+        if (program_.removesFormer) removeFormerOutputs(n);
         earlier_.inputs(n);
         if (plan_.keepsRecords()) {
             removeFormerRecord(item);
@@ -125,11 +125,9 @@ private:
     /// before its time, no file of an old input or of old options stands for it.
     void removeFormerOutputs(std::size_t n) {
         const BatchItem& item = items_[n];
-        earlier_.forgetInputs(n);
         std::vector<EarlierRecord> found = earlier_.look(n);
-        if (EarlierRuns::areDone(found)) return;  // another batch has made it meanwhile
         for (const EarlierRecord& one : found) {
-            if (!one.record) continue;
+            if (!one.record || one.why.empty()) continue;  // what is as it should be stays
             for (const KeptOutput& output : one.record->outputs) {
                 const fs::path path = item.folder / output.file.file;
                 constexpr bool kTrustsTimes = false;

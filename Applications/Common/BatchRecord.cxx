@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <ctime>
 #include <fstream>
@@ -9,6 +10,7 @@
 
 #include "Common/AtomicOutput.h"
 #include "Common/CommonOptions.h"
+#include "Common/ExitCodes.h"
 #include "Common/Sha256.h"
 
 namespace adaptiso {
@@ -135,6 +137,24 @@ BatchRecord recordOf(const BatchItem& item, const ChildResult& result, const std
         }
     }
     return record;
+}
+
+bool mayPassElsewhere(const BatchRecord& record) {
+    constexpr int kNotStarted = 127, kNotExecutable = 126;
+    if (record.signal != 0 || record.exitCode == kNotStarted || record.exitCode == kNotExecutable) {
+        return true;
+    }
+    if (record.exitCode != kExitBadInput) return false;
+    // exit code 3 is for bad input, too; the texts are RunApp's, ImageIO's, and the system's
+    const std::string_view texts[] = {"not enough memory", "memory, more than there is",
+                                      "needs more memory", "out of memory",
+                                      "a thread or process could not be started"};
+    const auto isSaid = [&](std::string_view text) {
+        return record.error.find(text) != std::string::npos;
+    };
+    return std::ranges::any_of(texts, isSaid) ||
+           std::ranges::any_of(std::array{ENOSPC, EDQUOT, ENOMEM, EIO, ESTALE, EMFILE, ENFILE},
+                               [&](int number) { return isSaid(std::strerror(number)); });
 }
 
 fs::path recordFile(const fs::path& folder, const fs::path& file, const std::string& program) {

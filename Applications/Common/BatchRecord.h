@@ -31,6 +31,10 @@ struct BatchRecord {
     bool isFinished() const { return signal == 0 && (exitCode == 0 || exitCode == 1); }
 };
 
+/// The run ended for want of memory, disk or processes, by what it said, or its program could not
+/// be started: it may pass at another time or on another machine.
+bool mayPassElsewhere(const BatchRecord& record);
+
 Json toJson(const BatchRecord& record, const std::string& program);
 
 /// What the child said, as a record without outputs.

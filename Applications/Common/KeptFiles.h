@@ -27,8 +27,8 @@ KeptFile keptFile(const std::string& name, const std::filesystem::path& path);
 
 /// The same for an input and all files that belong to it: of a folder all regular files in and
 /// under it, of a header the files that hold its data, of a DICOMDIR all that lies beside it.
-/// Hidden files are not read by anybody, and neither is what lies under `output`, the folder that
-/// is written to.
+/// Hidden files are left out, but for those of Zarr (.zarray, .zattrs, .zgroup): nobody reads
+/// others. So is what lies under `output`, the folder that is written to.
 KeptFile keptInput(const std::filesystem::path& input, const std::filesystem::path& output);
 
 /// The files that an input consists of, by name; the first is the one given unless it is a folder.

@@ -223,14 +223,15 @@ private:
         constexpr bool kHasSubjects = true;
         for (const SummaryRow& row : summaryRows({options_.output, kHasSubjects}, {}, {})) {
             const bool isOfScan = row.program == "adaptiso-mesh" || row.program == "adaptiso-bem" ||
-                                  row.program == "adaptiso-labels";
+                                  // their images may be in a folder that is not named now
+                                  (row.program == "adaptiso-labels" && options_.makesLabels);
             if (!isOfScan || known.contains(row.name) || !told.insert(row.name).second) continue;
             QualityRow left;
             left.participant = "sub-" + entityOf(row.name, "sub");
             left.scan = row.name;
             addAbsent(std::move(left), QualityState::Leftover,
                       "is in the output, but its image is not in the dataset; remove " + row.name +
-                          "_* there");
+                          "_desc-* and " + row.name + "_mesh* there");
         }
     }
 

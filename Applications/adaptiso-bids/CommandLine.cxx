@@ -124,6 +124,10 @@ void checkCombinations(BidsOptions& options) {
     require(!fs::equivalent(options.dataset, options.output, error),
             "OUT_DIR " + options.output.string() +
                 ": is BIDS_DIR; name a folder of its own, such as BIDS_DIR/derivatives/adaptiso");
+    require(options.segmentations.empty() ||
+                !fs::equivalent(options.segmentations, options.output, error),
+            "OUT_DIR " + options.output.string() +
+                ": is the folder of --segmentations; name a folder of its own");
 }
 
 constexpr const char* kFooter = R"(Examples:

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <fstream>
 #include <iostream>
 #include <set>
 #include <string>
@@ -137,6 +138,38 @@ void printTotals(std::ostream& out, const Counts& counts, std::size_t rows,
         << (options.output / "summary.html").string() << " are written\n";
 }
 
+/// What the group level writes in the output's folder must not be another program's or a person's.
+/// \throws InvalidInput  it is
+void requireOwnDataset(const fs::path& output) {
+    const auto refuse = [&](const char* file, const std::string& of) {
+        throw InvalidInput((output / file).string() + ": is " + of +
+                           "; give another OUT_DIR, or take it away");
+    };
+    std::error_code error;
+    const auto isThere = [&](const char* file) { return fs::exists(output / file, error); };
+    constexpr const char* kDescription = "dataset_description.json";
+    if (isThere(kDescription)) {
+        std::ifstream file(output / kDescription);
+        const Json said = Json::parse(file, nullptr, false);
+        const Json none,
+            &by = said.is_object() && said.contains("GeneratedBy") ? said["GeneratedBy"] : none;
+        const Json& name =
+            by.is_array() && !by.empty() && by[0].is_object() && by[0].contains("Name")
+                ? by[0]["Name"]
+                : none;
+        const bool isOwn = name.is_string() && name.get<std::string>().starts_with("adaptiso");
+        if (!isOwn) {
+            refuse(kDescription, name.is_string()
+                                     ? "of a dataset of " + oneLine(name.get<std::string>())
+                                     : std::string("of another dataset"));
+        }
+        return;
+    }
+    for (const char* const file : {"README", ".bidsignore"}) {
+        if (isThere(file)) refuse(file, "not of adaptiso-bids");
+    }
+}
+
 }  // namespace
 
 int runGroup(const BidsOptions& options, const std::vector<fs::path>& subjects) {
@@ -147,6 +180,7 @@ int runGroup(const BidsOptions& options, const std::vector<fs::path>& subjects) 
         throw InvalidInput(options.output.string() +
                            ": is not there; run the participant level first");
     }
+    requireOwnDataset(options.output);
     Cohort cohort = lookAtCohort(options, subjects);
     if (cohort.records == 0) {
         throw InvalidInput(options.output.string() +

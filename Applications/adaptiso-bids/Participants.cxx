@@ -16,18 +16,22 @@ constexpr const char* kProgram = "adaptiso-bids";
 
 /// How the runs of all batches ended.
 struct Ends {
-    bool haveFailed = false, wereKilled = false, wereRefused = false;
+    bool haveFailed = false, wereRefused = false;
+    bool haveBroken = false;        ///< by a bug
+    bool mayPassElsewhere = false;  ///< killed, not started, or short of memory or disk
 
     void add(const BatchRecord& record) {
         haveFailed = haveFailed || !record.hasPassed();
-        wereKilled = wereKilled || record.signal != 0;
+        mayPassElsewhere = mayPassElsewhere || adaptiso::mayPassElsewhere(record);
+        haveBroken = haveBroken || (record.signal == 0 && record.exitCode == kExitInternalError);
         wereRefused = wereRefused || (record.signal == 0 && record.exitCode == kExitUsage);
     }
     int code() const {
-        return wereRefused  ? kExitUsage
-               : wereKilled ? kExitBadInput
-               : haveFailed ? kExitCheckFailed
-                            : kExitOk;
+        return wereRefused        ? kExitUsage
+               : haveBroken       ? kExitInternalError
+               : mayPassElsewhere ? kExitBadInput
+               : haveFailed       ? kExitCheckFailed
+                                  : kExitOk;
     }
 };
 

@@ -198,7 +198,7 @@ Product bemProduct(const BidsOptions& options) {
                options.makesPictures ? "{name}_desc-bem_figures" : "");
     BatchProgram& program = product.program;
     program.inputOption = "--t1";
-    program.inputOptions = {"--brain-mask"};
+    program.inputOptions = {"--brain-mask", "--aseg", "--pial", "--electrodes"};
     program.says = [](const Json& report) -> std::string {
         if (report.value("model", false)) {
             return "a model of " + std::to_string(report.at("surfaces").size()) + " surfaces";

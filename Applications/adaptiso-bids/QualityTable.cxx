@@ -131,7 +131,7 @@ Json qualityDictionary(double limit) {
         {"unsound", "The same, but adaptiso-check found a fault"},
         {"failed", "The run ended with an error, or could not guarantee the result"},
         {"missing", "Not run, not finished, gone, or of another image, options or version"},
-        {"leftover", "In the output, but the participant is not in the dataset"}};
+        {"leftover", "In the output, but the image that it was made of is not in the dataset"}};
     for (const Column& column : kColumns) {
         Json& one = json[std::string(column.name)] = described(column.description);
         if (!column.units.empty()) one["Units"] = column.units;

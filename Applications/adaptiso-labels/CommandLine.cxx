@@ -50,6 +50,17 @@ void checkCombinations(const LabelsOptions& options) {
     if (options.maxTriangles && options.reduction) {
         throw UsageError("--triangles and --reduction: are two ways to ask for one count");
     }
+    if (options.writesLayers && !options.labels.empty()) {
+        throw UsageError(
+            "--layers: needs all regions, as each wall lies between two of them; "
+            "--merge joins those of no interest");
+    }
+    if (options.writesLayers && options.frame == CoordinateFrame::Voxel) {
+        throw UsageError("--coordinates voxel: --layers are in mm only");
+    }
+    if (!options.conductivities.empty() && !options.writesLayers) {
+        throw UsageError("--conductivities: are written with --layers");
+    }
     requireDisjoint(options.merges);
     const std::vector<std::string> forRun{"{name}"};
     requirePlaceholders("--output", options.output, forRun);
@@ -115,6 +126,24 @@ void declareWalls(CLI::App& app, LabelsOptions& options) {
               "The share F of the full resolution's triangles to drop, 0 to 1")
         ->type_name("F")
         ->group(kWalls);
+    addNumber(app, "--min-angle", options.minAngleDeg, {.least = 0, .most = 40, .unit = "degrees"},
+              "Make no angle below DEG (0 to 40), at the price of more triangles: for meshers "
+              "(default: 0)")
+        ->type_name("DEG")
+        ->group(kWalls);
+}
+
+void declareLayers(CLI::App& app, LabelsOptions& options) {
+    app.add_flag(
+           "--layers", options.writesLayers,
+           "Write the walls for OpenMEEG too: layers/layers.geom (Domain Description 1.1 with "
+           "meshes and signed interfaces), a .tri for each pair of labels that touch, in mm")
+        ->group(kOutput);
+    addValue(
+        app, "--conductivities", "LIST",
+        [&options](const std::string& text) { options.conductivities = parseConductivities(text); },
+        "With --layers: S/m of every region, 1=0.33,2=0.0066, for layers/layers.cond")
+        ->group(kOutput);
 }
 
 void declareOutput(CLI::App& app, LabelsOptions& options) {
@@ -160,6 +189,8 @@ constexpr const char* kFooter = R"(Examples:
       every region in tetrahedra as well, for finite elements
   adaptiso-labels seg.nii.gz --max-error 0 -o full
       the full resolution, which the bound is measured against
+  adaptiso-labels head.nii.gz --layers --conductivities 1=0.33,2=0.0066,3=0.33
+      the walls for OpenMEEG as well, in the folder layers
   adaptiso-labels --bids derivatives/segmentation --skip-existing
       each *_dseg image a run of its own
 
@@ -185,6 +216,7 @@ void declareLabelsOptions(CLI::App& app, LabelsOptions& options) {
                          "tetrahedra.msh, tetrahedra-4.1.msh, tetrahedra.vtu and tetrahedra.dgf",
                          kTetrahedra);
     declareOutput(app, options);
+    declareLayers(app, options);
     declareBatchOptions(app, options.batch, "the label maps, *_dseg");
     declareCommonOptions(app, options.common, "no folder is then written, reports are");
     app.callback([&app, &options] {

@@ -29,11 +29,18 @@ Json optionsJson(const LabelsOptions& options) {
                           {"label", merge.number()},
                           {"labels", rangesJson(merge.labels)}});
     }
+    Json conductivities = Json::object();
+    for (const auto& [label, value] : options.conductivities) {
+        conductivities[std::to_string(label)] = value;
+    }
     return {{"labels", options.labels.empty() ? Json(nullptr) : rangesJson(options.labels)},
             {"merges", merges},
             {"maxErrorMm", orNull(options.maxErrorMm)},
             {"maxTriangles", orNull(options.maxTriangles)},
             {"reduction", orNull(options.reduction)},
+            {"minAngleDeg", options.minAngleDeg},
+            {"layers", options.writesLayers},
+            {"conductivities", conductivities},
             {"strict", options.common.isStrict}};
 }
 

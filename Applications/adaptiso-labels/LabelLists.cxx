@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
@@ -96,6 +97,31 @@ void requireDisjoint(const std::vector<LabelMerge>& merges) {
             }
         }
     }
+}
+
+std::map<Label, double> parseConductivities(const std::string& text) {
+    std::map<Label, double> values;
+    const auto refuse = [&](const std::string& why) {
+        throw UsageError("--conductivities " + shown(text) + ": " + why);
+    };
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t end = std::min(text.find(',', at), text.size());
+        std::string_view item = std::string_view(text).substr(at, end - at);
+        Label label = 0;
+        double value = 0;
+        const bool hasLabel = takeLabel(item, label) && label != 0 && item.starts_with('=');
+        if (hasLabel) item.remove_prefix(1);
+        const auto [last, error] = std::from_chars(item.data(), item.data() + item.size(), value);
+        if (!hasLabel || error != std::errc() || last != item.data() + item.size() ||
+            !(std::isfinite(value) && value > 0)) {
+            refuse("must be labels and S/m above 0 with commas between, like 1=0.33,2=0.0066");
+        }
+        if (!values.try_emplace(label, value).second) {
+            refuse("has label " + std::to_string(label) + " twice");
+        }
+        at = end + 1;
+    }
+    return values;
 }
 
 }  // namespace adaptiso

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,5 +39,9 @@ LabelMerge parseLabelMerge(const std::string& text);
 
 /// \throws UsageError  two of them hold a label, or have a name
 void requireDisjoint(const std::vector<LabelMerge>& merges);
+
+/// "1=0.33,2=0.0066": S/m by label \throws UsageError  no such list, a label twice, a value that is
+/// not above 0
+std::map<Label, double> parseConductivities(const std::string& text);
 
 }  // namespace adaptiso

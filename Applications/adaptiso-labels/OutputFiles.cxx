@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "Common/Numbers.h"
+#include "LayerFiles.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/LabelFiles.h"
@@ -105,6 +106,7 @@ bool isOwnFile(std::string_view name) {
     constexpr std::string_view kRegions = "regions/", kAll = "all/";
     if (name.starts_with(kRegions)) return isRegionFile(name.substr(kRegions.size()), false);
     if (name.starts_with(kAll)) return isRegionFile(name.substr(kAll.size()), true);
+    if (isLayerFile(name)) return true;
     constexpr std::string_view kNames[] = {
         "walls.vtp",   "all.vtm",  "all.surf.gii", "all.label.gii", "regions.tsv",
         "report.json", kMsh22Name, kMsh41Name,     kVtuName,        kDgfName};
@@ -170,6 +172,7 @@ void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, Lab
                 for (const fs::path& path : paths) writeMesh(surface, path, writeOptions(run));
             });
         }
+        if (run.options.writesLayers) writeLayers(complex, run, folder);
         writeMultiBlock(blocks, folder.place("all.vtm"));
         writeTetrahedra(run, folder);
         folder.writeText("regions.tsv", regionsTable(run));

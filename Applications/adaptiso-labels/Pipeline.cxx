@@ -121,12 +121,32 @@ Volume readMap(LabelsRun& run, LabelCensus& census) {
     return mergeLabels(std::move(read.volume), options.merges);
 }
 
+/// \throws InvalidInput  a region has no conductivity, or the map has no such region
+void checkConductivities(const LabelsRun& run) {
+    const std::map<Label, double>& given = run.options.conductivities;
+    if (given.empty()) return;
+    const std::string file = baseName(run.options.input);
+    for (const Region& region : run.regions) {
+        if (!given.contains(region.label)) {
+            throw InvalidInput(file + ": " + run.nameOf(region.label) +
+                               " has no conductivity in --conductivities");
+        }
+    }
+    for (const auto& [label, value] : given) {
+        if (run.find(label) == nullptr) {
+            throw InvalidInput(file + ": has no region " + std::to_string(label) +
+                               ", which --conductivities names");
+        }
+    }
+}
+
 LabelComplex extract(const VolumeView& map, LabelsRun& run, ProgressLine& progress) {
     const LabelsOptions& options = run.options;
     LabelOptions extraction;
     extraction.maxErrorMm = options.maxErrorMm;
     extraction.maxTriangles = options.maxTriangles;
     extraction.reduction = options.reduction;
+    extraction.minAngleDeg = options.minAngleDeg;
     extraction.progress = progress.callback();
     if (!options.labels.empty()) {
         for (const Region& region : run.regions) extraction.labels.push_back(region.label);
@@ -206,6 +226,7 @@ int runLabels(const LabelsOptions& options) {
     const VolumeView& map = volume.view();
     run.timer.time(kRead, [&] { nameRegions(chooseLabels(census, options), census, run); });
     requireTetrahedraLabels(run);
+    checkConductivities(run);
     progress.clear();
     printWarnings(kProgram, options.common, run.warnings);
     const std::size_t told = run.warnings.size();

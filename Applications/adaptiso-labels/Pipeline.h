@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,9 @@ struct LabelsOptions {
     std::optional<std::int64_t> maxTriangles;
     std::optional<double> reduction;
     MesherOptions tetrahedra;
+    double minAngleDeg = 0;
+    bool writesLayers = false;               ///< the walls for OpenMEEG
+    std::map<Label, double> conductivities;  ///< of regions, S/m; empty: none are written
     std::filesystem::path output;  ///< a folder; empty: "<input>-labels" in the current one
     bool mayReplace = false;
     std::string format = ".vtp";           ///< of the regions' files, an extension

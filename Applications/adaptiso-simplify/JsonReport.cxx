@@ -2,6 +2,7 @@
 
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
+#include "adaptiso/Pipeline/SurfaceJson.h"
 
 namespace adaptiso {
 namespace {
@@ -56,6 +57,7 @@ Json outputJson(const SimplifyRun& run) {
     json["wantedTriangles"] = orNull(run.statistics.wantedTriangles);
     json["countMet"] = orNull(run.countMet());
     json["errorBoundMm"] = number(run.statistics.errorBoundMm);
+    json["adaptive"] = workJson(run.statistics.work);
     json["roundingMm"] = number(run.roundingMm);
     json["verification"] = {{"samples", run.verification->samples},
                             {"maxMm", number(run.verification->maxMm)}};

@@ -14,6 +14,7 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshIO/PointData.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/Pipeline/FinishSurface.h"
 
 namespace adaptiso {
 
@@ -35,12 +36,6 @@ struct DataSummary {
     bool areLabels = false;  ///< all of them
 };
 
-/// What was measured of the surface as written.
-struct Verification {
-    std::int64_t samples = 0;  ///< points at which distances were measured, both ways
-    double maxMm = 0;
-};
-
 /// What --strict means for the surface, where there is a warning.
 inline constexpr const char* kNotWritten = "so no surface was written";
 
@@ -52,10 +47,10 @@ struct SimplifyRun {
     /// Of the result; all of it none (`output.triangles` 0) of a surface that was refused.
     SurfaceSummary output{};
     SimplifyStatistics statistics{};
-    double roundingMm = 0;  ///< at most, of a point in the output's format
-    std::optional<Verification> verification{};
-    std::uintmax_t bytes = 0;               ///< of the output
-    std::vector<std::string> keptArrays{};  ///< values at points in the surface's own file
+    double roundingMm = 0;                       ///< at most, of a point in the output's format
+    std::optional<Verification> verification{};  ///< of the surface as written
+    std::uintmax_t bytes = 0;                    ///< of the output
+    std::vector<std::string> keptArrays{};       ///< values at points in the surface's own file
     std::vector<DataSummary> data{};
     StageTimer timer{};
     std::vector<std::string> warnings{};  ///< all; each names its file

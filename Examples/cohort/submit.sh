@@ -27,7 +27,7 @@ if [ $# -gt 0 ]; then
     printf '%s\n' "$@" >"$jobs/options"
     echo "${ADAPTISO_PER_TASK:-1}" >"$jobs/perTask"
     adaptiso-bids --version >"$jobs/version"
-    (cd "$bids" && find . -maxdepth 1 -name 'sub-*' -type d -printf '%f\n' | sort) >"$jobs/.participants"
+    (cd "$bids" && find . -maxdepth 1 -name 'sub-*' -xtype d -printf '%f\n' | sort) >"$jobs/.participants"
     mv "$jobs/.participants" "$jobs/participants" # last: now all is there
 fi
 count=$(wc -l <"$jobs/participants") per=$(cat "$jobs/perTask")

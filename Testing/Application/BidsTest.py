@@ -123,6 +123,61 @@ class Participants(BidsTest):
         done = self.bids(CHECK_FAILED, "group", "--participant-label", "01", what=bem)
         self.assertRegex(done.stderr, "^adaptiso-bids: failed: sub-01: bem: [^\n]*\n$")
 
+    def wrapped(self, script):
+        """A folder with adaptiso-bids and, for adaptiso-mesh, a script that may call the real one."""
+        folder = self.path("bin")
+        folder.mkdir()
+        for program in BIN.iterdir():
+            if program.name.startswith("adaptiso-") and program.is_file():
+                os.link(program, folder / program.name) if program.name == "adaptiso-bids" else \
+                    (folder / program.name).symlink_to(program)
+        mesh = folder / "adaptiso-mesh"
+        mesh.unlink()
+        mesh.write_text(f'#!/bin/sh\ncase "$*" in *sub-01_T1w.nii*) {script};; esac\n'
+                        f'exec {BIN / "adaptiso-mesh"} "$@"\n')
+        mesh.chmod(0o755)
+        return folder / "adaptiso-bids"
+
+    def ended(self, program):
+        return subprocess.run([program, "study", "out", "participant", "--participant-label", "01",
+                               "02", *SURFACES], cwd=self.folder, text=True, capture_output=True,
+                              timeout=300)
+
+    def test_the_exit_code_says_whether_another_try_may_help(self):
+        for number, (script, code) in enumerate((
+                ("exit 4", 4), ("exit 127", BAD_INPUT), ("kill -9 $$", BAD_INPUT),
+                ("echo adaptiso-mesh: x: No space left on device >&2; exit 3", BAD_INPUT),
+                ("echo adaptiso-mesh: x: truncated >&2; exit 3", CHECK_FAILED),
+                ("echo adaptiso-mesh: not enough memory >&2; exit 3", BAD_INPUT),
+                ("ulimit -v 60000", BAD_INPUT))):
+            with self.subTest(script):
+                if number:
+                    shutil.rmtree(self.path("bin"))
+                shutil.rmtree(self.path("out"), ignore_errors=True)
+                done = self.ended(self.wrapped(script))
+                self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+                self.assertRegex(done.stdout, "(?m)^done    .*sub-02_T1w.nii")
+
+    def test_a_run_that_fails_leaves_the_surface_that_is_as_it_should_be(self):
+        what = ("--surfaces", "iso=100.5,iso=60.5", "--no-pictures")
+        self.bids(OK, "participant", "--participant-label", "01", "02", what=what)
+        anat = self.path("out/sub-01/anat")
+        (anat / "sub-01_desc-iso60p5_mesh.vtp").unlink()
+        before = (anat / "sub-01_desc-iso100p5_mesh.vtp").read_bytes()
+        done = subprocess.run([self.wrapped("exit 4"), "study", "out", "participant",
+                               "--participant-label", "01", "02", *what], cwd=self.folder,
+                              text=True, capture_output=True, timeout=300)
+        self.assertEqual(done.returncode, 4, done.stdout + done.stderr)
+        self.assertEqual((anat / "sub-01_desc-iso100p5_mesh.vtp").read_bytes(), before)
+
+    def test_electrodes_are_inputs_too(self):
+        what = ("--bem", "--bem-options", "vertices=162,162,162,electrodes=cap.tsv", "--no-pictures")
+        self.path("cap.tsv").write_text("name\tx\ty\tz\nCz\t0\t0\t9\n")
+        self.bids(CHECK_FAILED, "participant", "--participant-label", "01", what=what)
+        record = next(self.path("out/sub-01/anat").glob("*.adaptiso-bem.json"))
+        kept = {each["file"] for each in json.loads(record.read_text())["inputs"]}
+        self.assertEqual(kept, {"sub-01_T1w.nii", "cap.tsv"})
+
     def test_wrong_usage(self):
         for code, pattern, arguments in (
                 (USAGE, "LEVEL", ("both",)),
@@ -306,6 +361,51 @@ class Group(BidsTest):
         self.assertEqual({area for _, area in states.values()}, {"n/a"})
         report = json.loads(self.bids(CHECK_FAILED, "group", "--json", "-").stdout)
         self.assertEqual((report["passed"], len(report["missing"])), (False, 8))
+
+    def test_files_of_other_programs_stay(self):
+        self.bids(OK, "participant", "--participant-label", "01")
+        for name, text, pattern in (
+                ("dataset_description.json", '{"GeneratedBy": [{"Name": "fmriprep"}]}', "fmriprep"),
+                ("dataset_description.json", "no JSON", "of another dataset"),
+                ("README", "mine", "not of adaptiso-bids"),
+                (".bidsignore", "x", "not of adaptiso-bids")):
+            with self.subTest(name):
+                self.path(f"out/{name}").write_text(text)
+                done = self.bids(BAD_INPUT, "group", "--participant-label", "01")
+                self.assertRegex(done.stderr, f"{name}: is .*{pattern}")
+                self.assertEqual(self.path(f"out/{name}").read_text(), text)
+                self.assertFalse(self.path("out/quality.tsv").exists())
+                self.path(f"out/{name}").unlink()
+        self.bids(OK, "group", "--participant-label", "01")
+        self.bids(OK, "group", "--participant-label", "01")  # its own
+        done = self.bids(USAGE, "group", what=("--labels", "--segmentations", "out"))
+        self.assertIn("is the folder of --segmentations", done.stderr)
+
+    def test_leftovers_are_told_without_taking_what_is_good(self):
+        self.scan("sub-01/anat/sub-01_acq-hi", ball(24, 9))
+        self.bids(OK, "participant", "--participant-label", "01", "02")
+        (self.study / "sub-01/anat/sub-01_T1w.nii").unlink()
+        for number in range(2, 8):
+            shutil.rmtree(self.study / f"sub-{number:02}")
+        done = self.bids(CHECK_FAILED, "group")
+        line = next(line for line in done.stderr.splitlines() if "leftover: sub-01:" in line)
+        patterns = line.split("remove ")[1].split(" there")[0].split(" and ")
+        anat = self.path("out/sub-01/anat")
+        gone = {path.name for pattern in patterns for path in anat.glob(pattern)}
+        self.assertTrue(gone)
+        self.assertFalse([name for name in gone if "acq-hi" in name])
+
+    def test_labels_of_segmentations_not_named_now_are_no_leftovers(self):
+        image = ball(24, 8)
+        path = self.path("seg/sub-01/anat/sub-01_space-T1w_dseg.nii")
+        path.parent.mkdir(parents=True)
+        self.path("seg/dataset_description.json").write_text('{"Name": "s", "BIDSVersion": "1.8.0"}')
+        write_nifti(path, from_function(12, "B", lambda x, y, z: 1 if x * x + y * y + z * z < 16 else 0))
+        self.bids(OK, "participant", "--participant-label", "01",
+                  what=(*SURFACES, "--labels", "--segmentations", "seg"))
+        for number in range(2, 8):
+            shutil.rmtree(self.study / f"sub-{number:02}")
+        self.bids(OK, "group")
 
     def test_marks_outliers(self):
         self.scan("sub-04/anat/sub-04", ball(24, 11))

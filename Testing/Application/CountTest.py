@@ -28,6 +28,21 @@ class Count(ApplicationTest):
                 self.assertLessEqual(surface["triangles"], count)
                 self.assertGreater(surface["triangles"], 0.999 * count)
                 self.assertEqual(surface["soundness"]["crossingPairs"], 0)
+                self.assertLessEqual(surface["adaptive"]["runs"], 2)
+
+    # some places of it can't be mended, and come apart again
+    @unittest.skipUnless(BRAIN.exists(), "needs mricron-data")
+    def test_the_default_bound_takes_one_run_and_tells_of_its_work(self):
+        done, _, surface = self.surface(BRAIN, "--iso", 90.5, "--border", "open", "-o", "brain.vtp")
+        self.assertEqual((done.returncode, done.stderr), (OK, ""))
+        work = surface["adaptive"]
+        self.assertEqual(work["runs"], 1)
+        self.assertGreater(work["placesMended"], 100)
+        self.assertGreater(work["verticesUndone"], 0)
+        self.assertEqual(work["trianglesKept"], 0)
+        self.assertLessEqual(surface["errorBoundMm"], 0.15)
+        _, _, surface = self.surface(BRAIN, "--iso", 90.5, "--method", "mc", "-o", "mc.vtp")
+        self.assertIsNone(surface["adaptive"])
 
     def test_that_pieces_do_not_allow_is_told_with_the_fewest(self):
         # 27 single voxels, four triangles each

@@ -427,5 +427,108 @@ class BatchTest(LabelsTest):
         self.assertIn("1\tleft\t", tables[0].read_text())
 
 
+class LayersTest(LabelsTest):
+    """The walls as OpenMEEG takes them."""
+
+    def setUp(self):
+        super().setUp()
+        write_nifti(self.path("boxes.nii"), three_boxes(spacing=(1, 1.5, 2), origin=(-5, 3, 20)))
+
+    def read_tri(self, path):
+        words = path.read_text().split()
+        self.assertEqual(words[0], "-")
+        count = int(words[1])
+        numbers = words[2:2 + 6 * count]
+        points = [tuple(map(float, numbers[6 * n:6 * n + 3])) for n in range(count)]
+        rest = words[2 + 6 * count:]
+        self.assertEqual(rest[0], "-")
+        self.assertEqual(len(rest), 4 + 3 * int(rest[1]))
+        corners = list(map(int, rest[4:]))
+        return [tuple(points[v] for v in corners[3 * t:3 * t + 3]) for t in range(int(rest[1]))]
+
+    def read_geometry(self, folder):
+        """Sections of the .geom: name -> what stands behind the colon."""
+        lines = (folder / "layers.geom").read_text().split("\n")
+        self.assertEqual(lines[0], "# Domain Description 1.1")
+        sections, kind = {}, None
+        for line in filter(None, lines[1:]):
+            words = line.split()
+            if len(words) == 2 and words[1].isdigit():
+                kind = words[0][:-1] if words[0] != "Meshes" else "Mesh"
+                sections[kind] = {}
+                left = int(words[1])
+                continue
+            left -= 1
+            self.assertGreaterEqual(left, 0)
+            self.assertEqual(words[0], kind)
+            sections[kind][words[1].rstrip(":")] = words[2:]
+        return sections
+
+    def surface(self, folder, sections, interface):
+        """The triangles of a signed sum of meshes."""
+        triangles = []
+        for term in sections["Interface"][interface]:
+            sign, mesh = term[0], term[1:]
+            own = self.read_tri(folder / sections["Mesh"][mesh][0].strip('"'))
+            triangles += own if sign == "+" else [t[::-1] for t in own]
+        return triangles
+
+    def assert_closed(self, triangles):
+        edges = [(t[c], t[(c + 1) % 3]) for t in triangles for c in range(3)]
+        self.assertEqual(len(edges), len(set(edges)))
+        self.assertEqual(set(edges), {(b, a) for a, b in edges})
+
+    def volume(self, triangles):
+        return sum(a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                   a[2] * (b[0] * c[1] - b[1] * c[0]) for a, b, c in triangles) / 6
+
+    def test_interfaces_are_closed_and_hold_their_regions(self):
+        self.labels("boxes.nii", "-o", "out", "--layers", "--conductivities", "7=1.79,1=0.33,2=0.0066")
+        folder = self.path("out") / "layers"
+        sections = self.read_geometry(folder)
+        self.assertEqual(set(sections["Mesh"]),
+                         {"wall_1_0", "wall_2_0", "wall_1_2", "wall_1_7", "wall_2_7"})
+        rows = self.table("out")
+        whole = 0
+        for label in (1, 2, 7):
+            self.assertEqual(sections["Domain"][f"Region{label}"], [f"-Region{label}"])
+            surface = self.surface(folder, sections, f"Region{label}")
+            self.assert_closed(surface)
+            volume = float(rows[label]["volume_mm3"])
+            # coordinates have nine digits or more
+            self.assertAlmostEqual(self.volume(surface), volume, delta=1e-6 * volume)
+            whole += volume
+        self.assertEqual(sections["Domain"]["Air"], ["+Outside"])
+        outside = self.surface(folder, sections, "Outside")
+        self.assert_closed(outside)
+        self.assertAlmostEqual(self.volume(outside), whole, delta=1e-6 * whole)
+        # each wall lies between two domains, inside of one interface each way
+        for mesh in sections["Mesh"]:
+            signs = [term[0] for name, terms in sections["Interface"].items() for term in terms
+                     if term[1:] == mesh]
+            self.assertEqual(len(signs), 2, mesh)
+        self.assertEqual((folder / "layers.cond").read_text().split("\n")[2:],
+                         ["Region1 0.33", "Region2 0.0066", "Region7 1.79", "Air 0", ""])
+
+    def test_folder_with_layers_can_be_replaced(self):
+        self.labels("boxes.nii", "-o", "out", "--layers")
+        self.assertFalse((self.path("out") / "layers" / "layers.cond").exists())
+        self.labels("boxes.nii", "-o", "out", "--force")
+        self.assertFalse((self.path("out") / "layers").exists())
+
+    def test_refuses_what_makes_no_model(self):
+        refused = lambda *arguments, code=USAGE, says: self.refused(
+            code, says, "boxes.nii", "-o", "out", *arguments)
+        refused("--layers", "--labels", "1", says="--layers: needs all regions")
+        refused("--conductivities", "1=0.3", says="written with --layers")
+        refused("--layers", "--coordinates", "voxel", says="voxel")
+        for bad in ("1=0", "1=-2", "1=nan", "1=inf", "1", "0=1", "x=1", "1=1,1=2", "1=1,", ""):
+            refused("--layers", "--conductivities", bad, says="--conductivities")
+        refused("--layers", "--conductivities", "1=1,2=1", code=BAD_INPUT,
+                says="boxes.nii: 7 has no conductivity")
+        refused("--layers", "--conductivities", "1=1,2=1,7=1,8=1", code=BAD_INPUT,
+                says="no region 8")
+
+
 if __name__ == "__main__":
     main()

@@ -125,6 +125,7 @@ Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& opti
     }
     statistics.errorBoundMm = made.errorBoundMm;
     statistics.wantedTriangles = made.wantedTriangles;
+    statistics.work = made.work;
     return result;
 }
 

@@ -75,4 +75,13 @@ void requireOwnFolder(const fs::path& headerFile, const fs::path& dataFile) {
            "put the data file itself beside the header");
 }
 
+void requireInFolder(const fs::path& folder, const fs::path& dataFile) {
+    const fs::path data = resolved(dataFile), real = resolved(folder);
+    if (!data.empty() && !real.empty() && (isBelow(data, real) || isInAnnexAbove(data, real))) {
+        return;
+    }
+    refuse(dataFile, "is, or lies behind, a link to outside of its dataset's folder",
+           "put the file itself there");
+}
+
 }  // namespace adaptiso::detail

@@ -102,10 +102,8 @@ void takeFill(const fs::path& file, const ZarrJson& value, ZarrArray& array) {
         const std::optional<T> fill = fillAs<T>(value);
         if (!fill) {
             refuse(file,
-                   fmt::format(
-                       "its fill_value {} is none of its type ({})",
-                       printable(value.dump(-1, ' ', true, ZarrJson::error_handler_t::replace)),
-                       toString(array.type)),
+                   fmt::format("its fill_value {} is none of its type ({})", shownJson(value),
+                               toString(array.type)),
                    "repair the metadata");
         }
         std::memcpy(array.fill.data(), &*fill, sizeof(T));
@@ -180,7 +178,7 @@ ZarrArray arrayOfVersion2(const fs::path& file, const ZarrJson& json) {
     array.separator = '.';
     if (!separator.is_null()) {
         if (separator != "." && separator != "/") {
-            refuseKind(file, "dimension_separator", separator.dump());
+            refuseKind(file, "dimension_separator", shownJson(separator));
         }
         array.separator = separator.get<std::string>().front();
     }
@@ -197,7 +195,7 @@ std::string codecName(const fs::path& file, const ZarrJson& codec) {
 std::endian byteOrderOf(const fs::path& file, const ZarrJson& codec) {
     const ZarrJson& endian = memberOf(memberOf(codec, "configuration"), "endian");
     if (endian.is_null() || endian == "little") return std::endian::little;
-    if (endian != "big") refuseKind(file, "endian", endian.dump());
+    if (endian != "big") refuseKind(file, "endian", shownJson(endian));
     return std::endian::big;
 }
 
@@ -223,13 +221,23 @@ std::vector<std::size_t> orderOf(const fs::path& file, const ZarrJson& codec, st
 
 ZarrEncoding encodingOf(const fs::path& file, const ZarrJson& codecs, std::size_t rank);
 
+/// "bytes, gzip"
+std::string shownCodecs(const ZarrJson& codecs) {
+    if (!codecs.is_array() || codecs.empty()) return shownJson(codecs);
+    std::string text;
+    for (const ZarrJson& codec : codecs) {
+        const ZarrJson& name = codec.is_object() ? memberOf(codec, "name") : codec;
+        text += (text.empty() ? "" : ", ") + shownJson(name);
+    }
+    return text;
+}
+
 /// The codecs of a shard's index: bytes, and crc32c or nothing.
 void takeIndexCodecs(const fs::path& file, const ZarrJson& codecs, ZarrSharding& sharding) {
     if (!codecs.is_array() || codecs.empty() || codecs.size() > 2 ||
         codecName(file, codecs[0]) != "bytes" ||
         (codecs.size() == 2 && codecName(file, codecs[1]) != "crc32c")) {
-        refuseKind(file, "codec of the shards' index",
-                   codecs.dump(-1, ' ', true, ZarrJson::error_handler_t::replace));
+        refuseKind(file, "codec of the shards' index", shownCodecs(codecs));
     }
     sharding.indexOrder = byteOrderOf(file, codecs[0]);
     sharding.hasIndexSum = codecs.size() == 2;
@@ -242,7 +250,7 @@ void takeSharding(const fs::path& file, const ZarrJson& codec, ZarrArray& array)
     takeIndexCodecs(file, memberOf(configuration, "index_codecs"), sharding);
     const ZarrJson& location = memberOf(configuration, "index_location");
     if (!location.is_null() && location != "end" && location != "start") {
-        refuseKind(file, "index_location", location.dump());
+        refuseKind(file, "index_location", shownJson(location));
     }
     sharding.isIndexAtEnd = location != "start";
     array.encoding = encodingOf(file, memberOf(configuration, "codecs"), array.rank());
@@ -303,7 +311,7 @@ void takeKeys(const fs::path& file, const ZarrJson& json, ZarrArray& array) {
     array.separator = name == "default" ? '/' : '.';
     const ZarrJson& separator = memberOf(memberOf(encoding, "configuration"), "separator");
     if (separator.is_null()) return;
-    if (separator != "." && separator != "/") refuseKind(file, "separator", separator.dump());
+    if (separator != "." && separator != "/") refuseKind(file, "separator", shownJson(separator));
     array.separator = separator.get<std::string>().front();
 }
 

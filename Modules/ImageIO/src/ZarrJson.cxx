@@ -25,6 +25,12 @@ const ZarrJson& memberOf(const ZarrJson& object, const char* key) {
     return found == object.end() ? kNone : *found;
 }
 
+std::string shownJson(const ZarrJson& value) {
+    if (value.is_array()) return "[...]";
+    if (value.is_object()) return "{...}";
+    return printable(value.dump(-1, ' ', true, ZarrJson::error_handler_t::replace));
+}
+
 std::string textOf(const fs::path& file, const ZarrJson& object, const char* key) {
     const ZarrJson& value = memberOf(object, key);
     if (!value.is_string()) {

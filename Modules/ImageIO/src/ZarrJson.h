@@ -20,6 +20,10 @@ std::optional<ZarrJson> readZarrJson(const ZarrStore& store, const std::string& 
 /// The member `key` of an object, or null.
 const ZarrJson& memberOf(const ZarrJson& object, const char* key);
 
+/// A value of the metadata for a message: one line, and of lists and objects their kind alone,
+/// since they may be as deep as a hostile file likes.
+std::string shownJson(const ZarrJson& value);
+
 /// A text that must be there. \throws FileError
 std::string textOf(const std::filesystem::path& file, const ZarrJson& object, const char* key);
 

@@ -78,6 +78,14 @@ std::array<std::size_t, 3> spaceOf(const fs::path& root, const ZarrArray& array,
     return space;
 }
 
+/// An index that was asked for in a dimension that the array has not: it has one thing of it.
+void requireAskedFor(const fs::path& root, const std::optional<std::int64_t>& asked, bool isThere,
+                     const char* what, const char* option) {
+    if (!asked || isThere || *asked == 0) return;
+    refuse(root, fmt::format("there is no {} {}: it has no such axis", what, *asked),
+           fmt::format("leave {} out", option));
+}
+
 Cut cutOf(const fs::path& root, const ZarrArray& array, const ZarrScene& scene,
           const ReadOptions& options) {
     if (!scene.axes.empty() && scene.axes.size() != array.rank()) {
@@ -87,23 +95,34 @@ Cut cutOf(const fs::path& root, const ZarrArray& array, const ZarrScene& scene,
                "repair them");
     }
     Cut cut{spaceOf(root, array, scene), ZarrIndex(array.rank(), 0)};
+    bool hasChannels = false, hasTimes = false, hasOthers = false;
     for (std::size_t n = 0; n < array.rank(); ++n) {
         if (cut.isSpace(n)) continue;
         const ZarrAxis axis = scene.axes.empty() ? ZarrAxis{} : scene.axes[n];
+        const bool isChannel = axis.kind == ZarrAxis::Kind::Channel,
+                   isTime = axis.kind == ZarrAxis::Kind::Time;
+        hasChannels = hasChannels || isChannel;
+        hasTimes = hasTimes || isTime;
+        hasOthers = hasOthers || !(isChannel || isTime);
         cut.fixed[n] = chosenIndex(root, axis, array.shape[n], options);
     }
+    requireAskedFor(root, options.channel, hasChannels, "channel", "--channel");
+    requireAskedFor(root, options.timePoint, hasTimes, "time point", "--time");
+    requireAskedFor(root, options.volumeIndex, hasOthers, "volume", "--volume-index");
     return cut;
 }
 
-ImageGeometry geometryOf(const ZarrArray& array, const Cut& cut, ZarrScene& scene) {
+ImageGeometry geometryOf(const fs::path& root, const ZarrArray& array, const Cut& cut,
+                         ZarrScene& scene) {
     ImageGeometry geometry;
     geometry.indexToPhysical = Mat3::diagonal(1, 1, 1);
-    bool hasUnits = true;
+    bool hasUnits = true, hasUnit = false;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t n = cut.space[axis];
         geometry.size[axis] = static_cast<std::int64_t>(array.shape[n]);
         if (scene.axes.empty()) continue;
         hasUnits = hasUnits && scene.axes[n].toMm.has_value();
+        hasUnit = hasUnit || scene.axes[n].toMm.has_value();
         const double toMm = scene.axes[n].toMm.value_or(1);
         const auto of = static_cast<int>(axis);
         geometry.indexToPhysical.column[of][of] = toMm * scene.scale[n];
@@ -112,6 +131,8 @@ ImageGeometry geometryOf(const ZarrArray& array, const Cut& cut, ZarrScene& scen
     if (scene.axes.empty()) {
         scene.warnings.emplace_back(
             "an array says neither the size of its voxels nor where they lie; 1 mm was taken");
+    } else if (!hasUnits && hasUnit) {
+        refuse(root, "some of its axes in space have a unit, others none", "repair the metadata");
     } else if (!hasUnits) {
         scene.warnings.emplace_back("its axes have no unit; millimetres were taken");
     }
@@ -370,7 +391,7 @@ ReadVolume readZarr(const fs::path& folder, const ReadOptions& options) {
                "get the dataset again");
     }
     const Cut cut = cutOf(folder, *array, scene, options);
-    const ImageGeometry geometry = geometryOf(*array, cut, scene);
+    const ImageGeometry geometry = geometryOf(folder, *array, cut, scene);
     const std::uint64_t bytes = requireImageBytes(folder, geometry.size, array->type);
     requireUsableGeometry(folder, geometry);
     SampleBuffer samples = allocateSamples(folder, bytes);

@@ -9,6 +9,7 @@
 
 #include "FileFault.h"
 #include "ZarrJson.h"
+#include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -43,7 +44,7 @@ ZarrAxis axisOf(const fs::path& file, const ZarrJson& json) {
     const ZarrJson& unit = memberOf(json, "unit");
     const ZarrJson& said = unit.is_null() ? memberOf(json, "units") : unit;  // real ones write that
     if (said.is_null()) return axis;
-    const std::string name = said.is_string() ? said.get<std::string>() : said.dump();
+    const std::string name = said.is_string() ? said.get<std::string>() : shownJson(said);
     axis.toMm = millimetresOf(name);
     if (!axis.toMm) {
         refuse(file, fmt::format("its unit {} is not known here", printable(name)),
@@ -190,11 +191,14 @@ bool isZarrFolder(const fs::path& folder) {
 }
 
 void refuseN5(const fs::path& folder) {
-    const ZarrStore store(folder);
-    std::error_code error;
-    if (!fs::exists(folder / "attributes.json", error)) return;
-    const ZarrJson json =
-        ZarrJson::parse(store.readText("attributes.json").value_or(""), nullptr, false);
+    // other programs have files of that name, in folders of DICOM too: what is not N5's is let be
+    std::string text;
+    try {
+        text = ZarrStore(folder).readText("attributes.json").value_or("");
+    } catch (const FileError&) {
+        return;
+    }
+    const ZarrJson json = ZarrJson::parse(text, nullptr, false);
     for (const char* const key : {"n5", "dimensions", "blockSize"}) {
         if (memberOf(json, key).is_null()) continue;
         refuse(folder, "is N5, which is not read here", "convert it to Zarr");

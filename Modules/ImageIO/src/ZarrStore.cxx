@@ -47,16 +47,35 @@ void ZarrFile::read(std::uint64_t offset, void* out, std::size_t byteCount) cons
     }
 }
 
+namespace {
+
+/// A key's file, or a folder on the way to it, is a link.
+bool goesByLink(const fs::path& root, const std::string& key) {
+    fs::path at = root;
+    for (const fs::path& part : fs::path(key)) {
+        at /= part;
+        std::error_code error;
+        if (fs::is_symlink(fs::symlink_status(at, error))) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
 std::optional<ZarrFile> ZarrStore::open(const std::string& key) const {
     const fs::path path = root_ / key;
-    int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-    if (file < 0 && errno == ELOOP) {
-        requireOwnFolder(root_ / ".zarr", path);
-        file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-        if (file < 0 && errno == ENOENT) {
+    int flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK;
+    if (goesByLink(root_, key)) {
+        std::error_code error;
+        const bool isThere = fs::exists(path, error);
+        if (!isThere && fs::is_symlink(fs::symlink_status(path, error))) {
             refuse(path, "the link points to no existing file", "get the file it points to");
         }
+        if (isThere) requireInFolder(root_, path);
+    } else {
+        flags |= O_NOFOLLOW;
     }
+    const int file = ::open(path.c_str(), flags);
     if (file < 0 && errno == ENOENT) return std::nullopt;
     if (file < 0) {
         refuse(path, std::string("can't be opened: ") + std::strerror(errno),

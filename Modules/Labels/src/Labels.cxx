@@ -27,6 +27,10 @@ void requireOptions(const LabelOptions& options) {
         throw InvalidInput("extractLabels: the number of triangles is " +
                            std::to_string(*options.maxTriangles) + ", must be >= 0");
     }
+    if (!(options.minAngleDeg >= 0 && options.minAngleDeg <= 40)) {
+        throw InvalidInput("extractLabels: the smallest angle is " +
+                           std::to_string(options.minAngleDeg) + " degrees, must be 0 to 40");
+    }
     if (options.reduction && !(*options.reduction >= 0 && *options.reduction <= 1)) {
         throw InvalidInput("extractLabels: the reduction is " + std::to_string(*options.reduction) +
                            ", must be 0 to 1");
@@ -126,6 +130,7 @@ std::optional<SimplifyOptions> simplification(const LabelOptions& options,
     wanted.progress = options.progress;
     wanted.maxErrorMm = options.maxErrorMm;
     wanted.maxTriangles = options.maxTriangles;
+    wanted.minAngleDeg = options.minAngleDeg;
     if (options.reduction) {
         const auto left = static_cast<std::int64_t>(
             std::ceil((1 - *options.reduction) * static_cast<double>(fullTriangles)));
@@ -147,7 +152,8 @@ LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options)
     LabelResult result = makeWalls(grid, volume.geometry(), options);
     const auto wanted = simplification(options, volume.geometry(), result.statistics.fullTriangles);
     if (wanted) {
-        SimplifiedWalls walls = simplifyWalls(result.complex, volume.geometry(), *wanted);
+        SimplifiedWalls walls =
+            simplifyWalls(std::move(result.complex), volume.geometry(), *wanted);
         result.complex = std::move(walls.complex);
         result.statistics.errorBoundMm = walls.errorBoundMm;
         result.statistics.wantedTriangles = wanted->maxTriangles;

@@ -11,6 +11,7 @@ namespace adaptiso::detail {
 struct SimplifyOptions {
     std::optional<double> maxErrorMm;  ///< > 0
     std::optional<std::int64_t> maxTriangles;
+    double minAngleDeg = 0;  ///< no smaller one is made
     ProgressCallback progress;
 };
 
@@ -23,8 +24,9 @@ struct SimplifiedWalls {
 /// cross nothing and leave every voxel centre in its region and the topology as it is.
 ///
 /// Edges collapse, cheapest first [Garland1997], as far as quick tests let them. Then the distance
-/// is proved and crossings are looked for, exactly; what breaks a promise is taken back.
-SimplifiedWalls simplifyWalls(const LabelComplex& full, const ImageGeometry& geometry,
+/// is proved and crossings are looked for, exactly; what breaks a promise is taken back. That is
+/// done in cubes side by side, and again in cubes cut elsewhere; for a count in all at once.
+SimplifiedWalls simplifyWalls(LabelComplex&& full, const ImageGeometry& geometry,
                               const SimplifyOptions& options);
 
 }  // namespace adaptiso::detail

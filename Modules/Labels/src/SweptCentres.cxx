@@ -49,8 +49,8 @@ Room roomOf(const std::array<Vec3, 4>& p) {
 
 bool SweptCentres::isCentreIn(const std::array<Vec3, 3>& triangle, const Vec3& point) const {
     std::array<Vec3, 4> p;
-    for (int i = 0; i < 3; ++i) p[i] = toIndex_ * (triangle[i] - originMm_);
-    p[3] = toIndex_ * (point - originMm_);
+    for (int i = 0; i < 3; ++i) p[i] = toIndex(triangle[i]);
+    p[3] = toIndex(point);
     std::array<double, 3> low, high;
     for (int axis = 0; axis < 3; ++axis) {
         low[axis] = std::ceil(std::min({p[0][axis], p[1][axis], p[2][axis], p[3][axis]}) - kMargin);

@@ -15,6 +15,8 @@ public:
     /// over their border sweeps the tetrahedra of these triangles and the point, and no more.
     bool isCentreIn(const std::array<Vec3, 3>& triangle, const Vec3& point) const;
 
+    Vec3 toIndex(const Vec3& pointMm) const { return toIndex_ * (pointMm - originMm_); }
+
 private:
     Vec3 originMm_;
     Mat3 toIndex_;

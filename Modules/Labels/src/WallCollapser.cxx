@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "adaptiso/Core/AabbTree.h"
 
@@ -17,61 +18,103 @@ double squaredDistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
     return squaredNorm(p - a - t * e);
 }
 
+/// Of a triangle's smallest angle.
+double largestCosine(const std::array<Vec3, 3>& c) {
+    double largest = -1;
+    for (int n = 0; n < 3; ++n) {
+        const Vec3 a = c[(n + 1) % 3] - c[n], b = c[(n + 2) % 3] - c[n];
+        largest = std::max(largest, dot(a, b) / std::sqrt(squaredNorm(a) * squaredNorm(b)));
+    }
+    return largest;
+}
+
 }  // namespace
 
-WallCollapser::WallCollapser(const LabelComplex& full, const ImageGeometry& geometry)
-    : mesh_(full),
+WallCollapser::WallCollapser(const WallPatch& patch, const ImageGeometry& geometry,
+                             double minAngleDeg)
+    : patch_(patch),
+      mesh_(patch),
       centres_(geometry),
+      firstNew_(static_cast<Id>(mesh_.pointCount())),
       voxelMm_(std::cbrt(geometry.voxelVolumeMm3())),
-      quadrics_(full.points.size()),
-      origin_(full.points.size()),
-      tried_(full.points.size(), -1),
-      leastCost_(full.points.size(), 0),
-      home_(full.points.size() + full.triangles.size(), kNone),
-      nextSample_(home_.size(), kNone),
-      firstSample_(full.triangles.size(), kNone),
-      tightness_(home_.size(), kTrust),
-      slot_(home_.size(), kOnWall),
-      mark_(full.points.size(), 0) {
-    fullBegin_.reserve(full.points.size() + 1);
-    fullBegin_.push_back(0);
-    fullAround_.reserve(3 * full.triangles.size());
-    for (Id v = 0; v < full.points.size(); ++v) {
+      largestCosine_(std::cos(minAngleDeg * std::numbers::pi / 180)),
+      quadrics_(mesh_.pointCount()),
+      origin_(mesh_.pointCount(), kNone),
+      tried_(mesh_.pointCount(), -1),
+      leastCost_(mesh_.pointCount(), 0),
+      samples_(patch.fullPoints.size() + patch.fullTriangles.size()),
+      firstSample_(mesh_.triangleCount(), kNone),
+      mark_(mesh_.pointCount(), 0) {
+    for (std::size_t v = 0; v < patch.fullPoints.size(); ++v) {
+        samples_[v].point = patch.fullPoints[v];
+    }
+    fullBegin_.assign(patch.fullPoints.size() + 2, 0);
+    for (std::size_t n = 0; n < patch.fullTriangles.size(); ++n) {
+        const WallTriangle& t = patch.fullTriangles[n];
+        const auto c = [&](int i) { return patch.fullPoints[t.v[i]]; };
+        samples_[patch.fullPoints.size() + n].point = (1.0 / 3) * (c(0) + c(1) + c(2));
+        for (const Id v : t.v) ++fullBegin_[v + 2];
+    }
+    for (std::size_t v = 2; v < fullBegin_.size(); ++v) fullBegin_[v] += fullBegin_[v - 1];
+    fullAround_.resize(3 * patch.fullTriangles.size());
+    for (Id t = 0; t < patch.fullTriangles.size(); ++t) {
+        for (const Id v : patch.fullTriangles[t].v) fullAround_[fullBegin_[v + 1]++] = t;
+    }
+    fullBegin_.pop_back();
+    if (patch.isFull()) {
+        beginFull();
+    } else {
+        beginAsIs();
+    }
+}
+
+void WallCollapser::beginFull() {
+    for (Id v = 0; v < mesh_.fullPoints(); ++v) {
         origin_[v] = v;
-        const auto own = mesh_.around(v);
-        fullAround_.insert(fullAround_.end(), own.begin(), own.end());
-        fullBegin_.push_back(fullAround_.size());
-        if (mesh_.kind(v) == Kind::Wall) link(v, own.front(), kOnWall);
-        if (mesh_.kind(v) != Kind::Curve) continue;
-        for (const Id t : own) {  // an edge of the curve
-            const auto& c = mesh_.triangle(t).v;
-            const auto at = static_cast<int>(std::find(c.begin(), c.end(), v) - c.begin());
-            if (mesh_.orderOf(v, c[(at + 1) % 3]) > 2) {
-                link(v, t, static_cast<std::uint8_t>(at));
-                break;
-            }
-            if (mesh_.orderOf(v, c[(at + 2) % 3]) > 2) {
-                link(v, t, static_cast<std::uint8_t>((at + 2) % 3));
-                break;
-            }
-        }
+        if (isOwn(v)) linkVertex(v);
     }
-    for (Id t = 0; t < full.triangles.size(); ++t) {
-        link(static_cast<Id>(full.points.size()) + t, t, kOnWall);
-    }
+    for (Id t = 0; t < mesh_.fullTriangles(); ++t) link(mesh_.fullPoints() + t, t, kOnWall);
     addQuadrics();
 }
 
-Vec3 WallCollapser::samplePoint(Id sample) const {
-    const auto vertices = static_cast<Id>(mesh_.fullPoints());
-    if (sample < vertices) return mesh_.point(sample);
-    const auto c = mesh_.cornersOf(sample - vertices);
-    return (1.0 / 3) * (c[0] + c[1] + c[2]);
+void WallCollapser::beginAsIs() {
+    const Id first = mesh_.firstPoint();
+    std::copy(patch_.quadrics.begin(), patch_.quadrics.end(), quadrics_.begin() + first);
+    std::copy(patch_.origins.begin(), patch_.origins.end(), origin_.begin() + first);
+    for (Id v = first; v < mesh_.pointCount(); ++v) {
+        if (patch_.isTried[v - first] != 0) leastCost_[v] = kInfinity;
+    }
+    for (Id s = 0; s < samples_.size(); ++s) {
+        const SampleHome& home = patch_.homes[s];
+        samples_[s].tightness = home.tightness;
+        if (home.triangle != kNone) link(s, mesh_.firstTriangle() + home.triangle, home.slot);
+    }
+}
+
+void WallCollapser::tryAllAgain() {
+    std::fill(leastCost_.begin(), leastCost_.end(), 0);
+}
+
+/// Assigns a vertex of the full walls, as a sample, to one of its triangles.
+void WallCollapser::linkVertex(Id v) {
+    const auto own = mesh_.around(v);
+    if (mesh_.kind(v) == Kind::Wall) link(v, own.front(), kOnWall);
+    if (mesh_.kind(v) != Kind::Curve) return;
+    for (const Id t : own) {  // an edge of the curve
+        const auto& c = mesh_.triangle(t).v;
+        const auto at = static_cast<int>(std::find(c.begin(), c.end(), v) - c.begin());
+        for (const int slot : {at, (at + 2) % 3}) {
+            const Id other = c[slot == at ? (at + 1) % 3 : slot];
+            if (mesh_.orderOf(v, other) < 3) continue;
+            link(v, t, static_cast<std::uint8_t>(slot));
+            return;
+        }
+    }
 }
 
 WallCollapser::Id WallCollapser::vertexAt(Id sample) const {
-    const auto vertices = static_cast<Id>(mesh_.fullPoints());
-    return sample < vertices ? sample : mesh_.triangle(sample - vertices).v[0];
+    const Id vertices = mesh_.fullPoints();
+    return sample < vertices ? sample : patch_.fullTriangles[sample - vertices].v[0];
 }
 
 void WallCollapser::addQuadrics() {
@@ -95,9 +138,10 @@ void WallCollapser::addQuadrics() {
 }
 
 void WallCollapser::link(Id sample, Id triangle, std::uint8_t slot) {
-    home_[sample] = triangle;
-    slot_[sample] = slot;
-    nextSample_[sample] = firstSample_[triangle];
+    Sample& own = samples_[sample];
+    own.home = triangle;
+    own.slot = slot;
+    own.next = firstSample_[triangle];
     firstSample_[triangle] = sample;
 }
 
@@ -203,6 +247,7 @@ void WallCollapser::keepVolume(Id u, Id v, Plan& plan) const {
 
 bool WallCollapser::keepsShape(Id u, Id v, const Vec3& point) const {
     constexpr double kLeastCosine = 0.3, kLeastRoundness = 0.06;
+    double sharpest = -1;
     for (std::size_t i = 0; i < kept_; ++i) {
         const auto& t = mesh_.triangle(star_[i]).v;
         auto c = mesh_.cornersOf(star_[i]);
@@ -218,8 +263,11 @@ bool WallCollapser::keepsShape(Id u, Id v, const Vec3& point) const {
         const Vec3 now = areaVector2(c[0], c[1], c[2]);
         if (!(dot(before, now) > kLeastCosine * norm(before) * norm(now))) return false;
         if (!(roundness(now) > std::min(kLeastRoundness, 0.7 * was))) return false;
+        if (largestCosine_ < 1) sharpest = std::max(sharpest, largestCosine(c));
     }
-    return true;
+    return sharpest <= largestCosine_ || std::any_of(star_.begin(), star_.end(), [&](Id t) {
+               return largestCosine(mesh_.cornersOf(t)) >= sharpest;
+           });
 }
 
 bool WallCollapser::sweepsCentre(const Vec3& point) const {
@@ -227,22 +275,16 @@ bool WallCollapser::sweepsCentre(const Vec3& point) const {
                        [&](Id t) { return centres_.isCentreIn(mesh_.cornersOf(t), point); });
 }
 
-/// Assigns the samples of the star to what replaces it.
-/// \return false when one lies too far from that
-bool WallCollapser::findHomes(Id u, Id v, const Plan& plan, double limitMm) {
-    struct Part {
-        std::array<Vec3, 3> corners;
-        Id wall;
-    };
-    struct CurvePart {
-        Vec3 end;
-        Id star;
-        std::uint8_t slot;
-    };
-    static thread_local std::vector<Part> parts;
-    static thread_local std::vector<CurvePart> curve;
-    parts.clear();
-    curve.clear();
+bool WallCollapser::isInRoom(const Vec3& point) const {
+    const Vec3 p = centres_.toIndex(point);
+    return patch_.low.x < p.x && p.x < patch_.high.x && patch_.low.y < p.y && p.y < patch_.high.y &&
+           patch_.low.z < p.z && p.z < patch_.high.z;
+}
+
+/// What replaces the star.
+void WallCollapser::findParts(Id u, Id v, const Plan& plan) {
+    parts_.clear();
+    curveParts_.clear();
     const bool isOnCurve = plan.kind != Kind::Wall;
     for (std::size_t i = 0; i < kept_; ++i) {
         const auto& t = mesh_.triangle(star_[i]);
@@ -254,67 +296,110 @@ bool WallCollapser::findHomes(Id u, Id v, const Plan& plan, double limitMm) {
             for (const int m : {(n + 1) % 3, (n + 2) % 3}) {
                 const Id p = t.v[m];
                 if (mesh_.kind(p) == Kind::Wall || mesh_.orderOf(t.v[n], p) < 3) continue;
-                curve.push_back({mesh_.point(p), static_cast<Id>(i),
-                                 static_cast<std::uint8_t>(m == (n + 1) % 3 ? n : m)});
+                curveParts_.push_back({mesh_.point(p), static_cast<Id>(i),
+                                       static_cast<std::uint8_t>(m == (n + 1) % 3 ? n : m)});
             }
         }
-        parts.push_back({c, t.wall});
+        const Vec3 e = c[1] - c[0], f = c[2] - c[0];
+        const double ee = squaredNorm(e), ef = dot(e, f), ff = squaredNorm(f),
+                     area = ee * ff - ef * ef;
+        const bool isFlat = !(area > 1e-8 * ee * ff);
+        const double by = isFlat ? 0 : 1 / area;
+        parts_.push_back({c, t.wall, by * (ff * e - ef * f), by * (ee * f - ef * e),
+                          std::sqrt(by) * cross(e, f), isFlat});
     }
-    const double limit2 = limitMm * limitMm;
+}
+
+/// The part of a wall that a sample belongs to: one that it lies over and within the limit, or the
+/// nearest one. \return  the squared distance
+double WallCollapser::homeOnWall(const Vec3& p, Id wall, std::size_t first, double limit2,
+                                 NewHome& home) {
+    for (std::size_t step = 0; step < kept_; ++step) {
+        const std::size_t n = first + step < kept_ ? first + step : first + step - kept_;
+        const Part& part = parts_[n];
+        if (part.wall != wall || part.isFlat) continue;
+        const Vec3 q = p - part.corners[0];
+        const double a = dot(part.toFirst, q), b = dot(part.toSecond, q);
+        if (a < 0 || b < 0 || a + b > 1) continue;
+        const double height = dot(part.normal, q);
+        if (height * height > limit2) continue;
+        home.star = static_cast<Id>(n);
+        return height * height;
+    }
+    double best2 = kInfinity;
+    for (std::size_t n = 0; n < kept_; ++n) {
+        const Part& part = parts_[n];
+        if (part.wall != wall) continue;
+        const double height = dot(part.normal, p - part.corners[0]);
+        if (height * height >= std::min(best2, limit2 * (1 + 1e-9))) continue;
+        const auto& c = part.corners;
+        const double d2 = squaredNorm(p - closestPointOnTriangle(p, c[0], c[1], c[2]));
+        if (d2 < best2) {
+            best2 = d2;
+            home.star = static_cast<Id>(n);
+        }
+    }
+    return best2;
+}
+
+/// The same of a sample on a curve, of a triangle of the star.
+double WallCollapser::homeOnCurve(const Vec3& p, Id u, Id v, const Plan& plan, std::size_t i,
+                                  NewHome& home) {
+    const auto& t = mesh_.triangle(star_[i]);
+    const Id a = t.v[home.slot], b = t.v[(home.slot + 1) % 3];
+    if (a != u && a != v && b != u && b != v && i < kept_) {
+        home.star = static_cast<Id>(i);
+        return 0;
+    }
+    double best2 = kInfinity;
+    for (const CurvePart& part : curveParts_) {
+        const double d2 = squaredDistanceToSegment(p, plan.point, part.end);
+        if (d2 >= best2) continue;
+        best2 = d2;
+        home.star = part.star;
+        home.slot = part.slot;
+    }
+    return best2;
+}
+
+/// Assigns the samples of the star to what replaces it.
+/// \return false when one lies too far from that
+bool WallCollapser::findHomes(Id u, Id v, const Plan& plan, double limitMm) {
+    findParts(u, v, plan);
     newHomes_.clear();
     double nearest2 = kInfinity;
-    nearestSample_ = origin_[u];
+    nearestSample_ = kNone;
     for (std::size_t i = 0; i < star_.size(); ++i) {
-        const auto& t = mesh_.triangle(star_[i]);
-        for (Id s = firstSample_[star_[i]]; s != kNone; s = nextSample_[s]) {
-            const Vec3 p = samplePoint(s);
+        const Id wall = mesh_.triangle(star_[i]).wall;
+        for (Id s = firstSample_[star_[i]]; s != kNone; s = samples_[s].next) {
+            const Sample& sample = samples_[s];
+            const Vec3& p = sample.point;
+            NewHome home{s, kNone, sample.slot, p};
+            const double allowed = limitMm * sample.tightness, limit2 = allowed * allowed;
+            const double squared = sample.slot == kOnWall
+                                       ? homeOnWall(p, wall, i < kept_ ? i : 0, limit2, home)
+                                       : homeOnCurve(p, u, v, plan, i, home);
+            if (!(squared <= limit2)) return false;
             if (const double d2 = squaredNorm(p - plan.point); d2 < nearest2) {
                 nearest2 = d2;
                 nearestSample_ = s;
             }
-            NewHome home{s, kNone, slot_[s], p};
-            double best2 = kInfinity;
-            if (slot_[s] == kOnWall) {
-                for (std::size_t n = 0; n < kept_; ++n) {
-                    if (parts[n].wall != t.wall) continue;
-                    const auto& c = parts[n].corners;
-                    const double d2 = squaredNorm(p - closestPointOnTriangle(p, c[0], c[1], c[2]));
-                    if (d2 < best2) {
-                        best2 = d2;
-                        home.star = static_cast<Id>(n);
-                    }
-                }
-            } else {
-                const Id a = t.v[slot_[s]], b = t.v[(slot_[s] + 1) % 3];
-                if (a != u && a != v && b != u && b != v && i < kept_) {
-                    home.star = static_cast<Id>(i);
-                    best2 = 0;
-                } else {
-                    for (const CurvePart& part : curve) {
-                        const double d2 = squaredDistanceToSegment(p, plan.point, part.end);
-                        if (d2 < best2) {
-                            best2 = d2;
-                            home.star = part.star;
-                            home.slot = part.slot;
-                        }
-                    }
-                }
-            }
-            if (!(best2 <= limit2 * tightness_[s] * tightness_[s])) return false;
             newHomes_.push_back(home);
         }
     }
+    if (nearestSample_ == kNone) nearestSample_ = origin_[u];
     return true;
 }
 
 /// The full walls come near the point, as far as those round the nearest sample show.
 bool WallCollapser::isNearFull(const Vec3& point, double limitMm) {
-    limitMm *= tightness_[nearestSample_];
+    limitMm *= samples_[nearestSample_].tightness;
     const Id vertex = vertexAt(nearestSample_);
     for (std::uint64_t n = fullBegin_[vertex]; n < fullBegin_[vertex + 1]; ++n) {
-        const auto c = mesh_.cornersOf(fullAround_[n]);
-        if (squaredNorm(point - closestPointOnTriangle(point, c[0], c[1], c[2])) <=
-            limitMm * limitMm) {
+        const auto& t = patch_.fullTriangles[fullAround_[n]].v;
+        const Vec3 &a = patch_.fullPoints[t[0]], &b = patch_.fullPoints[t[1]],
+                   &c = patch_.fullPoints[t[2]];
+        if (squaredNorm(point - closestPointOnTriangle(point, a, b, c)) <= limitMm * limitMm) {
             return true;
         }
     }
@@ -348,7 +433,7 @@ bool WallCollapser::tryCollapse(Id u, Id v, Plan plan, double limitMm) {
     if (!keepsTopology(u, v)) return false;
     const bool isMoved = mesh_.kind(u) == mesh_.kind(v);
     if (isMoved && plan.kind == Kind::Wall) keepVolume(u, v, plan);
-    if (!keepsShape(u, v, plan.point)) return false;
+    if (!isInRoom(plan.point) || !keepsShape(u, v, plan.point)) return false;
     if (!findHomes(u, v, plan, limitMm)) return false;
     if (isMoved && !isNearFull(plan.point, limitMm)) return false;
     const Id nearest = nearestSample_;
@@ -384,8 +469,8 @@ void WallCollapser::round(double maxCost, double limitMm, std::int64_t enough) {
         Plan plan;
     };
     std::vector<Edge> edges;
-    for (Id u = 0; u < mesh_.pointCount(); ++u) {
-        if (!mesh_.isAlive(u) || leastCost_[u] > maxCost) continue;
+    for (Id u = mesh_.firstPoint(); u < mesh_.pointCount(); ++u) {
+        if (!mesh_.isAlive(u) || leastCost_[u] > maxCost || isFrozen(u)) continue;
         if (mesh_.aliveTriangles() <= enough) return;
         edges.clear();
         double least = kInfinity;
@@ -395,6 +480,7 @@ void WallCollapser::round(double maxCost, double limitMm, std::int64_t enough) {
             for (const Id x : mesh_.triangle(t).v) {
                 if (x <= u || mark_[x] == seen) continue;
                 mark_[x] = seen;
+                if (isFrozen(x)) continue;
                 const Plan plan = planFor(u, x);
                 if (plan.cost <= tried_[u]) continue;
                 if (plan.cost <= maxCost) {
@@ -421,13 +507,13 @@ void WallCollapser::undo(Id change) {
         const auto star = mesh_.removedBy(c);
         for (Id t = c.madeBegin; t < c.madeEnd; ++t) {
             for (Id s = firstSample_[t]; s != kNone;) {
-                const Id next = nextSample_[s];
+                const Id next = samples_[s].next;
                 double best2 = kInfinity;
                 Id home = star[t - c.madeBegin];
                 for (const Id to : star) {
                     if (mesh_.triangle(to).wall != mesh_.triangle(t).wall) continue;
                     const auto p = mesh_.cornersOf(to);
-                    const Vec3 at = samplePoint(s);
+                    const Vec3 at = samples_[s].point;
                     const double d2 =
                         squaredNorm(at - closestPointOnTriangle(at, p[0], p[1], p[2]));
                     if (d2 < best2) {
@@ -435,7 +521,7 @@ void WallCollapser::undo(Id change) {
                         home = to;
                     }
                 }
-                link(s, home, slot_[s]);
+                link(s, home, samples_[s].slot);
                 s = next;
             }
             firstSample_[t] = kNone;
@@ -447,36 +533,33 @@ void WallCollapser::undo(Id change) {
 }
 
 void WallCollapser::tightenFull(Id full) {
-    for (const Id v : mesh_.triangle(full).v) tightness_[v] *= kTighter;
-    tightness_[static_cast<Id>(mesh_.fullPoints()) + full] *= kTighter;
+    for (const Id v : patch_.fullTriangles[full].v) samples_[v].tightness *= kTighter;
+    samples_[mesh_.fullPoints() + full].tightness *= kTighter;
 }
 
 void WallCollapser::tightenNear(Id triangle) {
-    for (Id s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
-        tightness_[s] *= kTighter;
+    for (Id s = firstSample_[triangle]; s != kNone; s = samples_[s].next) {
+        samples_[s].tightness *= kTighter;
     }
-    for (const Id v : mesh_.triangle(triangle).v) tightness_[origin_[v]] *= kTighter;
+    for (const Id v : mesh_.triangle(triangle).v) {
+        if (origin_[v] != kNone) samples_[origin_[v]].tightness *= kTighter;
+    }
 }
 
 WallCollapser::Id WallCollapser::standInOf(Id full) const {
-    const auto& t = mesh_.triangle(full);
-    const Id ofMiddle = home_[static_cast<Id>(mesh_.fullPoints()) + full];
-    if (mesh_.isTriangleAlive(ofMiddle)) return ofMiddle;
+    const auto& t = patch_.fullTriangles[full];
+    const Id ofMiddle = samples_[mesh_.fullPoints() + full].home;
+    if (ofMiddle != kNone && mesh_.isTriangleAlive(ofMiddle)) return ofMiddle;
     for (const Id v : t.v) {
-        if (home_[v] != kNone && slot_[v] == kOnWall) return home_[v];
+        if (samples_[v].home != kNone && samples_[v].slot == kOnWall) return samples_[v].home;
     }
     for (const Id v : t.v) {
-        if (home_[v] == kNone) continue;
-        const auto& own = mesh_.triangle(home_[v]);
+        if (samples_[v].home == kNone) continue;
+        const auto& own = mesh_.triangle(samples_[v].home);
         for (const Id x : own.v) {
             for (const Id at : mesh_.around(x)) {
                 if (mesh_.triangle(at).wall == t.wall) return at;
             }
-        }
-    }
-    for (const Id v : t.v) {
-        for (const Id at : mesh_.around(v)) {
-            if (mesh_.triangle(at).wall == t.wall) return at;
         }
     }
     return kNone;
@@ -486,8 +569,9 @@ WallCollapser::Id WallCollapser::fullNear(Id triangle) const {
     const auto& t = mesh_.triangle(triangle);
     for (const Id v : t.v) {
         const Id from = origin_[v];
+        if (from == kNone) continue;
         for (std::uint64_t n = fullBegin_[from]; n < fullBegin_[from + 1]; ++n) {
-            if (mesh_.triangle(fullAround_[n]).wall == t.wall) return fullAround_[n];
+            if (patch_.fullTriangles[fullAround_[n]].wall == t.wall) return fullAround_[n];
         }
     }
     return kNone;

@@ -19,10 +19,25 @@ public:
     using Kind = WallMesh::Kind;
     static constexpr Id kNone = WallMesh::kNone;
 
-    WallCollapser(const LabelComplex& full, const ImageGeometry& geometry);
+    /// \param patch  must live as long
+    WallCollapser(const WallPatch& patch, const ImageGeometry& geometry, double minAngleDeg);
 
     const WallMesh& mesh() const { return mesh_; }
     double voxelMm() const { return voxelMm_; }
+    const Quadric& quadricOf(Id v) const { return quadrics_[v]; }
+    /// A vertex of the full walls near one.
+    Id originOf(Id v) const { return origin_[v]; }
+    /// The vertex lies in the patch's cube.
+    bool isOwn(Id v) const { return v >= firstNew_ || patch_.isOwn[v - mesh_.firstPoint()] != 0; }
+    bool isFrozen(Id v) const {
+        return v < firstNew_ && patch_.isFrozen[v - mesh_.firstPoint()] != 0;
+    }
+    /// Where a sample is assigned to: samples are the vertices of the full walls and, after them,
+    /// the middles of their triangles.
+    SampleHome homeOf(Id sample) const {
+        const Sample& s = samples_[sample];
+        return {s.home, s.tightness, s.slot};
+    }
 
     /// Collapses all edges that it can, up to a cost, until only `enough` triangles are left.
     /// \param limitMm  of the distance of the full walls' vertices
@@ -31,7 +46,7 @@ public:
     void undo(Id change);
 
     /// What did not collapse so far may, with another limit.
-    void tryAllAgain() { std::fill(leastCost_.begin(), leastCost_.end(), 0); }
+    void tryAllAgain();
 
     /// Samples of a triangle of the full walls, or near one of the mesh, are held tighter.
     void tightenFull(Id full);
@@ -47,10 +62,24 @@ private:
         Vec3 point;
         Kind kind = Kind::Wall;
     };
-    /// Between samples the distance may be larger.
-    static constexpr float kTrust = 0.8F, kTighter = 0.6F;
-    static constexpr std::uint8_t kOnWall = 3;  ///< a sample's slot
+    /// A sample, and the triangle that it is assigned to: one of a list.
+    struct Sample {
+        Vec3 point;
+        Id home = kNone, next = kNone;
+        float tightness = SampleHome().tightness;  ///< part of the limit that it may use
+        std::uint8_t slot = SampleHome::kOnWall;   ///< edge of the home that it is assigned to
+    };
+    struct NewHome {
+        Id sample, star;
+        std::uint8_t slot;
+        Vec3 point;
+    };
+    static constexpr float kTighter = 0.6F;
+    static constexpr std::uint8_t kOnWall = SampleHome::kOnWall;
 
+    void beginFull();
+    void beginAsIs();
+    void linkVertex(Id v);
     void addQuadrics();
     Plan planFor(Id u, Id v) const;
     bool tryCollapse(Id u, Id v, Plan plan, double limitMm);
@@ -59,39 +88,51 @@ private:
     void keepVolume(Id u, Id v, Plan& plan) const;
     bool keepsShape(Id u, Id v, const Vec3& point) const;
     bool sweepsCentre(const Vec3& point) const;
+    bool isInRoom(const Vec3& point) const;
+    void findParts(Id u, Id v, const Plan& plan);
     bool findHomes(Id u, Id v, const Plan& plan, double limitMm);
+    double homeOnWall(const Vec3& p, Id wall, std::size_t first, double limit2, NewHome& home);
+    double homeOnCurve(const Vec3& p, Id u, Id v, const Plan& plan, std::size_t i, NewHome& home);
     bool isNearFull(const Vec3& point, double limitMm);
     void link(Id sample, Id triangle, std::uint8_t slot);
-    /// Samples are the vertices of the full walls and, after them, the middles of their triangles.
-    Vec3 samplePoint(Id sample) const;
     /// A vertex of the full walls at a sample.
     Id vertexAt(Id sample) const;
     bool spokesAreNear(const Plan& plan, double limitMm);
 
+    const WallPatch& patch_;
     WallMesh mesh_;
     SweptCentres centres_;
+    Id firstNew_;  ///< vertex that a collapse made
     double voxelMm_;
+    double largestCosine_;  ///< of an angle that may be made
     std::vector<Quadric> quadrics_;
     std::vector<Id> origin_;         ///< of each vertex, one of the full walls near it
     std::vector<double> tried_;      ///< of each vertex: its edges up to this cost did not collapse
     std::vector<double> leastCost_;  ///< of each vertex's edges, when last looked at
     std::vector<std::uint64_t> fullBegin_;
-    std::vector<Id> fullAround_;  ///< triangles of the full walls at their vertices
-    // samples, and the triangles that they are assigned to: lists
-    std::vector<Id> home_, nextSample_, firstSample_;
-    std::vector<float> tightness_;    ///< part of the limit that a sample may use
-    std::vector<std::uint8_t> slot_;  ///< edge of the home that it is assigned to
+    std::vector<Id> fullAround_;   ///< triangles of the full walls at their vertices
+    std::vector<Sample> samples_;  ///< of the full walls
+    std::vector<Id> firstSample_;  ///< of each triangle
     // of one collapse
+    struct Part {
+        std::array<Vec3, 3> corners;
+        Id wall;
+        Vec3 toFirst, toSecond;  ///< slopes of the barycentric coordinates of corners 1 and 2
+        Vec3 normal;
+        bool isFlat;
+    };
+    struct CurvePart {
+        Vec3 end;
+        Id star;
+        std::uint8_t slot;
+    };
+    std::vector<Part> parts_;
+    std::vector<CurvePart> curveParts_;
     std::vector<Id> star_;
     std::size_t kept_ = 0;
     std::vector<std::uint32_t> mark_;
     std::uint32_t stamp_ = 0;
     std::vector<Id> common_;
-    struct NewHome {
-        Id sample, star;
-        std::uint8_t slot;
-        Vec3 point;
-    };
     std::vector<NewHome> newHomes_;
     Id nearestSample_ = kNone;
 };

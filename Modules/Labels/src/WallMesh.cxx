@@ -1,45 +1,42 @@
 #include "WallMesh.h"
 
 #include <algorithm>
-#include <map>
-
-#include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::detail {
 
-WallMesh::WallMesh(const LabelComplex& full)
-    : fullPoints_(static_cast<std::int64_t>(full.points.size())),
-      fullTriangles_(static_cast<std::int64_t>(full.triangles.size())),
-      alive_(fullTriangles_),
-      points_(full.points),
-      triangles_(full.triangles.size()),
-      maker_(full.triangles.size(), kNone),
-      killer_(full.triangles.size(), kNone),
-      begin_(full.points.size() + 1, 0),
-      count_(full.points.size(), 0) {
-    if (full.triangles.size() > kNone / 8) {
-        throw InvalidInput("extractLabels: too many triangles to simplify: " +
-                           std::to_string(full.triangles.size()));
+WallMesh::WallMesh(const WallPatch& patch)
+    : fullPoints_(static_cast<Id>(patch.fullPoints.size())),
+      fullTriangles_(static_cast<Id>(patch.fullTriangles.size())),
+      firstPoint_(patch.isFull() ? 0 : fullPoints_),
+      firstTriangle_(patch.isFull() ? 0 : fullTriangles_),
+      points_(patch.fullPoints),
+      triangles_(patch.fullTriangles) {
+    points_.insert(points_.end(), patch.points.begin(), patch.points.end());
+    for (WallTriangle t : patch.triangles) {
+        for (Id& v : t.v) v += firstPoint_;
+        triangles_.push_back(t);
     }
-    std::map<std::array<Label, 2>, Id> numbers;
-    for (const auto& labels : full.labels) {
-        const auto [at, isNew] = numbers.try_emplace(labels, static_cast<Id>(walls_.size()));
-        if (isNew) walls_.push_back(labels);
-    }
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-        for (int c = 0; c < 3; ++c) {
-            triangles_[t].v[c] = static_cast<Id>(full.triangles[t][c]);
-            ++begin_[triangles_[t].v[c] + 1];
-        }
-        triangles_[t].wall = numbers.find(full.labels[t])->second;
+    maker_.assign(triangles_.size(), kNone);
+    killer_.assign(triangles_.size(), kNone);
+    std::fill_n(killer_.begin(), firstTriangle_, kNone - 1);
+    alive_ = static_cast<std::int64_t>(triangles_.size()) - firstTriangle_;
+    begin_.assign(points_.size() + 1, 0);
+    count_.assign(points_.size(), 0);
+    for (Id t = firstTriangle_; t < triangles_.size(); ++t) {
+        for (const Id v : triangles_[t].v) ++begin_[v + 1];
     }
     for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
     entries_.resize(begin_.back());
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-        for (const Id v : triangles_[t].v) entries_[begin_[v] + count_[v]++] = static_cast<Id>(t);
+    for (Id t = firstTriangle_; t < triangles_.size(); ++t) {
+        for (const Id v : triangles_[t].v) entries_[begin_[v] + count_[v]++] = t;
     }
     begin_.pop_back();
-    findKinds();
+    if (patch.isFull()) {
+        findKinds();
+    } else {
+        kinds_.assign(fullPoints_, Kind::Wall);
+        kinds_.insert(kinds_.end(), patch.kinds.begin(), patch.kinds.end());
+    }
 }
 
 int WallMesh::orderOf(Id u, Id v) const {
@@ -145,27 +142,6 @@ void WallMesh::undoOne(const Change& change) {
         }
     }
     alive_ += static_cast<std::int64_t>(star.size() - kept);
-}
-
-LabelComplex WallMesh::complex(std::vector<Id>* numbers) const {
-    LabelComplex out;
-    std::vector<VertexId> number(points_.size(), -1);
-    for (Id v = 0; v < points_.size(); ++v) {
-        if (!isAlive(v)) continue;
-        number[v] = static_cast<VertexId>(out.points.size());
-        out.points.push_back(points_[v]);
-    }
-    out.triangles.reserve(alive_);
-    out.labels.reserve(alive_);
-    if (numbers != nullptr) numbers->clear();
-    for (Id t = 0; t < triangles_.size(); ++t) {
-        if (!isTriangleAlive(t)) continue;
-        const auto& v = triangles_[t].v;
-        out.triangles.push_back({number[v[0]], number[v[1]], number[v[2]]});
-        out.labels.push_back(walls_[triangles_[t].wall]);
-        if (numbers != nullptr) numbers->push_back(t);
-    }
-    return out;
 }
 
 }  // namespace adaptiso::detail

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "WallPatch.h"
 #include "adaptiso/Core/Geometry.h"
-#include "adaptiso/Labels/Labels.h"
 
 namespace adaptiso::detail {
 
@@ -20,19 +20,18 @@ public:
     using Id = std::uint32_t;
     static constexpr Id kNone = ~Id{0};
 
-    /// Where a vertex lies: in a wall, on a curve where walls meet, where curves end or meet.
-    enum class Kind : std::uint8_t { Wall, Curve, Corner };
+    using Kind = WallKind;
+    using WallTriangle = detail::WallTriangle;
 
-    struct WallTriangle {
-        std::array<Id, 3> v;
-        Id wall;  ///< number of its two labels
-        bool has(Id vertex) const { return v[0] == vertex || v[1] == vertex || v[2] == vertex; }
-    };
+    /// The walls of a patch as they are. Its full ones come first in the numbers of vertices and
+    /// triangles; where the walls are others, these are gone from the start.
+    explicit WallMesh(const WallPatch& patch);
 
-    explicit WallMesh(const LabelComplex& full);
-
-    std::int64_t fullPoints() const { return fullPoints_; }
-    std::int64_t fullTriangles() const { return fullTriangles_; }
+    Id fullPoints() const { return fullPoints_; }
+    Id fullTriangles() const { return fullTriangles_; }
+    /// What the walls had when they began: numbers from here on.
+    Id firstPoint() const { return firstPoint_; }
+    Id firstTriangle() const { return firstTriangle_; }
     std::size_t pointCount() const { return points_.size(); }
     std::size_t triangleCount() const { return triangles_.size(); }  ///< with those that are gone
     std::int64_t aliveTriangles() const { return alive_; }
@@ -42,7 +41,7 @@ public:
     bool isAlive(Id v) const { return count_[v] > 0; }
     const WallTriangle& triangle(Id t) const { return triangles_[t]; }
     bool isTriangleAlive(Id t) const { return killer_[t] == kNone; }
-    /// The change that took it away. \pre it is not alive
+    /// The change that took it away; kNone - 1 of what was gone from the start. \pre not alive
     Id killerOf(Id t) const { return killer_[t]; }
     /// The change that made it; kNone for a triangle of the full walls.
     Id makerOf(Id t) const { return maker_[t]; }
@@ -63,6 +62,9 @@ public:
         return {removed_.data() + c.removedBegin, c.removedEnd - c.removedBegin};
     }
     const Change& change(Id n) const { return changes_[n]; }
+    /// It was not taken back.
+    bool isChangeStanding(Id n) const { return killer_[changes_[n].madeBegin] != n; }
+    std::size_t changeCount() const { return changes_.size(); }
 
     /// Replaces `star`, all triangles round u and v, those round the edge at its end. The new
     /// triangles are, in this order, those of the star's first `kept` with u and v replaced.
@@ -74,16 +76,13 @@ public:
     template <class F>
     void undo(Id change, const F& f);
 
-    /// The walls as they are, points in their order; and the triangle that each was.
-    LabelComplex complex(std::vector<Id>* numbers = nullptr) const;
-    const std::array<Label, 2>& labelsOf(Id wall) const { return walls_[wall]; }
-
 private:
     void undoOne(const Change& change);
     void replaceEntry(Id vertex, Id from, Id to);
     void findKinds();
 
-    std::int64_t fullPoints_, fullTriangles_, alive_;
+    Id fullPoints_, fullTriangles_, firstPoint_, firstTriangle_;
+    std::int64_t alive_ = 0;
     std::vector<Vec3> points_;
     std::vector<Kind> kinds_;
     std::vector<WallTriangle> triangles_;
@@ -92,7 +91,6 @@ private:
     std::vector<Id> count_, entries_;
     std::vector<Change> changes_;
     std::vector<Id> removed_;
-    std::vector<std::array<Label, 2>> walls_;
     std::vector<Id> stack_;
 };
 

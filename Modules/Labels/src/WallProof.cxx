@@ -21,20 +21,22 @@ constexpr double kStepsPerTriangle = 12, kMostSteps = 1e5;
 
 WallSurface::WallSurface(const WallMesh& mesh, std::vector<Id> numbers)
     : mesh_(mesh), numbers_(std::move(numbers)), triangles_(numbers_.size()) {
-    std::vector<Id> number(mesh.pointCount(), WallMesh::kNone);
-    std::unordered_map<std::uint64_t, Id> onCurves;
+    struct First {
+        Id number = WallMesh::kNone, wall = 0;
+    };
+    std::vector<First> firsts(mesh.pointCount());
+    std::unordered_map<std::uint64_t, Id> others;  // of vertices where walls meet
     const auto numberOf = [&](Id v, Id wall) {
         const auto next = static_cast<Id>(points_.size());
-        Id* at = &number[v];
-        if (mesh.kind(v) != WallMesh::Kind::Wall) {
-            const std::uint64_t key = std::uint64_t{v} << 32 | wall;
-            at = &onCurves.try_emplace(key, WallMesh::kNone).first->second;
-        }
-        if (*at == WallMesh::kNone) {
-            *at = next;
+        First& first = firsts[v];
+        if (first.number == WallMesh::kNone) {
+            first = {next, wall};
             points_.push_back(mesh.point(v));
         }
-        return *at;
+        if (first.wall == wall) return first.number;
+        const auto [at, isNew] = others.try_emplace(std::uint64_t{v} << 32 | wall, next);
+        if (isNew) points_.push_back(mesh.point(v));
+        return at->second;
     };
     for (std::size_t n = 0; n < numbers_.size(); ++n) {
         const auto& t = mesh.triangle(numbers_[n]);
@@ -44,6 +46,7 @@ WallSurface::WallSurface(const WallMesh& mesh, std::vector<Id> numbers)
 }
 
 WallSurface::Id WallSurface::placeOf(Id number) const {
+    if (number < numbers_.size() && numbers_[number] == number) return number;
     const auto at = std::lower_bound(numbers_.begin(), numbers_.end(), number);
     return at != numbers_.end() && *at == number ? static_cast<Id>(at - numbers_.begin())
                                                  : WallMesh::kNone;

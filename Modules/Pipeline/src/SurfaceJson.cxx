@@ -88,6 +88,13 @@ Json surfaceOptionsJson(const ExtractionOptions& extraction, const IndexOptions&
             {"fillCavities", selection.fillCavities}};
 }
 
+Json workJson(const AdaptiveWork& work) {
+    return {{"runs", work.runs},
+            {"placesMended", work.placesMended},
+            {"verticesUndone", work.verticesUndone},
+            {"trianglesKept", work.trianglesKept}};
+}
+
 Json surfaceJson(const SurfaceRecord& surface, Method method, int blockSize) {
     const ExtractionStatistics& statistics = surface.statistics;
     const TopologyReport& topology = surface.topology;
@@ -108,6 +115,7 @@ Json surfaceJson(const SurfaceRecord& surface, Method method, int blockSize) {
         {"verifiedMaxMm", surface.verification ? number(surface.verification->maxMm) : Json()},
         {"wantedTriangles", orNull(statistics.wantedTriangles)},
         {"countMet", orNull(surface.countMet())},
+        {"adaptive", statistics.adaptiveWork ? workJson(*statistics.adaptiveWork) : Json()},
         {"triangles", topology.triangles},
         {"vertices", topology.vertices},
         {"marchingCubesTriangles", statistics.marchingCubesTriangles},

@@ -27,6 +27,12 @@ def volumes(top):
     ]
 
 
+def bound_volumes(top):
+    """And a whole head."""
+    return volumes(top) + [Volume("ch2", "/usr/share/mricron/templates/ch2.nii.gz", 100.5, None,
+                                  asked=100)]
+
+
 class Row:
     """One way to make a surface: a program and its options."""
 

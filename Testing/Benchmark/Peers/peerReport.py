@@ -61,6 +61,42 @@ def write_compare(report, out):
               [compare_cells(row, base) for row in volume["rows"]], out)
 
 
+def write_bound(report, out):
+    rows = []
+    for volume in report["volumes"]:
+        for border in ("open", "closed"):
+            ours = next(row for row in volume["rows"]
+                        if row["label"] == "adaptive" and row["border"] == border)
+            first = volume["rows"].index(ours)
+            peers_ = {row["label"]: row for row in volume["rows"][first + 1:first + 4]}
+            cells = [f"{volume['name']} at {volume['isovalue']}, {border}",
+                     f"{ours['triangles']:,}", f"{statistics.median(ours['seconds']):.2f}",
+                     f"{statistics.median(ours['cpuSeconds']):.2f}"]
+            for label in (BASE, "FlyingEdges + meshoptimizer"):
+                cells += [f"{statistics.median(peers_[label]['seconds']):.2f}",
+                          f"{peers.median_ratio(ours, peers_[label]):.2f}"]
+            own = ours["peakHeapBytes"] - mesh_bytes(ours)
+            cells.append(f"{own / peers_[BASE]['peakHeapBytes']:.2f}")
+            rows.append(cells)
+    table(["volume, border", "triangles", "s", "CPU s", "quadric s", "ours /", "meshoptimizer s",
+           "ours /", "heap without mesh / quadric's"], rows, out)
+
+
+def write_scans(report, out):
+    rows = []
+    for scan in report["scans"]:
+        base, ours = scan["rows"]
+        near, far = ours["distance"]["both"], base["distance"]["both"]
+        rows.append([f"{scan['name']} at {scan['isovalue']}, {100 * scan['part']:.0f} %",
+                     f"{ours['triangles']:,}", f"{base['triangles']:,}",
+                     f"{near['mean'] / far['mean']:.2f}", f"{near['max'] / far['max']:.2f}",
+                     f"{peers.median_ratio(ours, base):.2f}",
+                     f"{base['nonManifoldEdges'] + base['nonManifoldVertices']} / "
+                     f"{base['crossingPairs']}"])
+    table(["scan", "triangles", "quadric's", "mean / quadric's", "largest / quadric's",
+           "time / quadric's", "quadric's non-manifold / crossing"], rows, out)
+
+
 def write_relatives(report, out):
     for volume in report["volumes"]:
         print(f"\n### {volume['name']} at {volume['isovalue']}, {volume['wanted']:,} triangles\n",
@@ -170,7 +206,8 @@ def draw_growth(report, path):
 
 def write(folder, out):
     """Markdown of the JSON files that are there to `out`; plots as PNG files beside them."""
-    writers = {"compare": write_compare, "relatives": write_relatives, "counts": write_counts, "growth": write_growth}
+    writers = {"compare": write_compare, "bound": write_bound, "scans": write_scans,
+               "relatives": write_relatives, "counts": write_counts, "growth": write_growth}
     for name, writer in writers.items():
         path = folder / f"{name}.json"
         if path.exists():

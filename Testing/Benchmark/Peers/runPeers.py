@@ -2,6 +2,8 @@
 """Measures the adaptive method and its peers; every run is a process of its own.
 
   runPeers.py compare   all methods at one count of triangles, side by side: compare.json
+  runPeers.py bound     ours by its default bound, decimation to as many triangles: bound.json
+  runPeers.py scans     ours and decimation on thirteen other scans, at 30, 10 and 3 %: scans.json
   runPeers.py relatives the methods that the thesis surveys, at one count: relatives.json
   runPeers.py counts    triangles that a largest distance of 0.1 to 1 voxel takes: counts.json
   runPeers.py pareto    all methods at several counts: pareto.json
@@ -18,6 +20,7 @@ import pathlib
 import subprocess
 import sys
 
+import otherScans
 import peerPrograms as peers
 import peerReport
 
@@ -84,6 +87,35 @@ def relatives(bench, arguments, volume, facts):
     rows.append(peers.ours("adaptive", "open", triangles=volume.triangles, border_="open"))
     facts["seeds"] = bench.call("peerSeeds", bench.path(volume, "volume"), "--iso", volume.isovalue)
     return bench.rows(volume, rows, arguments.repeats, meters_heap=False, tell=tell)
+
+
+def bound(bench, arguments, volume, facts):
+    """What users get who ask for nothing: closed and, as FlyingEdges makes it, open borders."""
+    rows = []
+    for border in ("open", "closed"):
+        ours = peers.ours("adaptive", border, border_=border)
+        count = bench.run(volume, ours)["triangles"]
+        rows += [ours, *decimators(bench, count)]
+    return bench.rows(volume, rows, arguments.repeats, tell=tell)
+
+
+def scans(bench, arguments):
+    """Parts of marching cubes' triangles, where vtkQuadricDecimation gets there."""
+    results = []
+    for name, image, isovalue in otherScans.write(arguments.output):
+        volume = peers.Volume(name, image, isovalue, None, asked=isovalue)
+        facts = bench.prepare(volume)
+        for part in (0.3, 0.1, 0.03):
+            count = round(part * facts["mcTriangles"])
+            rows = [peers.quadric(count),
+                    peers.ours("adaptive", "open", triangles=count, border_="open")]
+            results.append({"name": name, "isovalue": isovalue, "part": part, "wanted": count,
+                            "rows": bench.rows(volume, rows, arguments.repeats,
+                                               meters_heap=False, tell=tell)})
+        image.unlink()
+        for kept in arguments.output.glob(f"{name}-*"):
+            kept.unlink()
+    return results
 
 
 def pareto(bench, arguments, volume, facts):
@@ -188,7 +220,7 @@ def with_earlier(path, volumes):
     names = [volume["name"] for volume in volumes]
     earlier = json.loads(path.read_text())["volumes"] if path.exists() else []
     volumes = volumes + [volume for volume in earlier if volume["name"] not in names]
-    order = [volume.name for volume in peers.volumes(TOP)]
+    order = [volume.name for volume in peers.bound_volumes(TOP)]
     return sorted(volumes, key=lambda volume: order.index(volume["name"]))
 
 
@@ -222,7 +254,7 @@ def growth(bench, arguments):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("command", choices=["compare", "relatives", "counts", "pareto", "growth",
+    parser.add_argument("command", choices=["compare", "bound", "scans", "relatives", "counts", "pareto", "growth",
                                             "report"])
     parser.add_argument("-o", "--output", type=pathlib.Path, default=TOP / "out" / "peers")
     parser.add_argument("--programs", type=pathlib.Path,
@@ -231,7 +263,7 @@ def main():
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--border", choices=["open", "closed"], default="open",
                         help="of our methods; FlyingEdges is open, OpenVDB closed")
-    parser.add_argument("--only", choices=["engine", "teapot", "ch2bet"],
+    parser.add_argument("--only", choices=["engine", "teapot", "ch2bet", "ch2"],
                         help="the file keeps what it has of the other volumes")
     parser.add_argument("--part", choices=["all", "ours", "peers"], default="all",
                         help="of counts; ours keeps what an earlier run found of the peers")
@@ -248,11 +280,14 @@ def main():
     path = arguments.output / f"{arguments.command}.json"
     if arguments.command == "growth":
         report["sizes"] = growth(bench, arguments)
+    elif arguments.command == "scans":
+        report["scans"] = scans(bench, arguments)
     else:
-        measure = {"compare": compare, "relatives": relatives, "counts": counts,
+        measure = {"compare": compare, "bound": bound, "relatives": relatives, "counts": counts,
                    "pareto": pareto}[arguments.command]
         report["volumes"] = []
-        for volume in peers.volumes(TOP):
+        of_bound = arguments.command == "bound"
+        for volume in peers.bound_volumes(TOP) if of_bound else peers.volumes(TOP):
             if arguments.only not in (None, volume.name):
                 continue
             if not pathlib.Path(volume.image).exists():

@@ -320,6 +320,81 @@ TEST_F(ZarrTest, OnlyAChunkThatIsNotThereIsFill) {
     expectRefused("1.0.1");
 }
 
+TEST_F(ZarrTest, LinksLeadNowhereButIntoTheDatasetAndItsAnnex) {
+    const fs::path outside = root_.string() + "-outside";
+    fs::remove_all(outside);
+    fs::create_directories(outside);
+    put("d/.zarray", metadata2("null", R"(, "dimension_separator": "/")"));
+    put("d/.zgroup", "{}");
+    fs::remove(root_ / "d/.zgroup");
+    const fs::path array = root_ / "d";
+    putChunks("d/", "/", same);
+    const auto refused = [&] {
+        try {
+            readVolume(array);
+        } catch (const FileError& error) {
+            return std::string(error.what()).find("outside of its dataset") != std::string::npos;
+        }
+        return false;
+    };
+    // git-annex: content lies above the array, under .git/annex/objects
+    fs::create_directories(root_ / ".git/annex/objects/a");
+    fs::rename(array / "0/0/0", root_ / ".git/annex/objects/a/key");
+    fs::create_symlink("../../../.git/annex/objects/a/key", array / "0/0/0");
+    expectValues(readVolume(array));
+    // another file of the dataset
+    fs::rename(array / "0/0/1", array / "kept");
+    fs::create_symlink("../../kept", array / "0/0/1");
+    expectValues(readVolume(array));
+    // a file elsewhere, a folder elsewhere, a way up and out
+    fs::rename(array / "0/1/0", outside / "file");
+    fs::create_symlink(outside / "file", array / "0/1/0");
+    EXPECT_TRUE(refused());
+    fs::remove(array / "0/1/0");
+    fs::rename(outside / "file", array / "0/1/0");
+    fs::rename(array / "1", outside / "folder");
+    fs::create_directory_symlink(outside / "folder", array / "1");
+    EXPECT_TRUE(refused());
+    fs::remove(array / "1");
+    fs::rename(outside / "folder", root_ / "1");
+    fs::create_directory_symlink("../1", array / "1");
+    EXPECT_TRUE(refused());
+    fs::remove_all(outside);
+}
+
+TEST_F(ZarrTest, MetadataAsDeepAsAHostileFileLikesAreRefused) {
+    constexpr std::size_t kDepth = 200000;
+    const Text deep = Text(kDepth, '[') + Text(kDepth, ']');
+    put(".zarray", metadata2("null", R"(, "fill_value": )" + deep));
+    expectRefused("fill_value [...] is none of its type");
+    put(".zarray", metadata2("null", R"(, "dimension_separator": )" + deep));
+    expectRefused("dimension_separator");
+    fs::remove_all(root_);
+    put("zarr.json",
+        metadata3(R"([{"name": "bytes", "configuration": {"endian": )" + deep + "}}]"));
+    expectRefused("endian");
+    fs::remove_all(root_);
+    put(".zattrs",
+        R"({"multiscales": [{"axes": [{"name": "x", "type": "space", "unit": )" + deep + "}]}]}");
+    expectRefused("unit [...]");
+}
+
+TEST_F(ZarrTest, IndicesOfAxesThatAreNotThereAreRefused) {
+    put(".zarray", metadata2("null"));
+    putChunks("", ".", same);
+    ReadOptions options;
+    options.channel = 1;
+    expectRefused("there is no channel 1: it has no such axis; leave --channel out", options);
+    options = {};
+    options.timePoint = 2;
+    expectRefused("there is no time point 2", options);
+    options = {};
+    options.volumeIndex = 1;
+    expectRefused("there is no volume 1", options);
+    options.volumeIndex = 0;  // as of a NIfTI file of one volume
+    expectValues(readVolume(root_, options));
+}
+
 TEST_F(ZarrTest, AChunkThatCannotBeOpenedIsNoFill) {
     if (geteuid() == 0) GTEST_SKIP() << "root may open everything";
     put(".zarray", metadata2("null"));
@@ -484,6 +559,25 @@ TEST_F(OmeZarrTest, OtherVersionsUnitsAndPathsAreRefusedByName) {
     put("zarr.json", R"({"zarr_format": 3, "node_type": "group", "attributes": {"ome":
         {"version": "0.6.dev3", "multiscales": []}}})");
     expectRefused("OME-Zarr 0.6.dev3");
+}
+
+TEST_F(OmeZarrTest, UnitsOfSomeAxesOnlyAreRefused) {
+    Text some = multiscales(R"("version": "0.4", )");
+    some.replace(some.find(R"(, "unit": "micrometer")"), Text(R"(, "unit": "micrometer")").size(),
+                 "");
+    put(".zattrs", R"({"multiscales": )" + some + "}");
+    put(".zgroup", R"({"zarr_format": 2})");
+    putLevel("0", 1, 2);
+    expectRefused("some of its axes in space have a unit, others none", at(1, 2));
+}
+
+TEST_F(ZarrTest, AnotherProgramsAttributesMakeNoN5) {
+    put("attributes.json", "not JSON");
+    expectRefused("no DICOM file found");
+    put("attributes.json", R"({"dimension": 3})");
+    expectRefused("no DICOM file found");
+    fs::resize_file(root_ / "attributes.json", std::uintmax_t{17} << 20);
+    expectRefused("no DICOM file found");
 }
 
 TEST_F(ZarrTest, N5IsToldByName) {

@@ -244,6 +244,56 @@ TEST(ExtractLabels, HoldsForRoundWallsThatMeet) {
     }
 }
 
+/// Cells of random sites, in a long map: it is simplified in several cubes side by side.
+Map longCells(const ImageGeometry& geometry, std::uint64_t seed) {
+    std::vector<Vec3> sites(60);
+    for (Vec3& site : sites) {
+        Vec3 index;
+        for (int axis = 0; axis < 3; ++axis) {
+            index[axis] = static_cast<double>(nextRandom(seed) %
+                                              static_cast<std::uint64_t>(geometry.size[axis]));
+        }
+        site = geometry.toPhysical(index);
+    }
+    return Map::inSpace(geometry, [&](const Vec3& p) {
+        const auto nearest = std::ranges::min_element(
+            sites, {}, [&](const Vec3& site) { return squaredNorm(p - site); });
+        return static_cast<Label>(nearest - sites.begin()) % 9;
+    });
+}
+
+TEST(ExtractLabels, HoldsWhereCubesThatAreSimplifiedSideBySideMeet) {
+    for (const double maxErrorMm : {0.05, 0.15, 0.6}) {
+        LabelOptions options;
+        options.maxErrorMm = maxErrorMm;
+        EXPECT_TRUE(keepsPromises(longCells(centredGeometry({200, 14, 13}), 3), options));
+        EXPECT_TRUE(
+            keepsPromises(longCells(shearedGeometry({9, 150, 12}, {1, 1.2, 3}), 4), options));
+        EXPECT_TRUE(
+            keepsPromises(noise(mirroredGeometry({4, 3, 170}, {0.9, 0.9, 4}), 4, 5), options));
+    }
+}
+
+TEST(ExtractLabels, HoldsWhereARegionOnlyReachesIntoACube) {
+    // all of the triangles that a cube has may reach out of it
+    for (std::int64_t length = 126; length < 134; ++length) {
+        const Map map(centredGeometry({length, length, 3}), [&](const Index3& i) {
+            return i[0] >= 55 && i[0] < 65 && i[1] >= 55 && i[1] < 65 && i[2] == 1 ? 1 : 0;
+        });
+        ASSERT_TRUE(keepsPromises(map)) << length;
+    }
+}
+
+TEST(ExtractLabels, LeavesNoTrianglesWhereCubesMeet) {
+    // a slab from end to end: its walls need as many triangles in three cubes as in one
+    const auto triangles = [](std::int64_t length) {
+        const Map map(centredGeometry({length, 20, 12}),
+                      [](const Index3& i) { return i[2] < 6 ? 1 : 2; });
+        return extractLabels(map.view(), {}).complex.triangles.size();
+    };
+    EXPECT_LT(triangles(190), triangles(60) + 120);
+}
+
 // Bars of the measures: what a smooth wall through the labels of a ball can be expected to have.
 // The voxels themselves are 0.3 % (radius 10) and less away from the ball's volume.
 TEST(ExtractLabels, GivesBallsTheirVolumeAndArea) {
@@ -383,6 +433,32 @@ TEST(ExtractLabels, ReachesAWantedCountAndStatesItsDistance) {
     EXPECT_EQ(extractLabels(map.view(), options).complex, full.complex);
 }
 
+/// Triangles with an angle below one.
+std::int64_t countSharper(const LabelComplex& complex, double degrees) {
+    const double cosine = std::cos(degrees * std::numbers::pi / 180);
+    return std::ranges::count_if(complex.triangles, [&](const Triangle& t) {
+        for (int c = 0; c < 3; ++c) {
+            const Vec3 at = complex.points[t[c]], a = complex.points[t[(c + 1) % 3]] - at,
+                       b = complex.points[t[(c + 2) % 3]] - at;
+            if (dot(a, b) > cosine * norm(a) * norm(b)) return true;
+        }
+        return false;
+    });
+}
+
+TEST(ExtractLabels, MakesNoAngleBelowTheOneAskedFor) {
+    const Map map = halfBalls(20);
+    LabelOptions options;
+    const LabelComplex any = extractLabels(map.view(), options).complex;
+    EXPECT_GT(countSharper(any, 20), 0);
+    options.minAngleDeg = 20;
+    const LabelComplex round = extractLabels(map.view(), options).complex;
+    EXPECT_EQ(countSharper(round, 19.999), 0);
+    EXPECT_GE(round.triangles.size(), any.triangles.size());
+    EXPECT_LT(round.triangles.size(), 2 * any.triangles.size());
+    EXPECT_TRUE(keepsPromises(map, options));
+}
+
 TEST(ExtractLabels, GivesChosenRegionsTheWallsOfTheWholeMap) {
     const Map map = noise(obliqueGeometry({9, 8, 7}, {1, 1.5, 2}), 5, 77);
     const LabelComplex all = extractLabels(map.view(), {}).complex;
@@ -405,8 +481,8 @@ TEST(ExtractLabels, GivesChosenRegionsTheWallsOfTheWholeMap) {
 
 TEST(ExtractLabels, GivesTheSameBytesForAnyNumberOfThreads) {
     const Map map = noise(obliqueGeometry({20, 16, 18}, {1, 1.5, 2}), 4, 3);
-    const Map balls = halfBalls(15);
-    for (const Map* of : {&map, &balls}) {
+    const Map balls = halfBalls(15), cells = longCells(centredGeometry({200, 14, 13}), 8);
+    for (const Map* of : {&map, &balls, &cells}) {
         const LabelComplex many = extractLabels(of->view(), {}).complex;
         const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
         EXPECT_EQ(extractLabels(of->view(), {}).complex, many);
@@ -455,6 +531,8 @@ TEST(ExtractLabels, RefusesOptionsThatBreakTheirRules) {
     refuses([](LabelOptions& o) { o.maxErrorMm = std::nan(""); });
     refuses([](LabelOptions& o) { o.maxTriangles = -1; });
     refuses([](LabelOptions& o) { o.reduction = 1.5; });
+    refuses([](LabelOptions& o) { o.minAngleDeg = 41; });
+    refuses([](LabelOptions& o) { o.minAngleDeg = std::nan(""); });
     refuses([](LabelOptions& o) { o.labels = {2}; });
     refuses([](LabelOptions& o) { o.labels = {1, 1}; });
     refuses([](LabelOptions& o) { o.labels = {0}; });

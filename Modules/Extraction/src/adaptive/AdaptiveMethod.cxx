@@ -7,6 +7,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/full/VolumeSurface.h"
+#include "adaptive/mending/LocalUndo.h"
 #include "adaptive/mending/SurfaceMender.h"
 #include "adaptive/proof/CrossingProof.h"
 #include "adaptive/rounds/Simplification.h"
@@ -32,6 +33,7 @@ public:
         Attempt attempt;
         for (int run = 0; run < kMostRuns; ++run) {
             report(run, 0);
+            ++work_.runs;
             attempt = {simplify(std::move(attempt.surface)), {}, {}, {}};
             report(run, 0.6);
             if (keepsPromises(attempt)) {
@@ -101,7 +103,18 @@ private:
         result.errorBoundMm = attempt.error.largestMm;
         if (wanted_.isGiven()) result.wantedTriangles = wanted_.of(attempt.surface.fineTriangles);
         result.tableTriangles = attempt.surface.tableTriangles;
+        result.work = work_;
+        result.work.trianglesKept = trianglesKept(attempt.surface);
         return result;
+    }
+
+    static std::int64_t trianglesKept(const SimplifiedSurface& surface) {
+        return std::count_if(
+            surface.triangles.begin(), surface.triangles.end(), [&](const auto& triangle) {
+                return std::all_of(triangle.begin(), triangle.end(), [&](std::uint64_t v) {
+                    return surface.states[v] == Patch::State::Final;
+                });
+            });
     }
 
     void findCrossings(Attempt& attempt) const {
@@ -116,16 +129,60 @@ private:
     ErrorBound proveAndMend(SimplifiedSurface& surface) {
         ErrorBound error = proof_->prove(surface);
         if (wanted_.isGiven() || !isBeyond(error)) return error;
+        mend(surface, error);
+        undo(surface, error);
+        return error;
+    }
+
+    /// \param error  what was proved; then what is
+    void mend(SimplifiedSurface& surface, ErrorBound& error) {
         SurfaceMender mender(surface, frame_, *boundMm_);
         for (int idle = 0; isBeyond(error) && idle < kMostIdleMends;) {
             const std::size_t before = error.beyondLimit.size();
-            if (mender.mendDistances(error.beyondLimit) == 0) break;
+            const std::size_t mended = mender.mendDistances(error.beyondLimit);
+            if (mended == 0) break;
+            work_.placesMended += static_cast<std::int64_t>(mended);
             error = proof_->proveAgain(surface, mender.takeChanges());
             const bool isLess = static_cast<double>(error.beyondLimit.size()) <
                                 kMended * static_cast<double>(before);
             idle = isLess ? 0 : idle + 1;
         }
-        return error;
+        keepChanged(mender);
+    }
+
+    void keepChanged(const SurfaceMender& mender) {
+        const auto& changed = mender.changedTriangles();
+        mended_.insert(mended_.end(), changed.begin(), changed.end());
+    }
+
+    /// Takes the simplification back around places that mending did not help.
+    /// \param error  what was proved; then what is
+    void undo(SimplifiedSurface& surface, ErrorBound& error) {
+        double reachMm = kUndoReach * frame_.narrowestMm();
+        for (int n = 0; n < kMostUndos && isBeyond(error) && lessons_.halfway; ++n) {
+            const std::ptrdiff_t points = std::ssize(surface.points);
+            const auto changes = LocalUndo(lessons_.halfway->state, surface)
+                                     .around(mended_, trianglesOf(error), pointsOf(error), reachMm);
+            if (changes) {
+                work_.verticesUndone += std::ssize(surface.points) - points;
+                error = proof_->proveAgain(surface, *changes);
+                mend(surface, error);
+            }
+            reachMm *= 2;
+        }
+    }
+
+    static std::vector<std::uint64_t> trianglesOf(const ErrorBound& error) {
+        std::vector<std::uint64_t> triangles;
+        for (const PlaceBeyond& place : error.beyondLimit) {
+            if (place.triangle != PlaceBeyond::kNone) triangles.push_back(place.triangle);
+        }
+        return triangles;
+    }
+    static std::vector<Vec3> pointsOf(const ErrorBound& error) {
+        std::vector<Vec3> points;
+        for (const PlaceBeyond& place : error.beyondLimit) points.push_back(place.point());
+        return points;
     }
 
     /// \param places  continuous sample indices
@@ -148,9 +205,7 @@ private:
 
     std::vector<Vec3> indicesOf(const ErrorBound& error) const {
         std::vector<Vec3> indices;
-        for (const PlaceBeyond& place : error.beyondLimit) {
-            indices.push_back(frame_.toIndex(place.point()));
-        }
+        for (const Vec3& p : pointsOf(error)) indices.push_back(frame_.toIndex(p));
         return indices;
     }
     /// The middles of the triangles that cross, as continuous sample indices.
@@ -164,9 +219,12 @@ private:
         return places;
     }
 
-    bool mendCrossings(Attempt& attempt) const {
+    bool mendCrossings(Attempt& attempt) {
         SurfaceMender mender(attempt.surface, frame_, *boundMm_);
-        return mender.mendCrossings(attempt.crossing) > 0;
+        const std::size_t mended = mender.mendCrossings(attempt.crossing);
+        work_.placesMended += static_cast<std::int64_t>(mended);
+        keepChanged(mender);
+        return mended > 0;
     }
 
     /// Begins anew with more proved.
@@ -239,6 +297,7 @@ private:
         if (!wanted_.isGiven()) {
             SimplifiedSurface surface = simplification.toLimits(std::move(last), lessons_.halfway);
             unfitted_ = surface.points;
+            mended_.clear();
             fit(surface);
             return surface;
         }
@@ -254,8 +313,10 @@ private:
     std::optional<double> boundMm_;
     StarLimits shape_;
     Lessons lessons_;
-    std::unique_ptr<DistanceProof> proof_;  ///< remembers what it proved last, to prove less
-    std::vector<Vec3> unfitted_;            ///< vertices before they were fitted
+    AdaptiveWork work_;
+    std::unique_ptr<DistanceProof> proof_;        ///< remembers what it proved last, to prove less
+    std::vector<SurfaceState::Triangle> mended_;  ///< of this run, before and after
+    std::vector<Vec3> unfitted_;                  ///< vertices before they were fitted
 };
 
 }  // namespace
@@ -296,6 +357,7 @@ Extraction extractAdaptive(const VolumeView& volume, const SpanSpaceIndex& index
         if (!options.computeNormals) result.mesh.normals = {};
         result.statistics.errorBoundMm = made.errorBoundMm;
         result.statistics.wantedTriangles = made.wantedTriangles;
+        result.statistics.adaptiveWork = made.work;
         result.statistics.marchingCubesTriangles = made.tableTriangles;
     }
     result.statistics.blocksTotal = index.grid().blockCount();

@@ -21,6 +21,7 @@ struct AdaptiveResult {
     double errorBoundMm = 0;
     std::optional<std::int64_t> wantedTriangles;  ///< where a count is asked for
     std::int64_t tableTriangles = 0;              ///< SimplifiedSurface's
+    AdaptiveWork work;
 };
 
 /// Simplifies any surface, with all that the adaptive method promises proved.

@@ -26,9 +26,9 @@ inline constexpr double kSheetDistance = 0.5;
 /// Runs from the beginning; those of them that may end in crossings before all stars are proved.
 inline constexpr int kMostRuns = 16, kMostCrossedRuns = 3;
 /// Rounds of mending crossings in one run; rounds of mending distances that may gain little.
-inline constexpr int kMostMends = 6, kMostIdleMends = 2;
+inline constexpr int kMostMends = 6, kMostIdleMends = 1;
 /// A round of mending gains little when it leaves more than this part of the places.
-inline constexpr double kMended = 0.8;
+inline constexpr double kMended = 0.5;
 /// Runs lead nowhere when they leave more than this part of the places of the run before.
 inline constexpr double kStalled = 0.25;
 /// From this run on places that fail stay at full resolution, twice as far around with every run.
@@ -168,6 +168,12 @@ inline constexpr std::array kMendCosines{0.3, -0.3};
 /// more than this, by these parts of the way.
 inline constexpr double kMoveWeight = 0.4;
 inline constexpr std::array kMoveSteps{0.6, 0.35, 0.15};
+/// Around places that mending does not help vertices come apart again, voxels: in the first
+/// attempt; three attempts, each twice as far. At most this part of halfway's vertices.
+inline constexpr double kUndoReach = 1, kMostUndone = 0.05;
+inline constexpr int kMostUndos = 3;
+/// So many times more comes apart to keep the surface a manifold.
+inline constexpr int kMostWidenings = 8;
 /// An edge is turned where that leaves less than this part of the distance.
 inline constexpr double kTurnLeaves = 0.5;
 

@@ -8,6 +8,7 @@
 #include "adaptiso/Core/Progress.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Extraction/AdaptiveWork.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
 namespace adaptiso {
@@ -87,6 +88,7 @@ struct ExtractionStatistics {
     /// mesh has more triangles when the bound (maxErrorMm) or the surface's topology does not allow
     /// as few.
     std::optional<std::int64_t> wantedTriangles;
+    std::optional<AdaptiveWork> adaptiveWork;  ///< of Method::Adaptive
     std::int64_t edgesSplit = 0;  ///< edges halved because two of them joined the same two vertices
 };
 

@@ -7,6 +7,7 @@
 
 #include "adaptiso/Core/Progress.h"
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Extraction/AdaptiveWork.h"
 
 namespace adaptiso {
 
@@ -45,6 +46,7 @@ struct SimplifyStatistics {
     /// triangles when the bound (maxErrorMm), the surface's topology or what is kept does not allow
     /// as few.
     std::optional<std::int64_t> wantedTriangles;
+    AdaptiveWork work;
 };
 
 struct Simplified {

@@ -91,6 +91,7 @@ void PatchSimplifier::apply(const Change& change) {
         if (change.star.star.isOpen) patch_.marks[change.vertex] = Patch::kBorder;
         ++changes_[change.vertex];
         ++changes_[other];
+        if (!patch_.heirs.empty()) patch_.heirs[other] = change.vertex;
     }
     errors_.commit(change.star, change.samples);
     guard_.commit(change.star, change.samples.isInSingleSheet());

@@ -7,12 +7,14 @@
 #include <utility>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
 namespace {
 
+constexpr std::int64_t kPiece = 1 << 14;
 constexpr std::size_t kSlots = std::size_t{1} << 16;
 
 std::array<double, 3> barycentric(const Vec3& p, const Corners& t) {
@@ -46,7 +48,7 @@ std::size_t SurfaceMender::mendDistances(std::vector<PlaceBeyond> places) {
     prepare(places);
     const auto mended = static_cast<std::size_t>(std::count_if(
         places.begin(), places.end(), [&](const PlaceBeyond& place) { return mendPlace(place); }));
-    removeGone();
+    removeTriangles(std::exchange(gone_, {}), surface_, changes_);
     return mended;
 }
 
@@ -61,7 +63,7 @@ std::size_t SurfaceMender::mendCrossings(const std::vector<std::int64_t>& triang
         std::count_if(places.begin(), places.end(), [&](const PlaceBeyond& place) {
             return !contains(gone_, place.triangle) && mendCrossing(place.triangle);
         }));
-    removeGone();
+    removeTriangles(std::exchange(gone_, {}), surface_, changes_);
     return mended;
 }
 
@@ -116,7 +118,18 @@ void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
             mayHaveCube_[hashSlot(cube)] = true;
         });
     }
-    for (std::uint64_t t = 0; t < isNear.size(); ++t) trackCubes(t);
+    // most triangles lie in none of the cubes
+    std::vector<std::uint8_t> mayBeIn(isNear.size());
+    parallelForPieces(std::ssize(mayBeIn), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t t = begin; t < end; ++t) {
+            forEachCube(boxOf(cornersOf(t)), [&](const Index3& cube) {
+                if (mayHaveCube_[hashSlot(cube)]) mayBeIn[t] = 1;
+            });
+        }
+    });
+    for (std::uint64_t t = 0; t < isNear.size(); ++t) {
+        if (mayBeIn[t] != 0) trackCubes(t);
+    }
     for (std::uint64_t s = 0; s < surface_.sampleTriangle.size(); ++s) {
         const std::uint64_t t = surface_.sampleTriangle[s];
         if (isNear[t]) samplesOf_[t].push_back(s);
@@ -351,28 +364,6 @@ bool SurfaceMender::mayMerge(const Edge& edge) const {
     return common.size() == kShared && besideFirst.size() + besideSecond.size() >= kLeast;
 }
 
-/// Gives the numbers of triangles that are gone to the last ones.
-void SurfaceMender::removeGone() {
-    if (gone_.empty()) return;
-    std::sort(gone_.begin(), gone_.end(), std::greater());
-    std::unordered_map<std::uint64_t, std::uint64_t> renumbered;
-    for (const std::uint64_t t : gone_) {
-        const std::uint64_t last = surface_.triangles.size() - 1;
-        if (t != last) {
-            surface_.triangles[t] = surface_.triangles[last];
-            renumbered[last] = t;
-            changes_.triangles.push_back(t);
-        }
-        surface_.triangles.pop_back();
-    }
-    for (std::uint64_t& t : surface_.sampleTriangle) {
-        for (auto at = renumbered.find(t); at != renumbered.end(); at = renumbered.find(t)) {
-            t = at->second;
-        }
-    }
-    gone_.clear();
-}
-
 /// The triangle is not flat, and faces about where another one does.
 bool SurfaceMender::facesAs(const Corners& now, const Corners& before) const {
     const Vec3 area2 = areaVector2(now[0], now[1], now[2]),
@@ -502,10 +493,12 @@ std::size_t SurfaceMender::hashSlot(const Index3& cube) {
 void SurfaceMender::note(std::uint64_t triangle) {
     changes_.triangles.push_back(triangle);
     changes_.before.push_back(cornersOf(triangle));
+    changed_.push_back(surface_.triangles[triangle]);
 }
 
 /// Lists a triangle with its vertices and its cubes.
 void SurfaceMender::track(std::uint64_t triangle) {
+    changed_.push_back(surface_.triangles[triangle]);
     for (const std::uint64_t v : surface_.triangles[triangle]) {
         const auto around = around_.find(v);
         if (around != around_.end()) around->second.push_back(triangle);

@@ -39,6 +39,8 @@ public:
 
     /// Since the last call of this function.
     SurfaceChanges takeChanges() { return std::exchange(changes_, {}); }
+    /// All triangles that were changed, before and after.
+    const std::vector<SurfaceState::Triangle>& changedTriangles() const { return changed_; }
 
 private:
     using Triangle = SurfaceState::Triangle;
@@ -62,7 +64,6 @@ private:
 
     bool collapseEdge(std::uint64_t triangle, int corner, const PlaceBeyond& place);
     bool mayMerge(const Edge& edge) const;
-    void removeGone();
 
     bool facesAs(const Corners& now, const Corners& before) const;
     bool isSound(const std::vector<Corners>& triangles, const Numbers& replaced) const;
@@ -94,6 +95,7 @@ private:
     std::set<std::array<std::uint64_t, 2>> turned_;  ///< edges that were: they do not come back
 
     SurfaceChanges changes_;
+    std::vector<Triangle> changed_;
 
     // of one call
     Numbers gone_;                                       ///< triangles that collapsed

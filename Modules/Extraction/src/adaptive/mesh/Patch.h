@@ -64,6 +64,7 @@ struct Patch {
     };
     std::vector<State> states;         ///< of each point
     std::vector<std::uint32_t> marks;  ///< of each point, see SurfaceState
+    std::vector<std::uint32_t> heirs;  ///< of each point: what it was merged into; may be empty
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::uint32_t ownTriangles = 0;
 

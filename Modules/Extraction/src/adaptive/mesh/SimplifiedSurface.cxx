@@ -2,9 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <unordered_map>
 
 namespace adaptiso::detail {
+
+void removeTriangles(std::vector<std::uint64_t> gone, SurfaceState& surface,
+                     SurfaceChanges& changes) {
+    if (gone.empty()) return;
+    std::sort(gone.begin(), gone.end(), std::greater());
+    std::unordered_map<std::uint64_t, std::uint64_t> renumbered;
+    for (const std::uint64_t t : gone) {
+        const std::uint64_t last = surface.triangles.size() - 1;
+        if (t != last) {
+            surface.triangles[t] = surface.triangles[last];
+            renumbered[last] = t;
+            changes.triangles.push_back(t);
+        }
+        surface.triangles.pop_back();
+    }
+    for (std::uint64_t& t : surface.sampleTriangle) {
+        for (auto at = renumbered.find(t); at != renumbered.end(); at = renumbered.find(t)) {
+            t = at->second;
+        }
+    }
+}
 
 double costLimitFor(const CollapseCosts& costs, std::int64_t collapses) {
     // a patch stops for good at its first collapse above the limit: what counts is the largest so

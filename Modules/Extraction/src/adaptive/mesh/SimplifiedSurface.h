@@ -38,6 +38,10 @@ struct SimplifiedSurface : SurfaceState {
     std::int64_t fineTriangles = 0;   ///< of the full-resolution surface
     std::int64_t tableTriangles = 0;  ///< of it, were no loop filled from its middle
 
+    /// Of each vertex at halfway (see Halfway): the vertex that it was merged into since, or
+    /// itself. Empty: not asked for.
+    std::vector<std::uint64_t> heirs;
+
     SurfaceState& state() { return *this; }
 };
 
@@ -46,6 +50,10 @@ struct SurfaceChanges {
     std::vector<std::uint64_t> triangles;  ///< that are new or changed, or got another number
     std::vector<Corners> before;           ///< of triangles that changed or went
 };
+
+/// Gives the numbers of triangles that are gone to the last ones, and tells.
+void removeTriangles(std::vector<std::uint64_t> gone, SurfaceState& surface,
+                     SurfaceChanges& changes);
 
 /// The costs of a round's collapses, patch by patch in the order they were made.
 using CollapseCosts = std::vector<std::vector<double>>;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "adaptiso/Core/Parallel.h"
 
@@ -214,6 +215,10 @@ Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
         patch.states.push_back(surface_.states[v]);
         if (!surface_.marks.empty()) patch.marks.push_back(surface_.marks[v]);
     }
+    if (!surface_.heirs.empty()) {
+        patch.heirs.resize(members.size());
+        std::iota(patch.heirs.begin(), patch.heirs.end(), 0U);
+    }
     const auto own = triangles_.of(n);
     patch.triangles.reserve(own.size() + obstacles_[n].size());
     for (const std::uint64_t t : own) {
@@ -282,6 +287,14 @@ void PatchGroups::putBack(std::size_t n, const Patch& patch, const PatchScratch&
             surface.triangles[own[t]][c] =
                 v == Patch::kGone ? SimplifiedSurface::kGone : members[v];
         }
+    }
+}
+
+void PatchGroups::noteMerges(std::size_t n, const Patch& patch,
+                             std::vector<std::uint64_t>& mergedInto) const {
+    const auto members = vertices_.of(n);
+    for (std::size_t v = 0; v < members.size(); ++v) {
+        mergedInto[members[v]] = members[patch.heirs[v]];
     }
 }
 

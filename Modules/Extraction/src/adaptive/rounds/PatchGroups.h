@@ -137,6 +137,10 @@ public:
     /// \param scratch  as take() left it
     void putBack(std::size_t n, const Patch& patch, const PatchScratch& scratch,
                  SurfaceState& surface) const;
+    /// Says of each vertex of a patch what it was merged into.
+    /// \param mergedInto  of each vertex of the surface
+    void noteMerges(std::size_t n, const Patch& patch,
+                    std::vector<std::uint64_t>& mergedInto) const;
 
 private:
     static constexpr std::uint32_t kStraddles = 0xFFFFFFFF;

@@ -11,7 +11,18 @@
 namespace adaptiso::detail {
 namespace {
 
-void removeGone(SurfaceState& surface) {
+/// \param newVertex  of each vertex, kGone for those that are gone
+/// \param mergedInto of each vertex, what it was merged into in this round
+void passOn(const std::vector<std::uint64_t>& newVertex,
+            const std::vector<std::uint64_t>& mergedInto, std::vector<std::uint64_t>& heirs) {
+    for (std::uint64_t& heir : heirs) {
+        while (newVertex[heir] == SimplifiedSurface::kGone) heir = mergedInto[heir];
+        heir = newVertex[heir];
+    }
+}
+
+/// \param mergedInto  of each vertex, in this round; empty where the surface keeps no heirs
+void removeGone(SimplifiedSurface& surface, const std::vector<std::uint64_t>& mergedInto) {
     constexpr std::uint64_t kGone = SimplifiedSurface::kGone;
     std::vector<std::uint64_t> newTriangle(surface.triangles.size()),
         newVertex(surface.points.size(), kGone);
@@ -47,7 +58,8 @@ void removeGone(SurfaceState& surface) {
         },
         [&] {
             for (std::uint64_t& t : surface.sampleTriangle) t = newTriangle[t];
-        });
+        },
+        [&] { passOn(newVertex, mergedInto, surface.heirs); });
 }
 
 }  // namespace
@@ -90,6 +102,8 @@ PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
 void PatchRound::run(const PatchWork& work, CollapseCosts* costs) {
     if (costs != nullptr) costs->assign(groups_.count(), {});
     const std::vector<std::int64_t> quota = groups_.shares(work.mostCollapses);
+    std::vector<std::uint64_t> mergedInto;
+    if (work.collapses && !surface_.heirs.empty()) mergedInto.resize(surface_.points.size());
     tbb::enumerable_thread_specific<PatchScratch> scratches;
     parallelForPieces(
         static_cast<std::int64_t>(groups_.count()), 1, [&](std::int64_t n, std::int64_t) {
@@ -102,8 +116,9 @@ void PatchRound::run(const PatchWork& work, CollapseCosts* costs) {
             }
             if (work.fits) simplifier.fitVertices();
             groups_.putBack(n, patch, scratch, surface_);
+            if (!mergedInto.empty()) groups_.noteMerges(n, patch, mergedInto);
         });
-    if (work.collapses) removeGone(surface_);
+    if (work.collapses) removeGone(surface_, mergedInto);
 }
 
 }  // namespace adaptiso::detail

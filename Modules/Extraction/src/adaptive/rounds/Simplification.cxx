@@ -3,11 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numeric>
 
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
 namespace {
+
+/// From now on.
+void keepHeirs(SimplifiedSurface& surface) {
+    surface.heirs.resize(surface.points.size());
+    std::iota(surface.heirs.begin(), surface.heirs.end(), std::uint64_t{0});
+}
 
 /// How much the limit of cost may grow in a round: the more the farther the wanted count is.
 double costStep(std::int64_t triangles, std::int64_t target) {
@@ -55,11 +62,13 @@ Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
         if (state == Patch::State::Tried) state = Patch::State::Open;
     }
     limits_.maxDistanceMm = distanceMm;
+    keepHeirs(surface);
     return {surface.state(), rounds_, limits_.maxCost};
 }
 
 void Simplification::goOnFrom(const Halfway& halfway, SimplifiedSurface& surface) {
     surface.state() = halfway.state;
+    keepHeirs(surface);
     rounds_ = halfway.rounds;
     limits_.maxCost = halfway.cost;
     tight_.apply(frame_, surface.samples);

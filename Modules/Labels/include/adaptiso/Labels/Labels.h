@@ -36,6 +36,9 @@ struct LabelOptions {
     std::optional<std::int64_t> maxTriangles;  ///< as accurate as can be at this count. \pre >= 0
     /// Share of the full-resolution triangles to drop, 0 to 1: a count by another name.
     std::optional<double> reduction;
+    /// No angle below it is made: where walls at full resolution have a smaller one, none that is
+    /// smaller still. \pre 0 to 40
+    double minAngleDeg = 0;
     /// The regions whose walls are wanted, each label once; empty: all. They are what the whole map
     /// has, wherever the other side's label is wanted or not.
     std::vector<Label> labels;

@@ -20,7 +20,7 @@ namespace adaptiso {
 /// one may. \param range  of the volume's samples
 std::optional<std::string> isovalueFault(double isovalue, const ValueRange& range);
 
-/// What measuring a surface against that of marching cubes has found.
+/// What measuring a surface against the one at full resolution has found.
 struct Verification {
     std::int64_t samples = 0;  ///< points at which distances were measured, both ways
     double maxMm = 0;          ///< the largest of them

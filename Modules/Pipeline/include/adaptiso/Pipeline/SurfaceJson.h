@@ -22,6 +22,9 @@ Json imageJson(const std::string& format, const ImageGeometry& geometry, PixelTy
 Json surfaceOptionsJson(const ExtractionOptions& extraction, const IndexOptions& index,
                         const ComponentSelection& selection);
 
+/// `adaptive` of an entry of `surfaces`.
+Json workJson(const AdaptiveWork& work);
+
 /// An entry of `surfaces`, without its `output`.
 Json surfaceJson(const SurfaceRecord& surface, Method method, int blockSize);
 

@@ -1,0 +1,295 @@
+#include "adaptive/mending/LocalUndo.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <set>
+#include <span>
+#include <tuple>
+
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptive/Parameters.h"
+#include "adaptive/proof/PieceBound.h"
+
+namespace adaptiso::detail {
+namespace {
+
+/// The edge across from a vertex in one of its triangles.
+struct Link {
+    std::uint64_t vertex, from, to;
+};
+
+/// How the triangles around a vertex hang together.
+enum class Fan : std::uint8_t { Closed, Open, Broken };
+
+struct VertexFan {
+    std::uint64_t vertex;
+    Fan fan;
+    friend auto operator<=>(const VertexFan&, const VertexFan&) = default;
+};
+
+/// \param links  of one vertex, by where they start
+Fan fanOf(std::span<const Link> links) {
+    std::vector<std::uint64_t> ends;
+    for (const Link& link : links) ends.push_back(link.to);
+    std::sort(ends.begin(), ends.end());
+    const auto sameStart = [](const Link& a, const Link& b) { return a.from == b.from; };
+    if (std::adjacent_find(ends.begin(), ends.end()) != ends.end() ||
+        std::adjacent_find(links.begin(), links.end(), sameStart) != links.end()) {
+        return Fan::Broken;
+    }
+    const auto begin = std::find_if(links.begin(), links.end(), [&](const Link& link) {
+        return !std::binary_search(ends.begin(), ends.end(), link.from);
+    });
+    const auto first = begin == links.end() ? links.begin() : begin;
+    std::size_t seen = 0;
+    auto at = first;
+    do {
+        ++seen;
+        const std::uint64_t to = at->to;
+        at = std::lower_bound(links.begin(), links.end(), to,
+                              [](const Link& link, std::uint64_t v) { return link.from < v; });
+        if (at == links.end() || at->from != to) at = links.end();
+    } while (at != links.end() && at != first);
+    if (seen != links.size()) return Fan::Broken;
+    return at == first ? Fan::Closed : Fan::Open;
+}
+
+/// By vertex.
+std::vector<VertexFan> fansOf(std::vector<Link> links) {
+    std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) {
+        return std::tie(a.vertex, a.from, a.to) < std::tie(b.vertex, b.from, b.to);
+    });
+    std::vector<VertexFan> fans;
+    for (std::size_t i = 0, j = 0; i < links.size(); i = j) {
+        while (j < links.size() && links[j].vertex == links[i].vertex) ++j;
+        fans.push_back({links[i].vertex, fanOf(std::span(links).subspan(i, j - i))});
+    }
+    return fans;
+}
+
+/// \param isMeant  says of a vertex whether its links are wanted
+template <class IsMeant>
+void addLinks(const SurfaceState::Triangle& t, const IsMeant& isMeant, std::vector<Link>& links) {
+    for (int c = 0; c < 3; ++c) {
+        if (isMeant(t[c])) links.push_back({t[c], t[(c + 1) % 3], t[(c + 2) % 3]});
+    }
+}
+
+Index3 cubeOf(const Vec3& p, double side) {
+    return {static_cast<std::int64_t>(std::floor(p.x / side)),
+            static_cast<std::int64_t>(std::floor(p.y / side)),
+            static_cast<std::int64_t>(std::floor(p.z / side))};
+}
+
+}  // namespace
+
+std::optional<SurfaceChanges> LocalUndo::around(const std::vector<Triangle>& mended,
+                                                const Numbers& seeds,
+                                                const std::vector<Vec3>& places, double reachMm) {
+    DisjointSets sets(std::ssize(surface_.points));
+    const auto number = [](std::uint64_t v) { return static_cast<std::int64_t>(v); };
+    for (const Triangle& t : mended) {
+        sets.join(number(t[0]), number(t[1]));
+        sets.join(number(t[0]), number(t[2]));
+    }
+    std::vector<bool> isChosen(surface_.points.size());
+    Numbers more = verticesAround(seeds, places, reachMm);
+    const double most = kMostUndone * static_cast<double>(start_.points.size());
+    for (int widening = 0; widening < kMostWidenings; ++widening) {
+        for (const std::uint64_t v : more) isChosen[sets.find(number(v))] = true;
+        choose(isChosen, sets);
+        if (!hasMerges() || static_cast<double>(apart_.size()) > most) return {};
+        makeTriangles();
+        more = faults();
+        if (more.empty()) return apply();
+    }
+    return {};
+}
+
+LocalUndo::Numbers LocalUndo::verticesAround(const Numbers& seeds, const std::vector<Vec3>& places,
+                                             double reachMm) const {
+    Numbers vertices;
+    for (const std::uint64_t t : seeds) {
+        vertices.insert(vertices.end(), surface_.triangles[t].begin(), surface_.triangles[t].end());
+    }
+    std::set<Index3> cubes;
+    for (const Vec3& place : places) {
+        const Index3 cube = cubeOf(place, reachMm);
+        for (int n = 0; n < 27; ++n) {
+            cubes.insert({cube[0] + n % 3 - 1, cube[1] + n / 3 % 3 - 1, cube[2] + n / 9 - 1});
+        }
+    }
+    for (std::uint64_t v = 0; v < surface_.points.size(); ++v) {
+        if (cubes.contains(cubeOf(surface_.points[v], reachMm))) vertices.push_back(v);
+    }
+    return vertices;
+}
+
+/// \param isChosen  of each set, at its name
+void LocalUndo::choose(const std::vector<bool>& isChosen, DisjointSets& sets) {
+    comesApart_.resize(isChosen.size());
+    for (std::size_t v = 0; v < isChosen.size(); ++v) {
+        comesApart_[v] = isChosen[sets.find(static_cast<std::int64_t>(v))];
+    }
+    apart_.clear();
+    numbers_ = surface_.heirs;
+    for (std::size_t v = 0; v < numbers_.size(); ++v) {
+        if (!comesApart_[surface_.heirs[v]]) continue;
+        numbers_[v] = surface_.points.size() + apart_.size();
+        apart_.push_back(v);
+    }
+}
+
+/// Some of what comes apart share an heir.
+bool LocalUndo::hasMerges() const {
+    std::vector<bool> isTaken(surface_.points.size());
+    return std::any_of(apart_.begin(), apart_.end(), [&](std::uint64_t v) {
+        const std::uint64_t heir = surface_.heirs[v];
+        const bool isShared = isTaken[heir];
+        isTaken[heir] = true;
+        return isShared;
+    });
+}
+
+/// Those of the start that have a vertex that comes apart, and do not vanish by the merges that
+/// stay.
+void LocalUndo::makeTriangles() {
+    fresh_.clear();
+    origin_.clear();
+    for (std::uint64_t t = 0; t < start_.triangles.size(); ++t) {
+        if (!isTouched(heirsOf(start_.triangles[t]))) continue;
+        const auto [a, b, c] = start_.triangles[t];
+        const Triangle now{numbers_[a], numbers_[b], numbers_[c]};
+        if (now[0] == now[1] || now[1] == now[2] || now[2] == now[0]) continue;
+        fresh_.push_back(now);
+        origin_.push_back(t);
+    }
+}
+
+/// The surface's vertices that have to come apart as well: the triangles around each vertex are to
+/// hang together as they do in the surface, or did at the start.
+LocalUndo::Numbers LocalUndo::faults() const {
+    const std::uint64_t old = surface_.points.size();
+    std::vector<bool> isBeside(old);
+    for (const Triangle& t : fresh_) {
+        for (const std::uint64_t v : t) {
+            if (!isOfStart(v)) isBeside[v] = true;
+        }
+    }
+    std::vector<Link> before, after;
+    const auto isBesideOne = [&](std::uint64_t v) { return !isOfStart(v) && isBeside[v]; };
+    for (const Triangle& t : surface_.triangles) {
+        addLinks(t, isBesideOne, before);
+        if (!isTouched(t)) addLinks(t, isBesideOne, after);
+    }
+    for (const Triangle& t : fresh_) {
+        addLinks(
+            t, [](std::uint64_t) { return true; }, after);
+    }
+    for (const Triangle& t : start_.triangles) {
+        for (int c = 0; c < 3; ++c) {
+            const std::uint64_t v = numbers_[t[c]];
+            if (isOfStart(v)) before.push_back({v, t[(c + 1) % 3], t[(c + 2) % 3]});
+        }
+    }
+    const std::vector<VertexFan> wanted = fansOf(std::move(before)),
+                                 made = fansOf(std::move(after));
+    std::vector<VertexFan> different;
+    std::set_difference(wanted.begin(), wanted.end(), made.begin(), made.end(),
+                        std::back_inserter(different));
+    Numbers vertices = flatCorners();
+    std::vector<bool> isFaulty(old + apart_.size());
+    for (const VertexFan& fan : different) isFaulty[fan.vertex] = true;
+    for (const Triangle& t : start_.triangles) {
+        const bool isAt =
+            isFaulty[numbers_[t[0]]] || isFaulty[numbers_[t[1]]] || isFaulty[numbers_[t[2]]];
+        if (!isAt) continue;
+        for (const std::uint64_t v : heirsOf(t)) {
+            if (!comesApart_[v]) vertices.push_back(v);
+        }
+    }
+    return vertices;
+}
+
+/// Of triangles between start and surface.
+LocalUndo::Numbers LocalUndo::flatCorners() const {
+    Numbers corners;
+    for (const Triangle& t : fresh_) {
+        const Vec3 a = pointOf(t[0]), b = pointOf(t[1]), c = pointOf(t[2]);
+        const double longest =
+            std::max({squaredNorm(b - a), squaredNorm(c - b), squaredNorm(a - c)});
+        if (norm(areaVector2(a, b, c)) > kFlatTriangle * longest) continue;
+        for (const std::uint64_t v : t) {
+            if (!isOfStart(v)) corners.push_back(v);
+        }
+    }
+    return corners;
+}
+
+SurfaceChanges LocalUndo::apply() {
+    SurfaceChanges changes;
+    Numbers removed, numbers;
+    for (std::uint64_t t = 0; t < surface_.triangles.size(); ++t) {
+        if (!isTouched(surface_.triangles[t])) continue;
+        removed.push_back(t);
+        const auto [a, b, c] = surface_.triangles[t];
+        changes.before.push_back({surface_.points[a], surface_.points[b], surface_.points[c]});
+    }
+    for (std::size_t i = 0; i < apart_.size(); ++i) {
+        const std::uint64_t v = apart_[i];
+        surface_.heirs[v] = surface_.points.size();
+        surface_.points.push_back(start_.points[v]);
+        surface_.quadrics.push_back(start_.quadrics[v]);
+        surface_.states.push_back(start_.states[v]);
+        if (!surface_.marks.empty()) surface_.marks.push_back(start_.marks[v]);
+    }
+    for (std::size_t i = 0; i < fresh_.size(); ++i) {
+        numbers.push_back(i < removed.size() ? removed[i] : surface_.triangles.size());
+        if (numbers[i] == surface_.triangles.size()) surface_.triangles.emplace_back();
+        surface_.triangles[numbers[i]] = fresh_[i];
+    }
+    changes.triangles = numbers;
+    handOver(removed, numbers);
+    if (removed.size() > fresh_.size()) {
+        removed.erase(removed.begin(), removed.begin() + std::ssize(fresh_));
+        removeTriangles(std::move(removed), surface_, changes);
+    }
+    return changes;
+}
+
+/// Gives samples to the triangles of the start that they had there, or to the nearest.
+void LocalUndo::handOver(const Numbers& removed, const Numbers& numbers) {
+    std::vector<bool> isRemoved(surface_.triangles.size());
+    for (const std::uint64_t t : removed) isRemoved[t] = true;
+    for (std::size_t s = 0; s < surface_.sampleTriangle.size(); ++s) {
+        if (!isRemoved[surface_.sampleTriangle[s]]) continue;
+        const std::uint64_t before = start_.sampleTriangle[s];
+        const auto at = std::lower_bound(origin_.begin(), origin_.end(), before);
+        const bool isThere = at != origin_.end() && *at == before && isWhole(before);
+        surface_.sampleTriangle[s] =
+            numbers[isThere ? at - origin_.begin() : nearestFresh(surface_.samples[s].point())];
+    }
+}
+
+/// All corners of one of the start's triangles came apart.
+bool LocalUndo::isWhole(std::uint64_t triangle) const {
+    const Triangle& corners = start_.triangles[triangle];
+    return std::all_of(corners.begin(), corners.end(), [&](std::uint64_t v) {
+        return std::binary_search(apart_.begin(), apart_.end(), v);
+    });
+}
+
+std::ptrdiff_t LocalUndo::nearestFresh(const Vec3& p) const {
+    const auto squaredTo = [&](const Triangle& t) {
+        return squaredDistanceToTriangle(
+            p, {surface_.points[t[0]], surface_.points[t[1]], surface_.points[t[2]]});
+    };
+    return std::min_element(
+               fresh_.begin(), fresh_.end(),
+               [&](const Triangle& t, const Triangle& u) { return squaredTo(t) < squaredTo(u); }) -
+           fresh_.begin();
+}
+
+}  // namespace adaptiso::detail

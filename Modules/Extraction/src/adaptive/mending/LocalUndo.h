@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "adaptiso/Core/DisjointSets.h"
+#include "adaptive/mesh/SimplifiedSurface.h"
+
+namespace adaptiso::detail {
+
+/// Takes a simplification back around places that mending did not help, and nowhere else.
+///
+/// Progressive meshes keep their history as a list of vertex splits [Hoppe1996]. Here each vertex
+/// of the surface that the rounds started from only knows its heir, the vertex that it was merged
+/// into. Where all that share an heir come apart again the surface is that of the start; beside it
+/// both surfaces are joined by triangles that have corners of both. More comes apart where that
+/// would not leave a 2-manifold with the same borders.
+class LocalUndo {
+public:
+    /// \param start    the surface's state before the rounds that its heirs tell of
+    LocalUndo(const SurfaceState& start, SimplifiedSurface& surface)
+        : start_(start), surface_(surface) {}
+
+    /// \param mended   triangles that were changed besides, before and after: their corners come
+    ///                 apart together
+    /// \param seeds    triangles of the surface
+    /// \param places   in the metric frame
+    /// \param reachMm  how far around the places vertices come apart; at least the seeds' corners
+    /// \return what it changed; nothing when no vertex would come apart, or too many
+    std::optional<SurfaceChanges> around(const std::vector<SurfaceState::Triangle>& mended,
+                                         const std::vector<std::uint64_t>& seeds,
+                                         const std::vector<Vec3>& places, double reachMm);
+
+private:
+    using Triangle = SurfaceState::Triangle;
+    using Numbers = std::vector<std::uint64_t>;
+
+    Numbers verticesAround(const Numbers& seeds, const std::vector<Vec3>& places,
+                           double reachMm) const;
+    void choose(const std::vector<bool>& isChosen, DisjointSets& sets);
+    bool hasMerges() const;
+    void makeTriangles();
+    Numbers faults() const;
+    Numbers flatCorners() const;
+    SurfaceChanges apply();
+    void handOver(const Numbers& removed, const Numbers& numbers);
+    bool isWhole(std::uint64_t triangle) const;
+    std::ptrdiff_t nearestFresh(const Vec3& p) const;
+
+    bool isTouched(const Triangle& t) const {
+        return comesApart_[t[0]] || comesApart_[t[1]] || comesApart_[t[2]];
+    }
+    Triangle heirsOf(const Triangle& t) const {
+        return {surface_.heirs[t[0]], surface_.heirs[t[1]], surface_.heirs[t[2]]};
+    }
+    bool isOfStart(std::uint64_t vertex) const { return vertex >= surface_.points.size(); }
+    Vec3 pointOf(std::uint64_t vertex) const {
+        return isOfStart(vertex) ? start_.points[apart_[vertex - surface_.points.size()]]
+                                 : surface_.points[vertex];
+    }
+
+    const SurfaceState& start_;
+    SimplifiedSurface& surface_;
+    // of one call
+    std::vector<bool> comesApart_;  ///< each vertex of the surface
+    /// The start's vertices that return, ascending. They get the numbers after the surface's.
+    Numbers apart_;
+    Numbers numbers_;              ///< of each vertex of the start, in what is made
+    std::vector<Triangle> fresh_;  ///< triangles to add
+    Numbers origin_;               ///< the start's triangle, of each of them, ascending
+};
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,428 @@
+#include "WholeWalls.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "IdNumbers.h"
+#include "WallCollapser.h"
+#include "WallMender.h"
+#include "adaptiso/Core/Buckets.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
+
+namespace adaptiso::detail {
+namespace {
+
+using Id = std::uint32_t;
+constexpr Id kNone = IdNumbers::kNone;
+constexpr std::int64_t kPiece = 8192;
+
+/// Collapses edges, cheapest first, until one limit of cost after the other is used up.
+void collapseAll(WallCollapser& collapser, double limitMm, std::int64_t enough) {
+    constexpr double kLowCost = 4e-4, kHighCost = 30, kStep = 6;
+    const double h = collapser.voxelMm();
+    for (double cost = kLowCost; cost < kHighCost; cost *= kStep) {
+        collapser.round(cost * h * h * h * h, limitMm, enough);
+        if (collapser.mesh().aliveTriangles() <= enough) return;
+    }
+}
+
+/// \return  the bound reached, mm
+double simplifyPatch(WallCollapser& collapser, const WallAim& aim) {
+    double limitMm = aim.limitMm;
+    collapseAll(collapser, limitMm, aim.enough);
+    constexpr int kMostDoublings = 12;
+    for (int n = 0; aim.mayGrow && n < kMostDoublings; ++n) {
+        if (collapser.mesh().aliveTriangles() <= aim.enough) break;
+        limitMm *= 2;
+        collapser.tryAllAgain();
+        collapseAll(collapser, limitMm, aim.enough);
+    }
+    // what is taken back collapses again, held tighter; in the end it stays
+    constexpr int kMostTries = 4;
+    WallMender mender(collapser, limitMm, aim.mayGrow);
+    for (int n = 0; mender.mend(); ++n) {
+        if (n < kMostTries) collapseAll(collapser, limitMm, aim.enough);
+    }
+    return mender.boundMm();
+}
+
+/// No edge at the vertex was left out because an end of it was frozen.
+bool isTried(const WallCollapser& collapser, Id v) {
+    const WallMesh& mesh = collapser.mesh();
+    for (const Id t : mesh.around(v)) {
+        for (const Id x : mesh.triangle(t).v) {
+            if (collapser.isFrozen(x)) return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+CubeCut::CubeCut(const Index3& size, double side, bool isShifted) : shift_(isShifted ? 0.5 : 0) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto length = static_cast<double>(size[axis] + 1);
+        const double parts = std::max(1.0, std::round(length / side));
+        side_[axis] = length / parts;
+        count_[axis] = static_cast<std::int64_t>(parts) + (isShifted && parts > 1 ? 1 : 0);
+    }
+}
+
+std::int64_t CubeCut::along(int axis, double x) const {
+    const auto n = static_cast<std::int64_t>(std::floor((x + 1) / side_[axis] + shift_));
+    return std::clamp<std::int64_t>(n, 0, count_[axis] - 1);
+}
+
+Vec3 CubeCut::lowOf(std::int64_t number) const {
+    const Index3 cube = indexOf(number);
+    Vec3 low;
+    for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = cube[axis] == 0 ? -std::numeric_limits<double>::infinity()
+                                    : (static_cast<double>(cube[axis]) - shift_) * side_[axis] - 1;
+    }
+    return low;
+}
+
+Vec3 CubeCut::highOf(std::int64_t number) const {
+    const Index3 cube = indexOf(number);
+    Vec3 high;
+    for (int axis = 0; axis < 3; ++axis) {
+        high[axis] = cube[axis] == count_[axis] - 1
+                         ? std::numeric_limits<double>::infinity()
+                         : (static_cast<double>(cube[axis]) + 1 - shift_) * side_[axis] - 1;
+    }
+    return high;
+}
+
+/// What lies in each cube.
+struct WholeWalls::Lists {
+    std::vector<Id> cubeOf;           ///< of each vertex
+    std::vector<std::uint8_t> isOwn;  ///< of each triangle: in one cube
+    Buckets<Id> own;                  ///< triangles in a cube
+    Buckets<Id> beside;               ///< triangles that reach into it
+    Buckets<Id> full;                 ///< triangles of the full walls in it or near
+    Buckets<Id> samples;              ///< of each triangle
+};
+
+/// What things of a patch are called in the whole.
+struct WholeWalls::Numbers {
+    IdNumbers vertices, triangles;          ///< of the walls as they are
+    IdNumbers fullVertices, fullTriangles;  ///< of the full ones
+    std::size_t ownTriangles = 0;           ///< come first
+};
+
+/// What became of the walls in a cube.
+struct WholeWalls::Made {
+    std::vector<Vec3> points;
+    std::vector<WallKind> kinds;
+    std::vector<Quadric> quadrics;
+    std::vector<Id> origins;
+    std::vector<std::uint8_t> isTried;
+    std::vector<Id> were;                 ///< their numbers before; kNone: new
+    std::vector<WallTriangle> triangles;  ///< by these points
+    struct Sample {
+        Id sample;
+        SampleHome home;  ///< one of these triangles,
+        bool isInCube;    ///< or one that reaches out of the cube, by its number before
+    };
+    std::vector<Sample> samples;
+    double boundMm = 0;
+};
+
+WholeWalls::WholeWalls(LabelComplex&& full, const ImageGeometry& geometry)
+    : geometry_(geometry),
+      toIndex_(inverse(geometry.indexToPhysical)),
+      fullPoints_(std::move(full.points)),
+      full_(full.triangles.size()) {
+    if (full.triangles.size() > kNone / 8) {
+        throw InvalidInput("extractLabels: too many triangles to simplify: " +
+                           std::to_string(full.triangles.size()));
+    }
+    std::map<std::array<Label, 2>, Id> numbers;
+    std::array<Label, 2> last{};
+    Id wall = kNone;
+    for (std::size_t t = 0; t < full_.size(); ++t) {
+        if (wall == kNone || full.labels[t] != last) {
+            last = full.labels[t];
+            const auto [at, isNew] = numbers.try_emplace(last, static_cast<Id>(walls_.size()));
+            if (isNew) walls_.push_back(last);
+            wall = at->second;
+        }
+        full_[t].wall = wall;
+        for (int c = 0; c < 3; ++c) full_[t].v[c] = static_cast<Id>(full.triangles[t][c]);
+    }
+    full = {};
+    homes_.resize(fullPoints_.size() + full_.size());
+    for (Id t = 0; t < full_.size(); ++t) homes_[fullPoints_.size() + t].triangle = t;
+}
+
+WholeWalls::Lists WholeWalls::listsOf(const CubeCut& cut, const WallAim& aim) const {
+    Lists lists;
+    const std::vector<Vec3>& at = points();
+    const std::vector<WallTriangle>& all = triangles();
+    const auto cubes = static_cast<std::size_t>(cut.count());
+    lists.cubeOf.resize(at.size());
+    const auto count = [](const auto& of) { return static_cast<std::int64_t>(of.size()); };
+    parallelForPieces(count(at), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t v = begin; v < end; ++v) {
+            lists.cubeOf[v] = static_cast<Id>(cut.number(cut.cubeOf(toIndex(at[v]))));
+        }
+    });
+    lists.isOwn.resize(all.size());
+    for (std::size_t t = 0; t < all.size(); ++t) {
+        const auto& v = all[t].v;
+        lists.isOwn[t] =
+            lists.cubeOf[v[0]] == lists.cubeOf[v[1]] && lists.cubeOf[v[0]] == lists.cubeOf[v[2]]
+                ? 1
+                : 0;
+    }
+    lists.own.assign(cubes, [&](const auto& give) {
+        for (Id t = 0; t < all.size(); ++t) {
+            if (lists.isOwn[t] != 0) give(lists.cubeOf[all[t].v[0]], t);
+        }
+    });
+    const auto giveReached = [&](const std::vector<Vec3>& corners, const WallTriangle& triangle,
+                                 double around, Id t, const auto& give) {
+        CornerBox box = boxOf({toIndex(corners[triangle.v[0]]), toIndex(corners[triangle.v[1]]),
+                               toIndex(corners[triangle.v[2]])});
+        box.widen(around);
+        const Index3 first = cut.cubeOf(box.low), last = cut.cubeOf(box.high);
+        for (std::int64_t k = first[2]; k <= last[2]; ++k) {
+            for (std::int64_t j = first[1]; j <= last[1]; ++j) {
+                for (std::int64_t i = first[0]; i <= last[0]; ++i) give(cut.number({i, j, k}), t);
+            }
+        }
+    };
+    lists.beside.assign(cubes, [&](const auto& give) {
+        for (Id t = 0; t < all.size(); ++t) {
+            if (lists.isOwn[t] == 0) giveReached(at, all[t], 0, t, give);
+        }
+    });
+    if (isFull()) return lists;
+    // what a collapse looks at lies within the limit, or is a neighbour of that
+    const Vec3 spacing = geometry_.spacingMm();
+    const double around = 4 + 2 * aim.limitMm / std::min({spacing.x, spacing.y, spacing.z});
+    lists.full.assign(cubes, [&](const auto& give) {
+        for (Id t = 0; t < full_.size(); ++t) giveReached(fullPoints_, full_[t], around, t, give);
+    });
+    lists.samples.assign(all.size(), [&](const auto& give) {
+        for (Id s = 0; s < homes_.size(); ++s) {
+            if (homes_[s].triangle != kNone) give(homes_[s].triangle, s);
+        }
+    });
+    return lists;
+}
+
+WallPatch WholeWalls::patchOf(const CubeCut& cut, const Lists& lists, std::int64_t cube,
+                              Numbers& numbers) const {
+    WallPatch patch;
+    patch.low = cut.lowOf(cube);
+    patch.high = cut.highOf(cube);
+    std::vector<WallTriangle> local;
+    const auto add = [&](Id t) {
+        numbers.triangles.numberOf(t);
+        WallTriangle triangle = triangles()[t];
+        for (Id& v : triangle.v) v = numbers.vertices.numberOf(v);
+        local.push_back(triangle);
+    };
+    for (const Id t : lists.own.of(cube)) add(t);
+    numbers.ownTriangles = local.size();
+    for (const Id t : lists.beside.of(cube)) add(t);
+    std::vector<Vec3> corners;
+    for (const Id v : numbers.vertices.ids()) {
+        corners.push_back(points()[v]);
+        patch.isOwn.push_back(lists.cubeOf[v] == cube ? 1 : 0);
+        patch.isFrozen.push_back(lists.cubeOf[v] == cube ? 0 : 1);
+    }
+    for (std::size_t t = numbers.ownTriangles; t < local.size(); ++t) {
+        for (const Id v : local[t].v) patch.isFrozen[v] = 1;
+    }
+    if (isFull()) {
+        patch.fullPoints = std::move(corners);
+        patch.fullTriangles = std::move(local);
+        return patch;
+    }
+    patch.points = std::move(corners);
+    patch.triangles = std::move(local);
+    addFull(lists, cube, patch, numbers);
+    return patch;
+}
+
+/// What a patch needs of the full walls, where the walls are no longer these.
+void WholeWalls::addFull(const Lists& lists, std::int64_t cube, WallPatch& patch,
+                         Numbers& numbers) const {
+    const auto addTriangle = [&](Id t) {
+        if (numbers.fullTriangles.find(t) != kNone) return;
+        numbers.fullTriangles.numberOf(t);
+        WallTriangle triangle = full_[t];
+        for (Id& v : triangle.v) v = numbers.fullVertices.numberOf(v);
+        patch.fullTriangles.push_back(triangle);
+    };
+    const auto vertices = static_cast<Id>(fullPoints_.size());
+    for (const Id t : lists.full.of(cube)) addTriangle(t);
+    for (const Id t : lists.own.of(cube)) {
+        for (const Id s : lists.samples.of(t)) {
+            if (s >= vertices) {
+                addTriangle(s - vertices);
+            } else {
+                numbers.fullVertices.numberOf(s);
+            }
+        }
+    }
+    const auto addHome = [&](Id sample) {
+        SampleHome home = homes_[sample];
+        if (home.triangle != kNone) home.triangle = numbers.triangles.find(home.triangle);
+        patch.homes.push_back(home);
+    };
+    for (const Id v : numbers.fullVertices.ids()) {
+        patch.fullPoints.push_back(fullPoints_[v]);
+        addHome(v);
+    }
+    for (const Id t : numbers.fullTriangles.ids()) addHome(vertices + t);
+    for (std::size_t n = 0; n < patch.points.size(); ++n) {
+        const Id v = numbers.vertices.ids()[n];
+        patch.kinds.push_back(kinds_[v]);
+        patch.quadrics.push_back(quadrics_[v]);
+        patch.isTried.push_back(isTried_[v]);
+        patch.origins.push_back(origins_[v] == kNone ? kNone
+                                                     : numbers.fullVertices.find(origins_[v]));
+        if (patch.origins.back() == kNone) patch.isFrozen[n] = 1;
+    }
+}
+
+WholeWalls::Made WholeWalls::simplifyOne(const CubeCut& cut, const Lists& lists, std::int64_t cube,
+                                         const WallAim& aim) const {
+    Made made;
+    if (lists.own.of(cube).empty() && lists.beside.of(cube).empty()) return made;
+    Numbers numbers;
+    const WallPatch patch = patchOf(cut, lists, cube, numbers);
+    WallCollapser collapser(patch, geometry_, aim.minAngleDeg);
+    made.boundMm = simplifyPatch(collapser, aim);
+    const WallMesh& mesh = collapser.mesh();
+    const Id firstPoint = mesh.firstPoint(), firstTriangle = mesh.firstTriangle();
+    const IdNumbers& fullVertices = isFull() ? numbers.vertices : numbers.fullVertices;
+    const IdNumbers& fullTriangles = isFull() ? numbers.triangles : numbers.fullTriangles;
+    std::vector<Id> newVertex(mesh.pointCount(), kNone), newTriangle(mesh.triangleCount(), kNone);
+    const auto olds = static_cast<Id>(numbers.vertices.ids().size());
+    for (Id v = firstPoint; v < mesh.pointCount(); ++v) {
+        if (!mesh.isAlive(v) || !collapser.isOwn(v)) continue;
+        newVertex[v] = static_cast<Id>(made.points.size());
+        made.points.push_back(mesh.point(v));
+        made.kinds.push_back(mesh.kind(v));
+        made.isTried.push_back(isTried(collapser, v) ? 1 : 0);
+        made.quadrics.push_back(collapser.quadricOf(v));
+        const Id origin = collapser.originOf(v);
+        made.origins.push_back(origin == kNone ? kNone : fullVertices.ids()[origin]);
+        made.were.push_back(v - firstPoint < olds ? numbers.vertices.ids()[v - firstPoint] : kNone);
+    }
+    for (Id t = firstTriangle; t < mesh.triangleCount(); ++t) {
+        WallTriangle triangle = mesh.triangle(t);
+        const bool isIn = std::all_of(triangle.v.begin(), triangle.v.end(),
+                                      [&](Id v) { return collapser.isOwn(v); });
+        if (!mesh.isTriangleAlive(t) || !isIn) continue;
+        for (Id& v : triangle.v) v = newVertex[v];
+        newTriangle[t] = static_cast<Id>(made.triangles.size());
+        made.triangles.push_back(triangle);
+    }
+    const auto samplePoints = static_cast<Id>(patch.fullPoints.size());
+    const auto samples = samplePoints + static_cast<Id>(patch.fullTriangles.size());
+    for (Id s = 0; s < samples; ++s) {
+        // those that this cube alone can have moved
+        const bool isMine = !isFull()          ? patch.homes[s].triangle < numbers.ownTriangles
+                            : s < samplePoints ? patch.isOwn[s] != 0
+                                               : s - samplePoints < numbers.ownTriangles;
+        SampleHome home = collapser.homeOf(s);
+        if (!isMine || home.triangle == kNone) continue;
+        const bool isInCube = newTriangle[home.triangle] != kNone;
+        home.triangle = isInCube ? newTriangle[home.triangle]
+                                 : numbers.triangles.ids()[home.triangle - firstTriangle];
+        const Id sample = s < samplePoints ? fullVertices.ids()[s]
+                                           : static_cast<Id>(fullPoints_.size()) +
+                                                 fullTriangles.ids()[s - samplePoints];
+        made.samples.push_back({sample, home, isInCube});
+    }
+    return made;
+}
+
+void WholeWalls::join(const Lists& lists, std::vector<Made>& made) {
+    std::size_t vertices = 0, inCubes = 0;
+    for (const Made& each : made) {
+        vertices += each.points.size();
+        inCubes += each.triangles.size();
+    }
+    std::vector<Vec3> newPoints;
+    std::vector<WallTriangle> newTriangles;
+    std::vector<Id> vertexNow(points().size(), kNone), triangleNow(triangles().size(), kNone);
+    std::vector<Id> triangleBases;
+    newPoints.reserve(vertices);
+    kinds_.clear(), quadrics_.clear(), origins_.clear(), isTried_.clear();
+    for (Made& each : made) {
+        const auto base = static_cast<Id>(newPoints.size());
+        for (std::size_t v = 0; v < each.points.size(); ++v) {
+            if (each.were[v] != kNone) vertexNow[each.were[v]] = base + static_cast<Id>(v);
+        }
+        newPoints.insert(newPoints.end(), each.points.begin(), each.points.end());
+        kinds_.insert(kinds_.end(), each.kinds.begin(), each.kinds.end());
+        quadrics_.insert(quadrics_.end(), each.quadrics.begin(), each.quadrics.end());
+        origins_.insert(origins_.end(), each.origins.begin(), each.origins.end());
+        isTried_.insert(isTried_.end(), each.isTried.begin(), each.isTried.end());
+        triangleBases.push_back(static_cast<Id>(newTriangles.size()));
+        for (WallTriangle t : each.triangles) {
+            for (Id& v : t.v) v += base;
+            newTriangles.push_back(t);
+        }
+        const std::vector<Made::Sample> samples = std::move(each.samples);
+        each = {};
+        each.samples = samples;
+    }
+    for (std::size_t t = 0; t < lists.isOwn.size(); ++t) {
+        if (lists.isOwn[t] != 0) continue;
+        WallTriangle triangle = triangles()[t];
+        for (Id& v : triangle.v) v = vertexNow[v];
+        triangleNow[t] = static_cast<Id>(newTriangles.size());
+        newTriangles.push_back(triangle);
+    }
+    for (SampleHome& home : homes_) {
+        if (home.triangle != kNone) home.triangle = triangleNow[home.triangle];
+    }
+    for (std::size_t n = 0; n < made.size(); ++n) {
+        for (const Made::Sample& sample : made[n].samples) {
+            homes_[sample.sample] = sample.home;
+            Id& triangle = homes_[sample.sample].triangle;
+            triangle = sample.isInCube ? triangleBases[n] + triangle : triangleNow[triangle];
+        }
+    }
+    points_ = std::move(newPoints);
+    triangles_ = std::move(newTriangles);
+}
+
+double WholeWalls::simplify(const CubeCut& cut, const WallAim& aim) {
+    const Lists lists = listsOf(cut, aim);
+    std::vector<Made> made(cut.count());
+    parallelForPieces(cut.count(), 1, [&](std::int64_t cube, std::int64_t) {
+        made[cube] = simplifyOne(cut, lists, cube, aim);
+    });
+    double boundMm = aim.limitMm;
+    for (const Made& each : made) boundMm = std::max(boundMm, each.boundMm);
+    join(lists, made);
+    return boundMm;
+}
+
+LabelComplex WholeWalls::complex() const {
+    LabelComplex out;
+    out.points = points();
+    out.triangles.reserve(triangles().size());
+    out.labels.reserve(triangles().size());
+    for (const WallTriangle& t : triangles()) {
+        out.triangles.push_back({t.v[0], t.v[1], t.v[2]});
+        out.labels.push_back(walls_[t.wall]);
+    }
+    return out;
+}
+
+}  // namespace adaptiso::detail

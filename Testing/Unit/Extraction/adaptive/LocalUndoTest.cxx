@@ -1,0 +1,202 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "Support/Meshes.h"
+#include "Support/Soundness.h"
+#include "Surfaces.h"
+#include "adaptive/mending/LocalUndo.h"
+#include "adaptive/mending/SurfaceMender.h"
+#include "adaptive/proof/PieceBound.h"
+#include "adaptive/rounds/PatchRound.h"
+
+namespace adaptiso::testing {
+namespace {
+
+using detail::SurfaceState;
+using Triangle = SurfaceState::Triangle;
+
+constexpr double kRadius = 10;
+
+/// A sphere, and the same after two rounds that make it coarser.
+struct CoarseSphere {
+    CoarseSphere() : surface(surfaceOf(icosphere(5, {}, kRadius))) {
+        surface.heirs.resize(surface.points.size());
+        std::iota(surface.heirs.begin(), surface.heirs.end(), std::uint64_t{0});
+        start = surface.state();
+        detail::PatchLimits limits;
+        limits.maxCost = 1e6;
+        limits.maxDistanceMm = 0.1;
+        for (const std::int64_t shift : {0, 16}) {
+            detail::PatchRound(surface, {32, shift}, unitFrame()).run({limits});
+        }
+        coarse = surface;
+        heirs = surface.heirs;
+    }
+
+    std::optional<detail::SurfaceChanges> undoAround(const Vec3& place, double reachMm) {
+        return detail::LocalUndo(start, surface).around({}, {}, {place}, reachMm);
+    }
+
+    detail::SimplifiedSurface surface;
+    SurfaceState start;
+    SurfaceState coarse;  ///< the surface after the rounds
+    std::vector<std::uint64_t> heirs;
+};
+
+/// From its smallest corner.
+Triangle turned(Triangle t) {
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    return t;
+}
+
+using Place = std::array<double, 3>;
+
+/// Of a triangle, from the smallest on.
+std::array<Place, 3> cornersOf(const SurfaceState& surface, std::size_t triangle) {
+    std::array<Place, 3> corners;
+    for (int c = 0; c < 3; ++c) {
+        const Vec3& p = surface.points[surface.triangles[triangle][c]];
+        corners[c] = {p.x, p.y, p.z};
+    }
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    return corners;
+}
+
+std::set<std::array<Place, 3>> byCorners(const SurfaceState& surface) {
+    std::set<std::array<Place, 3>> all;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) all.insert(cornersOf(surface, t));
+    return all;
+}
+
+}  // namespace
+
+// Merging the start's vertices into their heirs gives the surface.
+TEST(LocalUndo, StandsOnHeirsThatMakeTheSurface) {
+    const CoarseSphere sphere;
+    ASSERT_LT(sphere.surface.triangles.size(), sphere.start.triangles.size() / 4);
+    std::set<Triangle> merged, made;
+    for (const Triangle& t : sphere.start.triangles) {
+        const auto& heirs = sphere.surface.heirs;
+        const Triangle now{heirs[t[0]], heirs[t[1]], heirs[t[2]]};
+        if (now[0] != now[1] && now[1] != now[2] && now[2] != now[0]) merged.insert(turned(now));
+    }
+    for (const Triangle& t : sphere.surface.triangles) made.insert(turned(t));
+    EXPECT_EQ(merged, made);
+}
+
+TEST(LocalUndo, BringsTheStartBackAroundAPlaceAndNowhereElse) {
+    CoarseSphere sphere;
+    const Vec3 place{0, 0, kRadius};
+    constexpr double kReach = 1.5;
+    ASSERT_TRUE(sphere.undoAround(place, kReach));
+    expectSound(meshOf(sphere.surface));
+    EXPECT_GT(sphere.surface.triangles.size(), sphere.coarse.triangles.size());
+    const auto now = byCorners(sphere.surface);
+    int near = 0;
+    for (std::size_t t = 0; t < sphere.start.triangles.size(); ++t) {
+        const auto& corners = sphere.start.triangles[t];
+        const bool isNear = std::all_of(corners.begin(), corners.end(), [&](std::uint64_t v) {
+            return norm(sphere.coarse.points[sphere.heirs[v]] - place) < kReach;
+        });
+        if (!isNear) continue;
+        EXPECT_TRUE(now.contains(cornersOf(sphere.start, t)));
+        ++near;
+    }
+    EXPECT_GT(near, 5);
+    for (std::size_t t = 0; t < sphere.coarse.triangles.size(); ++t) {
+        const Vec3& p = sphere.coarse.points[sphere.coarse.triangles[t][0]];
+        EXPECT_TRUE(norm(p - place) < 6 || now.contains(cornersOf(sphere.coarse, t)));
+    }
+}
+
+TEST(LocalUndo, TellsWhatItChanged) {
+    CoarseSphere sphere;
+    const auto changes = sphere.undoAround({0, kRadius, 0}, 1);
+    ASSERT_TRUE(changes);
+    const auto now = byCorners(sphere.surface), before = byCorners(sphere.coarse);
+    std::set<std::uint64_t> told(changes->triangles.begin(), changes->triangles.end());
+    for (std::uint64_t t = 0; t < sphere.surface.triangles.size(); ++t) {
+        const bool isSame = t < sphere.coarse.triangles.size() &&
+                            sphere.surface.triangles[t] == sphere.coarse.triangles[t];
+        EXPECT_TRUE(isSame || told.contains(t));
+    }
+    std::size_t gone = 0;
+    for (const auto& corners : before) gone += now.contains(corners) ? 0 : 1;
+    EXPECT_EQ(changes->before.size(), gone);
+}
+
+TEST(LocalUndo, LeavesSamplesWithTrianglesNearThem) {
+    CoarseSphere sphere;
+    ASSERT_TRUE(sphere.undoAround({kRadius, 0, 0}, 1));
+    for (std::size_t s = 0; s < sphere.surface.samples.size(); ++s) {
+        const auto& [a, b, c] = sphere.surface.triangles.at(sphere.surface.sampleTriangle[s]);
+        const auto& points = sphere.surface.points;
+        EXPECT_LT(detail::squaredDistanceToTriangle(sphere.surface.samples[s].point(),
+                                                    {points[a], points[b], points[c]}),
+                  0.3 * 0.3);
+    }
+}
+
+TEST(LocalUndo, HasNothingToDoWhereNothingWasMerged) {
+    CoarseSphere sphere;
+    static_cast<SurfaceState&>(sphere.surface) = sphere.start;
+    std::iota(sphere.surface.heirs.begin(), sphere.surface.heirs.end(), std::uint64_t{0});
+    EXPECT_FALSE(sphere.undoAround({0, 0, kRadius}, 1));
+    EXPECT_FALSE(CoarseSphere().undoAround({0, 0, 0}, 1));  // no surface there
+}
+
+TEST(LocalUndo, RefusesToUndoTooMuch) {
+    CoarseSphere sphere;
+    EXPECT_FALSE(sphere.undoAround({0, 0, kRadius}, 2 * kRadius));
+    EXPECT_EQ(byCorners(sphere.surface), byCorners(sphere.coarse));
+}
+
+// What was mended goes with what it was mended in.
+TEST(LocalUndo, TakesMendedTrianglesBackToo) {
+    CoarseSphere sphere;
+    const Vec3 place{0, 0, kRadius};
+    detail::SurfaceMender mender(sphere.surface, unitFrame(), 0.5);
+    std::vector<detail::PlaceBeyond> places;
+    for (std::uint64_t t = 0; t < sphere.surface.triangles.size(); ++t) {
+        const auto& [a, b, c] = sphere.surface.triangles[t];
+        const auto& points = sphere.surface.points;
+        const Vec3 middle = (1.0 / 3) * (points[a] + points[b] + points[c]);
+        if (norm(middle - place) < 2) places.push_back({middle, 1.02 * middle, t, false});
+    }
+    ASSERT_GT(mender.mendDistances(places), 3U);
+    const std::size_t mended = sphere.surface.points.size();
+    ASSERT_GT(mended, sphere.coarse.points.size());
+    ASSERT_TRUE(detail::LocalUndo(sphere.start, sphere.surface)
+                    .around(mender.changedTriangles(), {}, {place}, 1));
+    const TriangleMesh mesh = meshOf(sphere.surface);
+    expectSound(mesh);
+    // all of it hung together, and every vertex is one of the rounds' again
+    std::set<Place> known;
+    for (const SurfaceState* state : {&sphere.start, &sphere.coarse}) {
+        for (const Vec3& p : state->points) known.insert({p.x, p.y, p.z});
+    }
+    for (const Vec3& p : mesh.points) EXPECT_TRUE(known.contains({p.x, p.y, p.z}));
+}
+
+// Again and again, also where it did so before.
+TEST(LocalUndo, LeavesASoundSurfaceWhereverItIsUsed) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> reach(0.3, 1.5);
+    CoarseSphere sphere;
+    int undone = 0;
+    for (int n = 0; n < 60; ++n) {
+        const Vec3 place = kRadius * normalized(randomPoint(random));
+        undone += sphere.undoAround(place, reach(random)) ? 1 : 0;
+        expectSound(meshOf(sphere.surface));
+    }
+    EXPECT_GT(undone, 20);
+    EXPECT_LE(sphere.surface.triangles.size(), sphere.start.triangles.size());
+}
+
+}  // namespace adaptiso::testing
