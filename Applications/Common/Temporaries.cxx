@@ -1,6 +1,7 @@
 #include "Common/Temporaries.h"
 
 #include <fcntl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -20,14 +21,23 @@ namespace fs = std::filesystem;
 std::atomic<Temporary*> temporaries{nullptr};
 std::atomic<int> signalsWait{0};
 std::atomic<int> postponedSignal{0};
+std::atomic<int> writingChild{0};  ///< process; 0: none
 static_assert(std::atomic<Temporary*>::is_always_lock_free &&
                   std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
               "a signal's handler may use only atomics without locks");
 
 }  // namespace
 
-/// unlink and rmdir only.
+void endFirst(int process) {
+    writingChild.store(process);
+}
+
+/// kill, waitpid, unlink and rmdir only.
 void removeTemporaries() {
+    if (const int child = writingChild.exchange(0); child > 0) {
+        kill(child, SIGKILL);
+        waitpid(child, nullptr, 0);
+    }
     for (const Temporary* t = temporaries.load(); t != nullptr; t = t->next) {
         if (!t->exists.load()) continue;
         if (t->isFolder) {

@@ -19,6 +19,9 @@ struct Temporary {
 /// Puts `path` on the list. \return its record, which is kept as long as a signal may come
 Temporary& rememberTemporary(const std::filesystem::path& path, bool isFolder);
 
+/// A child process that writes temporaries: it is ended before these are removed. 0: none any more
+void endFirst(int process);
+
 /// Removes all temporaries that exist, before the program ends at once. Async-signal-safe.
 void removeTemporaries();
 

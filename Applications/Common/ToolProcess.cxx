@@ -13,6 +13,8 @@
 #include <iterator>
 #include <sstream>
 
+#include "Common/Temporaries.h"
+#include "Common/TemporaryNames.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -33,6 +35,19 @@ namespace fs = std::filesystem;
     }
     execvp(arguments[0], arguments);
     _exit(127);
+}
+
+constexpr const char* kLog = "tool.log";
+
+/// \return its number, or -1 and errno
+pid_t start(const std::vector<char*>& arguments, const std::string& folder,
+            const std::string& log) {
+    const detail::SignalsWait untilItIsRemembered;
+    const pid_t parent = getpid();
+    const pid_t process = fork();
+    if (process == 0) becomeTool(parent, arguments.data(), folder.c_str(), log.c_str());
+    if (process > 0) detail::endFirst(process);
+    return process;
 }
 
 }  // namespace
@@ -61,22 +76,21 @@ std::string ToolResult::reason() const {
 }
 
 ToolResult runTool(const std::string& program, const std::vector<std::string>& arguments,
-                   const fs::path& folder) {
+                   const ScratchFolder& folder) {
     std::vector<std::string> words{program};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
     for (std::string& word : words) pointers.push_back(word.data());
     pointers.push_back(nullptr);
-    const std::string place = folder.string(), log = (folder / "tool.log").string();
-    const pid_t parent = getpid();
-    const pid_t process = fork();
+    const std::string place = folder.path().string(), log = (folder.path() / kLog).string();
+    const pid_t process = start(pointers, place, log);
     if (process < 0) {
         throw FileError(program + ": can't be started: " + std::strerror(errno));
     }
-    if (process == 0) becomeTool(parent, pointers.data(), place.c_str(), log.c_str());
     int status = 0;
     while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
     }
+    detail::endFirst(0);
     ToolResult result;
     result.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
     result.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
@@ -87,16 +101,29 @@ ToolResult runTool(const std::string& program, const std::vector<std::string>& a
 
 ScratchFolder::ScratchFolder() {
     std::error_code error;
-    std::string name = (fs::temp_directory_path(error) / "adaptiso-XXXXXX").string();
-    if (error || mkdtemp(name.data()) == nullptr) {
-        throw FileError(name + ": no folder can be made there: " + std::strerror(errno));
-    }
-    path_ = name;
+    const fs::path parent = fs::temp_directory_path(error);
+    if (error) throw FileError("there is no folder for temporary files: " + error.message());
+    constexpr unsigned kOwnersAlone = 0700;
+    const detail::SignalsWait untilItIsRemembered;
+    const detail::NewTemporary made =
+        detail::makeTemporaryFolder(parent / "scratch", kOwnersAlone, parent);
+    path_ = made.path;
+    registrations_.push_back(
+        std::make_unique<detail::Registration>(detail::rememberTemporary(path_, true), made.lock));
+    place(kLog);
 }
 
 ScratchFolder::~ScratchFolder() {
     std::error_code error;
     fs::remove_all(path_, error);
+    while (!registrations_.empty()) registrations_.pop_back();
+}
+
+fs::path ScratchFolder::place(const std::string& name) {
+    fs::path path = path_ / name;
+    registrations_.push_back(
+        std::make_unique<detail::Registration>(detail::rememberTemporary(path, false)));
+    return path;
 }
 
 }  // namespace adaptiso

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,12 @@ struct ToolResult {
     std::string reason() const;
 };
 
-/// Runs a program that is in PATH, in a folder, with nothing on its stdin, and waits for it. It
-/// ends when this process does. \throws FileError  it can't be started
-ToolResult runTool(const std::string& program, const std::vector<std::string>& arguments,
-                   const std::filesystem::path& folder);
+namespace detail {
+struct Registration;
+}
 
-/// A folder of its own, gone with the object.
+/// A folder of its own for temporary files (in TMPDIR), gone with the object, also when a signal
+/// ends this program; what a killed run has left goes with the next one.
 class ScratchFolder {
 public:
     /// \throws FileError
@@ -35,8 +36,18 @@ public:
     ScratchFolder& operator=(const ScratchFolder&) = delete;
     const std::filesystem::path& path() const { return path_; }
 
+    /// Where to put a file, by this program or another. Others stay when a signal comes.
+    std::filesystem::path place(const std::string& name);
+
 private:
     std::filesystem::path path_;
+    std::vector<std::unique_ptr<detail::Registration>> registrations_;
 };
+
+/// Runs a program that is in PATH, in a folder, with nothing on its stdin, and waits for it. It
+/// ends when this process does, before its files are removed.
+/// \throws FileError  it can't be started
+ToolResult runTool(const std::string& program, const std::vector<std::string>& arguments,
+                   const ScratchFolder& folder);
 
 }  // namespace adaptiso

@@ -73,6 +73,18 @@ void addTissue(TissueLabels& tissues, const std::string& text) {
     }
 }
 
+/// The preset's labels, and those that --tissue names besides.
+void addPreset(TissueLabels& tissues, const TissueLabels& preset) {
+    const auto add = [](std::vector<std::int64_t>& to, const std::vector<std::int64_t>& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    add(tissues.brain, preset.brain);
+    add(tissues.csf, preset.csf);
+    add(tissues.skull, preset.skull);
+    add(tissues.scalp, preset.scalp);
+    tissues.othersAreBrain = preset.othersAreBrain;
+}
+
 void addLength(CLI::App& app, const std::string& name, double& target, double mostMm,
                const std::string& description, const char* group) {
     app.add_option_function<std::string>(
@@ -137,10 +149,18 @@ void declareInput(CLI::App& app, BemOptions& options) {
         ->group(kInput);
     app.add_option_function<std::string>(
            "--preset",
-           [&options](const std::string& name) { options.tissues = tissuePreset(name); },
-           "The labels of SimNIBS's charm or headreco, of FreeSurfer's aseg, or of SAMSEG")
-        ->type_name("charm|headreco|aseg|samseg")
-        ->check(CLI::IsMember({"charm", "headreco", "aseg", "samseg"}).description(""))
+           [&options](const std::string& name) { addPreset(options.tissues, tissuePreset(name)); },
+           "The labels of SimNIBS's charm or headreco, of FreeSurfer's aseg, of SAMSEG, or of "
+           "TotalSegmentator (task total: brain and skull; with --head-mask)")
+        ->type_name("charm|headreco|aseg|samseg|totalsegmentator")
+        ->check(CLI::IsMember({"charm", "headreco", "aseg", "samseg", "totalsegmentator"})
+                    .description(""))
+        ->group(kInput);
+    app.add_option(
+           "--head-mask", options.headMask,
+           "With --labels: a mask of all that lies within the skin (TotalSegmentator's body), "
+           "on the same grid; what of it has no tissue counts as scalp")
+        ->type_name("IMG")
         ->group(kInput);
     app.add_option("--probabilities", options.probabilities,
                    "Tissue maps in SPM's order: c1 c2 c3 c4 c5 [c6]")
@@ -236,6 +256,13 @@ void declareSurfaces(CLI::App& app, BemOptions& options) {
         ->delimiter(',')
         ->allow_extra_args(false)
         ->check(CLI::Range(std::int64_t{42}, kMostVertices).description(""))
+        ->group(kMesh);
+    app.add_option(
+           "--most-vertices", options.model.mostVertices,
+           "With --layers 4, without --vertices and --edge-length: at most N vertices in all "
+           "(default: 10000)")
+        ->type_name("N")
+        ->check(CLI::Range(std::int64_t{168}, 4 * kMostVertices).description(""))
         ->group(kMesh);
     app.add_option_function<std::string>(
            "--edge-length",
@@ -371,29 +398,6 @@ void declareElectrodes(CLI::App& app, BemOptions& options) {
     addPoint(app, "--right-ear", options.rightEar, "Right preauricular point, the same");
 }
 
-void declareTetrahedra(CLI::App& app, BemOptions& options) {
-    app.add_option(
-           "--tetrahedra", options.mesher,
-           "Fill the layers with tetrahedra by this program, which must be installed: head.msh "
-           "(SimNIBS), head-4.1.msh, head.vtu, head.dgf")
-        ->type_name("tetgen|gmsh")
-        ->check(CLI::IsMember({"tetgen", "gmsh"}).description(""))
-        ->group(kTetrahedra);
-    app.add_option_function<std::string>(
-           "--element-size",
-           [&options](const std::string& text) {
-               options.elementMm = numbers("--element-size", text, ',', 1, 1, "0.5 to 50 mm")[0];
-               if (!(options.elementMm >= 0.5 && options.elementMm <= 50)) {
-                   throw UsageError("--element-size " + text + ": must be 0.5 to 50 mm");
-               }
-           },
-           "Longest edge of an equilateral tetrahedron (default: 5); at the surfaces elements are "
-           "as small "
-           "as their triangles")
-        ->type_name("MM")
-        ->group(kTetrahedra);
-}
-
 void declareToolboxes(CLI::App& app, BemOptions& options) {
     BemFileOptions& files = options.files;
     const auto addFlag = [&](const char* name, bool& target, const char* description) {
@@ -442,8 +446,10 @@ void checkCombinations(const BemOptions& options) {
     require(options.labels.empty() || namesTissues,
             "--labels needs --preset, or --tissue brain=..., skull=... and scalp=...");
     require(options.labels.empty() || options.model.boundaries.innerSkullOnly ||
-                (!options.tissues.skull.empty() && !options.tissues.scalp.empty()),
-            "--labels needs --tissue skull=... and scalp=... as well (or --meg)");
+                (!options.tissues.skull.empty() &&
+                 (!options.tissues.scalp.empty() || !options.headMask.empty())),
+            "--labels needs --tissue skull=... and scalp=... as well (or --head-mask, or --meg)");
+    require(options.headMask.empty() || !options.labels.empty(), "--head-mask needs --labels");
     require(
         !options.labels.empty() || (!namesTissues && options.tissues.csf.empty() &&
                                     options.tissues.skull.empty() && options.tissues.scalp.empty()),
@@ -522,7 +528,10 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
     declareSurfaces(app, options);
     declareOutput(app, options);
     declareElectrodes(app, options);
-    declareTetrahedra(app, options);
+    declareMesherOptions(app, options.tetrahedra,
+                         "head.msh (SimNIBS, DUNEuro), head-4.1.msh, head.vtu, head.dgf and "
+                         "head.geo (DUNEuro) with the conductivities",
+                         kTetrahedra);
     declareToolboxes(app, options);
     declareCommonOptions(app, options.common, "of the model only the report is then written");
     app.callback([&options] { checkCombinations(options); });

@@ -47,6 +47,8 @@ HeadBoundaries timed(BemRun& run, const std::string& option, const fs::path& pat
         if (what.starts_with("the brain mask")) {
             of = options.brainMask.empty() ? "--aseg " + options.aseg.string()
                                            : "--brain-mask " + options.brainMask.string();
+        } else if (what.starts_with("the head mask")) {
+            of = "--head-mask " + options.headMask.string();
         } else if (what.starts_with("a pial surface")) {
             of = "--pial";
         }
@@ -87,6 +89,20 @@ HeadBoundaries fromT1(BemRun& run, const BoundaryOptions& boundaries) {
                  [&] { return boundariesFromT1(t1->volume, brain, boundaries); });
 }
 
+HeadBoundaries fromLabels(BemRun& run, const BoundaryOptions& boundaries) {
+    const BemOptions& options = run.options;
+    std::optional<ReadVolume> labels, mask;
+    run.timer.time("read", [&] {
+        labels = readMainImage(options.labels, "labels", run);
+        if (!options.headMask.empty()) mask = readImage(options.headMask, "head mask", run);
+    });
+    std::optional<VolumeView> head;
+    if (mask) head = mask->volume.view();
+    return timed(run, "--labels", options.labels, [&] {
+        return boundariesFromLabels(labels->volume, options.tissues, boundaries, head);
+    });
+}
+
 HeadBoundaries fromProbabilities(BemRun& run, const BoundaryOptions& boundaries) {
     std::vector<ReadVolume> maps;
     run.timer.time("read", [&] {
@@ -111,11 +127,7 @@ HeadBoundaries boundariesFromImages(BemRun& run, ProgressLine& progress) {
     if (run.model.source == "t1") {
         result = fromT1(run, boundaries);
     } else if (run.model.source == "labels") {
-        const ReadVolume labels =
-            run.timer.time("read", [&] { return readMainImage(options.labels, "labels", run); });
-        result = timed(run, "--labels", options.labels, [&] {
-            return boundariesFromLabels(labels.volume, options.tissues, boundaries);
-        });
+        result = fromLabels(run, boundaries);
     } else if (run.model.source == "probabilities") {
         result = fromProbabilities(run, boundaries);
     } else {

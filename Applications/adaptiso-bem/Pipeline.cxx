@@ -43,8 +43,9 @@ std::vector<fs::path> inputsOf(const BemOptions& options) {
     std::vector<fs::path> inputs = options.probabilities;
     inputs.insert(inputs.end(), options.surfaces.begin(), options.surfaces.end());
     inputs.insert(inputs.end(), options.pial.begin(), options.pial.end());
-    for (const fs::path& path : {options.t1, options.brainMask, options.aseg, options.labels,
-                                 options.ct, options.volume, options.electrodes}) {
+    for (const fs::path& path :
+         {options.t1, options.brainMask, options.aseg, options.labels, options.headMask, options.ct,
+          options.volume, options.electrodes}) {
         if (!path.empty()) inputs.push_back(path);
     }
     return inputs;
@@ -283,7 +284,7 @@ int runBem(const BemOptions& options) {
     run.model.options.wantsHeadShape = options.files.writesFif;
     run.model.source = sourceOf(options);
     checkOutputs(options);
-    requireMesher(options.mesher);
+    requireMesher(options.tetrahedra);
     readElectrodes(run);
 
     const BemHooks hooks{[&](std::string_view stage, const std::function<void()>& work) {
@@ -298,7 +299,7 @@ int runBem(const BemOptions& options) {
     const std::size_t told = run.model.warnings.size();
     finishBemModel(std::move(dense), run.model, hooks);
     putElectrodes(run, hooks);
-    if (run.model.hasModel() && !options.mesher.empty()) makeTetrahedra(run, hooks);
+    if (run.model.hasModel() && options.tetrahedra.isAsked()) makeTetrahedra(run, hooks);
     progress.clear();
     tellWarnings(run, told);
 

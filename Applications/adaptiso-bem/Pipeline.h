@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "Common/CommonOptions.h"
+#include "Common/Mesher.h"
 #include "Common/ReportOutput.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -27,6 +28,7 @@ struct BemOptions {
     std::filesystem::path aseg;               ///< with t1
     std::vector<std::filesystem::path> pial;  ///< with t1, of four layers
     TissueLabels tissues;                     ///< with labels
+    std::filesystem::path headMask;           ///< with labels: all that lies within the skin
     std::filesystem::path volume;             ///< with surfaces: the image whose tkRAS is written
     ReadOptions read;                         ///< of the main image
     BemModelOptions model;
@@ -35,8 +37,7 @@ struct BemOptions {
 
     std::filesystem::path electrodes;               ///< a file; empty: none
     std::optional<Vec3> nasion, leftEar, rightEar;  ///< scanner RAS mm
-    std::string mesher;                             ///< "tetgen" or "gmsh"; empty: no tetrahedra
-    double elementMm = 5;                           ///< longest edge of an equilateral tetrahedron
+    MesherOptions tetrahedra;
     std::filesystem::path output;
     bool mayReplace = false;
     std::filesystem::path subjectsDir;

@@ -10,7 +10,4 @@ namespace adaptiso {
 /// \throws FileError  the mesher is not installed, fails, or writes what can't be read
 void makeTetrahedra(BemRun& run, const BemHooks& hooks);
 
-/// \throws FileError  the mesher asked for is not installed
-void requireMesher(const std::string& mesher);
-
 }  // namespace adaptiso

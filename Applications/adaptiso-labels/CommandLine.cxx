@@ -16,6 +16,7 @@ namespace {
 constexpr const char* kInput = "Input";
 constexpr const char* kRegions = "Regions";
 constexpr const char* kWalls = "Walls";
+constexpr const char* kTetrahedra = "Tetrahedra";
 constexpr const char* kOutput = "Output";
 
 std::vector<std::string> knownExtensions() {
@@ -184,6 +185,8 @@ constexpr const char* kFooter = R"(Examples:
       names and colours from aal.nii.txt and aal.nii.lut beside it
   adaptiso-labels seg.nrrd --names Colors.ctbl --labels 1,2,10-20 --format stl -o seg
   adaptiso-labels aseg.mgz --merge Thalamus=10,49 --merge Putamen=12,51 -o deep
+  adaptiso-labels seg.nii.gz --tetrahedra tetgen --element-size 3 -o volumes
+      every region in tetrahedra as well, for finite elements
   adaptiso-labels seg.nii.gz --max-error 0 -o full
       the full resolution, which the bound is measured against
   adaptiso-labels head.nii.gz --layers --conductivities 1=0.33,2=0.0066,3=0.33
@@ -209,6 +212,9 @@ void declareLabelsOptions(CLI::App& app, LabelsOptions& options) {
     declareInput(app, options);
     declareRegions(app, options);
     declareWalls(app, options);
+    declareMesherOptions(app, options.tetrahedra,
+                         "tetrahedra.msh, tetrahedra-4.1.msh, tetrahedra.vtu and tetrahedra.dgf",
+                         kTetrahedra);
     declareOutput(app, options);
     declareLayers(app, options);
     declareBatchOptions(app, options.batch, "the label maps, *_dseg");

@@ -3,6 +3,7 @@
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "adaptiso/Pipeline/SurfaceJson.h"
+#include "adaptiso/Pipeline/TetrahedraJson.h"
 
 namespace adaptiso {
 namespace {
@@ -82,6 +83,27 @@ Json regionJson(const Region& region) {
             {"file", region.file}};
 }
 
+Json tetrahedraJson(const LabelsRun& run) {
+    if (!run.tetrahedra) return nullptr;
+    const RegionTetrahedra& made = *run.tetrahedra;
+    const double voxelMm3 = run.map.geometry.voxelVolumeMm3();
+    Json regions = Json::array();
+    for (std::size_t n = 0; n < made.regions.size(); ++n) {
+        regions.push_back(
+            {{"label", made.regions[n].label},
+             {"tetrahedra", made.report.counts[n]},
+             {"volumeMm3", number(made.report.volumesMm3[n])},
+             {"withinWallsMm3", number(made.report.expectedMm3[n])},
+             {"voxelsMm3", number(voxelMm3 * static_cast<double>(run.regions[n].voxels))}});
+    }
+    Json json{{"mesher", run.options.tetrahedra.mesher},
+              {"points", std::ssize(made.mesh.points)},
+              {"tetrahedra", std::ssize(made.mesh.tetrahedra)},
+              {"regions", regions}};
+    json.update(elementShapesJson(made.report));
+    return json;
+}
+
 Json checksJson(const LabelsRun& run) {
     Json checks = Json::array();
     for (const LabelsCheck& check : run.checks) {
@@ -105,6 +127,7 @@ Json sharedJson(const LabelsRun& run) {
             {"output", {{"format", run.format->name}, {"coordinates", frameWord(run.frame)}}},
             {"walls", wallsJson(run)},
             {"regions", regions},
+            {"tetrahedra", tetrahedraJson(run)},
             {"passed", run.holdsPromises()},
             {"checks", checksJson(run)},
             {"warnings", run.warnings}};

@@ -15,6 +15,7 @@
 #include "adaptiso/LabelNames/LabelTable.h"
 #include "adaptiso/Labels/Labels.h"
 #include "adaptiso/MeshIO/Formats.h"
+#include "adaptiso/Tetrahedra/Tetrahedra.h"
 
 namespace adaptiso {
 
@@ -54,6 +55,13 @@ struct MapSummary {
     std::int64_t labels = 0;  ///< other than 0, before any are merged
 };
 
+/// The regions in tetrahedra.
+struct RegionTetrahedra {
+    TetrahedralMesh mesh;                   ///< LPS mm
+    std::vector<TetrahedraRegion> regions;  ///< in the order of LabelsRun::regions
+    TetrahedraReport report;
+};
+
 /// What --strict means for the folder, where there is a warning.
 inline constexpr const char* kNotWritten = "so no surface was written";
 
@@ -69,6 +77,7 @@ struct LabelsRun {
     std::int64_t points = 0, triangles = 0;  ///< of the walls
     std::vector<Region> regions{};           ///< those that are wanted, by label
     std::vector<LabelsCheck> checks{};
+    std::optional<RegionTetrahedra> tetrahedra{};                 ///< if wanted
     std::vector<std::pair<std::string, std::uintmax_t>> files{};  ///< of the folder
     StageTimer timer{};
     std::vector<std::string> warnings{};  ///< all; each names its file

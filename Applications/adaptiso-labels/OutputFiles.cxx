@@ -12,6 +12,7 @@
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/LabelFiles.h"
 #include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/Tetrahedra/TetrahedraFiles.h"
 
 namespace adaptiso {
 namespace {
@@ -19,6 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kVtp = ".vtp";
+constexpr const char* kMsh22Name = "tetrahedra.msh";
+constexpr const char* kMsh41Name = "tetrahedra-4.1.msh";
+constexpr const char* kVtuName = "tetrahedra.vtu";
+constexpr const char* kDgfName = "tetrahedra.dgf";
 
 MeshWriteOptions writeOptions(const LabelsRun& run) {
     MeshWriteOptions write;
@@ -67,6 +72,17 @@ void writeJoined(const RegionSurfaces& surfaces, const fs::path& surfacePath,
     writeGiftiLabels(joined.labels, table, labelPath);
 }
 
+void writeTetrahedra(const LabelsRun& run, AtomicFolder& folder) {
+    if (!run.tetrahedra) return;
+    const AffineTransform move = lpsToFrame(run.frame, frameVolume(run.frame, run.map.geometry));
+    const TetrahedralMesh mesh = transformed(run.tetrahedra->mesh, move.linear, move.offset);
+    const std::vector<TetrahedraRegion>& regions = run.tetrahedra->regions;
+    writeMsh22(mesh, regions, folder.place(kMsh22Name));
+    writeMsh41(mesh, regions, folder.place(kMsh41Name));
+    writeVtu(mesh, folder.place(kVtuName));
+    writeDgf(mesh, regions, folder.place(kDgfName));
+}
+
 /// A field of a table: tabs and line ends would end it.
 std::string field(const std::string& text) {
     return text.empty() ? "n/a" : text;
@@ -91,8 +107,9 @@ bool isOwnFile(std::string_view name) {
     if (name.starts_with(kRegions)) return isRegionFile(name.substr(kRegions.size()), false);
     if (name.starts_with(kAll)) return isRegionFile(name.substr(kAll.size()), true);
     if (isLayerFile(name)) return true;
-    constexpr std::string_view kNames[] = {"walls.vtp",     "all.vtm",     "all.surf.gii",
-                                           "all.label.gii", "regions.tsv", "report.json"};
+    constexpr std::string_view kNames[] = {
+        "walls.vtp",   "all.vtm",  "all.surf.gii", "all.label.gii", "regions.tsv",
+        "report.json", kMsh22Name, kMsh41Name,     kVtuName,        kDgfName};
     return std::ranges::find(kNames, name) != std::end(kNames);
 }
 
@@ -157,6 +174,7 @@ void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, Lab
         }
         if (run.options.writesLayers) writeLayers(complex, run, folder);
         writeMultiBlock(blocks, folder.place("all.vtm"));
+        writeTetrahedra(run, folder);
         folder.writeText("regions.tsv", regionsTable(run));
         // VTK makes ready what all its writers share when the first of them is used: by one thread
         works.back()();

@@ -25,6 +25,7 @@
 #include "OutputFiles.h"
 #include "Regions.h"
 #include "ReportPage.h"
+#include "Tetrahedra.h"
 #include "TextReport.h"
 
 namespace adaptiso {
@@ -39,6 +40,7 @@ constexpr const char* kProgram = "adaptiso-labels";
 constexpr const char* kRead = "read";
 constexpr const char* kExtract = "extract";
 constexpr const char* kMeasure = "measure";
+constexpr const char* kTetrahedra = "tetrahedra";
 constexpr const char* kWrite = "write";
 constexpr const char* kReport = "report";
 
@@ -216,12 +218,14 @@ int runLabels(const LabelsOptions& options) {
     run.format = &findMeshFormat("region" + options.format);
     run.frame = frameOf(options, *run.format);
     checkOutputs(run);
+    requireMesher(options.tetrahedra);
 
     progress.show(kRead);
     LabelCensus census;
     const Volume volume = run.timer.time(kRead, [&] { return readMap(run, census); });
     const VolumeView& map = volume.view();
     run.timer.time(kRead, [&] { nameRegions(chooseLabels(census, options), census, run); });
+    requireTetrahedraLabels(run);
     checkConductivities(run);
     progress.clear();
     printWarnings(kProgram, options.common, run.warnings);
@@ -233,6 +237,10 @@ int runLabels(const LabelsOptions& options) {
     run.timer.time(kMeasure, [&] { measure(complex, run); });
     const RegionSurfaces surfaces(complex, run.regions);
     checkComplex(complex, surfaces, map, run, progress);
+    if (options.tetrahedra.isAsked() && run.holdsPromises()) {
+        progress.show(kTetrahedra);
+        run.timer.time(kTetrahedra, [&] { makeTetrahedra(complex, run); });
+    }
     warnOfCount(run);
     if (!fitsGifti(run)) {
         run.warnings.push_back(baseName(options.input) +

@@ -9,6 +9,7 @@
 
 #include "Common/BatchOptions.h"
 #include "Common/CommonOptions.h"
+#include "Common/Mesher.h"
 #include "Common/ReportOutput.h"
 #include "LabelLists.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -30,6 +31,7 @@ struct LabelsOptions {
     std::optional<double> maxErrorMm;
     std::optional<std::int64_t> maxTriangles;
     std::optional<double> reduction;
+    MesherOptions tetrahedra;
     double minAngleDeg = 0;
     bool writesLayers = false;               ///< the walls for OpenMEEG
     std::map<Label, double> conductivities;  ///< of regions, S/m; empty: none are written

@@ -39,6 +39,12 @@ void printReport(std::ostream& out, const LabelsRun& run) {
         << oneLine(run.options.input.filename().string()) << ", " << run.format->name << ", "
         << toString(run.frame) << '\n';
     printWalls(out, run);
+    if (run.tetrahedra) {
+        out << "  "
+            << describeTetrahedra(run.tetrahedra->mesh, run.tetrahedra->report,
+                                  run.options.tetrahedra.mesher)
+            << '\n';
+    }
     for (const LabelsCheck& check : run.checks) {
         out << "  " << (check.isPassed ? "holds:  " : "FAILED: ") << check.name
             << (check.isPassed ? "" : ": " + check.finding) << '\n';

@@ -179,6 +179,24 @@ class Presets(BemTest):
             self.bem("--labels", f"{preset}.nii", "--preset", preset, *QUICK, "-o", preset)
             self.assertEqual(len(self.report(preset)["surfaces"]), 3)
 
+    def test_a_head_mask_gives_the_skin_that_labels_lack(self):
+        """TotalSegmentator: brain 90, skull 91 and a mask of the body; the same head as with labels."""
+        write_nifti(self.path("total.nii"), head(values=(90, 91, 0)))
+        write_nifti(self.path("body.nii"), head(values=(1, 1, 1)))
+        self.bem("--labels", "total.nii", "--preset", "totalsegmentator", "--head-mask", "body.nii", *QUICK,
+                 "-o", "total")
+        write_nifti(self.path("all.nii"), head(values=(90, 91, 5)))
+        self.bem("--labels", "all.nii", "--preset", "totalsegmentator", "--tissue", "scalp=5", *QUICK, "-o",
+                 "all")
+        for name in ("inner_skull.surf", "outer_skin.tri"):
+            self.assertEqual((self.path("total") / name).read_bytes(), (self.path("all") / name).read_bytes())
+        self.fails(USAGE, "or --head-mask", "--labels", "total.nii", "--preset", "totalsegmentator", "-o", "m")
+        small = head(values=(1, 1, 1))
+        small.spacing = tuple(2 * s for s in small.spacing)
+        write_nifti(self.path("other.nii"), small)
+        self.fails(BAD_INPUT, "--head-mask other.nii: the head mask is on another grid than the labels",
+                   "--labels", "total.nii", "--preset", "totalsegmentator", "--head-mask", "other.nii", "-o", "m")
+
     def test_probabilities_and_ct(self):
         names = []
         for n, values in enumerate(((100, 0, 0), (100, 0, 0), (55, 0, 0), (0, 255, 0), (0, 0, 255))):

@@ -4,7 +4,9 @@ where a mesher is missing. What is not installed is skipped by name."""
 import math
 import os
 import shutil
+import signal
 import subprocess
+import time
 import unittest
 
 from support import BAD_INPUT, USAGE, main, write_nifti
@@ -19,6 +21,60 @@ except ImportError:
 MESHERS = [mesher for mesher in ("tetgen", "gmsh") if shutil.which(mesher)]
 RADII = (54, 60, 66, 72)
 FOUR = [word for pair in ("brain=4", "csf=1", "skull=2", "scalp=3") for word in ("--tissue", pair)]
+
+
+def read_msh22(path):
+    """Points, corners (from 1) and tissues."""
+    lines = path.read_text().split("\n")
+    at = lines.index("$Nodes")
+    count = int(lines[at + 1])
+    points = [tuple(map(float, line.split()[1:])) for line in lines[at + 2:at + 2 + count]]
+    at = lines.index("$Elements")
+    rows = [list(map(int, line.split())) for line in lines[at + 2:at + 2 + int(lines[at + 1])]]
+    return points, [row[5:] for row in rows], [row[3] for row in rows]
+
+
+def take(lines, *wanted):
+    for line in wanted:
+        found = next(lines)
+        assert found == line if line else set(found) == {"="}, found
+
+
+def read_cauchy(path):
+    """By the rules of duneuro/io/cauchy_grid_reader.hh: exact lines, numbers in columns of six."""
+    lines = iter(path.read_text().split("\n"))
+    take(lines, "BOI - GEOMETRIEFILE", "", "", "BOI - STEUERKARTE")
+    counts = {}
+    for line in iter(lambda: next(lines), "EOI - STEUERKARTE"):
+        key, value = line.split(":")
+        counts[key.strip()] = int(value)
+    take(lines, "", "", "BOI - KOORDINATENKARTE")
+    numbers = []
+    while len(numbers) < 3 * counts["ANZAHL DER KNOTEN"]:
+        numbers += map(float, next(lines).split())
+    take(lines, "EOI - KOORDINATENKARTE", "", "", "BOI - ELEMENTKNOTENKARTE")
+    corners = []
+    for _ in range(counts["ANZAHL DER ELEMENTE"]):
+        kind, row = next(lines).split(":")
+        assert kind.strip() == "303" and row[0] == " ", row
+        corners.append([int(row[at:at + 6]) for at in range(1, len(row), 6)])
+    take(lines, "EOI - ELEMENTKNOTENKARTE", "", "", "EOI - GEOMETRIEFILE")
+    return list(zip(*[iter(numbers)] * 3)), corners
+
+
+def read_cauchy_tensors(path):
+    """One conductivity an element; it must be the same in all directions."""
+    lines = iter(path.read_text().split("\n"))
+    take(lines, "BOI - TENSORVALUEFILE", "", "", "BOI - TENSOR")
+    values = []
+    for line in iter(lambda: next(lines), "EOI - TENSOR"):
+        number, *tensor = (line + next(lines)).split()
+        assert int(number) == len(values) + 1, line
+        xx, yy, zz, *others = map(float, tensor)
+        assert xx == yy == zz and others == [0, 0, 0], line
+        values.append(xx)
+    take(lines, "", "", "EOI - TENSORVALUEFILE")
+    return values
 
 
 class Tetrahedra(BemTest):
@@ -77,6 +133,51 @@ class Tetrahedra(BemTest):
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120)
             self.assertNotIn("Error", done.stdout)
 
+    def test_the_files_for_duneuro_hold_the_same(self):
+        """Cauchy's columns as DUNEuro's reader takes them; .dgf's parameters as places in head.cond."""
+        if not MESHERS:
+            self.skipTest("needs tetgen or gmsh")
+        self.bem(*self.four_layers(), "--tetrahedra", MESHERS[0], "--element-size", "20", "--conductivity",
+                 "0.33,1.79,0.01,0.43", "-o", "model")
+        folder = self.path("model")
+        conductivities = [float(line) for line in (folder / "head.cond").read_text().split()]
+        self.assertEqual(conductivities, [0.33, 1.79, 0.01, 0.43])
+        points, corners, tissues = read_msh22(folder / "head.msh")
+        own_points, own_corners = read_cauchy(folder / "head.geo")
+        self.assertEqual(own_points, points)
+        self.assertEqual(own_corners, corners)
+        self.assertEqual(read_cauchy_tensors(folder / "head.knw"), [conductivities[t - 2] for t in tissues])
+        vertices, simplices = (folder / "head.dgf").read_text().split("#\n")[:2]
+        rows = [list(map(int, line.split())) for line in simplices.splitlines()[2:]]
+        self.assertEqual([row[:4] for row in rows], [[v - 1 for v in row] for row in corners])
+        self.assertEqual([row[4] for row in rows], [t - 2 for t in tissues])
+        self.assertEqual([tuple(map(float, line.split())) for line in vertices.splitlines()[2:]], points)
+
+    def test_a_signal_leaves_neither_files_nor_the_mesher(self):
+        fake, scratch = self.path("tetgen"), self.path("scratch")
+        fake.write_text("#!/bin/sh\necho $$ >\"$MARK\"\nexec sleep 600\n")
+        fake.chmod(0o755)
+        scratch.mkdir()
+        mark = self.path("mark")
+        for number in (signal.SIGTERM, signal.SIGINT):
+            with self.subTest(number):
+                mark.unlink(missing_ok=True)
+                process = subprocess.Popen(
+                    [BEM, *map(str, self.labels()), "--tetrahedra", "tetgen", "-o", "m"], cwd=self.folder,
+                    stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                    env={**os.environ, "PATH": f"{self.folder}:/usr/bin:/bin", "TMPDIR": str(scratch),
+                         "MARK": str(mark)})
+                while process.poll() is None and not (mark.exists() and mark.read_text().endswith("\n")):
+                    time.sleep(0.01)
+                self.assertEqual(len(list(scratch.iterdir())), 1)
+                process.send_signal(number)
+                process.communicate(timeout=60)
+                self.assertEqual(process.returncode, -number)
+                self.assertEqual(list(scratch.iterdir()), [])
+                self.assertFalse(self.path("m").exists())
+                with self.assertRaises(ProcessLookupError):
+                    os.kill(int(mark.read_text()), 0)
+
     def test_a_missing_mesher_is_told_at_once(self):
         labels = self.labels()
         done = subprocess.run([BEM, *map(str, labels), "--tetrahedra", "tetgen", "-o", "m"],
@@ -100,7 +201,7 @@ class Tetrahedra(BemTest):
 
     def test_usage(self):
         self.fails(USAGE, r"--tetrahedra", *self.labels(), "--tetrahedra", "cgal", "-o", "m")
-        self.fails(USAGE, r"--element-size 0.1: must be 0.5 to 50 mm", *self.labels(), "--element-size",
+        self.fails(USAGE, r"--element-size 0.1: must be a number from 0.5 to 50, in mm", *self.labels(), "--element-size",
                    "0.1", "-o", "m")
 
 

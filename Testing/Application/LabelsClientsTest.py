@@ -9,7 +9,7 @@ import unittest
 from pathlib import Path
 
 from labelsSupport import LabelsTest, three_boxes
-from support import SOURCE, write_nifti
+from support import BAD_INPUT, SOURCE, write_nifti
 
 SKIPPED = 77
 try:
@@ -20,6 +20,11 @@ try:
 except ImportError as missing:
     print(f"skipped: needs python3-nibabel and python3-vtk9 ({missing})")
     sys.exit(SKIPPED)
+
+try:
+    import meshio
+except ImportError:
+    meshio = None
 
 CHECKER = Path(os.environ.get("ADAPTISO_CHECK_LABELS",
                               SOURCE.parent / "shared/tools/labels/check_labels.py"))
@@ -217,6 +222,75 @@ class MesherTest(LabelsTest):
         for label, volume in volumes.items():
             wanted = float(rows[label]["volume_mm3"])
             self.assertAlmostEqual(volume, wanted, delta=1e-6 * wanted)
+
+
+class TetrahedraTest(LabelsTest):
+    """--tetrahedra: the mesher is run by the program."""
+
+    def volumes(self, folder, key="gmsh:physical", name="tetrahedra.msh"):
+        made = meshio.read(self.path(folder) / name)
+        cells = np.concatenate([c.data for c in made.cells if c.type == "tetra"])
+        labels = np.concatenate([d for d, c in zip(made.cell_data[key], made.cells) if c.type == "tetra"])
+        corners = made.points[cells]
+        six = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
+                        corners[:, 3] - corners[:, 0])
+        self.assertGreater(six.min(), 0)
+        return corners, labels, six / 6
+
+    def test_each_region_is_one_volume(self):
+        """Two pieces of region 1, one with a cavity that region 2 fills in part: what is 0 stays empty."""
+        if meshio is None:
+            self.skipTest("needs python3-meshio")
+        labels = np.zeros((20, 14, 14), np.uint8)
+        labels[1:12, 1:13, 1:13] = 1
+        labels[4:10, 4:10, 4:10] = 0
+        labels[4:7, 4:10, 4:10] = 2
+        labels[14:18, 3:9, 3:9] = 1
+        labels[12:14, 2:6, 2:6] = 3
+        affine = np.diag([-1.0, 1.5, 2, 1])
+        affine[:3, 3] = 40, -7, 3
+        nibabel.save(nibabel.Nifti1Image(labels, affine), self.path("pieces.nii.gz"))
+        for mesher in filter(shutil.which, ("tetgen", "gmsh")):
+            for frame in ("ras", "lps"):
+                with self.subTest(mesher=mesher, frame=frame):
+                    folder = f"{mesher}-{frame}"
+                    self.labels("pieces.nii.gz", "-o", folder, "-q", "--tetrahedra", mesher, "--element-size",
+                                "4", "--coordinates", frame)
+                    corners, found, volumes = self.volumes(folder)
+                    rows = self.table(folder)
+                    self.assertEqual(set(found), {1, 2, 3})
+                    for label in (1, 2, 3):
+                        wanted = float(rows[label]["volume_mm3"])
+                        self.assertAlmostEqual(volumes[found == label].sum(), wanted,
+                                               delta=1e-4 * wanted + 1e-3 * float(rows[label]["area_mm2"]))
+                    sign = -1 if frame == "lps" else 1
+                    self.look(corners * (sign, sign, 1), found, labels, np.linalg.inv(affine))
+                    for name, key in (("tetrahedra-4.1.msh", "gmsh:physical"), ("tetrahedra.vtu", "tissue")):
+                        again = self.volumes(folder, key, name)
+                        self.assertEqual(sorted(again[1]), sorted(found))
+                        self.assertAlmostEqual(again[2].sum(), volumes.sum(), places=3)
+                    regions = self.folder_report(folder)["tetrahedra"]["regions"]
+                    self.assertEqual([r["label"] for r in regions], [1, 2, 3])
+                    self.assertEqual([round(r["voxelsMm3"]) for r in regions],
+                                     [3 * (labels == n).sum() for n in (1, 2, 3)])
+
+    def look(self, corners, found, labels, to_index):
+        """Each voxel centre lies in an element of its label, or in none where it is 0."""
+        corners = corners @ to_index[:3, :3].T + to_index[:3, 3]
+        inverse = np.linalg.inv((corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1))
+        for index in np.ndindex(labels.shape):
+            shares = np.einsum("tij,tj->ti", inverse, np.array(index) - corners[:, 0])
+            inside = (shares.min(axis=1) > -1e-9) & (shares.sum(axis=1) < 1 + 1e-9)
+            self.assertEqual(set(found[inside]), {labels[index]} - {0}, index)
+
+    def test_labels_below_one_are_refused(self):
+        if not shutil.which("tetgen"):
+            self.skipTest("needs tetgen")
+        labels = np.zeros((9, 9, 9), np.int16)
+        labels[2:7, 2:7, 2:7] = -3
+        nibabel.save(nibabel.Nifti1Image(labels, np.eye(4)), self.path("negative.nii"))
+        self.refused(BAD_INPUT, "--tetrahedra: the map has the label -3", "negative.nii", "-o", "n",
+                   "--tetrahedra", "tetgen")
 
 
 class AtlasTest(LabelsTest):

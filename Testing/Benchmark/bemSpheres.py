@@ -21,33 +21,10 @@ import mne
 import nibabel
 import numpy as np
 
+from sphereImages import CENTRE, part_of_ball, save
+
 NAMES = ("inner_skull", "outer_skull", "outer_skin")
 RADII = (80, 86, 92)
-CENTRE = np.array([3.3, -7.1, 5.7])  # scanner RAS, off the voxels' lattice
-SIZE = 200
-AFFINE = np.diag([1.0, 1, 1, 1])
-AFFINE[:3, 3] = -99.5
-
-
-def part_of_ball(radius, points_a_side):
-    axis = np.arange(SIZE) - 99.5
-    squares = [(axis - c) ** 2 for c in CENTRE]
-    distance = np.sqrt(squares[0][:, None, None] + squares[1][:, None] + squares[2])
-    part = (distance <= radius).astype(np.float32)
-    if points_a_side == 1:
-        return part
-    near = np.argwhere(np.abs(distance - radius) < 1)
-    places = near - 99.5 - CENTRE
-    offsets = (np.arange(points_a_side) + 0.5) / points_a_side - 0.5
-    count = np.zeros(len(near))
-    for offset in np.stack(np.meshgrid(offsets, offsets, offsets), axis=-1).reshape(-1, 3):
-        count += np.linalg.norm(places + offset, axis=1) <= radius
-    part[tuple(near.T)] = count / points_a_side ** 3
-    return part
-
-
-def save(path, data):
-    nibabel.save(nibabel.Nifti1Image(data, AFFINE), path)
 
 
 def images(folder, name):

@@ -29,5 +29,6 @@ void addIndexSeeds(Seeds& seeds);
 void addOpenMeegSeeds(Seeds& seeds);
 void addLabelSeeds(Seeds& seeds);
 void addGiantSeeds(Seeds& seeds);
+void addMesherSeeds(Seeds& seeds);
 
 }  // namespace adaptiso::fuzz

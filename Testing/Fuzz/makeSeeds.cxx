@@ -113,6 +113,18 @@ void addGiantSeeds(Seeds& seeds) {
     }
 }
 
+/// One element above and one below a triangle, as the meshers' files have them.
+void addMesherSeeds(Seeds& seeds) {
+    const std::string nodes =
+        "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 0 0 -1\n# by tetgen\n";
+    const std::string elements = "2 4 1\n0 0 1 2 3 1\n1 0 1 2 4 2\n# by tetgen\n";
+    seeds.add("tetgen", nodes + '\0' + elements);
+    seeds.add("gmsh",
+              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n"
+              "4 0 0 1\n5 0 0 -1\n$EndNodes\n$Elements\n4\n1 15 2 0 1 3\n2 2 2 0 1 1 2 3\n"
+              "3 4 2 1 1 1 2 3 4\n4 4 2 2 2 1 2 3 5\n$EndElements\n");
+}
+
 }  // namespace adaptiso::fuzz
 
 int main(int argc, char** argv) {
@@ -131,6 +143,7 @@ int main(int argc, char** argv) {
         adaptiso::fuzz::addOpenMeegSeeds(seeds);
         adaptiso::fuzz::addLabelSeeds(seeds);
         adaptiso::fuzz::addGiantSeeds(seeds);
+        adaptiso::fuzz::addMesherSeeds(seeds);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "makeSeeds: %s\n", error.what());
         return 3;

@@ -59,6 +59,14 @@ void requireOrder(const std::vector<FloatImage>& enclosed, const RawBoundaries& 
     }
 }
 
+/// All of an image that is not 0, besides what is there.
+void unite(FloatImage& solid, const VolumeView& mask) {
+    const FloatImage more = indicator(mask, [](double sample) { return sample != 0; });
+    for (std::size_t v = 0; v < solid.values.size(); ++v) {
+        solid.values[v] = std::max(solid.values[v], more.values[v]);
+    }
+}
+
 /// \param enclosed  by inner skull, outer skull and skin
 /// \param brain     by the brain's own surface, if that is wanted
 HeadBoundaries boundariesFrom(const std::vector<FloatImage>& enclosed,
@@ -124,14 +132,20 @@ TissueLabels tissuePreset(std::string_view name) {
     // FreeSurfer's colour table: 165 Skull, 258 Head-ExtraCerebral, 259 Eye-Fluid; 24 CSF, 257
     // CSF-ExtraCerebral
     if (name == "aseg" || name == "samseg") return {{}, {165}, {258, 259}, true, {24, 257}};
+    // class_map["total"] of TotalSegmentator 2
+    if (name == "totalsegmentator") return {{90}, {91}, {}, false, {}};
     throw InvalidInput("tissuePreset: '" + std::string(name) +
-                       "' is none of charm, headreco, aseg, samseg");
+                       "' is none of charm, headreco, aseg, samseg, totalsegmentator");
 }
 
 HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels& tissues,
-                                    const BoundaryOptions& options) {
+                                    const BoundaryOptions& options,
+                                    const std::optional<VolumeView>& headMask) {
     checkOptions(options);
     requireDistinct(tissues);
+    if (headMask && headMask->geometry() != labels.geometry()) {
+        throw InvalidInput("the head mask is on another grid than the labels");
+    }
     const auto isBrain = [&](double sample) {
         if (holds(tissues.brain, sample)) return true;
         return tissues.othersAreBrain && sample != 0 && !std::isnan(sample) &&
@@ -158,6 +172,7 @@ HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels
         enclosed.push_back(indicator(labels, [&](double sample) {
             return isInSkull(sample) || holds(tissues.scalp, sample);
         }));
+        if (headMask) unite(enclosed[2], *headMask);
         requireSome(enclosed[2], &enclosed[1], "scalp");
     }
     return boundariesFrom(enclosed, brain, options);

@@ -14,6 +14,7 @@
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/PointFiles.h"
+#include "adaptiso/Tetrahedra/TetrahedraFiles.h"
 
 namespace adaptiso {
 namespace {
@@ -60,16 +61,20 @@ void writeElectrodes(const BemModel& model, const BemFileOptions& options, const
 }
 
 void writeTetrahedra(const BemModel& model, const BemFileOptions& options, const PlaceFile& place) {
-    TetrahedralMesh mesh = model.tetrahedra->mesh;
     const AffineTransform move = lpsToFrame(options.frame, model.tkRasVolume);
-    for (Vec3& p : mesh.points) p = move(p);
-    if (determinant(move.linear) < 0) {
-        for (auto& t : mesh.tetrahedra) std::swap(t[2], t[3]);
-    }
-    writeMsh22(mesh, place(kMsh22File));
-    writeMsh41(mesh, place(kMsh41File));
+    const TetrahedralMesh mesh = transformed(model.tetrahedra->mesh, move.linear, move.offset);
+    const std::vector<TetrahedraRegion> regions = headRegions(model.meshes);
+    writeMsh22(mesh, regions, place(kMsh22File));
+    writeMsh41(mesh, regions, place(kMsh41File));
     writeVtu(mesh, place(kVtuFile));
-    writeDgf(mesh, place(kDgfFile));
+    writeDgf(mesh, allTissues(), place(kDgfFile));
+    const std::vector<double> conductivities = tissueConductivities(model.options.conductivities);
+    std::string list;
+    for (const double value : conductivities) list += formatNumber(value) + "\n";
+    writeText(place(kTissueConductivitiesFile), list);
+    if (std::ssize(mesh.points) > kMostCauchyPoints) return;
+    writeCauchy(mesh, place(kCauchyFile));
+    writeCauchyTensors(mesh, allTissues(), conductivities, place(kCauchyTensorsFile));
 }
 
 /// Landmarks first, as BESA wants them.
@@ -88,11 +93,29 @@ void writeBesa(const BemModel& model, const BemFileOptions& options, const Place
 }  // namespace
 
 std::vector<std::string> bemFileNames() {
-    std::vector<std::string> names{"model.geom",   "model.cond",   "report.json",   "spots.png",
-                                   "README.md",    kFiffModel,     kFiffDenseHead,  kFiffSparseHead,
-                                   kFieldTripFile, kElectrodesTsv, kElectrodesJson, kElectrodesElc,
-                                   kElectrodesSfp, kElectrodesFif, kElectrodesTxt,  kBesaFile,
-                                   kMsh22File,     kMsh41File,     kVtuFile,        kDgfFile};
+    std::vector<std::string> names{"model.geom",
+                                   "model.cond",
+                                   "report.json",
+                                   "spots.png",
+                                   "README.md",
+                                   kFiffModel,
+                                   kFiffDenseHead,
+                                   kFiffSparseHead,
+                                   kFieldTripFile,
+                                   kElectrodesTsv,
+                                   kElectrodesJson,
+                                   kElectrodesElc,
+                                   kElectrodesSfp,
+                                   kElectrodesFif,
+                                   kElectrodesTxt,
+                                   kBesaFile,
+                                   kMsh22File,
+                                   kMsh41File,
+                                   kVtuFile,
+                                   kDgfFile,
+                                   kCauchyFile,
+                                   kCauchyTensorsFile,
+                                   kTissueConductivitiesFile};
     for (std::size_t n = 0; n < kHeadSurfaceCount; ++n) {
         const HeadSurface surface = headSurface(n, kHeadSurfaceCount);
         for (const char* extension : {".surf", ".tri", ".gii", ".vtp"}) {

@@ -1,5 +1,8 @@
 #include "adaptiso/Pipeline/BemJson.h"
 
+#include "adaptiso/HeadModel/Tetrahedra.h"
+#include "adaptiso/Pipeline/TetrahedraJson.h"
+
 namespace adaptiso {
 namespace {
 
@@ -96,13 +99,11 @@ Json tetrahedraJson(const BemModel& model) {
                           {"volumeMm3", number(report.volumesMm3[n])},
                           {"betweenSurfacesMm3", number(report.expectedMm3[n])}});
     }
-    return {{"mesher", model.tetrahedra->mesher},
-            {"points", std::ssize(model.tetrahedra->mesh.points)},
-            {"layers", layers},
-            {"dihedralDeg",
-             {{"minimum", number(report.leastDihedralDeg)}, {"p5", number(report.p5DihedralDeg)}}},
-            {"radiusEdge",
-             {{"maximum", number(report.mostRadiusEdge)}, {"p95", number(report.p95RadiusEdge)}}}};
+    Json json{{"mesher", model.tetrahedra->mesher},
+              {"points", std::ssize(model.tetrahedra->mesh.points)},
+              {"layers", layers}};
+    json.update(elementShapesJson(report));
+    return json;
 }
 
 }  // namespace

@@ -20,9 +20,11 @@ constexpr double kFitMm = 0.5;
 constexpr double kRoundingMm = 1e-4;
 
 /// Of four surfaces the thinnest layer, the CSF, decides how short edges are: adaptive lengths,
-/// scaled until the whole model has no more vertices than solvers take.
-constexpr EdgeLengthRange kFourLayerEdgesMm{4, 8};
-constexpr std::int64_t kMostInAll = 10'000;
+/// scaled until the whole model has no more vertices than solvers take. What flat triangles do to
+/// the layers' thickness cancels in part where surfaces are alike: of limits tried on spheres 4 to
+/// 5 mm lost at no eccentricity, 4 to 8 mm at 0.9 (HeadModel.md).
+constexpr EdgeLengthRange kFourLayerEdgesMm{4, 5};
+constexpr std::int64_t kManyVertices = 10'000;  // MNE warns of more
 
 bool choosesVertices(const BemModel& model) {
     return model.options.boundaries.withBrain && model.options.vertices.empty() &&
@@ -65,17 +67,19 @@ void chooseVertices(const std::vector<TriangleMesh>& dense, BemModel& model) {
         remesh.vertices = 0;
         wanted.push_back(verticesForEdges(dense[n], remesh));
     }
+    const std::int64_t most = model.options.mostVertices;
     const std::int64_t all = std::accumulate(wanted.begin(), wanted.end(), std::int64_t{0});
-    if (all > kMostInAll) {
-        model.notes.push_back("edges as long as the layers beside them are thick (" +
-                              formatShort(kFourLayerEdgesMm.minimumMm) + " to " +
-                              formatShort(kFourLayerEdgesMm.maximumMm) + " mm) take " +
-                              formatCount(all) + " vertices; all edges are " +
-                              formatFixed(std::sqrt(static_cast<double>(all) / kMostInAll), 2) +
-                              " times as long, for " + formatCount(kMostInAll));
+    if (all > most) {
+        model.notes.push_back(
+            "edges as long as the layers beside them are thick (" +
+            formatShort(kFourLayerEdgesMm.minimumMm) + " to " +
+            formatShort(kFourLayerEdgesMm.maximumMm) + " mm) take " + formatCount(all) +
+            " vertices; all edges are " +
+            formatFixed(std::sqrt(static_cast<double>(all) / static_cast<double>(most)), 2) +
+            " times as long, for " + formatCount(most));
     }
     for (std::size_t n = 0; n < wanted.size(); ++n) {
-        if (all > kMostInAll) wanted[n] = std::max<std::int64_t>(42, wanted[n] * kMostInAll / all);
+        if (all > most) wanted[n] = std::max<std::int64_t>(42, wanted[n] * most / all);
         model.surfaces[n].ownVertices = wanted[n];
     }
 }
@@ -131,7 +135,7 @@ std::vector<TriangleMesh> nested(const std::vector<TriangleMesh>& surfaces, BemM
 void warnOfMany(BemModel& model) {
     std::int64_t vertices = 0;
     for (const TriangleMesh& surface : model.meshes) vertices += std::ssize(surface.points);
-    if (vertices <= kMostInAll) return;
+    if (vertices <= kManyVertices) return;
     model.warnings.push_back(formatCount(vertices) +
                              " vertices in all; MNE warns above 10,000; ask for fewer");
 }

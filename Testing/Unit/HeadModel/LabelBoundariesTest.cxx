@@ -243,6 +243,7 @@ TEST(TissuePreset, NamesWhatItKnows) {
     EXPECT_EQ(tissuePreset("headreco").brain, (std::vector<std::int64_t>{1, 2}));
     EXPECT_EQ(tissuePreset("headreco").csf, (std::vector<std::int64_t>{3}));
     EXPECT_TRUE(tissuePreset("aseg").othersAreBrain);
+    EXPECT_EQ(tissuePreset("totalsegmentator").skull, (std::vector<std::int64_t>{91}));
     expectRefused([] { tissuePreset("freesurfer"); }, "none of charm, headreco, aseg");
 }
 

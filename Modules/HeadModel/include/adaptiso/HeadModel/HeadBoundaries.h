@@ -120,17 +120,20 @@ struct TissueLabels {
     std::vector<std::int64_t> csf{};  ///< within the inner skull, outside of the brain
 };
 
-/// "charm", "headreco" (SimNIBS), or "aseg" and "samseg" (FreeSurfer's aseg and SAMSEG's, whose
-/// skull is 165, whose scalp is 258 and 259, and whose CSF is 24 and 257). \throws InvalidInput
-/// another name
+/// "totalsegmentator" (task total: brain 90, skull 91, no scalp), "charm", "headreco" (SimNIBS), or
+/// "aseg" and "samseg" (FreeSurfer's aseg and SAMSEG's, whose skull is 165, whose scalp is 258 and
+/// 259, and whose CSF is 24 and 257). \throws InvalidInput another name
 TissueLabels tissuePreset(std::string_view name);
 
 /// From a label map. Labels become parts of voxels by smoothing and interpolating each boundary's
 /// own indicator, so that surfaces are not stairs.
-/// \throws InvalidInput  a tissue has no label in the image; labels listed for two tissues; tissues
+/// \param headMask  on the labels' grid: what is not 0 there lies within the skin, whatever its
+/// label \throws InvalidInput  a mask on another grid; a tissue has no label in the image; labels
+/// listed for two tissues; tissues
 ///                       that don't lie round each other in their order; withBrain without CSF
 HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels& tissues,
-                                    const BoundaryOptions& options = {});
+                                    const BoundaryOptions& options = {},
+                                    const std::optional<VolumeView>& headMask = std::nullopt);
 
 /// From tissue probabilities in SPM's order: c1 grey, c2 white, c3 CSF, c4 skull, c5 scalp (c6 air
 /// is not needed). All on one grid; values are parts of a voxel (0 to 1; integers are scaled by

@@ -41,6 +41,9 @@ inline constexpr const char* kMsh22File = "head.msh";
 inline constexpr const char* kMsh41File = "head-4.1.msh";
 inline constexpr const char* kVtuFile = "head.vtu";
 inline constexpr const char* kDgfFile = "head.dgf";
+inline constexpr const char* kCauchyFile = "head.geo";
+inline constexpr const char* kCauchyTensorsFile = "head.knw";
+inline constexpr const char* kTissueConductivitiesFile = "head.cond";
 
 inline constexpr const char* kFiffModel = "bem.fif";
 inline constexpr const char* kFiffDenseHead = "head-dense.fif";

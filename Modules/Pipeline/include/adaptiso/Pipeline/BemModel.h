@@ -45,6 +45,7 @@ struct BemModelOptions {
     /// of each of three surfaces, and of four as many as the layers' thickness asks for, 10,000 in
     /// all at most.
     std::vector<std::int64_t> vertices;
+    std::int64_t mostVertices = 10'000;  ///< of four layers in all, where no number is given
     std::optional<EdgeLengthRange> edgeLengthMm;
     ConductivityModel conductivities;
     ElectrodeOptions electrodes{};

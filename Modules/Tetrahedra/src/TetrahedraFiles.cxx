@@ -1,13 +1,14 @@
+#include "adaptiso/Tetrahedra/TetrahedraFiles.h"
+
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <fstream>
 #include <map>
-#include <set>
 
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/HeadModel/Tetrahedra.h"
 
 namespace adaptiso {
 namespace {
@@ -58,31 +59,50 @@ private:
     std::string buffer_;
 };
 
-std::set<std::int32_t> tissuesOf(const TetrahedralMesh& mesh) {
-    return {mesh.tissues.begin(), mesh.tissues.end()};
+/// Cauchy's files have two such lines between their parts.
+constexpr std::string_view kRule =
+    "===================================================================\n"
+    "===================================================================\n";
+
+/// Names stand in quotes.
+std::string quotable(std::string name) {
+    for (char& c : name) {
+        if (c == '"' || c == '\n' || c == '\r') c = ' ';
+    }
+    return name;
 }
 
-void writeNames(TextFile& file, const std::set<std::int32_t>& tissues) {
-    file << "$PhysicalNames\n" << static_cast<std::int64_t>(tissues.size()) << "\n";
-    for (const std::int32_t tissue : tissues) {
-        file << "3 " << std::int64_t{tissue} << " \"" << tissueName(tissue) << "\"\n";
+void writeNames(TextFile& file, std::span<const TetrahedraRegion> regions) {
+    file << "$PhysicalNames\n" << std::ssize(regions) << "\n";
+    for (const TetrahedraRegion& region : regions) {
+        file << "3 " << std::int64_t{region.label} << " \"" << quotable(region.name) << "\"\n";
     }
     file << "$EndPhysicalNames\n";
 }
 
+/// The place of each label in a list.
+std::map<std::int32_t, std::int64_t> placesOf(std::span<const TetrahedraRegion> regions) {
+    std::map<std::int32_t, std::int64_t> places;
+    for (const TetrahedraRegion& region : regions) {
+        places.emplace(region.label, std::ssize(places));
+    }
+    return places;
+}
+
 }  // namespace
 
-void writeMsh22(const TetrahedralMesh& mesh, const std::filesystem::path& path) {
+void writeMsh22(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
+                const std::filesystem::path& path) {
     TextFile file(path);
     file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
-    writeNames(file, tissuesOf(mesh));
+    writeNames(file, regions);
     file << "$Nodes\n" << std::ssize(mesh.points) << "\n";
     std::int64_t number = 0;
     for (const Vec3& p : mesh.points) file << ++number << " " << p << "\n";
     file << "$EndNodes\n$Elements\n" << std::ssize(mesh.tetrahedra) << "\n";
     for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
         const auto& [a, b, c, d] = mesh.tetrahedra[n];
-        const std::int64_t tissue = mesh.tissues[n];
+        const std::int64_t tissue = mesh.labels[n];
         file << static_cast<std::int64_t>(n + 1) << " 4 2 " << tissue << " " << tissue << " "
              << a + 1 << " " << b + 1 << " " << c + 1 << " " << d + 1 << "\n";
     }
@@ -90,10 +110,10 @@ void writeMsh22(const TetrahedralMesh& mesh, const std::filesystem::path& path) 
     file.finish();
 }
 
-void writeMsh41(const TetrahedralMesh& mesh, const std::filesystem::path& path) {
-    const std::set<std::int32_t> tissues = tissuesOf(mesh);
+void writeMsh41(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
+                const std::filesystem::path& path) {
     std::map<std::int32_t, std::int64_t> counts;
-    for (const std::int32_t tissue : mesh.tissues) ++counts[tissue];
+    for (const std::int32_t label : mesh.labels) ++counts[label];
     const std::int64_t points = std::ssize(mesh.points), elements = std::ssize(mesh.tetrahedra);
     Vec3 low = mesh.points.front(), high = low;
     for (const Vec3& p : mesh.points) {
@@ -104,23 +124,24 @@ void writeMsh41(const TetrahedralMesh& mesh, const std::filesystem::path& path) 
     }
     TextFile file(path);
     file << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
-    writeNames(file, tissues);
-    file << "$Entities\n0 0 0 " << static_cast<std::int64_t>(tissues.size()) << "\n";
-    for (const std::int64_t tissue : tissues) {
+    writeNames(file, regions);
+    file << "$Entities\n0 0 0 " << std::ssize(regions) << "\n";
+    for (const TetrahedraRegion& region : regions) {
+        const std::int64_t tissue = region.label;
         file << tissue << " " << low << " " << high << " 1 " << tissue << " 0\n";
     }
     file << "$EndEntities\n$Nodes\n1 " << points << " 1 " << points << "\n3 "
-         << std::int64_t{*tissues.begin()} << " 0 " << points << "\n";
+         << std::int64_t{regions.front().label} << " 0 " << points << "\n";
     for (std::int64_t n = 1; n <= points; ++n) file << n << "\n";
     for (const Vec3& p : mesh.points) file << p << "\n";
     file << "$EndNodes\n$Elements\n"
-         << static_cast<std::int64_t>(tissues.size()) << " " << elements << " 1 " << elements
-         << "\n";
+         << std::ssize(regions) << " " << elements << " 1 " << elements << "\n";
     std::int64_t number = 0;
-    for (const std::int32_t tissue : tissues) {
+    for (const TetrahedraRegion& region : regions) {
+        const std::int32_t tissue = region.label;
         file << "3 " << std::int64_t{tissue} << " 4 " << counts[tissue] << "\n";
         for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
-            if (mesh.tissues[n] != tissue) continue;
+            if (mesh.labels[n] != tissue) continue;
             const auto& [a, b, c, d] = mesh.tetrahedra[n];
             file << ++number << " " << a + 1 << " " << b + 1 << " " << c + 1 << " " << d + 1
                  << "\n";
@@ -138,7 +159,7 @@ void writeVtu(const TetrahedralMesh& mesh, const std::filesystem::path& path) {
          << std::ssize(mesh.points) << "\" NumberOfCells=\"" << elements
          << "\">\n<CellData Scalars=\"tissue\">\n<DataArray type=\"Int32\" Name=\"tissue\" "
             "format=\"ascii\">\n";
-    for (const std::int64_t tissue : mesh.tissues) file << tissue << "\n";
+    for (const std::int64_t tissue : mesh.labels) file << tissue << "\n";
     file << "</DataArray>\n</CellData>\n<Points>\n<DataArray type=\"Float64\" "
             "NumberOfComponents=\"3\" format=\"ascii\">\n";
     for (const Vec3& p : mesh.points) file << p << "\n";
@@ -155,17 +176,58 @@ void writeVtu(const TetrahedralMesh& mesh, const std::filesystem::path& path) {
     file.finish();
 }
 
-void writeDgf(const TetrahedralMesh& mesh, const std::filesystem::path& path) {
+void writeDgf(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
+              const std::filesystem::path& path) {
+    const std::map<std::int32_t, std::int64_t> places = placesOf(regions);
     TextFile file(path);
     file << "DGF\nVertex\n";
     for (const Vec3& p : mesh.points) file << p << "\n";
     file << "#\nSimplex\nparameters 1\n";
     for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
         const auto& [a, b, c, d] = mesh.tetrahedra[n];
-        file << a << " " << b << " " << c << " " << d << " " << std::int64_t{mesh.tissues[n]}
-             << "\n";
+        file << a << " " << b << " " << c << " " << d << " " << places.at(mesh.labels[n]) << "\n";
     }
     file << "#\nBoundaryDomain\ndefault 1\n#\n";
+    file.finish();
+}
+
+void writeCauchy(const TetrahedralMesh& mesh, const std::filesystem::path& path) {
+    TextFile file(path);
+    file << "BOI - GEOMETRIEFILE\n"
+         << kRule
+         << "BOI - STEUERKARTE\n  ANZAHL DER KNOTEN             : " << std::ssize(mesh.points)
+         << "\n  ANZAHL DER ELEMENTE           : " << std::ssize(mesh.tetrahedra)
+         << "\n  GEOMETR. STRUKTUR - DIMENSION : 3\nEOI - STEUERKARTE\n"
+         << kRule << "BOI - KOORDINATENKARTE\n";
+    for (std::size_t n = 0; n < mesh.points.size(); ++n) {  // two in a line
+        file << (n % 2 == 0 ? "   " : "     ") << mesh.points[n] << (n % 2 == 0 ? "" : "\n");
+    }
+    if (mesh.points.size() % 2 == 1) file << "\n";
+    file << "EOI - KOORDINATENKARTE\n" << kRule << "BOI - ELEMENTKNOTENKARTE\n";
+    constexpr std::size_t kColumn = 6;
+    for (const auto& t : mesh.tetrahedra) {
+        std::string row = "  303: ";  // a tetrahedron
+        for (const VertexId v : t) {
+            const std::string number = std::to_string(v + 1);
+            row += std::string(kColumn - std::min(kColumn, number.size()), ' ') + number;
+        }
+        file << row << "\n";
+    }
+    file << "EOI - ELEMENTKNOTENKARTE\n" << kRule << "EOI - GEOMETRIEFILE\n";
+    file.finish();
+}
+
+void writeCauchyTensors(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
+                        std::span<const double> conductivities, const std::filesystem::path& path) {
+    const std::map<std::int32_t, std::int64_t> places = placesOf(regions);
+    TextFile file(path);
+    file << "BOI - TENSORVALUEFILE\n" << kRule << "BOI - TENSOR\n";
+    for (std::size_t n = 0; n < mesh.labels.size(); ++n) {
+        const double value = conductivities[static_cast<std::size_t>(places.at(mesh.labels[n]))];
+        file << static_cast<std::int64_t>(n + 1) << " " << Vec3{value, value, value}
+             << "\n 0 0 0\n";
+    }
+    file << "EOI - TENSOR\n" << kRule << "EOI - TENSORVALUEFILE\n";
     file.finish();
 }
 

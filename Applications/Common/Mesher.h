@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include "Common/CliNames.h"
+#include "adaptiso/Tetrahedra/MesherFiles.h"
+
+namespace adaptiso {
+
+/// How spaces between walls are filled with tetrahedra.
+struct MesherOptions {
+    std::string mesher;    ///< "tetgen" or "gmsh"; empty: they are not
+    double elementMm = 5;  ///< longest edge of an equilateral tetrahedron
+
+    bool isAsked() const { return !mesher.empty(); }
+};
+
+/// Adds --tetrahedra and --element-size. \param files  that are written, for --help
+void declareMesherOptions(CLI::App& app, MesherOptions& options, const std::string& files,
+                          const char* group);
+
+/// \throws FileError  the mesher asked for is not installed
+void requireMesher(const MesherOptions& options);
+
+/// Runs the mesher, as a program. \return  what it made; labels are numbers of regions
+/// \throws FileError  it is not installed, fails, or writes what can't be read
+TetrahedralMesh runMesher(const MesherInput& input, const MesherOptions& options);
+
+}  // namespace adaptiso

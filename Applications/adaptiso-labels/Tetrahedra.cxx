@@ -1,0 +1,42 @@
+#include "Tetrahedra.h"
+
+#include <utility>
+
+#include "Common/Mesher.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Labels/LabelVolumes.h"
+
+namespace adaptiso {
+
+void requireTetrahedraLabels(const LabelsRun& run) {
+    if (!run.options.tetrahedra.isAsked()) return;
+    for (const Region& region : run.regions) {
+        if (region.label >= 1) continue;
+        throw InvalidInput("--tetrahedra: the map has the label " + std::to_string(region.label) +
+                           "; Gmsh's numbers of volumes begin with 1");
+    }
+}
+
+void makeTetrahedra(const LabelComplex& complex, LabelsRun& run) {
+    std::vector<Label> labels;
+    RegionTetrahedra made;
+    for (const Region& region : run.regions) {
+        labels.push_back(region.label);
+        made.regions.push_back(
+            {region.label, region.name, region.measure.volumeMm3, region.measure.areaMm2});
+    }
+    made.mesh = runMesher(labelMesherInput(complex, labels), run.options.tetrahedra);
+    takeRegions(made.mesh, made.regions);
+    made.report = checkTetrahedra(made.mesh, made.regions);
+    LabelsCheck all{
+        "tetrahedra: each of a region, none flat, each region's volume as within its walls"};
+    for (const TetrahedraCheck& check : judgeTetrahedra(made.report, made.regions)) {
+        if (check.isPassed) continue;
+        all.finding += (all.isPassed ? "" : "; ") + check.name + ": " + check.detail;
+        all.isPassed = false;
+    }
+    run.checks.push_back(std::move(all));
+    run.tetrahedra = std::move(made);
+}
+
+}  // namespace adaptiso

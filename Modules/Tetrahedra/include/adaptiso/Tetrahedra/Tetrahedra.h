@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Core/TriangleMesh.h"
+
+namespace adaptiso {
+
+/// A volume in tetrahedra, each of one region.
+struct TetrahedralMesh {
+    std::vector<Vec3> points;
+    std::vector<std::array<VertexId, 4>> tetrahedra;  ///< of positive volume
+    std::vector<std::int32_t> labels;                 ///< one a tetrahedron: a region's number
+};
+
+/// What is to be filled: a tissue of a head, a region of a label map.
+struct TetrahedraRegion {
+    std::int32_t label = 0;
+    std::string name;
+    double mm3 = 0;       ///< within its walls
+    double wallsMm2 = 0;  ///< their area
+};
+
+/// What is known of tetrahedra.
+struct TetrahedraReport {
+    std::int64_t unlabelled = 0;                     ///< of none of the regions
+    std::int64_t flat = 0;                           ///< of volume 0 or less
+    std::vector<std::int64_t> counts;                ///< by region
+    std::vector<double> volumesMm3;                  ///< the same
+    std::vector<double> expectedMm3;                 ///< the same: within the walls
+    double leastDihedralDeg = 0, p5DihedralDeg = 0;  ///< of each element's least
+    double mostRadiusEdge = 0,
+           p95RadiusEdge = 0;  ///< circumscribed radius by shortest edge; 0.61 at best
+};
+/// Cost: O(T log T)
+TetrahedraReport checkTetrahedra(const TetrahedralMesh& mesh,
+                                 std::span<const TetrahedraRegion> regions);
+
+/// A promise about tetrahedra, kept or not.
+struct TetrahedraCheck {
+    std::string name;  ///< "none flat or inverted"
+    bool isPassed = false;
+    std::string detail;
+};
+/// What must hold before tetrahedra are of use: each is of a region, none is flat or inverted, and
+/// each region has the volume within its walls: to 0.01 %, and to a thousandth of a mm of the
+/// walls, as tetgen takes facets that meet at less than 0.1 degrees for one.
+std::vector<TetrahedraCheck> judgeTetrahedra(const TetrahedraReport& report,
+                                             std::span<const TetrahedraRegion> regions);
+
+/// "12,345 of 2,345 points by tetgen; least dihedral angle 5.2 deg ..."
+std::string describeTetrahedra(const TetrahedralMesh& mesh, const TetrahedraReport& report,
+                               const std::string& mesher);
+
+/// The mesh in another frame, each point times `linear` and `translation` more; elements are turned
+/// where that mirrors them.
+TetrahedralMesh transformed(TetrahedralMesh mesh, const Mat3& linear, const Vec3& translation);
+
+/// Keeps the elements whose number is that of a region in the list, from 1, and gives them its
+/// label; points that no element needs any more go. What a mesher fills besides is a space that
+/// regions enclose.
+void takeRegions(TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions);
+
+}  // namespace adaptiso

@@ -1,0 +1,273 @@
+#include "adaptiso/Tetrahedra/MesherFiles.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <system_error>
+#include <utility>
+
+#include "Volume.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+namespace {
+
+std::string text(double value) {
+    std::array<char, 40> digits;
+    return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
+std::string text(std::int64_t value) {
+    return std::to_string(value);
+}
+
+std::string text(const Vec3& p) {
+    return text(p.x) + " " + text(p.y) + " " + text(p.z);
+}
+
+/// Bytes that are no visible ASCII become question marks: a message is one line.
+std::string printable(std::string_view word) {
+    std::string text(word);
+    for (char& c : text) {
+        if (c < ' ' || c > '~') c = '?';
+    }
+    return text;
+}
+
+/// Numbers between white space; lines that begin with '#' are passed over.
+class Words {
+public:
+    Words(std::string_view bytes, std::string_view name) : bytes_(bytes), name_(name) {}
+
+    std::string_view next() {
+        for (;;) {
+            while (at_ < bytes_.size() && isSpace(bytes_[at_])) ++at_;
+            if (at_ >= bytes_.size() || bytes_[at_] != '#') break;
+            at_ = std::min(bytes_.find('\n', at_), bytes_.size());
+        }
+        const std::size_t begin = at_;
+        while (at_ < bytes_.size() && !isSpace(bytes_[at_])) ++at_;
+        return bytes_.substr(begin, at_ - begin);
+    }
+    template <class Number>
+    Number number() {
+        const std::string_view word = next();
+        Number value{};
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (error != std::errc() || end != word.data() + word.size()) {
+            fail("a number is due where there is '" + printable(word.substr(0, 20)) + "'");
+        }
+        return value;
+    }
+    /// A number of things of which each takes two bytes or more.
+    std::int64_t count() {
+        const auto value = number<std::int64_t>();
+        if (value < 0 || static_cast<std::uint64_t>(value) > bytes_.size() / 2) {
+            fail("it says it holds " + std::to_string(value) + " things");
+        }
+        return value;
+    }
+    /// An attribute of tetgen's, which it writes as a real number.
+    std::int32_t label() {
+        const auto value = number<double>();
+        constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+        if (!(std::abs(value) <= kMost)) fail("a region's number is none");
+        return static_cast<std::int32_t>(value);
+    }
+    void skipTo(std::string_view word) {
+        for (std::string_view found = next(); found != word; found = next()) {
+            if (found.empty()) fail("it lacks " + std::string(word));
+        }
+    }
+    [[noreturn]] void fail(const std::string& what) const {
+        throw FileError(std::string(name_) + ": " + what);
+    }
+
+private:
+    static bool isSpace(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
+
+    std::string_view bytes_, name_;
+    std::size_t at_ = 0;
+};
+
+void turnNegative(TetrahedralMesh& mesh) {
+    for (auto& t : mesh.tetrahedra) {
+        if (volumeOf(mesh, t) < 0) std::swap(t[2], t[3]);
+    }
+}
+
+void requireInRange(const TetrahedralMesh& mesh, const Words& words) {
+    for (const auto& t : mesh.tetrahedra) {
+        for (const VertexId v : t) {
+            if (v < 0 || v >= std::ssize(mesh.points))
+                words.fail("an element names a missing point");
+        }
+    }
+}
+
+}  // namespace
+
+Vec3 pointBeside(const TriangleMesh& walls, const AabbTree& tree,
+                 std::span<const std::int64_t> triangles, bool outward) {
+    constexpr int kHalvings = 20;
+    for (const std::int64_t t : triangles) {
+        const auto& [a, b, c] = walls.triangles[t];
+        const Vec3 normal = areaVector2(walls.points[a], walls.points[b], walls.points[c]);
+        const double area2 = norm(normal);
+        if (!(area2 > 0)) continue;
+        const Vec3 middle = 1.0 / 3 * (walls.points[a] + walls.points[b] + walls.points[c]);
+        double step = std::sqrt(area2) / 4;
+        for (int n = 0; n < kHalvings; ++n, step /= 2) {
+            const Vec3 p = middle + (outward ? step : -step) / area2 * normal;
+            // where nothing is nearer than the middle, nothing lies on the way from it
+            const double nearest = tree.closestPoint(p).squaredDistanceMm2;
+            constexpr double kRounding = 1e-6;
+            if (nearest > 0 && nearest >= step * step * (1 - kRounding)) return p;
+        }
+    }
+    throw InvalidInput("pointBeside: all triangles are flat, or touched by others");
+}
+
+std::string tetgenInput(const MesherInput& input, double elementMm) {
+    std::string poly = text(std::ssize(input.points)) + " 3 0 0\n";
+    std::int64_t number = 0;
+    for (const Vec3& p : input.points) poly += text(number++) + " " + text(p) + "\n";
+    poly += text(std::ssize(input.triangles)) + " 1\n";
+    for (std::size_t t = 0; t < input.triangles.size(); ++t) {
+        const auto& [a, b, c] = input.triangles[t];
+        poly += "1 0 " + text(std::int64_t{input.walls[t]}) + "\n3 " + text(a) + " " + text(b) +
+                " " + text(c) + "\n";
+    }
+    const double mm3 = elementMm * elementMm * elementMm / (6 * std::numbers::sqrt2);
+    poly += "0\n" + text(std::ssize(input.volumes)) + "\n";
+    number = 0;
+    for (const MesherVolume& volume : input.volumes) {
+        poly += text(++number) + " " + text(volume.insideMm) + " " +
+                text(std::int64_t{volume.region}) + " " + text(mm3) + "\n";
+    }
+    return poly;
+}
+
+std::string gmshWalls(const MesherInput& input) {
+    std::string msh =
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + text(std::ssize(input.points)) + "\n";
+    std::int64_t number = 0;
+    for (const Vec3& p : input.points) msh += text(++number) + " " + text(p) + "\n";
+    msh += "$EndNodes\n$Elements\n" + text(std::ssize(input.triangles)) + "\n";
+    for (std::size_t t = 0; t < input.triangles.size(); ++t) {
+        const auto& [a, b, c] = input.triangles[t];
+        const std::string wall = text(std::int64_t{input.walls[t]});
+        msh += text(static_cast<std::int64_t>(t + 1)) + " 2 2 " + wall + " " + wall + " " +
+               text(a + 1) + " " + text(b + 1) + " " + text(c + 1) + "\n";
+    }
+    return msh + "$EndElements\n";
+}
+
+std::string gmshScript(const MesherInput& input, std::string_view wallsFile, double elementMm) {
+    std::string script =
+        "General.Terminal = 1;\nMesh.CharacteristicLengthMax = " + text(elementMm) +
+        ";\nMesh.CharacteristicLengthExtendFromBoundary = 1;\n"
+        "Mesh.Optimize = 1;\nMesh.OptimizeNetgen = 0;\nMerge \"" +
+        std::string(wallsFile) + "\";\n";
+    std::map<std::int32_t, std::string> volumesOf;
+    std::int64_t number = 0;
+    for (const MesherVolume& volume : input.volumes) {
+        const std::string name = text(++number);
+        std::string walls;
+        for (const std::int32_t wall : volume.walls) {
+            walls += (walls.empty() ? "" : ", ") + text(std::int64_t{wall});
+        }
+        script += "Surface Loop(" + name + ") = {" + walls + "};\nVolume(" + name + ") = {" + name +
+                  "};\n";
+        std::string& list = volumesOf[volume.region];
+        list += (list.empty() ? "" : ", ") + name;
+    }
+    for (const auto& [region, list] : volumesOf) {
+        script += "Physical Volume(" + text(std::int64_t{region}) + ") = {" + list + "};\n";
+    }
+    return script;
+}
+
+TetrahedralMesh decodeTetgen(std::string_view nodes, std::string_view elements,
+                             std::string_view name) {
+    TetrahedralMesh mesh;
+    Words words(nodes, name);
+    const std::int64_t points = words.count();
+    const auto dimensions = words.number<int>(), attributes = words.number<int>(),
+               markers = words.number<int>();
+    if (dimensions != 3 || attributes < 0 || attributes > 100 || markers < 0 || markers > 1) {
+        words.fail("its points are of another kind than asked for");
+    }
+    std::int64_t first = 0;
+    for (std::int64_t n = 0; n < points; ++n) {
+        const auto number = words.number<std::int64_t>();
+        if (n == 0) first = number;
+        Vec3 p;
+        for (int a = 0; a < 3; ++a) p[a] = words.number<double>();
+        if (!std::isfinite(squaredNorm(p))) words.fail("a point is not finite");
+        for (int k = 0; k < attributes + markers; ++k) words.next();
+        mesh.points.push_back(p);
+    }
+    Words rows(elements, name);
+    const std::int64_t count = rows.count();
+    const auto corners = rows.number<int>(), labels = rows.number<int>();
+    if (corners != 4 || labels != 1) rows.fail("its elements have no labels, or not four corners");
+    for (std::int64_t n = 0; n < count; ++n) {
+        rows.next();
+        std::array<VertexId, 4> t{};
+        for (VertexId& v : t) v = rows.number<std::int64_t>() - first;
+        mesh.tetrahedra.push_back(t);
+        mesh.labels.push_back(rows.label());
+    }
+    requireInRange(mesh, rows);
+    turnNegative(mesh);
+    return mesh;
+}
+
+TetrahedralMesh decodeGmsh(std::string_view bytes, std::string_view name) {
+    TetrahedralMesh mesh;
+    Words words(bytes, name);
+    words.skipTo("$Nodes");
+    std::map<std::int64_t, VertexId> number;
+    const std::int64_t points = words.count();
+    for (std::int64_t n = 0; n < points; ++n) {
+        number[words.number<std::int64_t>()] = n;
+        Vec3 p;
+        for (int a = 0; a < 3; ++a) p[a] = words.number<double>();
+        if (!std::isfinite(squaredNorm(p))) words.fail("a point is not finite");
+        mesh.points.push_back(p);
+    }
+    words.skipTo("$Elements");
+    const std::int64_t count = words.count();
+    constexpr std::array<int, 5> kCorners{0, 2, 3, 4,
+                                          4};  // of gmsh's line, triangle, quad, tetrahedron
+    for (std::int64_t n = 0; n < count; ++n) {
+        words.next();
+        const auto type = words.number<int>();
+        const auto tags = words.number<int>();
+        if (type == 15) {
+            for (int k = 0; k < tags + 1; ++k) words.next();
+            continue;
+        }
+        if (type < 1 || type > 4 || tags < 1 || tags > 100)
+            words.fail("an element is of no known type");
+        const auto label = words.number<std::int32_t>();
+        for (int k = 1; k < tags; ++k) words.next();
+        std::array<VertexId, 4> t{};
+        for (int k = 0; k < kCorners[static_cast<std::size_t>(type)]; ++k) {
+            const auto found = number.find(words.number<std::int64_t>());
+            t[static_cast<std::size_t>(k)] = found == number.end() ? -1 : found->second;
+        }
+        if (type != 4) continue;
+        mesh.tetrahedra.push_back(t);
+        mesh.labels.push_back(label);
+    }
+    requireInRange(mesh, words);
+    turnNegative(mesh);
+    return mesh;
+}
+
+}  // namespace adaptiso
