@@ -33,7 +33,7 @@ def slope(samples):
 
 
 def scans():
-    """Yields name, samples, affine, isovalue; isovalues lie half-way between whole numbers."""
+    """Yields name, samples, affine, isovalue, which no sample has."""
     unit, inia = np.eye(4), np.diag([0.5, 0.5, 0.5, 1])
     ch2, better, bet, monkey = (template(n) for n in ("ch2", "ch2better", "ch2bet",
                                                       "inia19-t1-brain"))
@@ -44,7 +44,7 @@ def scans():
     yield "monkey", monkey, inia, 100.5
     yield "monkeyDeep", monkey[40:160, 60:200, 20:120], inia, 80.5
     yield "thick", bet[:, :, ::3], np.diag([1, 1, 3, 1]), 90.5
-    yield "thickRows", ndimage.uniform_filter1d(ch2, 2, axis=1)[:, ::2], np.diag([1, 2, 1, 1]), 80.5
+    yield "thickRows", ndimage.uniform_filter1d(ch2, 2, axis=1)[:, ::2], np.diag([1, 2, 1, 1]), 80.25
     yield "turned", turned(bet), unit, 90.5
     yield "smooth", ndimage.gaussian_filter(bet, 1.5), unit, 70.5
     yield "noisy", noisy(bet[20:160, 30:190, 20:150], 4), unit, 90.5

@@ -109,9 +109,13 @@ def scans(bench, arguments):
             count = round(part * facts["mcTriangles"])
             rows = [peers.quadric(count),
                     peers.ours("adaptive", "open", triangles=count, border_="open")]
+            base, ours = rows = bench.rows(volume, rows, arguments.repeats, meters_heap=False)
             results.append({"name": name, "isovalue": isovalue, "part": part, "wanted": count,
-                            "rows": bench.rows(volume, rows, arguments.repeats,
-                                               meters_heap=False, tell=tell)})
+                            "rows": rows})
+            mean = ours["distance"]["both"]["mean"] / base["distance"]["both"]["mean"]
+            tell(f"{name}, {100 * part:.0f} %: mean {mean:.3f}, time "
+                 f"{peers.median_ratio(ours, base):.2f}, processor time "
+                 f"{peers.median_ratio(ours, base, 'cpuSeconds'):.2f} of quadric's")
         image.unlink()
         for kept in arguments.output.glob(f"{name}-*"):
             kept.unlink()
