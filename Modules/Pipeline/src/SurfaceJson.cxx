@@ -88,11 +88,12 @@ Json surfaceOptionsJson(const ExtractionOptions& extraction, const IndexOptions&
             {"fillCavities", selection.fillCavities}};
 }
 
-Json workJson(const AdaptiveWork& work) {
-    return {{"runs", work.runs},
-            {"placesMended", work.placesMended},
-            {"verticesUndone", work.verticesUndone},
-            {"trianglesKept", work.trianglesKept}};
+Json workJson(const std::optional<AdaptiveWork>& work) {
+    const auto part = [&](auto member) { return work ? Json((*work).*member) : Json(); };
+    return {{"runs", part(&AdaptiveWork::runs)},
+            {"placesMended", part(&AdaptiveWork::placesMended)},
+            {"verticesUndone", part(&AdaptiveWork::verticesUndone)},
+            {"trianglesKept", part(&AdaptiveWork::trianglesKept)}};
 }
 
 Json surfaceJson(const SurfaceRecord& surface, Method method, int blockSize) {
@@ -115,7 +116,7 @@ Json surfaceJson(const SurfaceRecord& surface, Method method, int blockSize) {
         {"verifiedMaxMm", surface.verification ? number(surface.verification->maxMm) : Json()},
         {"wantedTriangles", orNull(statistics.wantedTriangles)},
         {"countMet", orNull(surface.countMet())},
-        {"adaptive", statistics.adaptiveWork ? workJson(*statistics.adaptiveWork) : Json()},
+        {"adaptive", workJson(statistics.adaptiveWork)},
         {"triangles", topology.triangles},
         {"vertices", topology.vertices},
         {"marchingCubesTriangles", statistics.marchingCubesTriangles},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,8 @@ Json imageJson(const std::string& format, const ImageGeometry& geometry, PixelTy
 Json surfaceOptionsJson(const ExtractionOptions& extraction, const IndexOptions& index,
                         const ComponentSelection& selection);
 
-/// `adaptive` of an entry of `surfaces`.
-Json workJson(const AdaptiveWork& work);
+/// `adaptive` of an entry of `surfaces`; all null for other methods.
+Json workJson(const std::optional<AdaptiveWork>& work);
 
 /// An entry of `surfaces`, without its `output`.
 Json surfaceJson(const SurfaceRecord& surface, Method method, int blockSize);

@@ -26,10 +26,12 @@ void writeDgf(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> reg
 
 /// The most points that Cauchy's columns of six digits can number.
 inline constexpr std::int64_t kMostCauchyPoints = 999'999;
-/// The geometry file of Cauchy (SimBio, DUNEuro: .geo), and the conductivity of each element beside
-/// it (.knw), as tensors in S/m: coordinates in mm, as DUNEuro brings both to S/mm.
-/// \param conductivities  of each of `regions`, S/m \pre  at most kMostCauchyPoints points
+/// The geometry file of Cauchy (SimBio, DUNEuro: .geo), coordinates in mm.
+/// \pre  at most kMostCauchyPoints points
 void writeCauchy(const TetrahedralMesh& mesh, const std::filesystem::path& path);
+/// The conductivity of each element beside it (.knw), as tensors in S/m: DUNEuro brings both files
+/// to S/mm.
+/// \param conductivities  of each of `regions`, S/m
 void writeCauchyTensors(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
                         std::span<const double> conductivities, const std::filesystem::path& path);
 
