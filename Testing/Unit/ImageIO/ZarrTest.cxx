@@ -145,7 +145,12 @@ protected:
         }
     }
 
-    void expectValues(const ReadVolume& read) const {
+    /// \param options  that it was read with
+    void expectValues(const ReadVolume& read, const ReadOptions& options = {}) const {
+        expectValues(read, root_, options);
+    }
+    void expectValues(const ReadVolume& read, const fs::path& folder,
+                      const ReadOptions& options = {}) const {
         const TypedVolumeView<std::int16_t> view = read.volume.view().as<std::int16_t>();
         ASSERT_EQ(view.geometry.size, (Index3{kX, kY, kZ}));
         for (int z = 0; z < kZ; ++z) {
@@ -153,12 +158,12 @@ protected:
                 for (int x = 0; x < kX; ++x) ASSERT_EQ(view.at(x, y, z), valueAt(x, y, z));
             }
         }
-        expectParts();
+        expectParts(folder, options);
     }
 
     /// What ImageRegions reads, over and beside the walls of chunks.
-    void expectParts() const {
-        const ImageRegions image = ImageRegions::open(root_, {});
+    void expectParts(const fs::path& folder, const ReadOptions& options) const {
+        const ImageRegions image = ImageRegions::open(folder, options);
         EXPECT_TRUE(image.readsParts());
         for (const auto& [first, size] : {std::pair<Index3, Index3>{{0, 0, 0}, {kX, kY, kZ}},
                                           {{3, 3, 3}, {2, 2, 2}},
@@ -392,11 +397,11 @@ TEST_F(ZarrTest, LinksLeadNowhereButIntoTheDatasetAndItsAnnex) {
     fs::create_directories(root_ / ".git/annex/objects/a");
     fs::rename(array / "0/0/0", root_ / ".git/annex/objects/a/key");
     fs::create_symlink("../../../.git/annex/objects/a/key", array / "0/0/0");
-    expectValues(readVolume(array));
+    expectValues(readVolume(array), array);
     // another file of the dataset
     fs::rename(array / "0/0/1", array / "kept");
     fs::create_symlink("../../kept", array / "0/0/1");
-    expectValues(readVolume(array));
+    expectValues(readVolume(array), array);
     // a file elsewhere, a folder elsewhere, a way up and out
     fs::rename(array / "0/1/0", outside / "file");
     fs::create_symlink(outside / "file", array / "0/1/0");
@@ -443,7 +448,7 @@ TEST_F(ZarrTest, IndicesOfAxesThatAreNotThereAreRefused) {
     options.volumeIndex = 1;
     expectRefused("there is no volume 1", options);
     options.volumeIndex = 0;  // as of a NIfTI file of one volume
-    expectValues(readVolume(root_, options));
+    expectValues(readVolume(root_, options), options);
 }
 
 TEST_F(ZarrTest, AChunkThatCannotBeOpenedIsNoFill) {
@@ -560,7 +565,7 @@ TEST_F(OmeZarrTest, Version04HasItsLevelsChannelsTimesAndUnits) {
     putLevel("0", 1, 2);
     putLevel("deep/1", 0, 1);
     const ReadVolume read = readVolume(root_, at(1, 2));
-    expectValues(read);
+    expectValues(read, at(1, 2));
     EXPECT_EQ(read.format, "OME-Zarr 0.4");
     // micrometres: 10 times (3, 2, 1), and of the translation
     const ImageGeometry& geometry = read.volume.view().geometry();
@@ -569,7 +574,7 @@ TEST_F(OmeZarrTest, Version04HasItsLevelsChannelsTimesAndUnits) {
     EXPECT_NEAR(geometry.originMm[0], 0.1, 1e-15);
     EXPECT_NEAR(geometry.originMm[2], 0.3, 1e-15);
     const ReadVolume coarse = readVolume(root_, at(0, 1, 1));
-    expectValues(coarse);
+    expectValues(coarse, at(0, 1, 1));
     EXPECT_NEAR(coarse.volume.view().geometry().spacingMm()[1], 0.04, 1e-15);
     EXPECT_EQ(coarse.volume.view().geometry().originMm[0], 0);
 
@@ -584,7 +589,7 @@ TEST_F(OmeZarrTest, Version05LiesInTheAttributes) {
                          multiscales("") + "}}}");
     putLevel("0", 1, 2);
     const ReadVolume read = readVolume(root_, at(1, 2));
-    expectValues(read);
+    expectValues(read, at(1, 2));
     EXPECT_EQ(read.format, "OME-Zarr 0.5");
 }
 
