@@ -248,12 +248,14 @@ TetrahedralMesh decodeGmsh(std::string_view bytes, std::string_view name) {
         words.next();
         const auto type = words.number<int>();
         const auto tags = words.number<int>();
-        if (type == 15) {
+        constexpr int kPoint = 15, kMostTags = 100;
+        if ((type != kPoint && (type < 1 || type > 4)) || tags < 1 || tags > kMostTags) {
+            words.fail("an element is of no known type");
+        }
+        if (type == kPoint) {
             for (int k = 0; k < tags + 1; ++k) words.next();
             continue;
         }
-        if (type < 1 || type > 4 || tags < 1 || tags > 100)
-            words.fail("an element is of no known type");
         const auto label = words.number<std::int32_t>();
         for (int k = 1; k < tags; ++k) words.next();
         std::array<VertexId, 4> t{};

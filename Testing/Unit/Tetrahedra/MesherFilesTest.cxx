@@ -59,6 +59,8 @@ TEST(MesherFiles, DamageIsToldInOneLine) {
     expectRefused("5 3 0 0\n0 1\v0 0 0\n", kElements);
     expectRefused("99999999999 3 0 0\n", kElements);
     EXPECT_THROW(decodeGmsh("$Nodes\n", "gmsh"), FileError);
+    // a number of tags that would take minutes to skip
+    EXPECT_THROW(decodeGmsh("$Nodes\n0\n$Elements\n1\n1 15 666666666 2\n", "gmsh"), FileError);
 }
 
 /// Two spheres, one in the other.
