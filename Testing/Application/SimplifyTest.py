@@ -142,6 +142,16 @@ class Soundness(SimplifyTest):
         self.assertEqual(report["output"]["genus"], 0)
         self.assertEqual(self.check("out.vtp")["surfaces"][0]["failed"], [])
 
+    def test_a_triangle_without_area_that_lies_alone_is_dropped(self):
+        points, triangles = icosphere(10, 2)
+        n = len(points)
+        self.write("bad.off", (points + [(70, 1, 1), (71, 1, 1), (72, 1, 1)],
+                               triangles + [(n, n + 1, n + 2)]))
+        report = self.simplify("bad.off", "--max-error", "0.5", "-o", "out.vtp")
+        self.assertEqual(self.findings(report)["degenerateTriangles"], 1)
+        self.assertLessEqual(report["output"]["verification"]["maxMm"], 0.5)
+        self.assertEqual(report["output"]["components"], 1)
+
     def test_a_fin_stays(self):
         """An edge with three triangles."""
         points, triangles = icosphere(10, 3)
