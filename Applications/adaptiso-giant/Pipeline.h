@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Common/CommonOptions.h"
+#include "Common/ReportOutput.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -30,6 +31,7 @@ struct GiantOptions {
     std::int64_t side = 256;  ///< of a tile, cells
 
     std::filesystem::path output, preview;  ///< empty: none
+    ReportOptions report;
     CoordinateFrame frame = CoordinateFrame::Ras;
     int workers = 1;
     CommonOptions common;

@@ -36,6 +36,9 @@ def chunk_values(low):
     """int16 depths, 100 a voxel, or None where all is outside."""
     best = numpy.full((CHUNK,) * 3, -400.0)
     for *middle, radius in BALLS:
+        far = [max(low[a] - TILE * middle[a], TILE * middle[a] - low[a] - CHUNK, 0) for a in range(3)]
+        if sum(away * away for away in far) > (TILE * radius + 5) ** 2:
+            continue
         z, y, x = ((numpy.arange(low[a], low[a] + CHUNK) - TILE * middle[a]) ** 2 for a in range(3))
         squared = z[:, None, None] + y[None, :, None] + x[None, None, :]
         best = numpy.maximum(best, numpy.clip(100 * (TILE * radius - numpy.sqrt(squared)), -400, 400))
