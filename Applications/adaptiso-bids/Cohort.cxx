@@ -164,6 +164,7 @@ private:
                              found.isThere ? found.why : "not run");
         }
         ++cohort_.records;
+        if (product.name == "surfaces") keepNames(found.record->run.outputs);
         Entry entry{summaryRow(planned.file, *found.record), {}};
         judge(*found.record, found.why, row);
         if (row.state == QualityState::Done || row.state == QualityState::Unsound) {
@@ -235,6 +236,13 @@ private:
             addAbsent(leftRow(row), QualityState::Leftover,
                       "is in the output, but its image is not in the dataset; remove " + row.name +
                           "_desc-* and " + row.name + "_mesh* there");
+        }
+    }
+
+    /// Of "iso=auto" the run says which isovalue is in the name.
+    void keepNames(const std::vector<std::string>& outputs) {
+        for (const std::string& output : outputs) {
+            surfaces_.insert(fs::path(output).filename().string());
         }
     }
 

@@ -340,6 +340,10 @@ class Group(BidsTest):
         left = [row for row in self.table() if row["state"] == "leftover"]
         self.assertEqual([(row["participant_id"], row["part"]) for row in left],
                          [(f"sub-{number:02}", "iso120") for number in range(1, 8)])
+        auto = ("--surfaces", "iso=auto", "--no-pictures")  # the file's name says what it came to
+        shutil.rmtree(self.path("out"))
+        self.bids(OK, "participant", what=auto)
+        self.bids(OK, "group", what=auto)
         self.assertRegex(left[0]["reason"], r"sub-01_desc-iso120_mesh.vtp is of an isovalue .* not asked for now")
 
     def test_is_whole(self):
