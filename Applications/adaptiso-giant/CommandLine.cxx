@@ -59,7 +59,7 @@ void declarePlanned(CLI::App& app, GiantOptions& options) {
         ->type_name("MM")
         ->group(kPlanned);
     addCount(app, "--tile", options.side, TileCut::kStep, TileCut::kLargestSide,
-             "Cells a side of a tile, a multiple of 32 (default: 256)")
+             "Cells a side of a tile, a multiple of 32 (default: 384)")
         ->group(kPlanned);
     declareReadOptions(app, options.read, kPlanned);
 }

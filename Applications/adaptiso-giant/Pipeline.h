@@ -28,7 +28,7 @@ struct GiantOptions {
     std::optional<double> isovalue;
     Method method = Method::Adaptive;
     std::optional<double> maxErrorMm;
-    std::int64_t side = 256;  ///< of a tile, cells
+    std::int64_t side = 384;  ///< of a tile, cells
 
     std::filesystem::path output, preview;  ///< empty: none
     ReportOptions report;
