@@ -10,6 +10,7 @@
 #include "Judgements.h"
 #include "Resources.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FreeMemory.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/Pipeline/BemElectrodes.h"
 #include "adaptiso/Pipeline/BemJson.h"
@@ -49,7 +50,7 @@ bool areLoose(const HeadSources& sources) {
 /// \param volume  whose tkRAS it is in, where it is
 TriangleMesh inLps(const MeshData& surface, const std::optional<ImageGeometry>& volume) {
     TriangleMesh mesh = fromFrame(surface.mesh(), surface.frame(), volume);
-    mesh.normals = {};
+    freeMemory(mesh.normals);
     return mesh;
 }
 
