@@ -71,7 +71,9 @@ HeadBoundaries boundariesOf(const HeadSources& sources, const BoundaryOptions& o
     std::vector<VolumeView> views;
     for (const auto& image : sources.images) views.push_back(image->view);
     if (sources.source == "labels") {
-        return boundariesFromLabels(views.front(), sources.tissues, options);
+        std::optional<VolumeView> head;
+        if (sources.headMask) head = sources.headMask->view;
+        return boundariesFromLabels(views.front(), sources.tissues, options, head);
     }
     if (sources.source == "probabilities") return boundariesFromProbabilities(views, options);
     return boundariesFromCt(views.front(), options);
@@ -85,6 +87,7 @@ HeadBoundaries namedBoundaries(const HeadSources& sources, const BoundaryOptions
         const std::string what = error.what();
         const std::string name = what.starts_with("the brain mask")
                                      ? (sources.brainMask ? "brain_mask" : "aseg")
+                                 : what.starts_with("the head mask")  ? "head_mask"
                                  : what.starts_with("a pial surface") ? "pial"
                                                                       : sources.source;
         throw InvalidInput(name + ": " + what);
