@@ -12,6 +12,7 @@
 #include "SimplifyWalls.h"
 #include "Walls.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/VoxelShape.h"
 
 namespace adaptiso {
 namespace {
@@ -35,13 +36,6 @@ void requireOptions(const LabelOptions& options) {
         throw InvalidInput("extractLabels: the reduction is " + std::to_string(*options.reduction) +
                            ", must be 0 to 1");
     }
-}
-
-/// Between neighbouring planes of samples, the least of the three axes.
-double leastPlaneDistanceMm(const ImageGeometry& geometry) {
-    const Mat3 toIndex = transpose(inverse(geometry.indexToPhysical));
-    return 1 /
-           std::max({norm(toIndex.column[0]), norm(toIndex.column[1]), norm(toIndex.column[2])});
 }
 
 /// The chosen labels, ascending.
@@ -147,6 +141,7 @@ std::optional<SimplifyOptions> simplification(const LabelOptions& options,
 
 LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options) {
     requireOptions(options);
+    requireNoNeedles(volume.geometry());
     const LabelGrid grid = makeGrid(volume);
     const std::vector<Label> chosen = chosenLabels(grid, options);
     LabelResult result = makeWalls(grid, volume.geometry(), options);

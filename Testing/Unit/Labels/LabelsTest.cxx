@@ -519,6 +519,21 @@ TEST(ExtractLabels, RefusesWhatIsNoLabelMap) {
     }
 }
 
+// Found by random calls from Python: cubes of so many limits of a distance as there is no memory
+// for.
+TEST(ExtractLabels, RefusesVoxelsThatAreNeedles) {
+    ImageGeometry geometry;
+    geometry.size = {4, 4, 4};
+    std::vector<std::uint8_t> samples(64, 0);
+    samples[21] = 1;
+    geometry.indexToPhysical = Mat3::diagonal(1e-3, 2, 1);
+    EXPECT_FALSE(extractLabels(VolumeView(samples.data(), geometry), {}).complex.triangles.empty());
+    for (const double thinMm : {1e-7, 1e-38}) {
+        geometry.indexToPhysical = Mat3::diagonal(thinMm, 2, 1);
+        EXPECT_THROW(extractLabels(VolumeView(samples.data(), geometry), {}), InvalidInput);
+    }
+}
+
 TEST(ExtractLabels, RefusesOptionsThatBreakTheirRules) {
     const Map map(centredGeometry({2, 1, 1}),
                   [](const Index3& i) { return static_cast<Label>(i[0]); });

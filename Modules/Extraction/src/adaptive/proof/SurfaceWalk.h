@@ -237,7 +237,7 @@ private:
                 todo_.push_back({piece, static_cast<std::uint64_t>(next)});
                 return;
             }
-            if (piece.count() + 2 > ConvexPiece::kMost) {
+            if (piece.count() + changesOfSide(piece.count()) > ConvexPiece::kMost) {
                 left_.push_back(piece);
                 return;
             }
@@ -246,6 +246,16 @@ private:
             isCut = true;
         }
         if (!isCut || !has(near, piece)) left_.push_back(piece);
+    }
+
+    /// Two where the piece is convex; more where rounding has bent it.
+    int changesOfSide(int count) const {
+        int changes = 0;
+        for (int i = 0; i < count; ++i) {
+            const int j = i + 1 == count ? 0 : i + 1;
+            changes += static_cast<int>((side_[i] > 0) != (side_[j] > 0));
+        }
+        return changes;
     }
 
     /// \param outer  gets the part on the positive sides \return the other part
