@@ -110,6 +110,7 @@ LabelResult makeWalls(const LabelGrid& grid, const ImageGeometry& geometry,
     std::vector<Vec3> points = startPoints(grid, dual, rooms);
     if (options.smooth) {
         relax(dual, rooms, points);
+        restoreVolumes(grid, dual, rooms, points);
         statistics.heldVertices = countHeld(dual, rooms, points);
     }
     appendFacePoints(grid, dual, points);
