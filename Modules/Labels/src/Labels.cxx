@@ -100,7 +100,7 @@ LabelResult makeWalls(const LabelGrid& grid, const ImageGeometry& geometry,
     LabelResult result;
     LabelStatistics& statistics = result.statistics;
     tell(0);
-    const DualComplex dual = makeDualComplex(grid);
+    DualComplex dual = makeDualComplex(grid);
     statistics.cells = static_cast<std::int64_t>(dual.cells.size());
     statistics.dividedCells =
         std::count_if(dual.cells.begin(), dual.cells.end(),
@@ -113,6 +113,7 @@ LabelResult makeWalls(const LabelGrid& grid, const ImageGeometry& geometry,
         restoreVolumes(grid, dual, rooms, points);
         statistics.heldVertices = countHeld(dual, rooms, points);
     }
+    dual.adjacencies = {};  // large, and of no more use
     appendFacePoints(grid, dual, points);
     tell(0.6);
     Walls walls = cutPolygons(dual, grid, points, geometry);

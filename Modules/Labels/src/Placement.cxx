@@ -97,15 +97,6 @@ std::vector<Vec3> wallNormals(const DualComplex& complex, const std::vector<Vec3
     return normals;
 }
 
-/// A vertex as smoothing sees it: its place in its cell. Four numbers are computed as fast as
-/// three; in single precision flat walls would not stay flat, and have more triangles.
-struct alignas(32) CellPoint {
-    std::array<double, 4> x{};
-
-    static CellPoint of(const Vec3& p) { return {{p.x, p.y, p.z, 0}}; }
-    Vec3 exact() const { return {x[0], x[1], x[2]}; }
-};
-
 /// What smoothing needs to know of a vertex beside its neighbours.
 struct Place {
     std::array<std::int8_t, 3> toCells;  ///< sum of the ways to its neighbours' cells
@@ -126,56 +117,52 @@ std::vector<Place> placesOf(const std::vector<Room>& rooms, const Neighbours& ne
 }
 
 /// Where smoothing moves a vertex: part of the way to the middle of its neighbours, in its room.
-CellPoint moved(const std::vector<CellPoint>& points, std::size_t v, const Place& place,
-                std::span<const std::uint32_t> neighbours, double part) {
-    std::array<double, 4> sum{};
-    for (int c = 0; c < 3; ++c) sum[c] = place.toCells[c];
-    for (const std::uint32_t n : neighbours) {
-        for (int c = 0; c < 4; ++c) sum[c] += points[n].x[c];
-    }
-    const auto count = static_cast<double>(neighbours.size());
-    constexpr double kLow = kLeastGap;
-    CellPoint p = points[v];
+/// \param points  in their cells
+Vec3 moved(const std::vector<Vec3>& points, std::size_t v, const Place& place,
+           std::span<const std::uint32_t> neighbours, double part) {
+    Vec3 sum{static_cast<double>(place.toCells[0]), static_cast<double>(place.toCells[1]),
+             static_cast<double>(place.toCells[2])};
+    for (const std::uint32_t n : neighbours) sum += points[n];
     // a division, not a product: what is flat stays so exactly, which leaves fewer triangles
-    for (int c = 0; c < 4; ++c) p.x[c] += part * (sum[c] / count - p.x[c]);
+    const auto count = static_cast<double>(neighbours.size());
+    const Vec3 middle{sum.x / count, sum.y / count, sum.z / count};
+    const Vec3 p = points[v] + part * (middle - points[v]);
     if (!place.isWhole) return p;
-    for (int c = 0; c < 4; ++c) p.x[c] = std::min(std::max(p.x[c], kLow), 1 - kLow);
-    return p;
+    const auto held = [](double x) { return std::min(std::max(x, kLeastGap), 1 - kLeastGap); };
+    return {held(p.x), held(p.y), held(p.z)};
 }
 
 /// Taubin's filter: rounds of a step inward and a larger one outward.
 void smooth(const std::vector<Room>& rooms, const Neighbours& neighbours,
             std::vector<Vec3>& points) {
     // Measured on balls, tubes and half-balls: fewer rounds leave more of the staircase (area), a
-    // wider pass band leaves its long waves, a narrower one shrinks.
+    // wider pass band leaves its long waves, a narrower one shrinks. In single precision flat
+    // walls would not stay flat.
     constexpr int kRounds = 150;
     constexpr double kInward = 0.6, kPassBand = 0.005;
     constexpr double kOutward = 1 / (kPassBand - 1 / kInward);
     const std::vector<Place> places = placesOf(rooms, neighbours);
-    std::vector<CellPoint> now(points.size()), next(points.size());
-    for (std::size_t v = 0; v < points.size(); ++v) {
-        now[v] = CellPoint::of(points[v] - rooms[v].corner());
-    }
+    for (std::size_t v = 0; v < points.size(); ++v) points[v] = points[v] - rooms[v].corner();
+    std::vector<Vec3> next(points.size());
     const auto move = [&](double part) {
         parallelForPieces(std::ssize(points), kPiece, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t v = begin; v < end; ++v) {
                 const auto own = neighbours.at(v);
-                next[v] = own.empty() ? now[v] : moved(now, v, places[v], own, part);
+                next[v] = own.empty() ? points[v] : moved(points, v, places[v], own, part);
                 if (places[v].isWhole) continue;
                 Room room = rooms[v];
                 room.cell = {};
-                next[v] = CellPoint::of(heldIn(room, next[v].exact()));
+                next[v] = heldIn(room, next[v]);
             }
         });
-        std::swap(now, next);
+        std::swap(points, next);
     };
     for (int round = 0; round < kRounds; ++round) {
         move(kInward);
         move(kOutward);
     }
     for (std::size_t v = 0; v < points.size(); ++v) {
-        if (neighbours.at(v).empty()) continue;
-        points[v] = heldIn(rooms[v], rooms[v].corner() + now[v].exact());
+        points[v] = heldIn(rooms[v], rooms[v].corner() + points[v]);
     }
 }
 

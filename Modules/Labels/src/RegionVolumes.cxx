@@ -30,8 +30,9 @@ public:
     /// kNone for the outside.
     std::uint32_t of(Label label) const {
         const auto at = std::lower_bound(labels_.begin(), labels_.end(), label);
-        return at != labels_.end() && *at == label ? static_cast<std::uint32_t>(at - labels_.begin())
-                                                   : kNone;
+        return at != labels_.end() && *at == label
+                   ? static_cast<std::uint32_t>(at - labels_.begin())
+                   : kNone;
     }
 
 private:
