@@ -94,7 +94,7 @@ LabelResult makeWalls(const LabelGrid& grid, const ImageGeometry& geometry,
     LabelResult result;
     LabelStatistics& statistics = result.statistics;
     tell(0);
-    const DualComplex dual = makeDualComplex(grid);
+    DualComplex dual = makeDualComplex(grid);
     statistics.cells = static_cast<std::int64_t>(dual.cells.size());
     statistics.dividedCells =
         std::count_if(dual.cells.begin(), dual.cells.end(),
@@ -104,8 +104,10 @@ LabelResult makeWalls(const LabelGrid& grid, const ImageGeometry& geometry,
     std::vector<Vec3> points = startPoints(grid, dual, rooms);
     if (options.smooth) {
         relax(dual, rooms, points);
+        restoreVolumes(grid, dual, rooms, points);
         statistics.heldVertices = countHeld(dual, rooms, points);
     }
+    dual.adjacencies = {};  // large, and of no more use
     appendFacePoints(grid, dual, points);
     tell(0.6);
     Walls walls = cutPolygons(dual, grid, points, geometry);
