@@ -7,6 +7,7 @@
 #include "Common/Json.h"
 #include "Common/Naming.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FreeMemory.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -158,7 +159,7 @@ std::vector<TriangleMesh> readSurfaces(BemRun& run) {
     std::vector<TriangleMesh> surfaces;
     for (NamedMesh& named : files) {
         surfaces.push_back(std::move(named.file.mesh));
-        surfaces.back().normals = {};
+        freeMemory(surfaces.back().normals);
     }
     return surfaces;
 }

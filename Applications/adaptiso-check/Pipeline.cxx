@@ -26,6 +26,7 @@
 #include "ReportPage.h"
 #include "SelfTest.h"
 #include "TextReport.h"
+#include "adaptiso/Core/FreeMemory.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso {
@@ -149,7 +150,7 @@ private:
 
     void readSurface(NamedMesh& mesh, SurfaceRun& surface) {
         mesh.file = readMesh(mesh.path, {.keepsFaults = true});
-        mesh.file.mesh.normals = {};  // not looked at
+        freeMemory(mesh.file.mesh.normals);  // not looked at
         surface.format = &findMeshFormat(mesh.path);
         surface.frame = mesh.file.frame;
         if (mesh.file.frame == CoordinateFrame::Voxel) {

@@ -24,6 +24,7 @@
 #include "ReportPage.h"
 #include "TextReport.h"
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/FreeMemory.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/Topology.h"
@@ -85,7 +86,7 @@ void checkNames(const CompareOptions& options) {
 
 NamedMesh readSurface(const fs::path& path) {
     NamedMesh surface{path, readMesh(path)};
-    surface.file.mesh.normals = {};  // those of the triangles are compared
+    freeMemory(surface.file.mesh.normals);  // those of the triangles are compared
     return surface;
 }
 

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """What the Python package costs beside C++: the overhead of a call, four threads on four volumes, and
-the peak memory of a call. For people; run it on a machine that does nothing else.
+the peak memory of a call. For people; run it on a machine that does nothing else. Other work does not
+change what threads wait for, processor time, and memory.
 
-    PYTHONPATH=build/release/python Testing/Benchmark/pythonCalls.py
+    PYTHONPATH=build/release/python Testing/Benchmark/pythonCalls.py [overhead|memory|threads ...]
 """
 
 import concurrent.futures
@@ -10,6 +11,7 @@ import re
 import statistics
 import subprocess
 import sys
+import threading
 import time
 
 import adaptiso
@@ -66,27 +68,41 @@ def call_overhead():
               f"processor {1e3 * total:.3f} ms, of that outside of C++ {1e3 * outside:.3f}")
 
 
+def thread_times():
+    """Seconds by the clock, of the processor, and of waiting for a processor, of this thread so far."""
+    with open(f"/proc/self/task/{threading.get_native_id()}/schedstat") as stream:
+        worked, waited, _ = map(int, stream.read().split())
+    return np.array([time.perf_counter(), worked / 1e9, waited / 1e9])
+
+
 def four_threads():
-    """Also by processor time, which other programs do not change: what holds the interpreter's lock can't
-    run side by side, the rest can."""
+    """Also by what does not change with other work: the time that a thread neither works nor waits for a
+    processor it waits for a lock, the interpreter's or one of ours."""
     volumes = [ball(96, 47 + n) for n in range(4)]
+    spent = []
 
     def make(volume):
-        return adaptiso.surface(volume, -35, threads=1)
+        before = thread_times()
+        adaptiso.surface(volume, -35, threads=1)
+        spent.append(thread_times() - before)
 
     def by_threads():
         with concurrent.futures.ThreadPoolExecutor(4) as pool:
             list(pool.map(make, volumes))
 
     one, _ = seconds(lambda: [make(volume) for volume in volumes], 5)
+    alone = np.sum(spent, axis=0)
+    spent.clear()
     four, _ = seconds(by_threads, 5)
-    start = time.process_time()
-    by_threads()
-    spent = time.process_time() - start
+    together = np.sum(spent, axis=0)
     total, outside = in_python(volumes[0], -35, "adaptive", 5)
     print(f"four volumes of 96^3: one after the other {one:.2f} s, four threads {four:.2f} s: "
-          f"{one / four:.2f} x; of the processor {4 * total:.2f} s alone, {spent:.2f} s side by side; "
-          f"of a call {outside / total:.2%} in Python, so at most "
+          f"{one / four:.2f} x")
+    print(f"  of the processor {alone[1] / 5:.2f} s alone, {together[1] / 5:.2f} s side by side")
+    for name, (clock, worked, waited) in (("alone", alone), ("side by side", together)):
+        print(f"  {name}: of the threads' time {worked / clock:.1%} at work, {waited / clock:.1%} waiting "
+              f"for a processor, {1 - (worked + waited) / clock:.2%} for locks")
+    print(f"  {outside / total:.2%} of a call in Python, so at most "
           f"{1 / (outside / total + (1 - outside / total) / 2):.2f} x on two cores")
 
 
@@ -126,6 +142,6 @@ def peak_memory():
 
 
 if __name__ == "__main__":
-    call_overhead()
-    peak_memory()
-    four_threads()
+    parts = {"overhead": call_overhead, "memory": peak_memory, "threads": four_threads}
+    for name in sys.argv[1:] or parts:
+        parts[name]()

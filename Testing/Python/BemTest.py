@@ -129,6 +129,17 @@ class Bytes(InFolder):
                       "scalp=3", "--gifti", "--vtp", *ARGUMENTS],
                      adaptiso.bem(labels=path, tissues=TISSUES, **QUICK), gifti=True, vtp=True)
 
+    def test_of_labels_with_a_head_mask(self):
+        """Brain and skull as TotalSegmentator has them; the skin is its body's."""
+        path = self.image("seg.nii", spheres((90, 91, 0)))
+        body = self.image("body.nii", (spheres() > 0).astype(np.uint8))
+        arguments = ["--labels", path, "--head-mask", body, "--gifti", "--vtp", *ARGUMENTS]
+        options = {"labels": path, "head_mask": body, **QUICK}
+        self.compare(["--preset", "totalsegmentator", *arguments],
+                     adaptiso.bem(tissues="totalsegmentator", **options), gifti=True, vtp=True)
+        by_hand = adaptiso.bem(tissues={"brain": [90], "skull": [91]}, **options)
+        self.assertEqual(by_hand.surfaces, adaptiso.bem(tissues="totalsegmentator", **options).surfaces)
+
     def test_of_a_t1_with_its_mask_in_other_frames_and_units(self):
         t1, mask = phantom()
         tilted = affine(centre=(12, -8, 20)) @ np.array(
@@ -318,6 +329,16 @@ class Failures(unittest.TestCase):
         self.assertIn("FAILED", model.report_html())
         with self.assertRaisesRegex(adaptiso.Error, "no model to save"):
             model.save("nowhere")
+
+    def test_a_head_mask_goes_with_labels_and_on_their_grid(self):
+        labels, body = spheres((90, 91, 0)), (spheres() > 0).astype(np.uint8)
+        common = {"tissues": "totalsegmentator", "labels": labels, "affine": affine()}
+        for part, named in (("head_mask", {**common}),
+                            ("head_mask: the head mask", {**common, "head_mask": body[:-1]}),
+                            ("head_mask: needs labels", {"t1": labels, "head_mask": body})):
+            with self.assertRaisesRegex(adaptiso.Error, part):
+                adaptiso.bem(**named)
+        self.assertEqual(len(adaptiso.bem(meg=True, **common, **QUICK).surfaces), 1)
 
     def test_what_cannot_be_used_is_refused_with_one_line(self):
         labels, t1 = spheres(), np.zeros((9, 9, 9))

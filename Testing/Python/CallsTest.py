@@ -1,12 +1,16 @@
 """Calls by the million: hypothesis makes up pools of arguments, and calls take what they find in them.
 How many calls there are is ADAPTISO_CALLS (20,000); their number and rate are printed. Each gives a
-result or an adaptiso.Error, never another exception and never a crash. Exit code 77: hypothesis is not
-there."""
+result or an adaptiso.Error, never another exception and never a crash. More than 100,000 are made in
+processes of 100,000, so that a crash names the seed that makes it again (ADAPTISO_SEED). Exit code 77:
+hypothesis is not there."""
 
 import collections
 import faulthandler
 import os
 import random
+import re
+import secrets
+import subprocess
 import sys
 import time
 import unittest
@@ -14,12 +18,16 @@ import unittest
 import ArgumentsTest as made_up  # exits with 77 where hypothesis is not there
 import adaptiso
 import numpy as np
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
 CALLS = int(os.environ.get("ADAPTISO_CALLS", "20000"))
 #: of one example: drawing arguments takes longer than most calls
-BATCH = 400
+BATCH = 1000
+#: of one process
+PART = 100_000
+#: none: the same calls each time
+SEED = os.environ.get("ADAPTISO_SEED")
 
 calls, results = collections.Counter(), collections.Counter()
 
@@ -37,20 +45,20 @@ def few_threads(value):
     return not (isinstance(value, (int, np.integer)) and 3 < value)
 
 
-def noise(seed):
+def noise(number):
     """A volume that has surfaces at most levels, of any type, with ties in one of two."""
-    rng = np.random.default_rng(seed)
-    values = rng.normal(scale=3, size=rng.integers(2, rng.choice([4, 5, 8]), 3))
+    rng = np.random.default_rng(number)
+    values = rng.normal(scale=3, size=rng.integers(2, rng.choice([4, 4, 5, 8]), 3))
     dtype = rng.choice(["f4", "f8", "i1", "u2", "i4", "u8", "f4", "f8", ">f4", "f2", "?"])
     return np.array(np.abs(values) if dtype[0] in "u?" else values, dtype, order=rng.choice(["C", "F"]))
 
 
-def ball(seed):
+def ball(number):
     """(vertices, faces) of a closed surface, one of three broken somewhere."""
-    rng = np.random.default_rng(seed)
-    mesh = adaptiso.surface(rng.normal(size=(5, 5, 5)), 0.3, method="mc", threads=1)
+    rng = np.random.default_rng(number)
+    mesh = adaptiso.surface(rng.normal(size=rng.choice([4, 4, 5], 3)), 0.3, method="mc", threads=1)
     vertices, faces = mesh.vertices * rng.choice([1.0, 20.0]), mesh.faces.copy()
-    if seed % 3 == 0:
+    if number % 3 == 0:
         faces[rng.integers(len(faces))] = rng.integers(-1, len(vertices) + 1, 3)
     return vertices, faces
 
@@ -189,26 +197,41 @@ def bem(pools, options, pick):
 ATTEMPTS = 10 * [surface] + 2 * [index] + 4 * [mesh] + 3 * [marching_cubes] + [labels, bem]
 
 
+def in_parts():
+    """Calls by processes of PART each; their sum is told after each. \return the exit code"""
+    first = int(SEED) if SEED else secrets.randbelow(10**6)
+    began, made = time.monotonic(), 0
+    for number in range(-(-CALLS // PART)):
+        part = min(PART, CALLS - number * PART)
+        done = subprocess.run([sys.executable, "-B", __file__], text=True, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, env={**os.environ, "ADAPTISO_SEED": str(first + number),
+                                                             "ADAPTISO_CALLS": str(part)})
+        if done.returncode != 0:
+            print(f"{done.stdout}\nexit code {done.returncode} after {made:,} calls; made again by "
+                  f"ADAPTISO_SEED={first + number} ADAPTISO_CALLS={part}", flush=True)
+            return 1
+        told = re.search(r"([\d,]+) calls, .* a second: .*", done.stdout)
+        made += int(told[1].replace(",", ""))
+        print(f"{made:,} calls, {time.monotonic() - began:.0f} s, seed {first + number}: {told[0]}", flush=True)
+    return 0
+
+
 class Calls(unittest.TestCase):
     def test_give_a_result_or_an_error(self):
         faulthandler.enable()
-        began = told = time.monotonic()
+        began = time.monotonic()
 
         @settings(max_examples=max(1, CALLS // BATCH), deadline=None, database=None,
-                  derandomize="ADAPTISO_CALLS" not in os.environ,
+                  derandomize=SEED is None, phases=[Phase.generate],
                   suppress_health_check=list(HealthCheck))
         @given(POOLS, OPTIONS, SEEDS)
-        def batch(pools, options, seed):
-            nonlocal told
-            pick = random.Random(seed).choice
+        def batch(pools, options, number):
+            pick = random.Random(number).choice
             end = sum(calls.values()) + BATCH
             while sum(calls.values()) < end:
                 pick(ATTEMPTS)(pools, options, pick)
-            if time.monotonic() - told > 60:
-                told = time.monotonic()
-                print(f"{sum(calls.values()):,} calls, {told - began:.0f} s", flush=True)
 
-        batch()
+        (batch if SEED is None else seed(int(SEED))(batch))()
         seconds = time.monotonic() - began
         total = sum(calls.values())
         print(f"{total:,} calls, {total / seconds:,.0f} a second:",
@@ -217,4 +240,6 @@ class Calls(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    if CALLS > PART:
+        sys.exit(in_parts())
     unittest.main(verbosity=2)

@@ -24,6 +24,22 @@ class Truth(unittest.TestCase):
         self.volume = boxes()
         self.walls = adaptiso.labels(self.volume, max_error=0, affine=SHEARED)
 
+    def test_voxels_that_are_needles_are_refused(self):
+        """There is no memory for what they ask for; found by arguments made up."""
+        for thin in (1e-5, 5.96e-8, 1e-29):
+            with self.assertRaisesRegex(adaptiso.Error, "mm thin, must be at most"):
+                adaptiso.labels(self.volume, affine=np.diag([1, thin, 1, 1]))
+
+    def test_far_from_the_origin_there_are_walls_or_an_error(self):
+        """There rounding bends what is cut; it was a crash."""
+        noise = np.random.default_rng(3).normal(size=(16, 16, 16))
+        volume = np.asarray(np.clip(noise, 0, 3), np.uint8)
+        for far in (1e5, 1e7):
+            affine = np.eye(4)
+            affine[1, 3] = far
+            walls = adaptiso.labels(volume, affine=affine)
+            self.assertTrue(np.isfinite(walls.error_bound))
+
     def test_regions_have_the_volumes_of_their_voxels(self):
         voxel = abs(np.linalg.det(SHEARED[:3, :3]))
         self.assertEqual(list(self.walls.regions), [1, 2, 7])

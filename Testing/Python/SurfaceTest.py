@@ -320,6 +320,19 @@ class BadInput(unittest.TestCase):
             self.refuse("long", ball(), -8, affine=np.diag([1, 1e-38, 1, 1]), method=method)
         self.assertTrue(adaptiso.surface(ball(), -8, affine=np.diag([1e-3, 2, 1, 1])).is_closed)
 
+    def test_affines_beyond_all_numbers(self):
+        """Their squares are none, or voxels not told apart; found by arguments made up."""
+        for step in (1e-100, 1e-31, 1e31, 1e100):
+            self.refuse("affine: a voxel is", ball(), -8, affine=np.diag([step] * 3 + [1]))
+        for step in (1e-30, 1e-9, 1e9, 1e30):
+            mesh = adaptiso.surface(ball(), -8, affine=np.diag([step] * 3 + [1]))
+            self.assertLess(mesh.error_bound, 0.16 * step)
+        far = np.eye(4)
+        far[:3, 3] = (0, 2e10, 0)
+        self.refuse("affine: the image lies 2e.10 mm off", ball(), -8, affine=far)
+        far[:3, 3] = (0, 1e10, 0)
+        self.assertTrue(adaptiso.surface(ball(), -8, affine=far).is_closed)
+
     def test_options(self):
         for option, values in {
                 "max_error": (0, -1, "0.1", float("nan"), float("inf"), [1], True),

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/FreeMemory.h"
+#include "adaptiso/Core/VoxelShape.h"
 #include "adaptiso/SpanSpace/BlocksAt.h"
 #include "adaptive/AdaptiveMethod.h"
-#include "adaptive/mesh/MetricFrame.h"
 #include "boxes/BoxesMethod.h"
 #include "cells/MarchingCubes.h"
 #include "loops/SurfaceLoops.h"
@@ -43,19 +43,6 @@ void requireMethod(const Options& options, const char* name, Method needed, Meth
                        std::string(toString(needed)));
 }
 
-/// Voxels that are needles or flakes: what may cross what is looked for over their length by their
-/// width, for ever; and triangles come out lower than 1e-9 of their length, which is degenerate.
-/// Scans have 300 at most (0.1 mm in planes 30 mm apart).
-void requireNoNeedles(const ImageGeometry& geometry) {
-    constexpr double kMost = 10'000;
-    const Vec3 spacingMm = geometry.spacingMm();
-    const double longestMm = std::max({spacingMm.x, spacingMm.y, spacingMm.z});
-    const double thinMm = detail::MetricFrame(geometry).narrowestMm();
-    if (longestMm <= kMost * thinMm) return;
-    throw InvalidInput("a voxel is " + formatShort(longestMm) + " mm long and " +
-                       formatShort(thinMm) + " mm thin, must be at most 10,000 times as long");
-}
-
 void requireUsable(const VolumeView& volume, const ExtractionOptions& options) {
     if (!std::isfinite(options.isovalue)) {
         throw InvalidInput("extractSurface: the isovalue is not a finite number");
@@ -84,7 +71,7 @@ Extraction extractFrom(const VolumeView& volume, const BlockGrid& grid, BlockQue
     Extraction result = options.method == Method::MarchingCubes
                             ? detail::extractMarchingCubes(volume, grid, std::move(query), options)
                             : detail::extractBoxes(volume, grid, std::move(query), options);
-    if (!options.computeNormals) result.mesh.normals = {};
+    if (!options.computeNormals) freeMemory(result.mesh.normals);
     return result;
 }
 

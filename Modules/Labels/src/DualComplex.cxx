@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <string>
+#include <utility>
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
@@ -20,6 +22,13 @@ constexpr int innerBit(int t) {
 }
 constexpr int sideBit(int axis, int triangle) {
     return kTetrahedra + 2 * axis + triangle;
+}
+
+void requireFewer(std::int64_t count) {
+    if (count >= std::int64_t{kMostDualVertices}) {
+        throw InvalidInput("extractLabels: the walls have more corners than can be counted: " +
+                           std::to_string(count));
+    }
 }
 
 std::vector<WallCell> findCells(const LabelGrid& grid) {
@@ -53,13 +62,15 @@ std::vector<WallCell> findCells(const LabelGrid& grid) {
     for (const auto& layer : layers) count += layer.size();
     cells.reserve(count);
     VertexId vertices = 0;
-    for (const auto& layer : layers) {
-        for (WallCell cell : layer) {
-            cell.firstVertex = vertices;
+    for (auto& layer : layers) {
+        const std::vector<WallCell> own = std::move(layer);
+        for (WallCell cell : own) {
+            cell.firstVertex = static_cast<DualId>(vertices);
             vertices += cell.pattern().groups;
             cells.push_back(cell);
         }
     }
+    requireFewer(vertices);
     return cells;
 }
 
@@ -196,21 +207,28 @@ void findFaces(const LabelGrid& grid, const CellFinder& finder, DualComplex& com
             unsigned points = 0;
             forEachFace(grid, complex.cells, c, finder.before(c), [&](const SharedFace& face) {
                 if (face.hasPoint) points |= 1U << face.bit;
-                own.push_back({face.a, face.b, face.isJunction});
+                own.push_back({static_cast<DualId>(face.a),
+                               static_cast<DualId>(face.b) & (kMostDualVertices - 1),
+                               face.isJunction ? 1U : 0U});
             });
             complex.cells[c].points = static_cast<std::uint16_t>(points);
         }
     });
-    for (const auto& own : found) {
+    std::size_t all = 0;
+    for (const auto& own : found) all += own.size();
+    complex.adjacencies.reserve(all);
+    for (auto& own : found) {
         complex.adjacencies.insert(complex.adjacencies.end(), own.begin(), own.end());
+        own = {};
     }
     complex.groupCount = complex.cells.empty() ? 0
                                                : complex.cells.back().firstVertex +
                                                      complex.cells.back().pattern().groups;
     for (WallCell& cell : complex.cells) {
-        cell.firstPoint = complex.groupCount + complex.pointCount;
+        cell.firstPoint = static_cast<DualId>(complex.groupCount + complex.pointCount);
         complex.pointCount += std::popcount(cell.points);
     }
+    requireFewer(complex.groupCount + complex.pointCount);
 }
 
 /// The point on a face, or -1.
@@ -278,7 +296,7 @@ void findPolygons(const LabelGrid& grid, const CellFinder& finder, DualComplex& 
     const auto count = static_cast<std::int64_t>(complex.cells.size());
     struct Piece {
         std::vector<DualComplex::Polygon> polygons;
-        std::vector<VertexId> corners;
+        std::vector<DualId> corners;
     };
     std::vector<Piece> pieces((count + kPiece - 1) / kPiece);
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
@@ -291,14 +309,15 @@ void findPolygons(const LabelGrid& grid, const CellFinder& finder, DualComplex& 
                 if (labels[0] == labels[kind]) continue;
                 const Corners corners = cornersOfEdge(complex.cells, before, kind);
                 if (corners.count < 3) continue;
-                piece.polygons.push_back({static_cast<std::int64_t>(piece.corners.size()),
-                                          place,
+                piece.polygons.push_back({place,
                                           {labels[0], labels[kind]},
+                                          static_cast<std::uint32_t>(piece.corners.size()),
                                           static_cast<std::uint8_t>(kind),
                                           static_cast<std::uint8_t>(corners.count),
                                           corners.isWhole});
-                piece.corners.insert(piece.corners.end(), corners.vertices.begin(),
-                                     corners.vertices.begin() + corners.count);
+                for (int n = 0; n < corners.count; ++n) {
+                    piece.corners.push_back(static_cast<DualId>(corners.vertices[n]));
+                }
             }
         }
     });
@@ -309,13 +328,15 @@ void findPolygons(const LabelGrid& grid, const CellFinder& finder, DualComplex& 
     }
     complex.polygons.reserve(polygons);
     complex.corners.reserve(corners);
-    for (const Piece& piece : pieces) {
-        const auto first = static_cast<std::int64_t>(complex.corners.size());
+    requireFewer(static_cast<std::int64_t>(corners));
+    for (Piece& piece : pieces) {
+        const auto first = static_cast<std::uint32_t>(complex.corners.size());
         for (DualComplex::Polygon polygon : piece.polygons) {
             polygon.begin += first;
             complex.polygons.push_back(polygon);
         }
         complex.corners.insert(complex.corners.end(), piece.corners.begin(), piece.corners.end());
+        piece = {};
     }
 }
 

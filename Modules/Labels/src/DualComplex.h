@@ -10,11 +10,15 @@
 
 namespace adaptiso::detail {
 
+/// A vertex of a dual complex: there are many of them, so their numbers are kept short.
+using DualId = std::uint32_t;
+inline constexpr DualId kMostDualVertices = 1U << 31;
+
 /// A cell that a wall runs through.
 struct WallCell {
     std::int64_t place = 0;  ///< in the grid
-    VertexId firstVertex = 0;
-    VertexId firstPoint = 0;   ///< of its points on faces
+    DualId firstVertex = 0;
+    DualId firstPoint = 0;     ///< of its points on faces
     std::uint16_t code = 0;    ///< of its pattern
     std::uint16_t points = 0;  ///< faces with a point of their own, as bits: see facePoint()
 
@@ -23,8 +27,9 @@ struct WallCell {
 
 /// Edges of the dual complex: vertices of groups that share a face.
 struct Adjacency {
-    VertexId a, b;
-    bool isJunction;  ///< three or more labels meet there
+    DualId a;
+    DualId b : 31;
+    DualId isJunction : 1;  ///< three or more labels meet there
 };
 
 /// The walls of a label map as polygons: the dual of Kuhn's triangulation of the lattice, one
@@ -34,26 +39,27 @@ struct Adjacency {
 /// a point on the face that they share. Polygons that would have less than three corners are none.
 struct DualComplex {
     struct Polygon {
-        std::int64_t begin;  ///< of its corners
         std::int64_t place;  ///< where its lattice edge begins
         std::array<Label, 2> labels;
-        std::uint8_t kind;   ///< of its lattice edge
-        std::uint8_t count;  ///< of corners
-        bool isWhole;        ///< four corners, each anywhere in a cell of its own
+        std::uint32_t begin;  ///< of its corners
+        std::uint8_t kind;    ///< of its lattice edge
+        std::uint8_t count;   ///< of corners
+        bool isWhole;         ///< four corners, each anywhere in a cell of its own
     };
 
     std::vector<WallCell> cells;  ///< by place
     std::vector<Polygon> polygons;
-    std::vector<VertexId> corners;  ///< counter-clockwise, seen from where the lattice edge ends
+    std::vector<DualId> corners;  ///< counter-clockwise, seen from where the lattice edge ends
     std::vector<Adjacency> adjacencies;
     VertexId groupCount = 0;  ///< vertices of groups: 0 ... groupCount - 1
     VertexId pointCount = 0;  ///< points on faces: from groupCount on
 
-    std::span<const VertexId> cornersOf(const Polygon& p) const {
+    std::span<const DualId> cornersOf(const Polygon& p) const {
         return {corners.data() + p.begin, p.count};
     }
 };
 
+/// \throws InvalidInput  there are more vertices or corners than are counted
 DualComplex makeDualComplex(const LabelGrid& grid);
 
 /// A point on a face of a cell's tetrahedra: which vertices it lies between, and the face.

@@ -12,6 +12,7 @@
 #include "SimplifyWalls.h"
 #include "Walls.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/VoxelShape.h"
 
 namespace adaptiso {
 namespace {
@@ -35,13 +36,6 @@ void requireOptions(const LabelOptions& options) {
         throw InvalidInput("extractLabels: the reduction is " + std::to_string(*options.reduction) +
                            ", must be 0 to 1");
     }
-}
-
-/// Between neighbouring planes of samples, the least of the three axes.
-double leastPlaneDistanceMm(const ImageGeometry& geometry) {
-    const Mat3 toIndex = transpose(inverse(geometry.indexToPhysical));
-    return 1 /
-           std::max({norm(toIndex.column[0]), norm(toIndex.column[1]), norm(toIndex.column[2])});
 }
 
 /// The chosen labels, ascending.
@@ -100,7 +94,7 @@ LabelResult makeWalls(const LabelGrid& grid, const ImageGeometry& geometry,
     LabelResult result;
     LabelStatistics& statistics = result.statistics;
     tell(0);
-    const DualComplex dual = makeDualComplex(grid);
+    DualComplex dual = makeDualComplex(grid);
     statistics.cells = static_cast<std::int64_t>(dual.cells.size());
     statistics.dividedCells =
         std::count_if(dual.cells.begin(), dual.cells.end(),
@@ -110,8 +104,10 @@ LabelResult makeWalls(const LabelGrid& grid, const ImageGeometry& geometry,
     std::vector<Vec3> points = startPoints(grid, dual, rooms);
     if (options.smooth) {
         relax(dual, rooms, points);
+        restoreVolumes(grid, dual, rooms, points);
         statistics.heldVertices = countHeld(dual, rooms, points);
     }
+    dual.adjacencies = {};  // large, and of no more use
     appendFacePoints(grid, dual, points);
     tell(0.6);
     Walls walls = cutPolygons(dual, grid, points, geometry);
@@ -147,6 +143,7 @@ std::optional<SimplifyOptions> simplification(const LabelOptions& options,
 
 LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options) {
     requireOptions(options);
+    requireNoNeedles(volume.geometry());
     const LabelGrid grid = makeGrid(volume);
     const std::vector<Label> chosen = chosenLabels(grid, options);
     LabelResult result = makeWalls(grid, volume.geometry(), options);

@@ -1,7 +1,9 @@
 #include "Placement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "adaptiso/Core/Parallel.h"
 
@@ -42,8 +44,12 @@ double partOfWay(double from, double to, double least) {
 
 /// Of each vertex, its neighbours that count.
 struct Neighbours {
-    std::vector<std::int64_t> begin;
-    std::vector<VertexId> of;
+    std::vector<std::uint32_t> begin;
+    std::vector<std::uint32_t> of;
+
+    std::span<const std::uint32_t> at(std::size_t v) const {
+        return {of.data() + begin[v], begin[v + 1] - begin[v]};
+    }
 };
 
 Neighbours neighboursOf(const DualComplex& complex) {
@@ -62,8 +68,8 @@ Neighbours neighboursOf(const DualComplex& complex) {
     forEach([&](VertexId v, VertexId) { ++n.begin[v + 1]; });
     for (std::size_t v = 1; v < n.begin.size(); ++v) n.begin[v] += n.begin[v - 1];
     n.of.resize(n.begin.back());
-    std::vector<std::int64_t> at(n.begin.begin(), n.begin.end() - 1);
-    forEach([&](VertexId v, VertexId w) { n.of[at[v]++] = w; });
+    std::vector<std::uint32_t> at(n.begin.begin(), n.begin.end() - 1);
+    forEach([&](VertexId v, VertexId w) { n.of[at[v]++] = static_cast<std::uint32_t>(w); });
     return n;
 }
 
@@ -91,6 +97,75 @@ std::vector<Vec3> wallNormals(const DualComplex& complex, const std::vector<Vec3
     return normals;
 }
 
+/// What smoothing needs to know of a vertex beside its neighbours.
+struct Place {
+    std::array<std::int8_t, 3> toCells;  ///< sum of the ways to its neighbours' cells
+    bool isWhole;                        ///< its room is all of its cell
+};
+
+std::vector<Place> placesOf(const std::vector<Room>& rooms, const Neighbours& neighbours) {
+    std::vector<Place> places(rooms.size());
+    for (std::size_t v = 0; v < rooms.size(); ++v) {
+        std::array<int, 3> sum{};
+        for (const std::uint32_t n : neighbours.at(v)) {
+            for (int c = 0; c < 3; ++c) sum[c] += rooms[n].cell[c] - rooms[v].cell[c];
+        }
+        for (int c = 0; c < 3; ++c) places[v].toCells[c] = static_cast<std::int8_t>(sum[c]);
+        places[v].isWhole = rooms[v].size == kTetrahedra;
+    }
+    return places;
+}
+
+/// Where smoothing moves a vertex: part of the way to the middle of its neighbours, in its room.
+/// \param points  in their cells
+Vec3 moved(const std::vector<Vec3>& points, std::size_t v, const Place& place,
+           std::span<const std::uint32_t> neighbours, double part) {
+    Vec3 sum{static_cast<double>(place.toCells[0]), static_cast<double>(place.toCells[1]),
+             static_cast<double>(place.toCells[2])};
+    for (const std::uint32_t n : neighbours) sum += points[n];
+    // a division, not a product: what is flat stays so exactly, which leaves fewer triangles
+    const auto count = static_cast<double>(neighbours.size());
+    const Vec3 middle{sum.x / count, sum.y / count, sum.z / count};
+    const Vec3 p = points[v] + part * (middle - points[v]);
+    if (!place.isWhole) return p;
+    const auto held = [](double x) { return std::min(std::max(x, kLeastGap), 1 - kLeastGap); };
+    return {held(p.x), held(p.y), held(p.z)};
+}
+
+/// Taubin's filter: rounds of a step inward and a larger one outward.
+void smooth(const std::vector<Room>& rooms, const Neighbours& neighbours,
+            std::vector<Vec3>& points) {
+    // Measured on balls, tubes and half-balls: fewer rounds leave more of the staircase (area), a
+    // wider pass band leaves its long waves, a narrower one shrinks. In single precision flat
+    // walls would not stay flat.
+    constexpr int kRounds = 150;
+    constexpr double kInward = 0.6, kPassBand = 0.005;
+    constexpr double kOutward = 1 / (kPassBand - 1 / kInward);
+    const std::vector<Place> places = placesOf(rooms, neighbours);
+    for (std::size_t v = 0; v < points.size(); ++v) points[v] = points[v] - rooms[v].corner();
+    std::vector<Vec3> next(points.size());
+    const auto move = [&](double part) {
+        parallelForPieces(std::ssize(points), kPiece, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t v = begin; v < end; ++v) {
+                const auto own = neighbours.at(v);
+                next[v] = own.empty() ? points[v] : moved(points, v, places[v], own, part);
+                if (places[v].isWhole) continue;
+                Room room = rooms[v];
+                room.cell = {};
+                next[v] = heldIn(room, next[v]);
+            }
+        });
+        std::swap(points, next);
+    };
+    for (int round = 0; round < kRounds; ++round) {
+        move(kInward);
+        move(kOutward);
+    }
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        points[v] = heldIn(rooms[v], rooms[v].corner() + points[v]);
+    }
+}
+
 /// Smoothing sinks curved walls. Where the way along the normal, on average over the
 /// neighbourhood, is more than a sheet of voxels leaves open anyway, what is more is taken back.
 void takeBackShift(const DualComplex& complex, const std::vector<Room>& rooms,
@@ -108,7 +183,7 @@ void takeBackShift(const DualComplex& complex, const std::vector<Room>& rooms,
             for (std::int64_t v = begin; v < end; ++v) {
                 if (normals[v] == Vec3{}) continue;
                 double sum = shift[v], count = 1;
-                for (std::int64_t n = neighbours.begin[v]; n < neighbours.begin[v + 1]; ++n) {
+                for (auto n = neighbours.begin[v]; n < neighbours.begin[v + 1]; ++n) {
                     if (normals[neighbours.of[n]] == Vec3{}) continue;
                     sum += shift[neighbours.of[n]];
                     ++count;
@@ -205,34 +280,9 @@ std::vector<Vec3> startPoints(const LabelGrid& grid, const DualComplex& complex,
 }
 
 void relax(const DualComplex& complex, const std::vector<Room>& rooms, std::vector<Vec3>& points) {
-    // Measured on balls, tubes and half-balls: fewer rounds leave more of the staircase (area), a
-    // wider pass band leaves its long waves.
-    constexpr int kRounds = 100;
-    constexpr double kInward = 0.6, kPassBand = 0.005;
-    constexpr double kOutward = 1 / (kPassBand - 1 / kInward);
     const Neighbours neighbours = neighboursOf(complex);
     const std::vector<Vec3> start = points;
-    std::vector<Vec3> next(points.size());
-    const auto move = [&](double part) {
-        parallelForPieces(complex.groupCount, kPiece, [&](std::int64_t begin, std::int64_t end) {
-            for (std::int64_t v = begin; v < end; ++v) {
-                const std::int64_t first = neighbours.begin[v], last = neighbours.begin[v + 1];
-                if (first == last) {
-                    next[v] = points[v];
-                    continue;
-                }
-                Vec3 sum;
-                for (std::int64_t n = first; n < last; ++n) sum += points[neighbours.of[n]];
-                const Vec3 middle = (1.0 / static_cast<double>(last - first)) * sum;
-                next[v] = heldIn(rooms[v], points[v] + part * (middle - points[v]));
-            }
-        });
-        std::swap(points, next);
-    };
-    for (int round = 0; round < kRounds; ++round) {
-        move(kInward);
-        move(kOutward);
-    }
+    smooth(rooms, neighbours, points);
     takeBackShift(complex, rooms, neighbours, start, points);
 }
 

@@ -42,6 +42,11 @@ std::vector<Vec3> startPoints(const LabelGrid& grid, const DualComplex& complex,
 /// still lose is given back.
 void relax(const DualComplex& complex, const std::vector<Room>& rooms, std::vector<Vec3>& points);
 
+/// Moves walls along their normals until each region has the volume of its voxels again, but for a
+/// hundredth, as far as the rooms of its vertices let it: smoothing shrinks what is small.
+void restoreVolumes(const LabelGrid& grid, const DualComplex& complex,
+                    const std::vector<Room>& rooms, std::vector<Vec3>& points);
+
 /// Vertices at the border of their rooms.
 std::int64_t countHeld(const DualComplex& complex, const std::vector<Room>& rooms,
                        const std::vector<Vec3>& points);

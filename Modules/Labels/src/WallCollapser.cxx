@@ -42,17 +42,14 @@ WallCollapser::WallCollapser(const WallPatch& patch, const ImageGeometry& geomet
       origin_(mesh_.pointCount(), kNone),
       tried_(mesh_.pointCount(), -1),
       leastCost_(mesh_.pointCount(), 0),
-      samples_(patch.fullPoints.size() + patch.fullTriangles.size()),
+      samples_(patch.fullPoints.size()),
       firstSample_(mesh_.triangleCount(), kNone),
       mark_(mesh_.pointCount(), 0) {
     for (std::size_t v = 0; v < patch.fullPoints.size(); ++v) {
         samples_[v].point = patch.fullPoints[v];
     }
     fullBegin_.assign(patch.fullPoints.size() + 2, 0);
-    for (std::size_t n = 0; n < patch.fullTriangles.size(); ++n) {
-        const WallTriangle& t = patch.fullTriangles[n];
-        const auto c = [&](int i) { return patch.fullPoints[t.v[i]]; };
-        samples_[patch.fullPoints.size() + n].point = (1.0 / 3) * (c(0) + c(1) + c(2));
+    for (const WallTriangle& t : patch.fullTriangles) {
         for (const Id v : t.v) ++fullBegin_[v + 2];
     }
     for (std::size_t v = 2; v < fullBegin_.size(); ++v) fullBegin_[v] += fullBegin_[v - 1];
@@ -73,7 +70,6 @@ void WallCollapser::beginFull() {
         origin_[v] = v;
         if (isOwn(v)) linkVertex(v);
     }
-    for (Id t = 0; t < mesh_.fullTriangles(); ++t) link(mesh_.fullPoints() + t, t, kOnWall);
     addQuadrics();
 }
 
@@ -110,11 +106,6 @@ void WallCollapser::linkVertex(Id v) {
             return;
         }
     }
-}
-
-WallCollapser::Id WallCollapser::vertexAt(Id sample) const {
-    const Id vertices = mesh_.fullPoints();
-    return sample < vertices ? sample : patch_.fullTriangles[sample - vertices].v[0];
 }
 
 void WallCollapser::addQuadrics() {
@@ -394,7 +385,7 @@ bool WallCollapser::findHomes(Id u, Id v, const Plan& plan, double limitMm) {
 /// The full walls come near the point, as far as those round the nearest sample show.
 bool WallCollapser::isNearFull(const Vec3& point, double limitMm) {
     limitMm *= samples_[nearestSample_].tightness;
-    const Id vertex = vertexAt(nearestSample_);
+    const Id vertex = nearestSample_;
     for (std::uint64_t n = fullBegin_[vertex]; n < fullBegin_[vertex + 1]; ++n) {
         const auto& t = patch_.fullTriangles[fullAround_[n]].v;
         const Vec3 &a = patch_.fullPoints[t[0]], &b = patch_.fullPoints[t[1]],
@@ -452,7 +443,7 @@ bool WallCollapser::tryCollapse(Id u, Id v, Plan plan, double limitMm) {
         link(home.sample, change.madeBegin + home.star, home.slot);
     }
     quadrics_.push_back(quadrics_[u] + quadrics_[v]);
-    origin_.push_back(vertexAt(nearestSample_));
+    origin_.push_back(nearestSample_);
     leastCost_.push_back(0);
     tried_.push_back(-1);
     mark_.push_back(0);
@@ -534,7 +525,6 @@ void WallCollapser::undo(Id change) {
 
 void WallCollapser::tightenFull(Id full) {
     for (const Id v : patch_.fullTriangles[full].v) samples_[v].tightness *= kTighter;
-    samples_[mesh_.fullPoints() + full].tightness *= kTighter;
 }
 
 void WallCollapser::tightenNear(Id triangle) {
@@ -548,8 +538,6 @@ void WallCollapser::tightenNear(Id triangle) {
 
 WallCollapser::Id WallCollapser::standInOf(Id full) const {
     const auto& t = patch_.fullTriangles[full];
-    const Id ofMiddle = samples_[mesh_.fullPoints() + full].home;
-    if (ofMiddle != kNone && mesh_.isTriangleAlive(ofMiddle)) return ofMiddle;
     for (const Id v : t.v) {
         if (samples_[v].home != kNone && samples_[v].slot == kOnWall) return samples_[v].home;
     }

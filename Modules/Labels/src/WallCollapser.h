@@ -32,8 +32,7 @@ public:
     bool isFrozen(Id v) const {
         return v < firstNew_ && patch_.isFrozen[v - mesh_.firstPoint()] != 0;
     }
-    /// Where a sample is assigned to: samples are the vertices of the full walls and, after them,
-    /// the middles of their triangles.
+    /// Where a sample is assigned to: samples are the vertices of the full walls.
     SampleHome homeOf(Id sample) const {
         const Sample& s = samples_[sample];
         return {s.home, s.tightness, s.slot};
@@ -95,8 +94,6 @@ private:
     double homeOnCurve(const Vec3& p, Id u, Id v, const Plan& plan, std::size_t i, NewHome& home);
     bool isNearFull(const Vec3& point, double limitMm);
     void link(Id sample, Id triangle, std::uint8_t slot);
-    /// A vertex of the full walls at a sample.
-    Id vertexAt(Id sample) const;
     bool spokesAreNear(const Plan& plan, double limitMm);
 
     const WallPatch& patch_;

@@ -1,7 +1,7 @@
 #include "WallMender.h"
 
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "adaptiso/Core/AabbTree.h"
@@ -10,6 +10,10 @@
 
 namespace adaptiso::detail {
 namespace {
+
+constexpr std::int64_t kMostCells = 1 << 24;
+/// Where less than one in so many triangles is asked for, what is near them is looked up.
+constexpr std::size_t kFew = 4, kVeryFew = 32;
 
 CornerBox boxOfAll(const WallMesh& mesh) {
     CornerBox box{mesh.point(0), mesh.point(0)};
@@ -67,91 +71,28 @@ std::vector<TrianglePair> crossingPairs(const TriangleMesh& mesh,
 
 }  // namespace
 
-TrianglesByPlace::TrianglesByPlace(const CornerBox& box, double cubeMm)
-    : cubeMm_(cubeMm), low_(box.low) {
-    for (int axis = 0; axis < 3; ++axis) {
-        count_[axis] = static_cast<std::int64_t>((box.high[axis] - low_[axis]) / cubeMm) + 1;
-    }
-}
-
-std::array<std::array<std::int64_t, 2>, 3> TrianglesByPlace::rangeOf(const CornerBox& box) const {
-    std::array<std::array<std::int64_t, 2>, 3> range;
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto at = [&](double x) {
-            const auto n = static_cast<std::int64_t>(std::floor((x - low_[axis]) / cubeMm_));
-            return std::clamp<std::int64_t>(n, 0, count_[axis] - 1);
-        };
-        range[axis] = {at(box.low[axis]), at(box.high[axis])};
-    }
-    return range;
-}
-
-/// Calls f(cube) until it is true.
-template <class F>
-void TrianglesByPlace::forEachCube(const CornerBox& box, const F& f) const {
-    const auto [x, y, z] = rangeOf(box);
-    for (std::int64_t k = z[0]; k <= z[1]; ++k) {
-        for (std::int64_t j = y[0]; j <= y[1]; ++j) {
-            for (std::int64_t i = x[0]; i <= x[1]; ++i) {
-                if (f(i + count_[0] * (j + count_[1] * k))) return;
-            }
-        }
-    }
-}
-
-void TrianglesByPlace::assign(const WallMesh& mesh, const std::vector<WallMesh::Id>& triangles,
-                              double aroundMm) {
-    mesh_ = &mesh;
-    aroundMm_ = aroundMm;
-    cubes_.assign(count_[0] * count_[1] * count_[2], [&](const auto& give) {
-        for (const WallMesh::Id t : triangles) {
-            CornerBox box = boxOf(mesh.cornersOf(t));
-            box.widen(aroundMm);
-            forEachCube(box, [&](std::int64_t cube) {
-                give(cube, t);
-                return false;
-            });
-        }
-    });
-}
-
-bool TrianglesByPlace::isOneNear(WallMesh::Id triangle) const {
-    const CornerBox box = boxOf(mesh_->cornersOf(triangle));
-    const WallMesh::Id wall = mesh_->triangle(triangle).wall;
-    bool isNear = false;
-    forEachCube(box, [&](std::int64_t cube) {
-        for (const WallMesh::Id t : cubes_.of(cube)) {
-            if (mesh_->triangle(t).wall != wall) continue;
-            CornerBox other = boxOf(mesh_->cornersOf(t));
-            other.widen(aroundMm_);
-            if (!other.overlaps(box)) continue;
-            isNear = true;
-            return true;
-        }
-        return false;
-    });
-    return isNear;
-}
-
 WallMender::WallMender(WallCollapser& collapser, double limitMm, bool mayGrow)
     : collapser_(collapser),
       mesh_(collapser.mesh()),
       limitMm_(limitMm),
       boundMm_(limitMm),
       mayGrow_(mayGrow),
-      near_(boxOfAll(mesh_), 2 * collapser.voxelMm()),
+      cells_(boxOfAll(mesh_), 2 * collapser.voxelMm(), kMostCells),
       isLast_(mesh_.firstTriangle(), 0),
       isFullProved_(mesh_.fullTriangles(), 1) {
     for (Id t = mesh_.firstTriangle(); t < mesh_.triangleCount(); ++t) {
         // what was there when the collapser began
         isLast_.push_back(mesh_.makerOf(t) == kNone ? 1 : 0);
     }
+    full_.assign(mesh_.fullTriangles(), [&](Id t) { return boxAround(t, 0); });
 }
 
 bool WallMender::mend() {
     changes_.clear();
     findCrossings();
-    findBeyond();
+    forgetChanged();
+    findBeyondOfSimple();
+    findBeyondOfFull();
     std::sort(changes_.begin(), changes_.end());
     changes_.erase(std::unique(changes_.begin(), changes_.end()), changes_.end());
     for (const Id change : changes_) collapser_.undo(change);
@@ -164,17 +105,33 @@ void WallMender::blame(Id triangle) {
     }
 }
 
+CornerBox WallMender::boxAround(Id triangle, double distanceMm) const {
+    CornerBox box = boxOf(mesh_.cornersOf(triangle));
+    box.widen(distanceMm);
+    return box;
+}
+
 /// Triangles that were there before cross nothing.
 void WallMender::findCrossings() {
     isClear_.resize(mesh_.triangleCount(), 0);
-    TriangleMesh mesh;
-    std::vector<Id> numbers;
-    std::vector<std::uint8_t> isAsked;
-    std::vector<VertexId> number(mesh_.pointCount(), -1);
+    std::vector<Id> alive, asked;
+    const auto isAsked = [&](Id t) { return mesh_.makerOf(t) != kNone && isClear_[t] == 0; };
     for (Id t = mesh_.firstTriangle(); t < mesh_.triangleCount(); ++t) {
         if (!mesh_.isTriangleAlive(t)) continue;
-        isAsked.push_back(mesh_.makerOf(t) != kNone && isClear_[t] == 0 ? 1 : 0);
-        numbers.push_back(t);
+        alive.push_back(t);
+        if (isAsked(t)) asked.push_back(t);
+    }
+    if (asked.empty()) return;
+    if (kFew * asked.size() < alive.size()) {
+        MarkedCells marks(cells_);
+        for (const Id t : asked) marks.mark(boxAround(t, 0));
+        std::erase_if(alive, [&](Id t) { return !marks.isMarked(boxAround(t, 0)); });
+    }
+    TriangleMesh mesh;
+    std::vector<std::uint8_t> areAsked;
+    std::vector<VertexId> number(mesh_.pointCount(), -1);
+    for (const Id t : alive) {
+        areAsked.push_back(isAsked(t) ? 1 : 0);
         Triangle corners;
         for (int c = 0; c < 3; ++c) {
             VertexId& v = number[mesh_.triangle(t).v[c]];
@@ -186,13 +143,11 @@ void WallMender::findCrossings() {
         }
         mesh.triangles.push_back(corners);
     }
-    const auto pairs = crossingPairs(mesh, isAsked);
-    for (std::size_t n = 0; n < numbers.size(); ++n) {
-        if (isAsked[n] != 0) isClear_[numbers[n]] = 1;
-    }
+    const auto pairs = crossingPairs(mesh, areAsked);
+    for (const Id t : asked) isClear_[t] = 1;
     for (const TrianglePair& pair : pairs) {
         for (const std::int64_t n : pair) {
-            const Id t = numbers[n];
+            const Id t = alive[n];
             isClear_[t] = 0;
             blame(t);
             collapser_.tightenNear(t);
@@ -202,90 +157,114 @@ void WallMender::findCrossings() {
 
 /// Triangles of the full walls that what they were near may have left are to be proved again.
 void WallMender::forgetChanged() {
-    std::vector<Id> gone;
+    const bool beginsFull = mesh_.firstTriangle() == 0;
     for (Id t = mesh_.firstTriangle(); t < isLast_.size(); ++t) {
-        if (isLast_[t] != 0 && !mesh_.isTriangleAlive(t)) gone.push_back(t);
+        if (isLast_[t] == 0 || mesh_.isTriangleAlive(t)) continue;
+        if (beginsFull && t < mesh_.fullTriangles()) isFullProved_[t] = 0;
+        // at first each triangle of the full walls was near itself alone
+        if (isFirst_ && beginsFull) continue;
+        const Id wall = mesh_.triangle(t).wall;
+        full_.forEachNear(boxAround(t, boundMm_), [&](Id f) {
+            if (mesh_.triangle(f).wall == wall) isFullProved_[f] = 0;
+        });
     }
-    near_.assign(mesh_, gone, boundMm_);
-    for (Id t = 0; t < mesh_.fullTriangles(); ++t) {
-        if (isFullProved_[t] == 0 || mesh_.isTriangleAlive(t)) continue;
-        const bool isGoneNow = t >= mesh_.firstTriangle() && isLast_[t] != 0;
-        if (isGoneNow || near_.isOneNear(t)) isFullProved_[t] = 0;
-    }
+    isFirst_ = false;
     isProved_.resize(mesh_.triangleCount(), 0);
     isLast_.resize(mesh_.triangleCount(), 0);
     for (Id t = 0; t < isLast_.size(); ++t) isLast_[t] = mesh_.isTriangleAlive(t) ? 1 : 0;
 }
 
-/// What was taken away where a triangle of the full walls lies too far from what is there now.
-void WallMender::blameNear(const WallPlace& place) {
-    const std::size_t before = changes_.size();
-    blame(collapser_.standInOf(place.triangle));
-    if (changes_.size() > before) return;
-    for (const Id t : place.near) blame(t);
-    if (changes_.size() > before) return;
-    CornerBox box = boxOf(mesh_.cornersOf(place.triangle));
-    box.widen(boundMm_);
+/// What was taken away where triangles of the full walls lie too far from what is there now.
+void WallMender::blameNear(const std::vector<WallPlace>& places) {
+    std::vector<Id> unexplained;
+    for (const WallPlace& place : places) {
+        const std::size_t before = changes_.size();
+        blame(collapser_.standInOf(place.triangle));
+        if (changes_.size() > before) continue;
+        for (const Id t : place.near) blame(t);
+        if (changes_.size() == before) unexplained.push_back(place.triangle);
+    }
+    if (unexplained.empty()) return;
+    TriangleGrid grid;
+    grid.assign(static_cast<Id>(unexplained.size()),
+                [&](Id n) { return boxAround(unexplained[n], boundMm_); });
     for (Id t = 0; t < mesh_.triangleCount(); ++t) {
         if (mesh_.isTriangleAlive(t) || mesh_.killerOf(t) >= mesh_.changeCount()) continue;
         const Id killer = mesh_.killerOf(t);
-        const bool isStanding = mesh_.isChangeStanding(killer);
-        if (isStanding && box.overlaps(boxOf(mesh_.cornersOf(t)))) changes_.push_back(killer);
+        if (!mesh_.isChangeStanding(killer)) continue;
+        bool isNear = false;
+        grid.forEachNear(boxAround(t, 0), [&](Id) { isNear = true; });
+        if (isNear) changes_.push_back(killer);
     }
 }
 
-/// The full walls near triangles of a mesh.
-WallSurface WallMender::fullNear(const std::vector<Id>& triangles) {
-    const bool areMany = 8 * triangles.size() > mesh_.fullTriangles();
-    if (!areMany) near_.assign(mesh_, triangles, limitMm_ + collapser_.voxelMm());
-    std::vector<Id> numbers;
-    for (Id t = 0; t < mesh_.fullTriangles(); ++t) {
-        if (areMany || near_.isOneNear(t)) numbers.push_back(t);
+/// The full walls, as far as they may be near triangles of the mesh.
+const WallSurface& WallMender::fullNear(const std::vector<Id>& triangles) {
+    if (!wholeFull_ && (mayGrow_ || kVeryFew * triangles.size() > mesh_.fullTriangles())) {
+        std::vector<Id> all(mesh_.fullTriangles());
+        std::iota(all.begin(), all.end(), 0);
+        wholeFull_.emplace(mesh_, std::move(all));
     }
-    return {mesh_, std::move(numbers)};
+    if (wholeFull_) return *wholeFull_;
+    std::vector<Id> near;
+    for (const Id t : triangles) {
+        const Id wall = mesh_.triangle(t).wall;
+        full_.forEachNear(boxAround(t, limitMm_ + collapser_.voxelMm()), [&](Id f) {
+            if (mesh_.triangle(f).wall == wall) near.push_back(f);
+        });
+    }
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    nearFull_.emplace(mesh_, std::move(near));
+    return *nearFull_;
 }
 
-void WallMender::findBeyond() {
-    forgetChanged();
-    std::vector<Id> alive, unproved, starts;
+void WallMender::findBeyondOfSimple() {
+    std::vector<Id> unproved, starts;
     for (Id t = mesh_.firstTriangle(); t < mesh_.triangleCount(); ++t) {
-        if (!mesh_.isTriangleAlive(t)) continue;
-        alive.push_back(t);
-        if (isProved_[t] != 0 || mesh_.makerOf(t) == kNone) continue;
+        if (!mesh_.isTriangleAlive(t) || isProved_[t] != 0 || mesh_.makerOf(t) == kNone) continue;
         unproved.push_back(t);
         starts.push_back(collapser_.fullNear(t));
     }
-    const WallBound ofSimple =
+    if (unproved.empty()) return;
+    const WallBound bound =
         proveNear(mesh_, unproved, starts, fullNear(unproved), limitMm_, mayGrow_);
     for (const Id t : unproved) isProved_[t] = 1;
-    for (const WallPlace& place : ofSimple.beyond) {
+    for (const WallPlace& place : bound.beyond) {
         isProved_[place.triangle] = 0;
         blame(place.triangle);
         collapser_.tightenNear(place.triangle);
     }
-    boundMm_ = std::max(boundMm_, ofSimple.largestMm);
-    std::vector<Id> full;
-    starts.clear();
+    boundMm_ = std::max(boundMm_, bound.largestMm);
+}
+
+void WallMender::findBeyondOfFull() {
+    std::vector<Id> full, starts;
     for (Id t = 0; t < mesh_.fullTriangles(); ++t) {
         if (mesh_.isTriangleAlive(t) || isFullProved_[t] != 0) continue;
         full.push_back(t);
         starts.push_back(collapser_.standInOf(t));
     }
     if (full.empty()) return;
-    // of the walls only what is near those is asked
-    if (4 * full.size() < mesh_.fullTriangles()) {
-        near_.assign(mesh_, full, limitMm_ + collapser_.voxelMm());
-        std::erase_if(alive, [&](Id t) { return !near_.isOneNear(t); });
+    const bool areFew = !mayGrow_ && kFew * full.size() < mesh_.fullTriangles();
+    MarkedCells marks(cells_);
+    if (areFew) {  // of the walls only what is near those is asked
+        for (const Id t : full) marks.mark(boxAround(t, limitMm_ + collapser_.voxelMm()));
+    }
+    std::vector<Id> alive;
+    for (Id t = mesh_.firstTriangle(); t < mesh_.triangleCount(); ++t) {
+        if (!mesh_.isTriangleAlive(t)) continue;
+        if (!areFew || marks.isMarked(boxAround(t, 0))) alive.push_back(t);
     }
     const WallSurface simple(mesh_, std::move(alive));
-    const WallBound ofFull = proveNear(mesh_, full, starts, simple, limitMm_, mayGrow_);
+    const WallBound bound = proveNear(mesh_, full, starts, simple, limitMm_, mayGrow_);
     for (const Id t : full) isFullProved_[t] = 1;
-    for (const WallPlace& place : ofFull.beyond) {
+    blameNear(bound.beyond);
+    for (const WallPlace& place : bound.beyond) {
         isFullProved_[place.triangle] = 0;
-        blameNear(place);
         collapser_.tightenFull(place.triangle);
     }
-    boundMm_ = std::max(boundMm_, ofFull.largestMm);
+    boundMm_ = std::max(boundMm_, bound.largestMm);
 }
 
 }  // namespace adaptiso::detail

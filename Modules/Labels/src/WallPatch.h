@@ -46,8 +46,7 @@ struct WallPatch {
     std::vector<Id> origins;            ///< of each vertex, one of the full walls near it
     std::vector<std::uint8_t> isTried;  ///< of vertices: no edge there can collapse as they are
     std::vector<WallTriangle> triangles;
-    std::vector<SampleHome>
-        homes;  ///< of the full walls' vertices, then of their triangles' middles
+    std::vector<SampleHome> homes;  ///< of the full walls' vertices
 
     std::vector<std::uint8_t> isOwn;     ///< of vertices: in the cube
     std::vector<std::uint8_t> isFrozen;  ///< of vertices: do not move

@@ -52,23 +52,17 @@ WallSurface::Id WallSurface::placeOf(Id number) const {
                                                  : WallMesh::kNone;
 }
 
-const AabbTree& WallSurface::tree() const {
-    std::call_once(treeIsBuilt_, [&] {
-        forTree_.points = points_;
-        forTree_.triangles.reserve(triangles_.size());
-        for (const auto& t : triangles_) forTree_.triangles.push_back({t[0], t[1], t[2]});
-        tree_.emplace(forTree_);
-    });
-    return *tree_;
-}
-
 void WallSurface::collect(const Corners& piece, Id wall, double distanceMm,
                           std::vector<Id>& places) const {
+    std::call_once(gridIsMade_, [&] {
+        grid_.assign(static_cast<Id>(triangles_.size()),
+                     [&](Id n) { return boxOf(walkable_.cornersOf(n)); });
+    });
     places.clear();
     CornerBox box = boxOf(piece);
     box.widen(distanceMm);
-    tree().forEachOverlap({box.low, box.high}, [&](std::int64_t n) {
-        if (mesh_.triangle(numbers_[n]).wall == wall) places.push_back(static_cast<Id>(n));
+    grid_.forEachNear(box, [&](Id n) {
+        if (mesh_.triangle(numbers_[n]).wall == wall) places.push_back(n);
     });
 }
 

@@ -2,11 +2,10 @@
 
 #include <cstdint>
 #include <mutex>
-#include <optional>
 #include <vector>
 
+#include "TriangleGrid.h"
 #include "WallMesh.h"
-#include "adaptiso/Core/AabbTree.h"
 #include "adaptive/proof/SurfaceWalk.h"
 
 namespace adaptiso::detail {
@@ -33,16 +32,13 @@ public:
     void collect(const Corners& piece, Id wall, double distanceMm, std::vector<Id>& places) const;
 
 private:
-    const AabbTree& tree() const;
-
     const WallMesh& mesh_;
     std::vector<Id> numbers_;
     std::vector<Vec3> points_;
     std::vector<std::array<Id, 3>> triangles_;
     WalkableSurface<Id> walkable_;
-    mutable std::once_flag treeIsBuilt_;
-    mutable TriangleMesh forTree_;
-    mutable std::optional<AabbTree> tree_;
+    mutable std::once_flag gridIsMade_;
+    mutable TriangleGrid grid_;
 };
 
 /// A triangle that could not be shown to lie within the limit of the other surface, and what of

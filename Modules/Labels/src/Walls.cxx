@@ -69,6 +69,8 @@ public:
                 for (const VertexId v : complex_.cornersOf(complex_.polygons[p])) isAsked[v] = 1;
             }
         }
+        useBegin_ = {};
+        uses_ = {};
         return mended;
     }
 
@@ -175,15 +177,15 @@ private:
         const auto forEach = [&](const auto& f) {
             for (std::size_t p = 0; p < complex_.polygons.size(); ++p) {
                 for (const VertexId v : complex_.cornersOf(complex_.polygons[p])) {
-                    if (v < complex_.groupCount) f(v, static_cast<std::int64_t>(p));
+                    if (v < complex_.groupCount) f(v, static_cast<std::uint32_t>(p));
                 }
             }
         };
-        forEach([&](VertexId v, std::int64_t) { ++useBegin_[v + 1]; });
+        forEach([&](VertexId v, std::uint32_t) { ++useBegin_[v + 1]; });
         for (std::size_t v = 1; v < useBegin_.size(); ++v) useBegin_[v] += useBegin_[v - 1];
         uses_.resize(useBegin_.back());
-        std::vector<std::int64_t> at(useBegin_.begin(), useBegin_.end() - 1);
-        forEach([&](VertexId v, std::int64_t p) { uses_[at[v]++] = p; });
+        std::vector<std::uint32_t> at(useBegin_.begin(), useBegin_.end() - 1);
+        forEach([&](VertexId v, std::uint32_t p) { uses_[at[v]++] = p; });
     }
 
     struct Use {
@@ -194,7 +196,7 @@ private:
 
     void collect(VertexId v, std::vector<Use>& uses) const {
         uses.clear();
-        for (std::int64_t n = useBegin_[v]; n < useBegin_[v + 1]; ++n) {
+        for (std::uint32_t n = useBegin_[v]; n < useBegin_[v + 1]; ++n) {
             const std::int64_t p = uses_[n];
             const Polygon& polygon = complex_.polygons[p];
             const bool isFan = cuts_[p] == Cut::Fan;
@@ -304,7 +306,7 @@ private:
     const ImageGeometry& geometry_;
     std::vector<Vec3> pointsMm_;
     std::vector<Cut> cuts_;
-    std::vector<std::int64_t> useBegin_, uses_;
+    std::vector<std::uint32_t> useBegin_, uses_;
 };
 
 }  // namespace

@@ -43,7 +43,7 @@ double simplifyPatch(WallCollapser& collapser, const WallAim& aim) {
         collapseAll(collapser, limitMm, aim.enough);
     }
     // what is taken back collapses again, held tighter; in the end it stays
-    constexpr int kMostTries = 4;
+    constexpr int kMostTries = 3;
     WallMender mender(collapser, limitMm, aim.mayGrow);
     for (int n = 0; mender.mend(); ++n) {
         if (n < kMostTries) collapseAll(collapser, limitMm, aim.enough);
@@ -157,8 +157,7 @@ WholeWalls::WholeWalls(LabelComplex&& full, const ImageGeometry& geometry)
         for (int c = 0; c < 3; ++c) full_[t].v[c] = static_cast<Id>(full.triangles[t][c]);
     }
     full = {};
-    homes_.resize(fullPoints_.size() + full_.size());
-    for (Id t = 0; t < full_.size(); ++t) homes_[fullPoints_.size() + t].triangle = t;
+    homes_.resize(fullPoints_.size());
 }
 
 WholeWalls::Lists WholeWalls::listsOf(const CubeCut& cut, const WallAim& aim) const {
@@ -263,16 +262,9 @@ void WholeWalls::addFull(const Lists& lists, std::int64_t cube, WallPatch& patch
         for (Id& v : triangle.v) v = numbers.fullVertices.numberOf(v);
         patch.fullTriangles.push_back(triangle);
     };
-    const auto vertices = static_cast<Id>(fullPoints_.size());
     for (const Id t : lists.full.of(cube)) addTriangle(t);
     for (const Id t : lists.own.of(cube)) {
-        for (const Id s : lists.samples.of(t)) {
-            if (s >= vertices) {
-                addTriangle(s - vertices);
-            } else {
-                numbers.fullVertices.numberOf(s);
-            }
-        }
+        for (const Id s : lists.samples.of(t)) numbers.fullVertices.numberOf(s);
     }
     const auto addHome = [&](Id sample) {
         SampleHome home = homes_[sample];
@@ -283,7 +275,6 @@ void WholeWalls::addFull(const Lists& lists, std::int64_t cube, WallPatch& patch
         patch.fullPoints.push_back(fullPoints_[v]);
         addHome(v);
     }
-    for (const Id t : numbers.fullTriangles.ids()) addHome(vertices + t);
     for (std::size_t n = 0; n < patch.points.size(); ++n) {
         const Id v = numbers.vertices.ids()[n];
         patch.kinds.push_back(kinds_[v]);
@@ -306,7 +297,6 @@ WholeWalls::Made WholeWalls::simplifyOne(const CubeCut& cut, const Lists& lists,
     const WallMesh& mesh = collapser.mesh();
     const Id firstPoint = mesh.firstPoint(), firstTriangle = mesh.firstTriangle();
     const IdNumbers& fullVertices = isFull() ? numbers.vertices : numbers.fullVertices;
-    const IdNumbers& fullTriangles = isFull() ? numbers.triangles : numbers.fullTriangles;
     std::vector<Id> newVertex(mesh.pointCount(), kNone), newTriangle(mesh.triangleCount(), kNone);
     const auto olds = static_cast<Id>(numbers.vertices.ids().size());
     for (Id v = firstPoint; v < mesh.pointCount(); ++v) {
@@ -329,22 +319,17 @@ WholeWalls::Made WholeWalls::simplifyOne(const CubeCut& cut, const Lists& lists,
         newTriangle[t] = static_cast<Id>(made.triangles.size());
         made.triangles.push_back(triangle);
     }
-    const auto samplePoints = static_cast<Id>(patch.fullPoints.size());
-    const auto samples = samplePoints + static_cast<Id>(patch.fullTriangles.size());
+    const auto samples = static_cast<Id>(patch.fullPoints.size());
     for (Id s = 0; s < samples; ++s) {
         // those that this cube alone can have moved
-        const bool isMine = !isFull()          ? patch.homes[s].triangle < numbers.ownTriangles
-                            : s < samplePoints ? patch.isOwn[s] != 0
-                                               : s - samplePoints < numbers.ownTriangles;
+        const bool isMine =
+            isFull() ? patch.isOwn[s] != 0 : patch.homes[s].triangle < numbers.ownTriangles;
         SampleHome home = collapser.homeOf(s);
         if (!isMine || home.triangle == kNone) continue;
         const bool isInCube = newTriangle[home.triangle] != kNone;
         home.triangle = isInCube ? newTriangle[home.triangle]
                                  : numbers.triangles.ids()[home.triangle - firstTriangle];
-        const Id sample = s < samplePoints ? fullVertices.ids()[s]
-                                           : static_cast<Id>(fullPoints_.size()) +
-                                                 fullTriangles.ids()[s - samplePoints];
-        made.samples.push_back({sample, home, isInCube});
+        made.samples.push_back({fullVertices.ids()[s], home, isInCube});
     }
     return made;
 }

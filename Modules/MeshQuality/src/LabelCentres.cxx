@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FreeMemory.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/Predicates.h"
 
@@ -108,7 +109,7 @@ std::vector<Crossing> findCrossings(const LabelledWalls& walls, const ImageGeome
     std::vector<Crossing> all;
     for (std::vector<Crossing>& piece : pieces) {
         all.insert(all.end(), piece.begin(), piece.end());
-        piece = {};
+        freeMemory(piece);
     }
     std::sort(all.begin(), all.end(), [](const Crossing& a, const Crossing& b) {
         return std::tie(a.line, a.first) < std::tie(b.line, b.first);

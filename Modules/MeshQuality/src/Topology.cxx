@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "adaptiso/Core/DisjointSets.h"
+#include "adaptiso/Core/FreeMemory.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso {
@@ -79,17 +80,17 @@ struct VertexFacts {
     friend bool operator==(const VertexFacts&, const VertexFacts&) = default;
 };
 
-/// The facts of all vertices: what is more than edges is kept of those vertices alone that have it,
-/// which are few.
+/// The facts of all vertices: what is more than a few edges is kept of those vertices alone that
+/// have it, which are few.
 class AllFacts {
 public:
     explicit AllFacts(std::int64_t count) : edges_(static_cast<std::size_t>(count)) {}
 
-    /// \param others  gets the vertex when it has more than edges
+    /// \param others  gets the vertex when it has more than a few edges
     void set(VertexId v, const VertexFacts& facts,
              std::vector<std::pair<VertexId, VertexFacts>>& others) {
-        edges_[v] = facts.edges;
-        if (!facts.isPlain()) others.emplace_back(v, facts);
+        edges_[v] = static_cast<std::uint8_t>(facts.edges);
+        if (!facts.isPlain() || facts.edges != edges_[v]) others.emplace_back(v, facts);
     }
     /// \pre pieces are added in the order of their vertices
     void add(const std::vector<std::pair<VertexId, VertexFacts>>& others) {
@@ -109,7 +110,7 @@ public:
     }
 
 private:
-    std::vector<std::uint32_t> edges_;
+    std::vector<std::uint8_t> edges_;  ///< where there is nothing more, and they fit
     std::vector<std::pair<VertexId, VertexFacts>> others_;
 };
 
@@ -381,7 +382,7 @@ void inspect(const TriangleMesh& mesh, const TopologyOptions& options, TopologyR
 
     DefectRecorder recorder(mesh, options, report);
     recordVertexDefects(mesh, around, facts, recorder);
-    around.triangle = {};  // before components take as much
+    freeMemory(around.triangle);  // before components take as much
     recordPointDefects(mesh, around.first, recorder);
     recordTriangleDefects(mesh, recorder);
     report.components = measureComponents(mesh, around.first, facts);

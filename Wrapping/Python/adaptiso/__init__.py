@@ -13,7 +13,7 @@ Ctrl+C ends a call. Nothing is printed: warnings go to the logger "adaptiso".
 import logging as _logging
 import os as _os
 
-from . import _adaptiso
+from . import _adaptiso, giant
 from ._adaptiso import Error, InternalError, __version__
 from ._bem import HeadModel, NoModel, bem
 from ._images import Image, read
@@ -26,7 +26,7 @@ from ._surface import Index, surface
 
 __all__ = ["Check", "Comparison", "Error", "HeadModel", "Image", "Index", "InternalError",
            "LabelSurfaces", "Mesh", "NoModel", "Region", "bem", "check", "check_nested", "compare",
-           "labels", "load", "marching_cubes", "read", "simplify", "surface", "__version__"]
+           "giant", "labels", "load", "marching_cubes", "read", "simplify", "surface", "__version__"]
 
 # who wants to see the warnings says so by logging's own means
 _logging.getLogger("adaptiso").addHandler(_logging.NullHandler())

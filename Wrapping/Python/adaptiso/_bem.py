@@ -22,7 +22,7 @@ from ._quality import Check
 
 logger = logging.getLogger("adaptiso")
 
-PRESETS = ("charm", "headreco", "aseg", "samseg")
+PRESETS = ("charm", "headreco", "aseg", "samseg", "totalsegmentator")
 TISSUES = ("brain", "csf", "skull", "scalp")
 MONTAGES = ("10-20", "10-10", "10-05")
 #: From inside out; models have the last one to three of them, or all.
@@ -233,6 +233,7 @@ class _Source(NamedTuple):
     images: List[Samples]
     mask: Optional[Samples]
     aseg: Optional[Samples]
+    head_mask: Optional[Samples]
     pial: List[Mesh]
     surfaces: List[Mesh]
     inputs: List[List[str]]
@@ -243,18 +244,20 @@ class _Source(NamedTuple):
         return {"kind": self.kind, "images": [image.volume for image in self.images],
                 "brain_mask": None if self.mask is None else self.mask.volume,
                 "aseg": None if self.aseg is None else self.aseg.volume,
+                "head_mask": None if self.head_mask is None else self.head_mask.volume,
                 "pial": [mesh._data for mesh in self.pial],
                 "surfaces": [mesh._data for mesh in self.surfaces], "inputs": self.inputs,
                 "warnings": self.warnings, "preset": preset, "tissues": tissues}
 
     def all_images(self) -> List[Samples]:
         """Every image that is looked at."""
-        return self.images + [image for image in (self.mask, self.aseg) if image is not None]
+        return self.images + [image for image in (self.mask, self.aseg, self.head_mask)
+                              if image is not None]
 
 
 def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
         pial: Optional[Sequence[Any]] = None, labels: Any = None,
-        tissues: Union[str, Mapping[str, Sequence[int]], None] = None,
+        tissues: Union[str, Mapping[str, Sequence[int]], None] = None, head_mask: Any = None,
         probabilities: Optional[Sequence[Any]] = None, ct: Any = None,
         surfaces: Optional[Sequence[Any]] = None, volume: Any = None, affine: Any = None,
         layers: int = 3, vertices: Union[int, Sequence[int], None] = None,
@@ -288,9 +291,12 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
         With `t1` and four layers: the cortex, as `surfaces`: ``["lh.pial", "rh.pial"]``.
     labels : image, optional
         A segmentation; `tissues` says of what.
-    tissues : {"charm", "headreco", "aseg", "samseg"} or dict, optional
+    tissues : {"charm", "headreco", "aseg", "samseg", "totalsegmentator"} or dict, optional
         With `labels`: whose they are, or ``{"brain": [1, 2, 3], "skull": [4], "scalp": [5]}``; CSF
         belongs to the brain, or with four layers is named apart: ``"csf": [3]``.
+    head_mask : image, optional
+        With `labels`: what is not 0 there lies within the skin; needed where no label is the
+        scalp's, as with "totalsegmentator" (its task body, on the same grid).
     probabilities : sequence of images, optional
         Tissue maps in SPM's order: grey, white, CSF, bone, soft tissue.
     ct : image, optional
@@ -406,9 +412,9 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
     _require_thicknesses(options, t1 is not None, ct is not None)
     if count_ == 4 and ct is not None:
         raise Error("layers 4: a CT does not show where the brain ends and CSF begins")
-    preset, lists = _tissues(tissues, labels is not None, count_)
-    source = _source(t1, brain_mask, aseg, pial, labels, probabilities, ct, surfaces, volume,
-                     affine, count_)
+    preset, lists = _tissues(tissues, labels is not None, count_, head_mask is not None)
+    source = _source(t1, brain_mask, aseg, pial, labels, head_mask, probabilities, ct, surfaces,
+                     volume, affine, count_)
     with contextlib.ExitStack() as meanwhile:
         for image in source.all_images():
             meanwhile.enter_context(read_only(image.user))
@@ -421,8 +427,9 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
     return model
 
 
-def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, probabilities: Any,
-            ct: Any, surfaces: Any, volume: Any, affine: Any, layers: int) -> _Source:
+def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, head_mask: Any,
+            probabilities: Any, ct: Any, surfaces: Any, volume: Any, affine: Any,
+            layers: int) -> _Source:
     """The one that is given. \\raises Error"""
     given = {"t1": t1, "labels": labels, "probabilities": probabilities, "ct": ct,
              "surfaces": surfaces}
@@ -433,11 +440,13 @@ def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, probabi
     for name, value in (("brain_mask", brain_mask), ("aseg", aseg), ("pial", pial)):
         if value is not None and kind != "t1":
             raise Error(f"{name}: needs t1")
+    if head_mask is not None and kind != "labels":
+        raise Error("head_mask: needs labels")
     if pial is not None and layers != 4:
         raise Error("pial: needs layers=4")
     if volume is not None and kind != "surfaces":
         raise Error("volume: needs surfaces")
-    source = _Source(kind, [], None, None, [], [], [], [])
+    source = _Source(kind, [], None, None, None, [], [], [], [])
     if kind == "surfaces":
         if volume is not None:
             source.images.append(_image("volume", volume, affine, source))
@@ -451,9 +460,10 @@ def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, probabi
     source.images.extend(_image(kind, image, affine, source) for image in images)
     mask = None if brain_mask is None else _image("brain_mask", brain_mask, affine, source)
     labelled = None if aseg is None else _image("aseg", aseg, affine, source)
+    head = None if head_mask is None else _image("head_mask", head_mask, affine, source)
     if pial is not None:
         source.pial.extend(_surfaces("pial", pial, source))
-    return source._replace(mask=mask, aseg=labelled)
+    return source._replace(mask=mask, aseg=labelled, head_mask=head)
 
 
 def _image(name: str, image: Any, affine: Any, source: _Source) -> Samples:
@@ -607,7 +617,8 @@ def _require_thicknesses(options: Dict[str, Any], is_t1: bool, is_ct: bool) -> N
                     "soft tissue (40 HU)")
 
 
-def _tissues(value: Any, is_needed: bool, layers: int) -> Tuple[str, Dict[str, List[int]]]:
+def _tissues(value: Any, is_needed: bool, layers: int,
+             has_head: bool) -> Tuple[str, Dict[str, List[int]]]:
     """A preset's name, or the labels of each tissue. \\raises Error"""
     lists: Dict[str, List[int]] = {name: [] for name in TISSUES}
     if value is None:
@@ -618,7 +629,10 @@ def _tissues(value: Any, is_needed: bool, layers: int) -> Tuple[str, Dict[str, L
     if not is_needed:
         raise Error("tissues: need labels")
     if isinstance(value, str):
-        return word("tissues", value, PRESETS), lists
+        preset = word("tissues", value, PRESETS)
+        if preset == "totalsegmentator" and layers > 1 and not has_head:
+            raise Error("tissues 'totalsegmentator': has no scalp; give head_mask, or meg=True")
+        return preset, lists
     if not isinstance(value, Mapping) or not set(value) <= set(TISSUES):
         raise Error(f"tissues {shown(value)}: must be one of {', '.join(PRESETS)}, or a dict of "
                     "brain, csf, skull and scalp")
@@ -628,7 +642,7 @@ def _tissues(value: Any, is_needed: bool, layers: int) -> Tuple[str, Dict[str, L
         labels = (listed(f"tissues, {name}", labels) if hasattr(labels, "__iter__")
                   else [labels])
         lists[name] = [count(f"tissues, {name}", label, -2**63, 2**63 - 1) for label in labels]
-        if not lists[name] and name in needed:
+        if not lists[name] and name in needed and not (name == "scalp" and has_head):
             raise Error(f"tissues: {name} has no label")
     return "", lists
 

@@ -12,9 +12,10 @@ import numpy.typing as npt
 from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, count, is_path, listed, optional_number, path as checked_path,
-                         progress as checked_progress, shown, threads as checked_threads, word)
+                         progress as checked_progress, shown, threads as checked_threads)
 from ._images import base_name, read_only, samples_of
-from ._mesh import FRAMES, Faces, Mesh, Vertices, save_whole
+from ._mesh import Mesh
+from ._triangles import Triangles
 
 logger = logging.getLogger("adaptiso")
 
@@ -59,7 +60,7 @@ class Region(NamedTuple):
     neighbours: Dict[int, float]
 
 
-class LabelSurfaces:
+class LabelSurfaces(Triangles[_adaptiso.LabelData]):
     """The walls between the regions of a label map, each stored once: what `labels` makes.
 
     Where two regions meet, their surfaces have the same triangles. Nothing of it changes, so
@@ -79,23 +80,13 @@ class LabelSurfaces:
         ``walls`` and ``regions`` as ``adaptiso-labels --json`` has them.
     """
 
-    __slots__ = ("_data", "_names", "_report", "_regions", "__weakref__")
+    __slots__ = ("_names", "_report", "_regions")
 
     def __init__(self, data: _adaptiso.LabelData, names: "_Names") -> None:
         self._data = data
         self._names = names
         self._report: Optional[Dict[str, Any]] = None
         self._regions: Optional[Dict[int, Region]] = None
-
-    @property
-    def vertices(self) -> Vertices:
-        """float64, shape (n, 3), mm: a read-only view of the walls' own memory."""
-        return self._data.vertices
-
-    @property
-    def faces(self) -> Faces:
-        """int64, shape (m, 3), rows of `vertices`: a read-only view of the walls' own memory."""
-        return self._data.faces
 
     @property
     def label0(self) -> LabelArray:
@@ -186,9 +177,7 @@ class LabelSurfaces:
         name = checked_path("path", path)
         if not name.lower().endswith(".vtp"):
             raise Error(f"{name}: walls are saved as .vtp; region(label).save(path) takes others")
-        if frame is not None:
-            word("frame", frame, FRAMES)
-        save_whole(name, lambda temporary: self._data.write(temporary, frame))
+        self._save(name, frame)
 
     def __len__(self) -> int:
         return len(self.regions)

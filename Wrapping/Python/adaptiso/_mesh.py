@@ -2,30 +2,23 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import logging
-import os
-import uuid
-from typing import Any, Callable, Dict, Optional, Tuple
+from typing import Any, Dict, Optional, Tuple
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import is_path, path as checked_path, shown, word
+from ._arguments import is_path, path as checked_path, shown
 from ._images import affine_of, base_name, read
+from ._triangles import Faces, Triangles, Vertices
 
 logger = logging.getLogger("adaptiso")
 
-Vertices = npt.NDArray[np.float64]
-Faces = npt.NDArray[np.int64]
 
-FRAMES = ("ras", "lps", "tkras", "voxel")
-
-
-class Mesh:
+class Mesh(Triangles[_adaptiso.MeshData]):
     """A triangle surface in scanner RAS millimetres.
 
     What `surface`, `Index.surface` and `load` return; of arrays of one's own ``Mesh(vertices,
@@ -61,7 +54,7 @@ class Mesh:
     121.5
     """
 
-    __slots__ = ("_data", "_normals", "_report", "__weakref__")
+    __slots__ = ("_normals", "_report")
 
     def __init__(self, vertices: Any, faces: Any, normals: Any = None) -> None:
         self._data = _adaptiso.MeshData.from_arrays(
@@ -79,16 +72,6 @@ class Mesh:
         if report is not None:
             data.report = json.dumps(report)
         return mesh
-
-    @property
-    def vertices(self) -> Vertices:
-        """float64, shape (n, 3), mm: a read-only view of the mesh's own memory."""
-        return self._data.vertices
-
-    @property
-    def faces(self) -> Faces:
-        """int64, shape (m, 3), rows of `vertices`: a read-only view of the mesh's own memory."""
-        return self._data.faces
 
     @property
     def normals(self) -> Vertices:
@@ -156,10 +139,7 @@ class Mesh:
             An unknown extension, a frame that the format can't hold or that needs an image that
             the mesh does not know, a file that can't be written.
         """
-        name = checked_path("path", path)
-        if frame is not None:
-            word("frame", frame, FRAMES)
-        save_whole(name, lambda temporary: self._data.write(temporary, frame))
+        self._save(checked_path("path", path), frame)
 
     def to_vtk(self) -> Any:
         """The mesh as a vtkPolyData, in RAS mm; shares the vertices' memory.
@@ -294,27 +274,6 @@ def load(path: Any, *, volume: Any = None) -> Mesh:
     if assumed:
         logger.warning("%s: %s", base_name(name), assumed)
     return Mesh._of(data)
-
-
-def save_whole(path: str, write: Callable[[str], None]) -> None:
-    """Writes a file by `write` under a temporary name beside it, and renames it. \\raises Error"""
-    name = os.path.realpath(path)
-    if os.path.exists(name) and not os.path.isfile(name):
-        raise Error(f"{name}: is no regular file; give another name")
-    folder, file = os.path.split(name)
-    stem, extension = os.path.splitext(file)
-    temporary = os.path.join(folder, f".{stem[:80]}-{uuid.uuid4().hex}{extension}")
-    try:
-        write(temporary)
-        os.replace(temporary, name)
-    except BaseException as error:
-        with contextlib.suppress(OSError):
-            os.unlink(temporary)
-        if isinstance(error, Error):
-            raise Error(str(error).replace(temporary, name)) from None
-        if isinstance(error, OSError):
-            raise Error(f"{name}: can't be written: {error.strerror}") from None
-        raise
 
 
 def mesh_data_of(value: Any, keeps_faults: bool) -> _adaptiso.MeshData:

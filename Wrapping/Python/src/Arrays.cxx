@@ -1,11 +1,13 @@
 #include "Arrays.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
 
 #include "Calls.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso::python {
 namespace {
@@ -38,6 +40,22 @@ double turned(double value) {
     return value == 0 ? 0 : -value;
 }
 
+/// Squares of lengths and volumes must be numbers, and voxels be told apart where they lie.
+void requireCountable(const ImageGeometry& geometry) {
+    constexpr double kMostMm = 1e30, kMostVoxels = 1e10;
+    const Vec3 spacingMm = geometry.spacingMm();
+    for (int axis = 0; axis < 3; ++axis) {
+        if (spacingMm[axis] <= kMostMm && spacingMm[axis] >= 1 / kMostMm) continue;
+        throw InvalidInput("affine: a voxel is " + formatShort(spacingMm[axis]) +
+                           " mm long, must be 1e-30 to 1e+30");
+    }
+    const double leastMm = std::min({spacingMm.x, spacingMm.y, spacingMm.z});
+    const double farMm = norm(geometry.originMm);
+    if (farMm <= kMostVoxels * leastMm) return;
+    throw InvalidInput("affine: the image lies " + formatShort(farMm) +
+                       " mm off, must be at most 1e+10 voxels");
+}
+
 }  // namespace
 
 ImageGeometry geometryFromAffine(const Index3& size, const py::array_t<double>& affine) {
@@ -66,6 +84,7 @@ ImageGeometry geometryFromAffine(const Index3& size, const py::array_t<double>& 
     if (!(volume > 0) || !std::isfinite(volume)) {
         throw InvalidInput("affine: is singular; its axes span no volume");
     }
+    requireCountable(geometry);
     return geometry;
 }
 

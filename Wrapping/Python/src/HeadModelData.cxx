@@ -10,6 +10,7 @@
 #include "Judgements.h"
 #include "Resources.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FreeMemory.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/Pipeline/BemElectrodes.h"
 #include "adaptiso/Pipeline/BemJson.h"
@@ -49,7 +50,7 @@ bool areLoose(const HeadSources& sources) {
 /// \param volume  whose tkRAS it is in, where it is
 TriangleMesh inLps(const MeshData& surface, const std::optional<ImageGeometry>& volume) {
     TriangleMesh mesh = fromFrame(surface.mesh(), surface.frame(), volume);
-    mesh.normals = {};
+    freeMemory(mesh.normals);
     return mesh;
 }
 
@@ -70,7 +71,9 @@ HeadBoundaries boundariesOf(const HeadSources& sources, const BoundaryOptions& o
     std::vector<VolumeView> views;
     for (const auto& image : sources.images) views.push_back(image->view);
     if (sources.source == "labels") {
-        return boundariesFromLabels(views.front(), sources.tissues, options);
+        std::optional<VolumeView> head;
+        if (sources.headMask) head = sources.headMask->view;
+        return boundariesFromLabels(views.front(), sources.tissues, options, head);
     }
     if (sources.source == "probabilities") return boundariesFromProbabilities(views, options);
     return boundariesFromCt(views.front(), options);
@@ -84,6 +87,7 @@ HeadBoundaries namedBoundaries(const HeadSources& sources, const BoundaryOptions
         const std::string what = error.what();
         const std::string name = what.starts_with("the brain mask")
                                      ? (sources.brainMask ? "brain_mask" : "aseg")
+                                 : what.starts_with("the head mask")  ? "head_mask"
                                  : what.starts_with("a pial surface") ? "pial"
                                                                       : sources.source;
         throw InvalidInput(name + ": " + what);

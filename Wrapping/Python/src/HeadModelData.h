@@ -24,6 +24,7 @@ struct HeadSources {
     std::string source;  ///< "t1", "labels", "probabilities", "ct", "surfaces"
     std::vector<std::shared_ptr<ArrayVolume>> images;  ///< with surfaces: the one they belong to
     std::shared_ptr<ArrayVolume> brainMask, aseg;      ///< with t1; may be null
+    std::shared_ptr<ArrayVolume> headMask;             ///< with labels; may be null
     std::vector<std::shared_ptr<MeshData>> pial;       ///< with t1: the cortex
     TissueLabels tissues;
     std::vector<std::shared_ptr<MeshData>> surfaces;  ///< inside out, in one frame

@@ -143,6 +143,7 @@ HeadSources sourcesOf(const py::dict& from) {
     sources.images = take<Volumes>(from, "images");
     sources.brainMask = take<std::shared_ptr<ArrayVolume>>(from, "brain_mask");
     sources.aseg = take<std::shared_ptr<ArrayVolume>>(from, "aseg");
+    sources.headMask = take<std::shared_ptr<ArrayVolume>>(from, "head_mask");
     sources.pial = take<Meshes>(from, "pial");
     sources.tissues = tissuesOf(from);
     sources.surfaces = take<Meshes>(from, "surfaces");

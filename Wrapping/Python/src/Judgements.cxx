@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "adaptiso/Core/FreeMemory.h"
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/Pipeline/CheckJson.h"
 
@@ -9,7 +10,7 @@ namespace adaptiso::python {
 
 Json surfaceVerdict(const TriangleMesh& mesh, const CheckRules& rules) {
     TriangleMesh asked = mesh;  // what measures may change is not the user's
-    asked.normals = {};
+    freeMemory(asked.normals);
     const SurfaceFacts facts =
         measureSurface(asked, sizeLimitsOf(rules.profileInUse()), rules.maxPairs);
     Json json = verdictJson(judgeSurface(facts, rules));

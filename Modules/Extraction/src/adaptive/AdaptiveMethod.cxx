@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FreeMemory.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/full/VolumeSurface.h"
 #include "adaptive/mending/LocalUndo.h"
@@ -351,13 +352,13 @@ Extraction extractAdaptive(const VolumeView& volume, const BlockGrid& grid, Bloc
     result.statistics.blocksTotal = grid.blockCount();
     result.statistics.blocksActive = std::ssize(query.blocks);
     result.statistics.indexNodesVisited = query.nodesVisited;
-    query.blocks = {};  // the bricks have them
+    freeMemory(query.blocks);  // the bricks have them
     result.statistics.errorBoundMm = 0;
     if (bricks.count() > 0) {
         AdaptiveResult made = simplifyWithin(VolumeSurface(volume.geometry(), *sampler, bricks),
                                              options.adaptive, options.progress);
         result.mesh = std::move(made.mesh);
-        if (!options.computeNormals) result.mesh.normals = {};
+        if (!options.computeNormals) freeMemory(result.mesh.normals);
         result.statistics.errorBoundMm = made.errorBoundMm;
         result.statistics.wantedTriangles = made.wantedTriangles;
         result.statistics.adaptiveWork = made.work;

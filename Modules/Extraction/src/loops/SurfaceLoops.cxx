@@ -4,6 +4,8 @@
 #include <limits>
 #include <tuple>
 
+#include "adaptiso/Core/FreeMemory.h"
+
 namespace adaptiso::detail {
 namespace {
 
@@ -306,7 +308,7 @@ template <int N, class Id>
 SurfaceLoops<Id> makeSurfaceLoops(BoxSurface<N, Id> surface) {
     LoopBuilder<N, Id> builder(surface);
     builder.traceAll();
-    surface.chunks = {};
+    freeMemory(surface.chunks);
     builder.keepEdgesApart();
     return builder.finish();
 }

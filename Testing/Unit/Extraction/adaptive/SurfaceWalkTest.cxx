@@ -118,6 +118,28 @@ TEST(SurfaceWalk, CoversEveryTriangleOfTheSameSurface) {
 }
 
 // What is covered lies within the distance, at every point.
+// Found by label maps far from the origin: what rounding had bent was cut into more corners than
+// there is room for.
+TEST(SurfaceWalk, LeavesPiecesThatWouldGetTooManyCorners) {
+    const TriangleMesh mesh = planeMesh(1, 1);
+    const Walkable surface = walkable(mesh);
+    for (const bool rises : {true, false}) {  // along the diagonal between both triangles
+        for (int corners = 4; corners <= ConvexPiece::kMost; ++corners) {
+            ConvexPiece zigzag;
+            for (int i = 0; i < corners; ++i) {
+                const double x = 0.1 + 0.8 * i / corners, y = rises ? x : 1 - x;
+                zigzag.add({x, i % 2 == 0 ? y + 0.05 : y - 0.05, 0.5});
+            }
+            SurfaceWalk walk;
+            walk.cover(zigzag, surface, VertexId{0}, 1e-6, kManySteps);
+            EXPECT_FALSE(walk.left().empty());
+            for (const ConvexPiece& piece : walk.left()) {
+                EXPECT_LE(piece.count(), ConvexPiece::kMost);
+            }
+        }
+    }
+}
+
 TEST(SurfaceWalk, CoversNothingBeyondTheDistance) {
     const TriangleMesh mesh = hills();
     const Walkable surface = walkable(mesh);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FreeMemory.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/full/FlatTriangles.h"
 #include "adaptive/mesh/HalfEdges.h"
@@ -146,7 +147,7 @@ private:
             number[a] = number[b] = number[c] = 0;
         }
         isWhole_ = withArea.flat == 0 && parts_.duplicate == 0;
-        if (isWhole_) parts_.inputTriangle = {};
+        if (isWhole_) freeMemory(parts_.inputTriangle);
         if (parts_.triangles.empty()) {
             throw InvalidInput("simplify: the mesh has no triangle with an area");
         }

@@ -31,7 +31,9 @@ BrickProof::BrickProof(const SimplifiedSurface& surface, const SurfaceLookup& lo
       enoughMm_(enoughMm),
       limitMm_(limitMm),
       mesher_(sampler, lookup.bricks().grid()),
-      cellAt_(std::size_t{kCells} * kCells * kCells) {}
+      cellAt_(std::size_t{kCells} * kCells * kCells),
+      map_(lookup.walkable(), enoughMm * enoughMm),
+      cover_(lookup.walkable(), lookup.triangleCount()) {}
 
 BrickBound BrickProof::prove(std::int64_t brick) {
     brick_ = brick;
@@ -67,6 +69,10 @@ void BrickProof::proveOwnCells() {
     findStandIns();
     findUnmoved();
     unchanged_.clear();
+    map_.clear();
+    mapped_.assign(fine_.ownVertices, {{}, {}, 0, -1});
+    ways_.assign(3 * fine_.ownTriangles, {});
+    isMapped_.assign(fine_.ownTriangles, 0);
     const auto& cells = fine_.cells;
     for (std::size_t c = 0; c < cells.size(); ++c) {
         if (cells[c].firstTriangle >= fine_.ownTriangles) break;
@@ -75,6 +81,7 @@ void BrickProof::proveOwnCells() {
             c + 1 < cells.size() ? cells[c + 1].firstTriangle : fine_.triangles.size();
         for (std::size_t t = cells[c].firstTriangle; t < end; ++t) proveFine(t);
     }
+    findCovered();
     std::sort(unchanged_.begin(), unchanged_.end());
 }
 
@@ -96,6 +103,7 @@ void BrickProof::proveTriangles() {
         provePiece(corners, startAt_[i], norm(areaVector2(corners[0], corners[1], corners[2])));
     }
     forgetCells();
+    cover_.clear();
 }
 
 void BrickProof::findStandIns() {
@@ -159,9 +167,58 @@ void BrickProof::forgetCells() {
     }
 }
 
+/// \return false when the triangle could not be mapped within the bound so far
+bool BrickProof::mapFine(std::uint32_t t) {
+    const auto& v = fine_.triangles[t];
+    const std::array corners{mappedVertex(v[0]), mappedVertex(v[1]), mappedVertex(v[2])};
+    std::array<Map::Side, 3> sides;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        sides[i] = sideOf(3 * t + i, *corners[i], *corners[(i + 1) % 3]);
+    }
+    if (!map_.map(corners, sides, fromFine_.squaredBound())) return false;
+    isMapped_[t] = 1;
+    for (const Map::Part& part : map_.parts()) cover_.add(part);
+    return true;
+}
+
+const BrickProof::Map::Vertex* BrickProof::mappedVertex(std::uint32_t v) {
+    if (mapped_[v].squared < 0) {
+        mapped_[v] = map_.vertexAt(points_[v], static_cast<VertexId>(standIn_[v]));
+    }
+    return &mapped_[v];
+}
+
+/// The first of the half-edges along an edge.
+std::uint32_t BrickProof::edgeOf(std::uint32_t halfEdge) const {
+    return std::min(halfEdge, walkable_.twin(halfEdge));
+}
+
+/// \param a  where the half-edge begins \param b  where it ends
+BrickProof::Map::Side BrickProof::sideOf(std::uint32_t halfEdge, const Map::Vertex& a,
+                                         const Map::Vertex& b) {
+    if (a.standIn == b.standIn) return {nullptr, true};
+    const std::uint32_t edge = edgeOf(halfEdge);
+    const bool isForward = edge == halfEdge;
+    Map::Way& way = ways_[edge];
+    if (!way.isKnown()) way = isForward ? map_.wayAlong(a, b) : map_.wayAlong(b, a);
+    return {&way, isForward};
+}
+
+/// Tells the cover of the border between triangles that are mapped and others.
+void BrickProof::findCovered() {
+    const auto passes = [&](VertexId triangle) { cover_.addBorder(triangle); };
+    for (std::uint32_t h = 0; h < 3 * isMapped_.size(); ++h) {
+        const std::uint32_t beside = walkable_.twin(h) / 3;
+        if (isMapped_[h / 3] == 0 || (beside < isMapped_.size() && isMapped_[beside] != 0))
+            continue;
+        passes(mapped_[fine_.triangles[h / 3][h % 3]].standIn);
+        map_.forEachAlong(ways_[edgeOf(h)], passes);
+    }
+}
+
 void BrickProof::proveFine(std::size_t t) {
     const auto& v = fine_.triangles[t];
-    if (isUnchanged(v)) return;
+    if (isUnchanged(v) || mapFine(static_cast<std::uint32_t>(t))) return;
     const Corners piece{points_[v[0]], points_[v[1]], points_[v[2]]};
     cover(piece, lookup_.walkable(), static_cast<VertexId>(standIn_[v[0]]),
           fromFine_.squaredBound(), kStepsOfFine);
@@ -243,7 +300,8 @@ void BrickProof::provePiece(const Corners& piece, std::uint32_t start, double ar
     if (lookup_.isSmall(piece) || (brick != Bricks::kNone && lookup_.isWithinReach(brick, piece))) {
         if (brick != brick_) return;
         result_.provedArea += 0.5 * area2;
-        if (!std::binary_search(unchanged_.begin(), unchanged_.end(), triangle_)) {
+        if (!cover_.covers(static_cast<VertexId>(triangle_)) &&
+            !std::binary_search(unchanged_.begin(), unchanged_.end(), triangle_)) {
             proveWhole(piece, start, area2);
         }
         return;

@@ -13,6 +13,7 @@
 #include "adaptive/proof/DistanceProof.h"
 #include "adaptive/proof/PieceBound.h"
 #include "adaptive/proof/SurfaceLookup.h"
+#include "adaptive/proof/SurfaceMap.h"
 #include "adaptive/proof/SurfaceWalk.h"
 
 namespace adaptiso::detail {
@@ -65,6 +66,13 @@ private:
     void proveOwnCells();
     void proveTriangles();
     std::uint64_t blockOf(const FineSurface::Cell& cell) const;
+    using Map = SurfaceMap<VertexId>;
+
+    bool mapFine(std::uint32_t t);
+    const Map::Vertex* mappedVertex(std::uint32_t v);
+    Map::Side sideOf(std::uint32_t halfEdge, const Map::Vertex& a, const Map::Vertex& b);
+    std::uint32_t edgeOf(std::uint32_t halfEdge) const;
+    void findCovered();
     void proveFine(std::size_t t);
     void proveFinePart(const Corners& piece, const std::array<std::uint32_t, 3>& of);
     void collectWithin(double distanceMm, const Corners& piece);
@@ -112,6 +120,13 @@ private:
     std::vector<VertexId> around_;
     std::vector<std::uint64_t> within_;  ///< the triangles that collectWithin() found
     std::vector<std::pair<double, std::uint32_t>> ranked_;
+
+    // of the brick's own fine surface
+    Map map_;
+    MapCover<VertexId> cover_;
+    std::vector<Map::Vertex> mapped_;     ///< of each vertex; a distance of -1: not looked at
+    std::vector<Map::Way> ways_;          ///< of each edge, by its first half-edge
+    std::vector<std::uint8_t> isMapped_;  ///< of each triangle
 };
 
 }  // namespace adaptiso::detail

@@ -63,7 +63,7 @@ ErrorProof::ErrorProof(const LatticeSampler& sampler, const Bricks& bricks,
     : sampler_(sampler), bricks_(bricks), frame_(frame), limitMm_(limitMm) {}
 
 ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
-    const SurfaceLookup lookup(surface, bricks_, frame_);
+    SurfaceLookup lookup(surface, bricks_, frame_);
     // bounds are as tight as the largest sample's distance, or as a hundredth of a voxel
     enoughMm_ = std::min(
         limitMm_, std::max(largestSampleDistance(surface, lookup), 0.01 * frame_.narrowestMm()));
@@ -71,14 +71,15 @@ ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
 }
 
 ErrorBound ErrorProof::proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes) {
-    if (last_.empty()) return prove(surface);
-    const SurfaceLookup lookup(surface, bricks_, frame_);
+    if (last_.triangles.empty()) return prove(surface);
+    SurfaceLookup lookup(surface, bricks_, frame_);
     return prove(surface, lookup, scopeOf(lookup, changes));
 }
 
-ErrorBound ErrorProof::prove(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
+ErrorBound ErrorProof::prove(const SimplifiedSurface& surface, SurfaceLookup& lookup,
                              const ProofScope& scope) {
-    if (last_.empty()) provedMm_ = 0;
+    if (last_.triangles.empty()) provedMm_ = 0;
+    last_ = TriangleMesh();  // the scope has what is of use
     std::vector<BrickBound> results(bricks_.count());
     tbb::enumerable_thread_specific<BrickProof> proofs(
         [&] { return BrickProof(surface, lookup, sampler_, scope, enoughMm_, limitMm_); });
@@ -95,7 +96,6 @@ ErrorBound ErrorProof::prove(const SimplifiedSurface& surface, const SurfaceLook
     ErrorBound bound;
     bound.largestMm = std::max(provedMm_, farthestMm);
     bound.beyondLimit = beyond;
-    last_.clear();
     if (!(provedArea >= (1 - 1e-9) * areaOf(lookup, scope))) {
         includeFarPieces(surface, lookup, bound);
     } else if (limitMm_ < std::numeric_limits<double>::max()) {
@@ -136,10 +136,9 @@ void ErrorProof::includeFarPieces(const SimplifiedSurface& surface, const Surfac
     }
 }
 
-void ErrorProof::remember(const SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond) {
-    last_.resize(lookup.triangleCount());
-    for (std::uint64_t t = 0; t < last_.size(); ++t) last_[t] = lookup.cornersOf(t);
-    isWithin_.assign(last_.size(), 1);
+void ErrorProof::remember(SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond) {
+    last_ = lookup.takeMesh();
+    isWithin_.assign(last_.triangles.size(), 1);
     for (const PlaceBeyond& place : beyond) {
         if (!place.isOfFine) isWithin_[place.triangle] = 0;
     }
@@ -150,10 +149,11 @@ void ErrorProof::remember(const SurfaceLookup& lookup, std::vector<PlaceBeyond> 
 /// went and where it lay beyond the limit.
 ProofScope ErrorProof::scopeOf(const SurfaceLookup& lookup) const {
     ProofScope scope;
-    if (last_.empty()) return scope;
+    if (last_.triangles.empty()) return scope;
     std::vector<Corners> known;
-    for (std::size_t t = 0; t < last_.size(); ++t) {
-        if (isWithin_[t] != 0) known.push_back(last_[t]);
+    for (std::size_t t = 0; t < last_.triangles.size(); ++t) {
+        const auto& [a, b, c] = last_.triangles[t];
+        if (isWithin_[t] != 0) known.push_back({last_.points[a], last_.points[b], last_.points[c]});
     }
     tbb::parallel_sort(known.begin(), known.end(), isBefore);
     const auto count = static_cast<std::int64_t>(lookup.triangleCount());

@@ -25,13 +25,13 @@ public:
 private:
     ProofScope scopeOf(const SurfaceLookup& lookup) const;
     ProofScope scopeOf(const SurfaceLookup& lookup, const SurfaceChanges& changes) const;
-    ErrorBound prove(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
+    ErrorBound prove(const SimplifiedSurface& surface, SurfaceLookup& lookup,
                      const ProofScope& scope);
     void includeFarPieces(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
                           ErrorBound& bound) const;
     void markBeyond(ProofScope& scope) const;
     void markAround(const Corners& triangle, double distanceMm, ProofScope& scope) const;
-    void remember(const SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond);
+    void remember(SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond);
 
     const LatticeSampler& sampler_;
     const Bricks& bricks_;
@@ -40,7 +40,7 @@ private:
     double enoughMm_ = 0;  ///< no bound need be tighter
     double provedMm_ = 0;  ///< so far, of what lies within the limit
     // of the last surface; empty where not all of it was proved
-    std::vector<Corners> last_;           ///< its triangles
+    TriangleMesh last_;
     std::vector<std::uint8_t> isWithin_;  ///< the limit, each triangle
     std::vector<PlaceBeyond> beyond_;
 };

@@ -44,6 +44,8 @@ public:
         tree().forEachOverlap({box.low, box.high},
                               [&](std::int64_t t) { f(static_cast<std::uint64_t>(t)); });
     }
+    /// The triangles' mesh; nothing may be asked of the lookup then.
+    TriangleMesh takeMesh() { return std::move(mesh_); }
     const WalkableSurface<VertexId>& walkable() const { return walkable_; }
     std::span<const std::uint64_t> ofBrick(std::int64_t b) const { return ofBrick_[b]; }
     /// ofBrick() has all triangles within a distance of the brick.

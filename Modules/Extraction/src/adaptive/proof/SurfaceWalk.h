@@ -76,6 +76,9 @@ public:
         return h == kNone ? kNone : h / 3;
     }
 
+    /// The half-edge along the same edge in the other direction; kNone where the surface ends.
+    Index twin(Index halfEdge) const { return twin_[halfEdge]; }
+
     /// A triangle at a vertex; kNone for a vertex without one.
     Index triangleAt(Index vertex) const {
         const auto leaving = halfEdges_.from(vertex);
@@ -89,6 +92,13 @@ public:
     }
 
     bool isEmpty() const { return triangles_.empty(); }
+
+    const Vec3& point(Index vertex) const { return points_[vertex]; }
+    const std::array<Index, 3>& verticesOf(Index t) const { return triangles_[t]; }
+    bool hasVertex(Index t, Index vertex) const {
+        const auto& v = triangles_[t];
+        return v[0] == vertex || v[1] == vertex || v[2] == vertex;
+    }
 
     /// Calls f(triangle) for those that share a corner with one; for some of them several times.
     template <class F>
@@ -227,7 +237,7 @@ private:
                 todo_.push_back({piece, static_cast<std::uint64_t>(next)});
                 return;
             }
-            if (piece.count() + 2 > ConvexPiece::kMost) {
+            if (piece.count() + changesOfSide(piece.count()) > ConvexPiece::kMost) {
                 left_.push_back(piece);
                 return;
             }
@@ -236,6 +246,16 @@ private:
             isCut = true;
         }
         if (!isCut || !has(near, piece)) left_.push_back(piece);
+    }
+
+    /// Two where the piece is convex; more where rounding has bent it.
+    int changesOfSide(int count) const {
+        int changes = 0;
+        for (int i = 0; i < count; ++i) {
+            const int j = i + 1 == count ? 0 : i + 1;
+            changes += static_cast<int>((side_[i] > 0) != (side_[j] > 0));
+        }
+        return changes;
     }
 
     /// \param outer  gets the part on the positive sides \return the other part

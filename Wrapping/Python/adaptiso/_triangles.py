@@ -1,0 +1,67 @@
+"""What a mesh and the walls of a label map have in common: views of what C++ owns, and files."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import uuid
+from typing import Callable, Generic, Optional, TypeVar, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _adaptiso
+from ._adaptiso import Error
+from ._arguments import word
+
+Vertices = npt.NDArray[np.float64]
+Faces = npt.NDArray[np.int64]
+
+FRAMES = ("ras", "lps", "tkras", "voxel")
+
+Data = TypeVar("Data", bound=Union[_adaptiso.MeshData, _adaptiso.LabelData])
+
+
+class Triangles(Generic[Data]):
+    """Triangles that C++ owns."""
+
+    __slots__ = ("_data", "__weakref__")
+
+    _data: Data
+
+    @property
+    def vertices(self) -> Vertices:
+        """float64, shape (n, 3), mm: a read-only view of the object's own memory."""
+        return self._data.vertices
+
+    @property
+    def faces(self) -> Faces:
+        """int64, shape (m, 3), rows of `vertices`: a read-only view of the object's own memory."""
+        return self._data.faces
+
+    def _save(self, name: str, frame: Optional[str]) -> None:
+        """\\raises Error"""
+        if frame is not None:
+            word("frame", frame, FRAMES)
+        save_whole(name, lambda temporary: self._data.write(temporary, frame))
+
+
+def save_whole(path: str, write: Callable[[str], None]) -> None:
+    """Writes a file by `write` under a temporary name beside it, and renames it. \\raises Error"""
+    name = os.path.realpath(path)
+    if os.path.exists(name) and not os.path.isfile(name):
+        raise Error(f"{name}: is no regular file; give another name")
+    folder, file = os.path.split(name)
+    stem, extension = os.path.splitext(file)
+    temporary = os.path.join(folder, f".{stem[:80]}-{uuid.uuid4().hex}{extension}")
+    try:
+        write(temporary)
+        os.replace(temporary, name)
+    except BaseException as error:
+        with contextlib.suppress(OSError):
+            os.unlink(temporary)
+        if isinstance(error, Error):
+            raise Error(str(error).replace(temporary, name)) from None
+        if isinstance(error, OSError):
+            raise Error(f"{name}: can't be written: {error.strerror}") from None
+        raise
