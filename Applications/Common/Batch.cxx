@@ -100,8 +100,20 @@ private:
         }
     }
 
+    /// Another batch on this folder has made it since this one has looked.
+    bool isMadeMeanwhile(std::size_t n) {
+        constexpr bool kTrustsTimes = true;
+        std::vector<EarlierRecord> found = earlier_.look(n, kTrustsTimes);
+        if (!EarlierRuns::areDone(found)) return false;
+        records_[n] = together(found);
+        tellThoseNext();
+        return true;
+    }
+
+    /// \return none: there is nothing to do any more
     std::vector<std::string> start(std::size_t n) {
         const BatchItem& item = items_[n];
+        if (batch_.skipsExisting && isMadeMeanwhile(n)) return {};
         if (!item.folder.empty()) fs::create_directories(item.folder);
         earlier_.forgetInputs(n);  // they may have changed since they were looked at
         if (program_.removesFormer) removeFormerOutputs(n);

@@ -19,7 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDescription = "dataset_description.json";
 constexpr const char* kSurface = "surface";
-constexpr const char* kCodeUrl = "https://example.org/adaptiso";  // as the bill of materials has it
 
 /// By name, so that the order is the same on every file system.
 std::vector<fs::path> sorted(std::vector<fs::path> paths) {
@@ -191,7 +190,7 @@ Json bidsDescription(const fs::path& root, const fs::path& derivatives,
             {"BIDSVersion", "1.8.0"},
             {"DatasetType", "derivative"},
             {"GeneratedBy",
-             {{{"Name", program}, {"Version", programVersion()}, {"CodeURL", kCodeUrl}}}},
+             {{{"Name", program}, {"Version", programVersion()}, {"CodeURL", ADAPTISO_HOMEPAGE}}}},
             {"SourceDatasets", {sourceOf(root)}},
             {"DatasetLinks", {{"raw", link.generic_string()}}}};
 }

@@ -154,6 +154,10 @@ void runChildren(std::size_t count, int jobs,
     while (next < count || !children.empty()) {
         while (next < count && children.size() < static_cast<std::size_t>(jobs)) {
             if (waiting.empty()) waiting = arguments(next);
+            if (waiting.empty()) {  // not wanted any more
+                ++next;
+                continue;
+            }
             try {
                 children.push_back(start(path, next, waiting));
             } catch (const std::system_error&) {
@@ -164,6 +168,7 @@ void runChildren(std::size_t count, int jobs,
             waiting.clear();
             ++next;
         }
+        if (children.empty()) break;
         waitForAny(children);
         for (auto child = children.begin(); child != children.end();) {
             if (!hasEnded(*child)) {

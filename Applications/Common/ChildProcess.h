@@ -22,7 +22,7 @@ struct ChildResult {
 ///
 /// A child that crashes, or is killed for want of memory, takes nothing down with it. Children end
 /// (SIGTERM, so that they remove their temporaries) when this process does, however it ends.
-/// \param arguments  of the n-th run, without the program's name
+/// \param arguments  of the n-th run, without the program's name; none: it is not wanted any more
 /// \param program    to run; empty: this one
 /// \param finished   called with n and the result, in the order in which the runs end
 /// \pre   no thread of this process runs: it is forked

@@ -157,12 +157,14 @@ private:
         row.scan = item.name;
         row.product = product.name;
         row.part = partOf(planned.surface);
+        if (product.name == "surfaces") surfaces_.insert(planned.surface.filename().string());
         if (!found.record) {
             cohort_.records += found.isThere ? 1 : 0;
             return addAbsent(std::move(row), QualityState::Missing,
                              found.isThere ? found.why : "not run");
         }
         ++cohort_.records;
+        if (product.name == "surfaces") keepNames(found.record->run.outputs);
         Entry entry{summaryRow(planned.file, *found.record), {}};
         judge(*found.record, found.why, row);
         if (row.state == QualityState::Done || row.state == QualityState::Unsound) {
@@ -225,13 +227,45 @@ private:
             const bool isOfScan = row.program == "adaptiso-mesh" || row.program == "adaptiso-bem" ||
                                   // their images may be in a folder that is not named now
                                   (row.program == "adaptiso-labels" && options_.makesLabels);
-            if (!isOfScan || known.contains(row.name) || !told.insert(row.name).second) continue;
-            QualityRow left;
-            left.participant = "sub-" + entityOf(row.name, "sub");
-            left.scan = row.name;
-            addAbsent(std::move(left), QualityState::Leftover,
+            if (!isOfScan) continue;
+            if (known.contains(row.name)) {
+                if (row.program == "adaptiso-mesh") addDropped(row);
+                continue;
+            }
+            if (!told.insert(row.name).second) continue;
+            addAbsent(leftRow(row), QualityState::Leftover,
                       "is in the output, but its image is not in the dataset; remove " + row.name +
                           "_desc-* and " + row.name + "_mesh* there");
+        }
+    }
+
+    /// Of "iso=auto" the run says which isovalue is in the name.
+    void keepNames(const std::vector<std::string>& outputs) {
+        for (const std::string& output : outputs) {
+            surfaces_.insert(fs::path(output).filename().string());
+        }
+    }
+
+    static QualityRow leftRow(const SummaryRow& row) {
+        QualityRow left;
+        left.participant = "sub-" + entityOf(row.name, "sub");
+        left.scan = row.name;
+        return left;
+    }
+
+    /// Surfaces of an isovalue, or in a format, that was asked for earlier.
+    void addDropped(const SummaryRow& row) {
+        if (surfaces_.empty()) return;  // none are asked for
+        for (const fs::path& file : row.outputs) {
+            const std::string name = file.filename().string();
+            if (surfaces_.contains(name) || file.extension() == ".json") continue;
+            QualityRow left = leftRow(row);
+            left.product = "surfaces";
+            left.part = partOf(file);
+            addAbsent(std::move(left), QualityState::Leftover,
+                      name +
+                          " is of an isovalue or a format that is not asked for now; remove it, "
+                          "or ask for it too");
         }
     }
 
@@ -272,6 +306,7 @@ private:
     const BidsOptions& options_;
     const std::vector<fs::path>& subjects_;
     Checks checks_;
+    std::set<std::string> surfaces_;  ///< names of the files that are asked for
     std::vector<Entry> entries_;
     Cohort cohort_;
 };

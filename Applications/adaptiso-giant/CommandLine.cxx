@@ -6,6 +6,7 @@
 
 #include "Common/ImageOptions.h"
 #include "Common/OptionValues.h"
+#include "Common/ReportOutput.h"
 #include "adaptiso/Extraction/Tiles.h"
 
 namespace adaptiso {
@@ -58,7 +59,7 @@ void declarePlanned(CLI::App& app, GiantOptions& options) {
         ->type_name("MM")
         ->group(kPlanned);
     addCount(app, "--tile", options.side, TileCut::kStep, TileCut::kLargestSide,
-             "Cells a side of a tile, a multiple of 32 (default: 256)")
+             "Cells a side of a tile, a multiple of 32 (default: 384)")
         ->group(kPlanned);
     declareReadOptions(app, options.read, kPlanned);
 }
@@ -74,6 +75,7 @@ void declareResult(CLI::App& app, GiantOptions& options) {
                    "cross")
         ->type_name("OUT")
         ->group(kResult);
+    declareReportOptions(app, options.report, kResult);
     addChoice<CoordinateFrame>(app, "--coordinates", options.frame,
                                {{"ras", CoordinateFrame::Ras},
                                 {"lps", CoordinateFrame::Lps},
@@ -103,7 +105,8 @@ void checkCombinations(const CLI::App& app, const GiantOptions& options) {
         require(plans || app.get_option(name)->count() == 0,
                 std::string(name) + ": the plan says it; give it to plan or run");
     }
-    for (const char* name : {"--output", "--preview", "--coordinates"}) {
+    for (const char* name :
+         {"--output", "--preview", "--report", "--pictures", "--deface-report", "--coordinates"}) {
         require(joins || app.get_option(name)->count() == 0,
                 std::string(name) + ": is for the steps join and run");
     }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <ostream>
 
 #include "Common/AtomicFolder.h"
@@ -8,6 +9,7 @@
 #include "Common/Progress.h"
 #include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
+#include "GiantReport.h"
 #include "PieceJoiner.h"
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
@@ -196,22 +198,34 @@ int runJoinStep(const GiantOptions& options) {
     for (const fs::path& file : {options.output, options.preview}) {
         if (!file.empty()) checkOutput(file);
     }
+    checkReportOutputs(options.report, std::array{plan.input});
     if (isPieces) AtomicFolder::check(piecesFolder(options.output), OwnNames(isPieceName));
     ProgressLine progress(options.common.isQuiet);
     progress.show("join");
     const PieceJoiner joiner(options.work, plan);
     requireClosed(joiner.surface());
     const bool isEmpty = joiner.surface().triangles == 0;
-    if (isEmpty && !(options.output.empty() && options.preview.empty())) {
+    if (isEmpty &&
+        !(options.output.empty() && options.preview.empty() && !options.report.isWanted())) {
         throw InvalidInput("no surface: no sample reaches the isovalue " +
                            formatNumber(plan.isovalue) + ", so no file is written");
     }
     const MeshWriteOptions write = writeOptions(plan, options);
+    const Json report = reportOf(plan, joiner.surface(), options);
+    ReportResult page;
     std::vector<AtomicOutput> outputs;
-    if (!options.preview.empty()) {
-        outputs.emplace_back(options.preview).write([&](const fs::path& path) {
-            writeMesh(previewOf(joiner, plan), path, write);
-        });
+    if (!options.preview.empty() || options.report.isWanted()) {
+        TriangleMesh coarse = previewOf(joiner, plan);
+        if (!options.preview.empty()) {
+            outputs.emplace_back(options.preview).write([&](const fs::path& path) {
+                writeMesh(coarse, path, write);
+            });
+        }
+        if (options.report.isWanted()) {
+            page = writeReport(
+                [&] { return giantReport(plan, joiner.surface(), report, std::move(coarse)); },
+                kGiantProgram, options.report, outputs);
+        }
     }
     if (!options.output.empty() && !isPieces) {
         outputs.emplace_back(options.output).write([&](const fs::path& path) {
@@ -224,10 +238,9 @@ int runJoinStep(const GiantOptions& options) {
     }
     progress.clear();
     AtomicOutput::commit(outputs);
-    const Json report = reportOf(plan, joiner.surface(), options);
     deliverReport(options.common, plan.input, report.dump(2) + "\n",
                   [&](std::ostream& out) { printText(report, out); });
-    return kExitOk;
+    return tellReportFailure(kGiantProgram, "the surface is joined", page.failure, kExitOk);
 }
 
 }  // namespace adaptiso

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Common/CommonOptions.h"
+#include "Common/ReportOutput.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -27,9 +28,10 @@ struct GiantOptions {
     std::optional<double> isovalue;
     Method method = Method::Adaptive;
     std::optional<double> maxErrorMm;
-    std::int64_t side = 256;  ///< of a tile, cells
+    std::int64_t side = 384;  ///< of a tile, cells
 
     std::filesystem::path output, preview;  ///< empty: none
+    ReportOptions report;
     CoordinateFrame frame = CoordinateFrame::Ras;
     int workers = 1;
     CommonOptions common;

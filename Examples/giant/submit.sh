@@ -24,7 +24,7 @@ for stage in tile seam; do
     # shellcheck disable=SC2086 # several words
     job=$(sbatch --parsable --array="1-$(((count + per - 1) / per))" $after \
         --output="$work/logs/$stage-%a.log" ${ADAPTISO_SBATCH:-} "$here/pieces.sbatch" "$work" "$stage" "$per")
-    after="--dependency=afterok:$job"
+    after="--dependency=afterok:$job --kill-on-invalid-dep=yes"
     echo "$stage $job"
 done
 # shellcheck disable=SC2086

@@ -296,6 +296,28 @@ class MadeAgain(BidsTest):
                          {"sub-03": "its last run did not end"})
         self.assertEqual(len([name for name in self.tree() if name.startswith("sub-03")]), 2)
 
+    def test_what_another_batch_has_made_meanwhile_is_not_made_again(self):
+        self.surface.unlink()
+        second = self.path("out/sub-02/anat/sub-02_desc-iso100p5_mesh.vtp")
+        second.unlink()
+        # the batch is held while it works on the first participant, until another has made the second
+        first = self.path("study/sub-01/anat/sub-01_T1w.nii")
+        content = first.read_bytes()
+        write_nifti(first, ball(160, 60))
+        slow = subprocess.Popen([BIDS, "study", "out", "participant", "--participant-label", "01", "02",
+                                 *SURFACES, "--json", "-"], cwd=self.folder, stdout=subprocess.PIPE, text=True)
+        for _ in range(1000):
+            if self.path("out/sub-01/anat/sub-01_desc-iso100p5_mesh.vtp.adaptiso-mesh.json").exists():
+                break
+            time.sleep(0.01)
+        os.kill(slow.pid, signal.SIGSTOP)
+        self.assertNotEqual(self.told("--participant-label", "02"), {"sub-02": False})
+        os.kill(slow.pid, signal.SIGCONT)
+        lines = [json.loads(line) for line in slow.communicate(timeout=300)[0].splitlines()]
+        self.assertEqual({line["name"]: line["earlierRun"] for line in lines},
+                         {"sub-01": False, "sub-02": True})
+        first.write_bytes(content)
+
     def test_two_at_once_end_with_the_same(self):
         alone = self.tree()
         shutil.rmtree(self.path("out"))
@@ -310,6 +332,20 @@ class MadeAgain(BidsTest):
 
 
 class Group(BidsTest):
+    def test_tells_of_surfaces_that_are_not_asked_for_now(self):
+        self.bids(OK, "participant", what=("--surfaces", "iso=100.5,iso=120", "--no-pictures"))
+        self.bids(OK, "group", what=("--surfaces", "iso=100.5,iso=120", "--no-pictures"))
+        self.bids(OK, "participant")
+        self.bids(CHECK_FAILED, "group")
+        left = [row for row in self.table() if row["state"] == "leftover"]
+        self.assertEqual([(row["participant_id"], row["part"]) for row in left],
+                         [(f"sub-{number:02}", "iso120") for number in range(1, 8)])
+        auto = ("--surfaces", "iso=auto", "--no-pictures")  # the file's name says what it came to
+        shutil.rmtree(self.path("out"))
+        self.bids(OK, "participant", what=auto)
+        self.bids(OK, "group", what=auto)
+        self.assertRegex(left[0]["reason"], r"sub-01_desc-iso120_mesh.vtp is of an isovalue .* not asked for now")
+
     def test_is_whole(self):
         self.bids(OK, "participant", "--check", "--jobs", 2)
         done = self.bids(OK, "group", "--check")

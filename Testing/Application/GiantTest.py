@@ -128,7 +128,12 @@ class MarchingCubes(GiantTest):
 
     def test_pieces_for_paraview_and_a_preview(self):
         self.giant("run", "work", "--input", self.zarr, "--iso", ISO, "--tile", 32, "--method",
-                   "mc", "-o", "balls.pvtp", "--preview", "coarse.vtp", "--no-warnings")
+                   "mc", "-o", "balls.pvtp", "--preview", "coarse.vtp", "--report", "balls.html",
+                   "--no-warnings")
+        page = self.path("balls.html").read_text()
+        for words in ("7 components, closed", "of them cavities", "coarse copy"):
+            self.assertIn(words, page)
+        self.assertNotIn(str(self.folder), page)
         text = self.path("balls.pvtp").read_text()
         pieces = sorted(self.path("balls").iterdir())
         self.assertEqual(text.count("<Piece "), len(pieces))

@@ -29,8 +29,10 @@ void forEachTile(const Index3& counts, const std::function<void(const Index3&)>&
     }
 }
 
-/// A window of the volume that holds no more than what the tile needs.
-TriangleMesh tileOf(const Volume& volume, double isovalue, const TileCut& cut, const Index3& tile) {
+/// Calls f(window, index of its first sample) with a window of the volume that holds no more than
+/// what the tile needs.
+template <class F>
+auto inWindow(const Volume& volume, const TileCut& cut, const Index3& tile, const F& f) {
     const IndexBox box = cut.samplesOf(tile);
     return dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
         std::vector<T> samples;
@@ -43,8 +45,21 @@ TriangleMesh tileOf(const Volume& volume, double isovalue, const TileCut& cut, c
         }
         ImageGeometry place;
         place.size = box.size();
-        const Volume window = Volume::fromSamples(std::move(samples), place);
-        return extractTile(window, box.first, view.geometry, isovalue, cut, tile);
+        return f(Volume::fromSamples(std::move(samples), place), box.first);
+    });
+}
+
+TriangleMesh tileOf(const Volume& volume, double isovalue, const TileCut& cut, const Index3& tile) {
+    return inWindow(volume, cut, tile, [&](const Volume& window, const Index3& first) {
+        return extractTile(window, first, volume.view().geometry(), isovalue, cut, tile);
+    });
+}
+
+SimplifiedPart simplifiedTileOf(const Volume& volume, double isovalue, const TileCut& cut,
+                                const Index3& tile, double maxErrorMm) {
+    return inWindow(volume, cut, tile, [&](const Volume& window, const Index3& first) {
+        return extractSimplifiedTile(window, first, volume.view().geometry(), isovalue, cut, tile,
+                                     maxErrorMm);
     });
 }
 
@@ -93,6 +108,17 @@ TriangleMesh wholeOfTiles(const Volume& volume, double isovalue, std::int64_t si
     return physicalMesh(whole.mesh, volume.view().geometry());
 }
 
+/// The edges of the open border, by their ends' places and normals.
+auto bordersOf(const TriangleMesh& mesh) {
+    std::set<std::array<Place, 4>> borders;
+    for (const auto& [a, b] : borderOf(mesh).edges) {
+        const Normal &m = mesh.normals[a], &n = mesh.normals[b];
+        borders.insert({placeOf(mesh.points[a]), placeOf(mesh.points[b]), Place{m.x, m.y, m.z},
+                        Place{n.x, n.y, n.z}});
+    }
+    return borders;
+}
+
 /// Both passes, as adaptiso-giant makes them.
 TriangleMesh adaptiveOfTiles(const Volume& volume, double isovalue, std::int64_t side,
                              double maxErrorMm) {
@@ -101,9 +127,8 @@ TriangleMesh adaptiveOfTiles(const Volume& volume, double isovalue, std::int64_t
 
     Union first;
     forEachTile(cut.tiles(), [&](const Index3& tile) {
-        const TriangleMesh fine = tileOf(volume, isovalue, cut, tile);
-        const SimplifiedPart part =
-            simplifyInBox(fine, {}, geometry, cut.boxOf(tile), maxErrorMm / 2);
+        const SimplifiedPart part = simplifiedTileOf(volume, isovalue, cut, tile, maxErrorMm / 2);
+        EXPECT_EQ(bordersOf(part.mesh), bordersOf(tileOf(volume, isovalue, cut, tile)));
         EXPECT_FALSE(part.isUnchanged);
         EXPECT_LE(part.errorBoundMm, maxErrorMm / 2);
         first.add(part.mesh);
@@ -233,6 +258,50 @@ TEST(Tiles, AFlatCapAtTheVolumesBorderIsSimplified) {
     const TriangleMesh tiles = adaptiveOfTiles(ball.volume, ball.isovalue, 64, 0.15);
     expectSound(tiles);
     EXPECT_LT(15 * tiles.triangles.size(), one.triangles.size());
+}
+
+TEST(Tiles, FarFromTheFirstVoxelAreWhatTheyAreNearIt) {
+    // single precision and numbers of blocks are a tile's own
+    const ImageGeometry near = obliqueGeometry({64, 48, 48}, {1, 1, 1});
+    const AnalyticVolume ball = sampled<float>(sphere({}, 20), near);
+    ImageGeometry far = near;
+    far.size = {20'064, 48, 48};
+    const TileCut nearCut(near.size, 32), farCut(far.size, 32);
+    const Index3 tile{1, 0, 0}, farTile{601, 0, 0};
+    const SimplifiedPart part = simplifiedTileOf(ball.volume, ball.isovalue, nearCut, tile, 0.1);
+    const SimplifiedPart moved =
+        inWindow(ball.volume, nearCut, tile, [&](const Volume& window, const Index3& first) {
+            return extractSimplifiedTile(window, {first[0] + 600 * 32, first[1], first[2]}, far,
+                                         ball.isovalue, farCut, farTile, 0.1);
+        });
+    ASSERT_GT(part.mesh.triangles.size(), 100u);
+    EXPECT_EQ(moved.mesh.triangles, part.mesh.triangles);
+}
+
+TEST(Tiles, WhatIsFarFromWhatMayChangeStaysToTheBit) {
+    const ImageGeometry geometry = obliqueGeometry({130, 60, 60}, {1, 1, 1});
+    const AnalyticVolume ball = sampled<float>(sphere({2, 1, 3}, 55), geometry);
+    const TileCut cut(geometry.size, 64);
+    Union tiles;
+    forEachTile(cut.tiles(), [&](const Index3& tile) {
+        tiles.add(simplifiedTileOf(ball.volume, ball.isovalue, cut, tile, 0.1).mesh);
+    });
+    const SeamPart part = seamPartOf(tiles.mesh, cut, {0, 0, 0});
+    const SimplifiedPart made =
+        simplifyInBox(part.mesh, part.isFixed, geometry, cut.seamBox({0, 0, 0}), 0.05);
+    EXPECT_FALSE(made.isUnchanged);
+    EXPECT_LT(made.mesh.triangles.size(), part.mesh.triangles.size());
+    TriangleMesh fixed = part.mesh, kept = made.mesh;
+    fixed.triangles.clear();
+    kept.triangles.clear();
+    for (std::size_t t = 0; t < part.isFixed.size(); ++t) {
+        if (part.isFixed[t] != 0) fixed.triangles.push_back(part.mesh.triangles[t]);
+    }
+    for (std::size_t t = 0; t < made.isKept.size(); ++t) {
+        if (made.isKept[t] != 0) kept.triangles.push_back(made.mesh.triangles[t]);
+    }
+    EXPECT_EQ(namesOf(kept), namesOf(fixed));
+    EXPECT_EQ(borderOf(made.mesh).edges.size(), borderOf(part.mesh).edges.size());
 }
 
 TEST(Tiles, SimplifiedNoiseIsSound) {

@@ -48,7 +48,7 @@ class Plan(NamedTuple):
 
 
 def plan(work: Any, image: Any, level: float, *, method: str = "adaptive",
-         max_error: Optional[float] = None, side: int = 256, series: Optional[str] = None,
+         max_error: Optional[float] = None, side: int = 384, series: Optional[str] = None,
          volume_index: Optional[int] = None, zarr_level: Optional[int] = None,
          channel: Optional[int] = None, time: Optional[int] = None,
          all_chunks: bool = False) -> Plan:
@@ -191,7 +191,7 @@ def join(work: Any, output: Any = None, *, preview: Any = None, frame: str = "ra
 
 def run(work: Any, image: Any, level: float, output: Any = None, *, workers: int = 1,
         preview: Any = None, frame: str = "ras", threads: int = 0, method: str = "adaptive",
-        max_error: Optional[float] = None, side: int = 256, series: Optional[str] = None,
+        max_error: Optional[float] = None, side: int = 384, series: Optional[str] = None,
         volume_index: Optional[int] = None, zarr_level: Optional[int] = None,
         channel: Optional[int] = None, time: Optional[int] = None,
         all_chunks: bool = False) -> Dict[str, Any]:

@@ -25,6 +25,32 @@ BlockGrid tileGrid(const Index3& imageSize) {
     return BlockGrid::make(imageSize, kTileBlock, Border::Closed);
 }
 
+bool isCrossed(const LatticeSampler& sampler, const BlockGrid& grid, std::uint32_t block) {
+    constexpr int kSamples = kTileBlock + 1;
+    constexpr std::uint32_t kAll = (1u << kSamples) - 1;
+    std::array<std::uint32_t, std::size_t{kSamples} * kSamples> rows;
+    sampler.insideRows(grid.firstSample(block), kSamples, rows.data());
+    std::uint32_t all = kAll, any = 0;
+    for (const std::uint32_t row : rows) {
+        all &= row;
+        any |= row;
+    }
+    return any != 0 && all != kAll;
+}
+
+void requireTile(const VolumeView& window, const Index3& first, const ImageGeometry& geometry,
+                 const TileCut& cut, const Index3& tile) {
+    if (geometry.size != cut.imageSize()) {
+        throw InvalidInput("extractTile: the cut is of another volume");
+    }
+    const IndexBox needed = cut.samplesOf(tile);
+    for (int a = 0; a < 3; ++a) {
+        if (first[a] > needed.first[a] || first[a] + window.geometry().size[a] < needed.end[a]) {
+            throw InvalidInput("extractTile: the window does not hold the tile's samples");
+        }
+    }
+}
+
 }  // namespace detail
 
 namespace {
@@ -94,22 +120,9 @@ private:
             }
             const auto block = static_cast<std::uint32_t>(
                 at[0] + grid_.blocks[0] * (at[1] + grid_.blocks[1] * at[2]));
-            if (isCrossed(block)) brick.blocks.push_back(block);
+            if (isCrossed(sampler_, grid_, block)) brick.blocks.push_back(block);
         }
         std::sort(brick.blocks.begin(), brick.blocks.end());
-    }
-
-    bool isCrossed(std::uint32_t block) const {
-        constexpr int kSamples = kTileBlock + 1;
-        constexpr std::uint32_t kAll = (1u << kSamples) - 1;
-        std::array<std::uint32_t, std::size_t{kSamples} * kSamples> rows;
-        sampler_.insideRows(grid_.firstSample(block), kSamples, rows.data());
-        std::uint32_t all = kAll, any = 0;
-        for (const std::uint32_t row : rows) {
-            all &= row;
-            any |= row;
-        }
-        return any != 0 && all != kAll;
     }
 
     BrickPiece pieceOf(const FineSurface& fine) const {
@@ -182,15 +195,7 @@ void completeNormalsOf(TriangleMesh& mesh, const ImageGeometry& geometry) {
 TriangleMesh extractTile(const VolumeView& window, const Index3& first,
                          const ImageGeometry& geometry, double isovalue, const TileCut& cut,
                          const Index3& tile) {
-    if (geometry.size != cut.imageSize()) {
-        throw InvalidInput("extractTile: the cut is of another volume");
-    }
-    const IndexBox needed = cut.samplesOf(tile);
-    for (int a = 0; a < 3; ++a) {
-        if (first[a] > needed.first[a] || first[a] + window.geometry().size[a] < needed.end[a]) {
-            throw InvalidInput("extractTile: the window does not hold the tile's samples");
-        }
-    }
+    requireTile(window, first, geometry, cut, tile);
     const auto sampler = LatticeSampler::makeOfWindow(window, first, geometry, isovalue);
     TriangleMesh mesh = TileMesher(*sampler, tileGrid(geometry.size), cut.cellsOf(tile)).run();
     completeNormalsOf(mesh, geometry);

@@ -1,9 +1,15 @@
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "adaptiso/Extraction/Tiles.h"
 
 namespace adaptiso {
 namespace {
+
+/// What comes this near a wall between tiles may change, in cells: there the first pass has left
+/// full resolution, a cell deep. All else is as it can be.
+constexpr double kReach = 2;
 
 struct Extent {
     Vec3 low, high;
@@ -42,21 +48,37 @@ TriangleMesh withoutUnusedPoints(const TriangleMesh& mesh) {
     return used;
 }
 
+namespace {
+
+/// The walls between tiles in a seam box: one along each axis, or none.
+std::array<std::optional<double>, 3> wallsIn(const TileCut& cut, const Index3& seam) {
+    std::array<std::optional<double>, 3> walls;
+    for (int a = 0; a < 3; ++a) {
+        if (seam[a] + 1 < cut.tiles()[a]) walls[a] = cut.boxOf(seam).high[a];
+    }
+    return walls;
+}
+
+}  // namespace
+
 SeamPart seamPartOf(const TriangleMesh& tiles, const TileCut& cut, const Index3& seam) {
     const ContinuousBox box = cut.seamBox(seam);
+    const std::array<std::optional<double>, 3> walls = wallsIn(cut, seam);
     SeamPart part;
     part.mesh.points = tiles.points;
     part.mesh.normals = tiles.normals;
     for (const Triangle& t : tiles.triangles) {
         const Extent extent = extentOf(tiles, t);
-        bool isIn = true, touches = true;
+        bool isIn = true, touches = true, isNear = false;
         for (int a = 0; a < 3; ++a) {
             isIn = isIn && extent.low[a] > box.low[a] && extent.high[a] < box.high[a];
+            isNear = isNear || (walls[a] && extent.low[a] < *walls[a] + kReach &&
+                                extent.high[a] > *walls[a] - kReach);
             touches = touches && extent.high[a] >= box.low[a] && extent.low[a] <= box.high[a];
         }
         if (!touches) continue;
         part.mesh.triangles.push_back(t);
-        part.isFixed.push_back(static_cast<std::uint8_t>(!isIn));
+        part.isFixed.push_back(static_cast<std::uint8_t>(!(isIn && isNear)));
     }
     part.mesh = withoutUnusedPoints(part.mesh);
     return part;

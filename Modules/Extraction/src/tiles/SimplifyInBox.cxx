@@ -13,6 +13,7 @@
 #include "adaptive/full/NearestNormals.h"
 #include "adaptive/mesh/HalfEdges.h"
 #include "adaptive/mesh/MetricFrame.h"
+#include "tiles/TileGrid.h"
 
 namespace adaptiso {
 namespace {
@@ -38,8 +39,9 @@ Vec3 slantMm(const ImageGeometry& geometry) {
     return slant;
 }
 
-/// A box in the metric frame that lies in a box of the lattice.
-CornerBox boxWithin(const ContinuousBox& box, const ImageGeometry& geometry) {
+}  // namespace
+
+CornerBox detail::boxWithin(const ContinuousBox& box, const ImageGeometry& geometry) {
     const MetricFrame frame(geometry);
     const Vec3 slant = slantMm(geometry);
     CornerBox within;
@@ -52,6 +54,8 @@ CornerBox boxWithin(const ContinuousBox& box, const ImageGeometry& geometry) {
     }
     return within;
 }
+
+namespace {
 
 struct HashOfPoint {
     std::size_t operator()(const Vec3& p) const {
@@ -71,6 +75,107 @@ Triangle rotated(const Triangle& t) {
     const auto least = std::min_element(t.begin(), t.end()) - t.begin();
     return {t[least], t[(least + 1) % 3], t[(least + 2) % 3]};
 }
+
+/// The triangles that a run may change, and those that it could come near: cubes of the lattice
+/// tell.
+class NearPart {
+public:
+    /// \param reach  how far what is new may lie from what was there, cells
+    NearPart(const TriangleMesh& whole, const std::vector<std::uint8_t>& isWholeKept, double reach)
+        : whole_(whole), isNear_(isWholeKept.size()) {
+        spanCubes(reach);
+        std::vector<bool> isMarked(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]));
+        const auto extentOf = [&](std::size_t t) {
+            const auto& [a, b, c] = whole.triangles[t];
+            return boxOf({whole.points[a], whole.points[b], whole.points[c]});
+        };
+        for (std::size_t t = 0; t < isWholeKept.size(); ++t) {
+            if (isWholeKept[t] != 0) continue;
+            CornerBox extent = extentOf(t);
+            extent.widen(reach);
+            anyCube(extent, [&](std::size_t cube) {
+                isMarked[cube] = true;
+                return false;
+            });
+        }
+        mesh.points = whole.points;
+        mesh.normals = whole.normals;
+        for (std::size_t t = 0; t < isWholeKept.size(); ++t) {
+            const bool isNear =
+                anyCube(extentOf(t), [&](std::size_t cube) { return isMarked[cube]; });
+            isNear_[t] = static_cast<std::uint8_t>(isNear);
+            if (!isNear) continue;
+            mesh.triangles.push_back(whole.triangles[t]);
+            isKept.push_back(isWholeKept[t]);
+        }
+        mesh = withoutUnusedPoints(mesh);
+    }
+
+    /// What was left out beside it again, joined by the bits of its points.
+    SimplifiedPart withRest(const SimplifiedPart& part) const {
+        SimplifiedPart all;
+        all.errorBoundMm = part.errorBoundMm;
+        std::unordered_map<Vec3, VertexId, HashOfPoint> known;
+        const auto numberIn = [&](const TriangleMesh& from, VertexId v) {
+            const auto [at, isNew] = known.try_emplace(from.points[v], std::ssize(all.mesh.points));
+            if (isNew) {
+                all.mesh.points.push_back(from.points[v]);
+                if (!from.normals.empty()) all.mesh.normals.push_back(from.normals[v]);
+            }
+            return at->second;
+        };
+        const auto add = [&](const TriangleMesh& from, const Triangle& t, std::uint8_t wasKept) {
+            all.mesh.triangles.push_back(
+                {numberIn(from, t[0]), numberIn(from, t[1]), numberIn(from, t[2])});
+            all.isKept.push_back(wasKept);
+        };
+        for (std::size_t t = 0; t < part.mesh.triangles.size(); ++t) {
+            add(part.mesh, part.mesh.triangles[t], part.isKept[t]);
+        }
+        for (std::size_t t = 0; t < isNear_.size(); ++t) {
+            if (isNear_[t] == 0) add(whole_, whole_.triangles[t], 1);
+        }
+        return all;
+    }
+
+    TriangleMesh mesh;
+    std::vector<std::uint8_t> isKept;
+
+private:
+    void spanCubes(double reach) {
+        CornerBox box{whole_.points[0], whole_.points[0]};
+        for (const Vec3& p : whole_.points) box.add(p);
+        box.widen(reach);
+        low_ = box.low;
+        constexpr double kLeast = 2, kMostAlong = 256;  // cells, cubes
+        const Vec3 size = box.high - box.low;
+        side_ = std::max(kLeast, std::max({size.x, size.y, size.z}) / kMostAlong);
+        for (int a = 0; a < 3; ++a) count_[a] = cubeAt(box.high, a) + 1;
+    }
+    std::int64_t cubeAt(const Vec3& index, int axis) const {
+        return static_cast<std::int64_t>((index[axis] - low_[axis]) / side_);
+    }
+    /// \return f(cube) is true of one of the cubes that an extent lies in
+    template <class F>
+    bool anyCube(const CornerBox& extent, const F& f) const {
+        for (std::int64_t z = cubeAt(extent.low, 2); z <= cubeAt(extent.high, 2); ++z) {
+            for (std::int64_t y = cubeAt(extent.low, 1); y <= cubeAt(extent.high, 1); ++y) {
+                for (std::int64_t x = cubeAt(extent.low, 0); x <= cubeAt(extent.high, 0); ++x) {
+                    if (f(static_cast<std::size_t>(x + count_[0] * (y + count_[1] * z)))) {
+                        return true;
+                    }
+                }
+            }
+        }
+        return false;
+    }
+
+    const TriangleMesh& whole_;
+    std::vector<std::uint8_t> isNear_;
+    Vec3 low_;
+    double side_ = 0;
+    Index3 count_{};
+};
 
 class PartSimplifier {
 public:
@@ -219,7 +324,14 @@ SimplifiedPart simplifyInBox(const TriangleMesh& mesh, std::vector<std::uint8_t>
         throw InvalidInput("simplifyInBox: the volume's axes are not at right angles");
     }
     if (mesh.triangles.empty()) return {};
-    return PartSimplifier(mesh, std::move(isKept), geometry, box).run(maxErrorMm);
+    if (isKept.empty()) return PartSimplifier(mesh, {}, geometry, box).run(maxErrorMm);
+    // what is new lies within the bound of what was there: it can't cross what is farther away
+    constexpr double kBeyond = 0.5;
+    const NearPart near(mesh, isKept, maxErrorMm / narrowestSpacingMm(geometry) + kBeyond);
+    const SimplifiedPart part =
+        PartSimplifier(near.mesh, near.isKept, geometry, box).run(maxErrorMm);
+    if (part.isUnchanged) return {mesh, std::move(isKept), 0, true};
+    return near.withRest(part);
 }
 
 bool canSimplifyInBoxes(const ImageGeometry& geometry) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include "Certificate.h"
+#include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/SpanSpace/BlockGrid.h"
+#include "lattice/LatticeSampler.h"
 
 namespace adaptiso::detail {
 
@@ -11,5 +14,17 @@ inline constexpr int kTileBlock = 16;
 /// The blocks of a whole volume with a closed border. Walls between tiles are walls between
 /// blocks, and between bricks. \throws InvalidInput  there are too many
 BlockGrid tileGrid(const Index3& imageSize);
+
+/// The surface passes through a block of kTileBlock cells.
+bool isCrossed(const LatticeSampler& sampler, const BlockGrid& grid, std::uint32_t block);
+
+/// \throws InvalidInput  the window does not hold the tile's samples, or the cut is of another
+/// volume
+void requireTile(const VolumeView& window, const Index3& first, const ImageGeometry& geometry,
+                 const TileCut& cut, const Index3& tile);
+
+/// Where new vertices lie of what is simplified in a box of the lattice: in the metric frame, a
+/// hair inside.
+CornerBox boxWithin(const ContinuousBox& box, const ImageGeometry& geometry);
 
 }  // namespace adaptiso::detail

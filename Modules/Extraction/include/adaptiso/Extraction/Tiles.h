@@ -91,10 +91,18 @@ BorderEdges borderOf(const TriangleMesh& mesh);
 /// A mesh after simplifyInBox().
 struct SimplifiedPart {
     TriangleMesh mesh;
-    std::vector<std::uint8_t> isKept;  ///< of each triangle: it was to be kept
+    std::vector<std::uint8_t> isKept;  ///< of each triangle: it was to be kept (simplifyInBox)
     double errorBoundMm = 0;           ///< proved, both ways, as of simplify()
     bool isUnchanged = false;          ///< nothing could be proved, so that the mesh is as it was
 };
+
+/// extractTile(), simplified as Method::Adaptive simplifies a volume's surface: the samples are
+/// known, so it costs less than simplifyInBox() of the same. Within a cell of the tile's walls all
+/// stays at full resolution, and vertices on them keep the bits that extractTile() gives them.
+/// \throws InvalidInput  axes are not at right angles (canSimplifyInBoxes)
+SimplifiedPart extractSimplifiedTile(const VolumeView& window, const Index3& first,
+                                     const ImageGeometry& geometry, double isovalue,
+                                     const TileCut& cut, const Index3& tile, double maxErrorMm);
 
 /// Simplifies a part of a surface as simplify() does, without moving what its neighbours know.
 ///
@@ -113,7 +121,8 @@ SimplifiedPart simplifyInBox(const TriangleMesh& mesh, std::vector<std::uint8_t>
 /// continuous indices all that reach into the box.
 struct SeamPart {
     TriangleMesh mesh;
-    std::vector<std::uint8_t> isFixed;  ///< of each triangle: it does not lie in the box as a whole
+    /// Of each triangle: it does not lie in the box as a whole, or comes near no wall of tiles.
+    std::vector<std::uint8_t> isFixed;
 };
 
 /// \param tiles  the surfaces of all tiles that the seam box lies in, at least, after

@@ -64,9 +64,15 @@ VolumeSurface::VolumeSurface(const ImageGeometry& geometry, const LatticeSampler
                              const Bricks& bricks)
     : FullSurface(MetricFrame(geometry)), geometry_(geometry), sampler_(sampler), bricks_(bricks) {}
 
+void VolumeSurface::stayIn(const CornerBox& moving, const CornerBox& box) {
+    moving_ = moving;
+    keepIn(box);
+}
+
 SimplifiedSurface VolumeSurface::firstRound(const TightPlaces& tight, const PatchLimits& limits,
                                             CollapseCosts* costs) const {
-    SimplifiedSurface surface = simplifyBricks(sampler_, bricks_, frame(), tight, limits, costs);
+    SimplifiedSurface surface = simplifyBricks(sampler_, bricks_, frame(), tight, limits, costs,
+                                               moving_ ? &*moving_ : nullptr);
     if (bricks_.grid().border == Border::Open) {
         markBorders(openHalfEdges(surface), surface);
         keepCorners(surface);

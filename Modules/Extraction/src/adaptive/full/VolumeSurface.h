@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptive/bricks/Bricks.h"
 #include "adaptive/full/FullSurface.h"
@@ -12,6 +14,11 @@ class VolumeSurface final : public FullSurface {
 public:
     VolumeSurface(const ImageGeometry& geometry, const LatticeSampler& sampler,
                   const Bricks& bricks);
+
+    /// Of a part of a surface whose open border is known to others: what lies outside `moving`
+    /// stays at full resolution, and new vertices stay in `box`.
+    /// \param moving  continuous sample indices \param box  metric frame
+    void stayIn(const CornerBox& moving, const CornerBox& box);
 
     SimplifiedSurface firstRound(const TightPlaces& tight, const PatchLimits& limits,
                                  CollapseCosts* costs) const override;
@@ -27,6 +34,7 @@ private:
     const ImageGeometry& geometry_;
     const LatticeSampler& sampler_;
     const Bricks& bricks_;
+    std::optional<CornerBox> moving_;
 };
 
 }  // namespace adaptiso::detail

@@ -176,7 +176,8 @@ Patch patchOf(const FineSurface& fine, const MetricFrame& frame, BrickSurface& b
 /// \param lowIndex  sample index of the brick's first lattice position
 BrickSurface simplifyBrick(const FineSurface& fine, const Index3& lowIndex,
                            const MetricFrame& frame, const TightPlaces& tight,
-                           const PatchLimits& limits, std::vector<double>* costs) {
+                           const PatchLimits& limits, const CornerBox* moving,
+                           std::vector<double>* costs) {
     BrickSurface result;
     std::vector<std::uint8_t> isFlat;
     Patch patch = patchOf(fine, frame, result, isFlat);
@@ -185,7 +186,9 @@ BrickSurface simplifyBrick(const FineSurface& fine, const Index3& lowIndex,
     result.tableTriangles = result.fineTriangles - 2 * static_cast<std::int64_t>(fine.ownMiddles);
     tight.apply(frame, patch.samples);
     for (std::size_t v = 0; v < patch.points.size(); ++v) {
-        if (tight.isFrozen(fine.vertices[v].index)) patch.states[v] = Patch::State::Final;
+        const Vec3& index = fine.vertices[v].index;
+        const bool isOutside = moving != nullptr && !moving->overlaps({index, index});
+        if (isOutside || tight.isFrozen(index)) patch.states[v] = Patch::State::Final;
     }
     if (limits.leavesNoise && isNoise(fine)) {
         patch.states.assign(patch.points.size(), Patch::State::Final);
@@ -295,7 +298,8 @@ private:
 
 SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& bricks,
                                  const MetricFrame& frame, const TightPlaces& tight,
-                                 const PatchLimits& limits, CollapseCosts* costs) {
+                                 const PatchLimits& limits, CollapseCosts* costs,
+                                 const CornerBox* moving) {
     struct Tools {
         BrickMesher mesher;
         FineSurface fine;
@@ -309,7 +313,7 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
         mine.mesher.mesh(bricks[b], mine.fine);
         Index3 lowIndex = bricks[b].low;
         for (std::int64_t& along : lowIndex) along -= bricks.grid().offset;
-        return simplifyBrick(mine.fine, lowIndex, frame, tight, limits,
+        return simplifyBrick(mine.fine, lowIndex, frame, tight, limits, moving,
                              costs != nullptr ? &(*costs)[b] : nullptr);
     };
     Joiner joiner(frame, tight);

@@ -10,9 +10,11 @@ namespace adaptiso::detail {
 
 /// The first round: meshes every brick and simplifies it alone, so that the full-resolution surface
 /// never exists as a whole. What lies on bricks' walls stays as it is.
-/// \param costs  gets those of each brick's collapses; may be null
+/// \param costs   gets those of each brick's collapses; may be null
+/// \param moving  continuous sample indices: what lies outside stays too; null: nothing does
 SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& bricks,
                                  const MetricFrame& frame, const TightPlaces& tight,
-                                 const PatchLimits& limits, CollapseCosts* costs);
+                                 const PatchLimits& limits, CollapseCosts* costs,
+                                 const CornerBox* moving = nullptr);
 
 }  // namespace adaptiso::detail
