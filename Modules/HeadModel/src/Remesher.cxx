@@ -282,7 +282,7 @@ void Remesher::relax(int rounds) {
         parallelForPieces(slots, kGrain, [&](std::int64_t begin, std::int64_t end) {
             for (VertexId v = begin; v < end; ++v) {
                 if (mesh_.isVertexAlive(v) && !isOnCrest(v)) {
-                    landings[v] = target_.project(relaxed(v), triangles_[v]);
+                    landings[v] = target_.slide(relaxed(v), triangles_[v]);
                 } else {
                     landings[v].triangle = -1;
                 }

@@ -71,13 +71,17 @@ std::vector<double> adaptiveSizes(const RemeshTarget& target, Remesher& remesher
     const double radiusMm = std::max(range.minimumMm, 3 * meanEdgeMm(target.surface()));
     constexpr std::int64_t kGrain = 64;
     parallelForPieces(std::ssize(seeds), kGrain, [&](std::int64_t begin, std::int64_t end) {
+        // vertices follow each other along the surface: the last one's nearest is a good start
+        std::vector<std::int64_t> nearest(trees.size(), -1);
         for (std::int64_t n = begin; n < end; ++n) {
             const Landing at = target.atVertex(seeds[n].vertex);
             const LocalFit fit = target.fit(at, radiusMm);
             // where nothing can be fitted the surface bends sharply
             double size = fit.isValid ? kBendPerEdge / fit.curvaturePerMm : range.minimumMm;
-            for (const AabbTree& tree : trees) {
-                size = std::min(size, std::sqrt(tree.closestPoint(at.pointMm).squaredDistanceMm2));
+            for (std::size_t tree = 0; tree < trees.size(); ++tree) {
+                const ClosestPoint there = trees[tree].closestPoint(at.pointMm, nearest[tree]);
+                nearest[tree] = there.triangle;
+                size = std::min(size, std::sqrt(there.squaredDistanceMm2));
             }
             seeds[n].sizeMm = std::clamp(size, range.minimumMm, range.maximumMm);
         }
