@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <queue>
 #include <utility>
 
@@ -23,6 +22,33 @@ double meanEdgeMm(const TriangleMesh& mesh) {
         }
     }
     return sum / static_cast<double>(3 * mesh.triangles.size());
+}
+
+/// Vertices such that every vertex has one of them within `distanceMm` of it along the surface, and
+/// no two are as near.
+std::vector<VertexId> spacedVertices(const RemeshTarget& target, double distanceMm) {
+    const TriangleMesh& surface = target.surface();
+    std::vector<VertexId> chosen, flood;
+    std::vector<VertexId> reachedFrom(surface.points.size(), -1);
+    std::vector<bool> isNear(surface.points.size());
+    for (VertexId v = 0; v < std::ssize(surface.points); ++v) {
+        if (isNear[v] || target.trianglesAround(v).empty()) continue;
+        chosen.push_back(v);
+        flood = {v};
+        reachedFrom[v] = v;
+        for (std::size_t n = 0; n < flood.size(); ++n) {
+            isNear[flood[n]] = true;
+            for (const std::int64_t t : target.trianglesAround(flood[n])) {
+                for (const VertexId w : surface.triangles[t]) {
+                    const double squared = squaredNorm(surface.points[w] - surface.points[v]);
+                    if (reachedFrom[w] == v || !(squared < distanceMm * distanceMm)) continue;
+                    reachedFrom[w] = v;
+                    flood.push_back(w);
+                }
+            }
+        }
+    }
+    return chosen;
 }
 
 }  // namespace
@@ -51,19 +77,12 @@ std::vector<double> spreadSizes(const RemeshTarget& target, const std::vector<Si
     return sizes;
 }
 
-std::vector<double> adaptiveSizes(const RemeshTarget& target, Remesher& remesher,
-                                  const EdgeLengthRange& range,
+std::vector<double> adaptiveSizes(const RemeshTarget& target, const EdgeLengthRange& range,
                                   const std::vector<const TriangleMesh*>& neighbours) {
     // Two looks a shortest edge are enough; the growth bound fills in between.
-    const double looksMm = range.minimumMm / 2;
-    const double looks =
-        surfaceArea(target.surface()) / (std::numbers::sqrt3 / 2 * looksMm * looksMm);
-    constexpr double kMinLooks = 1000;
-    remesher.coarsen(static_cast<std::int64_t>(
-        std::max(kMinLooks, std::min(looks, static_cast<double>(target.surface().points.size())))));
     std::vector<SizeSeed> seeds;
-    for (VertexId v = 0; v < remesher.mesh().vertexSlots(); ++v) {
-        if (remesher.mesh().isVertexAlive(v)) seeds.push_back({v, range.maximumMm});
+    for (const VertexId v : spacedVertices(target, range.minimumMm / 2)) {
+        seeds.push_back({v, range.maximumMm});
     }
     std::vector<AabbTree> trees;
     trees.reserve(neighbours.size());
