@@ -209,11 +209,12 @@ RemeshStatistics measure(const TriangleMesh& mesh, const RemeshTarget& target) {
 
 /// Edges of one length or of the target's own, before the number of vertices counts.
 /// \return  the number to reach
-std::int64_t startOver(Remesher& remesher, std::int64_t vertices, int rounds) {
+std::int64_t startOver(Remesher& remesher, std::int64_t vertices, int rounds, bool isThorough) {
     // room to choose from, times the vertices wanted; more where only the lengths say how many
-    constexpr std::int64_t kCoarse = 4, kCoarseByLengths = 16;
-    remesher.coarsen(vertices > 0 ? kCoarse * vertices
-                                  : kCoarseByLengths * remesher.verticesWanted());
+    constexpr std::int64_t kCoarse = 4, kFine = 16;
+    remesher.setThorough(isThorough);
+    remesher.coarsen(vertices > 0 ? (isThorough ? kFine : kCoarse) * vertices
+                                  : kFine * remesher.verticesWanted());
     remesher.compact();
     makeIsotropic(remesher, vertices, rounds);
     remesher.compact();
@@ -274,7 +275,8 @@ Remeshed remeshForBem(const TriangleMesh& surface, const RemeshOptions& options)
     std::int64_t vertices = 0;
     for (const int rounds : kIsotropicRounds) {
         remesher.emplace(target);
-        vertices = startOver(*remesher, options.vertices, rounds);
+        const bool isAgain = rounds != kIsotropicRounds.front();
+        vertices = startOver(*remesher, options.vertices, rounds, isAgain);
         result.mesh = finish(*remesher, vertices, options.fitMm);
         crossings = findSelfIntersections(result.mesh);
         if (crossings.pairCount == 0) break;
