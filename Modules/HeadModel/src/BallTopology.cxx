@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstdlib>
 #include <optional>
-#include <queue>
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
@@ -126,69 +125,120 @@ bool makesCriticalPlace(Around inside) {
     return false;
 }
 
-/// Voxels at the edge of a solid that changes, and whose turn it is.
+/// Whether the middle may change, remembered: a solid has few kinds of places, met again and again.
+class Changes {
+public:
+    bool keepTopology(Around inside) {
+        Entry& entry = entries_[(inside * 2654435761u) >> (32 - kBits)];
+        const Around around = inside & ~(1u << kMiddle);
+        if (entry.around != around || !entry.isKnown) {
+            // critical places look the same with inside and outside exchanged
+            const bool isInside = (inside >> kMiddle & 1) != 0;
+            const Around changed = isInside ? ~inside & ((1u << 27) - 1) : inside;
+            entry = {around, true, isSimple(inside) && !makesCriticalPlace(changed)};
+        }
+        return entry.isAllowed;
+    }
+
+private:
+    static constexpr int kBits = 14;
+    struct Entry {
+        Around around = 0;
+        bool isKnown = false, isAllowed = false;
+    };
+    std::vector<Entry> entries_ = std::vector<Entry>(std::size_t{1} << kBits);
+};
+
+/// Voxels waiting for their turn: those with a higher priority first, to a 4096th of the range; of
+/// those as high who came first.
+class Turns {
+public:
+    explicit Turns(const std::vector<float>& priority) : priority_(priority) {
+        const auto [least, most] = std::minmax_element(priority.begin(), priority.end());
+        least_ = *least;
+        perUnit_ = *most > *least ? (kLevels - 1) / (*most - *least) : 0;
+    }
+    void push(std::int64_t voxel) {
+        const auto level = static_cast<int>((priority_[voxel] - least_) * perUnit_);
+        waiting_[level].push_back(voxel);
+        top_ = std::max(top_, level);
+    }
+    std::optional<std::int64_t> pop() {
+        for (; top_ >= 0; --top_) {
+            if (next_[top_] < waiting_[top_].size()) return waiting_[top_][next_[top_]++];
+            waiting_[top_].clear();
+            next_[top_] = 0;
+        }
+        return std::nullopt;
+    }
+
+private:
+    static constexpr int kLevels = 4096;
+    const std::vector<float>& priority_;
+    float least_ = 0, perUnit_ = 0;
+    int top_ = -1;
+    std::vector<std::vector<std::int64_t>> waiting_ =
+        std::vector<std::vector<std::int64_t>>(kLevels);
+    std::vector<std::size_t> next_ = std::vector<std::size_t>(kLevels, 0);
+};
+
+/// A solid whose voxels change sides one after the other, in one direction, and keep its topology.
 class Front {
 public:
-    /// Keeps a reference to `solid`, which is empty at the grid's border.
-    Front(const Mask& solid, const Index3& size) : solid_(solid), isQueued_(solid.size(), 0) {
+    /// \param may  the voxels that may change, all of them on the same side of `solid`
+    /// \pre `solid` is empty at the grid's border, and so is `may`
+    Front(Mask solid, const Mask& may, const Index3& size) : state_(std::move(solid)) {
         for (int n = 0; n < 27; ++n) {
             offsets_[n] = (n % 3 - 1) + size[0] * ((n / 3 % 3 - 1) + size[1] * (n / 9 - 1));
         }
+        for (std::size_t n = 0; n < may.size(); ++n) {
+            if (may[n] == 0) continue;
+            state_[n] |= kMay;
+            side_ = state_[n] & kIn;
+        }
     }
+
+    /// Changes what can be, from where the sides meet, and gives back the solid.
+    Mask advance(const std::vector<float>& priority) {
+        Turns turns(priority);
+        Changes changes;
+        for (std::int64_t voxel = 0; voxel < std::ssize(state_); ++voxel) {
+            if (state_[voxel] != (kMay | side_)) continue;
+            const Around inside = around(voxel);
+            const Around other = side_ != 0 ? ~inside : inside;
+            if ((other & kAdjacency.by26[kMiddle]) != 0) offer(voxel, turns);
+        }
+        while (const std::optional<std::int64_t> voxel = turns.pop()) {
+            state_[*voxel] &= ~kWaits;
+            if (!changes.keepTopology(around(*voxel))) continue;
+            state_[*voxel] = side_ ^ kIn;
+            for (const std::int64_t offset : offsets_) offer(*voxel + offset, turns);
+        }
+        for (std::uint8_t& voxel : state_) voxel &= kIn;
+        return std::move(state_);
+    }
+
+private:
+    static constexpr std::uint8_t kIn = 1, kMay = 2, kWaits = 4;
 
     /// Which of the 27 voxels are inside. \pre not at the grid's border
     Around around(std::int64_t voxel) const {
         Around inside = 0;
-        for (int n = 0; n < 27; ++n) inside |= Around{solid_[voxel + offsets_[n]]} << n;
+        for (int n = 0; n < 27; ++n) {
+            inside |= static_cast<Around>(state_[voxel + offsets_[n]] & kIn) << n;
+        }
         return inside;
     }
 
-    /// Queues the voxels around one that may change.
-    template <class May>
-    void offerAround(std::int64_t voxel, const std::vector<float>& priority, const May& mayChange) {
-        for (const std::int64_t offset : offsets_) offer(voxel + offset, priority, mayChange);
+    void offer(std::int64_t voxel, Turns& turns) {
+        if (state_[voxel] != (kMay | side_)) return;
+        state_[voxel] |= kWaits;
+        turns.push(voxel);
     }
 
-    /// Queues all voxels that may change and have one of the other side beside them.
-    template <class May>
-    void offerBeside(const Mask& solid, const std::vector<float>& priority, const May& mayChange) {
-        for (std::int64_t voxel = 0; voxel < std::ssize(solid); ++voxel) {
-            if (!mayChange(voxel)) continue;
-            const Around inside = around(voxel);
-            const Around other = solid[voxel] != 0 ? ~inside : inside;
-            if ((other & kAdjacency.by26[kMiddle]) != 0) offer(voxel, priority, mayChange);
-        }
-    }
-
-    /// The one with the highest priority; the first of several.
-    std::optional<std::int64_t> next() {
-        if (queue_.empty()) return std::nullopt;
-        const std::int64_t voxel = queue_.top().voxel;
-        queue_.pop();
-        isQueued_[voxel] = 0;
-        return voxel;
-    }
-
-private:
-    struct Candidate {
-        float priority;
-        std::int64_t voxel;
-        bool operator<(const Candidate& other) const {
-            return priority != other.priority ? priority < other.priority : voxel > other.voxel;
-        }
-    };
-
-    template <class May>
-    void offer(std::int64_t voxel, const std::vector<float>& priority, const May& mayChange) {
-        if (isQueued_[voxel] != 0 || !mayChange(voxel)) return;
-        isQueued_[voxel] = 1;
-        queue_.push({priority[voxel], voxel});
-    }
-
-    const Mask& solid_;
-    Mask isQueued_;
+    Mask state_;
+    std::uint8_t side_ = 0;  ///< that changing voxels leave
     std::array<std::int64_t, 27> offsets_{};
-    std::priority_queue<Candidate> queue_;
 };
 
 /// In voxels. What is farther inside or outside is not looked at one by one.
@@ -271,36 +321,22 @@ bool isBall(const Mask& mask, const Index3& size) {
 
 Mask grownBall(const Mask& allowed, const std::vector<float>& priority, Mask core,
                const Index3& size) {
-    Front front(core, size);
-    const auto mayJoin = [&](std::int64_t voxel) {
-        return allowed[voxel] != 0 && core[voxel] == 0;
-    };
-    front.offerBeside(core, priority, mayJoin);
-    while (const std::optional<std::int64_t> voxel = front.next()) {
-        const Around inside = front.around(*voxel);
-        if (!isSimple(inside) || makesCriticalPlace(inside)) continue;
-        core[*voxel] = 1;
-        front.offerAround(*voxel, priority, mayJoin);
+    Mask may = allowed;
+    for (std::size_t n = 0; n < may.size(); ++n) {
+        if (core[n] != 0) may[n] = 0;
     }
-    return core;
+    return Front(std::move(core), may, size).advance(priority);
 }
 
 Mask carvedBall(const Mask& kept, const std::vector<float>& priority, Mask hull,
                 const Index3& size) {
-    Front front(hull, size);
+    Mask may = hull;
+    for (std::size_t n = 0; n < may.size(); ++n) {
+        if (kept[n] != 0) may[n] = 0;
+    }
     std::vector<float> lowFirst(priority.size());
     for (std::size_t n = 0; n < priority.size(); ++n) lowFirst[n] = -priority[n];
-    const auto mayLeave = [&](std::int64_t voxel) { return kept[voxel] == 0 && hull[voxel] != 0; };
-    front.offerBeside(hull, lowFirst, mayLeave);
-    constexpr Around kAll = (1u << 27) - 1;
-    while (const std::optional<std::int64_t> voxel = front.next()) {
-        const Around inside = front.around(*voxel);
-        // critical places look the same with inside and outside exchanged
-        if (!isSimple(inside) || makesCriticalPlace(~inside & kAll)) continue;
-        hull[*voxel] = 0;
-        front.offerAround(*voxel, lowFirst, mayLeave);
-    }
-    return hull;
+    return Front(std::move(hull), may, size).advance(lowFirst);
 }
 
 std::int64_t makeBall(std::vector<float>& part, const Index3& size) {

@@ -18,9 +18,9 @@ using Mask = std::vector<std::uint8_t>;
 /// Side of the cubic voxels of a working grid, mm.
 double stepMm(const ImageGeometry& grid);
 
-/// `values` convolved with a Gaussian of standard deviation sigmaMm, the border repeated, by ITK's
-/// recursive filter. Below a third of a voxel nothing is done: the samples can't hold it.
-/// \pre four voxels or more along each axis
+/// `values` convolved with a Gaussian of standard deviation sigmaMm, the border repeated. Below a
+/// third of a voxel nothing is done: the samples can't hold it.
+/// Cost: O(voxels near which values differ * sigmaMm in voxels), in parallel.
 std::vector<float> smoothed(std::vector<float> values, const ImageGeometry& grid, double sigmaMm);
 
 /// How far from a mask's surface depths are wanted, mm; what is beyond has the band's end.

@@ -35,13 +35,18 @@ std::string rounded(Number value) {
 
 void checkOptions(const RemeshOptions& options) {
     constexpr std::int64_t kMinVertices = 12;  // an icosahedron
-    if (options.vertices < kMinVertices && !(options.vertices == 0 && options.edgeLengthMm)) {
+    const bool isAdaptive = options.edgeLengthMm || !options.wantedEdgesMm.empty();
+    if (options.vertices < kMinVertices && !(options.vertices == 0 && isAdaptive)) {
         throw InvalidInput("remeshForBem: vertices is " + std::to_string(options.vertices) +
                            ", must be at least 12, or 0 with edge lengths");
     }
     if (!(options.fitMm >= 0) || !std::isfinite(options.fitMm)) {
         throw InvalidInput("remeshForBem: fitMm is " + rounded(options.fitMm) +
                            ", must be at least 0");
+    }
+    if (std::any_of(options.wantedEdgesMm.begin(), options.wantedEdgesMm.end(),
+                    [](double mm) { return !(mm > 0); })) {
+        throw InvalidInput("remeshForBem: an edge length is not above 0");
     }
     if (!options.edgeLengthMm) return;
     const auto [minimum, maximum] = *options.edgeLengthMm;
@@ -204,20 +209,16 @@ RemeshStatistics measure(const TriangleMesh& mesh, const RemeshTarget& target) {
 
 /// Edges of one length or of the target's own, before the number of vertices counts.
 /// \return  the number to reach
-std::int64_t startOver(RemeshTarget& target, Remesher& remesher, const RemeshOptions& options,
-                       int rounds) {
-    constexpr std::int64_t kCoarse = 4;  // times the vertices wanted: room to choose from
-    if (options.edgeLengthMm) {
-        target.setSizes(adaptiveSizes(target, remesher, *options.edgeLengthMm, options.neighbours));
-        remesher.readSizes();
-    } else {
-        remesher.coarsen(kCoarse * options.vertices);
-        remesher.compact();
-    }
-    makeIsotropic(remesher, options.vertices, rounds);
+std::int64_t startOver(Remesher& remesher, std::int64_t vertices, int rounds, bool isThorough) {
+    // room to choose from, times the vertices wanted; more where only the lengths say how many
+    constexpr std::int64_t kCoarse = 4, kFine = 16;
+    remesher.setThorough(isThorough);
+    remesher.coarsen(vertices > 0 ? (isThorough ? kFine : kCoarse) * vertices
+                                  : kFine * remesher.verticesWanted());
     remesher.compact();
-    return options.vertices > 0 ? options.vertices
-                                : std::max<std::int64_t>(12, remesher.verticesWanted());
+    makeIsotropic(remesher, vertices, rounds);
+    remesher.compact();
+    return vertices > 0 ? vertices : std::max<std::int64_t>(12, remesher.verticesWanted());
 }
 
 /// The number of vertices, and shapes as good as they get.
@@ -233,32 +234,49 @@ TriangleMesh finish(Remesher& remesher, std::int64_t vertices, double fitMm) {
 
 }  // namespace
 
-std::int64_t verticesForEdges(const TriangleMesh& surface, const RemeshOptions& options) {
+std::vector<double> wantedEdgesMm(const TriangleMesh& surface, const RemeshOptions& options) {
     checkOptions(options);
     checkSurface(surface);
-    RemeshTarget target(surface);
-    Remesher remesher(target);
-    target.setSizes(adaptiveSizes(target, remesher, *options.edgeLengthMm, options.neighbours));
-    remesher.readSizes();
-    return std::max<std::int64_t>(12, remesher.verticesWanted());
+    return adaptiveSizes(RemeshTarget(surface), *options.edgeLengthMm, options.neighbours);
+}
+
+std::int64_t verticesForEdges(const TriangleMesh& surface, const std::vector<double>& edgesMm) {
+    double triangles = 0;
+    for (const auto& [a, b, c] : surface.triangles) {
+        const double size = (edgesMm[a] + edgesMm[b] + edgesMm[c]) / 3;
+        const Vec3 area2 = areaVector2(surface.points[a], surface.points[b], surface.points[c]);
+        triangles += norm(area2) / 2 / (std::numbers::sqrt3 / 4 * size * size);
+    }
+    return std::max<std::int64_t>(12, std::llround(triangles / 2) + 2);  // Euler: T = 2 V - 4
 }
 
 Remeshed remeshForBem(const TriangleMesh& surface, const RemeshOptions& options) {
     checkOptions(options);
     checkSurface(surface);
+    if (!options.wantedEdgesMm.empty() && options.wantedEdgesMm.size() != surface.points.size()) {
+        throw InvalidInput("remeshForBem: " + std::to_string(options.wantedEdgesMm.size()) +
+                           " edge lengths of " + std::to_string(surface.points.size()) +
+                           " vertices");
+    }
     // Where sheets cross it is mostly by chance: other rounds put vertices elsewhere. Shorter edges
     // cost the rest of the surface, and come last.
     constexpr std::array<int, 3> kIsotropicRounds{8, 10, 12};
     constexpr int kMendings = 4;
 
     RemeshTarget target(surface);
+    if (!options.wantedEdgesMm.empty()) {
+        target.setSizes(options.wantedEdgesMm);
+    } else if (options.edgeLengthMm) {
+        target.setSizes(adaptiveSizes(target, *options.edgeLengthMm, options.neighbours));
+    }
     Remeshed result;
     SelfIntersections crossings;
     std::optional<Remesher> remesher;
     std::int64_t vertices = 0;
     for (const int rounds : kIsotropicRounds) {
         remesher.emplace(target);
-        vertices = startOver(target, *remesher, options, rounds);
+        const bool isAgain = rounds != kIsotropicRounds.front();
+        vertices = startOver(*remesher, options.vertices, rounds, isAgain);
         result.mesh = finish(*remesher, vertices, options.fitMm);
         crossings = findSelfIntersections(result.mesh);
         if (crossings.pairCount == 0) break;

@@ -93,10 +93,49 @@ RemeshTarget::RemeshTarget(const TriangleMesh& surface)
 
 Landing RemeshTarget::project(const Vec3& p, std::int64_t hint) const {
     const ClosestPoint closest = tree_.closestPoint(p, hint);
-    const auto& [a, b, c] = surface_.triangles[closest.triangle];
+    return landingAt(closest.pointMm, closest.triangle);
+}
+
+std::pair<Triangle, int> RemeshTarget::cornersBelow(const Vec3& p, std::int64_t triangle) const {
+    constexpr double kOnSide = 1e-9;
+    const Triangle& t = surface_.triangles[triangle];
     const auto w =
-        barycentric(closest.pointMm, surface_.points[a], surface_.points[b], surface_.points[c]);
-    return {closest.pointMm, closest.triangle,
+        barycentric(p, surface_.points[t[0]], surface_.points[t[1]], surface_.points[t[2]]);
+    Triangle corners{};
+    int count = 0;
+    for (int n = 0; n < 3; ++n) {
+        if (w[n] > kOnSide) corners[count++] = t[n];
+    }
+    return {corners, count};
+}
+
+Landing RemeshTarget::slide(const Vec3& p, std::int64_t from) const {
+    ClosestPoint best;
+    const auto look = [&](std::int64_t triangle) {
+        const auto& [a, b, c] = surface_.triangles[triangle];
+        const Vec3 nearest =
+            closestPointOnTriangle(p, surface_.points[a], surface_.points[b], surface_.points[c]);
+        const double squared = squaredNorm(p - nearest);
+        if (squared < best.squaredDistanceMm2) best = {triangle, squared, nearest};
+    };
+    look(from);
+    for (std::int64_t at = -1; at != best.triangle;) {
+        at = best.triangle;
+        // within the triangle there is none nearer beside it; on a side or corner those that
+        // share it may have one
+        const auto [corners, count] = cornersBelow(best.pointMm, at);
+        if (count == 3) break;
+        for (const std::int64_t triangle : trianglesAround(corners[0])) {
+            if (triangle != at && (count == 1 || hasCorner(triangle, corners[1]))) look(triangle);
+        }
+    }
+    return landingAt(best.pointMm, best.triangle);
+}
+
+Landing RemeshTarget::landingAt(const Vec3& pointMm, std::int64_t triangle) const {
+    const auto& [a, b, c] = surface_.triangles[triangle];
+    const auto w = barycentric(pointMm, surface_.points[a], surface_.points[b], surface_.points[c]);
+    return {pointMm, triangle,
             normalized(w[0] * normals_[a] + w[1] * normals_[b] + w[2] * normals_[c]),
             w[0] * sizeAt(a) + w[1] * sizeAt(b) + w[2] * sizeAt(c)};
 }
@@ -107,28 +146,26 @@ Landing RemeshTarget::atVertex(VertexId v) const {
 }
 
 std::vector<VertexId> RemeshTarget::facingWithin(const Landing& at, double radiusMm) const {
-    const auto isNear = [&](VertexId w) {
-        return squaredNorm(surface_.points[w] - at.pointMm) < radiusMm * radiusMm &&
-               dot(normals_[w], at.normal) > 0;
+    // which flood saw a vertex last: kept by the thread, as to clear it costs more than a flood
+    thread_local std::vector<std::uint32_t> seenBy;
+    thread_local std::uint32_t flood = 0;
+    if (seenBy.size() < surface_.points.size() || ++flood == 0) {
+        seenBy.assign(std::max(seenBy.size(), surface_.points.size()), 0);
+        flood = 1;
+    }
+    std::vector<VertexId> found;
+    const auto visit = [&](VertexId w) {
+        if (seenBy[w] == flood) return;
+        seenBy[w] = flood;
+        const bool isNear = squaredNorm(surface_.points[w] - at.pointMm) < radiusMm * radiusMm &&
+                            dot(normals_[w], at.normal) > 0;
+        if (isNear) found.push_back(w);
     };
-    std::vector<VertexId> found;  // flooded from the landing; sorted, it is a set
-    std::vector<VertexId> front(surface_.triangles[at.triangle].begin(),
-                                surface_.triangles[at.triangle].end());
-    while (!front.empty()) {
-        std::sort(front.begin(), front.end());
-        front.erase(std::unique(front.begin(), front.end()), front.end());
-        std::erase_if(front, [&](VertexId w) {
-            return !isNear(w) || std::binary_search(found.begin(), found.end(), w);
-        });
-        const auto middle = found.insert(found.end(), front.begin(), front.end());
-        std::inplace_merge(found.begin(), middle, found.end());
-        std::vector<VertexId> next;
-        for (const VertexId w : front) {
-            for (const std::int64_t t : trianglesAround(w)) {
-                next.insert(next.end(), surface_.triangles[t].begin(), surface_.triangles[t].end());
-            }
+    for (const VertexId v : surface_.triangles[at.triangle]) visit(v);
+    for (std::size_t n = 0; n < found.size(); ++n) {
+        for (const std::int64_t t : trianglesAround(found[n])) {
+            for (const VertexId w : surface_.triangles[t]) visit(w);
         }
-        front = std::move(next);
     }
     return found;
 }

@@ -40,6 +40,11 @@ public:
 
     /// The nearest point of the surface. \param hint  a triangle thought to be near; -1: none
     Landing project(const Vec3& p, std::int64_t hint) const;
+    /// Where a point comes to lie that moved along the surface from a triangle: from the nearest
+    /// place of that to a nearer one of its neighbours, until there is none. A sheet that comes
+    /// near without hanging together there is not jumped to. Costs a fraction of project() when the
+    /// point moved by a few triangles.
+    Landing slide(const Vec3& p, std::int64_t from) const;
     /// What the surface has at its own vertex.
     Landing atVertex(VertexId v) const;
 
@@ -53,7 +58,14 @@ public:
     }
 
 private:
-    /// Vertices reached along edges from the landing, sorted.
+    Landing landingAt(const Vec3& pointMm, std::int64_t triangle) const;
+    /// The corners of the side or corner of a triangle that a point of it lies on, and how many.
+    std::pair<Triangle, int> cornersBelow(const Vec3& p, std::int64_t triangle) const;
+    bool hasCorner(std::int64_t triangle, VertexId v) const {
+        const Triangle& t = surface_.triangles[triangle];
+        return t[0] == v || t[1] == v || t[2] == v;
+    }
+    /// Vertices reached along edges from the landing, nearer ones first by and large.
     std::vector<VertexId> facingWithin(const Landing& at, double radiusMm) const;
     double sizeAt(VertexId v) const { return sizesMm_.empty() ? 1 : sizesMm_[v]; }
 

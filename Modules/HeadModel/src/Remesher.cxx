@@ -275,6 +275,16 @@ bool Remesher::tryMove(VertexId v, const Landing& landing) {
     return isGood;
 }
 
+Landing Remesher::moved(VertexId v, const Vec3& p) const {
+    // what lies this far off slid into a dead end, or the surface bends sharply
+    constexpr double kFarEdges = 0.1;
+    if (isThorough_) return target_.project(p, triangles_[v]);
+    const Landing slid = target_.slide(p, triangles_[v]);
+    const double farMm = kFarEdges * scale_ * sizesMm_[v];
+    if (squaredNorm(slid.pointMm - p) <= farMm * farMm) return slid;
+    return target_.project(p, slid.triangle);
+}
+
 void Remesher::relax(int rounds) {
     const std::int64_t slots = mesh_.vertexSlots();
     std::vector<Landing> landings(slots);
@@ -282,7 +292,7 @@ void Remesher::relax(int rounds) {
         parallelForPieces(slots, kGrain, [&](std::int64_t begin, std::int64_t end) {
             for (VertexId v = begin; v < end; ++v) {
                 if (mesh_.isVertexAlive(v) && !isOnCrest(v)) {
-                    landings[v] = target_.project(relaxed(v), triangles_[v]);
+                    landings[v] = moved(v, relaxed(v));
                 } else {
                     landings[v].triangle = -1;
                 }

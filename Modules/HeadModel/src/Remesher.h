@@ -21,6 +21,10 @@ public:
     /// Takes the sizes anew from the target, whose field has changed.
     void readSizes();
 
+    /// Vertices are put back by a search of the whole surface instead of from where they were:
+    /// slow, and the way out where sheets have got entangled.
+    void setThorough(bool isThorough) { isThorough_ = isThorough; }
+
     double scale() const { return scale_; }
     void setScale(double scale) { scale_ = scale; }
     /// How many vertices equilateral triangles of the wanted lengths take to fill the surface.
@@ -68,12 +72,15 @@ private:
     bool tryMove(VertexId v, const Landing& landing);
     Vec3 relaxed(VertexId v) const;
     Landing midpoint(HalfEdge h) const;
+    /// Where v comes to lie that was moved to p.
+    Landing moved(VertexId v, const Vec3& p) const;
     void settle(VertexId v, const Landing& landing);
     std::vector<HalfEdge> rankedEdges(bool isLongestFirst) const;
 
     const RemeshTarget& target_;
     EditMesh mesh_;
     double scale_ = 1;
+    bool isThorough_ = false;
     std::vector<double> sizesMm_;
     std::vector<Vec3> normals_;
     std::vector<std::int64_t> triangles_;  ///< of the target, under each vertex

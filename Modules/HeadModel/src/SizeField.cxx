@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <queue>
 #include <utility>
 
@@ -23,6 +22,33 @@ double meanEdgeMm(const TriangleMesh& mesh) {
         }
     }
     return sum / static_cast<double>(3 * mesh.triangles.size());
+}
+
+/// Vertices such that every vertex has one of them within `distanceMm` of it along the surface, and
+/// no two are as near.
+std::vector<VertexId> spacedVertices(const RemeshTarget& target, double distanceMm) {
+    const TriangleMesh& surface = target.surface();
+    std::vector<VertexId> chosen, flood;
+    std::vector<VertexId> reachedFrom(surface.points.size(), -1);
+    std::vector<bool> isNear(surface.points.size());
+    for (VertexId v = 0; v < std::ssize(surface.points); ++v) {
+        if (isNear[v] || target.trianglesAround(v).empty()) continue;
+        chosen.push_back(v);
+        flood = {v};
+        reachedFrom[v] = v;
+        for (std::size_t n = 0; n < flood.size(); ++n) {
+            isNear[flood[n]] = true;
+            for (const std::int64_t t : target.trianglesAround(flood[n])) {
+                for (const VertexId w : surface.triangles[t]) {
+                    const double squared = squaredNorm(surface.points[w] - surface.points[v]);
+                    if (reachedFrom[w] == v || !(squared < distanceMm * distanceMm)) continue;
+                    reachedFrom[w] = v;
+                    flood.push_back(w);
+                }
+            }
+        }
+    }
+    return chosen;
 }
 
 }  // namespace
@@ -51,19 +77,12 @@ std::vector<double> spreadSizes(const RemeshTarget& target, const std::vector<Si
     return sizes;
 }
 
-std::vector<double> adaptiveSizes(const RemeshTarget& target, Remesher& remesher,
-                                  const EdgeLengthRange& range,
+std::vector<double> adaptiveSizes(const RemeshTarget& target, const EdgeLengthRange& range,
                                   const std::vector<const TriangleMesh*>& neighbours) {
     // Two looks a shortest edge are enough; the growth bound fills in between.
-    const double looksMm = range.minimumMm / 2;
-    const double looks =
-        surfaceArea(target.surface()) / (std::numbers::sqrt3 / 2 * looksMm * looksMm);
-    constexpr double kMinLooks = 1000;
-    remesher.coarsen(static_cast<std::int64_t>(
-        std::max(kMinLooks, std::min(looks, static_cast<double>(target.surface().points.size())))));
     std::vector<SizeSeed> seeds;
-    for (VertexId v = 0; v < remesher.mesh().vertexSlots(); ++v) {
-        if (remesher.mesh().isVertexAlive(v)) seeds.push_back({v, range.maximumMm});
+    for (const VertexId v : spacedVertices(target, range.minimumMm / 2)) {
+        seeds.push_back({v, range.maximumMm});
     }
     std::vector<AabbTree> trees;
     trees.reserve(neighbours.size());
@@ -71,13 +90,17 @@ std::vector<double> adaptiveSizes(const RemeshTarget& target, Remesher& remesher
     const double radiusMm = std::max(range.minimumMm, 3 * meanEdgeMm(target.surface()));
     constexpr std::int64_t kGrain = 64;
     parallelForPieces(std::ssize(seeds), kGrain, [&](std::int64_t begin, std::int64_t end) {
+        // vertices follow each other along the surface: the last one's nearest is a good start
+        std::vector<std::int64_t> nearest(trees.size(), -1);
         for (std::int64_t n = begin; n < end; ++n) {
             const Landing at = target.atVertex(seeds[n].vertex);
             const LocalFit fit = target.fit(at, radiusMm);
             // where nothing can be fitted the surface bends sharply
             double size = fit.isValid ? kBendPerEdge / fit.curvaturePerMm : range.minimumMm;
-            for (const AabbTree& tree : trees) {
-                size = std::min(size, std::sqrt(tree.closestPoint(at.pointMm).squaredDistanceMm2));
+            for (std::size_t tree = 0; tree < trees.size(); ++tree) {
+                const ClosestPoint there = trees[tree].closestPoint(at.pointMm, nearest[tree]);
+                nearest[tree] = there.triangle;
+                size = std::min(size, std::sqrt(there.squaredDistanceMm2));
             }
             seeds[n].sizeMm = std::clamp(size, range.minimumMm, range.maximumMm);
         }

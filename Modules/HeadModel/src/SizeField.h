@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "RemeshTarget.h"
-#include "Remesher.h"
 #include "adaptiso/HeadModel/Remesh.h"
 
 namespace adaptiso {
@@ -19,9 +18,8 @@ struct SizeSeed {
 std::vector<double> spreadSizes(const RemeshTarget& target, const std::vector<SizeSeed>& seeds);
 
 /// Lengths by bending (half a radian over an edge) and by the distance to neighbours, within
-/// `range`. Coarsens `remesher` to the vertices where it looks.
-std::vector<double> adaptiveSizes(const RemeshTarget& target, Remesher& remesher,
-                                  const EdgeLengthRange& range,
+/// `range`: one length per vertex of the target's surface.
+std::vector<double> adaptiveSizes(const RemeshTarget& target, const EdgeLengthRange& range,
                                   const std::vector<const TriangleMesh*>& neighbours);
 
 }  // namespace adaptiso

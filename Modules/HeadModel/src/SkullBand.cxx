@@ -164,39 +164,116 @@ std::vector<Search::Answer> search(const std::vector<Ray>& rays, const std::vect
     return answers;
 }
 
+/// Thickness everywhere near the surface, from what the rays say: a mean that is smooth over 6 mm
+/// needs no lattice as fine as the head's.
+class Thickness {
+public:
+    Thickness(const std::vector<Ray>& rays, const std::vector<Search::Answer>& answers,
+              const ImageGeometry& grid, double usualMm)
+        : perNode_(std::max(1, static_cast<int>(kSpreadMm / (2.5 * stepMm(grid))))) {
+        const double step = stepMm(grid) * perNode_;
+        for (int a = 0; a < 3; ++a) {
+            lattice_.size[a] = std::max<std::int64_t>((grid.size[a] - 1) / perNode_ + 2, 4);
+            lattice_.indexToPhysical.column[a][a] = step;
+        }
+        mm_.resize(static_cast<std::size_t>(lattice_.voxelCount()), 0);
+        std::vector<float> weight = mm_;
+        for (std::size_t n = 0; n < rays.size(); ++n) {
+            if (!answers[n].thicknessMm) continue;
+            const auto mm = static_cast<float>(*answers[n].thicknessMm);
+            const Corners at = cornersOf(indexOf(rays[n].voxel, grid.size));
+            for (int c = 0; c < 8; ++c) {
+                weight[at.node[c]] += at.weight[c];
+                mm_[at.node[c]] += at.weight[c] * mm;
+            }
+        }
+        // giving to the nodes around and asking them spread by a sixth of a step squared each
+        const double sigmaMm = std::sqrt(kSpreadMm * kSpreadMm - step * step / 3);
+        weight = smoothed(std::move(weight), lattice_, sigmaMm);
+        mm_ = smoothed(std::move(mm_), lattice_, sigmaMm);
+        const auto usual = static_cast<float>(usualMm);
+        const float prior = kPriorWeight * static_cast<float>(perNode_ * perNode_ * perNode_);
+        for (std::size_t n = 0; n < mm_.size(); ++n) {
+            mm_[n] = (mm_[n] + prior * usual) / (weight[n] + prior);
+        }
+    }
+
+    float at(const Index3& voxel) const {
+        const Corners corners = cornersOf(voxel);
+        float mm = 0;
+        for (int c = 0; c < 8; ++c) mm += corners.weight[c] * mm_[corners.node[c]];
+        return mm;
+    }
+
+    double mostMm() const { return *std::max_element(mm_.begin(), mm_.end()); }
+
+    static Index3 indexOf(std::int64_t voxel, const Index3& size) {
+        return {voxel % size[0], voxel / size[0] % size[1], voxel / (size[0] * size[1])};
+    }
+
+private:
+    struct Corners {
+        std::array<std::int64_t, 8> node;
+        std::array<float, 8> weight;
+    };
+
+    /// The nodes around a voxel, and the parts that each has of it.
+    Corners cornersOf(const Index3& voxel) const {
+        const Grid grid{lattice_.size};
+        std::int64_t base = 0;
+        std::array<float, 3> high;
+        for (int a = 0; a < 3; ++a) {
+            base += voxel[a] / perNode_ * grid.offset(a);
+            high[a] = static_cast<float>(voxel[a] % perNode_) / static_cast<float>(perNode_);
+        }
+        Corners corners;
+        for (int c = 0; c < 8; ++c) {
+            corners.node[c] = base;
+            corners.weight[c] = 1;
+            for (int a = 0; a < 3; ++a) {
+                const bool isHigh = (c >> a & 1) != 0;
+                if (isHigh) corners.node[c] += grid.offset(a);
+                corners.weight[c] *= isHigh ? high[a] : 1 - high[a];
+            }
+        }
+        return corners;
+    }
+
+    int perNode_;  ///< voxels of the head, along each axis
+    ImageGeometry lattice_;
+    std::vector<float> mm_;
+};
+
 /// Takes away what is off by more than kOutlierMm.
-void dropOutliers(const std::vector<Ray>& rays, const std::vector<float>& thickness,
+void dropOutliers(const std::vector<Ray>& rays, const Thickness& thickness, const Index3& size,
                   std::vector<Search::Answer>& answers) {
     for (std::size_t n = 0; n < rays.size(); ++n) {
         std::optional<double>& mm = answers[n].thicknessMm;
-        if (mm && std::abs(thickness[rays[n].voxel] - static_cast<float>(*mm)) > kOutlierMm) {
-            mm.reset();
-        }
+        if (!mm) continue;
+        const float usual = thickness.at(Thickness::indexOf(rays[n].voxel, size));
+        if (std::abs(usual - static_cast<float>(*mm)) > kOutlierMm) mm.reset();
     }
 }
 
-/// Thickness everywhere near the surface, from what the rays say.
-std::vector<float> spread(const std::vector<Ray>& rays, const std::vector<Search::Answer>& answers,
-                          const ImageGeometry& grid, double usualMm) {
-    std::vector<float> weight(static_cast<std::size_t>(grid.voxelCount()), 0), sum = weight;
-    for (std::size_t n = 0; n < rays.size(); ++n) {
-        const std::int64_t voxel = rays[n].voxel;
-        if (!answers[n].thicknessMm) continue;
-        const auto mm = static_cast<float>(*answers[n].thicknessMm);
-        weight[voxel] = 1;
-        sum[voxel] = mm;
-    }
-    weight = smoothed(std::move(weight), grid, kSpreadMm);
-    sum = smoothed(std::move(sum), grid, kSpreadMm);
-    const auto usual = static_cast<float>(usualMm);
-    forVoxels(sum, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t n = begin; n < end; ++n) {
-            // a recursive filter's tails swing by a little around zero
-            const float w = std::max(weight[n], 0.0f);
-            sum[n] = (std::max(sum[n], 0.0f) + kPriorWeight * usual) / (w + kPriorWeight);
+/// The inner skull grown by the thickness there, as parts of voxels.
+std::vector<float> grownBy(const Thickness& thickness, const std::vector<float>& innerSkull,
+                           const ImageGeometry& grid) {
+    const double step = stepMm(grid), most = thickness.mostMm();
+    std::vector<float> part =
+        depthMm(above(innerSkull, kFractionIsovalue), grid, {step, most + step});
+    const std::int64_t width = grid.size[0];
+    parallelForPieces(grid.size[1] * grid.size[2], 64, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t row = begin; row < end; ++row) {
+            Index3 at{0, row % grid.size[1], row / grid.size[1]};
+            for (at[0] = 0; at[0] < width; ++at[0]) {
+                float& voxel = part[row * width + at[0]];
+                // far from the shell there is no need to ask
+                const bool isFar = voxel < -most - step / 2 || voxel > step / 2;
+                voxel = partAtDepth(isFar ? voxel : voxel + thickness.at(at), step);
+            }
         }
     });
-    return sum;
+    return part;
 }
 
 }  // namespace
@@ -220,21 +297,13 @@ SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
         band.medianThicknessMm = seen[seen.size() / 2];
         band.seenFraction = static_cast<double>(seen.size()) / static_cast<double>(towardsScalp);
     }
-    dropOutliers(rays, spread(rays, answers, grid, options.skullMm), answers);
-    const std::vector<float> thickness = spread(rays, answers, grid, options.skullMm);
+    dropOutliers(rays, Thickness(rays, answers, grid, options.skullMm), grid.size, answers);
     for (std::size_t n = 0; n < rays.size(); ++n) {
         if (!answers[n].thicknessMm) continue;
         const Vec3 end = rays[n].start + (*answers[n].thicknessMm / step) * rays[n].direction;
         band.seenMm.push_back(grid.toPhysical(end));
     }
-
-    const double most = *std::max_element(thickness.begin(), thickness.end());
-    band.outerSkull = depthMm(above(innerSkull, kFractionIsovalue), grid, {step, most + step});
-    forVoxels(thickness, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t n = begin; n < end; ++n) {
-            band.outerSkull[n] = partAtDepth(band.outerSkull[n] + thickness[n], step);
-        }
-    });
+    band.outerSkull = grownBy(Thickness(rays, answers, grid, options.skullMm), innerSkull, grid);
     return band;
 }
 

@@ -26,7 +26,8 @@ struct Head {
     std::vector<std::uint8_t> faces;
     HeadLevels levels;
     double skinLevel = 0;
-    Mask mask;  ///< closed and filled
+    Mask mask;          ///< closed and filled
+    double cutMm2 = 0;  ///< of its side, where tissue was taken out of the image
 };
 
 double medianWhere(const std::vector<float>& values, const Mask& mask) {
@@ -79,8 +80,12 @@ std::int64_t deepestVoxel(const std::vector<float>& depth) {
 }
 
 Mask headMask(const Head& head, double level, double closingMm) {
-    // the scalp may hang together with nothing within it, but it is all around
-    const Mask raw = widestComponent(above(head.t1, level), head.grid.size);
+    // the scalp may hang together with nothing within it, but it is all around; where a face was
+    // taken out it may not enclose the brain
+    const Mask tissue = above(head.t1, level);
+    Mask raw = widestComponent(tissue, head.grid.size);
+    const Mask largest = largestComponent(tissue, head.grid.size);
+    for (std::size_t n = 0; n < raw.size(); ++n) raw[n] |= largest[n];
     return filledAtBorder(closed(raw, head.grid, closingMm), head.faces, head.grid.size);
 }
 
@@ -115,6 +120,106 @@ void clipSpikes(std::vector<float>& values) {
     std::nth_element(low, high, sorted.end());
     const float most = *high;
     for (float& value : values) value = std::isnan(value) ? least : std::clamp(value, least, most);
+}
+
+double cm3Of(const Mask& mask, const ImageGeometry& grid) {
+    return static_cast<double>(voxelsIn(mask)) * std::pow(stepMm(grid), 3) / 1000;
+}
+
+/// How far below the skin anybody asks for.
+constexpr double kMostBelowSkinMm = 16;
+
+/// How deep every voxel lies below the skin, up to kMostBelowSkinMm; the image's border is none.
+std::vector<float> belowSkinMm(const Head& head) {
+    Mask headAndBeyond = head.mask;
+    for (std::size_t n = 0; n < headAndBeyond.size(); ++n) {
+        if (head.faces[n] == 0) headAndBeyond[n] = 1;
+    }
+    return depthMm(headAndBeyond, head.grid, {kMostBelowSkinMm + 1, 0});
+}
+
+constexpr double kMostBrainCm3 = 2500;
+
+/// Refuses an image whose skull was removed: its largest piece is no larger than a brain, and
+/// nowhere near its surface is the dark of bone. A whole head shows bone on a fifth of the voxels
+/// 6 to 16 mm below its skin (ch2: 31 %), a brain on sulci alone (ch2bet: 3 %).
+void requireSkull(const Head& head) {
+    constexpr double kLeastMm = 6, kMostMm = kMostBelowSkinMm, kLeastDark = 0.1;
+    if (cm3Of(head.mask, head.grid) > kMostBrainCm3) return;
+    const std::vector<float> below = belowSkinMm(head);
+    const double bone = head.levels.air + 0.5 * (head.levels.tissue - head.levels.air);
+    std::int64_t all = 0, dark = 0;
+    for (std::size_t n = 0; n < below.size(); ++n) {
+        if (head.mask[n] == 0 || below[n] < kLeastMm || below[n] > kMostMm) continue;
+        ++all;
+        if (head.t1[n] < bone) ++dark;
+    }
+    if (all == 0 || static_cast<double>(dark) >= kLeastDark * static_cast<double>(all)) return;
+    throw InvalidInput(
+        "there is no skull or skin around the brain (a skull-stripped T1); give the whole T1, and "
+        "this image as the brain mask");
+}
+
+bool isTakenOut(float sample, double least) {
+    return sample == 0 || sample == static_cast<float>(least);
+}
+
+/// Where tissue ends at once at samples that are exactly 0, or the darkest: what took out a face
+/// leaves none of the skin's darker layers and no partial volume. One place for each sample taken
+/// out beside half the brain's level or more.
+std::vector<Vec3> cutPlaces(const FloatImage& image, double least, double level) {
+    const Index3& size = image.geometry.size;
+    const std::array<std::int64_t, 3> stride{1, size[0], size[0] * size[1]};
+    std::vector<Vec3> places;
+    for (std::int64_t k = 1; k + 1 < size[2]; ++k) {
+        for (std::int64_t j = 1; j + 1 < size[1]; ++j) {
+            for (std::int64_t i = 1; i + 1 < size[0]; ++i) {
+                const float* const at = &image.values[i + size[0] * (j + size[1] * k)];
+                if (!isTakenOut(*at, least)) continue;
+                if (std::none_of(stride.begin(), stride.end(), [&](std::int64_t s) {
+                        return at[s] >= level || at[-s] >= level;
+                    })) {
+                    continue;
+                }
+                places.push_back(image.geometry.toPhysical(
+                    {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)}));
+            }
+        }
+    }
+    return places;
+}
+
+/// A face that was taken out is where the image ends, as at its borders: no skin is there, however
+/// near the brain. Bright skin over a masked background makes single such places (ch2: 3 cm2), or
+/// many all round: neither is a cut.
+void findCut(Head& head, const FloatImage& image) {
+    constexpr double kLeastMm2 = 1000, kMostOfSide = 0.3, kReachMm = 17;
+    const double half = head.levels.air + 0.5 * (head.levels.tissue - head.levels.air);
+    const Mat3 toGrid = inverse(head.grid.indexToPhysical);
+    Mask cut(head.mask.size(), 0);
+    for (const Vec3& place : cutPlaces(image, head.levels.air, half)) {
+        const Vec3 index = toGrid * (place - head.grid.originMm);
+        std::int64_t voxel = 0, stride = 1;
+        for (int a = 0; a < 3; ++a) {
+            voxel +=
+                stride * std::clamp<std::int64_t>(std::llround(index[a]), 0, head.grid.size[a] - 1);
+            stride *= head.grid.size[a];
+        }
+        if (head.mask[voxel] == 0) cut[voxel] = 1;
+    }
+    const double mm2 = static_cast<double>(voxelsIn(cut)) * std::pow(stepMm(head.grid), 2);
+    if (mm2 < kLeastMm2) return;
+    const auto side = static_cast<double>(sidesOf(head.mask, head.grid, head.faces).size());
+    if (mm2 > kMostOfSide * side * std::pow(stepMm(head.grid), 2)) return;
+    head.cutMm2 = mm2;
+    const Mask beyond = dilated(cut, head.grid, kReachMm);
+    for (std::size_t n = 0; n < beyond.size(); ++n) {
+        if (beyond[n] != 0 && head.mask[n] == 0 && isTakenOut(head.t1[n], head.levels.air)) {
+            head.faces[n] = 0;
+        }
+    }
+    // bone and airways that the cut has opened
+    head.mask = filledAtBorder(head.mask, head.faces, head.grid.size);
 }
 
 Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
@@ -153,23 +258,9 @@ Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
     head.levels.tissue = medianWhere(head.t1, ballAround(middle, head.grid, 35));
     head.skinLevel = skinLevelOf(head, roughMask, head.levels);
     head.mask = headMask(head, head.skinLevel, options.closingMm);
+    requireSkull(head);
+    findCut(head, image);
     return head;
-}
-
-double cm3Of(const Mask& mask, const ImageGeometry& grid) {
-    return static_cast<double>(voxelsIn(mask)) * std::pow(stepMm(grid), 3) / 1000;
-}
-
-/// How far below the skin anybody asks for.
-constexpr double kMostBelowSkinMm = 16;
-
-/// How deep every voxel lies below the skin, up to kMostBelowSkinMm; the image's border is none.
-std::vector<float> belowSkinMm(const Head& head) {
-    Mask headAndBeyond = head.mask;
-    for (std::size_t n = 0; n < headAndBeyond.size(); ++n) {
-        if (head.faces[n] == 0) headAndBeyond[n] = 1;
-    }
-    return depthMm(headAndBeyond, head.grid, {kMostBelowSkinMm + 1, 0});
 }
 
 /// The part of `brain` that lies nearer to the skin than `mm`, or outside of it.
@@ -180,8 +271,6 @@ double partAtSkin(const Mask& brain, const std::vector<float>& belowSkin, double
     }
     return static_cast<double>(near) / static_cast<double>(voxelsIn(brain));
 }
-
-constexpr double kMostBrainCm3 = 2500;
 
 /// What a brain can be: not the wrong size, not at the skin.
 bool isPlausibleBrain(const Mask& brain, const Head& head, const std::vector<float>& belowSkin) {
@@ -205,26 +294,6 @@ void requirePlausibleMask(const Mask& brain, const Head& head) {
                            " % outside the head or within 4 mm of its skin; is it of this head, in "
                            "the same space?");
     }
-}
-
-/// Refuses an image whose skull was removed: its largest piece is no larger than a brain, and
-/// nowhere near its surface is the dark of bone. A whole head shows bone on a fifth of the voxels
-/// 6 to 16 mm below its skin (ch2: 31 %), a brain on sulci alone (ch2bet: 3 %).
-void requireSkull(const Head& head) {
-    constexpr double kLeastMm = 6, kMostMm = kMostBelowSkinMm, kLeastDark = 0.1;
-    if (cm3Of(head.mask, head.grid) > kMostBrainCm3) return;
-    const std::vector<float> below = belowSkinMm(head);
-    const double bone = head.levels.air + 0.5 * (head.levels.tissue - head.levels.air);
-    std::int64_t all = 0, dark = 0;
-    for (std::size_t n = 0; n < below.size(); ++n) {
-        if (head.mask[n] == 0 || below[n] < kLeastMm || below[n] > kMostMm) continue;
-        ++all;
-        if (head.t1[n] < bone) ++dark;
-    }
-    if (all == 0 || static_cast<double>(dark) >= kLeastDark * static_cast<double>(all)) return;
-    throw InvalidInput(
-        "there is no skull or skin around the brain (a skull-stripped T1); give the whole T1, and "
-        "this image as the brain mask");
 }
 
 /// Without what hangs on by less than 16 mm: vessels, nerves, muscle below the skull's base.
@@ -304,7 +373,7 @@ std::vector<float> innerSkullPart(const Mask& brain, const Head& head,
 std::vector<Vec3> skinSides(const Head& head) {
     Mask tissue = above(head.t1, head.skinLevel);
     for (std::size_t n = 0; n < tissue.size(); ++n) tissue[n] &= head.mask[n];
-    return sidesOf(filled(tissue, head.grid.size), head.grid, head.faces);
+    return sidesOf(filledAtBorder(tissue, head.faces, head.grid.size), head.grid, head.faces);
 }
 
 /// The brain by what is known of it, or guessed.
@@ -338,11 +407,15 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
     }
     tell(options, "head", 0);
     Head head = findHead(t1, options);
-    requireSkull(head);
     RawBoundaries raw;
     raw.grid = head.grid;
     raw.notes.push_back("skin at " + shortNumber(head.skinLevel) + ", brain tissue at " +
                         shortNumber(head.levels.tissue));
+    if (head.cutMm2 > 0) {
+        raw.notes.push_back("about " + shortNumber(head.cutMm2 / 100) +
+                            " cm2 of the head's side are cut (a face taken out?): no skin is seen "
+                            "there");
+    }
     tell(options, "brain", 0);
     const Mask brain = brainOf(sources, head, raw.notes);
     raw.parts.push_back(innerSkullPart(brain, head, options));

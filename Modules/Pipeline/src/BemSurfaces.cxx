@@ -60,12 +60,14 @@ void requireFewVertices(const TriangleMesh& mesh, const BemModel& model, std::si
 }
 
 /// How many vertices each surface gets: by the lengths, or all with the same share of the most.
-void chooseVertices(const std::vector<TriangleMesh>& dense, BemModel& model) {
+/// \return  the lengths, one for each vertex of each surface
+std::vector<std::vector<double>> chooseVertices(const std::vector<TriangleMesh>& dense,
+                                                BemModel& model) {
+    std::vector<std::vector<double>> edgesMm;
     std::vector<std::int64_t> wanted;
     for (std::size_t n = 0; n < dense.size(); ++n) {
-        RemeshOptions remesh = remeshOptions(model, dense, n);
-        remesh.vertices = 0;
-        wanted.push_back(verticesForEdges(dense[n], remesh));
+        edgesMm.push_back(wantedEdgesMm(dense[n], remeshOptions(model, dense, n)));
+        wanted.push_back(verticesForEdges(dense[n], edgesMm[n]));
     }
     const std::int64_t most = model.options.mostVertices;
     const std::int64_t all = std::accumulate(wanted.begin(), wanted.end(), std::int64_t{0});
@@ -82,6 +84,7 @@ void chooseVertices(const std::vector<TriangleMesh>& dense, BemModel& model) {
         if (all > most) wanted[n] = std::max<std::int64_t>(42, wanted[n] * most / all);
         model.surfaces[n].ownVertices = wanted[n];
     }
+    return edgesMm;
 }
 
 /// Ready surfaces keep their triangles unless others are asked for.
@@ -92,6 +95,13 @@ bool staysAsItCame(const BemSurface& surface, const BemModelOptions& options) {
 /// Near-equilateral triangles. What can't be had becomes a finding.
 std::vector<TriangleMesh> remeshed(const std::vector<TriangleMesh>& dense, BemModel& model,
                                    const BemHooks& hooks) {
+    const bool comesDense = std::all_of(
+        model.surfaces.begin(), model.surfaces.end(),
+        [&](const BemSurface& surface) { return !staysAsItCame(surface, model.options); });
+    std::vector<std::vector<double>> edgesMm(dense.size());
+    if (choosesVertices(model) && comesDense) {
+        hooks.stage("remesh", [&] { edgesMm = chooseVertices(dense, model); });
+    }
     std::vector<TriangleMesh> surfaces;
     for (std::size_t n = 0; n < dense.size(); ++n) {
         if (staysAsItCame(model.surfaces[n], model.options)) {
@@ -104,7 +114,9 @@ std::vector<TriangleMesh> remeshed(const std::vector<TriangleMesh>& dense, BemMo
                                static_cast<double>(n) / static_cast<double>(dense.size()));
             }
             requireFewVertices(dense[n], model, n);
-            Remeshed result = remeshForBem(dense[n], remeshOptions(model, dense, n));
+            RemeshOptions options = remeshOptions(model, dense, n);
+            options.wantedEdgesMm = std::move(edgesMm[n]);
+            Remeshed result = remeshForBem(dense[n], options);
             model.surfaces[n].remesh = result.statistics;
             for (Finding& finding : result.findings) {
                 finding.what = bemSurfaceName(n, model.surfaces.size()) + ": " + finding.what;
@@ -186,12 +198,6 @@ std::vector<TriangleMesh> extractSurfaces(const HeadBoundaries& boundaries, BemM
 
 void finishBemModel(std::vector<TriangleMesh> dense, BemModel& model, const BemHooks& hooks) {
     if (model.hasModel()) {
-        const bool comesDense = std::all_of(
-            model.surfaces.begin(), model.surfaces.end(),
-            [&](const BemSurface& surface) { return !staysAsItCame(surface, model.options); });
-        if (choosesVertices(model) && comesDense) {
-            hooks.stage("remesh", [&] { chooseVertices(dense, model); });
-        }
         std::vector<TriangleMesh> surfaces = remeshed(dense, model, hooks);
         if (model.hasModel() && surfaces.size() > 1) surfaces = nested(surfaces, model, hooks);
         if (model.hasModel()) model.meshes = std::move(surfaces);

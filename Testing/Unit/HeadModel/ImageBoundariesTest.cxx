@@ -70,6 +70,52 @@ TEST(BoundariesFromT1, FindSkinBrainAndSkullBandOfAPhantom) {
     for (const double gap : gapsOf(found)) EXPECT_GE(gap, 2 - 2);
 }
 
+TEST(BoundariesFromT1, TakeAFaceThatWasTakenOutForTheImagesEnd) {
+    // a plane 5 mm in front of the brain, zero beyond it; air has a little noise elsewhere
+    const LargeHead head;
+    std::vector<float> t1 = headT1(head.shapes, 2, head.geometry);
+    std::uint64_t seed = 5;
+    for (float& value : t1) value += 1 + static_cast<float>(nextRandom(seed) % 4);
+    constexpr double kCutMm = -4 - 71;
+    const auto isCut = [](const Vec3& p) { return p.y < kCutMm && p.z < 40; };
+    std::int64_t n = 0;
+    for (std::int64_t k = 0; k < 96; ++k) {
+        for (std::int64_t j = 0; j < 96; ++j) {
+            for (std::int64_t i = 0; i < 96; ++i, ++n) {
+                const Vec3 p = head.geometry.toPhysical(
+                    {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+                if (isCut(p)) t1[n] = 0;
+            }
+        }
+    }
+    BoundaryOptions options;
+    options.stepMm = 2;
+    options.smoothingMm = 2;
+    const HeadBoundaries found =
+        boundariesFromT1({t1.data(), head.geometry}, std::nullopt, options);
+    EXPECT_TRUE(std::any_of(found.notes.begin(), found.notes.end(), [](const std::string& note) {
+        return note.find("are cut") != std::string::npos;
+    }));
+    // the brain is found as if nothing were missing: it is not taken for a leak to the skin
+    EXPECT_LE(surfaceError(found.solids[0], head.shapes.innerSkull).largestMm, 2.0);
+    // the skin is where the image ends, and nobody says that it was seen there, but for the rim
+    const double rimMm = std::sqrt(81.0 * 81 - 71.0 * 71);
+    const auto isWithinCut = [&](const Vec3& p) {
+        return p.y < 0 && p.z < 34 && std::hypot(p.x - 3, p.z - 8) < rimMm - 4;
+    };
+    for (const Vec3& p : surfaceOf(found.solids[2]).points) {
+        if (!isWithinCut(p)) continue;
+        // the least skull and scalp in front of the inner skull, in voxels of 2 mm
+        EXPECT_NEAR(p.y, kCutMm, 5.5) << p.x << " " << p.z;
+    }
+    std::int64_t elsewhere = 0;
+    for (const Vec3& place : found.seenMm[2]) {
+        EXPECT_FALSE(isWithinCut(place)) << place.x << " " << place.y << " " << place.z;
+        if (place.y > 0) ++elsewhere;
+    }
+    EXPECT_GE(elsewhere, 1000);
+}
+
 /// A wavy surface around the brain of the phantom: sulci along z.
 Shape wavy(const Vec3& centre, double radiusMm, double depthMm) {
     Shape shape;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "RemeshTarget.h"
 #include "SmoothShapes.h"
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
@@ -56,6 +57,40 @@ RemeshOptions withVertices(std::int64_t vertices) {
     RemeshOptions options;
     options.vertices = vertices;
     return options;
+}
+
+TEST(RemeshTarget, SlidesToTheNearestPlaceOfASmoothSurface) {
+    const TriangleMesh sphere = denseSurface(ball(20), 24, 1);
+    const RemeshTarget target(sphere);
+    for (std::size_t n = 0; n < sphere.triangles.size(); n += 37) {
+        // from a triangle to a point up to seven triangles on, 0.4 mm off the surface
+        const Vec3 from = sphere.points[sphere.triangles[n][0]];
+        const Vec3 away =
+            sphere.points[sphere.triangles[(5 * n + 11) % sphere.triangles.size()][1]];
+        const Vec3 centre{0.23, -0.31, 0.17};
+        const Vec3 moved = from + 7 * normalized(away - from);
+        const Vec3 p = centre + (20.4 / norm(moved - centre)) * (moved - centre);
+        const Landing slid = target.slide(p, static_cast<std::int64_t>(n));
+        const Landing nearest = target.project(p, -1);
+        // the surface is round to rounding: one place is nearest, whatever the way
+        EXPECT_LE(norm(slid.pointMm - nearest.pointMm), 1e-9) << n;
+        EXPECT_LE(norm(slid.normal - nearest.normal), 1e-6) << n;
+    }
+}
+
+TEST(RemeshTarget, SlidingStaysOnItsSheet) {
+    // of two plates of a folded surface 2 mm apart, what lies nearer to the other
+    const Implicit shape = [](const Vec3& p) {
+        const double out = 20 - std::hypot(p.x, p.y), plate = 1 - std::abs(p.z);
+        return std::min(out, plate);
+    };
+    const TriangleMesh plate = denseSurface(shape, 24, 0.5);
+    const RemeshTarget target(plate);
+    const Landing above = target.project({3, 4, 5}, -1);
+    EXPECT_NEAR(above.pointMm.z, 1, 0.1);
+    const Landing slid = target.slide({4, 4, -0.3}, above.triangle);
+    EXPECT_NEAR(slid.pointMm.z, 1, 0.1);
+    EXPECT_NEAR(target.project({4, 4, -0.3}, above.triangle).pointMm.z, -1, 0.1);
 }
 
 TEST(RemeshForBem, GivesExactlyTheVerticesAskedFor) {

@@ -23,6 +23,9 @@ struct RemeshOptions {
     std::optional<EdgeLengthRange> edgeLengthMm{};
     /// Surfaces not to come near with long edges; only looked at with edgeLengthMm.
     std::vector<const TriangleMesh*> neighbours{};
+    /// The lengths wanted at the surface's vertices, where they are known (wantedEdgesMm()): saves
+    /// what it takes to find them. Empty: they follow from edgeLengthMm.
+    std::vector<double> wantedEdgesMm{};
     /// 0: vertices lie on the input. More: they may leave it by as much, to lie on a quadric fitted
     /// to the input within 3/4 of an edge length, which takes out the stairs of a binary volume.
     double fitMm = 0;
@@ -56,15 +59,20 @@ struct Remeshed {
 /// \return  one closed component of genus 0, outward, without self-intersection, with the number
 ///          of vertices asked for; or findings that say where that can't be had.
 /// \pre  surface is closed, oriented, manifold, one component of genus 0, outward, finite; vertices
-///       is 0 or >= 12, and not 0 without edgeLengthMm; 0 < minimumMm <= maximumMm; fitMm >= 0
+///       is 0 or >= 12, and not 0 without edgeLengthMm; 0 < minimumMm <= maximumMm; fitMm >= 0;
+///       wantedEdgesMm is empty or has a length above 0 for each vertex
 ///       \throws InvalidInput otherwise, with the place of a handle if there is one
 /// Cost: O(T log T); about 300 bytes a triangle. The same input gives the same bytes, whatever the
 /// number of threads.
 Remeshed remeshForBem(const TriangleMesh& surface, const RemeshOptions& options = {});
 
-/// How many vertices options.edgeLengthMm asks for, before anything is remeshed: within some
-/// percent of what remeshForBem() gives when no number is wanted. \pre as remeshForBem(), and
-/// options.edgeLengthMm is set
-std::int64_t verticesForEdges(const TriangleMesh& surface, const RemeshOptions& options);
+/// The edge lengths that options.edgeLengthMm asks for, one for each vertex of the surface.
+/// \pre as remeshForBem(), and options.edgeLengthMm is set
+std::vector<double> wantedEdgesMm(const TriangleMesh& surface, const RemeshOptions& options);
+
+/// How many vertices equilateral triangles of these lengths take, before anything is remeshed:
+/// within some percent of what remeshForBem() gives when no number is wanted.
+/// \pre one length for each vertex, all above 0
+std::int64_t verticesForEdges(const TriangleMesh& surface, const std::vector<double>& edgesMm);
 
 }  // namespace adaptiso
