@@ -170,9 +170,9 @@ inline constexpr std::array kMendCosines{0.3, -0.3};
 inline constexpr double kMoveWeight = 0.4;
 inline constexpr std::array kMoveSteps{0.6, 0.35, 0.15};
 /// Around places that mending does not help vertices come apart again, voxels: in the first
-/// attempt; three attempts, each twice as far. At most this part of halfway's vertices.
+/// attempt; four attempts, each twice as far. At most this part of halfway's vertices.
 inline constexpr double kUndoReach = 1, kMostUndone = 0.05;
-inline constexpr int kMostUndos = 3;
+inline constexpr int kMostUndos = 4;
 /// So many times more comes apart to keep the surface a manifold.
 inline constexpr int kMostWidenings = 8;
 /// An edge is turned where that leaves less than this part of the distance.
