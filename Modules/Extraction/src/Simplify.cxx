@@ -84,9 +84,10 @@ void scale(TriangleMesh& mesh, int exponent) {
 }
 
 /// The power of two that brings a mesh of a very large or very small unit to about 1; else 0.
-/// Quadrics are fourth powers of lengths in single precision.
+/// Quadrics are fourth powers of lengths in single precision: of a mesh of 2^-24 small ones lose
+/// digits.
 int exponentTowardsOne(const TriangleMesh& mesh) {
-    constexpr int kFarFromOne = 24;
+    constexpr int kFarFromOne = 12;
     if (mesh.points.empty()) return 0;
     const BoundingBox box = boundingBox(mesh);
     const Vec3 extent = box.maximum - box.minimum;
