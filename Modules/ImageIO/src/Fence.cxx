@@ -257,7 +257,9 @@ ReadVolume readBehindFence(const fs::path& input, const FenceLimits& limits,
     if (bytes.empty()) refuseSilence(blamed, status);
     std::optional<FenceAnswer> answer = parseFenceAnswer(bytes);
     if (!answer) {
-        if (WIFSIGNALED(status)) refuseSilence(blamed, status);
+        // one that answers without an end was stopped by us
+        const bool isCut = WIFSIGNALED(status) && bytes.size() <= kLongestAnswer;
+        if (isCut) refuseSilence(blamed, status);
         refuse(blamed, "its decoder answered nonsense", "the file is damaged");
     }
     if (answer->kind != FenceAnswer::Kind::Volume) rethrow(blamed, *answer, limits);
