@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -15,8 +14,8 @@
 
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/Parameters.h"
+#include "adaptive/proof/MeshMap.h"
 #include "adaptive/proof/PieceBound.h"
-#include "adaptive/proof/SurfaceMap.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -239,35 +238,6 @@ private:
     std::vector<std::uint8_t> isMarked_;
 };
 
-/// What maps of pieces of the full surface cover of the simplified one, as MapCover, for pieces
-/// side by side: shares are summed as whole numbers of a small part, so that their order changes
-/// nothing.
-class SharedCover {
-public:
-    explicit SharedCover(std::size_t triangles) : parts_(triangles, 0), hasBorder_(triangles, 0) {}
-
-    void add(std::uint64_t triangle, double share) {
-        if (std::abs(share) < kMostShare) {
-            std::atomic_ref(parts_[triangle]).fetch_add(std::llround(kOne * share));
-        } else {
-            addBorder(triangle);
-        }
-    }
-    void addBorder(std::uint64_t triangle) {
-        std::atomic_ref(hasBorder_[triangle]).store(1, std::memory_order_relaxed);
-    }
-    bool covers(std::uint64_t triangle) const {
-        const double sum = static_cast<double>(parts_[triangle]) / kOne;
-        return hasBorder_[triangle] == 0 && std::abs(sum - 1) < kCoverRounding;
-    }
-
-private:
-    static constexpr double kOne = 1LL << 40, kMostShare = 1 << 10;
-
-    std::vector<std::int64_t> parts_;
-    std::vector<std::uint8_t> hasBorder_;
-};
-
 /// What is proved, but for which triangles.
 struct Task {
     const MeshParts& parts;
@@ -285,67 +255,13 @@ void forEachUnknown(const std::vector<std::uint8_t>& isKnown, std::int64_t piece
     }
 }
 
-/// Maps a piece of the full surface to the simplified one.
-class PieceMap {
-public:
-    using Map = SurfaceMap<std::uint64_t>;
-
-    PieceMap(const Task& task, const WalkableSurface<std::uint32_t>& fine,
-             const WalkableSurface<std::uint64_t>& onto)
-        : task_(task), fine_(fine), map_(onto, task.enoughMm * task.enoughMm) {}
-
-    /// \return false when the triangle could not be mapped within the distance
-    bool map(std::uint32_t t, double squaredDistance) {
-        std::array<const Map::Vertex*, 3> corners{};
-        std::array<Map::Side, 3> sides{};
-        map_.clear();
-        for (int i = 0; i < 3; ++i) {
-            vertex_[i] = vertexAt(task_.parts.triangles[t][i]);
-            corners[i] = &vertex_[i];
-        }
-        for (std::uint32_t i = 0; i < 3; ++i) {
-            const bool isForward = 3 * t + i < fine_.twin(3 * t + i);
-            const Map::Vertex &a = vertex_[i], &b = vertex_[(i + 1) % 3];
-            sides[i] = {nullptr, isForward};
-            if (a.standIn == b.standIn) continue;
-            way_[i] = isForward ? map_.wayAlong(a, b) : map_.wayAlong(b, a);
-            sides[i].way = &way_[i];
-        }
-        return map_.map(corners, sides, squaredDistance);
-    }
-    std::span<const Map::Part> parts() const { return map_.parts(); }
-
-    /// Calls f(triangle) for those of the simplified surface that the image of an edge passes.
-    template <class F>
-    void forEachAlong(std::uint32_t halfEdge, const F& f) {
-        const std::uint32_t h = std::min(halfEdge, fine_.twin(halfEdge));
-        const auto& v = task_.parts.triangles[h / 3];
-        const Map::Vertex a = vertexAt(v[h % 3]), b = vertexAt(v[(h + 1) % 3]);
-        f(a.standIn);
-        if (a.standIn == b.standIn) return;
-        map_.clear();
-        map_.forEachAlong(map_.wayAlong(a, b), f);
-    }
-
-private:
-    Map::Vertex vertexAt(std::uint32_t v) const {
-        return map_.vertexAt(task_.parts.points[v], task_.surface.sampleTriangle[v]);
-    }
-
-    const Task& task_;
-    const WalkableSurface<std::uint32_t>& fine_;
-    Map map_;
-    std::array<Map::Vertex, 3> vertex_;
-    std::array<Map::Way, 3> way_;
-};
-
 /// Of the full surface to the simplified one.
 /// \param isMapped  gets 1 for each triangle that the map has, whose images the cover gets
 PartBound proveFine(const Task& task, const WalkableSurface<std::uint32_t>& fine,
                     const Target<std::uint64_t>& to, const std::vector<std::uint8_t>& isKnown,
                     std::int64_t piece, std::vector<std::uint8_t>& isMapped, SharedCover& cover) {
     OneWayProof<std::uint64_t> proof(to, task.voxelMm, task.enoughMm, task.limitMm);
-    PieceMap map(task, fine, to.walkable);
+    PieceMap map(task.parts, fine, task.surface, to.walkable, task.enoughMm);
     forEachUnknown(isKnown, piece, task.parts.triangles.size(), [&](std::size_t t) {
         if (map.map(static_cast<std::uint32_t>(t), proof.squaredBound())) {
             isMapped[t] = 1;
@@ -371,7 +287,7 @@ PartBound proveFine(const Task& task, const WalkableSurface<std::uint32_t>& fine
 void addBorders(const Task& task, const WalkableSurface<std::uint32_t>& fine,
                 const WalkableSurface<std::uint64_t>& onto, std::int64_t piece,
                 const std::vector<std::uint8_t>& isMapped, SharedCover& cover) {
-    PieceMap map(task, fine, onto);
+    PieceMap map(task.parts, fine, task.surface, onto, task.enoughMm);
     forEachUnknown({}, piece, isMapped.size(), [&](std::size_t t) {
         if (isMapped[t] == 0) return;
         for (auto h = static_cast<std::uint32_t>(3 * t); h < 3 * t + 3; ++h) {
