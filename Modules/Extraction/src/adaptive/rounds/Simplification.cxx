@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -14,6 +15,23 @@ namespace {
 void keepHeirs(SimplifiedSurface& surface) {
     surface.heirs.resize(surface.points.size());
     std::iota(surface.heirs.begin(), surface.heirs.end(), std::uint64_t{0});
+}
+
+/// A cut into one cube with all of the surface; none where that would be too large.
+std::optional<PatchCut> cutAround(const SimplifiedSurface& surface, const MetricFrame& frame) {
+    if (surface.points.empty()) return {};
+    const Vec3 first = frame.toIndex(surface.points[0]);
+    CornerBox box{first, first};
+    for (const Vec3& p : surface.points) box.add(frame.toIndex(p));
+    const Vec3 extent = box.high - box.low;
+    const double widest = std::max({extent.x, extent.y, extent.z});
+    if (!(widest <= kOnePatchSide)) return {};
+    PatchCut cut{static_cast<std::int64_t>(widest) + Brick::kSide};
+    for (int a = 0; a < 3; ++a) {
+        const double middle = 0.5 * (box.low[a] + box.high[a]);
+        cut.shift[a] = static_cast<std::int64_t>(std::floor(middle)) - cut.side / 2;
+    }
+    return cut;
 }
 
 /// How much the limit of cost may grow in a round: the more the farther the wanted count is.
@@ -32,19 +50,23 @@ Simplification::Simplification(const FullSurface& full, const TightPlaces& tight
     costUnit_ = voxel * voxel * voxel * voxel;
 }
 
-/// Cuts in turn, so that what straddles one cut lies within the next, also where their cubes grow.
-PatchCut Simplification::nextCut() {
+/// Cuts in turn, so that what straddles one cut lies within the next, also where their cubes grow;
+/// one cube for few triangles.
+PatchCut Simplification::nextCut(const SimplifiedSurface& surface) {
     ++rounds_;
+    if (surface.triangleCount() <= kOnePatch) {
+        if (const auto cut = cutAround(surface, frame_)) return *cut;
+    }
     const bool isFine = limits_.maxCost <= kCoarseCost * costUnit_;
     const std::int64_t side = isFine ? Brick::kSide : std::int64_t{2} * Brick::kSide,
-                       shift = isFine ? 0 : Brick::kSide / 4;
-    return {side, shift + (rounds_ % 2 == 1 ? side / 2 : 0)};
+                       shift = (isFine ? 0 : Brick::kSide / 4) + (rounds_ % 2 == 1 ? side / 2 : 0);
+    return {side, {shift, shift, shift}};
 }
 
 void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
     limits_.triedCost = limits_.maxCost;
     limits_.maxCost = cost;
-    PatchRound(surface, nextCut(), frame_).run({limits_});
+    PatchRound(surface, nextCut(surface), frame_).run({limits_});
 }
 
 Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
@@ -104,7 +126,7 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
     const double times = static_cast<double>(before) / static_cast<double>(target);
     PatchWork work{limits_};
     work.mostCollapses = wanted;
-    PatchRound round(surface, nextCut(), frame_);
+    PatchRound round(surface, nextCut(surface), frame_);
     bool isLanding = false;
     if (times < kNearCount || isTied_) {
         work.fits = true;
@@ -181,7 +203,7 @@ void Simplification::fit(SimplifiedSurface& surface) {
     PatchWork work{limits_};
     work.collapses = false;
     work.fits = true;
-    for (; fits_ < 2; ++fits_) PatchRound(surface, nextCut(), frame_).run(work);
+    for (; fits_ < 2; ++fits_) PatchRound(surface, nextCut(surface), frame_).run(work);
 }
 
 }  // namespace adaptiso::detail
