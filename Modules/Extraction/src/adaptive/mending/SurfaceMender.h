@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <set>
 #include <unordered_map>
@@ -48,6 +47,10 @@ private:
     using Triangle = SurfaceState::Triangle;
     using Numbers = std::vector<std::uint64_t>;
     static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+    static constexpr std::size_t kSlots = std::size_t{1} << 18;
+    struct CubeHash {
+        std::size_t operator()(const Index3& cube) const;
+    };
 
     /// The edge from a to b with its triangles (a, b, c) and (b, a, d), the twin.
     struct Edge {
@@ -86,7 +89,7 @@ private:
     void replace(std::uint64_t number, const Triangle& triangle);
     void track(std::uint64_t triangle);
     void trackCubes(std::uint64_t triangle);
-    static std::size_t hashSlot(const Index3& cube);
+    static std::size_t hashSlot(const Index3& cube) { return CubeHash{}(cube) % kSlots; }
     void note(std::uint64_t triangle);
     void handOver(const Numbers& from, const Numbers& to);
     template <class F>
@@ -109,7 +112,7 @@ private:
     std::unordered_map<std::uint64_t, Numbers> samplesOf_;     ///< of triangles around_ has
     /// Triangles whose boxes overlap a cube, for the cubes that a change may reach into. Some have
     /// changed since.
-    std::map<Index3, Numbers> inCube_;
+    std::unordered_map<Index3, Numbers, CubeHash> inCube_;
     std::vector<bool> mayHaveCube_;  ///< by hashSlot(): most cubes are not in inCube_
 };
 
