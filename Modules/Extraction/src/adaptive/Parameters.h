@@ -52,9 +52,11 @@ inline constexpr double kHalfwayCost = 2, kHalfwayDistance = 0.25;
 /// that are still too many; after so many in a row that did not, the count is given up.
 inline constexpr double kHelped = 0.95;
 inline constexpr int kMostHelpless = 3;
-/// Limit of cost after the allowed distance has grown on the way to a count.
-inline constexpr double kCostAfterDistance = 0.01;
-/// A round that leaves more than this part of the triangles was hardly worth it.
+/// Limit of cost before the first round after the allowed distance has grown on the way to a count:
+/// what costs less was hardly refused for its distance.
+inline constexpr double kCostAfterDistance = 0.16;
+/// A round that leaves more than this part of the triangles, or of those that are too many for a
+/// count, was hardly worth it.
 inline constexpr double kWorthwhile = 0.99;
 /// Above this part of the wanted count a round is not thought to lead below it.
 inline constexpr double kFarFromCount = 1.6;

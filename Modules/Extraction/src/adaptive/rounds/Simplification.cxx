@@ -34,6 +34,10 @@ std::optional<PatchCut> cutAround(const SimplifiedSurface& surface, const Metric
     return cut;
 }
 
+bool leavesLess(double part, std::int64_t now, std::int64_t before) {
+    return static_cast<double>(now) < part * static_cast<double>(before);
+}
+
 /// How much the limit of cost may grow in a round: the more the farther the wanted count is.
 double costStep(std::int64_t triangles, std::int64_t target) {
     const double part = static_cast<double>(triangles) / static_cast<double>(target);
@@ -110,10 +114,7 @@ SimplifiedSurface Simplification::toLimits(SimplifiedSurface last,
     for (int idle = 0; idle < 2;) {
         const std::int64_t before = surface.triangleCount();
         roundUpTo(std::numeric_limits<double>::max(), surface);
-        idle = static_cast<double>(surface.triangleCount()) >=
-                       kWorthwhile * static_cast<double>(before)
-                   ? idle + 1
-                   : 0;
+        idle = leavesLess(kWorthwhile, surface.triangleCount(), before) ? 0 : idle + 1;
     }
     return surface;
 }
@@ -142,6 +143,7 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
     }
     fits_ = work.fits ? fits_ + 1 : 0;
     round.run(work);
+    limits_.triedCost = work.limits.maxCost;
     // where costs are equal, as on flat parts, a limit leaves all or none: the next round deals out
     isTied_ = isLanding && before - surface.triangleCount() < wanted;
 }
@@ -163,6 +165,7 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
     CollapseCosts costs;
     double cost = kFirstCost;
     limits_.maxCost = cost * costUnit_;
+    limits_.triedCost = -1;
     rounds_ = fits_ = 0;
     isTied_ = false;
     SimplifiedSurface surface = full_.firstRound(tight_, limits_, &costs);
@@ -171,6 +174,7 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
         limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
         surface = full_.firstRound(tight_, limits_, nullptr);
     }
+    limits_.triedCost = limits_.maxCost;
     for (int helpless = 0; helpless < kMostHelpless;) {
         const std::int64_t above = surface.triangleCount() - target;
         for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
@@ -178,11 +182,12 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
             cost *= costStep(before, target);
             if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
             roundTowards(surface, target, cost);
-            if (cost > kLastCost) idle = surface.triangleCount() == before ? idle + 1 : 0;
+            const bool helped =
+                leavesLess(kWorthwhile, surface.triangleCount() - target, before - target);
+            if (cost > kLastCost) idle = helped ? 0 : idle + 1;
         }
         if (surface.triangleCount() <= target || limits_.maxDistanceMm >= farthestMm) break;
-        const bool helped = static_cast<double>(surface.triangleCount() - target) <
-                            kHelped * static_cast<double>(above);
+        const bool helped = leavesLess(kHelped, surface.triangleCount() - target, above);
         helpless = helped ? 0 : helpless + 1;
         goFarther(surface);
         cost = kCostAfterDistance;
