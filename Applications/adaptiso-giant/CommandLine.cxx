@@ -39,9 +39,10 @@ void declareArguments(CLI::App& app, GiantOptions& options) {
 }
 
 void declarePlanned(CLI::App& app, GiantOptions& options) {
-    app.add_option("--input", options.input,
-                   "The image: a Zarr or OME-Zarr, of which only what a tile needs is read, or any "
-                   "other that adaptiso-mesh reads")
+    app.add_option(
+           "--input", options.input,
+           "The image: a Zarr, OME-Zarr or N5, of which only what a tile needs is read, or any "
+           "other that adaptiso-mesh reads")
         ->type_name("IMG")
         ->group(kPlanned);
     addNumber(app, "--iso", options.isovalue, {},
