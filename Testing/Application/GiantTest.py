@@ -231,6 +231,22 @@ class Restart(GiantTest):
         self.refuse(BAD_INPUT, r"1 of \d+ pieces are not there.*run: adaptiso-giant tile", "join",
                     "work")
 
+    def test_seams_of_tiles_that_were_made_again_are_not_joined(self):
+        shutil.copytree(self.zarr, self.path("mine.zarr"))
+        self.giant("run", "work", "--input", "mine.zarr", "--iso", ISO, "--tile", 32, "-o", "a.ply",
+                   "--no-warnings")
+        chunk = self.path("mine.zarr/0/1.1.1")  # within the hollow ball, off all walls
+        chunk.write_bytes(chunk.read_bytes()[:-4] + struct.pack("<f", 3))
+        self.giant("tile", "work", "-q")
+        self.refuse(BAD_INPUT, r"its tiles were made again since; run: adaptiso-giant seam", "join",
+                    "work", "-o", "b.ply")
+        self.assertFalse(self.path("b.ply").exists())
+        self.giant("seam", "work", "-q")
+        self.giant("join", "work", "-o", "b.ply", "-q")
+        self.giant("run", "new", "--input", "mine.zarr", "--iso", ISO, "--tile", 32, "-o", "c.ply",
+                   "--no-warnings")
+        self.assertEqual(self.path("b.ply").read_bytes(), self.path("c.ply").read_bytes())
+
     def test_a_damaged_piece_is_refused_by_the_join(self):
         self.plan("work", "--method", "mc")
         self.giant("tile", "work")
