@@ -173,9 +173,14 @@ void requireClosed(const GiantSurface& surface) {
 
 }  // namespace
 
-int runJoinStep(const GiantOptions& options) {
+int runJoinStep(const GiantOptions& options, const std::string& key) {
     const ThreadLimit threads(options.common);
     const GiantPlan plan = readPlan(options.work);
+    if (!key.empty() && keyOf(plan) != key) {
+        throw InvalidInput(options.work.string() +
+                           ": another plan was made there meanwhile; give each surface a folder of "
+                           "its own");
+    }
     const bool isPieces = options.output.extension() == ".pvtp";
     for (const fs::path& file : {options.output, options.preview}) {
         if (!file.empty()) checkOutput(file);

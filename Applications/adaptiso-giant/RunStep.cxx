@@ -84,7 +84,7 @@ int runAllSteps(const GiantOptions& options) {
         runPieces(options, "tile", plan.tiles, progress);
         runPieces(options, "seam", plan.seams(), progress);
     }
-    return runJoinStep(options);
+    return runJoinStep(options, keyOf(plan));
 }
 
 }  // namespace adaptiso

@@ -57,7 +57,8 @@ private:
 int runPlanStep(const GiantOptions& options);
 int runTileStep(const GiantOptions& options);
 int runSeamStep(const GiantOptions& options);
-int runJoinStep(const GiantOptions& options);
+/// \param key  of the plan that is to be joined; empty: that which is there
+int runJoinStep(const GiantOptions& options, const std::string& key = {});
 int runAllSteps(const GiantOptions& options);
 
 }  // namespace adaptiso

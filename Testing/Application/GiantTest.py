@@ -305,6 +305,23 @@ class Refusals(GiantTest):
         self.refuse(BAD_INPUT, "is not there.*run: adaptiso-giant tile adaptive", "seam",
                     "adaptive", plan["seams"][0])
 
+    def test_another_plan_in_the_same_folder_meanwhile(self):
+        command = [GIANT, "run", "work", "--input", self.zarr, "--tile", "32", "--method", "mc", "-q",
+                   "--no-warnings"]
+        first = subprocess.Popen([*command, "--iso", "0", "-o", "a.ply"], cwd=self.path("."),
+                                 stderr=subprocess.PIPE, text=True)
+        end = time.monotonic() + 60
+        while not self.path("work/plan.json").exists() and time.monotonic() < end:
+            time.sleep(0.005)
+        subprocess.run([*command, "--iso", "1", "-o", "b.ply"], cwd=self.path("."), check=False,
+                       capture_output=True)
+        errors = first.communicate()[1]
+        if first.returncode == OK:  # it was done before the other planned
+            return
+        self.assertEqual(first.returncode, BAD_INPUT, errors)
+        self.assertEqual(len(errors.splitlines()), 1)
+        self.assertFalse(self.path("a.ply").exists())
+
     def test_no_surface(self):
         self.giant("plan", "work", "--input", self.zarr, "--iso", 100, "--tile", 32,
                    "--no-warnings")

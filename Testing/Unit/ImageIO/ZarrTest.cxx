@@ -89,6 +89,9 @@ TEST_F(ZarrTest, PartsWithoutChunksAreKnownWithoutReading) {
     put("1.1.1", chunkAt(1, 1, 1) + Text(1, 'x'));
     EXPECT_NE(image.stampOf({4, 4, 4}, {1, 1, 1}), before);
     EXPECT_EQ(image.stampOf({0, 0, 0}, {4, 4, 4}), aside);
+    put(".zarray", metadata2("null", R"(, "fill_value": 8)"));  // what chunks that are missing hold
+    EXPECT_NE(ImageRegions::open(root_, {}).stampOf({0, 0, 0}, {4, 4, 4}), aside);
+    put(".zarray", metadata2("null"));
     EXPECT_THROW(image.read({4, 4, 4}, {1, 1, 1}), FileError);
     ReadOptions strict;
     strict.refusesMissingChunks = true;
