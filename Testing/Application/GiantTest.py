@@ -287,8 +287,15 @@ class Refusals(GiantTest):
                     100)
         self.refuse(USAGE, "--max-error: is for", "plan", "work", "--input", zarr, "--iso", 0,
                     "--method", "mc", "--max-error", 1)
-        self.refuse(USAGE, "--method", "plan", "work", "--input", zarr, "--iso", 0, "--method",
-                    "boxes")
+        for words, reason in (("--method boxes", "may be as long as the volume"),
+                              ("--method dnc", "must be adaptive or mc"),
+                              ("--triangles 100", "over the whole volume; take --max-error"),
+                              ("--reduction 0.9", "over the whole volume"),
+                              ("--largest", "known when tiles are joined"),
+                              ("--min-volume 3", "known when tiles are joined"),
+                              ("--border open", "join proves that the surface is closed")):
+            self.refuse(USAGE, f"{words.split()[0]}.*{reason}", "plan", "work", "--input", zarr,
+                        "--iso", 0, *words.split())
         self.refuse(USAGE, "--iso: the plan says it", "tile", "work", "--iso", 3)
         self.refuse(USAGE, "must end in .ply or .pvtp", "join", "work", "-o", "a.stl")
         self.refuse(USAGE, "ID: only the steps", "join", "work", "0_0_0")
