@@ -80,7 +80,7 @@ HeadBoundaries boundariesFromCt(const VolumeView& ct, const BoundaryOptions& opt
     const FloatImage image = toFloat(ct, static_cast<float>(kAirHu));
     requireHounsfield(image, options);
     Index3 first, last;
-    if (!boundingIndices(image, options.skinHu, first, last)) {
+    if (!boundingIndices(image.values, image.geometry.size, options.skinHu, first, last)) {
         throw InvalidInput("nothing is above " + shortNumber(options.skinHu) + " HU");
     }
     RawBoundaries raw;

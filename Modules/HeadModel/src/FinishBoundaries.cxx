@@ -90,9 +90,8 @@ void keepWithin(std::vector<float>& part, const FractionField& solid, double gap
 
 /// The part of a solid's grid that holds it, with room: a brain takes a third of a head's.
 FractionField cropped(const FractionField& solid, double roomMm) {
-    const FloatImage image{solid.grid, solid.part};
     Index3 first, last;
-    if (!boundingIndices(image, kFractionIsovalue, first, last)) {
+    if (!boundingIndices(solid.part, solid.grid.size, kFractionIsovalue, first, last)) {
         throw InvalidInput("the brain is empty");
     }
     const auto room = static_cast<std::int64_t>(std::ceil(roomMm / stepMm(solid.grid))) + 3;

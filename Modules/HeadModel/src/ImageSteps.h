@@ -18,9 +18,11 @@ using Mask = std::vector<std::uint8_t>;
 /// Side of the cubic voxels of a working grid, mm.
 double stepMm(const ImageGeometry& grid);
 
-/// `values` convolved with a Gaussian of standard deviation sigmaMm, the border repeated. Below a
-/// third of a voxel nothing is done: the samples can't hold it.
-/// Cost: O(voxels near which values differ * sigmaMm in voxels), in parallel.
+/// `values` convolved with a Gaussian of standard deviation sigmaMm (smoothVolumeRecursively: to
+/// about 1 %), the border repeated. Below a third of a voxel nothing is done: the samples can't
+/// hold it. What is more than 4.5 standard deviations from all that is not 0 stays 0. \pre values
+/// >= 0; 4 voxels or more along every axis Cost: O(voxels of the box around what is not 0), in
+/// parallel.
 std::vector<float> smoothed(std::vector<float> values, const ImageGeometry& grid, double sigmaMm);
 
 /// How far from a mask's surface depths are wanted, mm; what is beyond has the band's end.

@@ -194,7 +194,9 @@ public:
         const auto usual = static_cast<float>(usualMm);
         const float prior = kPriorWeight * static_cast<float>(perNode_ * perNode_ * perNode_);
         for (std::size_t n = 0; n < mm_.size(); ++n) {
-            mm_[n] = (mm_[n] + prior * usual) / (weight[n] + prior);
+            // a recursive filter's tails swing by a little around zero
+            const float w = std::max(weight[n], 0.0f);
+            mm_[n] = (std::max(mm_[n], 0.0f) + prior * usual) / (w + prior);
         }
     }
 

@@ -234,7 +234,7 @@ Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
     }
     const double rough = twoClassThreshold(image.values);
     Index3 first, last;
-    boundingIndices(image, rough, first, last);
+    boundingIndices(image.values, image.geometry.size, rough, first, last);
     // a bright ghost in the air may widen the box: that costs time, no more
     constexpr std::int64_t kSoftVoxels = 10;  // skin below the rough threshold
     for (int a = 0; a < 3; ++a) {
