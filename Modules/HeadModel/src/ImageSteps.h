@@ -62,6 +62,18 @@ void forEachBorderVoxel(const Index3& size, const Visit& visit) {
     }
 }
 
+/// Calls visit(row's first voxel in the grid, in the box) for the rows along x of a box of a grid.
+template <class Visit>
+void forEachRow(const Index3& first, const Index3& boxSize, const Index3& size,
+                const Visit& visit) {
+    std::int64_t inBox = 0;
+    for (std::int64_t k = 0; k < boxSize[2]; ++k) {
+        for (std::int64_t j = 0; j < boxSize[1]; ++j, inBox += boxSize[0]) {
+            visit(first[0] + size[0] * (first[1] + j + size[1] * (first[2] + k)), inBox);
+        }
+    }
+}
+
 /// Calls body(begin, end) for pieces of all voxels of a volume, in parallel.
 template <class Values, class Body>
 void forVoxels(const Values& volume, const Body& body) {

@@ -24,14 +24,10 @@ std::vector<float> smoothed(std::vector<float> values, const ImageGeometry& grid
         smoothVolumeRecursively(cropVolume(VolumeView(values.data(), grid), box), sigmaMm);
     const TypedVolumeView<float> from = part.view().as<float>();
     const Index3& size = from.geometry.size;
-    for (std::int64_t k = 0; k < size[2]; ++k) {
-        for (std::int64_t j = 0; j < size[1]; ++j) {
-            const std::int64_t row =
-                box[0].first +
-                grid.size[0] * (box[1].first + j + grid.size[1] * (box[2].first + k));
-            std::copy_n(&from.at(0, j, k), size[0], values.begin() + row);
-        }
-    }
+    forEachRow({box[0].first, box[1].first, box[2].first}, size, grid.size,
+               [&](std::int64_t row, std::int64_t inBox) {
+                   std::copy_n(from.samples + inBox, size[0], values.begin() + row);
+               });
     return values;
 }
 
