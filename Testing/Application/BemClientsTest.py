@@ -1,6 +1,7 @@
 """What MNE-Python and nibabel make of adaptiso-bem's models. Needs Debian's python3-mne and
 python3-nibabel; exits 77 (skipped) without them.
 """
+import json
 import subprocess
 import sys
 import unittest
@@ -46,6 +47,41 @@ def part_of_ball(points, radius, steps=5):
         count += np.linalg.norm(points[near] + offset - CENTRE, axis=-1) <= radius
     part[near] = count / steps ** 3
     return part
+
+
+def charm_like(image, ndimage):
+    """Labels of charm's final_tissues (1 white, 2 grey, 3 CSF, 5 scalp, 6 eyes, 7 compact and 8 spongy bone, 9 blood,
+    10 muscle) of ch2, by thresholds and distances."""
+    def filled(mask, closing, room):
+        closed = ndimage.binary_closing(np.pad(mask, room), iterations=closing)
+        return ndimage.binary_fill_holes(closed)[room:-room, room:-room, room:-room]
+
+    t1 = np.asarray(image.dataobj).astype(float)
+    head = filled(t1 > 24, 6, 20)
+    for k in range(t1.shape[2]):
+        head[:, :, k] = ndimage.binary_fill_holes(head[:, :, k])
+    brain = np.asarray(nibabel.load(TEMPLATES / "ch2bet.nii.gz").dataobj) > 0
+    hull = filled(brain, 8, 12)
+    from_hull = ndimage.distance_transform_edt(~hull)
+    below_skin = ndimage.distance_transform_edt(head)
+    x, y, z = (axis - middle for axis, middle in zip(np.indices(t1.shape), (90, 125, 71)))
+    labels = np.zeros(t1.shape, np.uint8)
+    labels[head] = 5
+    labels[head & (below_skin > 5) & (z < -30) & (t1 > 40)] = 10
+    bone = head & (from_hull > 1.2) & (from_hull < 7.5) & (below_skin > 3)
+    labels[bone] = 7
+    labels[bone & (from_hull > 3) & (from_hull < 5.5) & (z > -20)] = 8
+    labels[head & (t1 < 40) & (below_skin > 4) & (from_hull >= 7.5) & (z < -10)] = 7  # of the face
+    labels[head & (t1 < 8) & (below_skin > 8) & (z < -15) & (from_hull > 3)] = 0  # airways
+    for side in (-1, 1):
+        labels[head & ((x - side * 32) ** 2 + (y - 60) ** 2 + (z + 38) ** 2 < 144)] = 6
+    labels[head & (from_hull <= 1.2)] = 3
+    labels[hull] = np.where(t1[hull] > 100, 1, np.where(t1[hull] > 50, 2, 3))
+    labels[hull & (np.abs(x) < 2) & (y < -40) & (z > 20) & (t1 < 70)] = 9  # sagittal sinus
+    labels[head & ((x - 40) ** 2 + (y - 20) ** 2 < 4) & (labels == 5)] = 9
+    burr_hole = ((x - 45) ** 2 + (y - 30) ** 2 < 16) & (z > 30)
+    labels[burr_hole & ((labels == 7) | (labels == 8))] = 5
+    return labels
 
 
 class ClientTest(ApplicationTest):
@@ -340,6 +376,24 @@ class RealHead(ClientTest):
         model = self.accepted(solve=False)  # 7,686 equations take MNE a minute
         self.assertEqual([surface["np"] for surface in model], [2562] * 3)
         self.assert_head("model")
+
+    def test_four_layers_of_labels_of_simnibs_kind(self):
+        """Thin canals, eyes, sinuses, a burr hole and blood, as charm's final_tissues have them: an outer skull with bony
+        bridges, into the dead ends of which vertices once slid (two million pairs of triangles crossed)."""
+        try:
+            from scipy import ndimage
+        except ImportError:
+            self.skipTest("needs python3-scipy")
+        image = nibabel.load(TEMPLATES / "ch2.nii.gz")
+        save(self.path("charm.nii.gz"), charm_like(image, ndimage), image.affine)
+        self.bem("--labels", "charm.nii.gz", "--preset", "charm", "--layers", 4, "-o", "model")
+        report = json.loads((self.path("model") / "report.json").read_text())
+        self.assertTrue(all(check["passed"] for check in report["checks"]))
+        self.assertLessEqual(sum(surface["vertices"] for surface in report["surfaces"]), 10_000)
+        volumes = [surface["volumeMm3"] / 1000 for surface in report["surfaces"]]
+        # the labels' own, in cm3; sulci and seams are closed
+        for volume, expected in zip(volumes, (1715, 1867, 2573, 4080)):
+            self.assertAlmostEqual(volume / expected, 1, delta=0.02)
 
     def assert_head(self, folder):
         """Most of the brain, by ch2bet, lies in the inner skull; the skull is 3 to 12 mm thick at

@@ -6,6 +6,7 @@ import math
 import os
 import re
 import resource
+import struct
 import subprocess
 import unittest
 from pathlib import Path
@@ -363,6 +364,11 @@ class InTheBrowser(ReportTest):
             for (let n = 3; n < data.length; n += 4) shown += data[n] > 0;
             return shown;""")
 
+    def cut(self, axis):
+        """Points of the outline of the first surface in a slice through the crosshair, flat."""
+        return self.browser.run("return adaptisoViewer.cutOf(adaptisoViewer.surfaces[0], arguments[0],"
+                                " adaptisoViewer.slicePlane(arguments[0]))", axis)
+
     def assert_near(self, point, other, delta):
         for a, b in zip(point, other):
             self.assertAlmostEqual(a, b, delta=delta)
@@ -383,6 +389,28 @@ class Pages(InTheBrowser):
         self.show("sound.off")
         self.assertEqual(self.browser.console(), [])
         self.assertGreater(self.outline_pixels(), 100)
+
+    def test_outlines_follow_the_slices_of_an_oblique_image(self):
+        content = bytearray(self.path("ball.nii").read_bytes())
+        turn, origin = math.radians(20), (-10, 20, 30)
+        rows = ((1, 0, 0), (0, math.cos(turn), -math.sin(turn)), (0, math.sin(turn), math.cos(turn)))
+        for row, start, at in zip(rows, origin, (280, 296, 312)):
+            struct.pack_into("<4f", content, at, *row, start)
+        self.path("oblique.nii").write_bytes(content)
+        self.mesh("oblique.nii", "--iso", "100", "--method", "mc", "--quiet", "-o", "oblique.off")
+        self.show("oblique.off", "--volume", "oblique.nii")
+
+        def index(point, axis):
+            return sum(rows[k][axis] * (point[k] - origin[k]) for k in range(3))
+        middle = [origin[k] + 11.5 * sum(rows[k]) for k in range(3)]
+        self.browser.run("adaptisoViewer.moveTo(arguments[0])", middle)
+        for axis in range(3):
+            points = self.cut(axis)
+            self.assertGreater(len(points), 100)
+            for n in range(0, len(points), 3):
+                # niivue's matrices are floats; voxels are 1 mm
+                self.assertAlmostEqual(index(points[n:n + 3], axis), 11.5, delta=0.02)
+                self.assertAlmostEqual(math.dist(points[n:n + 3], middle), 8, delta=0.15)
 
     def test_a_click_on_a_place_moves_the_crosshair_there(self):
         middle = self.show_hole()
@@ -470,11 +498,7 @@ class PageOfASoundSurface(InTheBrowser):
     def test_outlines_lie_where_the_surface_is_cut(self):
         self.browser.run("adaptisoViewer.moveTo([1.5, 31.5, 41.5])")  # the middle of the ball
         for axis in range(3):
-            points = self.browser.run(
-                "return adaptisoViewer.cutOf(adaptisoViewer.surfaces[0], arguments[0], 41.5)"
-                if axis == 2 else
-                "return adaptisoViewer.cutOf(adaptisoViewer.surfaces[0], arguments[0],"
-                " [1.5, 31.5][arguments[0]])", axis)
+            points = self.cut(axis)
             self.assertGreater(len(points), 100)
             for n in range(0, len(points), 3):
                 # samples are rounded to a tenth of a voxel

@@ -1,10 +1,14 @@
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "FinishBoundaries.h"
 #include "Necks.h"
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Preprocessing/Crop.h"
 
 namespace adaptiso {
 
@@ -13,9 +17,11 @@ using namespace headmodel;
 namespace {
 
 constexpr double kSoftTissueHu = 40, kAirHu = -1000;
-constexpr double kTableMm = 3;    ///< thinner than this is no head: table, cushion, tubes
-constexpr double kCavityMm = 18;  ///< a ball that does not pass the foramen magnum
-constexpr double kCornerMm = 4;   ///< one that gets into the corners of the cavity
+constexpr double kTableMm = 3;  ///< thinner than this is no head: table, cushion, tubes
+constexpr double kRestMm = 8;  ///< a ball that gets into noses and necks, not into a plate of 16 mm
+constexpr double kRestReachMm = 40;  ///< farther than ears and noses stand out of what it fills
+constexpr double kCavityMm = 18;     ///< a ball that does not pass the foramen magnum
+constexpr double kCornerMm = 4;      ///< one that gets into the corners of the cavity
 constexpr double kCornerReachMm = 14;
 constexpr double kBoneSeamMm = 6;  ///< closing of the bone: sutures, thin walls
 
@@ -63,35 +69,92 @@ void requireHounsfield(const FloatImage& image, const BoundaryOptions& options) 
                        "rescale slope and intercept");
 }
 
-}  // namespace
+struct Head {
+    ImageGeometry grid;
+    std::vector<float> hu;
+    std::vector<std::uint8_t> faces;  ///< imageFaces(), 0 where something was taken off
+    Mask solid;                       ///< what is above the level of skin
+};
 
-HeadBoundaries boundariesFromCt(const VolumeView& ct, const BoundaryOptions& options) {
-    checkOptions(options);
-    if (options.withBrain) {
-        throw InvalidInput("a CT does not show where the brain ends and CSF begins");
+/// The part of a volume that a box holds, and where it lies.
+template <class T>
+std::pair<std::vector<T>, ImageGeometry> cutOut(const std::vector<T>& values,
+                                                const ImageGeometry& grid, const CropRanges& box) {
+    const Volume part = cropVolume(VolumeView(values.data(), grid), box);
+    const TypedVolumeView<T> view = part.view().as<T>();
+    return {{view.samples, view.samples + view.geometry.voxelCount()}, view.geometry};
+}
+
+/// A field of view holds the table too: the head with room around is half of it or less.
+void cropToSolid(Head& head, double roomMm) {
+    const std::vector<float> inside(head.solid.begin(), head.solid.end());
+    Index3 first, last;
+    boundingIndices(inside, head.grid.size, kFractionIsovalue, first, last);
+    const auto room = static_cast<std::int64_t>(std::ceil(roomMm / stepMm(head.grid)));
+    CropRanges box;
+    for (int a = 0; a < 3; ++a) {
+        box[a].first = std::max<std::int64_t>(first[a] - room, 0);
+        box[a].end = std::min(last[a] + room + 1, head.grid.size[a]);
     }
-    if (!(options.skinHu < options.skullHu) || !(options.skinHu > kAirHu) ||
-        !(options.skullHu > kSoftTissueHu)) {
-        throw InvalidInput("skin at " + shortNumber(options.skinHu) + " HU and bone at " +
-                           shortNumber(options.skullHu) +
-                           " HU; must be above air (-1000) and above soft tissue (40)");
+    head.solid = cutOut(head.solid, head.grid, box).first;
+    head.faces = cutOut(head.faces, head.grid, box).first;
+    std::tie(head.hu, head.grid) = cutOut(head.hu, head.grid, box);
+}
+
+/// Takes off what hangs on the head, is thin and reaches far: a head rest that touches it, a strap.
+void takeOffRest(Head& head, std::vector<std::string>& notes) {
+    const Mask whole = filled(head.solid, head.grid.size);
+    Mask rest(whole.size(), 0);
+    for (const Neck& part : findNecks(whole, head.grid, kRestMm, 0)) {
+        if (part.reachMm < kRestReachMm) continue;
+        for (const std::int64_t voxel : part.voxels) rest[voxel] = 1;
+        notes.push_back("skin: a part of " + shortNumber(part.mm3 / 1000) +
+                        " cm3 that is thinner than " + shortNumber(2 * kRestMm) +
+                        " mm and reaches " + shortNumber(part.reachMm) +
+                        " mm from the head was taken off (a head rest?); where it touched, the "
+                        "skin may hold some of it");
     }
-    tell(options, "head", 0);
+    if (voxelsIn(rest) == 0) return;
+    for (std::size_t n = 0; n < rest.size(); ++n) head.solid[n] &= rest[n] ^ 1;
+    head.solid = largestComponent(head.solid, head.grid.size);
+    // neither air nor skin is seen there
+    const Mask beside = dilated(rest, head.grid, 2 * stepMm(head.grid));
+    for (std::size_t n = 0; n < beside.size(); ++n) {
+        if (beside[n] != 0 && head.solid[n] == 0) head.faces[n] = 0;
+    }
+}
+
+Head findHead(const VolumeView& ct, const BoundaryOptions& options,
+              std::vector<std::string>& notes) {
     const FloatImage image = toFloat(ct, static_cast<float>(kAirHu));
     requireHounsfield(image, options);
     Index3 first, last;
-    if (!boundingIndices(image, options.skinHu, first, last)) {
+    if (!boundingIndices(image.values, image.geometry.size, options.skinHu, first, last)) {
         throw InvalidInput("nothing is above " + shortNumber(options.skinHu) + " HU");
     }
-    RawBoundaries raw;
-    raw.grid = workingGrid(image.geometry, first, last, options.stepMm,
-                           std::max(marginMm(options), kCavityMm + 4));
-    const ImageGeometry& grid = raw.grid;
-    const std::vector<float> hu = resampled(image, grid, static_cast<float>(kAirHu));
-    const std::vector<std::uint8_t> faces = imageFaces(image.geometry, grid);
+    const double roomMm = std::max(marginMm(options), kCavityMm + 4);
+    Head head;
+    head.grid = workingGrid(image.geometry, first, last, options.stepMm, roomMm);
+    head.hu = resampled(image, head.grid, static_cast<float>(kAirHu));
+    head.faces = imageFaces(image.geometry, head.grid);
+    head.solid = largestComponent(opened(above(head.hu, options.skinHu), head.grid, kTableMm),
+                                  head.grid.size);
+    if (voxelsIn(head.solid) == 0) {
+        throw InvalidInput("nothing above " + shortNumber(options.skinHu) + " HU is thicker than " +
+                           shortNumber(2 * kTableMm) + " mm");
+    }
+    cropToSolid(head, roomMm);
+    takeOffRest(head, notes);
+    cropToSolid(head, roomMm);
+    return head;
+}
 
-    const Mask solid =
-        largestComponent(opened(above(hu, options.skinHu), grid, kTableMm), grid.size);
+RawBoundaries rawBoundaries(const VolumeView& ct, const BoundaryOptions& options) {
+    tell(options, "head", 0);
+    RawBoundaries raw;
+    const Head found = findHead(ct, options, raw.notes);
+    raw.grid = found.grid;
+    const auto& [grid, hu, faces, solid] = found;
     const Mask head = filledAtBorder(closed(solid, grid, options.closingMm), faces, grid.size);
     const Mask bone = both(head, above(hu, options.skullHu));
     if (voxelsIn(bone) == 0) {
@@ -114,7 +177,23 @@ HeadBoundaries boundariesFromCt(const VolumeView& ct, const BoundaryOptions& opt
         raw.seenMm = {bonesSides, bonesSides, sidesOf(filled(solid, grid.size), grid, faces)};
         limitOuterSkull(raw, options);
     }
-    return finished(std::move(raw), options);
+    return raw;
+}
+
+}  // namespace
+
+HeadBoundaries boundariesFromCt(const VolumeView& ct, const BoundaryOptions& options) {
+    checkOptions(options);
+    if (options.withBrain) {
+        throw InvalidInput("a CT does not show where the brain ends and CSF begins");
+    }
+    if (!(options.skinHu < options.skullHu) || !(options.skinHu > kAirHu) ||
+        !(options.skullHu > kSoftTissueHu)) {
+        throw InvalidInput("skin at " + shortNumber(options.skinHu) + " HU and bone at " +
+                           shortNumber(options.skullHu) +
+                           " HU; must be above air (-1000) and above soft tissue (40)");
+    }
+    return finished(rawBoundaries(ct, options), options);
 }
 
 }  // namespace adaptiso

@@ -76,11 +76,11 @@ std::vector<float> settled(std::vector<float> part, const ImageGeometry& grid, d
 }
 
 /// Takes away what lies nearer than `gapMm` to the surface of `solid`, or outside of it.
-void keepWithin(std::vector<float>& part, const FractionField& solid, double gapMm) {
-    const double step = stepMm(solid.grid);
+void keepWithin(std::vector<float>& part, const Mask& solid, const ImageGeometry& grid,
+                double gapMm) {
+    const double step = stepMm(grid);
     const double offset = gapMm + step / 2;  // distances are of voxels
-    const std::vector<float> depth =
-        depthMm(above(solid.part, kFractionIsovalue), solid.grid, {offset + step, step});
+    const std::vector<float> depth = depthMm(solid, grid, {offset + step, step});
     forVoxels(part, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t n = begin; n < end; ++n) {
             part[n] = std::min(part[n], partAtDepth(depth[n] - offset, step));
@@ -88,32 +88,44 @@ void keepWithin(std::vector<float>& part, const FractionField& solid, double gap
     });
 }
 
-/// The part of a solid's grid that holds it, with room: a brain takes a third of a head's.
-FractionField cropped(const FractionField& solid, double roomMm) {
-    const FloatImage image{solid.grid, solid.part};
+/// A solid in a box of the grid that it was made on: a brain takes a third of a head's.
+struct BoxedSolid {
+    Index3 first{};
+    FractionField field;
+};
+
+BoxedSolid boxed(const std::vector<float>& part, const ImageGeometry& grid, double roomMm,
+                 const std::string& name) {
     Index3 first, last;
-    if (!boundingIndices(image, kFractionIsovalue, first, last)) {
-        throw InvalidInput("the brain is empty");
+    if (!boundingIndices(part, grid.size, kFractionIsovalue, first, last)) {
+        throw InvalidInput("the " + name + " is empty");
     }
-    const auto room = static_cast<std::int64_t>(std::ceil(roomMm / stepMm(solid.grid))) + 3;
-    FractionField part{solid.grid, {}};
+    const auto room = static_cast<std::int64_t>(std::ceil(roomMm / stepMm(grid))) + 3;
+    BoxedSolid box{{}, {grid, {}}};
     for (int a = 0; a < 3; ++a) {
-        first[a] = std::max<std::int64_t>(first[a] - room, 0);
-        last[a] = std::min(last[a] + room, solid.grid.size[a] - 1);
-        part.grid.size[a] = last[a] - first[a] + 1;
+        box.first[a] = std::max<std::int64_t>(first[a] - room, 0);
+        last[a] = std::min(last[a] + room, grid.size[a] - 1);
+        box.field.grid.size[a] = last[a] - box.first[a] + 1;
     }
-    part.grid.originMm =
-        solid.grid.toPhysical({static_cast<double>(first[0]), static_cast<double>(first[1]),
-                               static_cast<double>(first[2])});
-    part.part.reserve(static_cast<std::size_t>(part.grid.voxelCount()));
-    for (std::int64_t k = first[2]; k <= last[2]; ++k) {
-        for (std::int64_t j = first[1]; j <= last[1]; ++j) {
-            const auto row =
-                solid.part.begin() + first[0] + solid.grid.size[0] * (j + solid.grid.size[1] * k);
-            part.part.insert(part.part.end(), row, row + part.grid.size[0]);
-        }
-    }
-    return part;
+    box.field.grid.originMm =
+        grid.toPhysical({static_cast<double>(box.first[0]), static_cast<double>(box.first[1]),
+                         static_cast<double>(box.first[2])});
+    box.field.part.resize(static_cast<std::size_t>(box.field.grid.voxelCount()));
+    forEachRow(
+        box.first, box.field.grid.size, grid.size, [&](std::int64_t row, std::int64_t inBox) {
+            std::copy_n(part.begin() + row, box.field.grid.size[0], box.field.part.begin() + inBox);
+        });
+    return box;
+}
+
+/// What of the grid lies inside.
+Mask insideOf(const BoxedSolid& solid, const Index3& size) {
+    Mask inside(static_cast<std::size_t>(size[0] * size[1] * size[2]), 0);
+    const Mask inBox = above(solid.field.part, kFractionIsovalue);
+    forEachRow(solid.first, solid.field.grid.size, size, [&](std::int64_t row, std::int64_t n) {
+        std::copy_n(inBox.begin() + n, solid.field.grid.size[0], inside.begin() + row);
+    });
+    return inside;
 }
 
 }  // namespace
@@ -192,27 +204,31 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
     result.notes = std::move(raw.notes);
     result.seenMm = std::move(raw.seenMm);
     result.warnings = std::move(raw.warnings);
+    const auto settle = [&](std::vector<float> part, HeadSurface surface) {
+        BoxedSolid solid = boxed(part, raw.grid, 3 * options.smoothingMm, nameOf(surface));
+        part = {};  // a head's worth of memory
+        solid.field.part = settled(std::move(solid.field.part), solid.field.grid,
+                                   options.smoothingMm, nameOf(surface), result.notes);
+        return solid;
+    };
+    Mask within, innerSkull;
     for (std::size_t n = 0; n < raw.parts.size(); ++n) {
         tell(options, "smooth", static_cast<double>(n) / static_cast<double>(raw.parts.size()));
-        std::vector<float>& part = raw.parts[n];
+        std::vector<float> part = std::move(raw.parts[n]);
         if (n > 0) {
             // smoothing takes a little off the wall's outside, and distances are of voxels
             const double offset = gaps[n - 1] + step / 2;
-            growTo(part,
-                   depthMm(above(result.solids[n - 1].part, kFractionIsovalue), raw.grid,
-                           {step, offset + step}),
-                   offset, step);
+            growTo(part, depthMm(within, raw.grid, {step, offset + step}), offset, step);
         }
-        part = settled(std::move(part), raw.grid, options.smoothingMm,
-                       nameOf(headSurface(n, raw.parts.size())), result.notes);
-        result.solids.push_back({raw.grid, std::move(part)});
+        BoxedSolid solid = settle(std::move(part), headSurface(n, raw.parts.size()));
+        within = insideOf(solid, raw.grid.size);
+        if (n == 0 && !raw.brain.empty()) innerSkull = within;
+        result.solids.push_back(std::move(solid.field));
     }
     if (!raw.brain.empty()) {
-        keepWithin(raw.brain, result.solids.front(), options.minCsfMm);
-        FractionField brain = cropped({raw.grid, std::move(raw.brain)}, 3 * options.smoothingMm);
-        brain.part = settled(std::move(brain.part), brain.grid, options.smoothingMm,
-                             nameOf(HeadSurface::Brain), result.notes);
-        result.solids.insert(result.solids.begin(), std::move(brain));
+        keepWithin(raw.brain, innerSkull, raw.grid, options.minCsfMm);
+        result.solids.insert(result.solids.begin(),
+                             settle(std::move(raw.brain), HeadSurface::Brain).field);
         if (!result.seenMm.empty()) {
             result.seenMm.insert(result.seenMm.begin(), std::move(raw.brainSeenMm));
         }

@@ -18,9 +18,11 @@ using Mask = std::vector<std::uint8_t>;
 /// Side of the cubic voxels of a working grid, mm.
 double stepMm(const ImageGeometry& grid);
 
-/// `values` convolved with a Gaussian of standard deviation sigmaMm, the border repeated. Below a
-/// third of a voxel nothing is done: the samples can't hold it.
-/// Cost: O(voxels near which values differ * sigmaMm in voxels), in parallel.
+/// `values` convolved with a Gaussian of standard deviation sigmaMm (smoothVolumeRecursively: to
+/// about 1 %), the border repeated. Below a third of a voxel nothing is done: the samples can't
+/// hold it. What is more than 4.5 standard deviations from all that is not 0 stays 0. \pre values
+/// >= 0; 4 voxels or more along every axis Cost: O(voxels of the box around what is not 0), in
+/// parallel.
 std::vector<float> smoothed(std::vector<float> values, const ImageGeometry& grid, double sigmaMm);
 
 /// How far from a mask's surface depths are wanted, mm; what is beyond has the band's end.
@@ -56,6 +58,18 @@ void forEachBorderVoxel(const Index3& size, const Visit& visit) {
             for (std::int64_t i = 0; i < size[0]; ++i, ++voxel) {
                 if (isWhole || i == 0 || i + 1 == size[0]) visit(voxel);
             }
+        }
+    }
+}
+
+/// Calls visit(row's first voxel in the grid, in the box) for the rows along x of a box of a grid.
+template <class Visit>
+void forEachRow(const Index3& first, const Index3& boxSize, const Index3& size,
+                const Visit& visit) {
+    std::int64_t inBox = 0;
+    for (std::int64_t k = 0; k < boxSize[2]; ++k) {
+        for (std::int64_t j = 0; j < boxSize[1]; ++j, inBox += boxSize[0]) {
+            visit(first[0] + size[0] * (first[1] + j + size[1] * (first[2] + k)), inBox);
         }
     }
 }

@@ -73,7 +73,8 @@ HeadBoundaries boundariesFrom(const std::vector<FloatImage>& enclosed,
                               const std::optional<FloatImage>& brain, BoundaryOptions options) {
     const ImageGeometry& image = enclosed.front().geometry;
     Index3 first, last;
-    if (!boundingIndices(enclosed.back(), kFractionIsovalue, first, last)) {
+    if (!boundingIndices(enclosed.back().values, enclosed.back().geometry.size, kFractionIsovalue,
+                         first, last)) {
         throw InvalidInput("the head is empty");
     }
     RawBoundaries raw;

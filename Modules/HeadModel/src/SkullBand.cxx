@@ -150,12 +150,11 @@ struct Search {
 };
 
 std::vector<Search::Answer> search(const std::vector<Ray>& rays, const std::vector<float>& t1,
-                                   const ImageGeometry& grid, const std::vector<float>& skin,
+                                   const ImageGeometry& grid, const Mask& skin,
                                    const HeadLevels& levels, const BoundaryOptions& options) {
     const double step = stepMm(grid);
     // a ray asks for the side alone; between corners of both sides no depth is above two voxels
-    const std::vector<float> skinDepth =
-        depthMm(above(skin, kFractionIsovalue), grid, DepthBand::within(3 * step));
+    const std::vector<float> skinDepth = depthMm(skin, grid, DepthBand::within(3 * step));
     const Search search{t1, skinDepth, grid.size, step, levels, options};
     std::vector<Search::Answer> answers(rays.size());
     parallelForPieces(std::ssize(rays), 1024, [&](std::int64_t begin, std::int64_t end) {
@@ -194,7 +193,9 @@ public:
         const auto usual = static_cast<float>(usualMm);
         const float prior = kPriorWeight * static_cast<float>(perNode_ * perNode_ * perNode_);
         for (std::size_t n = 0; n < mm_.size(); ++n) {
-            mm_[n] = (mm_[n] + prior * usual) / (weight[n] + prior);
+            // a recursive filter's tails swing by a little around zero
+            const float w = std::max(weight[n], 0.0f);
+            mm_[n] = (std::max(mm_[n], 0.0f) + prior * usual) / (w + prior);
         }
     }
 
@@ -279,7 +280,7 @@ std::vector<float> grownBy(const Thickness& thickness, const std::vector<float>&
 }  // namespace
 
 SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
-                        const std::vector<float>& innerSkull, const std::vector<float>& skin,
+                        const std::vector<float>& innerSkull, const Mask& skin,
                         const HeadLevels& levels, const BoundaryOptions& options) {
     const double step = stepMm(grid);
     const std::vector<Ray> rays = raysFrom(innerSkull, grid.size);

@@ -234,7 +234,7 @@ Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
     }
     const double rough = twoClassThreshold(image.values);
     Index3 first, last;
-    boundingIndices(image, rough, first, last);
+    boundingIndices(image.values, image.geometry.size, rough, first, last);
     // a bright ghost in the air may widen the box: that costs time, no more
     constexpr std::int64_t kSoftVoxels = 10;  // skin below the rough threshold
     for (int a = 0; a < 3; ++a) {
@@ -426,11 +426,9 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
     }
     if (!options.innerSkullOnly) {
         tell(options, "skull", 0);
-        std::vector<float> skin =
-            partByLevel(head.mask, head.t1, head.skinLevel, head.levels.air, head.faces, head.grid);
         SkullBand band = findSkullBand(head.t1, head.grid,
-                                       smoothed(raw.parts[0], head.grid, options.smoothingMm), skin,
-                                       head.levels, options);
+                                       smoothed(raw.parts[0], head.grid, options.smoothingMm),
+                                       head.mask, head.levels, options);
         raw.notes.push_back("skull band seen on " + shortNumber(100 * band.seenFraction) +
                             " % of the rays to the scalp, median thickness " +
                             shortNumber(band.medianThicknessMm) + " mm; elsewhere " +
@@ -445,7 +443,8 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
         // no T1 shows the inner skull: CSF and bone are dark alike
         raw.seenMm = {{}, std::move(band.seenMm), skinSides(head)};
         raw.parts.push_back(std::move(band.outerSkull));
-        raw.parts.push_back(std::move(skin));
+        raw.parts.push_back(partByLevel(head.mask, head.t1, head.skinLevel, head.levels.air,
+                                        head.faces, head.grid));
         head = {};  // a whole head's worth of memory
         limitOuterSkull(raw, options);
     }

@@ -104,14 +104,15 @@ FloatImage indicator(const VolumeView& volume, const std::function<bool(double)>
     return converted(volume, [&](double value) { return isInside(value) ? 1.0f : 0.0f; });
 }
 
-bool boundingIndices(const FloatImage& image, double threshold, Index3& first, Index3& last) {
-    first = image.geometry.size;
+bool boundingIndices(const std::vector<float>& values, const Index3& size, double threshold,
+                     Index3& first, Index3& last) {
+    first = size;
     last = {-1, -1, -1};
     std::size_t n = 0;
-    for (std::int64_t k = 0; k < image.geometry.size[2]; ++k) {
-        for (std::int64_t j = 0; j < image.geometry.size[1]; ++j) {
-            for (std::int64_t i = 0; i < image.geometry.size[0]; ++i) {
-                if (!(image.values[n++] >= threshold)) continue;
+    for (std::int64_t k = 0; k < size[2]; ++k) {
+        for (std::int64_t j = 0; j < size[1]; ++j) {
+            for (std::int64_t i = 0; i < size[0]; ++i) {
+                if (!(values[n++] >= threshold)) continue;
                 const Index3 at{i, j, k};
                 for (int a = 0; a < 3; ++a) {
                     first[a] = std::min(first[a], at[a]);

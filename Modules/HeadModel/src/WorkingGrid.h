@@ -23,7 +23,8 @@ FloatImage indicator(const VolumeView& volume, const std::function<bool(double)>
 
 /// Smallest box of indices that holds all voxels with value >= threshold.
 /// \return false when there is none
-bool boundingIndices(const FloatImage& image, double threshold, Index3& first, Index3& last);
+bool boundingIndices(const std::vector<float>& values, const Index3& size, double threshold,
+                     Index3& first, Index3& last);
 
 /// The isotropic grid that a head is worked on: along the image's axes (the nearest ones at right
 /// angles when the image is sheared), around the voxels first...last of the image, with marginMm

@@ -45,13 +45,16 @@ void main() {
   };
 
   /** Where a mesh meets the plane: pairs of points, flat [x, y, z, x, y, z, ...]. */
-  const cutMesh = (mesh, axis, at) => {
-    const { pts, tris } = mesh, found = [];
+  const cutMesh = (mesh, { normal, at }) => {
+    const { pts, tris } = mesh, found = [], heights = new Float64Array(pts.length / 3);
+    for (let n = 0; n < heights.length; ++n) {
+      heights[n] = normal[0] * pts[3 * n] + normal[1] * pts[3 * n + 1] + normal[2] * pts[3 * n + 2];
+    }
     for (let t = 0; t < tris.length; t += 3) {
       for (let side = 0; side < 3; ++side) {
-        const a = 3 * tris[t + side], b = 3 * tris[t + (side + 1) % 3];
-        if ((pts[a + axis] >= at) === (pts[b + axis] >= at)) continue;
-        const part = (at - pts[a + axis]) / (pts[b + axis] - pts[a + axis]);
+        const from = tris[t + side], to = tris[t + (side + 1) % 3], a = 3 * from, b = 3 * to;
+        if ((heights[from] >= at) === (heights[to] >= at)) continue;
+        const part = (at - heights[from]) / (heights[to] - heights[from]);
         for (let k = 0; k < 3; ++k) found.push(pts[a + k] + part * (pts[b + k] - pts[a + k]));
       }
     }
@@ -128,10 +131,19 @@ void main() {
       return plane;
     }
 
+    /** The plane of voxels that niivue shows: oblique where the image is. */
+    slicePlane(axis) {
+      const share = (point) => this.nv.mm2frac(point)[axis];
+      const zero = share([0, 0, 0]);
+      // 100 mm: the shares are floats
+      const normal = [[100, 0, 0], [0, 100, 0], [0, 0, 100]].map((end) => (share(end) - zero) / 100);
+      return { normal, at: this.nv.scene.crosshairPos[axis] - zero };
+    }
+
     /** The cut of one surface by one slice, kept as long as the slice stays. */
-    cutOf(surface, axis, at) {
-      if (surface.cuts[axis]?.at !== at) {
-        surface.cuts[axis] = { at, points: cutMesh(surface.mesh, axis, at) };
+    cutOf(surface, axis, plane) {
+      if (surface.cuts[axis]?.at !== plane.at) {
+        surface.cuts[axis] = { at: plane.at, points: cutMesh(surface.mesh, plane) };
       }
       return surface.cuts[axis].points;
     }
@@ -145,11 +157,11 @@ void main() {
       const context = layer.getContext("2d");
       context.clearRect(0, 0, layer.width, layer.height);
       const pixel = shown.width / shown.clientWidth;
-      const middle = this.crosshair();
       for (const tile of this.nv.screenSlices) {
         if (!(tile.axCorSag in AXES) || !(tile.fovMM?.length > 1)) continue;
         const [left, top, width, height] = tile.leftTopWidthHeight;
         const [axis, across, up] = AXES[tile.axCorSag];
+        const plane = this.slicePlane(axis);
         const toX = (mm) => left + width * (mm - tile.leftTopMM[0]) / tile.fovMM[0];
         const toY = (mm) => top + height * (1 - (mm - tile.leftTopMM[1]) / tile.fovMM[1]);
         context.save();
@@ -157,7 +169,7 @@ void main() {
         context.rect(left, top, width, height);
         context.clip();
         const outlines = this.surfaces.filter((surface) => surface.isShown).map((surface) => {
-          const points = this.cutOf(surface, axis, middle[axis]), path = new Path2D();
+          const points = this.cutOf(surface, axis, plane), path = new Path2D();
           for (let n = 0; n + 5 < points.length; n += 6) {
             path.moveTo(toX(points[n + across]), toY(points[n + up]));
             path.lineTo(toX(points[n + 3 + across]), toY(points[n + 3 + up]));

@@ -360,5 +360,50 @@ TEST(BoundariesFromCt, FindSkinBoneAndCavityOfAPhantom) {
         "nothing in the head is above 5e+03 HU");
 }
 
+TEST(BoundariesFromCt, TakeOffAHeadRestThatTouchesAndLeaveWiresAndCushionOut) {
+    const LargeHead head;
+    const ImageGeometry& geometry = head.geometry;
+    std::vector<float> ct = headCt(head.shapes, geometry);
+    BoundaryOptions options;
+    options.stepMm = 2;
+    const HeadBoundaries plain = boundariesFromCt({ct.data(), geometry}, options);
+    // a trough of 8 mm, of plastic, in which the back of the head lies; a cushion of foam in it;
+    // a wire of 2 mm along the head; all of it no head
+    for (std::int64_t n = 0; n < std::ssize(ct); ++n) {
+        const Vec3 p =
+            geometry.toPhysical({static_cast<double>(n % 96), static_cast<double>(n / 96 % 96),
+                                 static_cast<double>(n / (96 * 96))});
+        const double across = std::hypot(p.x - 3, p.y - (77 - 94));
+        const bool isBack = p.y > -10 && p.z > -70 && p.z < 70;
+        if (ct[n] > -900) continue;
+        if (isBack && across > 94 && across < 102) ct[n] = 120;
+        if (isBack && across > 88 && across <= 94) ct[n] = -850;
+        if (std::hypot(p.x - 60, p.y + 70) < 2) ct[n] = 3000;
+    }
+    const HeadBoundaries found = boundariesFromCt({ct.data(), geometry}, options);
+    const auto isTold = [](const std::string& note) {
+        return note.find("was taken off (a head rest?)") != std::string::npos;
+    };
+    EXPECT_TRUE(std::any_of(found.notes.begin(), found.notes.end(), isTold));
+    EXPECT_TRUE(std::none_of(plain.notes.begin(), plain.notes.end(), isTold));
+    // of the trough only the strip that touches stays: 8 mm thick, where the gap is below 4 mm
+    for (const Vec3& p : surfaceOf(found.solids[2]).points) {
+        const double outside = -head.shapes.skin.depthMm(p);
+        ASSERT_LE(outside, 11) << p.x << ' ' << p.y << ' ' << p.z;
+        if (p.y < 40 && p.z > -30) {
+            ASSERT_LE(outside, 6) << p.x << ' ' << p.y << ' ' << p.z;  // ears are closed against
+        }
+    }
+    for (int n = 0; n < 2; ++n) {
+        double most = 0;
+        for (const Vec3& p : surfaceOf(found.solids[n]).points) {
+            if (p.z < -30) continue;
+            const Shape& truth = n == 0 ? head.shapes.innerSkull : head.shapes.outerSkull;
+            most = std::max(most, std::abs(truth.depthMm(p)));
+        }
+        EXPECT_LE(most, 2.5) << n;  // a voxel, and the smoothing
+    }
+}
+
 }  // namespace
 }  // namespace adaptiso

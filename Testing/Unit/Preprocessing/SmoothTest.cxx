@@ -196,5 +196,55 @@ TEST(Smooth, RefusesWhatCantBeSmoothed) {
     }
 }
 
+Volume randomVolume(const ImageGeometry& geometry) {
+    std::uint64_t seed = 7;
+    return sampledFrom<float>(
+        geometry, [&](const Vec3&) { return static_cast<double>(nextRandom(seed) % 1000) / 1000; });
+}
+
+TEST(SmoothRecursively, IsNearlyTheGaussianForAnySigma) {
+    for (const auto& [name, geometry] : kindsOfGrid({41, 37, 33}, {0.8, 1, 1.2})) {
+        if (name == "sheared") continue;
+        const Volume volume = randomVolume(geometry);
+        for (const double sigmaMm : {2.0, 4.0}) {
+            const Volume exact = smoothVolume(volume, sigmaMm),
+                         found = smoothVolumeRecursively(volume, sigmaMm);
+            ASSERT_EQ(found.view().geometry(), geometry);
+            const float* const expected = exact.view().as<float>().samples;
+            const float* const samples = found.view().as<float>().samples;
+            for (std::int64_t n = 0; n < geometry.voxelCount(); ++n) {
+                // 1 % of what samples differ by, and what a sampled Gaussian differs from a
+                // discrete
+                ASSERT_NEAR(samples[n], expected[n], 0.015) << name << ' ' << sigmaMm;
+            }
+        }
+    }
+}
+
+TEST(SmoothRecursively, GivesTheSameBytesForAnyNumberOfThreads) {
+    const Volume volume = randomVolume(obliqueGeometry({41, 37, 33}, {1, 1, 1}));
+    const auto inThreads = [&](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        return smoothVolumeRecursively(volume, 1.5);
+    };
+    const Volume one = inThreads(1), three = inThreads(3);
+    EXPECT_EQ(std::memcmp(one.view().samples(), three.view().samples(), one.view().byteCount()), 0);
+}
+
+TEST(SmoothRecursively, RefusesWhatTheFilterCannotDo) {
+    const Volume volume = randomVolume(centredGeometry({9, 9, 9}));
+    EXPECT_THROW(smoothVolumeRecursively(volume, 0), InvalidInput);
+    EXPECT_THROW(smoothVolumeRecursively(volume, std::numeric_limits<double>::quiet_NaN()),
+                 InvalidInput);
+    EXPECT_THROW(smoothVolumeRecursively(randomVolume(shearedGeometry({9, 9, 9}, {1, 1, 1})), 1),
+                 InvalidInput);
+    EXPECT_THROW(smoothVolumeRecursively(randomVolume(centredGeometry({9, 9, 3})), 1),
+                 InvalidInput);
+    Volume infinite = sampledFrom<float>(centredGeometry({9, 9, 9}), [](const Vec3& p) {
+        return p.x > 3 ? std::numeric_limits<float>::infinity() : 0;
+    });
+    EXPECT_THROW(smoothVolumeRecursively(infinite, 1), InvalidInput);
+}
+
 }  // namespace
 }  // namespace adaptiso::testing

@@ -24,4 +24,17 @@ namespace adaptiso {
 /// Cost: for each of the (usually three) steps, voxels times 10 sigma in steps; two float volumes.
 Volume smoothVolume(const VolumeView& volume, double sigmaMm);
 
+/// Nearly the same in a fifth of the time, for any sigmaMm: Deriche's recursive filter along the
+/// axes, by itk::SmoothingRecursiveGaussianImageFilter. It is a Gaussian to about 1 %: its variance
+/// may be off by as much, and its tails swing around 0 by 1e-4 of what they come from. For solids
+/// that are smoothed and cut at a level, not for measuring. Samples beyond the border are those at
+/// the border.
+/// \param sigmaMm  > 0; less than half a voxel is poorly approximated
+/// \return  as smoothVolume
+/// \throws  InvalidInput for another sigmaMm, axes that are not at right angles, fewer than 4
+/// voxels
+///          along one, or samples that are not finite
+/// Cost: O(voxels), in parallel; the same bytes for any number of threads.
+Volume smoothVolumeRecursively(const VolumeView& volume, double sigmaMm);
+
 }  // namespace adaptiso
