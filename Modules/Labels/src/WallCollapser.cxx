@@ -474,6 +474,10 @@ void WallCollapser::round(double maxCost, double limitMm, std::int64_t enough) {
                 if (isFrozen(x)) continue;
                 const Plan plan = planFor(u, x);
                 if (plan.cost <= tried_[u]) continue;
+                // farther from the planes in the mean than samples may be: hardly ever possible
+                if (plan.cost > limitMm * limitMm * (quadrics_[u] + quadrics_[x]).weight()) {
+                    continue;
+                }
                 if (plan.cost <= maxCost) {
                     edges.push_back({plan.cost, x, plan});
                 } else {
