@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptive/proof/NearTriangle.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -390,9 +391,7 @@ bool WallCollapser::isNearFull(const Vec3& point, double limitMm) {
         const auto& t = patch_.fullTriangles[fullAround_[n]].v;
         const Vec3 &a = patch_.fullPoints[t[0]], &b = patch_.fullPoints[t[1]],
                    &c = patch_.fullPoints[t[2]];
-        if (squaredNorm(point - closestPointOnTriangle(point, a, b, c)) <= limitMm * limitMm) {
-            return true;
-        }
+        if (NearTriangle({a, b, c}, limitMm * limitMm).has(point)) return true;
     }
     return false;
 }

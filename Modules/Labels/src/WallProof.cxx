@@ -43,6 +43,7 @@ WallSurface::WallSurface(const WallMesh& mesh, std::vector<Id> numbers)
         for (int c = 0; c < 3; ++c) triangles_[n][c] = numberOf(t.v[c], t.wall);
     }
     walkable_.assign(points_, triangles_);
+    walkable_.keepNormals();
 }
 
 WallSurface::Id WallSurface::placeOf(Id number) const {

@@ -202,10 +202,32 @@ private:
             const bool isFan = cuts_[p] == Cut::Fan;
             const Vec3 centre = isFan ? toMm(centreOf(polygon)) : Vec3{};
             forEachTriangle(polygon, cuts_[p], [&](VertexId a, VertexId b, VertexId c) {
+                if (!isFan && a != v && b != v && c != v && passesBy(v, polygon, cuts_[p])) return;
                 uses.push_back(
                     {p, {a, b, c}, {isFan ? centre : pointsMm_[a], pointsMm_[b], pointsMm_[c]}});
             });
         }
+    }
+
+    /// The diagonal of a polygon of four corners passes on the other side of its lattice edge, so
+    /// that the triangle without this corner stays out of the corner's cell.
+    bool passesBy(VertexId v, const Polygon& polygon, Cut cut) const {
+        constexpr double kClear = 1e-6;
+        const Index3 begin = grid_.indexOf(polygon.place);
+        const int axis = polygon.kind == 1 ? 0 : polygon.kind == 2 ? 1 : 2;
+        const int u = (axis + 1) % 3, w = (axis + 2) % 3;
+        const auto fromEdge = [&](VertexId of) {
+            const Vec3& p = lattice_[of];
+            return std::array{p[u] - static_cast<double>(begin[u]),
+                              p[w] - static_cast<double>(begin[w])};
+        };
+        const auto corners = complex_.cornersOf(polygon);
+        const int o = cut == Cut::First ? 0 : 1;
+        const auto at = fromEdge(v), a = fromEdge(corners[o]), b = fromEdge(corners[o + 2]);
+        // a and b lie in the quadrants beside that of v: with its signs turned, one of each
+        const double turned = at[0] * at[1] > 0 ? 1 : -1;
+        const double side = (a[0] * b[1] - a[1] * b[0]) * turned;
+        return (a[0] * at[0] < 0 ? side : -side) > kClear;
     }
 
     /// Triangles that cross lie in polygons with a vertex of a cell in common: what crosses in a

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "Certificate.h"
@@ -57,6 +58,7 @@ public:
     void assign(std::span<const Vec3> points, std::span<const std::array<Index, 3>> triangles) {
         points_ = points;
         triangles_ = triangles;
+        normals_.clear();
         halfEdges_.assign(points.size(), triangles);
         halfEdges_.match(triangles, twin_);
     }
@@ -66,8 +68,15 @@ public:
         return {points_[v[0]], points_[v[1]], points_[v[2]]};
     }
     Vec3 normalOf(Index t) const {
+        if (!normals_.empty()) return normals_[t];
         const Corners c = cornersOf(t);
         return normalized(areaVector2(c[0], c[1], c[2]));
+    }
+    /// For many walks: each step asks for four normals.
+    void keepNormals() {
+        std::vector<Vec3> normals(triangles_.size());
+        for (Index t = 0; t < triangles_.size(); ++t) normals[t] = normalOf(t);
+        normals_ = std::move(normals);
     }
 
     /// Across the edge from corner c to the next one; kNone where the surface ends.
@@ -121,6 +130,7 @@ private:
     std::span<const std::array<Index, 3>> triangles_;
     HalfEdges<Index> halfEdges_;
     std::vector<Index> twin_;
+    std::vector<Vec3> normals_;  ///< of the triangles, where they are kept
 };
 
 /// Cuts pieces so that each part lies within a distance of one triangle of a surface: those that
