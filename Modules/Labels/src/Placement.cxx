@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <utility>
 
+#include "Release.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {
@@ -41,61 +43,6 @@ std::array<int, 2> axesOf(int ring, int tetrahedron) {
 /// The largest part of the way from `from` to `to` on which f >= least, f being linear.
 double partOfWay(double from, double to, double least) {
     return to >= least ? 1 : (from - least) / (from - to);
-}
-
-/// Of each vertex, its neighbours that count.
-struct Neighbours {
-    std::vector<std::uint32_t> begin;
-    std::vector<std::uint32_t> of;
-
-    std::span<const std::uint32_t> at(std::size_t v) const {
-        return {of.data() + begin[v], begin[v + 1] - begin[v]};
-    }
-};
-
-Neighbours neighboursOf(const DualComplex& complex) {
-    std::vector<std::uint8_t> isJunction(complex.groupCount, 0);
-    for (const Adjacency& edge : complex.adjacencies) {
-        if (edge.isJunction) isJunction[edge.a] = isJunction[edge.b] = 1;
-    }
-    Neighbours n;
-    n.begin.assign(complex.groupCount + 1, 0);
-    const auto forEach = [&](const auto& f) {
-        for (const Adjacency& edge : complex.adjacencies) {
-            if (edge.isJunction || isJunction[edge.a] == 0) f(edge.a, edge.b);
-            if (edge.isJunction || isJunction[edge.b] == 0) f(edge.b, edge.a);
-        }
-    };
-    forEach([&](VertexId v, VertexId) { ++n.begin[v + 1]; });
-    for (std::size_t v = 1; v < n.begin.size(); ++v) n.begin[v] += n.begin[v - 1];
-    n.of.resize(n.begin.back());
-    std::vector<std::uint32_t> at(n.begin.begin(), n.begin.end() - 1);
-    forEach([&](VertexId v, VertexId w) { n.of[at[v]++] = static_cast<std::uint32_t>(w); });
-    return n;
-}
-
-/// Normals of the walls at their vertices, into the wall's greater label; 0 at junctions.
-std::vector<Vec3> wallNormals(const DualComplex& complex, const std::vector<Vec3>& points) {
-    std::vector<Vec3> normals(complex.groupCount);
-    for (const DualComplex::Polygon& polygon : complex.polygons) {
-        const auto corners = complex.cornersOf(polygon);
-        std::array<VertexId, 12> own;
-        int count = 0;
-        for (const VertexId v : corners) {
-            if (v < complex.groupCount) own[count++] = v;
-        }
-        Vec3 area;
-        for (int n = 1; n + 1 < count; ++n) {
-            area += areaVector2(points[own[0]], points[own[n]], points[own[n + 1]]);
-        }
-        if (polygon.labels[0] > polygon.labels[1]) area = -area;
-        for (int n = 0; n < count; ++n) normals[own[n]] += area;
-    }
-    for (Vec3& normal : normals) normal = normalized(normal);
-    for (const Adjacency& edge : complex.adjacencies) {
-        if (edge.isJunction) normals[edge.a] = normals[edge.b] = {};
-    }
-    return normals;
 }
 
 /// Where a vertex lies in its cell; the fourth number is none. Four single numbers are added at
@@ -153,15 +100,16 @@ std::vector<double> seriesOf(int rounds) {
 class Smoother {
 public:
     Smoother(const std::vector<Room>& rooms, const Neighbours& neighbours,
-             const std::vector<Vec3>& points)
+             std::vector<Vec3>&& points)
         : rooms_(rooms), neighbours_(neighbours), ways_(rooms.size()), points_(rooms.size()) {
+        const std::vector<Vec3> start = std::move(points);
         for (std::size_t v = 0; v < rooms.size(); ++v) {
             std::array<int, 3> sum{};
             for (const std::uint32_t n : neighbours.at(v)) {
                 for (int c = 0; c < 3; ++c) sum[c] += rooms[n].cell[c] - rooms[v].cell[c];
             }
             for (int c = 0; c < 3; ++c) ways_[v][c] = static_cast<std::int8_t>(sum[c]);
-            points_[v] = localOf(points[v] - rooms[v].corner());
+            points_[v] = localOf(start[v] - rooms[v].corner());
         }
     }
 
@@ -194,6 +142,9 @@ public:
         std::swap(points_, next_);
     }
 
+    /// No more steps follow.
+    void end() { release(next_); }
+
     Vec3 pointAt(std::size_t v) const { return rooms_[v].corner() + pointOf(points_[v]); }
 
 private:
@@ -221,52 +172,65 @@ private:
     std::vector<Local> points_, next_;
 };
 
-void smooth(const std::vector<Room>& rooms, const Neighbours& neighbours,
-            std::vector<Vec3>& points) {
-    Smoother smoother(rooms, neighbours, points);
-    smoother.smoothAtOnce(seriesOf(kRoundsAtOnce));
-    for (int round = 0; round < kRounds; ++round) {
-        smoother.step(kInward);
-        smoother.step(kOutward);
+/// Normals of the walls at their vertices, into the wall's greater label; 0 at junctions.
+std::vector<Local> wallNormals(const DualComplex& complex, const Neighbours& neighbours,
+                               const std::vector<Vec3>& points) {
+    std::vector<Local> normals(complex.groupCount);
+    for (const DualComplex::Polygon& polygon : complex.polygons) {
+        const auto corners = complex.cornersOf(polygon);
+        std::array<VertexId, 12> own;
+        int count = 0;
+        for (const VertexId v : corners) {
+            if (v < complex.groupCount) own[count++] = v;
+        }
+        Vec3 area;
+        for (int n = 1; n + 1 < count; ++n) {
+            area += areaVector2(points[own[0]], points[own[n]], points[own[n + 1]]);
+        }
+        if (polygon.labels[0] > polygon.labels[1]) area = -area;
+        for (int n = 0; n < count; ++n) normals[own[n]] += localOf(area);
     }
-    for (std::size_t v = 0; v < points.size(); ++v) {
-        points[v] = heldIn(rooms[v], smoother.pointAt(v));
+    for (std::size_t v = 0; v < normals.size(); ++v) {
+        normals[v] =
+            neighbours.isJunction[v] != 0 ? Local{} : localOf(normalized(pointOf(normals[v])));
     }
+    return normals;
 }
 
-/// Smoothing sinks curved walls. Where the way along the normal, on average over the
-/// neighbourhood, is more than a sheet of voxels leaves open anyway, what is more is taken back.
-void takeBackShift(const DualComplex& complex, const std::vector<Room>& rooms,
-                   const Neighbours& neighbours, const std::vector<Vec3>& start,
-                   std::vector<Vec3>& points) {
-    constexpr double kFreeShift = 0.07;  // voxels: tubes of radius 4 keep their true volume
-    constexpr int kRounds = 20;          // steps of averaging: some 4 voxels around
-    const std::vector<Vec3> normals = wallNormals(complex, points);
-    std::vector<double> shift(points.size()), next(points.size());
-    for (std::size_t v = 0; v < points.size(); ++v) {
-        shift[v] = dot(points[v] - start[v], normals[v]);
-    }
-    for (int round = 0; round < kRounds; ++round) {
-        parallelForPieces(complex.groupCount, kPiece, [&](std::int64_t begin, std::int64_t end) {
-            for (std::int64_t v = begin; v < end; ++v) {
-                if (normals[v] == Vec3{}) continue;
-                double sum = shift[v], count = 1;
-                for (auto n = neighbours.begin[v]; n < neighbours.begin[v + 1]; ++n) {
-                    if (normals[neighbours.of[n]] == Vec3{}) continue;
-                    sum += shift[neighbours.of[n]];
-                    ++count;
+/// Calls f(vertex, where it begins), in parallel.
+template <class F>
+void forEachStart(const LabelGrid& grid, const DualComplex& complex, const std::vector<Room>& rooms,
+                  const F& f) {
+    const auto count = static_cast<std::int64_t>(complex.cells.size());
+    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t c = begin; c < end; ++c) {
+            const WallCell& cell = complex.cells[c];
+            const std::array<Label, 8> labels = grid.cornersOf(cell.place);
+            const CellPattern& pattern = cell.pattern();
+            for (int g = 0; g < pattern.groups; ++g) {
+                unsigned own = 0;
+                for (int t = 0; t < kTetrahedra; ++t) {
+                    if (pattern.groupOf[t] == g) own |= cornersOf(t);
                 }
-                next[v] = sum / count;
+                Vec3 sum;
+                int crossed = 0;
+                for (int a = 0; a < 8; ++a) {
+                    for (int axis = 0; axis < 3; ++axis) {
+                        const int b = a | 1 << axis;
+                        if (a == b || (own >> a & own >> b & 1U) == 0 || labels[a] == labels[b]) {
+                            continue;
+                        }
+                        sum += 0.5 * (offsetOf(a) + offsetOf(b));
+                        ++crossed;
+                    }
+                }
+                const Room& room = rooms[cell.firstVertex + g];
+                f(cell.firstVertex + g, room.size == kTetrahedra
+                                            ? room.corner() + Vec3{0.5, 0.5, 0.5}
+                                            : heldIn(room, room.corner() + (1.0 / crossed) * sum));
             }
-        });
-        std::swap(shift, next);
-    }
-    for (std::size_t v = 0; v < points.size(); ++v) {
-        const double excess = shift[v] - std::clamp(shift[v], -kFreeShift, kFreeShift);
-        if (excess != 0 && !(normals[v] == Vec3{})) {
-            points[v] = heldIn(rooms[v], points[v] - excess * normals[v]);
         }
-    }
+    });
 }
 
 }  // namespace
@@ -311,47 +275,86 @@ Vec3 heldIn(const Room& room, const Vec3& p) {
     return corner + middle + part * (q - middle);
 }
 
+Neighbours neighboursOf(const DualComplex& complex) {
+    Neighbours n;
+    n.isJunction.assign(complex.groupCount, 0);
+    std::vector<std::uint8_t>& isJunction = n.isJunction;
+    for (const Adjacency& edge : complex.adjacencies) {
+        if (edge.isJunction) isJunction[edge.a] = isJunction[edge.b] = 1;
+    }
+    n.begin.assign(complex.groupCount + 1, 0);
+    const auto forEach = [&](const auto& f) {
+        for (const Adjacency& edge : complex.adjacencies) {
+            if (edge.isJunction || isJunction[edge.a] == 0) f(edge.a, edge.b);
+            if (edge.isJunction || isJunction[edge.b] == 0) f(edge.b, edge.a);
+        }
+    };
+    forEach([&](VertexId v, VertexId) { ++n.begin[v + 1]; });
+    for (std::size_t v = 1; v < n.begin.size(); ++v) n.begin[v] += n.begin[v - 1];
+    n.of.resize(n.begin.back());
+    std::vector<std::uint32_t> at(n.begin.begin(), n.begin.end() - 1);
+    forEach([&](VertexId v, VertexId w) { n.of[at[v]++] = static_cast<std::uint32_t>(w); });
+    return n;
+}
+
 std::vector<Vec3> startPoints(const LabelGrid& grid, const DualComplex& complex,
                               const std::vector<Room>& rooms) {
     std::vector<Vec3> points(complex.groupCount);
-    const auto count = static_cast<std::int64_t>(complex.cells.size());
-    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t c = begin; c < end; ++c) {
-            const WallCell& cell = complex.cells[c];
-            const std::array<Label, 8> labels = grid.cornersOf(cell.place);
-            const CellPattern& pattern = cell.pattern();
-            for (int g = 0; g < pattern.groups; ++g) {
-                unsigned own = 0;
-                for (int t = 0; t < kTetrahedra; ++t) {
-                    if (pattern.groupOf[t] == g) own |= cornersOf(t);
-                }
-                Vec3 sum;
-                int crossed = 0;
-                for (int a = 0; a < 8; ++a) {
-                    for (int axis = 0; axis < 3; ++axis) {
-                        const int b = a | 1 << axis;
-                        if (a == b || (own >> a & own >> b & 1U) == 0 || labels[a] == labels[b]) {
-                            continue;
-                        }
-                        sum += 0.5 * (offsetOf(a) + offsetOf(b));
-                        ++crossed;
-                    }
-                }
-                const Room& room = rooms[cell.firstVertex + g];
-                points[cell.firstVertex + g] =
-                    room.size == kTetrahedra ? room.corner() + Vec3{0.5, 0.5, 0.5}
-                                             : heldIn(room, room.corner() + (1.0 / crossed) * sum);
-            }
-        }
-    });
+    forEachStart(grid, complex, rooms, [&](std::size_t v, const Vec3& p) { points[v] = p; });
     return points;
 }
 
-void relax(const DualComplex& complex, const std::vector<Room>& rooms, std::vector<Vec3>& points) {
-    const Neighbours neighbours = neighboursOf(complex);
-    const std::vector<Vec3> start = points;
-    smooth(rooms, neighbours, points);
-    takeBackShift(complex, rooms, neighbours, start, points);
+std::vector<Vec3> smooth(const std::vector<Room>& rooms, const Neighbours& neighbours,
+                         std::vector<Vec3>&& points) {
+    Smoother smoother(rooms, neighbours, std::move(points));
+    smoother.smoothAtOnce(seriesOf(kRoundsAtOnce));
+    for (int round = 0; round < kRounds; ++round) {
+        smoother.step(kInward);
+        smoother.step(kOutward);
+    }
+    smoother.end();
+    std::vector<Vec3> smoothed(rooms.size());
+    for (std::size_t v = 0; v < smoothed.size(); ++v) {
+        smoothed[v] = heldIn(rooms[v], smoother.pointAt(v));
+    }
+    return smoothed;
+}
+
+/// Smoothing sinks curved walls. Where the way along the normal, on average over the
+/// neighbourhood, is more than a sheet of voxels leaves open anyway, what is more is taken back.
+void takeBackShift(const LabelGrid& grid, const DualComplex& complex,
+                   const std::vector<Room>& rooms, const Neighbours& neighbours,
+                   std::vector<Vec3>& points) {
+    constexpr double kFreeShift = 0.07;  // voxels: tubes of radius 4 keep their true volume
+    constexpr int kRounds = 20;          // steps of averaging: some 4 voxels around
+    const std::vector<Local> normals = wallNormals(complex, neighbours, points);
+    const auto hasNormal = [&](std::size_t v) {
+        return normals[v][0] != 0 || normals[v][1] != 0 || normals[v][2] != 0;
+    };
+    std::vector<float> shift(points.size()), next(points.size());
+    forEachStart(grid, complex, rooms, [&](std::size_t v, const Vec3& start) {
+        shift[v] = static_cast<float>(dot(points[v] - start, pointOf(normals[v])));
+    });
+    for (int round = 0; round < kRounds; ++round) {
+        parallelForPieces(complex.groupCount, kPiece, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t v = begin; v < end; ++v) {
+                if (!hasNormal(v)) continue;
+                float sum = shift[v], count = 1;
+                for (const std::uint32_t n : neighbours.at(v)) {
+                    if (!hasNormal(n)) continue;
+                    sum += shift[n];
+                    ++count;
+                }
+                next[v] = sum / count;
+            }
+        });
+        std::swap(shift, next);
+    }
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        const double own = shift[v], excess = own - std::clamp(own, -kFreeShift, kFreeShift);
+        if (excess == 0 || !hasNormal(v)) continue;
+        points[v] = heldIn(rooms[v], points[v] - excess * pointOf(normals[v]));
+    }
 }
 
 std::int64_t countHeld(const DualComplex& complex, const std::vector<Room>& rooms,
