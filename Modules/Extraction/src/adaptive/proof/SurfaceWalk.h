@@ -141,12 +141,15 @@ class SurfaceWalk {
 public:
     /// Parts of the last cover() that could not be shown to lie within the distance.
     const std::vector<ConvexPiece>& left() const { return left_; }
+    /// Triangles of the surface that the other parts lie near; some of them several times.
+    const std::vector<std::uint64_t>& witnesses() const { return witnesses_; }
 
     /// \param steps  triangles that the walk may visit
     template <class Index>
     void cover(const ConvexPiece& piece, const WalkableSurface<Index>& surface, Index start,
                double squaredDistance, int steps) {
         left_.clear();
+        witnesses_.clear();
         walk(piece, surface, start, squaredDistance, steps);
     }
 
@@ -156,6 +159,7 @@ public:
     void coverLoosely(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
                       double squaredDistance, int steps) {
         left_.clear();
+        witnesses_.clear();
         quarter(piece, surface, start, squaredDistance, steps);
     }
 
@@ -170,7 +174,10 @@ private:
         if (longest <= kLargeQuarter * kLargeQuarter * squaredDistance) {
             t = under((1.0 / 3) * (a + b + c), surface, start);
             const Corners corners = surface.cornersOf(t);
-            if (NearTriangle(corners, squaredDistance).has(piece)) return;
+            if (NearTriangle(corners, squaredDistance).has(piece)) {
+                witnesses_.push_back(t);
+                return;
+            }
         }
         if (longest <= kSmallQuarter * kSmallQuarter * squaredDistance) {
             walk(ConvexPiece(piece), surface, t, squaredDistance, steps);
@@ -227,7 +234,10 @@ private:
               double squaredDistance) {
         const Corners corners = surface.cornersOf(t);
         const NearTriangle near(corners, squaredDistance);
-        if (has(near, piece)) return;
+        if (has(near, piece)) {
+            witnesses_.push_back(t);
+            return;
+        }
         const Vec3 normal = surface.normalOf(t);
         bool isCut = false;
         for (int c = 0; c < 3; ++c) {
@@ -255,7 +265,11 @@ private:
             piece = cut(piece, todo_.back().piece);
             isCut = true;
         }
-        if (!isCut || !has(near, piece)) left_.push_back(piece);
+        if (isCut && has(near, piece)) {
+            witnesses_.push_back(t);
+        } else {
+            left_.push_back(piece);
+        }
     }
 
     /// Two where the piece is convex; more where rounding has bent it.
@@ -289,6 +303,7 @@ private:
     std::array<double, ConvexPiece::kMost> side_{};  ///< of the corners to the plane at an edge
     std::vector<Task> todo_;
     std::vector<ConvexPiece> left_;
+    std::vector<std::uint64_t> witnesses_;
 };
 
 }  // namespace adaptiso::detail
