@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "Release.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 
@@ -219,7 +220,7 @@ void findFaces(const LabelGrid& grid, const CellFinder& finder, DualComplex& com
     complex.adjacencies.reserve(all);
     for (auto& own : found) {
         complex.adjacencies.insert(complex.adjacencies.end(), own.begin(), own.end());
-        own = {};
+        release(own);
     }
     complex.groupCount = complex.cells.empty() ? 0
                                                : complex.cells.back().firstVertex +
@@ -292,7 +293,17 @@ Corners cornersOfEdge(const std::vector<WallCell>& cells, const std::array<std::
     return corners;
 }
 
-void findPolygons(const LabelGrid& grid, const CellFinder& finder, DualComplex& complex) {
+}  // namespace
+
+DualComplex makeDualComplex(const LabelGrid& grid) {
+    DualComplex complex;
+    complex.cells = findCells(grid);
+    findFaces(grid, CellFinder(grid, complex.cells), complex);
+    return complex;
+}
+
+void addPolygons(const LabelGrid& grid, DualComplex& complex) {
+    const CellFinder finder(grid, complex.cells);
     const auto count = static_cast<std::int64_t>(complex.cells.size());
     struct Piece {
         std::vector<DualComplex::Polygon> polygons;
@@ -338,17 +349,6 @@ void findPolygons(const LabelGrid& grid, const CellFinder& finder, DualComplex& 
         complex.corners.insert(complex.corners.end(), piece.corners.begin(), piece.corners.end());
         piece = {};
     }
-}
-
-}  // namespace
-
-DualComplex makeDualComplex(const LabelGrid& grid) {
-    DualComplex complex;
-    complex.cells = findCells(grid);
-    const CellFinder finder(grid, complex.cells);
-    findFaces(grid, finder, complex);
-    findPolygons(grid, finder, complex);
-    return complex;
 }
 
 std::vector<FacePoint> facePoints(const LabelGrid& grid, const DualComplex& complex) {

@@ -59,8 +59,12 @@ struct DualComplex {
     }
 };
 
-/// \throws InvalidInput  there are more vertices or corners than are counted
+/// Without its polygons. \throws InvalidInput  there are more vertices than are counted
 DualComplex makeDualComplex(const LabelGrid& grid);
+
+/// Adds the polygons, which smoothing does without: they are large. \throws InvalidInput  there are
+/// more corners than are counted
+void addPolygons(const LabelGrid& grid, DualComplex& complex);
 
 /// A point on a face of a cell's tetrahedra: which vertices it lies between, and the face.
 struct FacePoint {

@@ -9,6 +9,7 @@
 #include "DualComplex.h"
 #include "LabelGrid.h"
 #include "Placement.h"
+#include "Release.h"
 #include "SimplifyWalls.h"
 #include "Walls.h"
 #include "adaptiso/Core/Errors.h"
@@ -86,8 +87,30 @@ void keepRegions(LabelComplex& complex, const std::vector<Label>& chosen) {
     }
 }
 
-LabelResult makeWalls(const LabelGrid& grid, const ImageGeometry& geometry,
-                      const LabelOptions& options) {
+/// Where the vertices of groups lie. Makes the complex's polygons, and takes its adjacencies: all
+/// of it at once is large.
+std::vector<Vec3> placePoints(const LabelGrid& grid, DualComplex& dual, bool isSmooth,
+                              LabelStatistics& statistics) {
+    const std::vector<Room> rooms = roomsOf(grid, dual);
+    std::vector<Vec3> points = startPoints(grid, dual, rooms);
+    if (!isSmooth) {
+        addPolygons(grid, dual);
+        return points;
+    }
+    {
+        const Neighbours neighbours = neighboursOf(dual);
+        release(dual.adjacencies);
+        points = smooth(rooms, neighbours, std::move(points));
+        addPolygons(grid, dual);
+        takeBackShift(grid, dual, rooms, neighbours, points);
+    }
+    restoreVolumes(grid, dual, rooms, points);
+    statistics.heldVertices = countHeld(dual, rooms, points);
+    return points;
+}
+
+/// \param grid  its labels are taken: all of it at once is large
+LabelResult makeWalls(LabelGrid& grid, const ImageGeometry& geometry, const LabelOptions& options) {
     const auto tell = [&](double fraction) {
         if (options.progress) options.progress("walls", fraction);
     };
@@ -100,17 +123,12 @@ LabelResult makeWalls(const LabelGrid& grid, const ImageGeometry& geometry,
         std::count_if(dual.cells.begin(), dual.cells.end(),
                       [](const WallCell& cell) { return !cell.pattern().isWhole(); });
     tell(0.2);
-    const std::vector<Room> rooms = roomsOf(grid, dual);
-    std::vector<Vec3> points = startPoints(grid, dual, rooms);
-    if (options.smooth) {
-        relax(dual, rooms, points);
-        restoreVolumes(grid, dual, rooms, points);
-        statistics.heldVertices = countHeld(dual, rooms, points);
-    }
-    dual.adjacencies = {};  // large, and of no more use
+    std::vector<Vec3> points = placePoints(grid, dual, options.smooth, statistics);
     appendFacePoints(grid, dual, points);
+    release(dual.cells);
+    release(grid.labels);
     tell(0.6);
-    Walls walls = cutPolygons(dual, grid, points, geometry);
+    Walls walls = cutPolygons(std::move(dual), grid, std::move(points), geometry);
     statistics.mendedCrossings = walls.mendedCrossings;
     statistics.fullTriangles = static_cast<std::int64_t>(walls.complex.triangles.size());
     result.complex = std::move(walls.complex);
@@ -144,7 +162,7 @@ std::optional<SimplifyOptions> simplification(const LabelOptions& options,
 LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options) {
     requireOptions(options);
     requireNoNeedles(volume.geometry());
-    const LabelGrid grid = makeGrid(volume);
+    LabelGrid grid = makeGrid(volume);
     const std::vector<Label> chosen = chosenLabels(grid, options);
     LabelResult result = makeWalls(grid, volume.geometry(), options);
     const auto wanted = simplification(options, volume.geometry(), result.statistics.fullTriangles);

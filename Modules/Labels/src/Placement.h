@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "DualComplex.h"
@@ -36,11 +37,29 @@ Vec3 heldIn(const Room& room, const Vec3& p);
 std::vector<Vec3> startPoints(const LabelGrid& grid, const DualComplex& complex,
                               const std::vector<Room>& rooms);
 
+/// Of each vertex, the neighbours that it is smoothed by: on junctions those along them only.
+struct Neighbours {
+    std::vector<std::uint32_t> begin;
+    std::vector<std::uint32_t> of;
+    std::vector<std::uint8_t> isJunction;
+
+    std::span<const std::uint32_t> at(std::size_t v) const {
+        return {of.data() + begin[v], begin[v + 1] - begin[v]};
+    }
+};
+Neighbours neighboursOf(const DualComplex& complex);
+
 /// Smooths walls: each vertex moves towards the middle of its neighbours and, by a little more,
-/// back again, which takes the staircase away and leaves the volume [Taubin1995]. Vertices of
-/// junctions look at neighbours along them only. None leaves its room; what thin regions would
-/// still lose is given back.
-void relax(const DualComplex& complex, const std::vector<Room>& rooms, std::vector<Vec3>& points);
+/// back again, which takes the staircase away and leaves the volume [Taubin1995]. None leaves its
+/// room. \param points  where the vertices begin; taken \return where they are
+std::vector<Vec3> smooth(const std::vector<Room>& rooms, const Neighbours& neighbours,
+                         std::vector<Vec3>&& points);
+
+/// Gives back what thin regions lose by being smoothed from startPoints() to `points`.
+/// \pre  the complex has its polygons
+void takeBackShift(const LabelGrid& grid, const DualComplex& complex,
+                   const std::vector<Room>& rooms, const Neighbours& neighbours,
+                   std::vector<Vec3>& points);
 
 /// Moves walls along their normals until each region has the volume of its voxels again, but for a
 /// hundredth, as far as the rooms of its vertices let it: smoothing shrinks what is small.

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptive/proof/NearTriangle.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -390,9 +391,7 @@ bool WallCollapser::isNearFull(const Vec3& point, double limitMm) {
         const auto& t = patch_.fullTriangles[fullAround_[n]].v;
         const Vec3 &a = patch_.fullPoints[t[0]], &b = patch_.fullPoints[t[1]],
                    &c = patch_.fullPoints[t[2]];
-        if (squaredNorm(point - closestPointOnTriangle(point, a, b, c)) <= limitMm * limitMm) {
-            return true;
-        }
+        if (NearTriangle({a, b, c}, limitMm * limitMm).has(point)) return true;
     }
     return false;
 }
@@ -474,6 +473,10 @@ void WallCollapser::round(double maxCost, double limitMm, std::int64_t enough) {
                 if (isFrozen(x)) continue;
                 const Plan plan = planFor(u, x);
                 if (plan.cost <= tried_[u]) continue;
+                // farther from the planes in the mean than samples may be: hardly ever possible
+                if (plan.cost > limitMm * limitMm * (quadrics_[u] + quadrics_[x]).weight()) {
+                    continue;
+                }
                 if (plan.cost <= maxCost) {
                     edges.push_back({plan.cost, x, plan});
                 } else {

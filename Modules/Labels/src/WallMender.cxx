@@ -79,7 +79,8 @@ WallMender::WallMender(WallCollapser& collapser, double limitMm, bool mayGrow)
       mayGrow_(mayGrow),
       cells_(boxOfAll(mesh_), 2 * collapser.voxelMm(), kMostCells),
       isLast_(mesh_.firstTriangle(), 0),
-      isFullProved_(mesh_.fullTriangles(), 1) {
+      isFullProved_(mesh_.fullTriangles(), 1),
+      witnessesOf_(mesh_.fullTriangles()) {
     for (Id t = mesh_.firstTriangle(); t < mesh_.triangleCount(); ++t) {
         // what was there when the collapser began
         isLast_.push_back(mesh_.makerOf(t) == kNone ? 1 : 0);
@@ -160,18 +161,34 @@ void WallMender::forgetChanged() {
     const bool beginsFull = mesh_.firstTriangle() == 0;
     for (Id t = mesh_.firstTriangle(); t < isLast_.size(); ++t) {
         if (isLast_[t] == 0 || mesh_.isTriangleAlive(t)) continue;
-        if (beginsFull && t < mesh_.fullTriangles()) isFullProved_[t] = 0;
-        // at first each triangle of the full walls was near itself alone
-        if (isFirst_ && beginsFull) continue;
+        if (beginsFull) {  // at first each triangle of the full walls is near itself
+            if (t < mesh_.fullTriangles()) isFullProved_[t] = 0;
+            continue;
+        }
         const Id wall = mesh_.triangle(t).wall;
         full_.forEachNear(boxAround(t, boundMm_), [&](Id f) {
-            if (mesh_.triangle(f).wall == wall) isFullProved_[f] = 0;
+            if (witnessesOf_[f].count == 0 && mesh_.triangle(f).wall == wall) isFullProved_[f] = 0;
         });
     }
-    isFirst_ = false;
+    for (Id f = 0; f < mesh_.fullTriangles(); ++f) {
+        const auto& [begin, count] = witnessesOf_[f];
+        for (Id n = begin; n < begin + count; ++n) {
+            if (!mesh_.isTriangleAlive(witnesses_[n])) isFullProved_[f] = 0;
+        }
+    }
     isProved_.resize(mesh_.triangleCount(), 0);
     isLast_.resize(mesh_.triangleCount(), 0);
     for (Id t = 0; t < isLast_.size(); ++t) isLast_[t] = mesh_.isTriangleAlive(t) ? 1 : 0;
+}
+
+void WallMender::keepWitnesses(const std::vector<Id>& full, const WallBound& bound) {
+    Id at = 0;
+    for (std::size_t n = 0; n < full.size(); ++n) {
+        witnessesOf_[full[n]] = {static_cast<Id>(witnesses_.size()), bound.witnessCounts[n]};
+        const auto from = bound.witnesses.begin() + at;
+        witnesses_.insert(witnesses_.end(), from, from + bound.witnessCounts[n]);
+        at += bound.witnessCounts[n];
+    }
 }
 
 /// What was taken away where triangles of the full walls lie too far from what is there now.
@@ -228,7 +245,7 @@ void WallMender::findBeyondOfSimple() {
     }
     if (unproved.empty()) return;
     const WallBound bound =
-        proveNear(mesh_, unproved, starts, fullNear(unproved), limitMm_, mayGrow_);
+        proveNear(mesh_, unproved, starts, fullNear(unproved), limitMm_, mayGrow_, false);
     for (const Id t : unproved) isProved_[t] = 1;
     for (const WallPlace& place : bound.beyond) {
         isProved_[place.triangle] = 0;
@@ -257,7 +274,8 @@ void WallMender::findBeyondOfFull() {
         if (!areFew || marks.isMarked(boxAround(t, 0))) alive.push_back(t);
     }
     const WallSurface simple(mesh_, std::move(alive));
-    const WallBound bound = proveNear(mesh_, full, starts, simple, limitMm_, mayGrow_);
+    const WallBound bound = proveNear(mesh_, full, starts, simple, limitMm_, mayGrow_, true);
+    keepWitnesses(full, bound);
     for (const Id t : full) isFullProved_[t] = 1;
     blameNear(bound.beyond);
     for (const WallPlace& place : bound.beyond) {

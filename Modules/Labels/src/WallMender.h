@@ -29,6 +29,7 @@ private:
     void blameNear(const std::vector<WallPlace>& places);
     void findCrossings();
     void forgetChanged();
+    void keepWitnesses(const std::vector<Id>& full, const WallBound& bound);
     const WallSurface& fullNear(const std::vector<Id>& triangles);
     void findBeyondOfSimple();
     void findBeyondOfFull();
@@ -41,12 +42,17 @@ private:
     SpaceCells cells_;
     TriangleGrid full_;  ///< triangles of the full walls
     std::optional<WallSurface> wholeFull_, nearFull_;
-    bool isFirst_ = true;
     std::vector<std::uint8_t> isClear_;       ///< of triangles: known to cross nothing
     std::vector<std::uint8_t> isProved_;      ///< of triangles: within the limit of the full walls
     std::vector<std::uint8_t> isLast_;        ///< of triangles: alive when last proved
     std::vector<std::uint8_t> isFullProved_;  ///< of triangles of the full walls
-    std::vector<Id> changes_;                 ///< to take back
+    /// Of triangles of the full walls, since they were proved: what they lie near.
+    struct Witnesses {
+        Id begin = 0, count = 0;
+    };
+    std::vector<Witnesses> witnessesOf_;
+    std::vector<Id> witnesses_;
+    std::vector<Id> changes_;  ///< to take back
 };
 
 }  // namespace adaptiso::detail

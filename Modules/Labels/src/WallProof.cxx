@@ -43,6 +43,7 @@ WallSurface::WallSurface(const WallMesh& mesh, std::vector<Id> numbers)
         for (int c = 0; c < 3; ++c) triangles_[n][c] = numberOf(t.v[c], t.wall);
     }
     walkable_.assign(points_, triangles_);
+    walkable_.keepNormals();
 }
 
 WallSurface::Id WallSurface::placeOf(Id number) const {
@@ -68,7 +69,7 @@ void WallSurface::collect(const Corners& piece, Id wall, double distanceMm,
 
 WallBound proveNear(const WallMesh& mesh, const std::vector<WallMesh::Id>& triangles,
                     const std::vector<WallMesh::Id>& starts, const WallSurface& to, double limitMm,
-                    bool mayGrow) {
+                    bool mayGrow, bool hasWitnesses) {
     using Id = WallMesh::Id;
     const auto count = static_cast<std::int64_t>(triangles.size());
     double area = 0;
@@ -81,7 +82,7 @@ WallBound proveNear(const WallMesh& mesh, const std::vector<WallMesh::Id>& trian
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
         WallBound& bound = bounds[begin / kPiece];
         SurfaceWalk walk;
-        std::vector<Id> near;
+        std::vector<Id> near, witnesses;
         double enoughMm = limitMm;
         for (std::int64_t n = begin; n < end; ++n) {
             const Corners corners = mesh.cornersOf(triangles[n]);
@@ -89,12 +90,16 @@ WallBound proveNear(const WallMesh& mesh, const std::vector<WallMesh::Id>& trian
             const int steps =
                 kLeastSteps + static_cast<int>(std::min(kMostSteps, kStepsPerTriangle * size));
             const Id start = to.placeOf(starts[n]);
+            witnesses.clear();
             std::vector<ConvexPiece> left;
             if (start == WallMesh::kNone) {
                 left.emplace_back(corners);
             } else {
                 walk.cover(ConvexPiece(corners), to.walkable(), start, limitMm * limitMm, steps);
                 left = walk.left();
+                for (const std::uint64_t t : walk.witnesses()) {
+                    witnesses.push_back(to.numberOf(t));
+                }
             }
             bool isBeyond = false;
             std::vector<Id> nearby;
@@ -109,6 +114,7 @@ WallBound proveNear(const WallMesh& mesh, const std::vector<WallMesh::Id>& trian
                         }
                         if (!mayGrow || reachMm > 1e6 * limitMm) break;
                     }
+                    for (const Id t : near) witnesses.push_back(to.numberOf(t));
                     own.include(part);
                     if (own.boundMm() <= enoughMm) continue;
                     if (mayGrow) {
@@ -119,6 +125,12 @@ WallBound proveNear(const WallMesh& mesh, const std::vector<WallMesh::Id>& trian
                     for (const Id t : near) nearby.push_back(to.numberOf(t));
                 }
             }
+            if (hasWitnesses) {
+                std::sort(witnesses.begin(), witnesses.end());
+                const auto last = std::unique(witnesses.begin(), witnesses.end());
+                bound.witnessCounts.push_back(static_cast<Id>(last - witnesses.begin()));
+                bound.witnesses.insert(bound.witnesses.end(), witnesses.begin(), last);
+            }
             if (isBeyond) bound.beyond.push_back({triangles[n], std::move(nearby)});
         }
         bound.largestMm = enoughMm;
@@ -128,6 +140,9 @@ WallBound proveNear(const WallMesh& mesh, const std::vector<WallMesh::Id>& trian
     for (WallBound& own : bounds) {
         all.largestMm = std::max(all.largestMm, own.largestMm);
         std::move(own.beyond.begin(), own.beyond.end(), std::back_inserter(all.beyond));
+        all.witnessCounts.insert(all.witnessCounts.end(), own.witnessCounts.begin(),
+                                 own.witnessCounts.end());
+        all.witnesses.insert(all.witnesses.end(), own.witnesses.begin(), own.witnesses.end());
     }
     return all;
 }

@@ -52,13 +52,17 @@ struct WallPlace {
 struct WallBound {
     double largestMm = 0;  ///< of all that is not in `beyond`, and of that without a limit
     std::vector<WallPlace> beyond;
+    /// Of each triangle in turn, where asked for: how many triangles of `to` (numbers) it was shown
+    /// to lie near, and these. While they are there, what was proved of it holds.
+    std::vector<WallMesh::Id> witnessCounts, witnesses;
 };
 
 /// Bounds the distance of triangles of one surface to the same wall of another.
 /// \param triangles  numbers \param starts  for each, a triangle of `to` (number) of the same wall
 /// \param mayGrow  what lies beyond the limit counts for the bound, and is no place
+/// \param hasWitnesses  they are listed
 WallBound proveNear(const WallMesh& mesh, const std::vector<WallMesh::Id>& triangles,
                     const std::vector<WallMesh::Id>& starts, const WallSurface& to, double limitMm,
-                    bool mayGrow);
+                    bool mayGrow, bool hasWitnesses);
 
 }  // namespace adaptiso::detail

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "Release.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
@@ -30,16 +31,22 @@ bool isFlat(const Corners& t) {
 
 class PolygonCutter {
 public:
-    PolygonCutter(const DualComplex& complex, const LabelGrid& grid,
-                  const std::vector<Vec3>& points, const ImageGeometry& geometry)
-        : complex_(complex),
+    PolygonCutter(DualComplex&& complex, const LabelGrid& grid, std::vector<Vec3>&& points,
+                  const ImageGeometry& geometry)
+        : complex_(std::move(complex)),
           grid_(grid),
-          lattice_(points),
+          lattice_(std::move(points)),
           geometry_(geometry),
-          pointsMm_(points.size()),
-          cuts_(complex.polygons.size(), Cut::First) {
-        parallelForPieces(count(points), kPiece, [&](std::int64_t begin, std::int64_t end) {
-            for (std::int64_t v = begin; v < end; ++v) pointsMm_[v] = toMm(points[v]);
+          cuts_(complex_.polygons.size(), Cut::First) {
+        // room for the points of fans, so that nothing is copied later but in rare cases
+        constexpr std::size_t kFewMore = 50;
+        const auto fans = std::count_if(complex_.polygons.begin(), complex_.polygons.end(),
+                                        [](const Polygon& p) { return !p.isWhole; });
+        pointsMm_.reserve(lattice_.size() + static_cast<std::size_t>(fans) +
+                          lattice_.size() / kFewMore);
+        pointsMm_.resize(lattice_.size());
+        parallelForPieces(count(lattice_), kPiece, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t v = begin; v < end; ++v) pointsMm_[v] = toMm(lattice_[v]);
         });
     }
 
@@ -69,30 +76,27 @@ public:
                 for (const VertexId v : complex_.cornersOf(complex_.polygons[p])) isAsked[v] = 1;
             }
         }
-        useBegin_ = {};
-        uses_ = {};
+        release(useBegin_);
+        release(uses_);
         return mended;
     }
 
     LabelComplex takeComplex() {
         LabelComplex walls;
         walls.points = std::move(pointsMm_);
-        std::size_t triangles = 0, fans = 0;
+        VertexId nextCentre = count(walls.points);
+        std::size_t triangles = 0;
         for (std::size_t p = 0; p < cuts_.size(); ++p) {
             const bool isFan = cuts_[p] == Cut::Fan;
             triangles += complex_.polygons[p].count - (isFan ? 0 : 2);
-            fans += isFan ? 1 : 0;
+            if (isFan) walls.points.push_back(toMm(centreOf(complex_.polygons[p])));
         }
-        walls.points.reserve(walls.points.size() + fans);
+        release(lattice_);
         walls.triangles.reserve(triangles);
         walls.labels.reserve(triangles);
         for (std::size_t p = 0; p < cuts_.size(); ++p) {
             const Polygon& polygon = complex_.polygons[p];
-            VertexId centre = -1;
-            if (cuts_[p] == Cut::Fan) {
-                centre = count(walls.points);
-                walls.points.push_back(toMm(centreOf(polygon)));
-            }
+            const VertexId centre = cuts_[p] == Cut::Fan ? nextCentre++ : -1;
             const auto [from, into] = polygon.labels;
             // 0 comes last: it is larger than any other as an unsigned number less one
             const auto rank = [](Label l) { return static_cast<std::uint32_t>(l) - 1U; };
@@ -202,10 +206,32 @@ private:
             const bool isFan = cuts_[p] == Cut::Fan;
             const Vec3 centre = isFan ? toMm(centreOf(polygon)) : Vec3{};
             forEachTriangle(polygon, cuts_[p], [&](VertexId a, VertexId b, VertexId c) {
+                if (!isFan && a != v && b != v && c != v && passesBy(v, polygon, cuts_[p])) return;
                 uses.push_back(
                     {p, {a, b, c}, {isFan ? centre : pointsMm_[a], pointsMm_[b], pointsMm_[c]}});
             });
         }
+    }
+
+    /// The diagonal of a polygon of four corners passes on the other side of its lattice edge, so
+    /// that the triangle without this corner stays out of the corner's cell.
+    bool passesBy(VertexId v, const Polygon& polygon, Cut cut) const {
+        constexpr double kClear = 1e-6;
+        const Index3 begin = grid_.indexOf(polygon.place);
+        const int axis = polygon.kind == 1 ? 0 : polygon.kind == 2 ? 1 : 2;
+        const int u = (axis + 1) % 3, w = (axis + 2) % 3;
+        const auto fromEdge = [&](VertexId of) {
+            const Vec3& p = lattice_[of];
+            return std::array{p[u] - static_cast<double>(begin[u]),
+                              p[w] - static_cast<double>(begin[w])};
+        };
+        const auto corners = complex_.cornersOf(polygon);
+        const int o = cut == Cut::First ? 0 : 1;
+        const auto at = fromEdge(v), a = fromEdge(corners[o]), b = fromEdge(corners[o + 2]);
+        // a and b lie in the quadrants beside that of v: with its signs turned, one of each
+        const double turned = at[0] * at[1] > 0 ? 1 : -1;
+        const double side = (a[0] * b[1] - a[1] * b[0]) * turned;
+        return (a[0] * at[0] < 0 ? side : -side) > kClear;
     }
 
     /// Triangles that cross lie in polygons with a vertex of a cell in common: what crosses in a
@@ -300,9 +326,9 @@ private:
         return rounds == 1;
     }
 
-    const DualComplex& complex_;
+    DualComplex complex_;
     const LabelGrid& grid_;
-    const std::vector<Vec3>& lattice_;
+    std::vector<Vec3> lattice_;
     const ImageGeometry& geometry_;
     std::vector<Vec3> pointsMm_;
     std::vector<Cut> cuts_;
@@ -311,9 +337,9 @@ private:
 
 }  // namespace
 
-Walls cutPolygons(const DualComplex& complex, const LabelGrid& grid,
-                  const std::vector<Vec3>& points, const ImageGeometry& geometry) {
-    PolygonCutter cutter(complex, grid, points, geometry);
+Walls cutPolygons(DualComplex&& complex, const LabelGrid& grid, std::vector<Vec3>&& points,
+                  const ImageGeometry& geometry) {
+    PolygonCutter cutter(std::move(complex), grid, std::move(points), geometry);
     cutter.chooseCuts();
     Walls walls;
     walls.mendedCrossings = cutter.mend();

@@ -23,7 +23,7 @@ constexpr std::int64_t kPiece = 8192;
 
 /// Collapses edges, cheapest first, until one limit of cost after the other is used up.
 void collapseAll(WallCollapser& collapser, double limitMm, std::int64_t enough) {
-    constexpr double kLowCost = 4e-4, kHighCost = 30, kStep = 6;
+    constexpr double kLowCost = 2.4e-3, kHighCost = 30, kStep = 6;
     const double h = collapser.voxelMm();
     for (double cost = kLowCost; cost < kHighCost; cost *= kStep) {
         collapser.round(cost * h * h * h * h, limitMm, enough);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "Certificate.h"
@@ -57,6 +58,7 @@ public:
     void assign(std::span<const Vec3> points, std::span<const std::array<Index, 3>> triangles) {
         points_ = points;
         triangles_ = triangles;
+        normals_.clear();
         halfEdges_.assign(points.size(), triangles);
         halfEdges_.match(triangles, twin_);
     }
@@ -66,8 +68,15 @@ public:
         return {points_[v[0]], points_[v[1]], points_[v[2]]};
     }
     Vec3 normalOf(Index t) const {
+        if (!normals_.empty()) return normals_[t];
         const Corners c = cornersOf(t);
         return normalized(areaVector2(c[0], c[1], c[2]));
+    }
+    /// For many walks: each step asks for four normals.
+    void keepNormals() {
+        std::vector<Vec3> normals(triangles_.size());
+        for (Index t = 0; t < triangles_.size(); ++t) normals[t] = normalOf(t);
+        normals_ = std::move(normals);
     }
 
     /// Across the edge from corner c to the next one; kNone where the surface ends.
@@ -121,6 +130,7 @@ private:
     std::span<const std::array<Index, 3>> triangles_;
     HalfEdges<Index> halfEdges_;
     std::vector<Index> twin_;
+    std::vector<Vec3> normals_;  ///< of the triangles, where they are kept
 };
 
 /// Cuts pieces so that each part lies within a distance of one triangle of a surface: those that
@@ -131,12 +141,15 @@ class SurfaceWalk {
 public:
     /// Parts of the last cover() that could not be shown to lie within the distance.
     const std::vector<ConvexPiece>& left() const { return left_; }
+    /// Triangles of the surface that the other parts lie near; some of them several times.
+    const std::vector<std::uint64_t>& witnesses() const { return witnesses_; }
 
     /// \param steps  triangles that the walk may visit
     template <class Index>
     void cover(const ConvexPiece& piece, const WalkableSurface<Index>& surface, Index start,
                double squaredDistance, int steps) {
         left_.clear();
+        witnesses_.clear();
         walk(piece, surface, start, squaredDistance, steps);
     }
 
@@ -146,6 +159,7 @@ public:
     void coverLoosely(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
                       double squaredDistance, int steps) {
         left_.clear();
+        witnesses_.clear();
         quarter(piece, surface, start, squaredDistance, steps);
     }
 
@@ -160,7 +174,10 @@ private:
         if (longest <= kLargeQuarter * kLargeQuarter * squaredDistance) {
             t = under((1.0 / 3) * (a + b + c), surface, start);
             const Corners corners = surface.cornersOf(t);
-            if (NearTriangle(corners, squaredDistance).has(piece)) return;
+            if (NearTriangle(corners, squaredDistance).has(piece)) {
+                witnesses_.push_back(t);
+                return;
+            }
         }
         if (longest <= kSmallQuarter * kSmallQuarter * squaredDistance) {
             walk(ConvexPiece(piece), surface, t, squaredDistance, steps);
@@ -217,7 +234,10 @@ private:
               double squaredDistance) {
         const Corners corners = surface.cornersOf(t);
         const NearTriangle near(corners, squaredDistance);
-        if (has(near, piece)) return;
+        if (has(near, piece)) {
+            witnesses_.push_back(t);
+            return;
+        }
         const Vec3 normal = surface.normalOf(t);
         bool isCut = false;
         for (int c = 0; c < 3; ++c) {
@@ -245,7 +265,11 @@ private:
             piece = cut(piece, todo_.back().piece);
             isCut = true;
         }
-        if (!isCut || !has(near, piece)) left_.push_back(piece);
+        if (isCut && has(near, piece)) {
+            witnesses_.push_back(t);
+        } else {
+            left_.push_back(piece);
+        }
     }
 
     /// Two where the piece is convex; more where rounding has bent it.
@@ -279,6 +303,7 @@ private:
     std::array<double, ConvexPiece::kMost> side_{};  ///< of the corners to the plane at an edge
     std::vector<Task> todo_;
     std::vector<ConvexPiece> left_;
+    std::vector<std::uint64_t> witnesses_;
 };
 
 }  // namespace adaptiso::detail
