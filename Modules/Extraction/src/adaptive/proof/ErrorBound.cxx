@@ -79,7 +79,7 @@ ErrorBound ErrorProof::proveAgain(const SimplifiedSurface& surface, const Surfac
 ErrorBound ErrorProof::prove(const SimplifiedSurface& surface, SurfaceLookup& lookup,
                              const ProofScope& scope) {
     if (last_.triangles.empty()) provedMm_ = 0;
-    last_ = TriangleMesh();  // the scope has what is of use
+    last_ = TriangleList();  // the scope has what is of use
     std::vector<BrickBound> results(bricks_.count());
     tbb::enumerable_thread_specific<BrickProof> proofs(
         [&] { return BrickProof(surface, lookup, sampler_, scope, enoughMm_, limitMm_); });
@@ -125,7 +125,7 @@ void ErrorProof::includeFarPieces(const SimplifiedSurface& surface, const Surfac
             largest[t] = std::max(largest[t], least);
         });
     });
-    for (std::size_t t = 0; t < largest.size(); ++t) {
+    for (SurfaceState::Number t = 0; t < largest.size(); ++t) {
         if (largest[t] == 0) continue;
         constexpr double kRounding = 1 + 1e-6;  // samples are kept in single precision
         const double mm = kRounding * std::sqrt(largest[t]);
@@ -137,7 +137,7 @@ void ErrorProof::includeFarPieces(const SimplifiedSurface& surface, const Surfac
 }
 
 void ErrorProof::remember(SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond) {
-    last_ = lookup.takeMesh();
+    last_ = lookup.takeTriangles();
     isWithin_.assign(last_.triangles.size(), 1);
     for (const PlaceBeyond& place : beyond) {
         if (!place.isOfFine) isWithin_[place.triangle] = 0;
@@ -152,8 +152,7 @@ ProofScope ErrorProof::scopeOf(const SurfaceLookup& lookup) const {
     if (last_.triangles.empty()) return scope;
     std::vector<Corners> known;
     for (std::size_t t = 0; t < last_.triangles.size(); ++t) {
-        const auto& [a, b, c] = last_.triangles[t];
-        if (isWithin_[t] != 0) known.push_back({last_.points[a], last_.points[b], last_.points[c]});
+        if (isWithin_[t] != 0) known.push_back(last_.cornersOf(t));
     }
     tbb::parallel_sort(known.begin(), known.end(), isBefore);
     const auto count = static_cast<std::int64_t>(lookup.triangleCount());

@@ -40,7 +40,7 @@ private:
     double enoughMm_ = 0;  ///< no bound need be tighter
     double provedMm_ = 0;  ///< so far, of what lies within the limit
     // of the last surface; empty where not all of it was proved
-    TriangleMesh last_;
+    TriangleList last_;
     std::vector<std::uint8_t> isWithin_;  ///< the limit, each triangle
     std::vector<PlaceBeyond> beyond_;
 };

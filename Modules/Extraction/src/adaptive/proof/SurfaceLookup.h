@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Buckets.h"
 #include "adaptive/bricks/Bricks.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
@@ -20,6 +21,17 @@ inline std::array<Corners, 4> quarter(const Corners& t) {
     return {{{t[0], a, c}, {a, t[1], b}, {c, b, t[2]}, {a, b, c}}};
 }
 
+/// Points and triangles of a simplified surface alone.
+struct TriangleList {
+    std::vector<Vec3> points;
+    std::vector<SurfaceState::Triangle> triangles;
+
+    Corners cornersOf(std::uint64_t t) const {
+        const auto& [a, b, c] = triangles[t];
+        return {points[a], points[b], points[c]};
+    }
+};
+
 /// Triangles of a simplified surface by the bricks whose neighbourhood they reach into, and by
 /// their places. A copy: the surface may change.
 class SurfaceLookup {
@@ -29,25 +41,24 @@ public:
     const Bricks& bricks() const { return bricks_; }
     const MetricFrame& frame() const { return frame_; }
 
-    std::uint64_t triangleCount() const { return mesh_.triangles.size(); }
-    Corners cornersOf(std::uint64_t t) const {
-        const adaptiso::Triangle& c = mesh_.triangles[t];
-        return {mesh_.points[c[0]], mesh_.points[c[1]], mesh_.points[c[2]]};
-    }
-    const adaptiso::Triangle& triangle(std::uint64_t t) const { return mesh_.triangles[t]; }
-    const Vec3& point(VertexId v) const { return mesh_.points[v]; }
+    std::uint64_t triangleCount() const { return copy_.triangles.size(); }
+    Corners cornersOf(std::uint64_t t) const { return copy_.cornersOf(t); }
+    const SurfaceState::Triangle& triangle(std::uint64_t t) const { return copy_.triangles[t]; }
+    const Vec3& point(SurfaceState::Number v) const { return copy_.points[v]; }
     /// Calls f(t) for all triangles that may lie within a distance of a piece.
     template <class F>
     void forEachNear(const Corners& piece, double distanceMm, const F& f) const {
         CornerBox box = boxOf(piece);
         box.widen(distanceMm);
         tree().forEachOverlap({box.low, box.high},
-                              [&](std::int64_t t) { f(static_cast<std::uint64_t>(t)); });
+                              [&](std::int64_t t) { f(static_cast<SurfaceState::Number>(t)); });
     }
-    /// The triangles' mesh; nothing may be asked of the lookup then.
-    TriangleMesh takeMesh() { return std::move(mesh_); }
-    const WalkableSurface<VertexId>& walkable() const { return walkable_; }
-    std::span<const std::uint64_t> ofBrick(std::int64_t b) const { return ofBrick_[b]; }
+    /// The triangles; nothing may be asked of the lookup then.
+    TriangleList takeTriangles() { return std::move(copy_); }
+    const WalkableSurface<SurfaceState::Number>& walkable() const { return walkable_; }
+    std::span<const SurfaceState::Number> ofBrick(std::int64_t b) const {
+        return ofBrick_.of(static_cast<std::size_t>(b));
+    }
     /// ofBrick() has all triangles within a distance of the brick.
     bool ofBrickHasAllWithin(double distanceMm) const {
         return distanceMm <= kRoom * frame_.narrowestMm();
@@ -96,11 +107,12 @@ private:
 
     const Bricks& bricks_;
     const MetricFrame& frame_;
-    TriangleMesh mesh_;
+    TriangleList copy_;
     mutable std::once_flag treeIsBuilt_;
+    mutable TriangleMesh mesh_;  ///< the tree's
     mutable std::optional<AabbTree> tree_;
-    WalkableSurface<VertexId> walkable_;
-    std::vector<std::vector<std::uint64_t>> ofBrick_;
+    WalkableSurface<SurfaceState::Number> walkable_;
+    Buckets<SurfaceState::Number> ofBrick_;
 };
 
 }  // namespace adaptiso::detail

@@ -31,12 +31,13 @@ void markSamples(SimplifiedSurface& surface) {
 }  // namespace
 
 std::vector<std::uint64_t> openHalfEdges(const SurfaceState& surface) {
-    HalfEdges<std::uint64_t> halfEdges;
+    HalfEdges<SurfaceState::Number> halfEdges;
     halfEdges.assign(surface.points.size(), surface.triangles);
-    std::vector<std::uint64_t> twin, open;
+    std::vector<SurfaceState::Number> twin;
     halfEdges.match(surface.triangles, twin);
+    std::vector<std::uint64_t> open;
     for (std::uint64_t h = 0; h < twin.size(); ++h) {
-        if (twin[h] == HalfEdges<std::uint64_t>::kNone) open.push_back(h);
+        if (twin[h] == HalfEdges<SurfaceState::Number>::kNone) open.push_back(h);
     }
     return open;
 }

@@ -11,29 +11,31 @@
 namespace adaptiso::detail {
 namespace {
 
+using Number = SurfaceState::Number;
+
 /// \param newVertex  of each vertex, kGone for those that are gone
 /// \param mergedInto of each vertex, what it was merged into in this round
-void passOn(const std::vector<std::uint64_t>& newVertex,
-            const std::vector<std::uint64_t>& mergedInto, std::vector<std::uint64_t>& heirs) {
-    for (std::uint64_t& heir : heirs) {
+void passOn(const std::vector<Number>& newVertex, const std::vector<Number>& mergedInto,
+            std::vector<Number>& heirs) {
+    for (Number& heir : heirs) {
         while (newVertex[heir] == SimplifiedSurface::kGone) heir = mergedInto[heir];
         heir = newVertex[heir];
     }
 }
 
 /// \param mergedInto  of each vertex, in this round; empty where the surface keeps no heirs
-void removeGone(SimplifiedSurface& surface, const std::vector<std::uint64_t>& mergedInto) {
-    constexpr std::uint64_t kGone = SimplifiedSurface::kGone;
-    std::vector<std::uint64_t> newTriangle(surface.triangles.size()),
+void removeGone(SimplifiedSurface& surface, const std::vector<Number>& mergedInto) {
+    constexpr Number kGone = SimplifiedSurface::kGone;
+    std::vector<Number> newTriangle(surface.triangles.size()),
         newVertex(surface.points.size(), kGone);
-    std::uint64_t triangles = 0, vertices = 0;
+    Number triangles = 0, vertices = 0;
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
         if (surface.triangles[t][0] == kGone) continue;
-        for (const std::uint64_t v : surface.triangles[t]) newVertex[v] = 0;
+        for (const Number v : surface.triangles[t]) newVertex[v] = 0;
         newTriangle[t] = triangles;
         surface.triangles[triangles++] = surface.triangles[t];
     }
-    for (std::uint64_t& v : newVertex) {
+    for (Number& v : newVertex) {
         if (v != kGone) v = vertices++;
     }
     const auto keep = [&](auto& members) {
@@ -48,7 +50,7 @@ void removeGone(SimplifiedSurface& surface, const std::vector<std::uint64_t>& me
             surface.triangles.resize(triangles);
             surface.triangles.shrink_to_fit();
             for (auto& t : surface.triangles) {
-                for (std::uint64_t& v : t) v = newVertex[v];
+                for (Number& v : t) v = newVertex[v];
             }
         },
         [&] { keep(surface.quadrics); }, [&] { keep(surface.points); },
@@ -57,7 +59,7 @@ void removeGone(SimplifiedSurface& surface, const std::vector<std::uint64_t>& me
             if (!surface.marks.empty()) keep(surface.marks);
         },
         [&] {
-            for (std::uint64_t& t : surface.sampleTriangle) t = newTriangle[t];
+            for (Number& t : surface.sampleTriangle) t = newTriangle[t];
         },
         [&] { passOn(newVertex, mergedInto, surface.heirs); });
 }
@@ -102,7 +104,7 @@ PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
 void PatchRound::run(const PatchWork& work, CollapseCosts* costs) {
     if (costs != nullptr) costs->assign(groups_.count(), {});
     const std::vector<std::int64_t> quota = groups_.shares(work.mostCollapses);
-    std::vector<std::uint64_t> mergedInto;
+    std::vector<Number> mergedInto;
     if (work.collapses && !surface_.heirs.empty()) mergedInto.resize(surface_.points.size());
     tbb::enumerable_thread_specific<PatchScratch> scratches;
     parallelForPieces(

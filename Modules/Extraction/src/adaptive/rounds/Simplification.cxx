@@ -13,7 +13,7 @@ namespace {
 /// From now on.
 void keepHeirs(SimplifiedSurface& surface) {
     surface.heirs.resize(surface.points.size());
-    std::iota(surface.heirs.begin(), surface.heirs.end(), std::uint64_t{0});
+    std::iota(surface.heirs.begin(), surface.heirs.end(), SurfaceState::Number{0});
 }
 
 /// How much the limit of cost may grow in a round: the more the farther the wanted count is.
@@ -45,6 +45,7 @@ void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
     limits_.triedCost = limits_.maxCost;
     limits_.maxCost = cost;
     PatchRound(surface, nextCut(), frame_).run({limits_});
+    surface.returnFreedMemory();
 }
 
 Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
@@ -53,6 +54,7 @@ Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
     limits_.maxDistanceMm *= kHalfwayDistance;
     limits_.maxCost = kFirstCost * costUnit_;
     surface = full_.firstRound(tight_, limits_, nullptr);
+    surface.returnFreedMemory();
     for (const double cost : kBoundCosts) {
         if (cost * costUnit_ > mostCost) break;
         roundUpTo(cost * costUnit_, surface);
