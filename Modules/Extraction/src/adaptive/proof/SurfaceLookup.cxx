@@ -13,11 +13,11 @@ std::int64_t floorOf(double x) {
     return static_cast<std::int64_t>(std::floor(x));
 }
 
-TriangleMesh meshOf(const TriangleList& list) {
+TriangleMesh meshOf(const SurfaceState& surface) {
     TriangleMesh mesh;
-    mesh.points = list.points;
-    mesh.triangles.reserve(list.triangles.size());
-    for (const auto& [a, b, c] : list.triangles) {
+    mesh.points = surface.points;
+    mesh.triangles.reserve(surface.triangles.size());
+    for (const auto& [a, b, c] : surface.triangles) {
         mesh.triangles.push_back(
             {static_cast<VertexId>(a), static_cast<VertexId>(b), static_cast<VertexId>(c)});
     }
@@ -40,8 +40,8 @@ std::pair<Index3, Index3> SurfaceLookup::placesNear(std::uint64_t t) const {
 
 SurfaceLookup::SurfaceLookup(const SimplifiedSurface& surface, const Bricks& bricks,
                              const MetricFrame& frame)
-    : bricks_(bricks), frame_(frame), copy_{surface.points, surface.triangles} {
-    tbb::parallel_invoke([&] { walkable_.assign(copy_.points, copy_.triangles); },
+    : surface_(surface), bricks_(bricks), frame_(frame) {
+    tbb::parallel_invoke([&] { walkable_.assign(surface.points, surface.triangles); },
                          [&] {
                              ofBrick_.assign(bricks_.count(), [&](const auto& give) {
                                  for (SurfaceState::Number t = 0; t < triangleCount(); ++t) {
@@ -55,7 +55,7 @@ const AabbTree& SurfaceLookup::tree() const {
     std::call_once(treeIsBuilt_, [&] {
         // while it waits for its own tasks a thread must not take one that asks for the tree
         tbb::this_task_arena::isolate([&] {
-            mesh_ = meshOf(copy_);
+            mesh_ = meshOf(surface_);
             tree_.emplace(mesh_);
         });
     });

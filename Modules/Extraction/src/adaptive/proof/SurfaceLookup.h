@@ -21,19 +21,8 @@ inline std::array<Corners, 4> quarter(const Corners& t) {
     return {{{t[0], a, c}, {a, t[1], b}, {c, b, t[2]}, {a, b, c}}};
 }
 
-/// Points and triangles of a simplified surface alone.
-struct TriangleList {
-    std::vector<Vec3> points;
-    std::vector<SurfaceState::Triangle> triangles;
-
-    Corners cornersOf(std::uint64_t t) const {
-        const auto& [a, b, c] = triangles[t];
-        return {points[a], points[b], points[c]};
-    }
-};
-
 /// Triangles of a simplified surface by the bricks whose neighbourhood they reach into, and by
-/// their places. A copy: the surface may change.
+/// their places. The surface must not change meanwhile.
 class SurfaceLookup {
 public:
     SurfaceLookup(const SimplifiedSurface& surface, const Bricks& bricks, const MetricFrame& frame);
@@ -41,10 +30,13 @@ public:
     const Bricks& bricks() const { return bricks_; }
     const MetricFrame& frame() const { return frame_; }
 
-    std::uint64_t triangleCount() const { return copy_.triangles.size(); }
-    Corners cornersOf(std::uint64_t t) const { return copy_.cornersOf(t); }
-    const SurfaceState::Triangle& triangle(std::uint64_t t) const { return copy_.triangles[t]; }
-    const Vec3& point(SurfaceState::Number v) const { return copy_.points[v]; }
+    std::uint64_t triangleCount() const { return surface_.triangles.size(); }
+    Corners cornersOf(std::uint64_t t) const {
+        const SurfaceState::Triangle& c = surface_.triangles[t];
+        return {surface_.points[c[0]], surface_.points[c[1]], surface_.points[c[2]]};
+    }
+    const SurfaceState::Triangle& triangle(std::uint64_t t) const { return surface_.triangles[t]; }
+    const Vec3& point(SurfaceState::Number v) const { return surface_.points[v]; }
     /// Calls f(t) for all triangles that may lie within a distance of a piece.
     template <class F>
     void forEachNear(const Corners& piece, double distanceMm, const F& f) const {
@@ -53,8 +45,6 @@ public:
         tree().forEachOverlap({box.low, box.high},
                               [&](std::int64_t t) { f(static_cast<SurfaceState::Number>(t)); });
     }
-    /// The triangles; nothing may be asked of the lookup then.
-    TriangleList takeTriangles() { return std::move(copy_); }
     const WalkableSurface<SurfaceState::Number>& walkable() const { return walkable_; }
     std::span<const SurfaceState::Number> ofBrick(std::int64_t b) const {
         return ofBrick_.of(static_cast<std::size_t>(b));
@@ -105,9 +95,9 @@ private:
     /// Built when it is first asked for.
     const AabbTree& tree() const;
 
+    const SurfaceState& surface_;
     const Bricks& bricks_;
     const MetricFrame& frame_;
-    TriangleList copy_;
     mutable std::once_flag treeIsBuilt_;
     mutable TriangleMesh mesh_;  ///< the tree's
     mutable std::optional<AabbTree> tree_;

@@ -73,18 +73,20 @@ std::int64_t PatchTrial::collapses() const {
 }
 
 PatchRound::PatchRound(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame)
-    : surface_(surface), frame_(frame), groups_(surface, cut, frame) {}
+    : surface_(surface), frame_(frame) {
+    groups_.emplace(surface, cut, frame);
+}
 
 PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
     std::vector<std::size_t> all, some;
-    for (std::size_t n = 0; n < groups_.count(); ++n) {
-        if (!groups_.isIdle(n)) all.push_back(n);
+    for (std::size_t n = 0; n < groups_->count(); ++n) {
+        if (!groups_->isIdle(n)) all.push_back(n);
     }
     const std::size_t every =
         triesAll ? 1 : std::clamp<std::size_t>(all.size() / kTrialFewest, 1, kTrialEvery);
     double triangles = 0, tried = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const auto count = static_cast<double>(groups_.triangleCount(all[i]));
+        const auto count = static_cast<double>(groups_->triangleCount(all[i]));
         triangles += count;
         if (i % every != every / 2) continue;
         some.push_back(all[i]);
@@ -95,31 +97,33 @@ PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
     if (every > 1) trial.share = tried / triangles;
     tbb::enumerable_thread_specific<PatchScratch> scratches;
     parallelForPieces(std::ssize(some), 1, [&](std::int64_t i, std::int64_t) {
-        Patch patch = groups_.take(some[i], scratches.local());
+        Patch patch = groups_->take(some[i], scratches.local());
         PatchSimplifier(patch, frame_, limits).collapseEdges(patch.ownTriangles, &trial.costs[i]);
     });
     return trial;
 }
 
 void PatchRound::run(const PatchWork& work, CollapseCosts* costs) {
-    if (costs != nullptr) costs->assign(groups_.count(), {});
-    const std::vector<std::int64_t> quota = groups_.shares(work.mostCollapses);
+    if (costs != nullptr) costs->assign(groups_->count(), {});
+    const std::vector<std::int64_t> quota = groups_->shares(work.mostCollapses);
     std::vector<Number> mergedInto;
     if (work.collapses && !surface_.heirs.empty()) mergedInto.resize(surface_.points.size());
     tbb::enumerable_thread_specific<PatchScratch> scratches;
     parallelForPieces(
-        static_cast<std::int64_t>(groups_.count()), 1, [&](std::int64_t n, std::int64_t) {
-            if (groups_.isIdle(n)) return;
+        static_cast<std::int64_t>(groups_->count()), 1, [&](std::int64_t n, std::int64_t) {
+            if (groups_->isIdle(n)) return;
             PatchScratch& scratch = scratches.local();
-            Patch patch = groups_.take(n, scratch);
+            Patch patch = groups_->take(n, scratch);
             PatchSimplifier simplifier(patch, frame_, work.limits);
             if (work.collapses) {
                 simplifier.collapseEdges(quota[n], costs == nullptr ? nullptr : &(*costs)[n]);
             }
             if (work.fits) simplifier.fitVertices();
-            groups_.putBack(n, patch, scratch, surface_);
-            if (!mergedInto.empty()) groups_.noteMerges(n, patch, mergedInto);
+            groups_->putBack(n, patch, scratch, surface_);
+            if (!mergedInto.empty()) groups_->noteMerges(n, patch, mergedInto);
         });
+    scratches.clear();
+    groups_.reset();
     if (work.collapses) removeGone(surface_, mergedInto);
 }
 
