@@ -1,7 +1,9 @@
 """Surfaces of arrays: truth on paper, every order and type of samples, every affine, bad input."""
 
+import copy
 import logging
 import pathlib
+import pickle
 import subprocess
 import sys
 import threading
@@ -168,6 +170,15 @@ class Samples(unittest.TestCase):
         with self.assertRaises(adaptiso.Error):
             adaptiso.surface(volume, 1e9)
         self.assertTrue(volume.flags.writeable)
+
+    def test_an_index_pickles_with_its_image(self):
+        for border, order in (("closed", "F"), ("open", "C")):
+            volume = np.array(ball(), np.float32, order=order)
+            index = adaptiso.Index(volume, affine=SHEARED, border=border)
+            again = pickle.loads(pickle.dumps(index))
+            self.assertEqual(repr(again), repr(index))
+            self.assertEqual(again.surface(-8), index.surface(-8))
+            self.assertEqual(copy.deepcopy(index).surface(-8), index.surface(-8))
 
     def test_an_index_keeps_its_array_read_only(self):
         volume = np.asfortranarray(self.volume)
