@@ -383,23 +383,26 @@ class Interruption(unittest.TestCase):
             adaptiso.surface(ball((40, 40, 40)), -15, progress=stop)
 
     def test_control_c_ends_a_call(self):
-        """In a process of its own: KeyboardInterrupt comes out, within seconds, and the interpreter
-        goes on."""
+        """In a process of its own: KeyboardInterrupt comes out within three seconds of the processor, of the
+        twenty or so that the call would take, and the interpreter goes on."""
         script = """
 import adaptiso, numpy as np, signal, threading, os, time
 noise = np.asfortranarray(np.random.default_rng(1).normal(size=(120, 120, 120)))
-threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
-start = time.monotonic()
+sent = []
+def send():
+    sent.append(time.process_time())
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Timer(1.0, send).start()
 try:
     adaptiso.surface(noise, 0.0)
 except KeyboardInterrupt:
-    print("interrupted after", time.monotonic() - start)
+    print("interrupted in time:", time.process_time() - sent[0] < 3)
 print(len(adaptiso.surface(noise[:9, :9, :9], 0.0).faces) > 0, noise.flags.writeable)
 """
         done = subprocess.run([sys.executable, "-c", script], text=True, capture_output=True,
                               timeout=600)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("interrupted after", done.stdout)
+        self.assertIn("interrupted in time: True", done.stdout)
         self.assertTrue(done.stdout.endswith("True True\n"), done.stdout)
         self.assertEqual(done.stderr, "")
 

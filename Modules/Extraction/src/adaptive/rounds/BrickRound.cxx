@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Interruption.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
@@ -361,6 +362,7 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
         return Tools{BrickMesher(sampler, bricks.grid()), {}};
     });
     const auto simplified = [&](std::int64_t b) {
+        InterruptionCheck::ask();
         Tools& mine = tools.local();
         mine.mesher.mesh(bricks[b], mine.fine);
         Index3 lowIndex = bricks[b].low;
