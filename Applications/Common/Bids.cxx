@@ -186,11 +186,12 @@ Json bidsDescription(const fs::path& root, const fs::path& derivatives,
                      const std::string& program) {
     std::error_code error;
     const fs::path link = fs::proximate(root, derivatives, error);
+    Json maker{{"Name", program}, {"Version", programVersion()}};
+    if (constexpr std::string_view home = ADAPTISO_HOMEPAGE; !home.empty()) maker["CodeURL"] = home;
     return {{"Name", "adaptiso"},
             {"BIDSVersion", "1.8.0"},
             {"DatasetType", "derivative"},
-            {"GeneratedBy",
-             {{{"Name", program}, {"Version", programVersion()}, {"CodeURL", ADAPTISO_HOMEPAGE}}}},
+            {"GeneratedBy", Json::array({maker})},
             {"SourceDatasets", {sourceOf(root)}},
             {"DatasetLinks", {{"raw", link.generic_string()}}}};
 }

@@ -41,13 +41,13 @@ void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& 
              "Which volume of a 4-D image (time points, echoes), counted from 0")
         ->group(group);
     addCount(app, "--level", options.level, 0, kAnyCount,
-             "Which resolution of an OME-Zarr, 0 the finest (default)")
+             "Which resolution of an OME-Zarr or N5, 0 the finest (default)")
         ->group(group);
     addCount(app, "--channel", options.channel, 0, kAnyCount,
-             "Which channel of an OME-Zarr with several, counted from 0")
+             "Which channel of an OME-Zarr or N5 with several, counted from 0")
         ->group(group);
     addCount(app, "--time", options.timePoint, 0, kAnyCount,
-             "Which time point of an OME-Zarr with several, counted from 0")
+             "Which time point of an OME-Zarr or N5 with several, counted from 0")
         ->group(group);
     app.add_flag("--refuse-missing-chunks", options.refusesMissingChunks,
                  "Refuse a Zarr in which chunks are missing; else the fill value stands for them, "

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "Common/ImageOptions.h"
@@ -38,20 +39,56 @@ void declareArguments(CLI::App& app, GiantOptions& options) {
         ->type_name("");
 }
 
+Method methodOf(const std::string& text) {
+    for (const char* const whole : {"boxes", "asc", "dmc"}) {
+        if (text != whole) continue;
+        throw UsageError("--method " + text +
+                         ": its facets may be as long as the volume, so tiles can't have it; take "
+                         "adaptive or mc, or adaptiso-mesh");
+    }
+    return parseChoice("--method", text, {"adaptive", "mc"}) == 0 ? Method::Adaptive
+                                                                  : Method::MarchingCubes;
+}
+
+/// Options of adaptiso-mesh that --help does not list here: each is refused with its reason.
+void refuseWhatNeedsTheWhole(CLI::App& app) {
+    constexpr const char* kCounts =
+        ": where triangles are saved is decided over the whole volume; take --max-error, or "
+        "adaptiso-mesh, or adaptiso-simplify on the result";
+    constexpr const char* kPieces =
+        ": what is one piece is known when tiles are joined; choose by adaptiso-mesh, or leave "
+        "pieces out of the result";
+    constexpr const char* kBorder =
+        ": join proves that the surface is closed, and so closes it at the volume's border";
+    for (const auto& [name, reason] : {std::pair{"--triangles", kCounts},
+                                       {"--reduction", kCounts},
+                                       {"--largest", kPieces},
+                                       {"--min-volume", kPieces},
+                                       {"--border", kBorder}}) {
+        app.add_option_function<std::vector<std::string>>(
+               name, [text = std::string(name) +
+                             reason](const std::vector<std::string>&) { throw UsageError(text); })
+            ->expected(0, 1)
+            ->group("");
+    }
+}
+
 void declarePlanned(CLI::App& app, GiantOptions& options) {
-    app.add_option("--input", options.input,
-                   "The image: a Zarr or OME-Zarr, of which only what a tile needs is read, or any "
-                   "other that adaptiso-mesh reads")
+    app.add_option(
+           "--input", options.input,
+           "The image: a Zarr, OME-Zarr or N5, of which only what a tile needs is read, or any "
+           "other that adaptiso-mesh reads")
         ->type_name("IMG")
         ->group(kPlanned);
     addNumber(app, "--iso", options.isovalue, {},
               "The isovalue: samples of it and above are inside")
         ->type_name("VALUE")
         ->group(kPlanned);
-    addChoice<Method>(app, "--method", options.method,
-                      {{"adaptive", Method::Adaptive}, {"mc", Method::MarchingCubes}},
-                      "adaptive: few triangles within a distance of the surface of marching cubes; "
-                      "mc: that surface (default: adaptive). The others need the whole volume")
+    addValue(
+        app, "--method", "adaptive|mc",
+        [&options](const std::string& text) { options.method = methodOf(text); },
+        "adaptive: few triangles within a distance of the surface of marching cubes; mc: that "
+        "surface (default: adaptive). The others need the whole volume")
         ->group(kPlanned);
     addNumber(app, "--max-error", options.maxErrorMm, {.least = 0, .isAbove = true, .unit = "mm"},
               "Of method adaptive: no point is farther than MM from the surface of marching cubes, "
@@ -144,6 +181,7 @@ void declareGiantOptions(CLI::App& app, GiantOptions& options) {
     declareArguments(app, options);
     declarePlanned(app, options);
     declareResult(app, options);
+    refuseWhatNeedsTheWhole(app);
     addCount(app, "--workers", options.workers, 1, 1024,
              "Step run: work on N tiles at a time, each by a process of its own (default: 1)")
         ->group(kRunning);

@@ -173,7 +173,8 @@ private:
             const std::optional<Index3> tile =
                 id.is_string() ? placeOf(id.get_ref<const std::string&>()) : std::nullopt;
             if (!tile || (*tile)[0] >= count[0] || (*tile)[1] >= count[1] ||
-                (*tile)[2] >= count[2]) {
+                (*tile)[2] >= count[2] ||
+                (!plan.tiles.empty() && orderOf(plan.tiles.back()) >= orderOf(*tile))) {
                 refusePlan(name_, "tiles");
             }
             plan.tiles.push_back(*tile);
@@ -183,11 +184,6 @@ private:
     const Json& json_;
     const std::string& name_;
 };
-
-/// z, y, x: the order in which pieces are joined.
-std::array<std::int64_t, 3> orderOf(const Index3& place) {
-    return {place[2], place[1], place[0]};
-}
 
 }  // namespace
 
@@ -209,6 +205,10 @@ std::vector<Index3> GiantPlan::seams() const {
     std::vector<Index3> list;
     for (const auto& [z, y, x] : found) list.push_back({x, y, z});
     return list;
+}
+
+std::array<std::int64_t, 3> orderOf(const Index3& place) {
+    return {place[2], place[1], place[0]};
 }
 
 std::string GiantPlan::identity() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -26,7 +27,7 @@ struct GiantPlan {
     Method method = Method::Adaptive;
     double maxErrorMm = 0;      ///< of Method::Adaptive
     std::int64_t side = 0;      ///< of a tile, cells
-    std::vector<Index3> tiles;  ///< that may hold surface; x the fastest
+    std::vector<Index3> tiles;  ///< that may hold surface, ascending as orderOf() has it
     std::vector<std::string> warnings;
 
     TileCut cut() const { return {geometry.size, side}; }
@@ -46,6 +47,9 @@ std::string encodePlan(const GiantPlan& plan);
 
 /// \param name  for messages \throws FileError  it is no plan, or damaged
 GiantPlan decodePlan(std::string_view text, const std::string& name);
+
+/// z, y, x: the order in which pieces are listed, and joined.
+std::array<std::int64_t, 3> orderOf(const Index3& place);
 
 /// "3_0_12"
 std::string idOf(const Index3& place);

@@ -43,7 +43,7 @@ ReportTable totalsOf(const GiantSurface& surface, const Json& json) {
             {"", ""},
             {{"triangles", formatCount(surface.triangles)},
              {"vertices", formatCount(surface.vertices)},
-             {"components", formatCount(std::ssize(surface.components))},
+             {"components", formatCount(surface.totals.count)},
              {"of them cavities", formatCount(json.at("cavities").get<long long>())},
              {"genus", formatCount(json.at("genus").get<long long>())},
              {"area, mm2", measure("areaMm2")},
@@ -59,8 +59,7 @@ ReportTable componentsOf(const GiantSurface& surface) {
         if (table.rows.size() == kMostRows) break;
         table.rows.push_back({std::to_string(table.rows.size() + 1),
                               formatShort(component.volumeMm3), formatShort(component.areaMm2),
-                              formatCount(component.triangles),
-                              formatCount((2 - component.eulerNumber()) / 2)});
+                              formatCount(component.triangles), formatCount(component.genus())});
     }
     return table;
 }
@@ -73,7 +72,7 @@ Report giantReport(const GiantPlan& plan, const GiantSurface& surface, const Jso
     report.title = "Surface of a large volume";
     report.verdict = ReportVerdict::Passed;
     report.headline = formatCount(surface.triangles) + " triangles in " +
-                      formatCount(std::ssize(surface.components)) + " components, closed";
+                      formatCount(surface.totals.count) + " components, closed";
     report.inputs = inputsOf(plan, json);
     report.options = optionsOf(plan);
     report.checks = checksOf(plan, surface);

@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::int64_t kPreviewTriangles = 200'000;
-constexpr std::size_t kMostListed = 1000;  // components in the report
 
 Json componentJson(const GiantComponent& component) {
     return {{"volumeMm3", number(component.volumeMm3)}, {"areaMm2", number(component.areaMm2)},
@@ -33,30 +32,13 @@ Json componentJson(const GiantComponent& component) {
             {"eulerNumber", component.eulerNumber()},   {"cavity", component.isCavity()}};
 }
 
-struct Totals {
-    double areaMm2 = 0, volumeMm3 = 0;
-    std::int64_t cavities = 0, genus = 0;
-};
-
-Totals totalsOf(const GiantSurface& surface) {
-    Totals totals;
-    for (const GiantComponent& component : surface.components) {
-        totals.areaMm2 += component.areaMm2;
-        totals.volumeMm3 += component.volumeMm3;
-        totals.cavities += static_cast<std::int64_t>(component.isCavity());
-        totals.genus += (2 - component.eulerNumber()) / 2;
-    }
-    return totals;
-}
-
 Json reportOf(const GiantPlan& plan, const GiantSurface& surface, const GiantOptions& options) {
-    const Totals totals = totalsOf(surface);
+    const GiantTotals& totals = surface.totals;
     Json image{{"file", baseName(plan.input)}, {"format", plan.format}};
     image.update(geometryJson(plan.geometry));
     image["pixelType"] = toString(plan.pixelType);
     Json components = Json::array();
     for (const GiantComponent& component : surface.components) {
-        if (components.size() == kMostListed) break;
         components.push_back(componentJson(component));
     }
     return {{"schema", "adaptiso-giant/1"},
@@ -76,7 +58,7 @@ Json reportOf(const GiantPlan& plan, const GiantSurface& surface, const GiantOpt
             {"areaMm2", number(totals.areaMm2)},
             {"volumeMm3", number(totals.volumeMm3)},
             {"genus", totals.genus},
-            {"componentCount", surface.components.size()},
+            {"componentCount", totals.count},
             {"cavities", totals.cavities},
             {"components", components},
             {"output", options.output.empty() ? Json(nullptr) : Json(baseName(options.output))},
@@ -191,9 +173,14 @@ void requireClosed(const GiantSurface& surface) {
 
 }  // namespace
 
-int runJoinStep(const GiantOptions& options) {
+int runJoinStep(const GiantOptions& options, const std::string& key) {
     const ThreadLimit threads(options.common);
     const GiantPlan plan = readPlan(options.work);
+    if (!key.empty() && keyOf(plan) != key) {
+        throw InvalidInput(options.work.string() +
+                           ": another plan was made there meanwhile; give each surface a folder of "
+                           "its own");
+    }
     const bool isPieces = options.output.extension() == ".pvtp";
     for (const fs::path& file : {options.output, options.preview}) {
         if (!file.empty()) checkOutput(file);

@@ -1,122 +1,140 @@
 #include "PieceJoiner.h"
 
 #include <algorithm>
-#include <map>
-#include <unordered_set>
+#include <optional>
+#include <utility>
 
+#include "BorderFront.h"
 #include "Steps.h"
-#include "adaptiso/Core/DisjointSets.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
+namespace {
+
+/// Parts of pieces, joined where they have a vertex in common.
+class PartJoiner {
+public:
+    void add(const PieceSummary& piece) {
+        std::vector<std::uint32_t> parts;
+        for (const PieceComponent& part : piece.components) {
+            parts.push_back(components_.add(
+                {part.innerVertices, part.triangles, part.areaMm2, part.volumeMm3, partCount_++}));
+        }
+        const std::vector<BorderFront::Vertex*> border = front_.add(piece);
+        for (std::size_t n = 0; n < border.size(); ++n) {
+            const std::uint32_t part = parts[piece.border[n].component];
+            if (border[n]->isNew) {
+                border[n]->part = part;
+                components_.hold(part);
+                components_.addVertex(part);
+            } else {
+                components_.join(border[n]->part, part);
+            }
+        }
+        front_.release(piece, [&](const BorderFront::Vertex& v) { components_.drop(v.part); });
+        for (const std::uint32_t part : parts) components_.drop(part);
+    }
+
+    void finish(GiantSurface& surface) {
+        components_.finishAll();
+        surface.openEdges = front_.openEdges();
+        surface.totals = components_.totals();
+        surface.vertices = surface.totals.vertices;
+        surface.components = components_.largest();
+    }
+
+private:
+    BorderFront front_;
+    GrowingComponents components_;
+    std::int64_t partCount_ = 0;
+};
+
+}  // namespace
 
 PieceJoiner::PieceJoiner(const std::filesystem::path& work, const GiantPlan& plan)
-    : work_(work), plan_(plan), places_(plan.pieces()) {
-    readSummaries();
+    : work_(work),
+      plan_(plan),
+      key_(keyOf(plan)),
+      stage_(plan.isAdaptive() ? "seam" : "tile"),
+      places_(plan.pieces()) {
+    requirePieces();
+    joinPieces();
 }
 
-void PieceJoiner::readSummaries() {
-    const std::string key = keyOf(plan_), stage = plan_.isAdaptive() ? "seam" : "tile";
-    std::vector<PieceSummary> summaries;
+/// All at once, so that what is missing is told whole. Whether they are sound is seen later.
+void PieceJoiner::requirePieces() const {
     std::int64_t missing = 0;
     std::string first;
     for (const Index3& place : places_) {
-        std::optional<PieceSummary> found = findPiece(work_, stage, place, key);
-        if (found) {
-            summaries.push_back(std::move(*found));
-        } else if (missing++ == 0) {
-            first = idOf(place);
-        }
+        std::error_code error;
+        if (std::filesystem::exists(pieceFile(work_, stage_, place), error)) continue;
+        if (missing++ == 0) first = idOf(place);
     }
-    if (missing > 0) {
-        throw FileError(work_.string() + ": " + formatCount(missing) + " of " +
-                        formatCount(std::ssize(places_)) +
-                        " pieces are not there, or of another plan, " + first +
-                        " the first; run: adaptiso-giant " + stage + " " + work_.string());
-    }
-    joinComponents(summaries);
+    if (missing == 0) return;
+    throw FileError(work_.string() + ": " + formatCount(missing) + " of " +
+                    formatCount(std::ssize(places_)) + " pieces are not there, " + first +
+                    " the first; run: adaptiso-giant " + stage_ + " " + work_.string());
 }
 
-void PieceJoiner::joinComponents(const std::vector<PieceSummary>& summaries) {
-    std::int64_t parts = 0;
-    for (const PieceSummary& summary : summaries) parts += std::ssize(summary.components);
-    DisjointSets sets(parts);
-    std::vector<std::int64_t> partOfBorder;  // the first that has the vertex
-    std::unordered_set<std::array<std::uint64_t, 2>, EdgeHash> open;
-    std::int64_t firstPart = 0;
-    for (const PieceSummary& summary : summaries) {
-        std::vector<std::uint64_t> number;
-        for (const BorderVertex& v : summary.border) {
-            const auto [at, isNew] = borderNumber_.try_emplace(v.index, borderNumber_.size());
-            number.push_back(at->second);
-            if (isNew) {
-                partOfBorder.push_back(firstPart + v.component);
-            } else {
-                sets.join(partOfBorder[at->second], firstPart + v.component);
-            }
+void PieceJoiner::joinPieces() {
+    SeamInputs inputs(work_, plan_);
+    PartJoiner parts;
+    for (const Index3& place : places_) {
+        const std::optional<PieceSummary> piece = findPiece(work_, stage_, place, key_);
+        const bool isOld = piece && plan_.isAdaptive() && inputs.areChanged(place, piece->inputs);
+        if (!piece || isOld) {
+            throw FileError(
+                pieceFile(work_, stage_, place).string() +
+                (isOld ? ": its tiles were made again since" : ": is damaged, or of another plan") +
+                "; run: adaptiso-giant " + stage_ + " " + work_.string());
         }
-        for (const auto& [a, b] : summary.borderEdges) {
-            if (open.erase({number[b], number[a]}) == 0) open.insert({number[a], number[b]});
-        }
-        firstPart += std::ssize(summary.components);
-        surface_.triangles += summary.triangles;
+        parts.add(*piece);
+        surface_.triangles += piece->triangles;
         ++surface_.pieces;
-        surface_.emptyPieces += static_cast<std::int64_t>(summary.triangles == 0);
-        surface_.unchangedPieces += static_cast<std::int64_t>(summary.isUnchanged);
-        surface_.errorBoundMm = std::max(surface_.errorBoundMm, summary.errorBoundMm);
+        surface_.emptyPieces += static_cast<std::int64_t>(piece->triangles == 0);
+        surface_.unchangedPieces += static_cast<std::int64_t>(piece->isUnchanged);
+        surface_.errorBoundMm = std::max(surface_.errorBoundMm, piece->errorBoundMm);
     }
-    surface_.openEdges = std::ssize(open);
-    std::map<std::int64_t, GiantComponent> components;
-    firstPart = 0;
-    for (const PieceSummary& summary : summaries) {
-        for (const PieceComponent& part : summary.components) {
-            GiantComponent& whole = components[sets.find(firstPart++)];
-            whole.triangles += part.triangles;
-            whole.vertices += part.innerVertices;
-            whole.areaMm2 += part.areaMm2;
-            whole.volumeMm3 += part.volumeMm3;
-        }
-    }
-    for (const std::int64_t part : partOfBorder) ++components[sets.find(part)].vertices;
-    for (const auto& [name, component] : components) {
-        surface_.vertices += component.vertices;
-        surface_.components.push_back(component);
-    }
-    std::stable_sort(
-        surface_.components.begin(), surface_.components.end(),
-        [](const GiantComponent& a, const GiantComponent& b) { return a.volumeMm3 > b.volumeMm3; });
+    parts.finish(surface_);
 }
 
 void PieceJoiner::forEachPiece(
     const std::function<void(const Piece&, const std::vector<VertexId>&,
                              const std::vector<std::uint8_t>&)>& f) const {
-    constexpr VertexId kNone = -1;
-    std::vector<VertexId> ofBorder(borderNumber_.size(), kNone);
+    BorderFront front;
     VertexId next = 0;
-    const std::string stage = plan_.isAdaptive() ? "seam" : "tile";
+    std::int64_t triangles = 0;
+    const auto refuseChanged = [&](const std::string& what) {
+        throw FileError(what + ": changed while it was read; run join again");
+    };
     for (const Index3& place : places_) {
-        const Piece piece = readPiece(pieceFile(work_, stage, place));
+        const std::filesystem::path file = pieceFile(work_, stage_, place);
+        const Piece piece = readPiece(file);
+        if (piece.summary.plan != key_ || piece.summary.id != idOf(place) ||
+            piece.summary.stage != stage_) {
+            refuseChanged(file.string());
+        }
         if (piece.mesh.triangles.empty()) continue;
-        std::vector<VertexId> number(piece.mesh.points.size(), kNone);
+        triangles += piece.summary.triangles;
+        const std::vector<BorderFront::Vertex*> border = front.add(piece.summary);
+        std::vector<VertexId> number(piece.mesh.points.size(), BorderFront::kNoNumber);
         std::vector<std::uint8_t> isNew(piece.mesh.points.size(), 1);
-        for (const BorderVertex& v : piece.summary.border) {
-            const auto at = borderNumber_.find(v.index);
-            if (at == borderNumber_.end()) {
-                throw FileError(pieceFile(work_, stage, place).string() +
-                                ": changed while it was read; run join again");
-            }
-            number[v.vertex] = ofBorder[at->second];
-            isNew[v.vertex] = static_cast<std::uint8_t>(number[v.vertex] == kNone);
+        for (std::size_t n = 0; n < border.size(); ++n) {
+            const std::uint32_t v = piece.summary.border[n].vertex;
+            number[v] = border[n]->number;
+            isNew[v] = static_cast<std::uint8_t>(border[n]->isNew);
         }
         for (VertexId& n : number) {
-            if (n == kNone) n = next++;
+            if (n == BorderFront::kNoNumber) n = next++;
         }
-        for (const BorderVertex& v : piece.summary.border) {
-            ofBorder[borderNumber_.at(v.index)] = number[v.vertex];
+        for (std::size_t n = 0; n < border.size(); ++n) {
+            border[n]->number = number[piece.summary.border[n].vertex];
         }
+        front.release(piece.summary, [](const BorderFront::Vertex&) {});
         f(piece, number, isNew);
     }
+    if (next != surface_.vertices || triangles != surface_.triangles) refuseChanged(work_.string());
 }
 
 }  // namespace adaptiso

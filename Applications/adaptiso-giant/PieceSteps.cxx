@@ -39,7 +39,7 @@ std::vector<Index3> chosen(const GiantOptions& options, const std::vector<Index3
     std::vector<Index3> places;
     for (const std::string& id : options.ids) {
         const std::optional<Index3> place = placeOf(id);
-        if (!place || std::find(all.begin(), all.end(), *place) == all.end()) {
+        if (!place || !std::ranges::binary_search(all, orderOf(*place), {}, orderOf)) {
             throw UsageError(id + ": the plan has no " + what + " of this name");
         }
         places.push_back(*place);
@@ -54,7 +54,7 @@ void writePiece(const fs::path& file, const Piece& piece) {
 }
 
 /// Makes the pieces of one stage, those that are not there yet from the same inputs.
-/// \param inputsOf  what a piece is made of, as a text
+/// \param inputsOf  SHA-256 of what a piece is made of
 /// \param make      (place, mesh, summary)
 template <class InputsOf, class Make>
 int runPieces(const GiantOptions& options, const GiantPlan& plan, const std::string& stage,
@@ -65,7 +65,7 @@ int runPieces(const GiantOptions& options, const GiantPlan& plan, const std::str
     for (std::size_t n = 0; n < places.size(); ++n) {
         progress.show(stage, static_cast<double>(n) / static_cast<double>(places.size()));
         const Index3& place = places[n];
-        const std::string inputs = sha256Of(inputsOf(place));
+        const std::string inputs = inputsOf(place);
         const std::optional<PieceSummary> found = findPiece(options.work, stage, place, key);
         if (found && found->inputs == inputs) {
             ++counts.found;
@@ -118,34 +118,6 @@ TriangleMesh meshOfTile(const GiantPlan& plan, const ImageRegions& image, const 
     return std::move(part.mesh);
 }
 
-/// The tiles of the plan that a seam box lies in.
-std::vector<Index3> tilesAt(const GiantPlan& plan, const Index3& seam) {
-    const IndexBox at = plan.cut().tilesOfSeam(seam);
-    std::vector<Index3> tiles;
-    for (const Index3& tile : plan.tiles) {
-        bool isAt = true;
-        for (int a = 0; a < 3; ++a) isAt = isAt && tile[a] >= at.first[a] && tile[a] < at.end[a];
-        if (isAt) tiles.push_back(tile);
-    }
-    return tiles;
-}
-
-/// Names the tiles' files by their content's sums. \throws FileError  one is missing
-std::string inputsOfSeam(const GiantOptions& options, const GiantPlan& plan, const std::string& key,
-                         const Index3& seam) {
-    std::string text;
-    for (const Index3& tile : tilesAt(plan, seam)) {
-        const std::optional<PieceSummary> found = findPiece(options.work, "tile", tile, key);
-        if (!found) {
-            throw FileError(pieceFile(options.work, "tile", tile).string() +
-                            ": is not there, or of another plan; run: adaptiso-giant tile " +
-                            options.work.string() + " " + idOf(tile));
-        }
-        text += found->id + " " + found->inputs + "\n";
-    }
-    return text;
-}
-
 TriangleMesh meshOfSeam(const GiantOptions& options, const GiantPlan& plan, const Index3& seam,
                         PieceSummary& summary) {
     PieceUnion tiles;
@@ -187,7 +159,7 @@ int runTileStep(const GiantOptions& options) {
         options, plan, "tile", places,
         [&](const Index3& tile) {
             const IndexBox box = cut.samplesOf(tile);
-            return image.stampOf(box.first, box.size());
+            return sha256Of(image.stampOf(box.first, box.size()));
         },
         [&](const Index3& tile, PieceSummary& summary) {
             return meshOfTile(plan, image, tile, summary);
@@ -200,10 +172,10 @@ int runSeamStep(const GiantOptions& options) {
     if (!plan.isAdaptive()) {
         throw UsageError("seam: the plan is of --method mc, whose tiles need none; join them");
     }
-    const std::string key = keyOf(plan);
+    SeamInputs inputs(options.work, plan);
     return runPieces(
         options, plan, "seam", chosen(options, plan.seams(), "seam box"),
-        [&](const Index3& seam) { return inputsOfSeam(options, plan, key, seam); },
+        [&](const Index3& seam) { return inputs.of(seam); },
         [&](const Index3& seam, PieceSummary& summary) {
             return meshOfSeam(options, plan, seam, summary);
         });

@@ -28,6 +28,13 @@ std::vector<Ids> grouped(const std::vector<Index3>& places, std::size_t workers)
     return groups;
 }
 
+/// Of a child's errors, without the name of this program, which is put before it anew.
+std::string firstLine(const std::string& errors) {
+    const std::string name = std::string(kGiantProgram) + ": ";
+    const std::size_t begin = errors.starts_with(name) ? name.size() : 0;
+    return errors.substr(begin, errors.find('\n') - begin);
+}
+
 /// Runs a step's pieces by processes of this program. Those that were killed are tried again.
 void runPieces(const GiantOptions& options, const std::string& step,
                const std::vector<Index3>& places, ProgressLine& progress) {
@@ -55,9 +62,7 @@ void runPieces(const GiantOptions& options, const std::string& step,
                             " times; it may need more memory: take fewer --workers, or a smaller "
                             "--tile";
                 } else if (result.exitCode != kExitOk) {
-                    const auto end = result.errors.find('\n');
-                    throw FileError(step + " " + left[n].front() + ": " +
-                                    result.errors.substr(0, end));
+                    throw FileError(step + ": " + firstLine(result.errors));
                 }
             });
         if (!killed.empty() && attempt == kMostTries) throw InvalidInput(error);
@@ -79,7 +84,7 @@ int runAllSteps(const GiantOptions& options) {
         runPieces(options, "tile", plan.tiles, progress);
         runPieces(options, "seam", plan.seams(), progress);
     }
-    return runJoinStep(options);
+    return runJoinStep(options, keyOf(plan));
 }
 
 }  // namespace adaptiso

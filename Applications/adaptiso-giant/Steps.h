@@ -1,7 +1,12 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "GiantPlan.h"
 #include "PieceFile.h"
@@ -25,11 +30,35 @@ std::filesystem::path pieceFile(const std::filesystem::path& work, const std::st
 std::optional<PieceSummary> findPiece(const std::filesystem::path& work, const std::string& stage,
                                       const Index3& place, const std::string& key);
 
+/// The tiles of the plan that a seam box lies in.
+std::vector<Index3> tilesAt(const GiantPlan& plan, const Index3& seam);
+
+/// What seam boxes are made of: the inputs of their tiles. It remembers two layers of tiles, so ask
+/// in the plan's order.
+class SeamInputs {
+public:
+    SeamInputs(const std::filesystem::path& work, const GiantPlan& plan);
+
+    /// SHA-256 of the tiles' names and inputs. \throws FileError  one is missing
+    std::string of(const Index3& seam);
+    /// The same, compared; tiles that are not there any more can't tell.
+    bool areChanged(const Index3& seam, const std::string& inputs);
+
+private:
+    std::optional<std::string> ofTile(const Index3& tile);
+
+    std::filesystem::path work_;
+    const GiantPlan& plan_;
+    std::string key_;
+    std::map<std::array<std::int64_t, 3>, std::string> known_;  ///< by z, y, x
+};
+
 /// \throws UsageError, InvalidInput, FileError, InternalError, each
 int runPlanStep(const GiantOptions& options);
 int runTileStep(const GiantOptions& options);
 int runSeamStep(const GiantOptions& options);
-int runJoinStep(const GiantOptions& options);
+/// \param key  of the plan that is to be joined; empty: that which is there
+int runJoinStep(const GiantOptions& options, const std::string& key = {});
 int runAllSteps(const GiantOptions& options);
 
 }  // namespace adaptiso

@@ -109,7 +109,7 @@ void declareInput(CLI::App& app, MeshOptions& options) {
     app.add_option(
            "INPUT", options.inputs,
            "A 3-D image: NIfTI, NRRD, MetaImage, MGH, a DICOM file or DICOMDIR, or a folder "
-           "that holds the slices of a DICOM series, or an OME-Zarr; several make a batch")
+           "that holds the slices of a DICOM series, an OME-Zarr or N5; several make a batch")
         ->type_name("");
     declareImageOptions(app, options.image, kInput);
     declarePreprocessingOptions(app, options.preprocessing, kPreprocessing);

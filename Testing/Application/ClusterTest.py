@@ -112,14 +112,18 @@ class JobArray(ClusterTest):
         ids = [process.communicate(timeout=60)[0].split() for process in both]
         self.assertEqual([process.returncode for process in both], [OK, OK])
 
-        chance, killed, isLost = random.Random(1), 0, False
+        chance, killed, isLost, isCrashed = random.Random(1), 0, False, False
         while killed < KILLS and slurm.pending() > 0:
             killed += self.kill_one(chance)
             if killed == KILLS // 2 and not isLost:
                 slurm.lose_node("n2")
                 isLost = True
+            if killed == KILLS * 3 // 4 and not isCrashed:
+                slurm.crash_node("n3")
+                slurm.start_node("n3")  # it comes up again, and knows nothing
+                isCrashed = True
             time.sleep(chance.uniform(0.2, 1.0))
-        self.assertEqual((killed, isLost), (KILLS, True))
+        self.assertEqual((killed, isLost, isCrashed), (KILLS, True, True))
         slurm.wait(lambda: slurm.pending() == 0, 900, "the end of the jobs")
         failed = [job for job, state in slurm.states().items() if state == "FAILED"]
         print(f"with {killed} kills: {time.monotonic() - began:.0f} s; failed: {len(failed)}", flush=True)

@@ -231,6 +231,22 @@ class Restart(GiantTest):
         self.refuse(BAD_INPUT, r"1 of \d+ pieces are not there.*run: adaptiso-giant tile", "join",
                     "work")
 
+    def test_seams_of_tiles_that_were_made_again_are_not_joined(self):
+        shutil.copytree(self.zarr, self.path("mine.zarr"))
+        self.giant("run", "work", "--input", "mine.zarr", "--iso", ISO, "--tile", 32, "-o", "a.ply",
+                   "--no-warnings")
+        chunk = self.path("mine.zarr/0/1.1.1")  # within the hollow ball, off all walls
+        chunk.write_bytes(chunk.read_bytes()[:-4] + struct.pack("<f", 3))
+        self.giant("tile", "work", "-q")
+        self.refuse(BAD_INPUT, r"its tiles were made again since; run: adaptiso-giant seam", "join",
+                    "work", "-o", "b.ply")
+        self.assertFalse(self.path("b.ply").exists())
+        self.giant("seam", "work", "-q")
+        self.giant("join", "work", "-o", "b.ply", "-q")
+        self.giant("run", "new", "--input", "mine.zarr", "--iso", ISO, "--tile", 32, "-o", "c.ply",
+                   "--no-warnings")
+        self.assertEqual(self.path("b.ply").read_bytes(), self.path("c.ply").read_bytes())
+
     def test_a_damaged_piece_is_refused_by_the_join(self):
         self.plan("work", "--method", "mc")
         self.giant("tile", "work")
@@ -271,8 +287,15 @@ class Refusals(GiantTest):
                     100)
         self.refuse(USAGE, "--max-error: is for", "plan", "work", "--input", zarr, "--iso", 0,
                     "--method", "mc", "--max-error", 1)
-        self.refuse(USAGE, "--method", "plan", "work", "--input", zarr, "--iso", 0, "--method",
-                    "boxes")
+        for words, reason in (("--method boxes", "may be as long as the volume"),
+                              ("--method dnc", "must be adaptive or mc"),
+                              ("--triangles 100", "over the whole volume; take --max-error"),
+                              ("--reduction 0.9", "over the whole volume"),
+                              ("--largest", "known when tiles are joined"),
+                              ("--min-volume 3", "known when tiles are joined"),
+                              ("--border open", "join proves that the surface is closed")):
+            self.refuse(USAGE, f"{words.split()[0]}.*{reason}", "plan", "work", "--input", zarr,
+                        "--iso", 0, *words.split())
         self.refuse(USAGE, "--iso: the plan says it", "tile", "work", "--iso", 3)
         self.refuse(USAGE, "must end in .ply or .pvtp", "join", "work", "-o", "a.stl")
         self.refuse(USAGE, "ID: only the steps", "join", "work", "0_0_0")
@@ -288,6 +311,23 @@ class Refusals(GiantTest):
         plan = json.loads(self.path("adaptive/plan.json").read_text())
         self.refuse(BAD_INPUT, "is not there.*run: adaptiso-giant tile adaptive", "seam",
                     "adaptive", plan["seams"][0])
+
+    def test_another_plan_in_the_same_folder_meanwhile(self):
+        command = [GIANT, "run", "work", "--input", self.zarr, "--tile", "32", "--method", "mc", "-q",
+                   "--no-warnings"]
+        first = subprocess.Popen([*command, "--iso", "0", "-o", "a.ply"], cwd=self.path("."),
+                                 stderr=subprocess.PIPE, text=True)
+        end = time.monotonic() + 60
+        while not self.path("work/plan.json").exists() and time.monotonic() < end:
+            time.sleep(0.005)
+        subprocess.run([*command, "--iso", "1", "-o", "b.ply"], cwd=self.path("."), check=False,
+                       capture_output=True)
+        errors = first.communicate()[1]
+        if first.returncode == OK:  # it was done before the other planned
+            return
+        self.assertEqual(first.returncode, BAD_INPUT, errors)
+        self.assertEqual(len(errors.splitlines()), 1)
+        self.assertFalse(self.path("a.ply").exists())
 
     def test_no_surface(self):
         self.giant("plan", "work", "--input", self.zarr, "--iso", 100, "--tile", 32,

@@ -155,6 +155,22 @@ PartitionName=main Nodes=n[1-{self.nodes}] Default=YES MaxTime=1-0 State=UP
         daemon.kill()
         daemon.wait()
 
+    def crash_node(self, node):
+        """The whole machine dies: slurmd, and all that its jobs run. start_node() is its way back."""
+        daemon = self.daemons.pop(f"slurmd-{node}")
+        victims = [*tree(daemon.pid), *self.started_by(node)]
+        daemon.kill()  # first, so that it tells nobody
+        for pid in victims:
+            kill(pid)
+        daemon.wait()
+
+    def started_by(self, node=""):
+        """Processes of jobs whose script lies in the spool folder of a node, or of any."""
+        spool = f" {self.folder}/spool/" + (f"{node}/" if node else "")
+        return [pid for path in Path("/proc").iterdir()
+                if path.name.isdigit() and spool in command_of(int(path.name))
+                for pid in tree(int(path.name))]
+
     def ask(self, *command, check=False, **options):
         done = subprocess.run(command, env=self.environment, text=True, capture_output=True, timeout=120,
                               **options)
@@ -202,10 +218,6 @@ PartitionName=main Nodes=n[1-{self.nodes}] Default=YES MaxTime=1-0 State=UP
             except subprocess.TimeoutExpired:
                 daemon.kill()
                 daemon.wait()
-        # jobs of lost nodes outlive their slurmd: their script lies in this cluster's spool folder
-        for path in Path("/proc").iterdir():
-            if path.name.isdigit() and f" {self.folder}/spool/" in command_of(int(path.name)):
-                steps += tree(int(path.name))
-        for pid in steps:
+        for pid in steps + self.started_by():  # jobs of lost nodes outlive their slurmd
             if str(self.folder) in command_of(pid):
                 kill(pid)

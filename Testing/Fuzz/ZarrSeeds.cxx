@@ -1,4 +1,4 @@
-// Zarr: metadata, a zero byte, a chunk. 2 x 3 x 4 samples, so that mutations hit headers.
+// Zarr and N5: metadata, a zero byte, a chunk. 2 x 3 x 4 samples, so that mutations hit headers.
 
 #include <blosc.h>
 #include <zstd.h>
@@ -47,9 +47,39 @@ std::string shard() {
     return chunk + index;
 }
 
+void addN5(Seeds& seeds, const std::string& compression, const std::string& samples) {
+    const std::string header("\0\0\0\3\0\0\0\4\0\0\0\3\0\0\0\2", 16);
+    seeds.add("zarr",
+              R"({"dimensions":[5,3,2],"blockSize":[4,3,2],"dataType":"int16",)"
+              R"("pixelResolution":{"unit":"um","dimensions":[1,2,3]},"axes":["x","y","z"],)"
+              R"("compression":{"type":")" +
+                  compression + "\"}}" + std::string(1, '\0') + header + samples);
+}
+
+/// As lz4-java writes it, not packed.
+std::string lz4Stream(const std::string& bytes) {
+    const std::string size = testing::bytesOf(static_cast<std::uint32_t>(bytes.size()));
+    return "LZ4Block\x16" + size + size + "sum." + bytes + "LZ4Block\x16" + std::string(12, '\0');
+}
+
+void addN5Seeds(Seeds& seeds) {
+    addN5(seeds, "raw", samples());
+    addN5(seeds, "gzip", testing::gzipped(samples()));
+    addN5(seeds, "zstd", zstd(samples()));
+    addN5(seeds, "blosc", blosc(samples(), "lz4"));
+    addN5(seeds, "lz4", lz4Stream(samples()));
+    for (const char* const way : {"downsamplingFactors", "scales"}) {
+        seeds.add("zarr", R"({"pixelResolution":[1,2,3],")" + std::string(way) +
+                              R"(":[[1,1,1],[2,2,1]]})" + std::string(1, '\0') +
+                              std::string("\0\0\0\3\0\0\0\5\0\0\0\4\0\0\0\3", 16) +
+                              std::string(60, 'x'));
+    }
+}
+
 }  // namespace
 
 void addZarrSeeds(Seeds& seeds) {
+    addN5Seeds(seeds);
     addVersion2(seeds, "null", samples());
     addVersion2(seeds, R"({"id":"zlib"})", testing::zlibbed(samples()));
     addVersion2(seeds, R"({"id":"gzip"})", testing::gzipped(samples()));

@@ -76,7 +76,7 @@ public:
     }
 
     std::string stampOf(const ZarrRegion& part) const override {
-        std::string text;
+        std::string text = encodingText();
         forEachZarrFile(image_, part, [&](const std::string& key) {
             const std::string stamp = fileStamp(image_.store.root() / key);
             text.append(key).append(" ").append(stamp.empty() ? "missing" : stamp).append("\n");
@@ -95,6 +95,17 @@ public:
     }
 
 private:
+    /// What the metadata say of samples that no chunk and no geometry says.
+    std::string encodingText() const {
+        const detail::ZarrArray& array = image_.array;
+        std::string text = "fill";
+        for (const std::byte byte : array.fill)
+            text += fmt::format(" {:d}", std::to_integer<int>(byte));
+        text += array.encoding.byteOrder == std::endian::big ? "\nbig" : "\nlittle";
+        for (const std::size_t n : array.encoding.order) text += fmt::format(" {}", n);
+        return text + "\n";
+    }
+
     detail::ZarrImage image_;
     ReadOptions options_;
 };

@@ -78,7 +78,6 @@ ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
     std::error_code error;
     if (fs::is_directory(input, error)) {
         if (detail::isZarrFolder(input)) return detail::readZarr(input, options);
-        detail::refuseN5(input);
         return detail::readDicomFolder(input, options);
     }
     detail::requireRegularFile(input);

@@ -127,7 +127,7 @@ SampleBuffer allocateSamples(const std::filesystem::path& file, std::uint64_t by
     }
     if (!samples) {
         refuse(file, fmt::format("needs {} bytes of memory, more than there is", byteCount),
-               "use a machine with more memory or crop the image");
+               "use a machine with more memory, or adaptiso-giant, which works tile by tile");
     }
     return samples;
 }

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "FileFault.h"
+#include "N5.h"
 #include "Samples.h"
 #include "ZarrJson.h"
 
@@ -19,8 +20,6 @@ namespace adaptiso::detail {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr std::size_t kMostDimensions = 8;
 
 std::string joined(const std::string& path, const std::string& key) {
     return path.empty() ? key : path + "/" + key;
@@ -46,15 +45,6 @@ PixelType typeOfNumpy(const fs::path& file, const std::string& text, std::endian
         if (kind == name) return type;
     }
     refuseKind(file, "dtype", text);
-}
-
-PixelType typeOfName(const fs::path& file, const std::string& name) {
-    if (name == "bool") return PixelType::UInt8;
-    for (int n = 0; n <= static_cast<int>(PixelType::Float64); ++n) {
-        const auto type = static_cast<PixelType>(n);
-        if (name == toString(type)) return type;
-    }
-    refuseKind(file, "data_type", name);
 }
 
 template <class T>
@@ -108,34 +98,6 @@ void takeFill(const fs::path& file, const ZarrJson& value, ZarrArray& array) {
         }
         std::memcpy(array.fill.data(), &*fill, sizeof(T));
     });
-}
-
-/// Sizes of one rank, and a chunk that can be held in memory.
-void requireSizes(const fs::path& file, const ZarrArray& array) {
-    constexpr std::uint64_t kLargestChunk = std::uint64_t{1} << 31;
-    const std::size_t rank = array.rank();
-    if (rank > kMostDimensions || array.chunk.size() != rank ||
-        array.encoding.order.size() != rank ||
-        (!array.dimensions.empty() && array.dimensions.size() != rank) ||
-        (array.sharding && array.sharding->shard.size() != rank)) {
-        refuse(file,
-               fmt::format("its metadata contradict each other: {} dimensions, chunks of {}", rank,
-                           array.chunk.size()),
-               "repair them");
-    }
-    std::uint64_t bytes = bytesPerPixel(array.type);
-    for (const std::uint64_t side : array.chunk) {
-        if (side > kLargestChunk / bytes) {
-            refuse(file, "its chunks are larger than what is read here (2 GiB)",
-                   "write the array in smaller chunks");
-        }
-        bytes *= side;
-    }
-    if (!array.sharding) return;
-    for (std::size_t n = 0; n < rank; ++n) {
-        if (array.sharding->shard[n] % array.chunk[n] == 0) continue;
-        refuse(file, "its shards do not consist of whole chunks", "repair the metadata");
-    }
 }
 
 std::vector<std::size_t> orderC(std::size_t rank) {
@@ -320,8 +282,8 @@ ZarrArray arrayOfVersion3(const fs::path& file, const ZarrJson& json) {
     requireKnownMembers(file, json);
     array.shape = numbersOf(file, json, "shape", 1);
     const ZarrJson& type = memberOf(json, "data_type");
-    array.type =
-        typeOfName(file, type.is_string() ? type.get<std::string>() : textOf(file, type, "name"));
+    array.type = zarrTypeOf(
+        file, "data_type", type.is_string() ? type.get<std::string>() : textOf(file, type, "name"));
     const ZarrJson& grid = memberOf(json, "chunk_grid");
     const std::string kind = textOf(file, grid, "name");
     if (kind != "regular") refuseKind(file, "chunk_grid", kind);
@@ -344,15 +306,52 @@ ZarrArray arrayOfVersion3(const fs::path& file, const ZarrJson& json) {
 
 }  // namespace
 
+PixelType zarrTypeOf(const fs::path& file, const char* member, const std::string& name) {
+    if (name == "bool") return PixelType::UInt8;
+    for (int n = 0; n <= static_cast<int>(PixelType::Float64); ++n) {
+        const auto type = static_cast<PixelType>(n);
+        if (name == toString(type)) return type;
+    }
+    refuseKind(file, member, name);
+}
+
+void requireZarrSizes(const fs::path& file, const ZarrArray& array) {
+    constexpr std::size_t kMostDimensions = 8;
+    constexpr std::uint64_t kLargestChunk = std::uint64_t{1} << 31;
+    const std::size_t rank = array.rank();
+    if (rank > kMostDimensions || array.chunk.size() != rank ||
+        array.encoding.order.size() != rank ||
+        (!array.dimensions.empty() && array.dimensions.size() != rank) ||
+        (array.sharding && array.sharding->shard.size() != rank)) {
+        refuse(file,
+               fmt::format("its metadata contradict each other: {} dimensions, chunks of {}", rank,
+                           array.chunk.size()),
+               "repair them");
+    }
+    std::uint64_t bytes = bytesPerPixel(array.type);
+    for (const std::uint64_t side : array.chunk) {
+        if (side > kLargestChunk / bytes) {
+            refuse(file, "its chunks are larger than what is read here (2 GiB)",
+                   "write the array in smaller chunks");
+        }
+        bytes *= side;
+    }
+    if (!array.sharding) return;
+    for (std::size_t n = 0; n < rank; ++n) {
+        if (array.sharding->shard[n] % array.chunk[n] == 0) continue;
+        refuse(file, "its shards do not consist of whole chunks", "repair the metadata");
+    }
+}
+
 std::uint64_t ZarrArray::chunkSamples() const {
     return std::accumulate(chunk.begin(), chunk.end(), std::uint64_t{1}, std::multiplies<>());
 }
 
 std::string ZarrArray::key(const ZarrIndex& file) const {
     std::string text = hasKeyPrefix ? "c" : "";
-    for (const std::uint64_t number : file) {
+    for (std::size_t n = 0; n < file.size(); ++n) {
         if (!text.empty()) text += separator;
-        text += std::to_string(number);
+        text += std::to_string(file[isN5 ? file.size() - 1 - n : n]);
     }
     return joined(path, text);
 }
@@ -370,11 +369,11 @@ std::optional<ZarrArray> readZarrArray(const ZarrStore& store, const std::string
     } else {
         key = joined(path, ".zarray");
         json = readZarrJson(store, key);
-        if (!json) return std::nullopt;
+        if (!json) return readN5Array(store, path);
         array = arrayOfVersion2(store.root() / key, *json);
     }
     array->path = path;
-    requireSizes(store.root() / key, *array);
+    requireZarrSizes(store.root() / key, *array);
     return array;
 }
 

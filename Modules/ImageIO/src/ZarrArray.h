@@ -33,10 +33,11 @@ struct ZarrSharding {
     bool isIndexAtEnd = true;
 };
 
-/// What the metadata of an array say, of version 2 (.zarray) or 3 (zarr.json).
+/// What the metadata of an array say, of version 2 (.zarray) or 3 (zarr.json), or of N5.
 struct ZarrArray {
     int version = 3;
-    std::string path;  ///< in the store; empty: the root
+    bool isN5 = false;  ///< each chunk has a header; keys name the fastest dimension first
+    std::string path;   ///< in the store; empty: the root
     ZarrIndex shape, chunk;
     PixelType type{};
     std::array<std::byte, 8> fill{};  ///< a sample as it lies in memory
@@ -51,6 +52,14 @@ struct ZarrArray {
     std::uint64_t chunkSamples() const;
     std::string key(const ZarrIndex& file) const;
 };
+
+/// The samples that go by that name in Zarr 3 and N5. \param member  that names them
+/// \throws FileError  any other
+PixelType zarrTypeOf(const std::filesystem::path& file, const char* member,
+                     const std::string& name);
+
+/// \throws FileError  sizes are not of one rank, or a chunk is larger than what is read here
+void requireZarrSizes(const std::filesystem::path& file, const ZarrArray& array);
 
 /// Reads an array's metadata; none: there is no array at that path.
 /// \throws FileError  they are damaged, or ask for what is not read here, by name

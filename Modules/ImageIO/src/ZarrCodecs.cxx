@@ -98,6 +98,43 @@ Bytes unlz4(const Bytes& packed, std::uint64_t most, const fs::path& file) {
     return out;
 }
 
+/// As lz4-java has it: blocks with a header each, and one of no bytes at the end. Their checksums
+/// (XXH32) are not looked at.
+Bytes unlz4Stream(const Bytes& packed, std::uint64_t most, const fs::path& file) {
+    constexpr std::string_view kMagic = "LZ4Block";
+    constexpr std::size_t kHeader = 21, kPacked = 9, kSize = 13;
+    constexpr std::uint32_t kMost = std::uint32_t{1} << 25;  // of a block
+    constexpr int kMethod = 0xf0, kRaw = 0x10, kLz4 = 0x20;
+    Bytes out;
+    for (std::size_t at = 0;;) {
+        if (packed.size() - at < kHeader ||
+            std::memcmp(packed.data() + at, kMagic.data(), kMagic.size()) != 0) {
+            refuseDamaged(file, "lz4");
+        }
+        const std::span<const std::byte> block = std::span(packed).subspan(at);
+        const int method = std::to_integer<int>(block[kMagic.size()]) & kMethod;
+        const std::uint32_t length = firstWord(block.subspan(kPacked)),
+                            size = firstWord(block.subspan(kSize));
+        at += kHeader;
+        if (size == 0 && length == 0 && at == packed.size()) return out;
+        if (size == 0 || size > kMost || length > packed.size() - at || size > most - out.size() ||
+            (method == kRaw ? length != size : method != kLz4)) {
+            refuseDamaged(file, "lz4");
+        }
+        const std::size_t begin = out.size();
+        out.resize(begin + size);
+        auto* const to = reinterpret_cast<char*>(out.data() + begin);
+        const auto* const from = reinterpret_cast<const char*>(packed.data() + at);
+        if (method == kRaw) {
+            std::memcpy(to, from, size);
+        } else if (LZ4_decompress_safe(from, to, static_cast<int>(length),
+                                       static_cast<int>(size)) != static_cast<int>(size)) {
+            refuseDamaged(file, "lz4");
+        }
+        at += length;
+    }
+}
+
 Bytes withoutChecksum(Bytes packed, const fs::path& file) {
     constexpr std::size_t kSum = 4;
     if (packed.size() < kSum) refuse(file, "is too short for its checksum", "get it again");
@@ -146,6 +183,9 @@ Bytes unpackZarrChunk(Bytes packed, std::span<const ZarrCodec> codecs, std::uint
                 break;
             case ZarrCodec::Lz4:
                 packed = unlz4(packed, most, file);
+                break;
+            case ZarrCodec::Lz4Stream:
+                packed = unlz4Stream(packed, most, file);
                 break;
             case ZarrCodec::Crc32c:
                 packed = withoutChecksum(std::move(packed), file);

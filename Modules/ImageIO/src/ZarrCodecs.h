@@ -11,7 +11,8 @@
 namespace adaptiso::detail {
 
 /// What a chunk's bytes are packed with, from outside in.
-enum class ZarrCodec { Deflate, Zstd, Blosc, Lz4, Crc32c };
+/// Lz4Stream is N5's, of blocks as lz4-java writes them.
+enum class ZarrCodec { Deflate, Zstd, Blosc, Lz4, Lz4Stream, Crc32c };
 
 /// The codec of that name in version 2 ("zlib", "gzip", "zstd", "blosc", "lz4") or 3 of the format
 /// ("gzip", "zstd", "blosc", "crc32c", and numcodecs' names). \throws FileError  any other

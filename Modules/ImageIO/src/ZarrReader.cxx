@@ -9,12 +9,13 @@
 #include <utility>
 
 #include "FileFault.h"
+#include "N5.h"
 #include "Readers.h"
 #include "Samples.h"
 #include "ZarrImage.h"
 #include "adaptiso/Core/Parallel.h"
 
-// Zarr's specifications 2 and 3 with sharding, OME-NGFF 0.4 and 0.5.
+// Zarr's specifications 2 and 3 with sharding, OME-NGFF 0.4 and 0.5, N5.
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
 
@@ -225,8 +226,9 @@ private:
         }
         Bytes bytes(static_cast<std::size_t>(size));
         file->read(offset, bytes.data(), bytes.size());
-        bytes =
-            unpackZarrChunk(std::move(bytes), array_.encoding.codecs, chunkBytes(), file->path());
+        bytes = array_.isN5 ? unpackN5Block(std::move(bytes), array_, first, file->path())
+                            : unpackZarrChunk(std::move(bytes), array_.encoding.codecs,
+                                              chunkBytes(), file->path());
         if (array_.encoding.byteOrder != std::endian::native) {
             swapBytes(bytes.data(), bytes.size(), sampleBytes_);
         }
@@ -420,7 +422,7 @@ bool ZarrCut::isSpace(std::size_t dimension) const {
 }
 
 std::string ZarrImage::format() const {
-    return scene.axes.empty() ? fmt::format("Zarr {}", array.version) : scene.format;
+    return scene.axes.empty() && !array.isN5 ? fmt::format("Zarr {}", array.version) : scene.format;
 }
 
 ZarrImage openZarrImage(const fs::path& folder, const ReadOptions& options) {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "FileFault.h"
+#include "N5.h"
 #include "ZarrJson.h"
-#include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -20,7 +20,6 @@ namespace {
     refuse(file, fmt::format("its metadata are damaged: {}", fault), "repair them");
 }
 
-/// Millimetres in a unit of UDUNITS-2, as NGFF names them, or its symbol.
 std::optional<double> millimetresOf(std::string_view unit) {
     constexpr std::pair<std::string_view, double> kUnits[] = {
         {"angstrom", 1e-7},   {"picometer", 1e-9}, {"nanometer", 1e-6}, {"nm", 1e-6},
@@ -44,12 +43,8 @@ ZarrAxis axisOf(const fs::path& file, const ZarrJson& json) {
     const ZarrJson& unit = memberOf(json, "unit");
     const ZarrJson& said = unit.is_null() ? memberOf(json, "units") : unit;  // real ones write that
     if (said.is_null()) return axis;
-    const std::string name = said.is_string() ? said.get<std::string>() : shownJson(said);
-    axis.toMm = millimetresOf(name);
-    if (!axis.toMm) {
-        refuse(file, fmt::format("its unit {} is not known here", printable(name)),
-               "write micrometer, millimeter, ...");
-    }
+    axis.toMm =
+        requireMillimetresOf(file, said.is_string() ? said.get<std::string>() : shownJson(said));
     return axis;
 }
 
@@ -120,10 +115,7 @@ ZarrScene sceneOf(const fs::path& file, const ZarrJson& multiscales, const std::
     const ZarrJson& datasets = memberOf(image, "datasets");
     if (!datasets.is_array() || datasets.empty()) refuseMetadata(file, "no datasets");
     scene.levels = static_cast<std::int64_t>(datasets.size());
-    if (level < 0 || level >= scene.levels) {
-        refuse(file, fmt::format("there is no level {}: it holds {}", level, scene.levels),
-               fmt::format("choose one, 0 to {} (--level)", scene.levels - 1));
-    }
+    if (level < 0 || level >= scene.levels) refuseLevel(file, level, scene.levels);
     const ZarrJson& dataset = datasets[static_cast<std::size_t>(level)];
     scene.path = requirePath(file, textOf(file, dataset, "path"));
     scene.scale.assign(scene.axes.size(), 1);
@@ -186,23 +178,22 @@ bool isArray(const ZarrStore& store) {
 
 bool isZarrFolder(const fs::path& folder) {
     std::error_code error;
-    return std::ranges::any_of(std::array{"zarr.json", ".zarray", ".zgroup", ".zattrs"},
-                               [&](const char* name) { return fs::exists(folder / name, error); });
+    return std::ranges::any_of(
+               std::array{"zarr.json", ".zarray", ".zgroup", ".zattrs"},
+               [&](const char* name) { return fs::exists(folder / name, error); }) ||
+           isN5Folder(folder);
 }
 
-void refuseN5(const fs::path& folder) {
-    // other programs have files of that name, in folders of DICOM too: what is not N5's is let be
-    std::string text;
-    try {
-        text = ZarrStore(folder).readText("attributes.json").value_or("");
-    } catch (const FileError&) {
-        return;
-    }
-    const ZarrJson json = ZarrJson::parse(text, nullptr, false);
-    for (const char* const key : {"n5", "dimensions", "blockSize"}) {
-        if (memberOf(json, key).is_null()) continue;
-        refuse(folder, "is N5, which is not read here", "convert it to Zarr");
-    }
+double requireMillimetresOf(const fs::path& file, const std::string& unit) {
+    const std::optional<double> mm = millimetresOf(unit);
+    if (mm) return *mm;
+    refuse(file, fmt::format("its unit {} is not known here", printable(unit)),
+           "write micrometer, millimeter, ...");
+}
+
+void refuseLevel(const fs::path& file, std::int64_t level, std::int64_t levels) {
+    refuse(file, fmt::format("there is no level {}: it holds {}", level, levels),
+           fmt::format("choose one, 0 to {} (--level)", levels - 1));
 }
 
 ZarrScene findZarrScene(const ZarrStore& store, std::int64_t level) {
@@ -216,6 +207,7 @@ ZarrScene findZarrScene(const ZarrStore& store, std::int64_t level) {
     }
     if (std::optional<ZarrScene> scene = sceneOfVersion3(store, level)) return *scene;
     if (std::optional<ZarrScene> scene = sceneOfVersion2(store, level)) return *scene;
+    if (std::optional<ZarrScene> scene = findN5Scene(store, level)) return *scene;
     refuse(store.root(), "is a group of Zarr that is no image (OME-Zarr's multiscales)",
            "give an array in it");
 }

@@ -29,15 +29,18 @@ struct ZarrScene {
     std::vector<std::string> warnings;
 };
 
-/// What lies at the root of a store: an array, or the multiscales of an OME-Zarr of version 0.4 or
-/// 0.5. \param level  of resolution, 0 the finest
-/// \throws FileError  it holds neither, is of another version, or has not that level
+/// What lies at the root of a store: an array, the multiscales of an OME-Zarr of version 0.4 or
+/// 0.5, or what N5 has of both. \param level  of resolution, 0 the finest \throws FileError  it
+/// holds neither, is of another version, or has not that level
 ZarrScene findZarrScene(const ZarrStore& store, std::int64_t level);
 
-/// The folder holds what Zarr's metadata are kept in.
+/// The folder holds what the metadata of Zarr or N5 are kept in.
 bool isZarrFolder(const std::filesystem::path& folder);
 
-/// Zarr's forerunner, told by name. \throws FileError  the folder holds it
-void refuseN5(const std::filesystem::path& folder);
+/// Millimetres in a unit of UDUNITS-2, as NGFF names them, or its symbol. \throws FileError
+double requireMillimetresOf(const std::filesystem::path& file, const std::string& unit);
+
+[[noreturn]] void refuseLevel(const std::filesystem::path& file, std::int64_t level,
+                              std::int64_t levels);
 
 }  // namespace adaptiso::detail

@@ -82,6 +82,12 @@ def write_bound(report, out):
            "ours /", "heap without mesh / quadric's"], rows, out)
 
 
+def keeps_topology(row, of):
+    """All parts of another surface of the same scan, no edge open within the volume or shared by three."""
+    return (row["components"] == of["components"] and row["openEdgesInside"] == 0
+            and row["nonManifoldEdges"] + row["nonManifoldVertices"] == 0)
+
+
 def write_scans(report, out):
     rows = []
     for scan in report["scans"]:
@@ -91,10 +97,15 @@ def write_scans(report, out):
                      f"{ours['triangles']:,}", f"{base['triangles']:,}",
                      f"{near['mean'] / far['mean']:.2f}", f"{near['max'] / far['max']:.2f}",
                      f"{peers.median_ratio(ours, base):.2f}",
+                     f"{peers.median_ratio(ours, base, 'cpuSeconds'):.2f}",
+                     "yes" if keeps_topology(base, ours) else "no",
+                     f"{base['components']:,} of {ours['components']:,}",
+                     f"{base['openEdgesInside']} / "
                      f"{base['nonManifoldEdges'] + base['nonManifoldVertices']} / "
                      f"{base['crossingPairs']}"])
     table(["scan", "triangles", "quadric's", "mean / quadric's", "largest / quadric's",
-           "time / quadric's", "quadric's non-manifold / crossing"], rows, out)
+           "time / quadric's", "CPU time / quadric's", "quadric keeps topology", "its parts",
+           "open inside / non-manifold / crossing"], rows, out)
 
 
 def write_relatives(report, out):

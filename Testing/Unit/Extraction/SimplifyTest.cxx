@@ -189,14 +189,18 @@ TEST(Simplify, ThinsOpenBordersWithinTheBound) {
 }
 
 TEST(Simplify, ThinsAFlatSquareToAFewTriangles) {
-    TriangleMesh square = planeMesh(40, 40);
-    square.normals = {};
-    const Simplified result = simplify(square, within(0.01));
-    EXPECT_LE(result.mesh.triangles.size(), 8U);
-    expectBoundHolds(square, result);
-    for (const auto& corner : {std::array{0., 0., 0.}, std::array{40., 0., 0.},
-                               std::array{0., 40., 0.}, std::array{40., 40., 0.}}) {
-        EXPECT_TRUE(placesOf(result.mesh).contains(corner));
+    for (const int side : {20, 40, 70}) {
+        TriangleMesh square = planeMesh(side, side);
+        square.normals = {};
+        const Simplified result = simplify(square, within(0.01));
+        EXPECT_LE(result.mesh.triangles.size(), 8U) << side;
+        expectBoundHolds(square, result);
+        const auto places = placesOf(result.mesh);
+        const double end = side;
+        for (const auto& corner : {std::array{0., 0., 0.}, std::array{end, 0., 0.},
+                                   std::array{0., end, 0.}, std::array{end, end, 0.}}) {
+            EXPECT_TRUE(places.contains(corner)) << side;
+        }
     }
 }
 

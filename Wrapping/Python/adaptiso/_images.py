@@ -71,9 +71,9 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
     volume_index : int, optional
         Which volume of a 4-D image to take, from 0.
     level : int, optional
-        Which resolution of an OME-Zarr to take; default 0, the finest.
+        Which resolution of an OME-Zarr or N5 to take; default 0, the finest.
     channel, time : int, optional
-        Which channel and time point of an OME-Zarr to take, from 0, where it has several.
+        Which channel and time point of an OME-Zarr or N5 to take, from 0, where it has several.
     all_chunks : bool
         Refuse a Zarr with chunks that are missing; else they hold the fill value, with a warning.
     resample_slices : bool, optional

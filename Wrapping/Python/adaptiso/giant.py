@@ -59,7 +59,7 @@ def plan(work: Any, image: Any, level: float, *, method: str = "adaptive",
     work : str or path
         The folder of the plan and of what the steps leave; made where it is not there.
     image : str or path
-        A Zarr or OME-Zarr, of which only what a tile needs is read; or any other file.
+        A Zarr, OME-Zarr or N5, of which only what a tile needs is read; or any other file.
     level : float
         The isovalue; inside is where samples are >= level.
     method : {"adaptive", "mc"}
@@ -70,7 +70,7 @@ def plan(work: Any, image: Any, level: float, *, method: str = "adaptive",
     side : int
         Of a tile, in cells; a multiple of 32.
     zarr_level : int, optional
-        Which resolution of an OME-Zarr to take: ``level`` of `adaptiso.read`.
+        Which resolution of an OME-Zarr or N5 to take: ``level`` of `adaptiso.read`.
     series, volume_index, channel, time, all_chunks
         As for `adaptiso.read`.
 

@@ -42,10 +42,9 @@ inline constexpr double kFitDistance = 0.75;
 /// Limits of cost: of the bricks' round, and above which there is none.
 inline constexpr double kFirstCost = 1e-3, kLastCost = 10;
 /// Limits of cost of the first rounds towards a bound, each six times the one before: cheap
-/// collapses first, everywhere, so that walls between patches do not show. Without the first one a
-/// run takes up to 14 % less processor time (ch2), but a flat square with open borders keeps 121
-/// triangles in place of 2.
-inline constexpr std::array kBoundCosts{3e-3, 1.8e-2, 0.108, 0.648, 3.888};
+/// collapses first, everywhere, so that walls between patches do not show. A round at 3e-3 before
+/// them takes a few per cent more time for as many triangles.
+inline constexpr std::array kBoundCosts{1.8e-2, 0.108, 0.648, 3.888};
 /// The surface that later runs start from: costs below this part of the square of the allowed
 /// distance, distances below this part of it.
 inline constexpr double kHalfwayCost = 2, kHalfwayDistance = 0.25;
@@ -53,9 +52,11 @@ inline constexpr double kHalfwayCost = 2, kHalfwayDistance = 0.25;
 /// that are still too many; after so many in a row that did not, the count is given up.
 inline constexpr double kHelped = 0.95;
 inline constexpr int kMostHelpless = 3;
-/// Limit of cost after the allowed distance has grown on the way to a count.
-inline constexpr double kCostAfterDistance = 0.01;
-/// A round that leaves more than this part of the triangles was hardly worth it.
+/// Limit of cost before the first round after the allowed distance has grown on the way to a count:
+/// what costs less was hardly refused for its distance.
+inline constexpr double kCostAfterDistance = 0.16;
+/// A round that leaves more than this part of the triangles, or of those that are too many for a
+/// count, was hardly worth it.
 inline constexpr double kWorthwhile = 0.99;
 /// Above this part of the wanted count a round is not thought to lead below it.
 inline constexpr double kFarFromCount = 1.6;
@@ -70,6 +71,10 @@ inline constexpr std::size_t kTrialFewest = 16, kTrialEvery = 8;
 /// Above this cost cubes are twice as large as bricks: else too much would straddle them. Small
 /// ones stay in a processor's cache.
 inline constexpr double kCoarseCost = 0.13;
+/// Up to so many triangles are one patch, if they span no more cells: long ones would straddle a
+/// wall of every cut. A cube of a scan's last rounds holds as many.
+inline constexpr std::int64_t kOnePatch = 8192;
+inline constexpr double kOnePatchSide = 128;
 /// Side of the cubes that a place is made tighter in, voxels, and how often the square of the
 /// allowed distance is halved there, by how often the place has failed.
 inline constexpr double kTightCube = 1.5;

@@ -143,8 +143,8 @@ private:
         return crossingsOfCell(sampler_, samples.sampleAt({cell.x, cell.y, cell.z}), boxCase);
     }
 
-    void fillBlock(std::int64_t b, TriangleMesh& mesh, bool isMirrored,
-                   const ImageGeometry& geometry) const {
+    /// \return the number of the block's next vertex
+    std::int64_t fillVertices(std::int64_t b, TriangleMesh& mesh) const {
         const Block& block = blocks_[b];
         const Index3 first = firstSample(b);
         std::int64_t v = block.firstVertex;
@@ -157,7 +157,14 @@ private:
                 mesh.normals[v++] = toNormal(crossing.normal);
             });
         }
+        return v;
+    }
 
+    void fillBlock(std::int64_t b, TriangleMesh& mesh, bool isMirrored,
+                   const ImageGeometry& geometry) const {
+        const Block& block = blocks_[b];
+        const Index3 first = firstSample(b);
+        std::int64_t v = fillVertices(b, mesh);
         std::array<std::int64_t, 8> owner;
         for (int high = 0; high < 8; ++high) {
             owner[high] =

@@ -189,13 +189,10 @@ void PlanarTriangulator::emit(Index a, Index b, Index c, std::vector<LocalTriang
     out.push_back({a, b, c});
 }
 
-void PlanarTriangulator::triangulateMonotone(std::vector<LocalTriangle>& out) {
+/// The corners from the lowest to the highest, and on which side each lies: up the right side, and
+/// down the left.
+void PlanarTriangulator::mergeChains() {
     const std::size_t n = part_.size();
-    if (n == 3) {
-        emit(part_[0], part_[1], part_[2], out);
-        return;
-    }
-    // merge the two chains: from the lowest corner up its right side, and down the left
     std::size_t lowest = 0, highest = 0;
     for (std::size_t i = 1; i < n; ++i) {
         if (isBefore(part_[i], part_[lowest])) lowest = i;
@@ -222,7 +219,15 @@ void PlanarTriangulator::triangulateMonotone(std::vector<LocalTriangle>& out) {
             left = (left + n - 1) % n;
         }
     }
+}
 
+void PlanarTriangulator::triangulateMonotone(std::vector<LocalTriangle>& out) {
+    const std::size_t n = part_.size();
+    if (n == 3) {
+        emit(part_[0], part_[1], part_[2], out);
+        return;
+    }
+    mergeChains();
     stack_.assign({0, 1});  // positions in merged_
     for (Index j = 2; j < n; ++j) {
         const bool last = j + 1 == n;

@@ -43,6 +43,7 @@ private:
     Index& helperLeftOf(Index i);
     void connectToMerge(Index i, Index helper);
     void walkParts(std::vector<LocalTriangle>& out);
+    void mergeChains();
     void triangulateMonotone(std::vector<LocalTriangle>& out);
     void emit(Index a, Index b, Index c, std::vector<LocalTriangle>& out) const;
 

@@ -33,7 +33,7 @@ struct CoarseSphere {
         limits.maxCost = 1e6;
         limits.maxDistanceMm = 0.1;
         for (const std::int64_t shift : {0, 16}) {
-            detail::PatchRound(surface, {32, shift}, unitFrame()).run({limits});
+            detail::PatchRound(surface, {32, {shift, shift, shift}}, unitFrame()).run({limits});
         }
         coarse = surface;
         heirs = surface.heirs;

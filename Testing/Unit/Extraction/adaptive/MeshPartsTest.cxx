@@ -114,7 +114,12 @@ TEST(BorderMarks, FindAndWeighTheBorder) {
     const MeshParts parts = takeApart(plane, false);
     EXPECT_EQ(parts.borderEdges.size(), 16U);
     const SimplifiedSurface surface = whole(detail::MeshSurface(plane, parts, {}));
-    EXPECT_EQ(detail::openHalfEdges(surface), parts.borderEdges);
+    std::vector<std::uint8_t> candidates(surface.points.size(), 1);
+    EXPECT_EQ(detail::openHalfEdges(surface, candidates), parts.borderEdges);
+    for (std::size_t v = 0; v < candidates.size(); ++v) {
+        candidates[v] = static_cast<std::uint8_t>(surface.marks[v] == Patch::kBorder);
+    }
+    EXPECT_EQ(detail::openHalfEdges(surface, candidates), parts.borderEdges);
     EXPECT_EQ(std::count(surface.marks.begin(), surface.marks.end(), Patch::kBorder), 16);
     for (std::size_t v = 0; v < surface.points.size(); ++v) {
         EXPECT_EQ(surface.samples[v].isOnBorder, surface.marks[v] == Patch::kBorder);

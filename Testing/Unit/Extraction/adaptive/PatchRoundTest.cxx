@@ -15,7 +15,7 @@ using detail::PatchRound;
 using detail::PatchWork;
 using detail::SimplifiedSurface;
 
-constexpr detail::PatchCut kCut{16, 12};
+constexpr detail::PatchCut kCut{16, {12, 12, 12}};
 constexpr double kDistanceMm = 0.2, kRounding = 1e-5;  // samples are kept in single precision
 
 /// A ball's full surface in a voxel of 1 mm.

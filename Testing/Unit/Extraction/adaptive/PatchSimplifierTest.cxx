@@ -108,6 +108,20 @@ TEST(PatchSimplifier, PutsNewVerticesIntoItsBox) {
     EXPECT_GT(changed, 3);
 }
 
+TEST(PatchSimplifier, TriesEdgesAgainThatLedOutOfAnotherBox) {
+    Patch patch = patchOf(planeMesh(8, 8));
+    addSamples(patch);
+    const Vec3 low = patch.lowIndex;
+    patch.lowIndex.z = 1e-6;  // all of the sheet lies in a wall
+    PatchSimplifier(patch, unitFrame(), limits(0.1)).collapseEdges(kAll, nullptr);
+    EXPECT_EQ(meshOf(patch).triangles.size(), 128U);
+    patch.lowIndex = low;
+    PatchLimits again = limits(0.1);
+    again.triedCost = again.maxCost;
+    PatchSimplifier(patch, unitFrame(), again).collapseEdges(kAll, nullptr);
+    EXPECT_LE(meshOf(patch).triangles.size(), 50U);
+}
+
 TEST(PatchSimplifier, LeavesFinalVertices) {
     Patch patch = spherePatch();
     const std::vector<Vec3> before = patch.points;

@@ -10,7 +10,7 @@
 namespace adaptiso::testing {
 
 /// Cubes of 12 cells that meet within the ball.
-inline constexpr detail::PatchCut kCut{12, 5};
+inline constexpr detail::PatchCut kCut{12, {5, 5, 5}};
 
 /// Of a point, by hand: voxels are 1 mm.
 inline Index3 cubeOf(const Vec3& p) {

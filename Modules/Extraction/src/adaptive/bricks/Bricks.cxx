@@ -48,6 +48,24 @@ void addFans(const BoxCase& boxCase, const CellCrossings& crossings, const Verte
     forEachFan(boxCase, crossings, triangle, fan);
 }
 
+/// The surface of a cell: fans where those of the table would cross.
+/// \param sample  the cell's lowest
+template <class VertexOn>
+void addTriangles(const LatticeSampler& sampler, const Index3& sample, const BoxCase& boxCase,
+                  bool mayCross, const VertexOn& vertexOn, FineSurface& surface) {
+    if (mayCross) {
+        const CellCrossings crossings = crossingsOfCell(sampler, sample, boxCase);
+        if (needsFans(boxCase, crossings)) {
+            addFans(boxCase, crossings, vertexOn, surface);
+            return;
+        }
+    }
+    for (int i = 0; i < boxCase.triangleCount; ++i) {
+        const auto& [e, f, g] = boxCase.triangle[i];
+        surface.triangles.push_back({vertexOn(e), vertexOn(f), vertexOn(g)});
+    }
+}
+
 }  // namespace
 
 Bricks::Bricks(const BlockGrid& grid, const std::vector<std::uint32_t>& blocks) : grid_(grid) {
@@ -164,6 +182,42 @@ BrickMesher::CellRange BrickMesher::cellsOf(std::uint32_t block) const {
     return range;
 }
 
+/// \param cell  relative to the brick
+std::uint32_t BrickMesher::vertexOn(const Brick& brick, const std::array<int, 3>& cell, int edge,
+                                    bool isSingle, FineSurface& surface) {
+    const int corner = lowCorner(edge), axis = edgeAxis(edge);
+    std::array<int, 3> p{};
+    for (int a = 0; a < 3; ++a) p[a] = cell[a] + (corner >> a & 1);
+    std::uint32_t& slot = vertexOnEdge_[edgeSlot(p, axis)];
+    if (slot == 0) {
+        slot = static_cast<std::uint32_t>(surface.vertices.size() + 1);
+        const Index3 lattice{brick.low[0] + p[0], brick.low[1] + p[1], brick.low[2] + p[2]};
+        FineVertex vertex;
+        vertex.edge = EdgeKey::make(lattice, axis);
+        const LatticeEdge onEdge = vertex.edge.latticeEdge(grid_.offset);
+        for (int a = 0; a < 3; ++a) vertex.index[a] = static_cast<double>(onEdge.sample[a]);
+        vertex.index[axis] += sampler_.crossingAlong(onEdge);
+        for (int a = 0; a < 3; ++a) {
+            if (a != axis && (p[a] == 0 || p[a] == Brick::kSide)) vertex.isOnWall = true;
+        }
+        surface.vertices.push_back(vertex);
+    }
+    if (!isSingle) surface.vertices[slot - 1].isSingleSheet = false;
+    return slot - 1;
+}
+
+/// Which faces of a cell that are ambiguous join what is inside, by bits.
+unsigned BrickMesher::joinedFaces(const Index3& sample, unsigned ambiguous) const {
+    unsigned joined = 0;
+    for (int face = 0; ambiguous >> face != 0; ++face) {
+        if ((ambiguous >> face & 1u) == 0) continue;
+        Index3 low = sample;
+        low[face / 2] += face & 1;
+        joined |= static_cast<unsigned>(sampler_.insideJoins(low, face / 2)) << face;
+    }
+    return joined;
+}
+
 void BrickMesher::meshBlock(const Brick& brick, std::uint32_t block, const CellRange& range,
                             FineSurface& surface) {
     const BoxCases& cases = BoxCases::instance();
@@ -175,28 +229,6 @@ void BrickMesher::meshBlock(const Brick& brick, std::uint32_t block, const CellR
     for (int a = 0; a < 3; ++a) {
         inBrick[a] = static_cast<int>(first[a] + grid_.offset - brick.low[a]);
     }
-
-    const auto vertexOn = [&](const std::array<int, 3>& cell, int edge, bool isSingle) {
-        const int corner = lowCorner(edge), axis = edgeAxis(edge);
-        std::array<int, 3> p{};
-        for (int a = 0; a < 3; ++a) p[a] = inBrick[a] + cell[a] + (corner >> a & 1);
-        std::uint32_t& slot = vertexOnEdge_[edgeSlot(p, axis)];
-        if (slot == 0) {
-            slot = static_cast<std::uint32_t>(surface.vertices.size() + 1);
-            const Index3 lattice{brick.low[0] + p[0], brick.low[1] + p[1], brick.low[2] + p[2]};
-            FineVertex vertex;
-            vertex.edge = EdgeKey::make(lattice, axis);
-            const LatticeEdge onEdge = vertex.edge.latticeEdge(grid_.offset);
-            for (int a = 0; a < 3; ++a) vertex.index[a] = static_cast<double>(onEdge.sample[a]);
-            vertex.index[axis] += sampler_.crossingAlong(onEdge);
-            for (int a = 0; a < 3; ++a) {
-                if (a != axis && (p[a] == 0 || p[a] == Brick::kSide)) vertex.isOnWall = true;
-            }
-            surface.vertices.push_back(vertex);
-        }
-        if (!isSingle) surface.vertices[slot - 1].isSingleSheet = false;
-        return slot - 1;
-    };
 
     std::int64_t seen = 1;
     for (int a = 0; a < 3; ++a) seen *= range.end[a] - range.begin[a];
@@ -226,33 +258,20 @@ void BrickMesher::meshBlock(const Brick& brick, std::uint32_t block, const CellR
                 const auto pair = [&](int dy, int dz) { return row(dy, dz) >> (x + 1) & 3u; };
                 const unsigned corners =
                     pair(1, 1) | pair(2, 1) << 2 | pair(1, 2) << 4 | pair(2, 2) << 6;
-                unsigned joined = 0;
+                const Index3 sample{first[0] + x, first[1] + y, first[2] + z};
                 const unsigned ambiguous = cases.ambiguousFaces(corners);
-                for (int face = 0; ambiguous >> face != 0; ++face) {
-                    if ((ambiguous >> face & 1u) == 0) continue;
-                    Index3 sample{first[0] + x, first[1] + y, first[2] + z};
-                    sample[face / 2] += face & 1;
-                    joined |= static_cast<unsigned>(sampler_.insideJoins(sample, face / 2)) << face;
-                }
-                const BoxCase& boxCase = cases[cases.caseIndex(corners, joined)];
+                const BoxCase& boxCase =
+                    cases[cases.caseIndex(corners, joinedFaces(sample, ambiguous))];
                 const bool isSingle = findsSheets_ && isSingleSheet(window());
                 surface.cells.push_back({{static_cast<std::int16_t>(inBrick[0] + x),
                                           static_cast<std::int16_t>(inBrick[1] + y),
                                           static_cast<std::int16_t>(inBrick[2] + z)},
                                          static_cast<std::uint32_t>(surface.triangles.size())});
-                const auto at = [&](int edge) { return vertexOn({x, y, z}, edge, isSingle); };
-                if (ambiguous != 0) {
-                    const CellCrossings crossings = crossingsOfCell(
-                        sampler_, {first[0] + x, first[1] + y, first[2] + z}, boxCase);
-                    if (needsFans(boxCase, crossings)) {
-                        addFans(boxCase, crossings, at, surface);
-                        continue;
-                    }
-                }
-                for (int i = 0; i < boxCase.triangleCount; ++i) {
-                    const auto& [e, f, g] = boxCase.triangle[i];
-                    surface.triangles.push_back({at(e), at(f), at(g)});
-                }
+                const auto at = [&](int edge) {
+                    return vertexOn(brick, {inBrick[0] + x, inBrick[1] + y, inBrick[2] + z}, edge,
+                                    isSingle, surface);
+                };
+                addTriangles(sampler_, sample, boxCase, ambiguous != 0, at, surface);
             }
         }
     }

@@ -94,6 +94,9 @@ private:
     void meshBlock(const Brick& brick, std::uint32_t block, const CellRange& range,
                    FineSurface& surface);
     CellRange cellsOf(std::uint32_t block) const;
+    std::uint32_t vertexOn(const Brick& brick, const std::array<int, 3>& cell, int edge,
+                           bool isSingle, FineSurface& surface);
+    unsigned joinedFaces(const Index3& sample, unsigned ambiguous) const;
     void forget(const Brick& brick, const FineSurface& surface);
 
     const LatticeSampler& sampler_;

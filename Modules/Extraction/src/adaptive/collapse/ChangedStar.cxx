@@ -17,6 +17,30 @@ double sharpestSquaredCosine(double a, double b, double c, double area2Squared) 
     return 1 - area2Squared / others;
 }
 
+/// The sharpest corner is wide enough, or wider than the sharpest before.
+/// \param sharpest  squared cosine of the changed star's
+bool anglesMayStay(const Patch& patch, const Star& star, const StarLimits& limits,
+                   double sharpest) {
+    const auto point = [&](std::uint32_t v) { return patch.points[v]; };
+    const double cosine = std::cos(limits.leastAngleDeg * std::numbers::pi / 180);
+    if (sharpest <= cosine * cosine) return true;
+    double sharpestBefore = 0;
+    const auto addBefore = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
+        sharpestBefore =
+            std::max(sharpestBefore,
+                     sharpestSquaredCosine(squaredNorm(q - p), squaredNorm(r - q),
+                                           squaredNorm(p - r), squaredNorm(areaVector2(p, q, r))));
+    };
+    for (int i = 0; i < star.count; ++i) {
+        addBefore(point(star.apex[i]), point(star.ring[i]), point(star.ring[i + 1]));
+    }
+    for (int i = 0; i < star.removedCount; ++i) {
+        const auto& t = patch.triangles[star.removed[i]];
+        addBefore(point(t[0]), point(t[1]), point(t[2]));
+    }
+    return sharpest < sharpestBefore;
+}
+
 }  // namespace
 
 bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& changed) {
@@ -63,24 +87,7 @@ bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& change
         }
     }
     if (turns != 1) changed.isGraph = false;
-    if (limits.leastAngleDeg == 0) return true;
-    const double cosine = std::cos(limits.leastAngleDeg * std::numbers::pi / 180);
-    if (sharpest <= cosine * cosine) return true;
-    double sharpestBefore = 0;
-    const auto addBefore = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
-        sharpestBefore =
-            std::max(sharpestBefore,
-                     sharpestSquaredCosine(squaredNorm(q - p), squaredNorm(r - q),
-                                           squaredNorm(p - r), squaredNorm(areaVector2(p, q, r))));
-    };
-    for (int i = 0; i < star.count; ++i) {
-        addBefore(point(star.apex[i]), point(star.ring[i]), point(star.ring[i + 1]));
-    }
-    for (int i = 0; i < star.removedCount; ++i) {
-        const auto& t = patch.triangles[star.removed[i]];
-        addBefore(point(t[0]), point(t[1]), point(t[2]));
-    }
-    return sharpest < sharpestBefore;
+    return limits.leastAngleDeg == 0 || anglesMayStay(patch, star, limits, sharpest);
 }
 
 }  // namespace adaptiso::detail

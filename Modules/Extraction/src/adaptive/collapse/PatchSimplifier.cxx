@@ -58,6 +58,10 @@ const PatchSimplifier::Change* PatchSimplifier::evaluateCollapse(std::uint32_t h
     change.vertex = topology_.from(halfEdge);
     change.halfEdge = halfEdge;
     change.star.vertex = bestPlace(change.vertex, topology_.to(halfEdge)).point;
+    if (!isInBox(change.star.vertex)) {
+        untried_.insert(untried_.end(), {change.vertex, topology_.to(halfEdge)});
+        return nullptr;
+    }
     return staysNear(change) && crossesNothing(change) ? &change : nullptr;
 }
 
@@ -75,7 +79,8 @@ const PatchSimplifier::Change* PatchSimplifier::evaluateFit(std::uint32_t vertex
                  farthest =
                      std::max(before->largestSquare, limits_.maxFittedMm * limits_.maxFittedMm);
     change.star.vertex = fittedPlace(change.star, quadric);
-    const bool isBetter = quadric.at(change.star.vertex) <= mostError && staysNear(change) &&
+    const bool isBetter = quadric.at(change.star.vertex) <= mostError &&
+                          isInBox(change.star.vertex) && staysNear(change) &&
                           change.samples.sumOfSquares < before->sumOfSquares &&
                           change.samples.largestSquare <= farthest;
     return isBetter && crossesNothing(change) ? &change : nullptr;
@@ -124,8 +129,11 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
     for (std::uint32_t h = 0; h < 3 * patch_.ownTriangles; ++h) {
         if (patch_.triangles[h / 3][0] == Patch::kGone) continue;
         if (h > topology_.twin(h)) continue;
-        const bool isTried = patch_.states[topology_.from(h)] == Patch::State::Tried &&
-                             patch_.states[topology_.to(h)] == Patch::State::Tried;
+        const std::uint32_t a = topology_.from(h), b = topology_.to(h);
+        if (topology_.isMovable(a) != topology_.isMovable(b))
+            untried_.insert(untried_.end(), {a, b});
+        const bool isTried =
+            patch_.states[a] == Patch::State::Tried && patch_.states[b] == Patch::State::Tried;
         propose(h, isTried ? limits_.triedCost : -1);
     }
     for (std::uint32_t v = 0; v < patch_.points.size(); ++v) {
@@ -150,17 +158,17 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
             if (topology_.twin(arriving) == PatchTopology::kNone) propose(arriving, -1);
         });
     }
-    for (const Candidate& untried : queue_) {
-        for (const std::uint32_t v : {untried.a, untried.b}) {
-            if (patch_.states[v] == Patch::State::Tried) patch_.states[v] = Patch::State::Open;
-        }
-    }
+    for (const Candidate& left : queue_) untried_.insert(untried_.end(), {left.a, left.b});
     queue_.clear();
+    for (const std::uint32_t v : untried_) {
+        if (patch_.states[v] == Patch::State::Tried) patch_.states[v] = Patch::State::Open;
+    }
+    untried_.clear();
 }
 
 /// The star has the shape asked for and lies near its samples.
 bool PatchSimplifier::staysNear(Change& change) const {
-    return isInBox(change.star.vertex) && shapeStar(patch_, limits_.shape, change.star) &&
+    return shapeStar(patch_, limits_.shape, change.star) &&
            errors_.assign(change.star, limits_.maxDistanceMm, change.samples);
 }
 

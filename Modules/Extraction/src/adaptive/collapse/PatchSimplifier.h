@@ -99,7 +99,9 @@ private:
     CrossingGuard guard_;
     std::vector<std::uint32_t> changes_;  ///< of each vertex
     std::vector<Candidate> queue_;        ///< a heap
-    Change change_;                       ///< the one that is evaluated
+    /// Ends of edges that were not tried, or led out of the box: another cut may allow those.
+    std::vector<std::uint32_t> untried_;
+    Change change_;  ///< the one that is evaluated
 };
 
 }  // namespace adaptiso::detail

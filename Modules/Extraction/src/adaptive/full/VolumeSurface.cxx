@@ -11,6 +11,8 @@
 namespace adaptiso::detail {
 namespace {
 
+constexpr std::int64_t kPiece = 1 << 14;
+
 /// Drops vertices without a triangle.
 void dropUnusedVertices(TriangleMesh& mesh) {
     constexpr VertexId kUnused = -1;
@@ -36,7 +38,6 @@ void dropUnusedVertices(TriangleMesh& mesh) {
 TriangleMesh toMesh(const SimplifiedSurface& surface, const ImageGeometry& geometry,
                     const MetricFrame& frame, const LatticeSampler& sampler) {
     TriangleMesh mesh;
-    constexpr std::int64_t kPiece = 4096;
     mesh.points.resize(surface.points.size());
     mesh.normals.resize(surface.points.size());
     parallelForPieces(std::ssize(mesh.points), kPiece, [&](std::int64_t begin, std::int64_t end) {
@@ -74,26 +75,31 @@ SimplifiedSurface VolumeSurface::firstRound(const TightPlaces& tight, const Patc
     SimplifiedSurface surface = simplifyBricks(sampler_, bricks_, frame(), tight, limits, costs,
                                                moving_ ? &*moving_ : nullptr);
     if (bricks_.grid().border == Border::Open) {
-        markBorders(openHalfEdges(surface), surface);
-        keepCorners(surface);
+        std::vector<std::uint8_t> faces(surface.points.size());
+        parallelForPieces(std::ssize(faces), kPiece, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t v = begin; v < end; ++v) faces[v] = facesAt(surface.points[v]);
+        });
+        markBorders(openHalfEdges(surface, faces), surface);
+        // the border is to lie on the volume's faces
+        for (std::size_t v = 0; v < faces.size(); ++v) {
+            if (surface.marks[v] == Patch::kBorder && faces[v] > 1) {
+                surface.states[v] = Patch::State::Final;
+            }
+        }
     }
     return surface;
 }
 
-/// Points on two faces of the volume at once stay: the border is to lie on its faces.
-void VolumeSurface::keepCorners(SimplifiedSurface& surface) const {
-    for (std::size_t v = 0; v < surface.points.size(); ++v) {
-        if (surface.marks[v] != Patch::kBorder) continue;
-        const Vec3 index = frame().toIndex(surface.points[v]);
-        int faces = 0;
-        for (int a = 0; a < 3; ++a) {
-            constexpr double kOnFace = 1e-6;
-            const auto last = static_cast<double>(geometry_.size[a] - 1);
-            faces += static_cast<int>(std::abs(index[a]) < kOnFace ||
-                                      std::abs(index[a] - last) < kOnFace);
-        }
-        if (faces > 1) surface.states[v] = Patch::State::Final;
+/// How many faces of the volume a point lies on.
+std::uint8_t VolumeSurface::facesAt(const Vec3& point) const {
+    constexpr double kOnFace = 1e-6;
+    const Vec3 index = frame().toIndex(point);
+    std::uint8_t faces = 0;
+    for (int a = 0; a < 3; ++a) {
+        const auto last = static_cast<double>(geometry_.size[a] - 1);
+        if (std::abs(index[a]) < kOnFace || std::abs(index[a] - last) < kOnFace) ++faces;
     }
+    return faces;
 }
 
 std::unique_ptr<DistanceProof> VolumeSurface::proof(double limitMm) const {

@@ -29,7 +29,7 @@ public:
     double largestExtentMm() const override;
 
 private:
-    void keepCorners(SimplifiedSurface& surface) const;
+    std::uint8_t facesAt(const Vec3& point) const;
 
     const ImageGeometry& geometry_;
     const LatticeSampler& sampler_;

@@ -17,7 +17,6 @@ namespace {
 using Number = SurfaceState::Number;
 
 constexpr std::int64_t kPiece = 1 << 14;
-constexpr std::size_t kSlots = std::size_t{1} << 16;
 
 std::array<double, 3> barycentric(const Vec3& p, const Corners& t) {
     const Vec3 area2 = areaVector2(t[0], t[1], t[2]);
@@ -501,9 +500,9 @@ void SurfaceMender::replace(Number number, const Triangle& triangle) {
     track(number);
 }
 
-std::size_t SurfaceMender::hashSlot(const Index3& cube) {
+std::size_t SurfaceMender::CubeHash::operator()(const Index3& cube) const {
     const auto at = [&](int a) { return static_cast<std::size_t>(cube[a]); };
-    return (at(0) * 73856093 ^ at(1) * 19349663 ^ at(2) * 83492791) % kSlots;
+    return at(0) * 73856093 ^ at(1) * 19349663 ^ at(2) * 83492791;
 }
 
 /// The triangle is about to change.

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <set>
 #include <unordered_map>
@@ -49,6 +48,10 @@ private:
     using Number = SurfaceState::Number;
     using Numbers = std::vector<Number>;
     static constexpr Number kNone = ~Number{0};
+    static constexpr std::size_t kSlots = std::size_t{1} << 18;
+    struct CubeHash {
+        std::size_t operator()(const Index3& cube) const;
+    };
 
     /// The edge from a to b with its triangles (a, b, c) and (b, a, d), the twin.
     struct Edge {
@@ -87,7 +90,7 @@ private:
     void replace(Number number, const Triangle& triangle);
     void track(Number triangle);
     void trackCubes(Number triangle);
-    static std::size_t hashSlot(const Index3& cube);
+    static std::size_t hashSlot(const Index3& cube) { return CubeHash{}(cube) % kSlots; }
     void note(Number triangle);
     void handOver(const Numbers& from, const Numbers& to);
     template <class F>
@@ -110,7 +113,7 @@ private:
     std::unordered_map<Number, Numbers> samplesOf_;  ///< of triangles around_ has
     /// Triangles whose boxes overlap a cube, for the cubes that a change may reach into. Some have
     /// changed since.
-    std::map<Index3, Numbers> inCube_;
+    std::unordered_map<Index3, Numbers, CubeHash> inCube_;
     std::vector<bool> mayHaveCube_;  ///< by hashSlot(): most cubes are not in inCube_
 };
 

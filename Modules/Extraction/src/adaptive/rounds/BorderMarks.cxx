@@ -1,6 +1,7 @@
 #include "adaptive/rounds/BorderMarks.h"
 
-#include "adaptive/mesh/HalfEdges.h"
+#include <algorithm>
+#include <tuple>
 
 namespace adaptiso::detail {
 namespace {
@@ -30,15 +31,33 @@ void markSamples(SimplifiedSurface& surface) {
 
 }  // namespace
 
-std::vector<std::uint64_t> openHalfEdges(const SurfaceState& surface) {
-    HalfEdges<SurfaceState::Number> halfEdges;
-    halfEdges.assign(surface.points.size(), surface.triangles);
-    std::vector<SurfaceState::Number> twin;
-    halfEdges.match(surface.triangles, twin);
-    std::vector<std::uint64_t> open;
-    for (std::uint64_t h = 0; h < twin.size(); ++h) {
-        if (twin[h] == HalfEdges<SurfaceState::Number>::kNone) open.push_back(h);
+std::vector<std::uint64_t> openHalfEdges(const SurfaceState& surface,
+                                         std::span<const std::uint8_t> mayBeOnBorder) {
+    struct Side {
+        std::uint64_t low, high, halfEdge;
+    };
+    std::vector<Side> sides;
+    for (std::uint64_t t = 0; t < surface.triangles.size(); ++t) {
+        const SurfaceState::Triangle& c = surface.triangles[t];
+        for (std::uint64_t corner = 0; corner < 3; ++corner) {
+            const std::uint64_t a = c[corner], b = c[(corner + 1) % 3];
+            if (mayBeOnBorder[a] == 0 || mayBeOnBorder[b] == 0) continue;
+            sides.push_back({std::min(a, b), std::max(a, b), 3 * t + corner});
+        }
     }
+    std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+        return std::tie(x.low, x.high, x.halfEdge) < std::tie(y.low, y.high, y.halfEdge);
+    });
+    std::vector<std::uint64_t> open;
+    const auto isOther = [](const Side& x, const Side& y) {
+        return x.low != y.low || x.high != y.high;
+    };
+    for (std::size_t n = 0; n < sides.size(); ++n) {
+        if (n > 0 && !isOther(sides[n - 1], sides[n])) continue;
+        if (n + 1 < sides.size() && !isOther(sides[n], sides[n + 1])) continue;
+        open.push_back(sides[n].halfEdge);
+    }
+    std::sort(open.begin(), open.end());
     return open;
 }
 

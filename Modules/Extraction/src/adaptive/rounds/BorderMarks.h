@@ -9,7 +9,10 @@
 namespace adaptiso::detail {
 
 /// The half-edges (3 t + corner) of a surface's open borders, ascending.
-std::vector<std::uint64_t> openHalfEdges(const SurfaceState& surface);
+/// \param mayBeOnBorder  not 0 for each point of a border, and for few others
+/// \pre no edge has more than two triangles
+std::vector<std::uint64_t> openHalfEdges(const SurfaceState& surface,
+                                         std::span<const std::uint8_t> mayBeOnBorder);
 
 /// Makes open borders ready to be simplified: marks their points (those that have no mark of their
 /// own) and samples, and gives the points the quadrics of planes along the border, upright to the

@@ -55,7 +55,7 @@ Index3 PatchCubes::cubeAtIndex(const Vec3& index) const {
     Index3 cube;
     for (int a = 0; a < 3; ++a) {
         cube[a] = static_cast<std::int64_t>(std::floor(
-            (index[a] - static_cast<double>(cut_.shift)) / static_cast<double>(cut_.side)));
+            (index[a] - static_cast<double>(cut_.shift[a])) / static_cast<double>(cut_.side)));
     }
     return cube;
 }
@@ -82,7 +82,7 @@ void PatchCubes::setBounds(std::size_t number, Patch& patch) const {
         low = {n % count_[0] + low_[0], n / count_[0] % count_[1] + low_[1],
                n / (count_[0] * count_[1]) + low_[2]};
     }
-    for (std::int64_t& along : low) along = along * cut_.side + cut_.shift;
+    for (int a = 0; a < 3; ++a) low[a] = low[a] * cut_.side + cut_.shift[a];
     patch.setBox(low, cut_.side);
 }
 

@@ -16,7 +16,7 @@ namespace adaptiso::detail {
 /// Cubes that cut the whole surface into patches: their side in cells, and where the first starts.
 struct PatchCut {
     std::int64_t side = Brick::kSide;
-    std::int64_t shift = 0;
+    Index3 shift{};
 };
 
 /// The cubes of a cut that can hold the surface, by numbers that grow with x, then y, then z: those

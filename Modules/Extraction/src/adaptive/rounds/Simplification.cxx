@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -14,6 +15,27 @@ namespace {
 void keepHeirs(SimplifiedSurface& surface) {
     surface.heirs.resize(surface.points.size());
     std::iota(surface.heirs.begin(), surface.heirs.end(), SurfaceState::Number{0});
+}
+
+/// A cut into one cube with all of the surface; none where that would be too large.
+std::optional<PatchCut> cutAround(const SimplifiedSurface& surface, const MetricFrame& frame) {
+    if (surface.points.empty()) return {};
+    const Vec3 first = frame.toIndex(surface.points[0]);
+    CornerBox box{first, first};
+    for (const Vec3& p : surface.points) box.add(frame.toIndex(p));
+    const Vec3 extent = box.high - box.low;
+    const double widest = std::max({extent.x, extent.y, extent.z});
+    if (!(widest <= kOnePatchSide)) return {};
+    PatchCut cut{static_cast<std::int64_t>(widest) + Brick::kSide};
+    for (int a = 0; a < 3; ++a) {
+        const double middle = 0.5 * (box.low[a] + box.high[a]);
+        cut.shift[a] = static_cast<std::int64_t>(std::floor(middle)) - cut.side / 2;
+    }
+    return cut;
+}
+
+bool leavesLess(double part, std::int64_t now, std::int64_t before) {
+    return static_cast<double>(now) < part * static_cast<double>(before);
 }
 
 /// How much the limit of cost may grow in a round: the more the farther the wanted count is.
@@ -32,19 +54,23 @@ Simplification::Simplification(const FullSurface& full, const TightPlaces& tight
     costUnit_ = voxel * voxel * voxel * voxel;
 }
 
-/// Cuts in turn, so that what straddles one cut lies within the next, also where their cubes grow.
-PatchCut Simplification::nextCut() {
+/// Cuts in turn, so that what straddles one cut lies within the next, also where their cubes grow;
+/// one cube for few triangles.
+PatchCut Simplification::nextCut(const SimplifiedSurface& surface) {
     ++rounds_;
+    if (surface.triangleCount() <= kOnePatch) {
+        if (const auto cut = cutAround(surface, frame_)) return *cut;
+    }
     const bool isFine = limits_.maxCost <= kCoarseCost * costUnit_;
     const std::int64_t side = isFine ? Brick::kSide : std::int64_t{2} * Brick::kSide,
-                       shift = isFine ? 0 : Brick::kSide / 4;
-    return {side, shift + (rounds_ % 2 == 1 ? side / 2 : 0)};
+                       shift = (isFine ? 0 : Brick::kSide / 4) + (rounds_ % 2 == 1 ? side / 2 : 0);
+    return {side, {shift, shift, shift}};
 }
 
 void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
     limits_.triedCost = limits_.maxCost;
     limits_.maxCost = cost;
-    PatchRound(surface, nextCut(), frame_).run({limits_});
+    PatchRound(surface, nextCut(surface), frame_).run({limits_});
     surface.returnFreedMemory();
 }
 
@@ -90,10 +116,7 @@ SimplifiedSurface Simplification::toLimits(SimplifiedSurface last,
     for (int idle = 0; idle < 2;) {
         const std::int64_t before = surface.triangleCount();
         roundUpTo(std::numeric_limits<double>::max(), surface);
-        idle = static_cast<double>(surface.triangleCount()) >=
-                       kWorthwhile * static_cast<double>(before)
-                   ? idle + 1
-                   : 0;
+        idle = leavesLess(kWorthwhile, surface.triangleCount(), before) ? 0 : idle + 1;
     }
     return surface;
 }
@@ -106,7 +129,7 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
     const double times = static_cast<double>(before) / static_cast<double>(target);
     PatchWork work{limits_};
     work.mostCollapses = wanted;
-    PatchRound round(surface, nextCut(), frame_);
+    PatchRound round(surface, nextCut(surface), frame_);
     bool isLanding = false;
     if (times < kNearCount || isTied_) {
         work.fits = true;
@@ -122,6 +145,7 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
     }
     fits_ = work.fits ? fits_ + 1 : 0;
     round.run(work);
+    limits_.triedCost = work.limits.maxCost;
     // where costs are equal, as on flat parts, a limit leaves all or none: the next round deals out
     isTied_ = isLanding && before - surface.triangleCount() < wanted;
 }
@@ -143,6 +167,7 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
     CollapseCosts costs;
     double cost = kFirstCost;
     limits_.maxCost = cost * costUnit_;
+    limits_.triedCost = -1;
     rounds_ = fits_ = 0;
     isTied_ = false;
     SimplifiedSurface surface = full_.firstRound(tight_, limits_, &costs);
@@ -151,6 +176,7 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
         limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
         surface = full_.firstRound(tight_, limits_, nullptr);
     }
+    limits_.triedCost = limits_.maxCost;
     for (int helpless = 0; helpless < kMostHelpless;) {
         const std::int64_t above = surface.triangleCount() - target;
         for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
@@ -158,11 +184,12 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
             cost *= costStep(before, target);
             if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
             roundTowards(surface, target, cost);
-            if (cost > kLastCost) idle = surface.triangleCount() == before ? idle + 1 : 0;
+            const bool helped =
+                leavesLess(kWorthwhile, surface.triangleCount() - target, before - target);
+            if (cost > kLastCost) idle = helped ? 0 : idle + 1;
         }
         if (surface.triangleCount() <= target || limits_.maxDistanceMm >= farthestMm) break;
-        const bool helped = static_cast<double>(surface.triangleCount() - target) <
-                            kHelped * static_cast<double>(above);
+        const bool helped = leavesLess(kHelped, surface.triangleCount() - target, above);
         helpless = helped ? 0 : helpless + 1;
         goFarther(surface);
         cost = kCostAfterDistance;
@@ -183,7 +210,7 @@ void Simplification::fit(SimplifiedSurface& surface) {
     PatchWork work{limits_};
     work.collapses = false;
     work.fits = true;
-    for (; fits_ < 2; ++fits_) PatchRound(surface, nextCut(), frame_).run(work);
+    for (; fits_ < 2; ++fits_) PatchRound(surface, nextCut(surface), frame_).run(work);
 }
 
 }  // namespace adaptiso::detail

@@ -57,7 +57,7 @@ public:
     void fit(SimplifiedSurface& surface);
 
 private:
-    PatchCut nextCut();
+    PatchCut nextCut(const SimplifiedSurface& surface);
     void roundUpTo(double cost, SimplifiedSurface& surface);
     void goOnFrom(const Halfway& halfway, SimplifiedSurface& surface);
     SimplifiedSurface towards(const WantedCount& wanted, double farthestMm);

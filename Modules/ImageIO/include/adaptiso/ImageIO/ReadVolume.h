@@ -66,12 +66,12 @@ struct ReadVolume {
 ///   DICOM      slices, frames (each with its own position) and mosaic tiles sorted along the
 ///              normal; the step from slice to slice is kept as it is, so gantry tilt stays in the
 ///              geometry as shear, with a warning
-///   Zarr       a folder, version 2 or 3: one array (1 mm, with a warning) or an OME-Zarr of
-///   version
-///              0.4 or 0.5: scale and translation of the level, then of the image, units to mm; x,
-///              y and z taken for LPS, with a warning. Chunks raw or packed by gzip, zlib, zstd,
-///              blosc, lz4, with crc32c, in shards or not; all else is refused by name. Each is
-///              read once; beside the image, each thread holds one, packed and unpacked
+///   Zarr       a folder, version 2 or 3, or N5: one array (1 mm, with a warning), an OME-Zarr of
+///              0.4 or 0.5, or N5's group of s0, s1, ... with their pixelResolution and
+///              downsamplingFactors: scale and translation of the level, then of the image, units
+///              to mm; x, y and z taken for LPS, with a warning. Chunks raw or packed by gzip,
+///              zlib, zstd, blosc, lz4, with crc32c, in shards or not; all else is refused by name.
+///              Each is read once; beside the image, each thread holds one, packed and unpacked
 ///
 /// Samples keep their type. Scaled ones (NIfTI scl_slope, DICOM rescale, MetaImage
 /// ElementToIntensityFunction) become float32, or float64 where float32 could not hold the stored

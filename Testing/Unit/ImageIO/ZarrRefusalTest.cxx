@@ -1,0 +1,183 @@
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "ZarrFolder.h"
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace testing;
+
+class ZarrRefusalTest : public ZarrFolder {};
+
+TEST_F(ZarrRefusalTest, OnlyAChunkThatIsNotThereIsFill) {
+    put(".zarray", metadata2("null"));
+    putChunks("", ".", same);
+    fs::remove(root_ / "1.0.1");
+    const ReadVolume read = readVolume(root_);
+    EXPECT_EQ(read.volume.view().as<std::int16_t>().at(4, 0, 4), -9);
+    EXPECT_NE(read.warnings.back().find("1 of its 8 chunks are not there"), std::string::npos);
+    expectRefused("1 of its 8 chunks are not there", {.refusesMissingChunks = true});
+
+    put("1.0.1", "");
+    expectRefused("1.0.1: is empty");
+    put("1.0.1", chunkAt(1, 0, 1).substr(0, 100));
+    expectRefused("1.0.1: holds 100 bytes of a chunk of 128");
+    put("1.0.1", chunkAt(1, 0, 1) + "x");
+    expectRefused("1.0.1: holds 129 bytes of a chunk of 128");
+    put("1.0.1", Text(1 << 20, 'x'));
+    expectRefused("more than a chunk of 128 can take");
+    fs::remove(root_ / "1.0.1");
+    fs::create_directories(root_ / "1.0.1");
+    expectRefused("1.0.1: is not a file");
+    fs::remove(root_ / "1.0.1");
+    fs::create_symlink("/dev/zero", root_ / "1.0.1");
+    expectRefused("1.0.1");
+    fs::remove(root_ / "1.0.1");
+    fs::create_symlink("nowhere", root_ / "1.0.1");
+    expectRefused("1.0.1");
+}
+
+TEST_F(ZarrRefusalTest, LinksLeadNowhereButIntoTheDatasetAndItsAnnex) {
+    const fs::path outside = root_.string() + "-outside";
+    fs::remove_all(outside);
+    fs::create_directories(outside);
+    put("d/.zarray", metadata2("null", R"(, "dimension_separator": "/")"));
+    put("d/.zgroup", "{}");
+    fs::remove(root_ / "d/.zgroup");
+    const fs::path array = root_ / "d";
+    putChunks("d/", "/", same);
+    const auto refused = [&] {
+        try {
+            readVolume(array);
+        } catch (const FileError& error) {
+            return std::string(error.what()).find("outside of its dataset") != std::string::npos;
+        }
+        return false;
+    };
+    // git-annex: content lies above the array, under .git/annex/objects
+    fs::create_directories(root_ / ".git/annex/objects/a");
+    fs::rename(array / "0/0/0", root_ / ".git/annex/objects/a/key");
+    fs::create_symlink("../../../.git/annex/objects/a/key", array / "0/0/0");
+    expectValues(readVolume(array), array);
+    // another file of the dataset
+    fs::rename(array / "0/0/1", array / "kept");
+    fs::create_symlink("../../kept", array / "0/0/1");
+    expectValues(readVolume(array), array);
+    // a file elsewhere, a folder elsewhere, a way up and out
+    fs::rename(array / "0/1/0", outside / "file");
+    fs::create_symlink(outside / "file", array / "0/1/0");
+    EXPECT_TRUE(refused());
+    fs::remove(array / "0/1/0");
+    fs::rename(outside / "file", array / "0/1/0");
+    fs::rename(array / "1", outside / "folder");
+    fs::create_directory_symlink(outside / "folder", array / "1");
+    EXPECT_TRUE(refused());
+    fs::remove(array / "1");
+    fs::rename(outside / "folder", root_ / "1");
+    fs::create_directory_symlink("../1", array / "1");
+    EXPECT_TRUE(refused());
+    fs::remove_all(outside);
+}
+
+TEST_F(ZarrRefusalTest, MetadataAsDeepAsAHostileFileLikesAreRefused) {
+    constexpr std::size_t kDepth = 200000;
+    const Text deep = Text(kDepth, '[') + Text(kDepth, ']');
+    put(".zarray", metadata2("null", R"(, "fill_value": )" + deep));
+    expectRefused("fill_value [...] is none of its type");
+    put(".zarray", metadata2("null", R"(, "dimension_separator": )" + deep));
+    expectRefused("dimension_separator");
+    fs::remove_all(root_);
+    put("zarr.json",
+        metadata3(R"([{"name": "bytes", "configuration": {"endian": )" + deep + "}}]"));
+    expectRefused("endian");
+    fs::remove_all(root_);
+    put(".zattrs",
+        R"({"multiscales": [{"axes": [{"name": "x", "type": "space", "unit": )" + deep + "}]}]}");
+    expectRefused("unit [...]");
+}
+
+TEST_F(ZarrRefusalTest, AChunkThatCannotBeOpenedIsNoFill) {
+    if (geteuid() == 0) GTEST_SKIP() << "root may open everything";
+    put(".zarray", metadata2("null"));
+    putChunks("", ".", same);
+    chmod((root_ / "0.0.0").c_str(), 0);
+    expectRefused("0.0.0: can't be opened");
+}
+
+TEST_F(ZarrRefusalTest, DamagedChunksAndBombsAreRefused) {
+    const std::pair<std::string, Text> bombs[] = {
+        {R"({"id": "zlib"})", zlibbed(Text(1 << 24, '\0'))},
+        {R"({"id": "zstd"})", zstdOf(Text(1 << 24, '\0'))},
+        {R"({"id": "lz4"})", lz4Of(Text(1 << 20, '\0'))},
+        {R"({"id": "blosc"})", bloscOf(Text(1 << 21, '\0'), "lz4")}};
+    for (const auto& [codec, bomb] : bombs) {
+        SCOPED_TRACE(codec);
+        put(".zarray", metadata2(codec));
+        putChunks("", ".", [&](const Text&) { return bomb; });
+        expectRefused("data are damaged, or unpack to more than a chunk");
+        putChunks("", ".",
+                  [](const Text&) { return Text("\2\1\3\2rubbish that is none of them"); });
+        expectRefused("data are damaged");
+        putChunks("", ".", [&](const Text&) { return bomb.substr(0, bomb.size() / 2); });
+        expectRefused("damaged");
+    }
+    put(".zarray", metadata2("null"));
+    fs::remove(root_ / ".zarray");
+    put("zarr.json", metadata3(R"([{"name": "bytes"}, {"name": "crc32c"}])"));
+    putChunks("c/", "/", [](const Text& text) {
+        Text damaged = withSum(text);
+        damaged[5] ^= 1;
+        return damaged;
+    });
+    expectRefused("its checksum (crc32c) differs");
+}
+
+TEST_F(ZarrRefusalTest, WhatIsNotReadIsRefusedByName) {
+    const std::pair<std::string, std::string> wrong2[] = {
+        {metadata2(R"({"id": "bz2"})"), "codec bz2"},
+        {metadata2("null", "", "<f2"), "dtype <f2"},
+        {metadata2("null", "", "|S7"), "dtype |S7"},
+        {metadata2("null", R"(, "filters": [{"id": "delta"}])"), "filter delta"},
+        {metadata2("null", "", "<i2", "A"), "order A"},
+        {metadata2("null", R"(, "shape": [5, 6, 7, 0])"), "shape is no list of whole numbers"},
+        {metadata2("null", R"(, "chunks": [4, 4])"), "contradict each other"},
+        {metadata2("null", R"(, "chunks": [4, 4, 4294967296])"), "larger than what is read here"},
+        {metadata2("null", R"(, "fill_value": 40000)"), "fill_value 40000 is none of its type"},
+        {metadata2("null", R"(, "zarr_format": 1)"), "zarr_format is not 2"},
+        {"[]", "no JSON object"},
+        {metadata2("null", R"(, "shape": [281474976710656, 281474976710656, 2])"), "more memory"}};
+    for (const auto& [text, reason] : wrong2) {
+        SCOPED_TRACE(reason);
+        put(".zarray", text);
+        expectRefused(reason);
+    }
+    fs::remove_all(root_);
+    const std::pair<std::string, std::string> wrong3[] = {
+        {metadata3(R"([{"name": "bytes"}, {"name": "zfp"}])"), "codec zfp"},
+        {metadata3(R"([{"name": "numcodecs.pcodec"}])"), "codec numcodecs.pcodec"},
+        {metadata3(R"([{"name": "bytes"}, {"name": "sharding_indexed"}])"),
+         "sharding_indexed within"},
+        {metadata3(R"([{"name": "bytes"}])", R"(, "storage_transformers": [{"name": "st"}])"),
+         "storage transformer st"},
+        {metadata3(R"([{"name": "bytes"}])", R"(, "secret": {"x": 1})"), "member secret"},
+        {metadata3(R"([{"name": "bytes"}])", R"(, "data_type": "float16")"), "data_type float16"},
+        {metadata3(R"([{"name": "transpose", "configuration": {"order": [0, 0, 1]}},
+                       {"name": "bytes"}])"),
+         "codec transpose"}};
+    for (const auto& [text, reason] : wrong3) {
+        SCOPED_TRACE(reason);
+        put("zarr.json", text);
+        expectRefused(reason);
+    }
+}
+
+}  // namespace
+}  // namespace adaptiso
