@@ -1,18 +1,25 @@
 """The examples of the docstrings run, the docstrings are complete, and the types hold."""
 
+import contextlib
 import doctest
 import importlib.util
 import inspect
+import io
+import json
 import os
+import re
 import subprocess
 import sys
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import adaptiso
-from support import BRAIN
+import numpy as np
+from support import BIN, BRAIN, InFolder, ball, needs
 
-SOURCE = Path(os.environ["ADAPTISO_SOURCE"]) / "Wrapping" / "Python"
+ROOT = Path(os.environ["ADAPTISO_SOURCE"])
+SOURCE = ROOT / "Wrapping" / "Python"
 
 
 class Docstrings(unittest.TestCase):
@@ -48,6 +55,79 @@ class Docstrings(unittest.TestCase):
             text = inspect.getdoc(function)
             for parameter in inspect.signature(function).parameters:
                 self.assertRegex(text, rf"(?m)^[\w, ]*\b{parameter}\b", f"{function.__name__}")
+
+
+def blocks_of(page, *changes):
+    """The page's blocks of Python, in their order. \\param changes  pairs of texts: the first, which is
+    somewhere in a block, becomes the second"""
+    blocks = re.findall(r"(?ms)^```python\n(.*?)^```$", (ROOT / page).read_text())
+    for before, after in changes:
+        if not any(before in block for block in blocks):
+            raise AssertionError(f"{page}: nothing says {before}")
+        blocks = [block.replace(before, after) for block in blocks]
+    return blocks
+
+
+@unittest.skipUnless(BRAIN.exists(), "mricron-data is not installed")
+class Pages(InFolder):
+    """Blocks of pages run as they stand there, one after the other, in a folder with the files they name."""
+
+    def setUp(self):
+        super().setUp()
+        (self.folder / "T1.nii.gz").symlink_to(BRAIN.with_name("ch2.nii.gz"))
+        for name in ("brain.nii.gz", "scan.nii.gz"):
+            (self.folder / name).symlink_to(BRAIN)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+
+    def run_blocks(self, blocks):
+        """\\return what they have named"""
+        names = {}
+        for block in blocks:
+            with self.subTest(block=block.splitlines()[0]), contextlib.redirect_stdout(io.StringIO()):
+                exec(compile(block, "page", "exec"), names)
+        return names
+
+    def write_labels(self):
+        """A part of an atlas, every other voxel, with the label that the page asks for."""
+        import nibabel
+        atlas = nibabel.load(BRAIN.with_name("aal.nii.gz"))
+        labels = np.asarray(atlas.dataobj)[::2, ::2, ::2]
+        at = np.argwhere(labels == 17)
+        part = tuple(slice(low, high) for low, high in zip(at.min(axis=0) - 2, at.max(axis=0) + 3))
+        nibabel.save(nibabel.Nifti1Image(labels[part], atlas.affine @ np.diag([2, 2, 2, 1])),
+                     "aparc+aseg.nii.gz")
+
+    def write_zarr(self):
+        """A ball of radius 30 mm in one chunk of 80 voxels a side."""
+        array = self.folder / "brain.zarr"
+        array.mkdir()
+        (array / ".zarray").write_text(json.dumps({
+            "zarr_format": 2, "shape": [80] * 3, "chunks": [80] * 3, "dtype": "<f4", "compressor": None,
+            "filters": None, "fill_value": 0, "order": "C"}))
+        (array / "0.0.0").write_bytes((150 + ball((80, 80, 80))).astype("<f4").tobytes())
+
+    @needs("nibabel", "mne", "tqdm")
+    @unittest.skipUnless((BIN / "adaptiso-giant").exists(), "built without programs")
+    def test_python(self):
+        self.write_labels()
+        self.write_zarr()
+        # MNE's solution of 2,562 vertices takes minutes
+        blocks = blocks_of("Documentation/Python.md", ("vertices=2562", "vertices=642"))
+        self.assertEqual(len(blocks), 7)
+        path = f"{BIN}{os.pathsep}{os.environ.get('PATH', '')}"
+        with mock.patch.dict(os.environ, {"PATH": path}), contextlib.redirect_stderr(io.StringIO()):
+            made = self.run_blocks(blocks)
+        self.assertIn("solution", made["bem"])
+        self.assertTrue(adaptiso.check(made["walls"].region(17)))
+        self.assertAlmostEqual(made["report"]["volumeMm3"], 4 / 3 * np.pi * 30**3, delta=1000)
+        for name in ("head.stl", "hippocampus.stl", "walls.vtp", "brain.pvtp", "coarse.ply", "brain.ply"):
+            self.assertTrue((self.folder / name).exists(), name)
+
+    @needs("vtkmodules")
+    def test_readme(self):
+        made = self.run_blocks(blocks_of("README.md"))
+        self.assertEqual(made["polydata"].GetNumberOfCells(), len(made["mesh"].faces))
 
 
 class Types(unittest.TestCase):

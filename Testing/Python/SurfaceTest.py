@@ -1,7 +1,9 @@
 """Surfaces of arrays: truth on paper, every order and type of samples, every affine, bad input."""
 
+import copy
 import logging
 import pathlib
+import pickle
 import subprocess
 import sys
 import threading
@@ -168,6 +170,15 @@ class Samples(unittest.TestCase):
         with self.assertRaises(adaptiso.Error):
             adaptiso.surface(volume, 1e9)
         self.assertTrue(volume.flags.writeable)
+
+    def test_an_index_pickles_with_its_image(self):
+        for border, order in (("closed", "F"), ("open", "C")):
+            volume = np.array(ball(), np.float32, order=order)
+            index = adaptiso.Index(volume, affine=SHEARED, border=border)
+            again = pickle.loads(pickle.dumps(index))
+            self.assertEqual(repr(again), repr(index))
+            self.assertEqual(again.surface(-8), index.surface(-8))
+            self.assertEqual(copy.deepcopy(index).surface(-8), index.surface(-8))
 
     def test_an_index_keeps_its_array_read_only(self):
         volume = np.asfortranarray(self.volume)
@@ -372,23 +383,26 @@ class Interruption(unittest.TestCase):
             adaptiso.surface(ball((40, 40, 40)), -15, progress=stop)
 
     def test_control_c_ends_a_call(self):
-        """In a process of its own: KeyboardInterrupt comes out, within seconds, and the interpreter
-        goes on."""
+        """In a process of its own: KeyboardInterrupt comes out within three seconds of the processor, of the
+        twenty or so that the call would take, and the interpreter goes on."""
         script = """
 import adaptiso, numpy as np, signal, threading, os, time
 noise = np.asfortranarray(np.random.default_rng(1).normal(size=(120, 120, 120)))
-threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
-start = time.monotonic()
+sent = []
+def send():
+    sent.append(time.process_time())
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Timer(1.0, send).start()
 try:
     adaptiso.surface(noise, 0.0)
 except KeyboardInterrupt:
-    print("interrupted after", time.monotonic() - start)
+    print("interrupted in time:", time.process_time() - sent[0] < 3)
 print(len(adaptiso.surface(noise[:9, :9, :9], 0.0).faces) > 0, noise.flags.writeable)
 """
         done = subprocess.run([sys.executable, "-c", script], text=True, capture_output=True,
                               timeout=600)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("interrupted after", done.stdout)
+        self.assertIn("interrupted in time: True", done.stdout)
         self.assertTrue(done.stdout.endswith("True True\n"), done.stdout)
         self.assertEqual(done.stderr, "")
 

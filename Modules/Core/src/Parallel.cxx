@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "adaptiso/Core/Interruption.h"
+
 namespace adaptiso::detail {
 
 void runPieces(std::int64_t count, std::int64_t grain, BodyRef<std::int64_t, std::int64_t> body) {
@@ -13,6 +15,7 @@ void runPieces(std::int64_t count, std::int64_t grain, BodyRef<std::int64_t, std
     tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, pieces, 1),
                       [&](const tbb::blocked_range<std::int64_t>& range) {
                           for (std::int64_t piece = range.begin(); piece != range.end(); ++piece) {
+                              InterruptionCheck::ask();
                               body(piece * grain, std::min(count, (piece + 1) * grain));
                           }
                       });

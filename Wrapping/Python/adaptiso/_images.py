@@ -166,6 +166,7 @@ class Samples(NamedTuple):
 
     user: Array  #: the array that users gave, or one made for them
     volume: _adaptiso.ArrayVolume
+    affine: Affine
     file: str
     format: str
     warnings: List[str]
@@ -178,14 +179,14 @@ def samples_of(image: Any, affine: Any, in_file_order: bool = False) -> Samples:
         if affine is not None:
             raise Error("affine: a file has its own; read it with adaptiso.read and give the array")
         found = read(image)
-        return _prepared(found.array, found.affine, base_name(path("image", image)), found.format,
+        return prepared(found.array, found.affine, base_name(path("image", image)), found.format,
                          found.warnings)
     array, own_affine, kind = _array_of(image)
     if affine is None:
         affine = np.eye(4) if own_affine is None else own_affine
     elif own_affine is not None:
         raise Error("affine: the image has its own; give its array and the affine")
-    return _prepared(np.asfortranarray(array) if in_file_order else array, affine, "", kind, [])
+    return prepared(np.asfortranarray(array) if in_file_order else array, affine, "", kind, [])
 
 
 def affine_of(value: Any) -> Affine:
@@ -275,7 +276,7 @@ def _fortran_axes(array: Array) -> Optional[List[int]]:
     return axes + single
 
 
-def _prepared(array: Array, affine: Any, file: str, kind: str, warnings: List[str]) -> Samples:
+def prepared(array: Array, affine: Any, file: str, kind: str, warnings: List[str]) -> Samples:
     usable = _usable(array)
     matrix = affine_of(affine)
     axes = _fortran_axes(usable)
@@ -293,7 +294,7 @@ def _prepared(array: Array, affine: Any, file: str, kind: str, warnings: List[st
         if bad:
             told.append(f"{bad} voxels are NaN or infinite; NaN counts as outside")
             logger.warning("image: %s", told[-1])
-    return Samples(array, volume, file, kind, told)
+    return Samples(array, volume, matrix, file, kind, told)
 
 
 # how many calls are looking at an array; it may be written to again after the last one

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, Optional, Union
+from typing import Any, Dict, List, Optional, Tuple, Union
 
 from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, count, flag, number, optional_number, progress as checked_progress,
                          threads as checked_threads, word)
-from ._images import Samples, keep_read_only, read_only, samples_of
+from ._images import Samples, keep_read_only, prepared, read_only, samples_of
 from ._mesh import Mesh
 
 METHODS = ("adaptive", "boxes", "dmc", "asc", "mc")
@@ -113,10 +113,12 @@ class Index:
     def __init__(self, image: Any, *, affine: Any = None, border: str = "closed",
                  threads: int = 0) -> None:
         border = word("border", border, BORDERS)
-        samples = samples_of(image, affine)
+        self._build(samples_of(image, affine), border, checked_threads(threads))
+
+    def _build(self, samples: Samples, border: str, threads: int) -> None:
         keep_read_only(samples.user, self)
         self._samples = samples
-        self._index = _adaptiso.build_index(samples.volume, border, checked_threads(threads))
+        self._index = _adaptiso.build_index(samples.volume, border, threads)
         self._border = border
 
     def surface(self, level: Union[float, str], *, max_error: Optional[float] = None,
@@ -134,10 +136,23 @@ class Index:
         """Smallest and largest sample; levels lie above the first and up to the second."""
         return self._samples.volume.value_range()
 
+    def __reduce__(self) -> Tuple[Any, ...]:
+        # the index itself is built again, which takes less time than to send it
+        samples = self._samples
+        return (_unpickled, (samples.user, samples.affine, samples.file, samples.format,
+                             samples.warnings if samples.file else [], self._border))
+
     def __repr__(self) -> str:
         shape = " x ".join(map(str, self._samples.user.shape))
         return (f"<adaptiso.Index of {shape} voxels, {self._samples.user.dtype}, "
                 f"{self._index.blocks} blocks, border {self._border}>")
+
+
+def _unpickled(array: Any, affine: Any, file: str, kind: str, warnings: List[str],
+               border: str) -> Index:
+    index = Index.__new__(Index)
+    index._build(prepared(array, affine, file, kind, warnings), border, 0)
+    return index
 
 
 def _options(level: Any, max_error: Any, triangles: Any, reduction: Any, min_angle: Any,

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <memory>
 
+#include "adaptiso/Core/Interruption.h"
+
 namespace adaptiso::python {
 namespace {
 
@@ -41,6 +43,14 @@ void runUnlocked(int threads, const std::function<void()>& work) {
     arena.execute(work);
 }
 
+/// To be called without the lock. \throws Stopped
+void Watcher::lookForSignals() {
+    const py::gil_scoped_acquire locked;
+    if (PyErr_CheckSignals() == 0) return;
+    error_.emplace();
+    throw Stopped();
+}
+
 void Watcher::tell(std::string_view stage, double fraction) {
     const double time = now();
     if (fraction < 1 && time - lastTold_ < kToldEverySeconds) return;
@@ -61,7 +71,11 @@ ProgressCallback Watcher::callback() {
 
 void Watcher::run(int threads, const std::function<void()>& work) {
     try {
-        runUnlocked(threads, work);
+        const std::function<void()> look = [this] { lookForSignals(); };
+        runUnlocked(threads, [&] {
+            const InterruptionCheck check(look);
+            work();
+        });
     } catch (const Stopped&) {
         throw py::error_already_set(*error_);
     }

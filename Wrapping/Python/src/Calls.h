@@ -38,6 +38,8 @@ public:
 private:
     struct Stopped : std::exception {};
 
+    void lookForSignals();
+
     py::object callback_;
     std::optional<py::error_already_set> error_;
     double lastTold_ = -1;  ///< seconds of a steady clock

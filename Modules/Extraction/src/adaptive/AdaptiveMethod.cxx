@@ -129,6 +129,7 @@ private:
     /// What is proved of the surface, after places beyond the bound were mended.
     ErrorBound proveAndMend(SimplifiedSurface& surface) {
         ErrorBound error = proof_->prove(surface);
+        surface.returnFreedMemory();
         if (wanted_.isGiven() || !isBeyond(error)) return error;
         mend(surface, error);
         undo(surface, error);
@@ -143,6 +144,7 @@ private:
             const std::size_t mended = mender.mendDistances(error.beyondLimit);
             if (mended == 0) break;
             work_.placesMended += static_cast<std::int64_t>(mended);
+            surface.returnFreedMemory();
             error = proof_->proveAgain(surface, mender.takeChanges());
             const bool isLess = static_cast<double>(error.beyondLimit.size()) <
                                 kMended * static_cast<double>(before);
@@ -173,8 +175,8 @@ private:
         }
     }
 
-    static std::vector<std::uint64_t> trianglesOf(const ErrorBound& error) {
-        std::vector<std::uint64_t> triangles;
+    static std::vector<SurfaceState::Number> trianglesOf(const ErrorBound& error) {
+        std::vector<SurfaceState::Number> triangles;
         for (const PlaceBeyond& place : error.beyondLimit) {
             if (place.triangle != PlaceBeyond::kNone) triangles.push_back(place.triangle);
         }

@@ -41,7 +41,7 @@ TEST(BrickRound, KeepsEachTriangleInOneBrick) {
         constexpr double kRounding = 1e-9;  // of coordinates up to 100
         for (const auto& t : surface.triangles) {
             Vec3 low = surface.points[t[0]], high = low;
-            for (const std::uint64_t v : t) {
+            for (const std::uint32_t v : t) {
                 const Vec3& p = surface.points[v];
                 low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
                 high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};

@@ -44,7 +44,7 @@ TEST(ErrorProof, FindsAVertexThatWasPulledOut) {
     const ProvedBall ball;
     SimplifiedSurface surface = ball.full;
     const Vec3 place = kBallMiddle + kBallRadius * normalized({1, 2, 3});
-    const std::uint64_t vertex = ball.vertexAt(place);
+    const std::uint32_t vertex = ball.vertexAt(place);
     const auto changes = pull(surface, vertex, 2);
     const ErrorBound bound = ball.proof(0.5).prove(surface);
     EXPECT_GE(bound.largestMm, 2 - 2 * kInterpolation);
@@ -67,7 +67,7 @@ TEST(ErrorProof, FindsWhatTheSimplifiedSurfaceLacks) {
         return p.z > 0 && std::hypot(p.x, p.y) < 3;
     });
     ASSERT_LT(surface.triangles.size(), ball.full.triangles.size() - 20);
-    for (std::uint64_t& t : surface.sampleTriangle) {
+    for (std::uint32_t& t : surface.sampleTriangle) {
         if (t >= surface.triangles.size()) t = 0;
     }
     const ErrorBound bound = ball.proof(0.5).prove(surface);

@@ -27,7 +27,7 @@ constexpr double kRadius = 10;
 struct CoarseSphere {
     CoarseSphere() : surface(surfaceOf(icosphere(5, {}, kRadius))) {
         surface.heirs.resize(surface.points.size());
-        std::iota(surface.heirs.begin(), surface.heirs.end(), std::uint64_t{0});
+        std::iota(surface.heirs.begin(), surface.heirs.end(), std::uint32_t{0});
         start = surface.state();
         detail::PatchLimits limits;
         limits.maxCost = 1e6;
@@ -46,7 +46,7 @@ struct CoarseSphere {
     detail::SimplifiedSurface surface;
     SurfaceState start;
     SurfaceState coarse;  ///< the surface after the rounds
-    std::vector<std::uint64_t> heirs;
+    std::vector<std::uint32_t> heirs;
 };
 
 /// From its smallest corner.
@@ -101,7 +101,7 @@ TEST(LocalUndo, BringsTheStartBackAroundAPlaceAndNowhereElse) {
     int near = 0;
     for (std::size_t t = 0; t < sphere.start.triangles.size(); ++t) {
         const auto& corners = sphere.start.triangles[t];
-        const bool isNear = std::all_of(corners.begin(), corners.end(), [&](std::uint64_t v) {
+        const bool isNear = std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
             return norm(sphere.coarse.points[sphere.heirs[v]] - place) < kReach;
         });
         if (!isNear) continue;
@@ -120,8 +120,8 @@ TEST(LocalUndo, TellsWhatItChanged) {
     const auto changes = sphere.undoAround({0, kRadius, 0}, 1);
     ASSERT_TRUE(changes);
     const auto now = byCorners(sphere.surface), before = byCorners(sphere.coarse);
-    std::set<std::uint64_t> told(changes->triangles.begin(), changes->triangles.end());
-    for (std::uint64_t t = 0; t < sphere.surface.triangles.size(); ++t) {
+    std::set<std::uint32_t> told(changes->triangles.begin(), changes->triangles.end());
+    for (std::uint32_t t = 0; t < sphere.surface.triangles.size(); ++t) {
         const bool isSame = t < sphere.coarse.triangles.size() &&
                             sphere.surface.triangles[t] == sphere.coarse.triangles[t];
         EXPECT_TRUE(isSame || told.contains(t));
@@ -146,7 +146,7 @@ TEST(LocalUndo, LeavesSamplesWithTrianglesNearThem) {
 TEST(LocalUndo, HasNothingToDoWhereNothingWasMerged) {
     CoarseSphere sphere;
     static_cast<SurfaceState&>(sphere.surface) = sphere.start;
-    std::iota(sphere.surface.heirs.begin(), sphere.surface.heirs.end(), std::uint64_t{0});
+    std::iota(sphere.surface.heirs.begin(), sphere.surface.heirs.end(), std::uint32_t{0});
     EXPECT_FALSE(sphere.undoAround({0, 0, kRadius}, 1));
     EXPECT_FALSE(CoarseSphere().undoAround({0, 0, 0}, 1));  // no surface there
 }
@@ -163,7 +163,7 @@ TEST(LocalUndo, TakesMendedTrianglesBackToo) {
     const Vec3 place{0, 0, kRadius};
     detail::SurfaceMender mender(sphere.surface, unitFrame(), 0.5);
     std::vector<detail::PlaceBeyond> places;
-    for (std::uint64_t t = 0; t < sphere.surface.triangles.size(); ++t) {
+    for (std::uint32_t t = 0; t < sphere.surface.triangles.size(); ++t) {
         const auto& [a, b, c] = sphere.surface.triangles[t];
         const auto& points = sphere.surface.points;
         const Vec3 middle = (1.0 / 3) * (points[a] + points[b] + points[c]);

@@ -185,7 +185,7 @@ TEST(MeshProof, FindsAVertexThatWasPulledOutAndForgetsItWhenItIsBack) {
         EXPECT_LT(norm(place.point() - before), 2);
     }
     detail::SurfaceChanges changes;
-    for (std::uint64_t t = 0; t < surface.triangles.size(); ++t) {
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
         const auto& c = surface.triangles[t];
         if (std::find(c.begin(), c.end(), 7U) == c.end()) continue;
         changes.triangles.push_back(t);
@@ -203,7 +203,9 @@ TEST(MeshProof, FindsWhatTheSimplifiedSurfaceLacks) {
     SimplifiedSurface surface = whole(full);
     const std::size_t kept = icosphere(3).triangles.size();
     surface.triangles.resize(kept);
-    for (std::uint64_t& t : surface.sampleTriangle) t = std::min<std::uint64_t>(t, kept - 1);
+    for (std::uint32_t& t : surface.sampleTriangle) {
+        t = std::min(t, static_cast<std::uint32_t>(kept - 1));
+    }
     const detail::ErrorBound bound = full.proof(1)->prove(surface);
     EXPECT_NEAR(bound.largestMm, 22, 0.5);  // from the far side of the small sphere
     EXPECT_TRUE(std::any_of(bound.beyondLimit.begin(), bound.beyondLimit.end(),

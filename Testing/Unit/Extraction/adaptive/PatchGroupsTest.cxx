@@ -24,7 +24,7 @@ TEST(PatchGroups, HaveEveryTriangleOnce) {
         for (std::uint32_t t = 0; t < patch.ownTriangles; ++t) ++owners[keyOf(patch, t)];
     }
     std::size_t straddling = 0;
-    for (std::uint64_t t = 0; t < ball.surface.triangles.size(); ++t) {
+    for (std::uint32_t t = 0; t < ball.surface.triangles.size(); ++t) {
         straddling += ball.straddles(t) ? 1 : 0;
         EXPECT_EQ(owners[ball.key(t)], ball.straddles(t) ? 0 : 1);
     }
@@ -65,9 +65,9 @@ TEST(PatchGroups, HaveTheTrianglesAroundAsObstacles) {
         for (std::uint32_t t = patch.ownTriangles; t < patch.triangles.size(); ++t) {
             obstacles.insert(keyOf(patch, t));
         }
-        for (std::uint64_t t = 0; t < ball.surface.triangles.size(); ++t) {
+        for (std::uint32_t t = 0; t < ball.surface.triangles.size(); ++t) {
             bool touches = false;
-            for (const std::uint64_t v : ball.surface.triangles[t]) {
+            for (const std::uint32_t v : ball.surface.triangles[t]) {
                 touches = touches || cubeOf(ball.surface.points[v]) == cube;
             }
             if (touches && ball.straddles(t)) {
@@ -93,7 +93,7 @@ TEST(PatchGroups, GiveSamplesToTheirTriangles) {
         }
     }
     std::size_t expected = 0;
-    for (const std::uint64_t t : ball.surface.sampleTriangle) expected += ball.straddles(t) ? 0 : 1;
+    for (const std::uint32_t t : ball.surface.sampleTriangle) expected += ball.straddles(t) ? 0 : 1;
     EXPECT_EQ(own, expected);
 }
 

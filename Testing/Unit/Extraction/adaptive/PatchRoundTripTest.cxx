@@ -43,7 +43,7 @@ TEST(PatchGroups, PutBackWhatChangedAndNothingElse) {
         EXPECT_EQ(after.points[v], before + (Vec3{0.25, 0, 0}));
         EXPECT_EQ(after.states[v], Patch::State::Fitted);
     }
-    for (std::size_t t = 0; t < after.triangles.size(); ++t) {
+    for (std::uint32_t t = 0; t < after.triangles.size(); ++t) {
         if (after.triangles[t] == ball.surface.triangles[t]) continue;
         ++removed;
         EXPECT_EQ(ball.key(t), gone);

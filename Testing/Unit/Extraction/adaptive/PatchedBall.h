@@ -39,11 +39,11 @@ struct PatchedBall {
     detail::PatchGroups groups{surface, kCut, scene.frame};
     detail::PatchScratch scratch;
 
-    Key key(std::uint64_t t) const {
+    Key key(std::uint32_t t) const {
         const auto& [a, b, c] = surface.triangles[t];
         return keyOf(surface.points[a], surface.points[b], surface.points[c]);
     }
-    bool straddles(std::uint64_t t) const {
+    bool straddles(std::uint32_t t) const {
         const auto& [a, b, c] = surface.triangles[t];
         const Index3 cube = cubeOf(surface.points[a]);
         return cubeOf(surface.points[b]) != cube || cubeOf(surface.points[c]) != cube;

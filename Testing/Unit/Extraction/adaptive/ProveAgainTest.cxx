@@ -42,7 +42,7 @@ TEST(ErrorProof, SaysAgainWhatProvingAnewSays) {
     ASSERT_TRUE(kept.prove(surface).beyondLimit.empty());
     std::mt19937 random(4);
     for (int n = 0; n < 4; ++n) {
-        const auto vertex = random() % surface.points.size();
+        const auto vertex = static_cast<std::uint32_t>(random() % surface.points.size());
         const ErrorBound again = kept.proveAgain(surface, pull(surface, vertex, 1.5));
         const ErrorBound anew = ball.proof(0.5).prove(surface);
         EXPECT_FALSE(anew.beyondLimit.empty()) << n;
@@ -71,7 +71,7 @@ TEST(ErrorProof, LooksAgainWhereTrianglesWent) {
     ErrorProof kept = ball.proof(0.5);
     ASSERT_TRUE(kept.prove(surface).beyondLimit.empty());
     detail::SurfaceChanges changes;
-    for (std::uint64_t t = 0; t < surface.triangles.size(); ++t) {
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
         const auto& [a, b, c] = surface.triangles[t];
         const auto& p = surface.points;
         if (p[a].z < kBallMiddle.z + kBallRadius - 0.6) continue;
@@ -80,7 +80,7 @@ TEST(ErrorProof, LooksAgainWhereTrianglesWent) {
     }
     const auto isLow = [&](const auto& t) { return surface.points[t[0]].z < kBallMiddle.z; };
     const auto low = *std::find_if(surface.triangles.begin(), surface.triangles.end(), isLow);
-    for (const std::uint64_t t : changes.triangles) surface.triangles[t] = low;
+    for (const std::uint32_t t : changes.triangles) surface.triangles[t] = low;
     const ErrorBound again = kept.proveAgain(surface, changes);
     const ErrorBound anew = ball.proof(0.5).prove(surface);
     EXPECT_FALSE(again.beyondLimit.empty());

@@ -23,19 +23,19 @@ struct ProvedBall {
         return moved;
     }
     /// The vertex nearest to a place.
-    std::uint64_t vertexAt(const Vec3& place) const {
+    std::uint32_t vertexAt(const Vec3& place) const {
         const auto at = std::min_element(
             full.points.begin(), full.points.end(),
             [&](const Vec3& p, const Vec3& q) { return norm(p - place) < norm(q - place); });
-        return static_cast<std::uint64_t>(at - full.points.begin());
+        return static_cast<std::uint32_t>(at - full.points.begin());
     }
 };
 
 /// Pulls a vertex away from the ball's middle.
-inline detail::SurfaceChanges pull(detail::SimplifiedSurface& surface, std::uint64_t vertex,
+inline detail::SurfaceChanges pull(detail::SimplifiedSurface& surface, std::uint32_t vertex,
                                    double mm) {
     detail::SurfaceChanges changes;
-    for (std::uint64_t t = 0; t < surface.triangles.size(); ++t) {
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
         const auto& c = surface.triangles[t];
         if (std::find(c.begin(), c.end(), vertex) == c.end()) continue;
         changes.triangles.push_back(t);

@@ -16,14 +16,14 @@ namespace {
 
 using detail::PlaceBeyond;
 
-PlaceBeyond placeAt(const Vec3& onSimplified, const Vec3& onFine, std::uint64_t triangle) {
+PlaceBeyond placeAt(const Vec3& onSimplified, const Vec3& onFine, std::uint32_t triangle) {
     return {onSimplified, onFine, triangle, false};
 }
 
-std::uint64_t triangleUnder(const detail::SimplifiedSurface& surface, const Vec3& p) {
-    std::uint64_t best = 0;
+std::uint32_t triangleUnder(const detail::SimplifiedSurface& surface, const Vec3& p) {
+    std::uint32_t best = 0;
     double least = std::numeric_limits<double>::max();
-    for (std::uint64_t t = 0; t < surface.triangles.size(); ++t) {
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
         const auto& [a, b, c] = surface.triangles[t];
         const double squared = detail::squaredDistanceToTriangle(
             p, {surface.points[a], surface.points[b], surface.points[c]});
@@ -42,7 +42,7 @@ constexpr double kLimitMm = 0.5;
 TEST(SurfaceMender, SplitsATriangleInThree) {
     detail::SimplifiedSurface surface = surfaceOf(planeMesh(1, 9));
     const Vec3 foot{6, 3, 0};  // the middle of one of the two triangles
-    const std::uint64_t t = triangleUnder(surface, foot);
+    const std::uint32_t t = triangleUnder(surface, foot);
     detail::SurfaceMender mender(surface, unitFrame(), kLimitMm);
     EXPECT_EQ(mender.mendDistances({placeAt(foot, {6, 3, 1}, t)}), 1U);
     EXPECT_EQ(surface.triangles.size(), 4U);
@@ -104,7 +104,7 @@ TEST(SurfaceMender, CrossesNoOtherSheet) {
 TEST(SurfaceMender, TakesNoSampleBeyondTheBound) {
     detail::SimplifiedSurface surface = surfaceOf(planeMesh(1, 9));
     const Vec3 foot{6, 3, 0};
-    const std::uint64_t t = triangleUnder(surface, foot);
+    const std::uint32_t t = triangleUnder(surface, foot);
     surface.samples.emplace_back().setPoint({6, 3, -0.45});
     surface.sampleTriangle.push_back(t);
     detail::SurfaceMender mender(surface, unitFrame(), kLimitMm);
@@ -144,7 +144,7 @@ TEST(SurfaceMender, LeavesASoundSurface) {
         std::size_t mended = 0;
         for (int round = 0; round < 3; ++round) {
             std::vector<PlaceBeyond> places;
-            for (std::uint64_t t = 0; t < surface.triangles.size(); t += 2) {
+            for (std::uint32_t t = 0; t < surface.triangles.size(); t += 2) {
                 const auto& [a, b, c] = surface.triangles[t];
                 double u = part(random), v = part(random);
                 if (u + v > 1) u = 1 - u, v = 1 - v;

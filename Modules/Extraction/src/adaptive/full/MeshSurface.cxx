@@ -193,7 +193,7 @@ void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& area
         middle.setPoint((1.0 / 3) * (c[0] + c[1] + c[2]));
         middle.setNormal(areaVector2(c[0], c[1], c[2]));
         middle.room = std::min({rooms[v[0]], rooms[v[1]], rooms[v[2]]});
-        surface.sampleTriangle.push_back(t);
+        surface.sampleTriangle.push_back(static_cast<SurfaceState::Number>(t));
     }
 }
 

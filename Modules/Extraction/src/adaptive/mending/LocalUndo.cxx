@@ -15,23 +15,25 @@
 namespace adaptiso::detail {
 namespace {
 
+using Number = SurfaceState::Number;
+
 /// The edge across from a vertex in one of its triangles.
 struct Link {
-    std::uint64_t vertex, from, to;
+    Number vertex, from, to;
 };
 
 /// How the triangles around a vertex hang together.
 enum class Fan : std::uint8_t { Closed, Open, Broken };
 
 struct VertexFan {
-    std::uint64_t vertex;
+    Number vertex;
     Fan fan;
     friend auto operator<=>(const VertexFan&, const VertexFan&) = default;
 };
 
 /// \param links  of one vertex, by where they start
 Fan fanOf(std::span<const Link> links) {
-    std::vector<std::uint64_t> ends;
+    std::vector<Number> ends;
     for (const Link& link : links) ends.push_back(link.to);
     std::sort(ends.begin(), ends.end());
     const auto sameStart = [](const Link& a, const Link& b) { return a.from == b.from; };
@@ -47,9 +49,9 @@ Fan fanOf(std::span<const Link> links) {
     auto at = first;
     do {
         ++seen;
-        const std::uint64_t to = at->to;
+        const Number to = at->to;
         at = std::lower_bound(links.begin(), links.end(), to,
-                              [](const Link& link, std::uint64_t v) { return link.from < v; });
+                              [](const Link& link, Number v) { return link.from < v; });
         if (at == links.end() || at->from != to) at = links.end();
     } while (at != links.end() && at != first);
     if (seen != links.size()) return Fan::Broken;
@@ -89,7 +91,7 @@ std::optional<SurfaceChanges> LocalUndo::around(const std::vector<Triangle>& men
                                                 const Numbers& seeds,
                                                 const std::vector<Vec3>& places, double reachMm) {
     DisjointSets sets(std::ssize(surface_.points));
-    const auto number = [](std::uint64_t v) { return static_cast<std::int64_t>(v); };
+    const auto number = [](Number v) { return static_cast<std::int64_t>(v); };
     for (const Triangle& t : mended) {
         sets.join(number(t[0]), number(t[1]));
         sets.join(number(t[0]), number(t[2]));
@@ -98,7 +100,7 @@ std::optional<SurfaceChanges> LocalUndo::around(const std::vector<Triangle>& men
     Numbers more = verticesAround(seeds, places, reachMm);
     const double most = kMostUndone * static_cast<double>(start_.points.size());
     for (int widening = 0; widening < kMostWidenings; ++widening) {
-        for (const std::uint64_t v : more) isChosen[sets.find(number(v))] = true;
+        for (const Number v : more) isChosen[sets.find(number(v))] = true;
         choose(isChosen, sets);
         if (!hasMerges() || static_cast<double>(apart_.size()) > most) return {};
         makeTriangles();
@@ -111,7 +113,7 @@ std::optional<SurfaceChanges> LocalUndo::around(const std::vector<Triangle>& men
 LocalUndo::Numbers LocalUndo::verticesAround(const Numbers& seeds, const std::vector<Vec3>& places,
                                              double reachMm) const {
     Numbers vertices;
-    for (const std::uint64_t t : seeds) {
+    for (const Number t : seeds) {
         vertices.insert(vertices.end(), surface_.triangles[t].begin(), surface_.triangles[t].end());
     }
     std::set<Index3> cubes;
@@ -121,7 +123,7 @@ LocalUndo::Numbers LocalUndo::verticesAround(const Numbers& seeds, const std::ve
             cubes.insert({cube[0] + n % 3 - 1, cube[1] + n / 3 % 3 - 1, cube[2] + n / 9 - 1});
         }
     }
-    for (std::uint64_t v = 0; v < surface_.points.size(); ++v) {
+    for (Number v = 0; v < surface_.points.size(); ++v) {
         if (cubes.contains(cubeOf(surface_.points[v], reachMm))) vertices.push_back(v);
     }
     return vertices;
@@ -137,16 +139,16 @@ void LocalUndo::choose(const std::vector<bool>& isChosen, DisjointSets& sets) {
     numbers_ = surface_.heirs;
     for (std::size_t v = 0; v < numbers_.size(); ++v) {
         if (!comesApart_[surface_.heirs[v]]) continue;
-        numbers_[v] = surface_.points.size() + apart_.size();
-        apart_.push_back(v);
+        numbers_[v] = static_cast<Number>(surface_.points.size() + apart_.size());
+        apart_.push_back(static_cast<Number>(v));
     }
 }
 
 /// Some of what comes apart share an heir.
 bool LocalUndo::hasMerges() const {
     std::vector<bool> isTaken(surface_.points.size());
-    return std::any_of(apart_.begin(), apart_.end(), [&](std::uint64_t v) {
-        const std::uint64_t heir = surface_.heirs[v];
+    return std::any_of(apart_.begin(), apart_.end(), [&](Number v) {
+        const Number heir = surface_.heirs[v];
         const bool isShared = isTaken[heir];
         isTaken[heir] = true;
         return isShared;
@@ -158,7 +160,7 @@ bool LocalUndo::hasMerges() const {
 void LocalUndo::makeTriangles() {
     fresh_.clear();
     origin_.clear();
-    for (std::uint64_t t = 0; t < start_.triangles.size(); ++t) {
+    for (Number t = 0; t < start_.triangles.size(); ++t) {
         if (!isTouched(heirsOf(start_.triangles[t]))) continue;
         const auto [a, b, c] = start_.triangles[t];
         const Triangle now{numbers_[a], numbers_[b], numbers_[c]};
@@ -171,26 +173,26 @@ void LocalUndo::makeTriangles() {
 /// The surface's vertices that have to come apart as well: the triangles around each vertex are to
 /// hang together as they do in the surface, or did at the start.
 LocalUndo::Numbers LocalUndo::faults() const {
-    const std::uint64_t old = surface_.points.size();
+    const std::size_t old = surface_.points.size();
     std::vector<bool> isBeside(old);
     for (const Triangle& t : fresh_) {
-        for (const std::uint64_t v : t) {
+        for (const Number v : t) {
             if (!isOfStart(v)) isBeside[v] = true;
         }
     }
     std::vector<Link> before, after;
-    const auto isBesideOne = [&](std::uint64_t v) { return !isOfStart(v) && isBeside[v]; };
+    const auto isBesideOne = [&](Number v) { return !isOfStart(v) && isBeside[v]; };
     for (const Triangle& t : surface_.triangles) {
         addLinks(t, isBesideOne, before);
         if (!isTouched(t)) addLinks(t, isBesideOne, after);
     }
     for (const Triangle& t : fresh_) {
         addLinks(
-            t, [](std::uint64_t) { return true; }, after);
+            t, [](Number) { return true; }, after);
     }
     for (const Triangle& t : start_.triangles) {
         for (int c = 0; c < 3; ++c) {
-            const std::uint64_t v = numbers_[t[c]];
+            const Number v = numbers_[t[c]];
             if (isOfStart(v)) before.push_back({v, t[(c + 1) % 3], t[(c + 2) % 3]});
         }
     }
@@ -206,7 +208,7 @@ LocalUndo::Numbers LocalUndo::faults() const {
         const bool isAt =
             isFaulty[numbers_[t[0]]] || isFaulty[numbers_[t[1]]] || isFaulty[numbers_[t[2]]];
         if (!isAt) continue;
-        for (const std::uint64_t v : heirsOf(t)) {
+        for (const Number v : heirsOf(t)) {
             if (!comesApart_[v]) vertices.push_back(v);
         }
     }
@@ -221,7 +223,7 @@ LocalUndo::Numbers LocalUndo::flatCorners() const {
         const double longest =
             std::max({squaredNorm(b - a), squaredNorm(c - b), squaredNorm(a - c)});
         if (norm(areaVector2(a, b, c)) > kFlatTriangle * longest) continue;
-        for (const std::uint64_t v : t) {
+        for (const Number v : t) {
             if (!isOfStart(v)) corners.push_back(v);
         }
     }
@@ -231,23 +233,24 @@ LocalUndo::Numbers LocalUndo::flatCorners() const {
 SurfaceChanges LocalUndo::apply() {
     SurfaceChanges changes;
     Numbers removed, numbers;
-    for (std::uint64_t t = 0; t < surface_.triangles.size(); ++t) {
+    for (Number t = 0; t < surface_.triangles.size(); ++t) {
         if (!isTouched(surface_.triangles[t])) continue;
         removed.push_back(t);
         const auto [a, b, c] = surface_.triangles[t];
         changes.before.push_back({surface_.points[a], surface_.points[b], surface_.points[c]});
     }
     for (std::size_t i = 0; i < apart_.size(); ++i) {
-        const std::uint64_t v = apart_[i];
-        surface_.heirs[v] = surface_.points.size();
+        const Number v = apart_[i];
+        surface_.heirs[v] = static_cast<Number>(surface_.points.size());
         surface_.points.push_back(start_.points[v]);
         surface_.quadrics.push_back(start_.quadrics[v]);
         surface_.states.push_back(start_.states[v]);
         if (!surface_.marks.empty()) surface_.marks.push_back(start_.marks[v]);
     }
     for (std::size_t i = 0; i < fresh_.size(); ++i) {
-        numbers.push_back(i < removed.size() ? removed[i] : surface_.triangles.size());
-        if (numbers[i] == surface_.triangles.size()) surface_.triangles.emplace_back();
+        const auto next = static_cast<Number>(surface_.triangles.size());
+        numbers.push_back(i < removed.size() ? removed[i] : next);
+        if (numbers[i] == next) surface_.triangles.emplace_back();
         surface_.triangles[numbers[i]] = fresh_[i];
     }
     changes.triangles = numbers;
@@ -262,10 +265,10 @@ SurfaceChanges LocalUndo::apply() {
 /// Gives samples to the triangles of the start that they had there, or to the nearest.
 void LocalUndo::handOver(const Numbers& removed, const Numbers& numbers) {
     std::vector<bool> isRemoved(surface_.triangles.size());
-    for (const std::uint64_t t : removed) isRemoved[t] = true;
+    for (const Number t : removed) isRemoved[t] = true;
     for (std::size_t s = 0; s < surface_.sampleTriangle.size(); ++s) {
         if (!isRemoved[surface_.sampleTriangle[s]]) continue;
-        const std::uint64_t before = start_.sampleTriangle[s];
+        const Number before = start_.sampleTriangle[s];
         const auto at = std::lower_bound(origin_.begin(), origin_.end(), before);
         const bool isThere = at != origin_.end() && *at == before && isWhole(before);
         surface_.sampleTriangle[s] =
@@ -274,9 +277,9 @@ void LocalUndo::handOver(const Numbers& removed, const Numbers& numbers) {
 }
 
 /// All corners of one of the start's triangles came apart.
-bool LocalUndo::isWhole(std::uint64_t triangle) const {
+bool LocalUndo::isWhole(Number triangle) const {
     const Triangle& corners = start_.triangles[triangle];
-    return std::all_of(corners.begin(), corners.end(), [&](std::uint64_t v) {
+    return std::all_of(corners.begin(), corners.end(), [&](Number v) {
         return std::binary_search(apart_.begin(), apart_.end(), v);
     });
 }

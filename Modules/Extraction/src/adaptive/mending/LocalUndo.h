@@ -30,12 +30,13 @@ public:
     /// \param reachMm  how far around the places vertices come apart; at least the seeds' corners
     /// \return what it changed; nothing when no vertex would come apart, or too many
     std::optional<SurfaceChanges> around(const std::vector<SurfaceState::Triangle>& mended,
-                                         const std::vector<std::uint64_t>& seeds,
+                                         const std::vector<SurfaceState::Number>& seeds,
                                          const std::vector<Vec3>& places, double reachMm);
 
 private:
     using Triangle = SurfaceState::Triangle;
-    using Numbers = std::vector<std::uint64_t>;
+    using Number = SurfaceState::Number;
+    using Numbers = std::vector<Number>;
 
     Numbers verticesAround(const Numbers& seeds, const std::vector<Vec3>& places,
                            double reachMm) const;
@@ -46,7 +47,7 @@ private:
     Numbers flatCorners() const;
     SurfaceChanges apply();
     void handOver(const Numbers& removed, const Numbers& numbers);
-    bool isWhole(std::uint64_t triangle) const;
+    bool isWhole(Number triangle) const;
     std::ptrdiff_t nearestFresh(const Vec3& p) const;
 
     bool isTouched(const Triangle& t) const {
@@ -55,8 +56,8 @@ private:
     Triangle heirsOf(const Triangle& t) const {
         return {surface_.heirs[t[0]], surface_.heirs[t[1]], surface_.heirs[t[2]]};
     }
-    bool isOfStart(std::uint64_t vertex) const { return vertex >= surface_.points.size(); }
-    Vec3 pointOf(std::uint64_t vertex) const {
+    bool isOfStart(Number vertex) const { return vertex >= surface_.points.size(); }
+    Vec3 pointOf(Number vertex) const {
         return isOfStart(vertex) ? start_.points[apart_[vertex - surface_.points.size()]]
                                  : surface_.points[vertex];
     }

@@ -14,6 +14,8 @@
 namespace adaptiso::detail {
 namespace {
 
+using Number = SurfaceState::Number;
+
 constexpr std::int64_t kPiece = 1 << 14;
 
 std::array<double, 3> barycentric(const Vec3& p, const Corners& t) {
@@ -30,7 +32,14 @@ double squaredDistanceToNearest(const Vec3& p, const std::vector<Corners>& trian
     return least;
 }
 
-bool contains(const std::vector<std::uint64_t>& numbers, std::uint64_t number) {
+/// Makes room for one more: few are added to what the rounds left, for which a list would take
+/// twice its memory.
+template <class T>
+void growALittle(std::vector<T>& list) {
+    if (list.size() == list.capacity()) list.reserve(list.size() + list.size() / 16 + 16);
+}
+
+bool contains(const std::vector<Number>& numbers, Number number) {
     return std::find(numbers.begin(), numbers.end(), number) != numbers.end();
 }
 
@@ -59,7 +68,7 @@ std::size_t SurfaceMender::mendCrossings(const std::vector<std::int64_t>& triang
     std::vector<PlaceBeyond> places;
     for (const std::int64_t t : triangles) {
         PlaceBeyond& place = places.emplace_back();
-        place.triangle = static_cast<std::uint64_t>(t);
+        place.triangle = static_cast<Number>(t);
     }
     prepare(places);
     const auto mended = static_cast<std::size_t>(
@@ -71,13 +80,13 @@ std::size_t SurfaceMender::mendCrossings(const std::vector<std::int64_t>& triang
 }
 
 /// Brings the triangle to one of its samples, or merges two of its corners.
-bool SurfaceMender::mendCrossing(std::uint64_t triangle) {
+bool SurfaceMender::mendCrossing(Number triangle) {
     const Corners corners = cornersOf(triangle);
     if (crossesNothing({corners}, around_.at(surface_.triangles[triangle][0]))) return false;
     std::vector<PlaceBeyond> places;
     const auto samples = samplesOf_.find(triangle);
     if (samples != samplesOf_.end()) {
-        for (const std::uint64_t s : samples->second) {
+        for (const Number s : samples->second) {
             const Vec3 p = surface_.samples[s].point();
             places.push_back(
                 {closestPointOnTriangle(p, corners[0], corners[1], corners[2]), p, triangle, true});
@@ -105,10 +114,10 @@ void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
     mayHaveCube_.assign(kSlots, false);
     std::vector<bool> isTrackedVertex(surface_.points.size()), isNear(surface_.triangles.size());
     for (const PlaceBeyond& place : places) {
-        for (const std::uint64_t v : surface_.triangles[place.triangle]) isTrackedVertex[v] = true;
+        for (const Number v : surface_.triangles[place.triangle]) isTrackedVertex[v] = true;
     }
-    for (std::uint64_t t = 0; t < isNear.size(); ++t) {
-        for (const std::uint64_t v : surface_.triangles[t]) {
+    for (Number t = 0; t < isNear.size(); ++t) {
+        for (const Number v : surface_.triangles[t]) {
             if (!isTrackedVertex[v]) continue;
             around_[v].push_back(t);
             isNear[t] = true;
@@ -125,22 +134,22 @@ void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
     std::vector<std::uint8_t> mayBeIn(isNear.size());
     parallelForPieces(std::ssize(mayBeIn), kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t t = begin; t < end; ++t) {
-            forEachCube(boxOf(cornersOf(t)), [&](const Index3& cube) {
+            forEachCube(boxOf(cornersOf(static_cast<Number>(t))), [&](const Index3& cube) {
                 if (mayHaveCube_[hashSlot(cube)]) mayBeIn[t] = 1;
             });
         }
     });
-    for (std::uint64_t t = 0; t < isNear.size(); ++t) {
+    for (Number t = 0; t < isNear.size(); ++t) {
         if (mayBeIn[t] != 0) trackCubes(t);
     }
-    for (std::uint64_t s = 0; s < surface_.sampleTriangle.size(); ++s) {
-        const std::uint64_t t = surface_.sampleTriangle[s];
+    for (Number s = 0; s < surface_.sampleTriangle.size(); ++s) {
+        const Number t = surface_.sampleTriangle[s];
         if (isNear[t]) samplesOf_[t].push_back(s);
     }
 }
 
 bool SurfaceMender::mendPlace(const PlaceBeyond& place) {
-    const std::uint64_t t = partAt(place);
+    const Number t = partAt(place);
     if (t == kNone) return false;
     const std::array<double, 3> at = barycentric(place.onSimplified, cornersOf(t));
     const auto largest = std::max_element(at.begin(), at.end()) - at.begin(),
@@ -155,14 +164,14 @@ bool SurfaceMender::mendPlace(const PlaceBeyond& place) {
         if (collapseEdge(t, corner, place)) return true;
     }
     if (at[largest] < kMoveWeight) return false;
-    const std::uint64_t vertex = surface_.triangles[t][largest];
+    const Number vertex = surface_.triangles[t][largest];
     const Vec3 whole = 1 / at[largest] * (place.onFine - place.onSimplified);
     return std::any_of(kMoveSteps.begin(), kMoveSteps.end(),
                        [&](double part) { return moveVertex(vertex, part * whole); });
 }
 
 /// \param at  barycentric coordinates of the place in the triangle
-bool SurfaceMender::insert(const PlaceBeyond& place, std::uint64_t triangle,
+bool SurfaceMender::insert(const PlaceBeyond& place, Number triangle,
                            const std::array<double, 3>& at) {
     const auto largest = std::max_element(at.begin(), at.end()) - at.begin(),
                least = std::min_element(at.begin(), at.end()) - at.begin();
@@ -181,13 +190,13 @@ bool SurfaceMender::insert(const PlaceBeyond& place, std::uint64_t triangle,
 }
 
 /// The part of the place's triangle that it lies in; kNone when the surface has left the place.
-std::uint64_t SurfaceMender::partAt(const PlaceBeyond& place) const {
-    std::uint64_t best = place.triangle;
+Number SurfaceMender::partAt(const PlaceBeyond& place) const {
+    Number best = place.triangle;
     if (contains(gone_, best)) return kNone;
     double least = squaredDistanceToTriangle(place.onSimplified, cornersOf(best));
     const auto parts = parts_.find(place.triangle);
     if (parts != parts_.end()) {
-        for (const std::uint64_t t : parts->second) {
+        for (const Number t : parts->second) {
             if (contains(gone_, t)) continue;
             const double squared = squaredDistanceToTriangle(place.onSimplified, cornersOf(t));
             if (squared >= least) continue;
@@ -198,14 +207,14 @@ std::uint64_t SurfaceMender::partAt(const PlaceBeyond& place) const {
     return least > kLeftPlace * kLeftPlace * place.squaredDistance() ? kNone : best;
 }
 
-bool SurfaceMender::moveVertex(std::uint64_t vertex, const Vec3& step) {
+bool SurfaceMender::moveVertex(Number vertex, const Vec3& step) {
     if (!isTracked(vertex) || surface_.states[vertex] == Patch::State::Final ||
         isOnBorder(vertex) || !isInBox(surface_.points[vertex] + step)) {
         return false;
     }
     const Numbers& around = around_.at(vertex);
     std::vector<Corners> moved;
-    for (const std::uint64_t t : around) {
+    for (const Number t : around) {
         const Corners before = cornersOf(t);
         Corners& now = moved.emplace_back(before);
         for (int c = 0; c < 3; ++c) {
@@ -214,14 +223,14 @@ bool SurfaceMender::moveVertex(std::uint64_t vertex, const Vec3& step) {
         if (!facesAs(now, before)) return false;
     }
     if (!isSound(moved, around)) return false;
-    for (const std::uint64_t t : around) note(t);
+    for (const Number t : around) note(t);
     surface_.points[vertex] = surface_.points[vertex] + step;
-    for (const std::uint64_t t : Numbers(around)) replace(t, surface_.triangles[t]);
+    for (const Number t : Numbers(around)) replace(t, surface_.triangles[t]);
     return true;
 }
 
 /// Splits the edge from a corner of the triangle to the next one, and the triangles at it.
-bool SurfaceMender::splitEdge(std::uint64_t triangle, int corner, const Vec3& point) {
+bool SurfaceMender::splitEdge(Number triangle, int corner, const Vec3& point) {
     const std::optional<Edge> edge = edgeAt(triangle, corner);
     if (!edge || !isInBox(point)) return false;
     const auto [a, b, c, d, twin] = *edge;
@@ -235,16 +244,16 @@ bool SurfaceMender::splitEdge(std::uint64_t triangle, int corner, const Vec3& po
     }
     note(triangle);
     note(twin);
-    const std::uint64_t v = addVertex(point);
+    const Number v = addVertex(point);
     replace(triangle, {a, v, c});
     replace(twin, {b, v, d});
-    const std::uint64_t besideFirst = addTriangle({v, b, c}, triangle),
-                        besideSecond = addTriangle({v, a, d}, twin);
+    const Number besideFirst = addTriangle({v, b, c}, triangle),
+                 besideSecond = addTriangle({v, a, d}, twin);
     handOver({triangle, twin}, {triangle, twin, besideFirst, besideSecond});
     return true;
 }
 
-bool SurfaceMender::splitTriangle(std::uint64_t triangle, const Vec3& point) {
+bool SurfaceMender::splitTriangle(Number triangle, const Vec3& point) {
     const auto [a, b, c] = surface_.triangles[triangle];
     const auto& at = surface_.points;
     const Corners before = cornersOf(triangle);
@@ -255,17 +264,17 @@ bool SurfaceMender::splitTriangle(std::uint64_t triangle, const Vec3& point) {
         return false;
     }
     note(triangle);
-    const std::uint64_t v = addVertex(point);
+    const Number v = addVertex(point);
     replace(triangle, {a, b, v});
-    const std::uint64_t second = addTriangle({b, c, v}, triangle),
-                        third = addTriangle({c, a, v}, triangle);
+    const Number second = addTriangle({b, c, v}, triangle),
+                 third = addTriangle({c, a, v}, triangle);
     handOver({triangle}, {triangle, second, third});
     return true;
 }
 
 /// The two triangles at the edge from a corner to the next one get their other diagonal, where that
 /// brings them to the place.
-bool SurfaceMender::turnEdge(std::uint64_t triangle, int corner, const PlaceBeyond& place) {
+bool SurfaceMender::turnEdge(Number triangle, int corner, const PlaceBeyond& place) {
     const std::optional<Edge> edge = edgeAt(triangle, corner);
     if (!edge) return false;
     const auto [a, b, c, d, twin] = *edge;
@@ -293,12 +302,12 @@ bool SurfaceMender::turnEdge(std::uint64_t triangle, int corner, const PlaceBeyo
 
 /// Merges the ends of the edge from a corner to the next one, where that brings the surface nearer
 /// to the place.
-bool SurfaceMender::collapseEdge(std::uint64_t triangle, int corner, const PlaceBeyond& place) {
+bool SurfaceMender::collapseEdge(Number triangle, int corner, const PlaceBeyond& place) {
     const std::optional<Edge> edge = edgeAt(triangle, corner);
     if (!edge || !mayMerge(*edge)) return false;
     const auto [a, b, c, d, twin] = *edge;
     Numbers replaced = around_.at(a);
-    for (const std::uint64_t t : around_.at(b)) {
+    for (const Number t : around_.at(b)) {
         if (!contains(replaced, t)) replaced.push_back(t);
     }
     const Vec3 first = surface_.points[a], second = surface_.points[b];
@@ -306,12 +315,12 @@ bool SurfaceMender::collapseEdge(std::uint64_t triangle, int corner, const Place
     for (const Vec3& target : {place.onFine, 0.5 * (first + second), first, second}) {
         std::vector<Corners> parts;
         bool isAllowed = isInBox(target);
-        for (const std::uint64_t t : replaced) {
+        for (const Number t : replaced) {
             if (t == triangle || t == twin) continue;
             const Corners before = cornersOf(t);
             Corners& now = parts.emplace_back(before);
             for (int i = 0; i < 3; ++i) {
-                const std::uint64_t v = surface_.triangles[t][i];
+                const Number v = surface_.triangles[t][i];
                 if (v == a || v == b) now[i] = target;
             }
             isAllowed = isAllowed && facesAs(now, before);
@@ -321,12 +330,12 @@ bool SurfaceMender::collapseEdge(std::uint64_t triangle, int corner, const Place
             !isSound(parts, replaced)) {
             continue;
         }
-        for (const std::uint64_t t : replaced) note(t);
+        for (const Number t : replaced) note(t);
         surface_.points[a] = target;
         Numbers kept;
-        for (const std::uint64_t t : replaced) {
+        for (const Number t : replaced) {
             if (t == triangle || t == twin) {
-                for (const std::uint64_t v : surface_.triangles[t]) {
+                for (const Number v : surface_.triangles[t]) {
                     const auto around = around_.find(v);
                     if (around != around_.end()) std::erase(around->second, t);
                 }
@@ -346,14 +355,14 @@ bool SurfaceMender::collapseEdge(std::uint64_t triangle, int corner, const Place
 
 /// Merging the edge's ends leaves a manifold (link condition), and both may move.
 bool SurfaceMender::mayMerge(const Edge& edge) const {
-    std::set<std::uint64_t> besideFirst, besideSecond;
+    std::set<Number> besideFirst, besideSecond;
     for (const auto& [vertex, beside] :
          {std::pair(edge.a, &besideFirst), std::pair(edge.b, &besideSecond)}) {
         if (!isTracked(vertex) || surface_.states[vertex] == Patch::State::Final ||
             isOnBorder(vertex)) {
             return false;
         }
-        for (const std::uint64_t t : around_.at(vertex)) {
+        for (const Number t : around_.at(vertex)) {
             beside->insert(surface_.triangles[t].begin(), surface_.triangles[t].end());
         }
     }
@@ -387,10 +396,10 @@ bool SurfaceMender::isSound(const std::vector<Corners>& triangles, const Numbers
 bool SurfaceMender::staysNear(const std::vector<Corners>& triangles,
                               const Numbers& replaced) const {
     double before = squaredLimit_, after = 0;
-    for (const std::uint64_t t : replaced) {
+    for (const Number t : replaced) {
         const auto samples = samplesOf_.find(t);
         if (samples == samplesOf_.end()) continue;
-        for (const std::uint64_t s : samples->second) {
+        for (const Number s : samples->second) {
             const Vec3 p = surface_.samples[s].point();
             after = std::max(after, squaredDistanceToNearest(p, triangles));
             before = std::max(before, squaredDistanceToTriangle(p, cornersOf(t)));
@@ -410,7 +419,7 @@ bool SurfaceMender::crossesNothing(const std::vector<Corners>& triangles,
         forEachCube(box, [&](const Index3& cube) {
             const auto in = inCube_.find(cube);
             if (!isClear || in == inCube_.end()) return;
-            isClear = std::none_of(in->second.begin(), in->second.end(), [&](std::uint64_t t) {
+            isClear = std::none_of(in->second.begin(), in->second.end(), [&](Number t) {
                 const Corners other = cornersOf(t);
                 return boxOf(other).overlaps(box) && !contains(replaced, t) &&
                        !contains(gone_, t) && trianglesCross(triangles[i], other);
@@ -423,8 +432,8 @@ bool SurfaceMender::crossesNothing(const std::vector<Corners>& triangles,
 
 /// The triangle with this half-edge.
 /// \pre one of its ends is tracked
-std::uint64_t SurfaceMender::triangleOf(std::uint64_t from, std::uint64_t to) const {
-    for (const std::uint64_t t : around_.at(isTracked(from) ? from : to)) {
+Number SurfaceMender::triangleOf(Number from, Number to) const {
+    for (const Number t : around_.at(isTracked(from) ? from : to)) {
         const Triangle& c = surface_.triangles[t];
         for (int i = 0; i < 3; ++i) {
             if (c[i] == from && c[(i + 1) % 3] == to) return t;
@@ -434,11 +443,11 @@ std::uint64_t SurfaceMender::triangleOf(std::uint64_t from, std::uint64_t to) co
 }
 
 /// The edge from a corner of the triangle to the next one; none at an open border.
-std::optional<SurfaceMender::Edge> SurfaceMender::edgeAt(std::uint64_t triangle, int corner) const {
+std::optional<SurfaceMender::Edge> SurfaceMender::edgeAt(Number triangle, int corner) const {
     const Triangle& t = surface_.triangles[triangle];
-    const std::uint64_t a = t[corner], b = t[(corner + 1) % 3];
+    const Number a = t[corner], b = t[(corner + 1) % 3];
     if (!isTracked(a) && !isTracked(b)) return {};
-    const std::uint64_t twin = triangleOf(b, a);
+    const Number twin = triangleOf(b, a);
     if (twin == kNone) return {};
     const Triangle& u = surface_.triangles[twin];
     const auto d = std::find_if(u.begin(), u.end(), [&](auto v) { return v != a && v != b; });
@@ -446,17 +455,20 @@ std::optional<SurfaceMender::Edge> SurfaceMender::edgeAt(std::uint64_t triangle,
 }
 
 /// Some edge at the vertex has one triangle only.
-bool SurfaceMender::isOnBorder(std::uint64_t vertex) const {
+bool SurfaceMender::isOnBorder(Number vertex) const {
     const Numbers& around = around_.at(vertex);
-    return std::any_of(around.begin(), around.end(), [&](std::uint64_t t) {
+    return std::any_of(around.begin(), around.end(), [&](Number t) {
         const Triangle& c = surface_.triangles[t];
         const auto i = std::find(c.begin(), c.end(), vertex) - c.begin();
         return triangleOf(c[(i + 1) % 3], vertex) == kNone;
     });
 }
 
-std::uint64_t SurfaceMender::addVertex(const Vec3& point) {
-    const std::uint64_t v = surface_.points.size();
+Number SurfaceMender::addVertex(const Vec3& point) {
+    const auto v = static_cast<Number>(surface_.points.size());
+    growALittle(surface_.points);
+    growALittle(surface_.quadrics);
+    growALittle(surface_.states);
     surface_.points.push_back(point);
     surface_.quadrics.emplace_back();
     surface_.states.push_back(Patch::State::Open);
@@ -466,20 +478,21 @@ std::uint64_t SurfaceMender::addVertex(const Vec3& point) {
 }
 
 /// \param parent  the triangle that it was a part of
-std::uint64_t SurfaceMender::addTriangle(const Triangle& triangle, std::uint64_t parent) {
-    const std::uint64_t number = surface_.triangles.size();
+Number SurfaceMender::addTriangle(const Triangle& triangle, Number parent) {
+    const auto number = static_cast<Number>(surface_.triangles.size());
+    growALittle(surface_.triangles);
     surface_.triangles.push_back(triangle);
     changes_.triangles.push_back(number);
     track(number);
     const auto older = parent_.find(parent);
-    const std::uint64_t oldest = older == parent_.end() ? parent : older->second;
+    const Number oldest = older == parent_.end() ? parent : older->second;
     parent_[number] = oldest;
     parts_[oldest].push_back(number);
     return number;
 }
 
-void SurfaceMender::replace(std::uint64_t number, const Triangle& triangle) {
-    for (const std::uint64_t v : surface_.triangles[number]) {
+void SurfaceMender::replace(Number number, const Triangle& triangle) {
+    for (const Number v : surface_.triangles[number]) {
         const auto around = around_.find(v);
         if (around != around_.end()) std::erase(around->second, number);
     }
@@ -493,23 +506,23 @@ std::size_t SurfaceMender::CubeHash::operator()(const Index3& cube) const {
 }
 
 /// The triangle is about to change.
-void SurfaceMender::note(std::uint64_t triangle) {
+void SurfaceMender::note(Number triangle) {
     changes_.triangles.push_back(triangle);
     changes_.before.push_back(cornersOf(triangle));
     changed_.push_back(surface_.triangles[triangle]);
 }
 
 /// Lists a triangle with its vertices and its cubes.
-void SurfaceMender::track(std::uint64_t triangle) {
+void SurfaceMender::track(Number triangle) {
     changed_.push_back(surface_.triangles[triangle]);
-    for (const std::uint64_t v : surface_.triangles[triangle]) {
+    for (const Number v : surface_.triangles[triangle]) {
         const auto around = around_.find(v);
         if (around != around_.end()) around->second.push_back(triangle);
     }
     trackCubes(triangle);
 }
 
-void SurfaceMender::trackCubes(std::uint64_t triangle) {
+void SurfaceMender::trackCubes(Number triangle) {
     forEachCube(boxOf(cornersOf(triangle)), [&](const Index3& cube) {
         if (!mayHaveCube_[hashSlot(cube)]) return;
         const auto in = inCube_.find(cube);
@@ -520,19 +533,18 @@ void SurfaceMender::trackCubes(std::uint64_t triangle) {
 /// Gives the samples of some triangles to the nearest of others.
 void SurfaceMender::handOver(const Numbers& from, const Numbers& to) {
     Numbers samples;
-    for (const std::uint64_t t : from) {
+    for (const Number t : from) {
         const auto of = samplesOf_.find(t);
         if (of == samplesOf_.end()) continue;
         samples.insert(samples.end(), of->second.begin(), of->second.end());
         of->second.clear();
     }
-    for (const std::uint64_t s : samples) {
+    for (const Number s : samples) {
         const Vec3 p = surface_.samples[s].point();
-        const std::uint64_t nearest =
-            *std::min_element(to.begin(), to.end(), [&](std::uint64_t t, std::uint64_t u) {
-                return squaredDistanceToTriangle(p, cornersOf(t)) <
-                       squaredDistanceToTriangle(p, cornersOf(u));
-            });
+        const Number nearest = *std::min_element(to.begin(), to.end(), [&](Number t, Number u) {
+            return squaredDistanceToTriangle(p, cornersOf(t)) <
+                   squaredDistanceToTriangle(p, cornersOf(u));
+        });
         surface_.sampleTriangle[s] = nearest;
         samplesOf_[nearest].push_back(s);
     }

@@ -45,8 +45,9 @@ public:
 
 private:
     using Triangle = SurfaceState::Triangle;
-    using Numbers = std::vector<std::uint64_t>;
-    static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+    using Number = SurfaceState::Number;
+    using Numbers = std::vector<Number>;
+    static constexpr Number kNone = ~Number{0};
     static constexpr std::size_t kSlots = std::size_t{1} << 18;
     struct CubeHash {
         std::size_t operator()(const Index3& cube) const;
@@ -54,20 +55,20 @@ private:
 
     /// The edge from a to b with its triangles (a, b, c) and (b, a, d), the twin.
     struct Edge {
-        std::uint64_t a, b, c, d, twin;
+        Number a, b, c, d, twin;
     };
 
     void prepare(const std::vector<PlaceBeyond>& places);
     bool mendPlace(const PlaceBeyond& place);
-    bool mendCrossing(std::uint64_t triangle);
-    bool insert(const PlaceBeyond& place, std::uint64_t triangle, const std::array<double, 3>& at);
-    std::uint64_t partAt(const PlaceBeyond& place) const;
-    bool moveVertex(std::uint64_t vertex, const Vec3& step);
-    bool splitEdge(std::uint64_t triangle, int corner, const Vec3& point);
-    bool splitTriangle(std::uint64_t triangle, const Vec3& point);
-    bool turnEdge(std::uint64_t triangle, int corner, const PlaceBeyond& place);
+    bool mendCrossing(Number triangle);
+    bool insert(const PlaceBeyond& place, Number triangle, const std::array<double, 3>& at);
+    Number partAt(const PlaceBeyond& place) const;
+    bool moveVertex(Number vertex, const Vec3& step);
+    bool splitEdge(Number triangle, int corner, const Vec3& point);
+    bool splitTriangle(Number triangle, const Vec3& point);
+    bool turnEdge(Number triangle, int corner, const PlaceBeyond& place);
 
-    bool collapseEdge(std::uint64_t triangle, int corner, const PlaceBeyond& place);
+    bool collapseEdge(Number triangle, int corner, const PlaceBeyond& place);
     bool mayMerge(const Edge& edge) const;
 
     bool isInBox(const Vec3& p) const { return !box_ || box_->overlaps({p, p}); }
@@ -76,21 +77,21 @@ private:
     bool staysNear(const std::vector<Corners>& triangles, const Numbers& replaced) const;
     bool crossesNothing(const std::vector<Corners>& triangles, const Numbers& replaced) const;
 
-    Corners cornersOf(std::uint64_t triangle) const {
+    Corners cornersOf(Number triangle) const {
         const Triangle& t = surface_.triangles[triangle];
         return {surface_.points[t[0]], surface_.points[t[1]], surface_.points[t[2]]};
     }
-    bool isTracked(std::uint64_t vertex) const { return around_.contains(vertex); }
-    std::uint64_t triangleOf(std::uint64_t from, std::uint64_t to) const;
-    std::optional<Edge> edgeAt(std::uint64_t triangle, int corner) const;
-    bool isOnBorder(std::uint64_t vertex) const;
-    std::uint64_t addVertex(const Vec3& point);
-    std::uint64_t addTriangle(const Triangle& triangle, std::uint64_t parent);
-    void replace(std::uint64_t number, const Triangle& triangle);
-    void track(std::uint64_t triangle);
-    void trackCubes(std::uint64_t triangle);
+    bool isTracked(Number vertex) const { return around_.contains(vertex); }
+    Number triangleOf(Number from, Number to) const;
+    std::optional<Edge> edgeAt(Number triangle, int corner) const;
+    bool isOnBorder(Number vertex) const;
+    Number addVertex(const Vec3& point);
+    Number addTriangle(const Triangle& triangle, Number parent);
+    void replace(Number number, const Triangle& triangle);
+    void track(Number triangle);
+    void trackCubes(Number triangle);
     static std::size_t hashSlot(const Index3& cube) { return CubeHash{}(cube) % kSlots; }
-    void note(std::uint64_t triangle);
+    void note(Number triangle);
     void handOver(const Numbers& from, const Numbers& to);
     template <class F>
     void forEachCube(const CornerBox& box, const F& f) const;
@@ -98,18 +99,18 @@ private:
     SimplifiedSurface& surface_;
     double squaredLimit_, cubeMm_;
     std::optional<CornerBox> box_;
-    double leastCosine_ = 0;                         ///< between the normals before and after
-    std::set<std::array<std::uint64_t, 2>> turned_;  ///< edges that were: they do not come back
+    double leastCosine_ = 0;                  ///< between the normals before and after
+    std::set<std::array<Number, 2>> turned_;  ///< edges that were: they do not come back
 
     SurfaceChanges changes_;
     std::vector<Triangle> changed_;
 
     // of one call
-    Numbers gone_;                                       ///< triangles that collapsed
-    std::unordered_map<std::uint64_t, Numbers> around_;  ///< triangles, of each tracked vertex
-    std::unordered_map<std::uint64_t, Numbers> parts_;   ///< of each triangle that was split
-    std::unordered_map<std::uint64_t, std::uint64_t> parent_;  ///< of each part
-    std::unordered_map<std::uint64_t, Numbers> samplesOf_;     ///< of triangles around_ has
+    Numbers gone_;                                   ///< triangles that collapsed
+    std::unordered_map<Number, Numbers> around_;     ///< triangles, of each tracked vertex
+    std::unordered_map<Number, Numbers> parts_;      ///< of each triangle that was split
+    std::unordered_map<Number, Number> parent_;      ///< of each part
+    std::unordered_map<Number, Numbers> samplesOf_;  ///< of triangles around_ has
     /// Triangles whose boxes overlap a cube, for the cubes that a change may reach into. Some have
     /// changed since.
     std::unordered_map<Index3, Numbers, CubeHash> inCube_;

@@ -8,13 +8,13 @@
 
 namespace adaptiso::detail {
 
-void removeTriangles(std::vector<std::uint64_t> gone, SurfaceState& surface,
+void removeTriangles(std::vector<SurfaceState::Number> gone, SurfaceState& surface,
                      SurfaceChanges& changes) {
     if (gone.empty()) return;
     std::sort(gone.begin(), gone.end(), std::greater());
-    std::unordered_map<std::uint64_t, std::uint64_t> renumbered;
-    for (const std::uint64_t t : gone) {
-        const std::uint64_t last = surface.triangles.size() - 1;
+    std::unordered_map<SurfaceState::Number, SurfaceState::Number> renumbered;
+    for (const SurfaceState::Number t : gone) {
+        const auto last = static_cast<SurfaceState::Number>(surface.triangles.size() - 1);
         if (t != last) {
             surface.triangles[t] = surface.triangles[last];
             renumbered[last] = t;
@@ -22,7 +22,7 @@ void removeTriangles(std::vector<std::uint64_t> gone, SurfaceState& surface,
         }
         surface.triangles.pop_back();
     }
-    for (std::uint64_t& t : surface.sampleTriangle) {
+    for (SurfaceState::Number& t : surface.sampleTriangle) {
         for (auto at = renumbered.find(t); at != renumbered.end(); at = renumbered.find(t)) {
             t = at->second;
         }

@@ -5,13 +5,18 @@
 #include <vector>
 
 #include "Certificate.h"
+#include "adaptiso/Core/ReturnMemory.h"
 #include "adaptive/mesh/Patch.h"
 
 namespace adaptiso::detail {
 
 /// What rounds of simplification change of a surface, in the metric frame.
 struct SurfaceState {
-    using Triangle = std::array<std::uint64_t, 3>;
+    using Number = std::uint32_t;  ///< of a point or a triangle
+    using Triangle = std::array<Number, 3>;
+
+    /// Points, and triangles, that a surface may have: half-edges are numbered in 32 bits too.
+    static constexpr std::size_t kMost = ~Number{0} / 3;
 
     std::vector<Vec3> points;
     std::vector<StoredQuadric> quadrics;  ///< of each point, seen from it
@@ -20,14 +25,15 @@ struct SurfaceState {
     /// above, a number of the point's own, by which it is known in the end. Empty: all are plain.
     std::vector<std::uint32_t> marks;
     std::vector<Triangle> triangles;
-    std::vector<std::uint64_t> sampleTriangle;  ///< the triangle that stands for each sample
+    std::vector<Number> sampleTriangle;  ///< the triangle that stands for each sample
 
     std::int64_t triangleCount() const { return static_cast<std::int64_t>(triangles.size()); }
 };
 
 /// The whole surface between rounds of simplification, and the samples of the full-resolution one.
 struct SimplifiedSurface : SurfaceState {
-    static constexpr std::uint64_t kGone = ~std::uint64_t{0};
+    static constexpr Number kGone = ~Number{0};
+    static constexpr std::size_t kMostSamples = ~Number{0};
 
     /// Those within bricks, brick by brick in the mesher's order; then those on bricks' walls,
     /// ordered by their lattice edge.
@@ -40,19 +46,26 @@ struct SimplifiedSurface : SurfaceState {
 
     /// Of each vertex at halfway (see Halfway): the vertex that it was merged into since, or
     /// itself. Empty: not asked for.
-    std::vector<std::uint64_t> heirs;
+    std::vector<Number> heirs;
 
     SurfaceState& state() { return *this; }
+
+    /// To be called between steps; small surfaces are not worth the time.
+    void returnFreedMemory() const {
+        constexpr std::size_t kLarge = std::size_t{1} << 15;
+        if (samples.size() >= kLarge) adaptiso::returnFreedMemory();
+    }
 };
 
 /// What was changed of a surface.
 struct SurfaceChanges {
-    std::vector<std::uint64_t> triangles;  ///< that are new or changed, or got another number
-    std::vector<Corners> before;           ///< of triangles that changed or went
+    std::vector<SurfaceState::Number>
+        triangles;                ///< that are new or changed, or got another number
+    std::vector<Corners> before;  ///< of triangles that changed or went
 };
 
 /// Gives the numbers of triangles that are gone to the last ones, and tells.
-void removeTriangles(std::vector<std::uint64_t> gone, SurfaceState& surface,
+void removeTriangles(std::vector<SurfaceState::Number> gone, SurfaceState& surface,
                      SurfaceChanges& changes);
 
 /// The costs of a round's collapses, patch by patch in the order they were made.

@@ -61,7 +61,7 @@ bool BrickProof::isIdle() const {
     return std::none_of(blocks.begin(), blocks.end(),
                         [&](std::uint32_t block) { return scope_.isWanted(block); }) &&
            std::all_of(triangles.begin(), triangles.end(),
-                       [&](std::uint64_t t) { return scope_.isProved(t); });
+                       [&](Number t) { return scope_.isProved(t); });
 }
 
 /// The full-resolution surface in the brick's own cells.
@@ -123,9 +123,9 @@ void BrickProof::findStandIns() {
 }
 
 void BrickProof::findUnmoved() {
-    unmoved_.assign(fine_.ownVertices, -1);
+    unmoved_.assign(fine_.ownVertices, kNone);
     for (std::size_t v = 0; v < fine_.ownVertices; ++v) {
-        for (const VertexId corner : lookup_.triangle(standIn_[v])) {
+        for (const Number corner : lookup_.triangle(standIn_[v])) {
             if (lookup_.point(corner) == points_[v]) unmoved_[v] = corner;
         }
     }
@@ -133,16 +133,16 @@ void BrickProof::findUnmoved() {
 
 /// The fine triangle is a triangle of the simplified surface as well.
 bool BrickProof::isUnchanged(const std::array<std::uint32_t, 3>& fine) {
-    const VertexId a = unmoved_[fine[0]], b = unmoved_[fine[1]], c = unmoved_[fine[2]];
-    if (a < 0 || b < 0 || c < 0) return false;
-    const VertexId t = lookup_.walkable().find(a, b, c);
-    if (t == WalkableSurface<VertexId>::kNone) return false;
-    unchanged_.push_back(static_cast<std::uint64_t>(t));
+    const Number a = unmoved_[fine[0]], b = unmoved_[fine[1]], c = unmoved_[fine[2]];
+    if (a == kNone || b == kNone || c == kNone) return false;
+    const Number t = lookup_.walkable().find(a, b, c);
+    if (t == kNone) return false;
+    unchanged_.push_back(t);
     return true;
 }
 
 /// For every triangle of the simplified surface a fine one that it stands for, or none.
-void BrickProof::findStarts(std::span<const std::uint64_t> triangles) {
+void BrickProof::findStarts(std::span<const Number> triangles) {
     startAt_.assign(triangles.size(), Walkable::kNone);
     for (std::uint32_t v = 0; v < fine_.ownVertices; ++v) {
         const auto at = std::lower_bound(triangles.begin(), triangles.end(), standIn_[v]);
@@ -183,7 +183,7 @@ bool BrickProof::mapFine(std::uint32_t t) {
 
 const BrickProof::Map::Vertex* BrickProof::mappedVertex(std::uint32_t v) {
     if (mapped_[v].squared < 0) {
-        mapped_[v] = map_.vertexAt(points_[v], static_cast<VertexId>(standIn_[v]));
+        mapped_[v] = map_.vertexAt(points_[v], standIn_[v]);
     }
     return &mapped_[v];
 }
@@ -206,7 +206,7 @@ BrickProof::Map::Side BrickProof::sideOf(std::uint32_t halfEdge, const Map::Vert
 
 /// Tells the cover of the border between triangles that are mapped and others.
 void BrickProof::findCovered() {
-    const auto passes = [&](VertexId triangle) { cover_.addBorder(triangle); };
+    const auto passes = [&](Number triangle) { cover_.addBorder(triangle); };
     for (std::uint32_t h = 0; h < 3 * isMapped_.size(); ++h) {
         const std::uint32_t beside = walkable_.twin(h) / 3;
         if (isMapped_[h / 3] == 0 || (beside < isMapped_.size() && isMapped_[beside] != 0))
@@ -220,8 +220,7 @@ void BrickProof::proveFine(std::size_t t) {
     const auto& v = fine_.triangles[t];
     if (isUnchanged(v) || mapFine(static_cast<std::uint32_t>(t))) return;
     const Corners piece{points_[v[0]], points_[v[1]], points_[v[2]]};
-    cover(piece, lookup_.walkable(), static_cast<VertexId>(standIn_[v[0]]),
-          fromFine_.squaredBound(), kStepsOfFine);
+    cover(piece, lookup_.walkable(), standIn_[v[0]], fromFine_.squaredBound(), kStepsOfFine);
     for (const ConvexPiece& left : walk_.left()) {
         for (int i = 2; i < left.count(); ++i) {
             proveFinePart({left.corner(0), left.corner(i - 1), left.corner(i)}, v);
@@ -249,7 +248,7 @@ void BrickProof::proveFinePart(const Corners& piece, const std::array<std::uint3
     collectWithin(reachMm, piece);
     const std::optional<FarPoint> far = include(piece, fromFine_);
     if (!far) return;
-    const std::uint64_t t = far->hasNearest ? within_[far->nearest] : PlaceBeyond::kNone;
+    const Number t = far->hasNearest ? within_[far->nearest] : PlaceBeyond::kNone;
     result_.beyondLimit.push_back({far->onOther, far->point, t, true});
 }
 
@@ -257,14 +256,14 @@ void BrickProof::proveFinePart(const Corners& piece, const std::array<std::uint3
 void BrickProof::collectAround(const std::array<std::uint32_t, 3>& fine) {
     around_.clear();
     for (const std::uint32_t corner : fine) {
-        for (const VertexId v : lookup_.triangle(standIn_[corner])) {
-            lookup_.walkable().forEachAt(v, [&](VertexId t) { around_.push_back(t); });
+        for (const Number v : lookup_.triangle(standIn_[corner])) {
+            lookup_.walkable().forEachAt(v, [&](Number t) { around_.push_back(t); });
         }
     }
     std::sort(around_.begin(), around_.end());
     around_.erase(std::unique(around_.begin(), around_.end()), around_.end());
     fromFine_.nearby().clear();
-    for (const VertexId t : around_) fromFine_.nearby().push_back(lookup_.cornersOf(t));
+    for (const Number t : around_) fromFine_.nearby().push_back(lookup_.cornersOf(t));
 }
 
 /// The triangles that may lie within a distance of a part of a fine triangle.
@@ -272,7 +271,7 @@ void BrickProof::collectWithin(double distanceMm, const Corners& piece) {
     std::vector<Corners>& nearby = fromFine_.nearby();
     nearby.clear();
     within_.clear();
-    const auto add = [&](std::uint64_t t) {
+    const auto add = [&](Number t) {
         nearby.push_back(lookup_.cornersOf(t));
         within_.push_back(t);
     };
@@ -282,7 +281,7 @@ void BrickProof::collectWithin(double distanceMm, const Corners& piece) {
     }
     CornerBox box = boxOf(piece);
     box.widen(distanceMm);
-    for (const std::uint64_t t : lookup_.ofBrick(brick_)) {
+    for (const Number t : lookup_.ofBrick(brick_)) {
         if (boxOf(lookup_.cornersOf(t)).overlaps(box)) add(t);
     }
 }
@@ -300,7 +299,7 @@ void BrickProof::provePiece(const Corners& piece, std::uint32_t start, double ar
     if (lookup_.isSmall(piece) || (brick != Bricks::kNone && lookup_.isWithinReach(brick, piece))) {
         if (brick != brick_) return;
         result_.provedArea += 0.5 * area2;
-        if (!cover_.covers(static_cast<VertexId>(triangle_)) &&
+        if (!cover_.covers(triangle_) &&
             !std::binary_search(unchanged_.begin(), unchanged_.end(), triangle_)) {
             proveWhole(piece, start, area2);
         }

@@ -53,12 +53,14 @@ public:
     BrickBound prove(std::int64_t brick);
 
 private:
-    using Walkable = WalkableSurface<std::uint32_t>;
+    using Number = SurfaceState::Number;
+    using Walkable = WalkableSurface<Number>;
+    static constexpr Number kNone = Walkable::kNone;
 
     void findStandIns();
     void findUnmoved();
     bool isUnchanged(const std::array<std::uint32_t, 3>& fine);
-    void findStarts(std::span<const std::uint64_t> triangles);
+    void findStarts(std::span<const Number> triangles);
     void rememberCells();
     void forgetCells();
 
@@ -66,7 +68,7 @@ private:
     void proveOwnCells();
     void proveTriangles();
     std::uint64_t blockOf(const FineSurface::Cell& cell) const;
-    using Map = SurfaceMap<VertexId>;
+    using Map = SurfaceMap<Number>;
 
     bool mapFine(std::uint32_t t);
     const Map::Vertex* mappedVertex(std::uint32_t v);
@@ -103,13 +105,13 @@ private:
     FineSurface fine_;
     std::vector<Vec3> points_;  ///< of the fine surface, metric frame
     Walkable walkable_;
-    std::vector<std::uint64_t> standIn_;  ///< of each of the brick's own fine vertices
+    std::vector<Number> standIn_;  ///< of each of the brick's own fine vertices
     /// For each of the brick's own fine vertices the vertex of the simplified surface in its place.
-    std::vector<VertexId> unmoved_;
-    std::vector<std::uint64_t> unchanged_;  ///< triangles that are fine ones too, ascending
-    std::vector<std::uint32_t> startAt_;    ///< a fine triangle at each of the brick's triangles
-    ZeroedTable cellAt_;                    ///< number + 1
-    std::uint64_t triangle_ = 0;            ///< whose pieces are looked at
+    std::vector<Number> unmoved_;
+    std::vector<Number> unchanged_;       ///< triangles that are fine ones too, ascending
+    std::vector<std::uint32_t> startAt_;  ///< a fine triangle at each of the brick's triangles
+    ZeroedTable cellAt_;                  ///< number + 1
+    Number triangle_ = 0;                 ///< whose pieces are looked at
 
     int searches_ = 0;  ///< for near triangles of the simplified surface
 
@@ -117,13 +119,13 @@ private:
     BrickBound result_;
     SurfaceWalk walk_;
     std::vector<std::uint32_t> near_;
-    std::vector<VertexId> around_;
-    std::vector<std::uint64_t> within_;  ///< the triangles that collectWithin() found
+    std::vector<Number> around_;
+    std::vector<Number> within_;  ///< the triangles that collectWithin() found
     std::vector<std::pair<double, std::uint32_t>> ranked_;
 
     // of the brick's own fine surface
     Map map_;
-    MapCover<VertexId> cover_;
+    MapCover<Number> cover_;
     std::vector<Map::Vertex> mapped_;     ///< of each vertex; a distance of -1: not looked at
     std::vector<Map::Way> ways_;          ///< of each edge, by its first half-edge
     std::vector<std::uint8_t> isMapped_;  ///< of each triangle

@@ -25,9 +25,9 @@ public:
           around_(mesh.points.size(),
                   [&](const auto& give) {
                       for (const auto& [a, b, c] : mesh.triangles) {
-                          give(a, {b, c});
-                          give(b, {c, a});
-                          give(c, {a, b});
+                          give(a, sector(b, c));
+                          give(b, sector(c, a));
+                          give(c, sector(a, b));
                       }
                   }),
           isClear_(mesh.points.size(), 0) {
@@ -41,7 +41,11 @@ public:
     bool isClear(VertexId v) const { return isClear_[v] != 0; }
 
 private:
-    using Sector = std::array<VertexId, 2>;  ///< the other corners of a triangle, in its order
+    using Sector = std::array<std::uint32_t, 2>;  ///< the other corners of a triangle, in its order
+
+    static Sector sector(VertexId a, VertexId b) {
+        return {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)};
+    }
 
     /// Seen along one direction all are upright and go round the vertex once.
     bool prove(std::int64_t v) {

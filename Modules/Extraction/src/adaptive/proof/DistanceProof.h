@@ -19,11 +19,12 @@ inline bool isBefore(const Corners& a, const Corners& b) {
 
 /// A place where one of the two surfaces lies beyond the limit. Points in the metric frame.
 struct PlaceBeyond {
-    static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+    static constexpr SurfaceState::Number kNone = ~SurfaceState::Number{0};
 
-    Vec3 onSimplified, onFine;       ///< one of them is the place, the other the nearest point
-    std::uint64_t triangle = kNone;  ///< of the simplified surface; kNone where none was near
-    bool isOfFine = false;           ///< the place is one of the full-resolution surface
+    Vec3 onSimplified, onFine;  ///< one of them is the place, the other the nearest point
+    SurfaceState::Number triangle =
+        kNone;              ///< of the simplified surface; kNone where none was near
+    bool isOfFine = false;  ///< the place is one of the full-resolution surface
 
     const Vec3& point() const { return isOfFine ? onFine : onSimplified; }
     double squaredDistance() const { return squaredNorm(onSimplified - onFine); }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/Parameters.h"
@@ -63,26 +64,28 @@ ErrorProof::ErrorProof(const LatticeSampler& sampler, const Bricks& bricks,
     : sampler_(sampler), bricks_(bricks), frame_(frame), limitMm_(limitMm) {}
 
 ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
-    SurfaceLookup lookup(surface, bricks_, frame_);
+    auto lookup = std::make_unique<SurfaceLookup>(surface, bricks_, frame_);
     // bounds are as tight as the largest sample's distance, or as a hundredth of a voxel
     enoughMm_ = std::min(
-        limitMm_, std::max(largestSampleDistance(surface, lookup), 0.01 * frame_.narrowestMm()));
-    return prove(surface, lookup, scopeOf(lookup));
+        limitMm_, std::max(largestSampleDistance(surface, *lookup), 0.01 * frame_.narrowestMm()));
+    const ProofScope scope = scopeOf(*lookup);
+    return prove(surface, std::move(lookup), scope);
 }
 
 ErrorBound ErrorProof::proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes) {
     if (last_.triangles.empty()) return prove(surface);
-    SurfaceLookup lookup(surface, bricks_, frame_);
-    return prove(surface, lookup, scopeOf(lookup, changes));
+    auto lookup = std::make_unique<SurfaceLookup>(surface, bricks_, frame_);
+    const ProofScope scope = scopeOf(*lookup, changes);
+    return prove(surface, std::move(lookup), scope);
 }
 
-ErrorBound ErrorProof::prove(const SimplifiedSurface& surface, SurfaceLookup& lookup,
-                             const ProofScope& scope) {
+ErrorBound ErrorProof::prove(const SimplifiedSurface& surface,
+                             std::unique_ptr<SurfaceLookup> lookup, const ProofScope& scope) {
     if (last_.triangles.empty()) provedMm_ = 0;
-    last_ = TriangleMesh();  // the scope has what is of use
+    last_ = TriangleList();  // the scope has what is of use
     std::vector<BrickBound> results(bricks_.count());
     tbb::enumerable_thread_specific<BrickProof> proofs(
-        [&] { return BrickProof(surface, lookup, sampler_, scope, enoughMm_, limitMm_); });
+        [&] { return BrickProof(surface, *lookup, sampler_, scope, enoughMm_, limitMm_); });
     parallelForPieces(bricks_.count(), 1,
                       [&](std::int64_t b, std::int64_t) { results[b] = proofs.local().prove(b); });
     double provedArea = 0, farthestMm = 0;
@@ -96,10 +99,12 @@ ErrorBound ErrorProof::prove(const SimplifiedSurface& surface, SurfaceLookup& lo
     ErrorBound bound;
     bound.largestMm = std::max(provedMm_, farthestMm);
     bound.beyondLimit = beyond;
-    if (!(provedArea >= (1 - 1e-9) * areaOf(lookup, scope))) {
-        includeFarPieces(surface, lookup, bound);
+    if (!(provedArea >= (1 - 1e-9) * areaOf(*lookup, scope))) {
+        includeFarPieces(surface, *lookup, bound);
     } else if (limitMm_ < std::numeric_limits<double>::max()) {
-        remember(lookup, std::move(beyond));
+        proofs.clear();  // they look into the lookup
+        lookup.reset();
+        remember(surface, std::move(beyond));
     }
     return bound;
 }
@@ -125,7 +130,7 @@ void ErrorProof::includeFarPieces(const SimplifiedSurface& surface, const Surfac
             largest[t] = std::max(largest[t], least);
         });
     });
-    for (std::size_t t = 0; t < largest.size(); ++t) {
+    for (SurfaceState::Number t = 0; t < largest.size(); ++t) {
         if (largest[t] == 0) continue;
         constexpr double kRounding = 1 + 1e-6;  // samples are kept in single precision
         const double mm = kRounding * std::sqrt(largest[t]);
@@ -136,8 +141,8 @@ void ErrorProof::includeFarPieces(const SimplifiedSurface& surface, const Surfac
     }
 }
 
-void ErrorProof::remember(SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond) {
-    last_ = lookup.takeMesh();
+void ErrorProof::remember(const SimplifiedSurface& surface, std::vector<PlaceBeyond> beyond) {
+    last_ = {surface.points, surface.triangles};
     isWithin_.assign(last_.triangles.size(), 1);
     for (const PlaceBeyond& place : beyond) {
         if (!place.isOfFine) isWithin_[place.triangle] = 0;
@@ -152,8 +157,7 @@ ProofScope ErrorProof::scopeOf(const SurfaceLookup& lookup) const {
     if (last_.triangles.empty()) return scope;
     std::vector<Corners> known;
     for (std::size_t t = 0; t < last_.triangles.size(); ++t) {
-        const auto& [a, b, c] = last_.triangles[t];
-        if (isWithin_[t] != 0) known.push_back({last_.points[a], last_.points[b], last_.points[c]});
+        if (isWithin_[t] != 0) known.push_back(last_.cornersOf(t));
     }
     tbb::parallel_sort(known.begin(), known.end(), isBefore);
     const auto count = static_cast<std::int64_t>(lookup.triangleCount());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "adaptive/bricks/Bricks.h"
@@ -25,13 +26,24 @@ public:
 private:
     ProofScope scopeOf(const SurfaceLookup& lookup) const;
     ProofScope scopeOf(const SurfaceLookup& lookup, const SurfaceChanges& changes) const;
-    ErrorBound prove(const SimplifiedSurface& surface, SurfaceLookup& lookup,
+    ErrorBound prove(const SimplifiedSurface& surface, std::unique_ptr<SurfaceLookup> lookup,
                      const ProofScope& scope);
     void includeFarPieces(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
                           ErrorBound& bound) const;
     void markBeyond(ProofScope& scope) const;
     void markAround(const Corners& triangle, double distanceMm, ProofScope& scope) const;
-    void remember(SurfaceLookup& lookup, std::vector<PlaceBeyond> beyond);
+    void remember(const SimplifiedSurface& surface, std::vector<PlaceBeyond> beyond);
+
+    /// Points and triangles of a surface alone.
+    struct TriangleList {
+        std::vector<Vec3> points;
+        std::vector<SurfaceState::Triangle> triangles;
+
+        Corners cornersOf(std::size_t t) const {
+            const auto& [a, b, c] = triangles[t];
+            return {points[a], points[b], points[c]};
+        }
+    };
 
     const LatticeSampler& sampler_;
     const Bricks& bricks_;
@@ -40,7 +52,7 @@ private:
     double enoughMm_ = 0;  ///< no bound need be tighter
     double provedMm_ = 0;  ///< so far, of what lies within the limit
     // of the last surface; empty where not all of it was proved
-    TriangleMesh last_;
+    TriangleList last_;
     std::vector<std::uint8_t> isWithin_;  ///< the limit, each triangle
     std::vector<PlaceBeyond> beyond_;
 };

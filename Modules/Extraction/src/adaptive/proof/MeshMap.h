@@ -46,12 +46,12 @@ private:
 /// Maps triangles of a mesh, one by one, to the simplified surface.
 class PieceMap {
 public:
-    using Map = SurfaceMap<std::uint64_t>;
+    using Map = SurfaceMap<SurfaceState::Number>;
 
     /// Keeps references to all it is given.
     /// \param enoughMm  cuts of edges need not be nearer to their images
     PieceMap(const MeshParts& parts, const WalkableSurface<std::uint32_t>& fine,
-             const SimplifiedSurface& surface, const WalkableSurface<std::uint64_t>& onto,
+             const SimplifiedSurface& surface, const WalkableSurface<SurfaceState::Number>& onto,
              double enoughMm)
         : parts_(parts), fine_(fine), surface_(surface), map_(onto, enoughMm * enoughMm) {}
 

@@ -20,6 +20,8 @@
 namespace adaptiso::detail {
 namespace {
 
+using Number = SurfaceState::Number;
+
 constexpr std::int64_t kPiece = 256;
 
 Corners cornersOf(const SimplifiedSurface& surface, std::uint64_t t) {
@@ -167,7 +169,7 @@ public:
     explicit SimplifiedTarget(const SimplifiedSurface& surface) : surface_(surface) {
         walkable_.assign(surface.points, surface.triangles);
     }
-    Target<std::uint64_t> target() {
+    Target<Number> target() {
         return {walkable_, mesh_, {}, [this]() -> const AabbTree& { return tree(); }};
     }
 
@@ -186,7 +188,7 @@ private:
     }
 
     const SimplifiedSurface& surface_;
-    WalkableSurface<std::uint64_t> walkable_;
+    WalkableSurface<Number> walkable_;
     TriangleMesh mesh_;
     std::once_flag treeIsBuilt_;
     std::optional<AabbTree> tree_;
@@ -258,9 +260,9 @@ void forEachUnknown(const std::vector<std::uint8_t>& isKnown, std::int64_t piece
 /// Of the full surface to the simplified one.
 /// \param isMapped  gets 1 for each triangle that the map has, whose images the cover gets
 PartBound proveFine(const Task& task, const WalkableSurface<std::uint32_t>& fine,
-                    const Target<std::uint64_t>& to, const std::vector<std::uint8_t>& isKnown,
+                    const Target<Number>& to, const std::vector<std::uint8_t>& isKnown,
                     std::int64_t piece, std::vector<std::uint8_t>& isMapped, SharedCover& cover) {
-    OneWayProof<std::uint64_t> proof(to, task.voxelMm, task.enoughMm, task.limitMm);
+    OneWayProof<Number> proof(to, task.voxelMm, task.enoughMm, task.limitMm);
     PieceMap map(task.parts, fine, task.surface, to.walkable, task.enoughMm);
     forEachUnknown(isKnown, piece, task.parts.triangles.size(), [&](std::size_t t) {
         if (map.map(static_cast<std::uint32_t>(t), proof.squaredBound())) {
@@ -276,7 +278,7 @@ PartBound proveFine(const Task& task, const WalkableSurface<std::uint32_t>& fine
         proof.include(
             cornersOf(task.parts, t), starts, kStepsOfFine,
             [](const Vec3& p, const Vec3& nearest, std::int64_t other) {
-                const auto triangle = static_cast<std::uint64_t>(other);
+                const auto triangle = static_cast<Number>(other);
                 return PlaceBeyond{nearest, p, other < 0 ? PlaceBeyond::kNone : triangle, true};
             });
     });
@@ -285,7 +287,7 @@ PartBound proveFine(const Task& task, const WalkableSurface<std::uint32_t>& fine
 
 /// Tells the cover of the border between triangles that are mapped and others.
 void addBorders(const Task& task, const WalkableSurface<std::uint32_t>& fine,
-                const WalkableSurface<std::uint64_t>& onto, std::int64_t piece,
+                const WalkableSurface<Number>& onto, std::int64_t piece,
                 const std::vector<std::uint8_t>& isMapped, SharedCover& cover) {
     PieceMap map(task.parts, fine, task.surface, onto, task.enoughMm);
     forEachUnknown({}, piece, isMapped.size(), [&](std::size_t t) {
@@ -315,7 +317,7 @@ PartBound proveSimplified(const Task& task, const Target<std::uint32_t>& to,
         const int steps = kFewSteps + static_cast<int>(std::min(kManySteps, kStepsPerFace * faces));
         proof.include(corners, {&starts[t], 1}, steps,
                       [&](const Vec3& p, const Vec3& nearest, std::int64_t) {
-                          return PlaceBeyond{p, nearest, t, false};
+                          return PlaceBeyond{p, nearest, static_cast<Number>(t), false};
                       });
     });
     return proof.result();
@@ -404,7 +406,7 @@ ErrorBound MeshProof::prove(const SimplifiedSurface& surface, const Scope& scope
     const Target<std::uint32_t> fine{fine_, input_, parts_.origin,
                                      [&]() -> const AabbTree& { return *parts_.tree; }};
     SimplifiedTarget target(surface);
-    const Target<std::uint64_t> simplified = target.target();
+    const Target<Number> simplified = target.target();
     const Task task{parts_, surface, frame_.voxelMm(), enoughMm_, limitMm_};
     const std::vector<std::uint32_t> starts = startsOf(surface, fine_, parts_.points.size());
     const std::int64_t finePieces = (std::ssize(parts_.triangles) + kPiece - 1) / kPiece,

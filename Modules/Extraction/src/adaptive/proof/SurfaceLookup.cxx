@@ -13,13 +13,13 @@ std::int64_t floorOf(double x) {
     return static_cast<std::int64_t>(std::floor(x));
 }
 
-TriangleMesh meshOf(const SimplifiedSurface& surface) {
+TriangleMesh meshOf(const SurfaceState& surface) {
     TriangleMesh mesh;
     mesh.points = surface.points;
     mesh.triangles.reserve(surface.triangles.size());
-    for (const auto& t : surface.triangles) {
-        mesh.triangles.push_back({static_cast<VertexId>(t[0]), static_cast<VertexId>(t[1]),
-                                  static_cast<VertexId>(t[2])});
+    for (const auto& [a, b, c] : surface.triangles) {
+        mesh.triangles.push_back(
+            {static_cast<VertexId>(a), static_cast<VertexId>(b), static_cast<VertexId>(c)});
     }
     return mesh;
 }
@@ -40,20 +40,24 @@ std::pair<Index3, Index3> SurfaceLookup::placesNear(std::uint64_t t) const {
 
 SurfaceLookup::SurfaceLookup(const SimplifiedSurface& surface, const Bricks& bricks,
                              const MetricFrame& frame)
-    : bricks_(bricks), frame_(frame), mesh_(meshOf(surface)), ofBrick_(bricks.count()) {
-    tbb::parallel_invoke([&] { walkable_.assign(mesh_.points, mesh_.triangles); },
+    : surface_(surface), bricks_(bricks), frame_(frame) {
+    tbb::parallel_invoke([&] { walkable_.assign(surface.points, surface.triangles); },
                          [&] {
-                             for (std::uint64_t t = 0; t < triangleCount(); ++t) {
-                                 forEachBrickNear(
-                                     t, [&](std::int64_t b) { ofBrick_[b].push_back(t); });
-                             }
+                             ofBrick_.assign(bricks_.count(), [&](const auto& give) {
+                                 for (SurfaceState::Number t = 0; t < triangleCount(); ++t) {
+                                     forEachBrickNear(t, [&](std::int64_t b) { give(b, t); });
+                                 }
+                             });
                          });
 }
 
 const AabbTree& SurfaceLookup::tree() const {
     std::call_once(treeIsBuilt_, [&] {
         // while it waits for its own tasks a thread must not take one that asks for the tree
-        tbb::this_task_arena::isolate([&] { tree_.emplace(mesh_); });
+        tbb::this_task_arena::isolate([&] {
+            mesh_ = meshOf(surface_);
+            tree_.emplace(mesh_);
+        });
     });
     return *tree_;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Buckets.h"
 #include "adaptive/bricks/Bricks.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
@@ -21,7 +22,7 @@ inline std::array<Corners, 4> quarter(const Corners& t) {
 }
 
 /// Triangles of a simplified surface by the bricks whose neighbourhood they reach into, and by
-/// their places. A copy: the surface may change.
+/// their places. The surface must not change meanwhile.
 class SurfaceLookup {
 public:
     SurfaceLookup(const SimplifiedSurface& surface, const Bricks& bricks, const MetricFrame& frame);
@@ -29,25 +30,25 @@ public:
     const Bricks& bricks() const { return bricks_; }
     const MetricFrame& frame() const { return frame_; }
 
-    std::uint64_t triangleCount() const { return mesh_.triangles.size(); }
+    std::uint64_t triangleCount() const { return surface_.triangles.size(); }
     Corners cornersOf(std::uint64_t t) const {
-        const adaptiso::Triangle& c = mesh_.triangles[t];
-        return {mesh_.points[c[0]], mesh_.points[c[1]], mesh_.points[c[2]]};
+        const SurfaceState::Triangle& c = surface_.triangles[t];
+        return {surface_.points[c[0]], surface_.points[c[1]], surface_.points[c[2]]};
     }
-    const adaptiso::Triangle& triangle(std::uint64_t t) const { return mesh_.triangles[t]; }
-    const Vec3& point(VertexId v) const { return mesh_.points[v]; }
+    const SurfaceState::Triangle& triangle(std::uint64_t t) const { return surface_.triangles[t]; }
+    const Vec3& point(SurfaceState::Number v) const { return surface_.points[v]; }
     /// Calls f(t) for all triangles that may lie within a distance of a piece.
     template <class F>
     void forEachNear(const Corners& piece, double distanceMm, const F& f) const {
         CornerBox box = boxOf(piece);
         box.widen(distanceMm);
         tree().forEachOverlap({box.low, box.high},
-                              [&](std::int64_t t) { f(static_cast<std::uint64_t>(t)); });
+                              [&](std::int64_t t) { f(static_cast<SurfaceState::Number>(t)); });
     }
-    /// The triangles' mesh; nothing may be asked of the lookup then.
-    TriangleMesh takeMesh() { return std::move(mesh_); }
-    const WalkableSurface<VertexId>& walkable() const { return walkable_; }
-    std::span<const std::uint64_t> ofBrick(std::int64_t b) const { return ofBrick_[b]; }
+    const WalkableSurface<SurfaceState::Number>& walkable() const { return walkable_; }
+    std::span<const SurfaceState::Number> ofBrick(std::int64_t b) const {
+        return ofBrick_.of(static_cast<std::size_t>(b));
+    }
     /// ofBrick() has all triangles within a distance of the brick.
     bool ofBrickHasAllWithin(double distanceMm) const {
         return distanceMm <= kRoom * frame_.narrowestMm();
@@ -94,13 +95,14 @@ private:
     /// Built when it is first asked for.
     const AabbTree& tree() const;
 
+    const SurfaceState& surface_;
     const Bricks& bricks_;
     const MetricFrame& frame_;
-    TriangleMesh mesh_;
     mutable std::once_flag treeIsBuilt_;
+    mutable TriangleMesh mesh_;  ///< the tree's
     mutable std::optional<AabbTree> tree_;
-    WalkableSurface<VertexId> walkable_;
-    std::vector<std::vector<std::uint64_t>> ofBrick_;
+    WalkableSurface<SurfaceState::Number> walkable_;
+    Buckets<SurfaceState::Number> ofBrick_;
 };
 
 }  // namespace adaptiso::detail

@@ -8,6 +8,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Interruption.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
@@ -207,11 +209,16 @@ BrickSurface simplifyBrick(const FineSurface& fine, const Index3& lowIndex,
 /// Vertices of the whole are numbered in the order in which bricks first have them.
 class Joiner {
 public:
-    Joiner(const MetricFrame& frame, const TightPlaces& tight) : frame_(frame), tight_(tight) {}
+    Joiner(const Bricks& bricks, const MetricFrame& frame, const TightPlaces& tight)
+        : bricks_(bricks), frame_(frame), tight_(tight) {
+        for (std::int64_t b = 0; b < bricks.count(); ++b) blocks_ += bricks[b].blocks.size();
+    }
 
     /// \pre the bricks come in their order
     void add(const BrickSurface& brick) {
-        const auto firstTriangle = static_cast<std::uint64_t>(whole_.triangles.size());
+        requireRoomFor(brick);
+        makeRoomFor(brick);
+        const auto firstTriangle = static_cast<Number>(whole_.triangles.size());
         numberVertices(brick, firstTriangle);
         for (const auto& t : brick.triangles) {
             whole_.triangles.push_back({number_[t[0]], number_[t[1]], number_[t[2]]});
@@ -226,6 +233,7 @@ public:
     }
 
     SimplifiedSurface join() {
+        wallAt_.clear();
         whole_.firstSample.push_back(whole_.samples.size());
         std::sort(walls_.begin(), walls_.end(),
                   [](const WallVertex& a, const WallVertex& b) { return a.edge < b.edge; });
@@ -234,17 +242,58 @@ public:
     }
 
 private:
+    using Number = SurfaceState::Number;
+
     /// What is known of a vertex on walls; those of the bricks before, all together.
     struct WallVertex {
-        std::uint64_t edge, vertex, triangle;
+        std::uint64_t edge;
+        Number vertex, triangle;
         Vec3 normal;  ///< sum of the bricks'
         std::uint8_t room;
     };
 
+    void requireRoomFor(const BrickSurface& brick) const {
+        const auto fits = [](const auto& whole, const auto& part, std::size_t most) {
+            return part.size() <= most - whole.size();
+        };
+        if (fits(whole_.triangles, brick.triangles, SurfaceState::kMost) &&
+            fits(whole_.points, brick.points, SurfaceState::kMost) &&
+            fits(whole_.samples, brick.samples, SimplifiedSurface::kMostSamples - walls_.size())) {
+            return;
+        }
+        throw InvalidInput(
+            "extractSurface: the surface is too large for the adaptive method in one piece; mc has "
+            "no such limit, and adaptiso-giant works in tiles");
+    }
+
+    /// Lets the lists grow to what all bricks will need, by how much those so far did: so they are
+    /// copied rarely, and little of them is there twice.
+    void makeRoomFor(const BrickSurface& brick) {
+        const std::size_t number = whole_.firstSample.size();
+        blocksJoined_ += bricks_[static_cast<std::int64_t>(number)].blocks.size();
+        const double share = static_cast<double>(blocksJoined_) /
+                             static_cast<double>(std::max<std::size_t>(blocks_, 1));
+        const auto grow = [&](auto& list, std::size_t more) {
+            const std::size_t least = list.size() + more;
+            if (least <= list.capacity()) return;
+            const double needed = static_cast<double>(least);
+            list.reserve(static_cast<std::size_t>(std::clamp(
+                kRoomToGrow * needed / share, kLeastGrowth * needed, kMostGrowth * needed)));
+        };
+        grow(whole_.points, brick.points.size());
+        grow(whole_.states, brick.points.size());
+        grow(whole_.quadrics, brick.points.size());
+        grow(whole_.triangles, brick.triangles.size());
+        // those on walls come last
+        const std::size_t samples = brick.samples.size() + walls_.size() + brick.walls.size();
+        grow(whole_.samples, samples);
+        grow(whole_.sampleTriangle, samples);
+    }
+
     /// Gives the brick's vertices their numbers in the whole, and appends those that are new: at a
     /// wall the first brick keeps the vertex, the others add their quadrics to it.
-    void numberVertices(const BrickSurface& brick, std::uint64_t firstTriangle) {
-        constexpr std::uint64_t kNew = ~std::uint64_t{0};
+    void numberVertices(const BrickSurface& brick, Number firstTriangle) {
+        constexpr Number kNew = ~Number{0};
         number_.assign(brick.points.size(), kNew);
         for (const auto& wall : brick.walls) {
             const auto known = wallAt_.find(wall.edge);
@@ -252,7 +301,7 @@ private:
         }
         for (std::size_t v = 0; v < number_.size(); ++v) {
             if (number_[v] == kNew) {
-                number_[v] = whole_.points.size();
+                number_[v] = static_cast<Number>(whole_.points.size());
                 whole_.points.push_back(brick.points[v]);
                 whole_.states.push_back(brick.states[v]);
                 whole_.quadrics.push_back(brick.quadrics[v]);
@@ -286,9 +335,13 @@ private:
         whole_.wallEdges.push_back(wall.edge);
     }
 
+    static constexpr double kRoomToGrow = 1.1, kLeastGrowth = 1.125, kMostGrowth = 1024;
+
+    const Bricks& bricks_;
     const MetricFrame& frame_;
     const TightPlaces& tight_;
-    std::vector<std::uint64_t> number_;  ///< in the whole, of a brick's vertices
+    std::size_t blocks_ = 0, blocksJoined_ = 0;  ///< of all bricks; of those that were added
+    std::vector<Number> number_;                 ///< in the whole, of a brick's vertices
     std::vector<WallVertex> walls_;
     std::unordered_map<std::uint64_t, std::size_t> wallAt_;  ///< by edge
     SimplifiedSurface whole_;
@@ -309,6 +362,7 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
         return Tools{BrickMesher(sampler, bricks.grid()), {}};
     });
     const auto simplified = [&](std::int64_t b) {
+        InterruptionCheck::ask();
         Tools& mine = tools.local();
         mine.mesher.mesh(bricks[b], mine.fine);
         Index3 lowIndex = bricks[b].low;
@@ -316,7 +370,7 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
         return simplifyBrick(mine.fine, lowIndex, frame, tight, limits, moving,
                              costs != nullptr ? &(*costs)[b] : nullptr);
     };
-    Joiner joiner(frame, tight);
+    Joiner joiner(bricks, frame, tight);
     std::int64_t next = 0;
     // bricks differ in what they take: some wait for the ones before them, so that none waits for
     // work

@@ -138,13 +138,13 @@ void PatchGroups::groupTriangles() {
     triangles_ = Groups(count(), surface_.triangles.size(),
                         [&](std::size_t t) { return cubeOfTriangle_[t]; });
     triangles_.number(placeOfTriangle_);
-    for (std::uint64_t t = 0; t < cubeOfTriangle_.size(); ++t) {
+    for (std::uint32_t t = 0; t < cubeOfTriangle_.size(); ++t) {
         if (cubeOfTriangle_[t] != kStraddles) continue;
         placeOfTriangle_[t] = static_cast<std::uint32_t>(straddling_.size());
         straddling_.push_back(t);
     }
     strayedSamples_ = Groups(straddling_.size(), surface_.samples.size(), [&](std::size_t s) {
-        const std::uint64_t t = surface_.sampleTriangle[s];
+        const std::uint32_t t = surface_.sampleTriangle[s];
         return cubeOfTriangle_[t] == kStraddles ? placeOfTriangle_[t] : kStraddles;
     });
     collectObstacles();
@@ -171,7 +171,7 @@ bool PatchGroups::isIdle(std::size_t n) const {
     const auto members = vertices_.of(n);
     return triangles_.of(n).empty() ||
            std::all_of(members.begin(), members.end(),
-                       [&](std::uint64_t v) { return surface_.states[v] == Patch::State::Final; });
+                       [&](std::uint32_t v) { return surface_.states[v] == Patch::State::Final; });
 }
 
 std::vector<std::int64_t> PatchGroups::shares(std::int64_t total) const {
@@ -190,16 +190,16 @@ std::vector<std::int64_t> PatchGroups::shares(std::int64_t total) const {
 }
 
 /// The samples of the cube's triangles, triangle by triangle.
-void PatchGroups::sortSamples(std::size_t n, std::vector<std::uint64_t>& sorted) const {
+void PatchGroups::sortSamples(std::size_t n, std::vector<std::uint32_t>& sorted) const {
     const auto members = samples_.of(n);
-    const auto triangleOf = [&](std::uint64_t s) {
+    const auto triangleOf = [&](std::uint32_t s) {
         return placeOfTriangle_[surface_.sampleTriangle[s]];
     };
     std::vector<std::uint32_t> at(triangles_.of(n).size() + 1, 0);
-    for (const std::uint64_t s : members) ++at[triangleOf(s) + 1];
+    for (const std::uint32_t s : members) ++at[triangleOf(s) + 1];
     for (std::size_t t = 1; t < at.size(); ++t) at[t] += at[t - 1];
     sorted.resize(members.size());
-    for (const std::uint64_t s : members) sorted[at[triangleOf(s)]++] = s;
+    for (const std::uint32_t s : members) sorted[at[triangleOf(s)]++] = s;
 }
 
 Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
@@ -209,7 +209,7 @@ Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
     patch.points.reserve(members.size());
     patch.quadrics.reserve(members.size());
     patch.states.reserve(members.size());
-    for (const std::uint64_t v : members) {
+    for (const std::uint32_t v : members) {
         patch.points.push_back(surface_.points[v]);
         patch.quadrics.push_back(surface_.quadrics[v].about(surface_.points[v]));
         patch.states.push_back(surface_.states[v]);
@@ -221,7 +221,7 @@ Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
     }
     const auto own = triangles_.of(n);
     patch.triangles.reserve(own.size() + obstacles_[n].size());
-    for (const std::uint64_t t : own) {
+    for (const std::uint32_t t : own) {
         const SurfaceState::Triangle& c = surface_.triangles[t];
         patch.triangles.push_back(
             {placeOfVertex_[c[0]], placeOfVertex_[c[1]], placeOfVertex_[c[2]]});
@@ -230,7 +230,7 @@ Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
     sortSamples(n, scratch.samples);
     patch.samples.reserve(scratch.samples.size());
     patch.sampleTriangle.reserve(scratch.samples.size());
-    for (const std::uint64_t s : scratch.samples) {
+    for (const std::uint32_t s : scratch.samples) {
         patch.samples.push_back(surface_.samples[s]);
         patch.sampleTriangle.push_back(placeOfTriangle_[surface_.sampleTriangle[s]]);
     }
@@ -241,7 +241,7 @@ Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
 /// Adds the triangles that straddle the cube's walls, with their vertices and samples.
 void PatchGroups::addObstacles(std::size_t n, Patch& patch, PatchScratch& scratch) const {
     scratch.outsideNumber.resize(surface_.points.size());
-    const auto localVertex = [&](std::uint64_t v) {
+    const auto localVertex = [&](std::uint32_t v) {
         if (cubeOfVertex_[v] == n) return placeOfVertex_[v];
         std::uint32_t& number = scratch.outsideNumber[v];
         if (number == 0) {
@@ -255,14 +255,14 @@ void PatchGroups::addObstacles(std::size_t n, Patch& patch, PatchScratch& scratc
         return number - 1;
     };
     for (const std::uint32_t obstacle : obstacles_[n]) {
-        for (const std::uint64_t s : strayedSamples_.of(obstacle)) {
+        for (const std::uint32_t s : strayedSamples_.of(obstacle)) {
             patch.samples.push_back(surface_.samples[s]);
             patch.sampleTriangle.push_back(static_cast<std::uint32_t>(patch.triangles.size()));
         }
         const SurfaceState::Triangle& c = surface_.triangles[straddling_[obstacle]];
         patch.triangles.push_back({localVertex(c[0]), localVertex(c[1]), localVertex(c[2])});
     }
-    for (const std::uint64_t v : scratch.outsideVertices) scratch.outsideNumber[v] = 0;
+    for (const std::uint32_t v : scratch.outsideVertices) scratch.outsideNumber[v] = 0;
     scratch.outsideVertices.clear();
 }
 
@@ -291,7 +291,7 @@ void PatchGroups::putBack(std::size_t n, const Patch& patch, const PatchScratch&
 }
 
 void PatchGroups::noteMerges(std::size_t n, const Patch& patch,
-                             std::vector<std::uint64_t>& mergedInto) const {
+                             std::vector<std::uint32_t>& mergedInto) const {
     const auto members = vertices_.of(n);
     for (std::size_t v = 0; v < members.size(); ++v) {
         mergedInto[members[v]] = members[patch.heirs[v]];

@@ -90,15 +90,15 @@ public:
         : members_(groups, [&](const auto& give) {
               for (std::size_t i = 0; i < n; ++i) {
                   const std::uint64_t key = keyOf(i);
-                  if (key < groups) give(key, i);
+                  if (key < groups) give(key, static_cast<std::uint32_t>(i));
               }
           }) {}
-    std::span<const std::uint64_t> of(std::size_t group) const { return members_.of(group); }
+    std::span<const std::uint32_t> of(std::size_t group) const { return members_.of(group); }
     /// Gives each member its place in its group.
     void number(std::vector<std::uint32_t>& places) const {
         for (std::size_t g = 0; g < members_.count(); ++g) {
             std::uint32_t place = 0;
-            for (const std::uint64_t member : of(g)) places[member] = place++;
+            for (const std::uint32_t member : of(g)) places[member] = place++;
         }
     }
     /// How many members the groups up to one have together.
@@ -106,14 +106,14 @@ public:
     std::size_t memberCount() const { return members_.itemCount(); }
 
 private:
-    Buckets<std::uint64_t> members_;
+    Buckets<std::uint32_t, std::uint32_t> members_;
 };
 
 /// What a thread needs while it works on patches, one after the other.
 struct PatchScratch {
-    std::vector<std::uint64_t> samples;        ///< of the patch's own triangles, in its order
+    std::vector<std::uint32_t> samples;        ///< of the patch's own triangles, in its order
     std::vector<std::uint32_t> outsideNumber;  ///< number + 1 in the patch, of the whole's vertices
-    std::vector<std::uint64_t> outsideVertices;  ///< that have one
+    std::vector<std::uint32_t> outsideVertices;  ///< that have one
 };
 
 /// The patches of a cut: who belongs to which.
@@ -140,7 +140,7 @@ public:
     /// Says of each vertex of a patch what it was merged into.
     /// \param mergedInto  of each vertex of the surface
     void noteMerges(std::size_t n, const Patch& patch,
-                    std::vector<std::uint64_t>& mergedInto) const;
+                    std::vector<std::uint32_t>& mergedInto) const;
 
 private:
     static constexpr std::uint32_t kStraddles = 0xFFFFFFFF;
@@ -150,7 +150,7 @@ private:
     void groupVertices();
     void groupTriangles();
     void collectObstacles();
-    void sortSamples(std::size_t n, std::vector<std::uint64_t>& sorted) const;
+    void sortSamples(std::size_t n, std::vector<std::uint32_t>& sorted) const;
     void addObstacles(std::size_t n, Patch& patch, PatchScratch& scratch) const;
 
     const SimplifiedSurface& surface_;
@@ -158,7 +158,7 @@ private:
     std::vector<std::uint32_t> cubeOfVertex_, cubeOfTriangle_;
     std::vector<std::uint32_t> placeOfVertex_;    ///< in its cube
     std::vector<std::uint32_t> placeOfTriangle_;  ///< in its cube, or among those that straddle
-    std::vector<std::uint64_t> straddling_;
+    std::vector<std::uint32_t> straddling_;
     Groups vertices_, triangles_;
     Groups samples_;                                     ///< of the cubes' triangles
     Groups strayedSamples_;                              ///< of each triangle that straddles

@@ -11,29 +11,31 @@
 namespace adaptiso::detail {
 namespace {
 
+using Number = SurfaceState::Number;
+
 /// \param newVertex  of each vertex, kGone for those that are gone
 /// \param mergedInto of each vertex, what it was merged into in this round
-void passOn(const std::vector<std::uint64_t>& newVertex,
-            const std::vector<std::uint64_t>& mergedInto, std::vector<std::uint64_t>& heirs) {
-    for (std::uint64_t& heir : heirs) {
+void passOn(const std::vector<Number>& newVertex, const std::vector<Number>& mergedInto,
+            std::vector<Number>& heirs) {
+    for (Number& heir : heirs) {
         while (newVertex[heir] == SimplifiedSurface::kGone) heir = mergedInto[heir];
         heir = newVertex[heir];
     }
 }
 
 /// \param mergedInto  of each vertex, in this round; empty where the surface keeps no heirs
-void removeGone(SimplifiedSurface& surface, const std::vector<std::uint64_t>& mergedInto) {
-    constexpr std::uint64_t kGone = SimplifiedSurface::kGone;
-    std::vector<std::uint64_t> newTriangle(surface.triangles.size()),
+void removeGone(SimplifiedSurface& surface, const std::vector<Number>& mergedInto) {
+    constexpr Number kGone = SimplifiedSurface::kGone;
+    std::vector<Number> newTriangle(surface.triangles.size()),
         newVertex(surface.points.size(), kGone);
-    std::uint64_t triangles = 0, vertices = 0;
+    Number triangles = 0, vertices = 0;
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
         if (surface.triangles[t][0] == kGone) continue;
-        for (const std::uint64_t v : surface.triangles[t]) newVertex[v] = 0;
+        for (const Number v : surface.triangles[t]) newVertex[v] = 0;
         newTriangle[t] = triangles;
         surface.triangles[triangles++] = surface.triangles[t];
     }
-    for (std::uint64_t& v : newVertex) {
+    for (Number& v : newVertex) {
         if (v != kGone) v = vertices++;
     }
     const auto keep = [&](auto& members) {
@@ -48,7 +50,7 @@ void removeGone(SimplifiedSurface& surface, const std::vector<std::uint64_t>& me
             surface.triangles.resize(triangles);
             surface.triangles.shrink_to_fit();
             for (auto& t : surface.triangles) {
-                for (std::uint64_t& v : t) v = newVertex[v];
+                for (Number& v : t) v = newVertex[v];
             }
         },
         [&] { keep(surface.quadrics); }, [&] { keep(surface.points); },
@@ -57,7 +59,7 @@ void removeGone(SimplifiedSurface& surface, const std::vector<std::uint64_t>& me
             if (!surface.marks.empty()) keep(surface.marks);
         },
         [&] {
-            for (std::uint64_t& t : surface.sampleTriangle) t = newTriangle[t];
+            for (Number& t : surface.sampleTriangle) t = newTriangle[t];
         },
         [&] { passOn(newVertex, mergedInto, surface.heirs); });
 }
@@ -71,18 +73,20 @@ std::int64_t PatchTrial::collapses() const {
 }
 
 PatchRound::PatchRound(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame)
-    : surface_(surface), frame_(frame), groups_(surface, cut, frame) {}
+    : surface_(surface), frame_(frame) {
+    groups_.emplace(surface, cut, frame);
+}
 
 PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
     std::vector<std::size_t> all, some;
-    for (std::size_t n = 0; n < groups_.count(); ++n) {
-        if (!groups_.isIdle(n)) all.push_back(n);
+    for (std::size_t n = 0; n < groups_->count(); ++n) {
+        if (!groups_->isIdle(n)) all.push_back(n);
     }
     const std::size_t every =
         triesAll ? 1 : std::clamp<std::size_t>(all.size() / kTrialFewest, 1, kTrialEvery);
     double triangles = 0, tried = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const auto count = static_cast<double>(groups_.triangleCount(all[i]));
+        const auto count = static_cast<double>(groups_->triangleCount(all[i]));
         triangles += count;
         if (i % every != every / 2) continue;
         some.push_back(all[i]);
@@ -93,31 +97,33 @@ PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
     if (every > 1) trial.share = tried / triangles;
     tbb::enumerable_thread_specific<PatchScratch> scratches;
     parallelForPieces(std::ssize(some), 1, [&](std::int64_t i, std::int64_t) {
-        Patch patch = groups_.take(some[i], scratches.local());
+        Patch patch = groups_->take(some[i], scratches.local());
         PatchSimplifier(patch, frame_, limits).collapseEdges(patch.ownTriangles, &trial.costs[i]);
     });
     return trial;
 }
 
 void PatchRound::run(const PatchWork& work, CollapseCosts* costs) {
-    if (costs != nullptr) costs->assign(groups_.count(), {});
-    const std::vector<std::int64_t> quota = groups_.shares(work.mostCollapses);
-    std::vector<std::uint64_t> mergedInto;
+    if (costs != nullptr) costs->assign(groups_->count(), {});
+    const std::vector<std::int64_t> quota = groups_->shares(work.mostCollapses);
+    std::vector<Number> mergedInto;
     if (work.collapses && !surface_.heirs.empty()) mergedInto.resize(surface_.points.size());
     tbb::enumerable_thread_specific<PatchScratch> scratches;
     parallelForPieces(
-        static_cast<std::int64_t>(groups_.count()), 1, [&](std::int64_t n, std::int64_t) {
-            if (groups_.isIdle(n)) return;
+        static_cast<std::int64_t>(groups_->count()), 1, [&](std::int64_t n, std::int64_t) {
+            if (groups_->isIdle(n)) return;
             PatchScratch& scratch = scratches.local();
-            Patch patch = groups_.take(n, scratch);
+            Patch patch = groups_->take(n, scratch);
             PatchSimplifier simplifier(patch, frame_, work.limits);
             if (work.collapses) {
                 simplifier.collapseEdges(quota[n], costs == nullptr ? nullptr : &(*costs)[n]);
             }
             if (work.fits) simplifier.fitVertices();
-            groups_.putBack(n, patch, scratch, surface_);
-            if (!mergedInto.empty()) groups_.noteMerges(n, patch, mergedInto);
+            groups_->putBack(n, patch, scratch, surface_);
+            if (!mergedInto.empty()) groups_->noteMerges(n, patch, mergedInto);
         });
+    scratches.clear();
+    groups_.reset();
     if (work.collapses) removeGone(surface_, mergedInto);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "adaptive/collapse/PatchSimplifier.h"
 #include "adaptive/mesh/MetricFrame.h"
@@ -43,7 +44,7 @@ public:
 private:
     SimplifiedSurface& surface_;
     const MetricFrame& frame_;
-    PatchGroups groups_;
+    std::optional<PatchGroups> groups_;  ///< none after run()
 };
 
 }  // namespace adaptiso::detail

@@ -14,7 +14,7 @@ namespace {
 /// From now on.
 void keepHeirs(SimplifiedSurface& surface) {
     surface.heirs.resize(surface.points.size());
-    std::iota(surface.heirs.begin(), surface.heirs.end(), std::uint64_t{0});
+    std::iota(surface.heirs.begin(), surface.heirs.end(), SurfaceState::Number{0});
 }
 
 /// A cut into one cube with all of the surface; none where that would be too large.
@@ -71,6 +71,7 @@ void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
     limits_.triedCost = limits_.maxCost;
     limits_.maxCost = cost;
     PatchRound(surface, nextCut(surface), frame_).run({limits_});
+    surface.returnFreedMemory();
 }
 
 Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
@@ -79,6 +80,7 @@ Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
     limits_.maxDistanceMm *= kHalfwayDistance;
     limits_.maxCost = kFirstCost * costUnit_;
     surface = full_.firstRound(tight_, limits_, nullptr);
+    surface.returnFreedMemory();
     for (const double cost : kBoundCosts) {
         if (cost * costUnit_ > mostCost) break;
         roundUpTo(cost * costUnit_, surface);
