@@ -115,7 +115,9 @@ void takeOffRest(Head& head, std::vector<std::string>& notes) {
                         "skin may hold some of it");
     }
     if (voxelsIn(rest) == 0) return;
-    for (std::size_t n = 0; n < rest.size(); ++n) head.solid[n] &= rest[n] ^ 1;
+    for (std::size_t n = 0; n < rest.size(); ++n) {
+        if (rest[n] != 0) head.solid[n] = 0;
+    }
     head.solid = largestComponent(head.solid, head.grid.size);
     // neither air nor skin is seen there
     const Mask beside = dilated(rest, head.grid, 2 * stepMm(head.grid));
