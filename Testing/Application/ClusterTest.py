@@ -1,6 +1,6 @@
 """adaptiso-bids on a Slurm of three nodes that is started here: jobs killed, a node lost, two
-submissions at once. Needs Debian's slurmctld, slurmd, slurm-client, munge and mricron-data; exits 77
-(skipped) without them. The Snakefile is tried where snakemake is installed."""
+submissions at once, for 100 subjects or ADAPTISO_SUBJECTS. Needs Debian's slurmctld, slurmd, slurm-client,
+munge and mricron-data; exits 77 (skipped) without them. The Snakefile is tried where snakemake is installed."""
 
 import gzip
 import os
@@ -19,7 +19,8 @@ from support import BIN, OK, SOURCE, ApplicationTest, Image, main, write_nifti
 BIDS = str(BIN / "adaptiso-bids")
 SCAN = Path("/usr/share/mricron/templates/ch2.nii.gz")
 WHAT = ("--surfaces", "iso=auto,largest", "--check", "--no-pictures")
-SUBJECTS, KILLS, SIDE = 100, 20, 40
+SUBJECTS = int(os.environ.get("ADAPTISO_SUBJECTS", "100"))
+KILLS, SIDE = max(8, SUBJECTS // 5), 40
 
 
 def crops(count):

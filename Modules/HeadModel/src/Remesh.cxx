@@ -283,8 +283,9 @@ Remeshed remeshForBem(const TriangleMesh& surface, const RemeshOptions& options)
     }
     for (int n = 0; n < kMendings && crossings.pairCount > 0; ++n) {
         target.setSizes(shorterWhereCrossing(target, *remesher, result.mesh, crossings));
-        remesher->readSizes();
-        makeIsotropic(*remesher, vertices, kIsotropicRounds.front());
+        // from the surface again: a mesh that crosses itself lands on the wrong sheet, ever worse
+        remesher.emplace(target);
+        vertices = startOver(*remesher, options.vertices, kIsotropicRounds.front(), true);
         result.mesh = finish(*remesher, vertices, options.fitMm);
         crossings = findSelfIntersections(result.mesh);
     }

@@ -42,14 +42,6 @@ Remesher::Remesher(const RemeshTarget& target) : target_(target), mesh_(target.s
     }
 }
 
-void Remesher::readSizes() {
-    for (VertexId v = 0; v < mesh_.vertexSlots(); ++v) {
-        if (mesh_.isVertexAlive(v)) {
-            sizesMm_[v] = target_.project(mesh_.point(v), triangles_[v]).sizeMm;
-        }
-    }
-}
-
 void Remesher::settle(VertexId v, const Landing& landing) {
     if (v >= std::ssize(sizesMm_)) {
         sizesMm_.resize(v + 1);

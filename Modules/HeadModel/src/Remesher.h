@@ -18,8 +18,6 @@ public:
 
     const EditMesh& mesh() const { return mesh_; }
     std::int64_t vertexCount() const { return mesh_.vertexCount(); }
-    /// Takes the sizes anew from the target, whose field has changed.
-    void readSizes();
 
     /// Vertices are put back by a search of the whole surface instead of from where they were:
     /// slow, and the way out where sheets have got entangled.
