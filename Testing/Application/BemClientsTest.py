@@ -389,7 +389,6 @@ class RealHead(ClientTest):
         self.bem("--labels", "charm.nii.gz", "--preset", "charm", "--layers", 4, "-o", "model")
         report = json.loads((self.path("model") / "report.json").read_text())
         self.assertTrue(all(check["passed"] for check in report["checks"]))
-        self.assertNotIn("edges of one length", json.dumps(report))  # triangles that cross are mended
         self.assertLessEqual(sum(surface["vertices"] for surface in report["surfaces"]), 10_000)
         volumes = [surface["volumeMm3"] / 1000 for surface in report["surfaces"]]
         # the labels' own, in cm3; sulci and seams are closed

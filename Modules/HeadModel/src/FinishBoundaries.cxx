@@ -8,6 +8,7 @@
 #include "BallTopology.h"
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Release.h"
 
 namespace adaptiso {
 
@@ -206,7 +207,7 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
     result.warnings = std::move(raw.warnings);
     const auto settle = [&](std::vector<float> part, HeadSurface surface) {
         BoxedSolid solid = boxed(part, raw.grid, 3 * options.smoothingMm, nameOf(surface));
-        part = {};  // a head's worth of memory
+        release(part);  // a head's worth of memory
         solid.field.part = settled(std::move(solid.field.part), solid.field.grid,
                                    options.smoothingMm, nameOf(surface), result.notes);
         return solid;

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "Release.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Release.h"
 
 namespace adaptiso::detail {
 namespace {

@@ -9,10 +9,10 @@
 #include "DualComplex.h"
 #include "LabelGrid.h"
 #include "Placement.h"
-#include "Release.h"
 #include "SimplifyWalls.h"
 #include "Walls.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Release.h"
 #include "adaptiso/Core/VoxelShape.h"
 
 namespace adaptiso {

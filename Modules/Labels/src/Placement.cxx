@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
-#include "Release.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Release.h"
 
 namespace adaptiso::detail {
 namespace {

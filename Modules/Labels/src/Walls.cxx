@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "Release.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Release.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
 namespace adaptiso::detail {

@@ -117,15 +117,6 @@ std::vector<TriangleMesh> remeshed(const std::vector<TriangleMesh>& dense, BemMo
             RemeshOptions options = remeshOptions(model, dense, n);
             options.wantedEdgesMm = std::move(edgesMm[n]);
             Remeshed result = remeshForBem(dense[n], options);
-            if (!result.findings.empty() && !options.wantedEdgesMm.empty()) {
-                // sizes nobody asked for: bridges and canals may be too thin for the longer of them
-                options.edgeLengthMm.reset();
-                options.wantedEdgesMm.clear();
-                result = remeshForBem(dense[n], options);
-                model.notes.push_back(bemSurfaceName(n, model.surfaces.size()) +
-                                      ": edges of one length, as triangles crossed where they "
-                                      "followed the layers' thickness");
-            }
             model.surfaces[n].remesh = result.statistics;
             for (Finding& finding : result.findings) {
                 finding.what = bemSurfaceName(n, model.surfaces.size()) + ": " + finding.what;

@@ -92,6 +92,9 @@ inline constexpr double kNoiseCrossed = 0.5, kNoiseSingle = 0.05;
 /// Vertices are in one plane where their area vectors add up to their area but for this part; a
 /// brick with fewer of them than that part is not searched for flat boxes.
 inline constexpr double kFlatPart = 1e-9, kFewFlat = 0.05;
+/// Lists of all bricks get room for this many times what the bricks so far took, scaled to all of
+/// them; at least and at most so many times what they hold.
+inline constexpr double kRoomToGrow = 1.1, kLeastGrowth = 1.125, kMostGrowth = 1024;
 /// Another sheet is one whose normal differs by more: cosine of about 70 degrees.
 inline constexpr float kOtherSheetCosine = 0.3F;
 

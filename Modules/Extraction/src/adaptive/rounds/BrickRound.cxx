@@ -335,8 +335,6 @@ private:
         whole_.wallEdges.push_back(wall.edge);
     }
 
-    static constexpr double kRoomToGrow = 1.1, kLeastGrowth = 1.125, kMostGrowth = 1024;
-
     const Bricks& bricks_;
     const MetricFrame& frame_;
     const TightPlaces& tight_;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace adaptiso::detail {
+namespace adaptiso {
 
 /// Gives a vector's memory back. `v = {}` would keep it: that assigns an empty list of elements.
 template <class T>
@@ -10,4 +10,4 @@ void release(std::vector<T>& v) {
     std::vector<T>().swap(v);
 }
 
-}  // namespace adaptiso::detail
+}  // namespace adaptiso
