@@ -74,10 +74,7 @@ private:
         if (isBeyond(attempt.error)) return false;
         findCrossings(attempt);
         for (int mend = 0; mend < kMostMends && !attempt.crossing.empty(); ++mend) {
-            if (!(mend == 0 && undoFits(placesOf(attempt), attempt.surface)) &&
-                (wanted_.isGiven() || !mendCrossings(attempt))) {
-                break;
-            }
+            if (wanted_.isGiven() || !mendCrossings(attempt)) break;
             attempt.error = proveAndMend(attempt.surface);
             findCrossings(attempt);
         }
@@ -188,24 +185,6 @@ private:
         return points;
     }
 
-    /// \param places  continuous sample indices
-    /// \return false when no vertex was fitted there
-    bool undoFits(const std::vector<Vec3>& places, SimplifiedSurface& surface) const {
-        if (unfitted_.empty()) return false;
-        TightPlaces around;
-        around.add(places);
-        bool isUndone = false;
-        for (std::size_t s = 0; s < surface.samples.size(); ++s) {
-            if (!around.has(frame_, surface.samples[s])) continue;
-            for (const std::uint64_t v : surface.triangles[surface.sampleTriangle[s]]) {
-                if (v >= unfitted_.size() || surface.points[v] == unfitted_[v]) continue;
-                surface.points[v] = unfitted_[v];
-                isUndone = true;
-            }
-        }
-        return isUndone;
-    }
-
     std::vector<Vec3> indicesOf(const ErrorBound& error) const {
         std::vector<Vec3> indices;
         for (const Vec3& p : pointsOf(error)) indices.push_back(frame_.toIndex(p));
@@ -284,6 +263,7 @@ private:
         limits.box = full_.box();
         limits.maxDistanceMm =
             boundMm - std::min(kSlackVoxels * frame_.narrowestMm(), kSlackPart * boundMm);
+        if (boundMm_) limits.webMm = kWeb * *boundMm_;
         limits.provesAll = lessons_.provesAll || limits.maxDistanceMm > sheetMm;
         return limits;
     }
@@ -300,7 +280,6 @@ private:
         Simplification simplification(full_, lessons_.tight, limits());
         if (!wanted_.isGiven()) {
             SimplifiedSurface surface = simplification.toLimits(std::move(last), lessons_.halfway);
-            unfitted_ = surface.points;
             mended_.clear();
             fit(surface);
             return surface;
@@ -320,7 +299,6 @@ private:
     AdaptiveWork work_;
     std::unique_ptr<DistanceProof> proof_;        ///< remembers what it proved last, to prove less
     std::vector<SurfaceState::Triangle> mended_;  ///< of this run, before and after
-    std::vector<Vec3> unfitted_;                  ///< vertices before they were fitted
 };
 
 }  // namespace

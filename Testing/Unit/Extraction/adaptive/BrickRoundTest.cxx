@@ -74,4 +74,26 @@ TEST(BrickRound, LeavesFrozenPlacesAtFullResolution) {
     EXPECT_EQ(simplified().triangleCount(), surface.fineTriangles);
 }
 
+// A web .1 voxel thick at x = 8, and a ball that is not.
+TEST(BrickRound, KeepsWebsCloser) {
+    const Scene scene({64, 30, 30}, [](const Vec3& p) {
+        return std::max(0.05 - std::abs(p.x - 8), 10 - norm(p - Vec3{44, 15, 15}));
+    });
+    detail::PatchLimits limits;
+    limits.maxCost = 1e-3;
+    limits.maxDistanceMm = 0.1;
+    for (const double webMm : {0.0, 0.09, 0.11}) {
+        limits.webMm = webMm;
+        const detail::SimplifiedSurface surface =
+            detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, {}, limits, nullptr);
+        std::size_t tight = 0;
+        for (const detail::Sample& sample : surface.samples) {
+            const bool isOfBall = sample.point().x > 20;
+            if (isOfBall) ASSERT_EQ(sample.tightness, 0);
+            tight += sample.tightness > 0 ? 1 : 0;
+        }
+        EXPECT_EQ(tight > 1000, webMm == 0.11) << webMm;
+    }
+}
+
 }  // namespace adaptiso::testing

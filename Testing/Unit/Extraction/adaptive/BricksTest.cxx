@@ -77,4 +77,48 @@ TEST(Bricks, KnowWhereNoOtherSheetIsNear) {
     }
 }
 
+// Webs .1 voxel thick in planes of samples: also where the other side is another brick's.
+TEST(Bricks, KnowHowThinTheSurfaceIs) {
+    for (const double second : {30.0, 31.0, 32.0, 33.0}) {
+        const Scene scene(
+            {40, 12, 12},
+            [&](const Vec3& p) {
+                return 0.05 - std::min(std::abs(p.x - 8), std::abs(p.x - second));
+            },
+            Border::Open);
+        BrickMesher mesher(*scene.sampler, scene.bricks.grid());
+        FineSurface fine;
+        std::size_t vertices = 0;
+        for (std::int64_t b = 0; b < scene.bricks.count(); ++b) {
+            mesher.mesh(scene.bricks[b], fine);
+            for (const auto& vertex : fine.vertices) EXPECT_NEAR(vertex.gap, 0.1, 1e-6);
+            vertices += fine.vertices.size();
+        }
+        EXPECT_GT(vertices, 500U);
+    }
+}
+
+// Around the ball's poles lines of the lattice leave it again soon.
+TEST(Bricks, FindTheOtherEndOfAGap) {
+    const Scene scene = ballScene();
+    BrickMesher mesher(*scene.sampler, scene.bricks.grid());
+    FineSurface fine;
+    std::vector<detail::FineVertex> vertices;
+    for (std::int64_t b = 0; b < scene.bricks.count(); ++b) {
+        mesher.mesh(scene.bricks[b], fine);
+        vertices.insert(vertices.end(), fine.vertices.begin(), fine.vertices.end());
+    }
+    int gaps = 0;
+    for (const detail::FineVertex& vertex : vertices) {
+        if (vertex.gap == detail::FineVertex::kNoGap) continue;
+        ++gaps;
+        EXPECT_TRUE(std::any_of(vertices.begin(), vertices.end(), [&](const auto& other) {
+            Vec3 step = other.index - vertex.index;
+            const double along = std::abs(std::exchange(step[vertex.edge.axis()], 0.0));
+            return norm(step) == 0 && std::abs(along - vertex.gap) < 1e-6;
+        }));
+    }
+    EXPECT_GT(gaps, 0);
+}
+
 }  // namespace adaptiso::testing

@@ -35,7 +35,8 @@ TEST(ChangedStar, KnowsItsTriangles) {
     Middle middle;
     ASSERT_TRUE(middle.shape({1.2, 0.9, 0.3}));
     EXPECT_TRUE(middle.changed.isGraph);
-    const auto& [star, vertex, wedges, isGraph] = middle.changed;
+    const auto& [star, vertex, wedges, isGraph, normal] = middle.changed;
+    EXPECT_NEAR(norm(normal), 1, 1e-12);
     ASSERT_EQ(star.count, 6);
     for (int i = 0; i < star.count; ++i) {
         const ChangedStar::Wedge& w = wedges[i];

@@ -98,4 +98,24 @@ TEST(CrossingGuard, SeesTrianglesWhereACommitPutThem) {
     EXPECT_FALSE(guard.crossesNothing(other));
 }
 
+// A sheet whose last column is folded back over it: no sample knows of another sheet.
+TEST(CrossingGuard, AsksForAProofBesideAFold) {
+    Patch patch = sheetUnderTriangle();
+    for (Sample& sample : patch.samples) sample.room = detail::SheetRoom::kAlone;
+    const MetricFrame frame = millimetres();
+    for (const bool isFolded : {false, true}) {
+        for (std::uint32_t y = 0; isFolded && y < kSide; ++y) {
+            patch.points[vertexAt(4, y)] = {2, static_cast<double>(y), 0.01};
+        }
+        const PatchTopology topology(patch);
+        const CrossingGuard guard(patch, topology, frame, false);
+        ChangedStar changed;
+        ASSERT_TRUE(topology.starOf(vertexAt(2, 2), changed.star));
+        changed.vertex = {2, 2, 0.02};
+        ASSERT_TRUE(shapeStar(patch, {}, changed));
+        ASSERT_TRUE(changed.isGraph);
+        EXPECT_EQ(guard.needsProof(changed, false), isFolded);
+    }
+}
+
 }  // namespace adaptiso::testing

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 
 #include "adaptive/bricks/SheetTest.h"
 #include "cells/BoxCases.h"
@@ -23,6 +24,20 @@ std::size_t edgeSlot(const std::array<int, 3>& p, int axis) {
                y = static_cast<std::size_t>(p[1] + kHalo),
                z = static_cast<std::size_t>(p[2] + kHalo);
     return 3 * ((z * kPositions + y) * kPositions + x) + static_cast<std::size_t>(axis);
+}
+
+/// Relative to the brick, of an edge's first sample.
+std::array<int, 3> positionOf(const EdgeKey& edge, const Brick& brick) {
+    std::array<int, 3> p{};
+    for (int a = 0; a < 3; ++a) p[a] = static_cast<int>(edge.position(a) - brick.low[a]);
+    return p;
+}
+
+bool isCrossed(const LatticeEdge& edge, const LatticeSampler& sampler) {
+    std::array<std::uint32_t, 4> rows{};
+    sampler.insideRows(edge.sample, 2, rows.data());
+    const std::array<std::uint32_t, 3> ends{rows[0] >> 1, rows[1], rows[2]};
+    return ((rows[0] ^ ends[edge.axis]) & 1u) != 0;
 }
 
 /// The surface of a cell that needs fans.
@@ -109,6 +124,7 @@ BrickMesher::BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid)
 void BrickMesher::mesh(const Brick& brick, FineSurface& surface) {
     findsSheets_ = true;
     meshBrick(brick, surface);
+    findGaps(brick, surface);
     forget(brick, surface);
 }
 
@@ -158,14 +174,37 @@ void BrickMesher::meshBrick(const Brick& brick, FineSurface& surface) {
                       [](const FineVertex& v) { return v.edge.axis() == kCellCentre; }));
 }
 
+void BrickMesher::findGaps(const Brick& brick, FineSurface& surface) const {
+    for (FineVertex& vertex : surface.vertices) {
+        if (vertex.edge.axis() != kCellCentre) vertex.gap = gapOf(brick, surface, vertex);
+    }
+}
+
+float BrickMesher::gapOf(const Brick& brick, const FineSurface& surface,
+                         const FineVertex& vertex) const {
+    const int axis = vertex.edge.axis();
+    const double along = vertex.index[axis];
+    const int step = along - std::floor(along) < 0.5 ? -1 : 1;
+    std::array<int, 3> p = positionOf(vertex.edge, brick);
+    p[axis] += step;
+    double other = 0;
+    if (p[axis] >= 0 && p[axis] < Brick::kSide) {
+        const std::uint32_t number = vertexOnEdge_[edgeSlot(p, axis)];
+        if (number == 0) return FineVertex::kNoGap;
+        other = surface.vertices[number - 1].index[axis];
+    } else {  // in the brick beside this one
+        LatticeEdge edge = vertex.edge.latticeEdge(grid_.offset);
+        edge.sample[axis] += step;
+        if (!isCrossed(edge, sampler_)) return FineVertex::kNoGap;
+        other = static_cast<double>(edge.sample[axis]) + sampler_.crossingAlong(edge);
+    }
+    return static_cast<float>(std::abs(other - along));
+}
+
 void BrickMesher::forget(const Brick& brick, const FineSurface& surface) {
     for (const FineVertex& vertex : surface.vertices) {
         if (vertex.edge.axis() == kCellCentre) continue;
-        std::array<int, 3> p{};
-        for (int a = 0; a < 3; ++a) {
-            p[a] = static_cast<int>(vertex.edge.position(a) - brick.low[a]);
-        }
-        vertexOnEdge_[edgeSlot(p, vertex.edge.axis())] = 0;
+        vertexOnEdge_[edgeSlot(positionOf(vertex.edge, brick), vertex.edge.axis())] = 0;
     }
 }
 

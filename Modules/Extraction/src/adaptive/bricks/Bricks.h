@@ -48,6 +48,11 @@ struct FineVertex {
     /// Around the vertex, a cell and more on every side, the surface is one sheet seen from some
     /// direction: no other part of it comes near.
     bool isSingleSheet = true;
+    /// From here to where the surface crosses the line of the lattice edge again, on the other side
+    /// of the nearer sample, in steps of the lattice; kNoGap where it does not.
+    float gap = kNoGap;
+
+    static constexpr float kNoGap = 2;
 };
 
 /// The marching cubes surface within a brick, as the method mc makes it.
@@ -79,11 +84,11 @@ public:
     /// The same brick always gives the same vertices and triangles in the same order.
     void mesh(const Brick& brick, FineSurface& surface);
 
-    /// The same, when nobody asks for FineVertex::isSingleSheet.
+    /// The same, when nobody asks for FineVertex::isSingleSheet and FineVertex::gap.
     void meshWithoutSheets(const Brick& brick, FineSurface& surface);
 
     /// The brick's surface, and after it that of the cells up to kHalo around the brick. Single
-    /// sheets are not looked for.
+    /// sheets and gaps are not looked for.
     void meshWithHalo(const Bricks& bricks, std::int64_t number, FineSurface& surface);
 
 private:
@@ -97,6 +102,8 @@ private:
     std::uint32_t vertexOn(const Brick& brick, const std::array<int, 3>& cell, int edge,
                            bool isSingle, FineSurface& surface);
     unsigned joinedFaces(const Index3& sample, unsigned ambiguous) const;
+    void findGaps(const Brick& brick, FineSurface& surface) const;
+    float gapOf(const Brick& brick, const FineSurface& surface, const FineVertex& vertex) const;
     void forget(const Brick& brick, const FineSurface& surface);
 
     const LatticeSampler& sampler_;

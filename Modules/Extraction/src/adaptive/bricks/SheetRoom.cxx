@@ -100,9 +100,7 @@ void SheetRoom::fillIn(const std::vector<Vec3>& points, const std::vector<Vec3>&
     const auto unit = static_cast<float>(frame.narrowestMm());
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (room[i] == kAlone) continue;
-        const float most = unit * unit, squared = cubes.nearestOther(points[i], normals[i], most);
-        room[i] =
-            squared < most ? static_cast<std::uint8_t>(kParts * std::sqrt(squared) / unit) : kAlone;
+        room[i] = of(std::sqrt(cubes.nearestOther(points[i], normals[i], unit * unit)), frame);
     }
 }
 

@@ -21,6 +21,12 @@ public:
     static constexpr int kParts = 128;
     static constexpr std::uint8_t kAlone = 255;  ///< no other sheet within that distance
 
+    /// The room beside a sheet at a distance.
+    static std::uint8_t of(double distanceMm, const MetricFrame& frame) {
+        const double voxels = distanceMm / frame.narrowestMm();
+        return voxels < 1 ? static_cast<std::uint8_t>(kParts * voxels) : kAlone;
+    }
+
     /// \param normals  of any length
     /// \param room  of each point, in parts of the least distance between planes of samples;
     ///              where it is kAlone, a single sheet for sure, it stays so; the others are

@@ -59,7 +59,7 @@ bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& change
         const auto& t = patch.triangles[star.removed[i]];
         mean += areaVector2(point(t[0]), point(t[1]), point(t[2]));
     }
-    const Vec3 normal = normalized(mean);
+    const Vec3 normal = changed.normal = normalized(mean);
     const Vec3 across = std::abs(normal.x) < std::abs(normal.y) ? cross(normal, {1, 0, 0})
                                                                 : cross(normal, {0, 1, 0});
     changed.isGraph = !star.isOpen;

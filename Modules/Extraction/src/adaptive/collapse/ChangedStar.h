@@ -22,6 +22,7 @@ struct ChangedStar {
     /// same side, and go round the new vertex once. Then its triangles can't cross each other, nor
     /// what lies beside the star.
     bool isGraph = false;
+    Vec3 normal;  ///< mean of the triangles' before the change, by area
 };
 
 /// What a changed star must be to be worth having.

@@ -177,6 +177,20 @@ bool CrossingGuard::crossesNothing(const ChangedStar& changed) {
     return true;
 }
 
+/// Some triangle across an edge of the ring faces away from the star.
+bool CrossingGuard::foldsBack(const ChangedStar& changed) const {
+    const Star& star = changed.star;
+    for (int i = 0; i < star.count; ++i) {
+        const std::uint32_t twin =
+            topology_.twin(topology_.leavingIn(star.triangle[i], star.ring[i]));
+        if (twin == PatchTopology::kNone) continue;
+        const Corners beside = cornersOf(twin / 3);
+        const Vec3 area2 = areaVector2(beside[0], beside[1], beside[2]);
+        if (dot(area2, changed.normal) < 0) return true;
+    }
+    return false;
+}
+
 /// The triangles around a vertex of the ring share no more than it and their edges: seen along one
 /// direction all are upright and go round the vertex once.
 /// \pre the star's old triangles carry the stamp, and no others

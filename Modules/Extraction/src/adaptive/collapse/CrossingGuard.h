@@ -24,9 +24,10 @@ public:
     CrossingGuard(const Patch& patch, const PatchTopology& topology, const MetricFrame& frame,
                   bool looksEverywhere);
 
-    /// A star that is a graph over a plane, in a single sheet, can cross nothing.
+    /// A star that is a graph over a plane, in a single sheet that does not fold back along its
+    /// ring, can cross nothing.
     bool needsProof(const ChangedStar& changed, bool isCrowded) const {
-        return looksEverywhere_ || isCrowded || !changed.isGraph;
+        return looksEverywhere_ || isCrowded || !changed.isGraph || foldsBack(changed);
     }
 
     bool crossesNothing(const ChangedStar& changed);
@@ -61,6 +62,7 @@ private:
     void enter(std::uint32_t triangle);
     const Box& boxAt(std::uint32_t triangle);
     Corners cornersOf(std::uint32_t triangle) const;
+    bool foldsBack(const ChangedStar& changed) const;
     bool wedgesAreClear(const ChangedStar& changed) const;
     bool fanIsClear(const ChangedStar& changed, int at) const;
     bool isClear(const ChangedStar& changed, int wedge, std::uint32_t other) const;

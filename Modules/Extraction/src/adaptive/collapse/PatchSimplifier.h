@@ -19,6 +19,8 @@ struct PatchLimits {
     double maxDistanceMm = 0;  ///< of a sample from the triangle that stands for it
     /// Of a sample from the triangles of a fitted vertex, unless some sample was as far before.
     double maxFittedMm = std::numeric_limits<double>::max();
+    /// Parts of the surface that are thinner keep nearer to their samples.
+    double webMm = 0;
     StarLimits shape;
     bool provesAll = false;          ///< also stars that can cross nothing by what is known of them
     bool leavesNoise = false;        ///< bricks full of it stay at full resolution

@@ -39,6 +39,11 @@ public:
     std::uint32_t from(std::uint32_t h) const { return patch_.triangles[h / 3][h % 3]; }
     std::uint32_t to(std::uint32_t h) const { return from(next(h)); }
     std::uint32_t twin(std::uint32_t h) const { return twin_[h]; }
+    /// The half-edge of a triangle that starts at one of its corners.
+    std::uint32_t leavingIn(std::uint32_t triangle, std::uint32_t corner) const {
+        const auto& corners = patch_.triangles[triangle];
+        return 3 * triangle + (corners[0] == corner ? 0 : corners[1] == corner ? 1 : 2);
+    }
 
     /// All triangles around the vertex are own ones, and form one fan: a closed one, or at an open
     /// border one that ends there.

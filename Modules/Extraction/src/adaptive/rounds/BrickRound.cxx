@@ -94,10 +94,49 @@ void takeOver(Patch& patch, BrickSurface& brick) {
     }
 }
 
+/// The surface comes round a sample whose value is the isovalue. There are many in whole-numbered
+/// volumes, and nearly all are simplified soundly: they are no webs.
+constexpr double kHairGap = 3 * kHair;
+
+/// What lies near a brick's vertices.
+struct Nearness {
+    std::vector<std::uint8_t> room;     ///< see SheetRoom
+    std::vector<std::uint8_t> isInWeb;  ///< see PatchLimits::webMm
+
+    /// See Sample.
+    std::uint8_t tightness(std::uint32_t vertex) const {
+        return isInWeb[vertex] != 0 ? kHalvings[1] : 0;
+    }
+};
+
+/// \param areas  around each vertex
+Nearness nearnessOf(const FineSurface& fine, const std::vector<Vec3>& points,
+                    const std::vector<Vec3>& areas, const MetricFrame& frame, double webMm) {
+    Nearness near;
+    near.isInWeb.resize(points.size());
+    near.room.reserve(points.size());
+    for (const FineVertex& v : fine.vertices) {
+        near.room.push_back(v.isSingleSheet ? SheetRoom::kAlone : 0);
+    }
+    SheetRoom::fillIn(points, areas, frame, near.room);
+    const std::array stepMm{norm(frame.fromIndex({1, 0, 0})), norm(frame.fromIndex({0, 1, 0})),
+                            norm(frame.fromIndex({0, 0, 1}))};
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        const FineVertex& vertex = fine.vertices[v];
+        if (vertex.gap == FineVertex::kNoGap) continue;
+        const double gapMm = vertex.gap * stepMm[vertex.edge.axis()];
+        if (gapMm < kNarrowGap * frame.narrowestMm()) {
+            near.room[v] = std::min(near.room[v], SheetRoom::of(gapMm, frame));
+        }
+        near.isInWeb[v] = static_cast<std::uint8_t>(gapMm < webMm && vertex.gap > kHairGap);
+    }
+    return near;
+}
+
 /// Where the surface bends within a triangle its middle is a sample too: between corners a ridge
 /// could pass unseen.
-void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas,
-                const std::vector<std::uint8_t>& room, Patch& patch) {
+void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, const Nearness& near,
+                Patch& patch) {
     for (std::uint32_t t = 0; t < fine.triangles.size(); ++t) {
         const auto& v = fine.triangles[t];
         const Vec3 a = normalized(areas[v[0]]), b = normalized(areas[v[1]]),
@@ -107,7 +146,8 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas,
         Sample& middle = patch.samples.emplace_back();
         middle.setPoint((1.0 / 3) * (p + q + r));
         middle.setNormal(areaVector2(p, q, r));
-        middle.room = std::min({room[v[0]], room[v[1]], room[v[2]]});
+        middle.room = std::min({near.room[v[0]], near.room[v[1]], near.room[v[2]]});
+        middle.tightness = near.tightness(v[0]) | near.tightness(v[1]) | near.tightness(v[2]);
         patch.sampleTriangle.push_back(t);
     }
 }
@@ -139,8 +179,9 @@ std::vector<std::uint8_t> flatVertices(const Patch& patch, const std::vector<Vec
 }
 
 /// The brick's full-resolution surface as a patch; vertices on walls go to the brick's list.
+/// \param webMm   see PatchLimits
 /// \param isFlat  gets what flatVertices() says
-Patch patchOf(const FineSurface& fine, const MetricFrame& frame, BrickSurface& brick,
+Patch patchOf(const FineSurface& fine, const MetricFrame& frame, double webMm, BrickSurface& brick,
               std::vector<std::uint8_t>& isFlat) {
     Patch patch;
     patch.points.reserve(fine.vertices.size());
@@ -150,11 +191,7 @@ Patch patchOf(const FineSurface& fine, const MetricFrame& frame, BrickSurface& b
     patch.ownTriangles = static_cast<std::uint32_t>(fine.triangles.size());
     const std::vector<Vec3> areas = addQuadrics(patch);
     isFlat = flatVertices(patch, areas);
-    std::vector<std::uint8_t> room;
-    room.reserve(fine.vertices.size());
-    for (const FineVertex& v : fine.vertices)
-        room.push_back(v.isSingleSheet ? SheetRoom::kAlone : 0);
-    SheetRoom::fillIn(patch.points, areas, frame, room);
+    const Nearness near = nearnessOf(fine, patch.points, areas, frame, webMm);
     std::vector<std::uint32_t> triangleAt(fine.vertices.size());
     for (std::uint32_t t = 0; t < fine.triangles.size(); ++t) {
         for (const std::uint32_t v : fine.triangles[t]) triangleAt[v] = t;
@@ -162,16 +199,17 @@ Patch patchOf(const FineSurface& fine, const MetricFrame& frame, BrickSurface& b
     for (std::uint32_t v = 0; v < fine.vertices.size(); ++v) {
         const FineVertex& vertex = fine.vertices[v];
         if (vertex.isOnWall) {
-            brick.walls.push_back({vertex.edge.word, v, 0, normalized(areas[v]), room[v]});
+            brick.walls.push_back({vertex.edge.word, v, 0, normalized(areas[v]), near.room[v]});
             continue;
         }
         Sample& sample = patch.samples.emplace_back();
         sample.setPoint(patch.points[v]);
         sample.setNormal(areas[v]);
-        sample.room = room[v];
+        sample.room = near.room[v];
+        sample.tightness = near.tightness(v);
         patch.sampleTriangle.push_back(triangleAt[v]);
     }
-    addMiddles(fine, areas, room, patch);
+    addMiddles(fine, areas, near, patch);
     return patch;
 }
 
@@ -182,7 +220,7 @@ BrickSurface simplifyBrick(const FineSurface& fine, const Index3& lowIndex,
                            std::vector<double>* costs) {
     BrickSurface result;
     std::vector<std::uint8_t> isFlat;
-    Patch patch = patchOf(fine, frame, result, isFlat);
+    Patch patch = patchOf(fine, frame, limits.webMm, result, isFlat);
     patch.setBox(lowIndex, Brick::kSide);
     result.fineTriangles = patch.ownTriangles;
     result.tableTriangles = result.fineTriangles - 2 * static_cast<std::int64_t>(fine.ownMiddles);

@@ -50,14 +50,11 @@ std::uint8_t TightPlaces::tightnessAt(const Index3& cube) const {
     return at == tightness_.end() ? 0 : kHalvings[std::min(at->second, kHalvings.size() - 1)];
 }
 
-bool TightPlaces::has(const MetricFrame& frame, const Sample& sample) const {
-    return tightness_.contains(cubeAt(frame.toIndex(sample.point())));
-}
-
 void TightPlaces::apply(const MetricFrame& frame, Sample& sample) const {
     if (tightness_.empty() && crossings_.empty()) return;
     const Index3 cube = cubeAt(frame.toIndex(sample.point()));
-    sample.tightness = tightnessAt(cube) & Sample::kMostHalvings;
+    sample.tightness =
+        std::max<std::uint8_t>(sample.tightness, tightnessAt(cube)) & Sample::kMostHalvings;
     if (crossings_.contains(cube)) sample.room = 0;
 }
 

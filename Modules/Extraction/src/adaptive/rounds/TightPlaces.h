@@ -30,9 +30,7 @@ public:
     /// \param index  continuous sample index
     bool isFrozen(const Vec3& index) const;
 
-    /// The sample lies at a place added by add().
-    bool has(const MetricFrame& frame, const Sample& sample) const;
-
+    /// A sample never gets less tight.
     void apply(const MetricFrame& frame, Sample& sample) const;
     void apply(const MetricFrame& frame, std::vector<Sample>& samples) const;
 
