@@ -31,11 +31,10 @@ public:
     }
 
     AdaptiveResult run() {
-        Attempt attempt;
         for (int run = 0; run < kMostRuns; ++run) {
             report(run, 0);
             ++work_.runs;
-            attempt = {simplify(std::move(attempt.surface)), {}, {}, {}};
+            Attempt attempt{simplify(), {}, {}, {}};
             report(run, 0.6);
             if (keepsPromises(attempt)) {
                 report(run, 1);
@@ -60,9 +59,6 @@ private:
     /// What later runs know of the ones before.
     struct Lessons {
         TightPlaces tight;
-        std::optional<Halfway> halfway;
-        /// Places beyond the bound after the last run.
-        double placesBeyond = std::numeric_limits<double>::max();
         int crossedRuns = 0;     ///< that left triangles that cross
         bool provesAll = false;  ///< every star, everywhere
     };
@@ -82,17 +78,16 @@ private:
     }
 
     /// Where promises were not kept the next run takes more care.
-    void learnFrom(Attempt& attempt, int run) {
-        std::vector<Vec3> places = indicesOf(attempt.error);
-        lessons_.tight.add(places);
-        const std::vector<Vec3> crossings = placesOf(attempt);
-        if (!crossings.empty()) proveAround(crossings);
-        if (run >= kFirstFreeze) {
-            places.insert(places.end(), crossings.begin(), crossings.end());
-            freeze(places, run);
-        } else if (lessons_.halfway && hasStalled(attempt.error)) {
-            mendHalfway(attempt.surface);
+    void learnFrom(const Attempt& attempt, int run) {
+        const std::vector<Vec3> beyond = indicesOf(attempt.error), crossings = placesOf(attempt);
+        lessons_.tight.add(beyond);
+        lessons_.tight.addCrossings(crossings);
+        if (!crossings.empty() && ++lessons_.crossedRuns == kMostCrossedRuns) {
+            lessons_.provesAll = true;
         }
+        if (run < kFirstFreeze) return;
+        lessons_.tight.freeze(beyond, run - kFirstFreeze);
+        lessons_.tight.freeze(crossings, run - kFirstFreeze);
     }
 
     AdaptiveResult resultOf(Attempt& attempt) const {
@@ -159,9 +154,9 @@ private:
     /// \param error  what was proved; then what is
     void undo(SimplifiedSurface& surface, ErrorBound& error) {
         double reachMm = kUndoReach * frame_.narrowestMm();
-        for (int n = 0; n < kMostUndos && isBeyond(error) && lessons_.halfway; ++n) {
+        for (int n = 0; n < kMostUndos && isBeyond(error) && !halfway_.points.empty(); ++n) {
             const std::ptrdiff_t points = std::ssize(surface.points);
-            const auto changes = LocalUndo(lessons_.halfway->state, surface)
+            const auto changes = LocalUndo(halfway_, surface)
                                      .around(mended_, trianglesOf(error), pointsOf(error), reachMm);
             if (changes) {
                 work_.verticesUndone += std::ssize(surface.points) - points;
@@ -209,41 +204,6 @@ private:
         return mended > 0;
     }
 
-    /// Begins anew with more proved.
-    /// \param crossings  continuous sample indices
-    void proveAround(const std::vector<Vec3>& crossings) {
-        lessons_.tight.addCrossings(crossings);
-        if (++lessons_.crossedRuns == kMostCrossedRuns) lessons_.provesAll = true;
-        lessons_.halfway.reset();
-    }
-
-    void freeze(const std::vector<Vec3>& places, int run) {
-        lessons_.tight.freeze(places, run - kFirstFreeze);
-        lessons_.halfway.reset();
-    }
-
-    /// Hardly fewer places lie beyond the bound than after the run before: what they need may have
-    /// been lost before halfway.
-    bool hasStalled(const ErrorBound& error) {
-        const auto count = static_cast<double>(error.beyondLimit.size());
-        const bool isStalled = count > kStalled * lessons_.placesBeyond;
-        lessons_.placesBeyond = isStalled ? std::numeric_limits<double>::max() : count;
-        return isStalled;
-    }
-
-    /// Makes what runs start from anew until that lies within the bound itself: at worst a run can
-    /// then stay with it where it is tight.
-    void mendHalfway(SimplifiedSurface& surface) {
-        const std::unique_ptr<DistanceProof> proof = full_.proof(*boundMm_);
-        for (int mend = 0; mend < kMostMends; ++mend) {
-            surface.state() = lessons_.halfway->state;
-            const ErrorBound error = proof->prove(surface);
-            if (error.largestMm <= *boundMm_) return;
-            lessons_.tight.add(indicesOf(error));
-            lessons_.halfway = Simplification(full_, lessons_.tight, limits()).toHalfway(surface);
-        }
-    }
-
     std::optional<double> boundOf(const AdaptiveOptions& adaptive) const {
         if (adaptive.maxErrorMm || wanted_.isGiven()) return adaptive.maxErrorMm;
         return AdaptiveOptions::kDefaultMaxErrorVoxels * frame_.narrowestMm();
@@ -275,11 +235,11 @@ private:
         Simplification(full_, lessons_.tight, closer).fit(surface);
     }
 
-    /// \param last  of the run before
-    SimplifiedSurface simplify(SimplifiedSurface last) {
+    SimplifiedSurface simplify() {
+        halfway_ = {};
         Simplification simplification(full_, lessons_.tight, limits());
         if (!wanted_.isGiven()) {
-            SimplifiedSurface surface = simplification.toLimits(std::move(last), lessons_.halfway);
+            SimplifiedSurface surface = simplification.toLimits(halfway_);
             mended_.clear();
             fit(surface);
             return surface;
@@ -296,6 +256,7 @@ private:
     std::optional<double> boundMm_;
     StarLimits shape_;
     Lessons lessons_;
+    SurfaceState halfway_;  ///< of this run; empty with a count
     AdaptiveWork work_;
     std::unique_ptr<DistanceProof> proof_;        ///< remembers what it proved last, to prove less
     std::vector<SurfaceState::Triangle> mended_;  ///< of this run, before and after

@@ -29,8 +29,6 @@ inline constexpr int kMostRuns = 16, kMostCrossedRuns = 3;
 inline constexpr int kMostMends = 6, kMostIdleMends = 1;
 /// A round of mending gains little when it leaves more than this part of the places.
 inline constexpr double kMended = 0.5;
-/// Runs lead nowhere when they leave more than this part of the places of the run before.
-inline constexpr double kStalled = 0.25;
 /// From this run on places that fail stay at full resolution, twice as far around with every run.
 inline constexpr int kFirstFreeze = 6;
 /// Of the bound: a part of the surface that is thinner is a web or a needle, where the height over
@@ -50,7 +48,7 @@ inline constexpr double kFirstCost = 1e-3, kLastCost = 10;
 /// collapses first, everywhere, so that walls between patches do not show. A round at 3e-3 before
 /// them takes a few per cent more time for as many triangles.
 inline constexpr std::array kBoundCosts{1.8e-2, 0.108, 0.648, 3.888};
-/// The surface that later runs start from: costs below this part of the square of the allowed
+/// The surface that single places are taken back to: costs below this part of the square of the allowed
 /// distance, distances below this part of it.
 inline constexpr double kHalfwayCost = 2, kHalfwayDistance = 0.25;
 /// A larger distance helped towards a count when it leaves less than this part of the triangles

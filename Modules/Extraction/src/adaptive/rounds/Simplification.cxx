@@ -74,12 +74,13 @@ void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
     surface.returnFreedMemory();
 }
 
-Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
+/// Rounds with changes that are small in every way.
+SimplifiedSurface Simplification::toHalfway() {
     const double distanceMm = limits_.maxDistanceMm, voxel = frame_.voxelMm();
     const double mostCost = kHalfwayCost * voxel * voxel * distanceMm * distanceMm;
     limits_.maxDistanceMm *= kHalfwayDistance;
     limits_.maxCost = kFirstCost * costUnit_;
-    surface = full_.firstRound(tight_, limits_, nullptr);
+    SimplifiedSurface surface = full_.firstRound(tight_, limits_, nullptr);
     surface.returnFreedMemory();
     for (const double cost : kBoundCosts) {
         if (cost * costUnit_ > mostCost) break;
@@ -90,26 +91,13 @@ Halfway Simplification::toHalfway(SimplifiedSurface& surface) {
         if (state == Patch::State::Tried) state = Patch::State::Open;
     }
     limits_.maxDistanceMm = distanceMm;
-    keepHeirs(surface);
-    return {surface.state(), rounds_, limits_.maxCost};
+    return surface;
 }
 
-void Simplification::goOnFrom(const Halfway& halfway, SimplifiedSurface& surface) {
-    surface.state() = halfway.state;
+SimplifiedSurface Simplification::toLimits(SurfaceState& halfway) {
+    SimplifiedSurface surface = toHalfway();
+    halfway = surface.state();
     keepHeirs(surface);
-    rounds_ = halfway.rounds;
-    limits_.maxCost = halfway.cost;
-    tight_.apply(frame_, surface.samples);
-}
-
-SimplifiedSurface Simplification::toLimits(SimplifiedSurface last,
-                                           std::optional<Halfway>& halfway) {
-    SimplifiedSurface surface = std::move(last);
-    if (halfway) {
-        goOnFrom(*halfway, surface);
-    } else {
-        halfway = toHalfway(surface);
-    }
     for (const double cost : kBoundCosts) {
         if (cost * costUnit_ > limits_.maxCost) roundUpTo(cost * costUnit_, surface);
     }

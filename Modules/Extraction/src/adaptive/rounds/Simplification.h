@@ -24,14 +24,6 @@ struct WantedCount {
     }
 };
 
-/// A surface after its first rounds, whose changes are too small to matter to the bound: when
-/// places turn out to need more care, it can be gone on from here.
-struct Halfway {
-    SurfaceState state;
-    int rounds = 0;
-    double cost = 0;  ///< limit of its last round
-};
-
 /// One run of the simplification with fixed limits, in rounds: first every brick alone, then the
 /// patches of shifted cuts in turn, with a limit of cost that grows, so that all parts of the
 /// surface get coarser together.
@@ -40,12 +32,9 @@ public:
     Simplification(const FullSurface& full, const TightPlaces& tight, const PatchLimits& limits);
 
     /// As few triangles as the limits allow; vertices are not fitted.
-    /// \param last     of the run before, when that went through `halfway`
-    /// \param halfway  where to start; is filled in when empty
-    SimplifiedSurface toLimits(SimplifiedSurface last, std::optional<Halfway>& halfway);
-
-    /// Rounds with changes that are small in every way.
-    Halfway toHalfway(SimplifiedSurface& surface);
+    /// \param halfway  gets the surface after its first rounds, whose changes are small in every
+    ///                 way: the heirs are of its vertices
+    SimplifiedSurface toLimits(SurfaceState& halfway);
 
     /// The wanted number of triangles, or as few as the limits allow.
     /// \param farthestMm  where they don't, the allowed distance of samples is doubled on the way
@@ -59,7 +48,7 @@ public:
 private:
     PatchCut nextCut(const SimplifiedSurface& surface);
     void roundUpTo(double cost, SimplifiedSurface& surface);
-    void goOnFrom(const Halfway& halfway, SimplifiedSurface& surface);
+    SimplifiedSurface toHalfway();
     SimplifiedSurface towards(const WantedCount& wanted, double farthestMm);
     void goFarther(SimplifiedSurface& surface);
     void roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost);
