@@ -169,8 +169,8 @@ class Bytes(InFolder):
         theirs, ours = self.folder / "theirs", self.folder / "ours"
         program("adaptiso-bem", "--surfaces", *files, "-o", theirs)
         adaptiso.bem(surfaces=files).save(ours)
-        adaptiso.bem(surfaces=[(mesh.vertices, mesh.faces) for mesh in model.surfaces.values()]).save(
-            self.folder / "arrays")
+        adaptiso.bem(surfaces={name: (mesh.vertices, mesh.faces) for name, mesh in model.surfaces.items()}
+                     ).save(self.folder / "arrays")
         for name in NAMES:
             truth = (theirs / f"{name}.tri").read_bytes()
             self.assertEqual((ours / f"{name}.tri").read_bytes(), truth)

@@ -259,8 +259,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
         pial: Optional[Sequence[Any]] = None, labels: Any = None,
         tissues: Union[str, Mapping[str, Sequence[int]], None] = None, head_mask: Any = None,
         probabilities: Optional[Sequence[Any]] = None, ct: Any = None,
-        surfaces: Optional[Sequence[Any]] = None, volume: Any = None, affine: Any = None,
-        layers: int = 3, vertices: Union[int, Sequence[int], None] = None,
+        surfaces: Union[Sequence[Any], Mapping[str, Any], None] = None, volume: Any = None,
+        affine: Any = None, layers: int = 3, vertices: Union[int, Sequence[int], None] = None,
         edge_length: Optional[Tuple[float, float]] = None, meg: bool = False,
         min_gap: Union[float, Sequence[float]] = (2, 2, 1), csf: float = 2, skull: float = 6,
         max_skull: float = 20, skull_hu: float = 300, skin_hu: float = -300, closing: float = 10,
@@ -301,9 +301,9 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
         Tissue maps in SPM's order: grey, white, CSF, bone, soft tissue.
     ct : image, optional
         A CT of the whole head, in Hounsfield units.
-    surfaces : sequence, optional
+    surfaces : sequence or dict, optional
         Ready surfaces from inside out, each a Mesh, (vertices, faces), a path, or an object with
-        vertices and faces. Checked, mended where need be, kept as they are where not.
+        vertices and faces; of a dict (as ``HeadModel.surfaces``) its values. Checked, mended where need be, kept as they are where not.
     volume : image, optional
         With `surfaces`: the image they belong to, for tkRAS.
     affine : array_like of shape (4, 4), optional
@@ -482,7 +482,7 @@ def _image(name: str, image: Any, affine: Any, source: _Source) -> Samples:
 def _surfaces(name: str, surfaces: Any, source: _Source) -> List[Mesh]:
     role = "surface" if name == "surfaces" else "pial surface"
     meshes = []
-    for surface in listed(name, surfaces):
+    for surface in listed(name, surfaces.values() if isinstance(surfaces, Mapping) else surfaces):
         file = base_name(checked_path(name, surface)) if is_path(surface) else ""
         source.inputs.append([file, role, "file" if file else type(surface).__name__])
         if isinstance(surface, Mesh):

@@ -51,6 +51,21 @@ class Image(NamedTuple):
     warnings: List[str]
     format: str
 
+    def __repr__(self) -> str:
+        shape = " x ".join(map(str, self.array.shape))
+        return f"<adaptiso.Image of {shape} voxels, {self.array.dtype}, {self.format}>"
+
+    def __eq__(self, other: object) -> bool:
+        """The same samples (NaN too), affine, warnings and format."""
+        if not isinstance(other, Image):
+            return NotImplemented
+        return (self.format == other.format and self.warnings == other.warnings
+                and np.array_equal(self.affine, other.affine)
+                and np.array_equal(self.array, other.array, equal_nan=self.array.dtype.kind == "f"))
+
+    def __ne__(self, other: object) -> bool:  # of a tuple it would be the tuple's own
+        return not self == other
+
 
 def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int] = None,
          level: Optional[int] = None, channel: Optional[int] = None, time: Optional[int] = None,
@@ -192,12 +207,17 @@ def samples_of(image: Any, affine: Any, in_file_order: bool = False) -> Samples:
 def affine_of(value: Any) -> Affine:
     """A matrix of voxel indices to scanner RAS mm. \\raises Error"""
     try:
-        affine = np.array(value, dtype=np.float64)
+        affine = np.array(value, dtype=np.float64) if _is_plain(value) else np.empty(0)
     except (TypeError, ValueError, OverflowError):
         affine = np.empty(0)
     if affine.shape != (4, 4):
         raise Error(f"affine {shown(value)}: must be a 4 x 4 matrix, voxel indices to RAS mm")
     return affine
+
+
+def _is_plain(value: Any) -> bool:
+    """No part of it would be lost without a word."""
+    return not isinstance(value, np.ma.MaskedArray) and not np.iscomplexobj(value)
 
 
 def _array_of(image: Any) -> Tuple[Array, Optional[Affine], str]:
@@ -210,7 +230,10 @@ def _array_of(image: Any) -> Tuple[Array, Optional[Affine], str]:
     if hasattr(image, "dataobj") and hasattr(image, "affine"):
         if image.affine is None:
             raise Error("image: the nibabel image has no affine; give its array and one")
-        return np.asanyarray(image.dataobj), affine_of(image.affine), type(image).__name__
+        array = np.asanyarray(image.dataobj)
+        single = all(size == 1 for size in array.shape[3:])  # as files of one volume may have it
+        return (array.reshape(array.shape[:3]) if single else array, affine_of(image.affine),
+                type(image).__name__)
     if hasattr(image, "GetSpacing") and hasattr(image, "GetDirection"):
         return _itk_array(image), _itk_affine(image), type(image).__name__
     raise Error(f"image {shown(image)}: must be a NumPy array, a nibabel, SimpleITK or ITK image, "
