@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
+import re
 import sys
 import threading
 import weakref
@@ -126,15 +127,26 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
     no_zarr = f"{name}: is no Zarr, which level, channel, time and all_chunks are for"
     if is_of_zarr and not os.path.isdir(name):
         raise Error(no_zarr)
-    with _reading:
-        array, affine, kind, warnings = _adaptiso.read_image(
-            name, None if series is None else str(series), **numbers, all_chunks=whole,
-            resample_slices=resample)
+    try:
+        with _reading:
+            array, affine, kind, warnings = _adaptiso.read_image(
+                name, None if series is None else str(series), **numbers, all_chunks=whole,
+                resample_slices=resample)
+    except Error as error:
+        raise Error(_in_python(str(error))) from None
     if is_of_zarr and "Zarr" not in kind:
         raise Error(no_zarr)
     for warning in warnings:
         logger.warning("%s: %s", base_name(name), warning)
     return Image(array, affine, warnings, kind)
+
+
+def _in_python(message: str) -> str:
+    """A reader's message, which names options as the programs have them."""
+    for option in ("series", "volume-index", "level", "channel", "time", "resample-slices"):
+        name = option.replace("-", "_")
+        message = re.sub(rf"--{option}\b", f"{name}= of adaptiso.read", message)
+    return message.replace("leave --refuse-missing-chunks out", "leave all_chunks=True out")
 
 
 def _read_by_nibabel(name: str, volume_index: Optional[int], wants_more: bool) -> Image:

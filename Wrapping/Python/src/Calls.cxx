@@ -97,8 +97,11 @@ void Watcher::stop() {
 /// To be called without the lock. \throws Stopped
 void Watcher::lookForSignals() {
     const Locked locked;
-    if (mustEnd()) PyErr_SetNone(PyExc_SystemExit);
-    if (mustEnd() || PyErr_CheckSignals() != 0) stop();
+    if (mustEnd()) {
+        PyErr_SetNone(PyExc_SystemExit);
+        stop();
+    }
+    if (PyErr_CheckSignals() != 0) stop();
 }
 
 void Watcher::tell(std::string_view stage, double fraction) {
