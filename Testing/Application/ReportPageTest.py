@@ -342,11 +342,11 @@ class InTheBrowser(ReportTest):
 
     @classmethod
     def setUpClass(cls):
-        cls.browser = browser.Browser()
+        if InTheBrowser.browser is None:
+            InTheBrowser.browser = browser.Browser()
+            unittest.addModuleCleanup(InTheBrowser.browser.close)
 
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
+    browser = None  # one for all tests
 
     def show(self, *arguments, code=OK):
         self.browser.requests(), self.browser.console()  # those of the test before
@@ -375,16 +375,6 @@ class InTheBrowser(ReportTest):
 
 
 class Pages(InTheBrowser):
-    def show_hole(self):
-        middle = self.make_hole()
-        self.show("open.off", "--volume", "ball.nii", code=CHECK_FAILED)
-        return middle
-
-    def test_loads_without_errors_and_asks_for_nothing(self):
-        self.show("sound.off", "--volume", "ball.nii")
-        self.assertEqual(self.browser.console(), [])
-        self.assertEqual(self.browser.requests(), [self.path("page.html").as_uri()])
-
     def test_a_surface_without_an_image(self):
         self.show("sound.off")
         self.assertEqual(self.browser.console(), [])
@@ -412,32 +402,23 @@ class Pages(InTheBrowser):
                 self.assertAlmostEqual(index(points[n:n + 3], axis), 11.5, delta=0.02)
                 self.assertAlmostEqual(math.dist(points[n:n + 3], middle), 8, delta=0.15)
 
-    def test_a_click_on_a_place_moves_the_crosshair_there(self):
-        middle = self.show_hole()
-        self.browser.run("adaptisoViewer.moveTo([0, 30, 40])")
-        # a crosshair is kept in parts of the image as floats
-        self.assert_near(self.browser.crosshair(), [0, 30, 40], 1e-3)
-        button = next(b for b in self.browser.find("button[data-spot]") if "hole" in b.text)
-        button.click()
-        self.assert_near(self.browser.crosshair(), middle, 0.01)  # the page has it in floats
-        self.assertEqual(button.get_attribute("aria-current"), "true")
-        told = self.browser.find("#position")[0].text
-        self.assertEqual(told, ", ".join(f"{v:.1f}" for v in self.browser.crosshair()) + " mm")
-
     def test_serves_everybody_at_every_width(self):
         if not os.environ.get("ADAPTISO_AXE_SCRIPT"):
             self.skipTest("needs axe-core, which CMake fetches")
         axe = Path(os.environ["ADAPTISO_AXE_SCRIPT"]).read_text()
         self.addCleanup(self.browser.resize, 1280, 1700)
+        widths = [360, 768, 1440]
         for name in self.make_every_page():
+            self.browser.resize(widths[0])  # all but the first page: it is that already
             self.browser.open(self.path(name))
-            for width in (360, 768, 1440):
+            for width in widths:
                 with self.subTest((name, width)):
                     self.browser.resize(width)
                     self.assertEqual(self.browser.violations(axe), [])
                     # nothing but tables and pictures is wider than the screen, and those scroll
                     self.assertLessEqual(
                         self.browser.run("return document.documentElement.scrollWidth"), width)
+            widths.reverse()  # each change of the width is drawn anew, by the processor
 
     def make_every_page(self):
         """One of each program, of a failure too, and a batch's summary."""
@@ -456,10 +437,31 @@ class Pages(InTheBrowser):
         self.run_mesh("ball.nii", "absent.nii", "--iso", 100, "--output-dir", "batch")
         return [*made, "batch/summary.html"]
 
-    def test_looks_as_it_did(self):
+
+class PageOfAHole(InTheBrowser):
+    """Opened once: it is seen, and then clicked on."""
+
+    def test_looks_as_it_did_and_a_click_on_a_place_moves_the_crosshair_there(self):
+        middle = self.make_hole()
+        self.show("open.off", "--volume", "ball.nii", code=CHECK_FAILED)
+        with self.subTest("looks"):
+            self.assert_looks_as_it_did(self.browser.screenshot(".screen"))
+        with self.subTest("click"):
+            self.assert_click_moves_the_crosshair(middle)
+
+    def assert_click_moves_the_crosshair(self, middle):
+        self.browser.run("adaptisoViewer.moveTo([0, 30, 40])")
+        # a crosshair is kept in parts of the image as floats
+        self.assert_near(self.browser.crosshair(), [0, 30, 40], 1e-3)
+        button = next(b for b in self.browser.find("button[data-spot]") if "hole" in b.text)
+        button.click()
+        self.assert_near(self.browser.crosshair(), middle, 0.01)  # the page has it in floats
+        self.assertEqual(button.get_attribute("aria-current"), "true")
+        told = self.browser.find("#position")[0].text
+        self.assertEqual(told, ", ".join(f"{v:.1f}" for v in self.browser.crosshair()) + " mm")
+
+    def assert_looks_as_it_did(self, png):
         """Loosely: fonts and drivers differ. ADAPTISO_KEEP_SCREENSHOT=1 makes a new one."""
-        self.show_hole()
-        png = self.browser.screenshot(".screen")
         expected = EXPECTED / "report-viewer.png"
         if os.environ.get("ADAPTISO_KEEP_SCREENSHOT"):
             expected.write_bytes(png)
@@ -473,16 +475,19 @@ class Pages(InTheBrowser):
 class PageOfASoundSurface(InTheBrowser):
     """Opened once, for drawing takes the processor seconds: a test puts back what it changes."""
 
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.opened = False
+    opened = None  # the page's address
 
     def setUp(self):
         super().setUp()
-        if not self.opened:
+        if self.opened is None:
             self.show("sound.off", "--volume", "ball.nii")
-            type(self).opened = True
+            cls = type(self)
+            cls.opened = self.path("page.html").as_uri()
+            cls.console, cls.requests = self.browser.console(), self.browser.requests()
+
+    def test_loads_without_errors_and_asks_for_nothing(self):
+        self.assertEqual(self.console, [])
+        self.assertEqual(self.requests, [self.opened])
 
     def test_the_canvas_is_not_blank(self):
         grey = browser.grey(self.browser.screenshot(".screen"), 40, 40)

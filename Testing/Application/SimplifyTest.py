@@ -219,7 +219,7 @@ class Frames(SimplifyTest):
     def test_are_kept(self):
         for frame, word in ((RAS, "ras"), (LPS, "lps"), (TKRAS, "tkras"), (VOXEL, "voxel"),
                             (None, None)):
-            text = ply(BALL, comment=f"CoordinateFrame: {frame}" if frame else "")
+            text = ply(icosphere(10, 2), comment=f"CoordinateFrame: {frame}" if frame else "")
             self.path("in.ply").write_text(text)
             for name in ("out.ply", "out.vtp", "out.stl", "out.gii", "out.off", "out.obj"):
                 with self.subTest(f"{frame} {name}"):

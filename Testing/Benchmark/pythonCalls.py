@@ -129,7 +129,7 @@ def peak_memory():
     """Of spheres of a quarter of the volume's width, each in a process of its own."""
     for side, dtype, order, method in (
             (256, "f4", "F", "mc"), (256, "f4", "C", "mc"), (256, "f4", "F", "boxes"),
-            (256, "f4", "F", "adaptive"), (256, "f4", "C", "adaptive"), (512, "f4", "F", "mc"),
+            (256, "f4", "F", "adaptive"), (256, "f4", "C", "adaptive"), (352, "f4", "F", "adaptive"), (512, "f4", "F", "mc"),
             (512, "f4", "F", "adaptive"), (640, "f4", "F", "adaptive"), (512, "u1", "F", "mc"),
             (512, "u1", "F", "adaptive")):
         done = subprocess.run([sys.executable, "-c", PEAK, order, method, str(side), dtype], text=True,

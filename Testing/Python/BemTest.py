@@ -1,6 +1,9 @@
 """Head models: the bytes of adaptiso-bem, truth on paper, what MNE makes of them, what is refused."""
 
+import copy
+import functools
 import json
+import pickle
 import unittest
 
 import adaptiso
@@ -36,9 +39,15 @@ def phantom(n=44):
     return np.asfortranarray(t1), np.asfortranarray((spheres(n=n) == 1).astype(np.uint8))
 
 
+@functools.cache
+def three_spheres():
+    """One for all tests: nothing of a model changes."""
+    return adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), **QUICK)
+
+
 class Truth(unittest.TestCase):
     def setUp(self):
-        self.model = adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), **QUICK)
+        self.model = three_spheres()
 
     def test_surfaces_are_the_spheres(self):
         self.assertEqual(tuple(self.model.surfaces), NAMES)
@@ -56,6 +65,21 @@ class Truth(unittest.TestCase):
                                       min_gap=2)
         for key in ("passed", "surfaces", "nesting"):
             self.assertEqual(self.model.check.report[key], found.report[key], key)
+
+    def test_pickles_have_all_but_the_image(self):
+        again = pickle.loads(pickle.dumps(self.model))
+        self.assertEqual(again.surfaces, self.model.surfaces)
+        self.assertEqual(again.check, self.model.check)
+        self.assertEqual(repr(again), repr(self.model))
+        self.assertEqual(pickle.loads(pickle.dumps(again)).report, self.model.report)
+        for one, other in zip(again.to_mne(), self.model.to_mne()):
+            np.testing.assert_array_equal(one["rr"], other["rr"])
+        for call in (again.report_html, lambda: again.save("nowhere")):
+            with self.assertRaisesRegex(adaptiso.Error, "in the process that made it"):
+                call()
+        self.assertIs(copy.deepcopy(self.model), self.model)
+        self.model.surfaces.clear()
+        self.assertEqual(tuple(self.model.surfaces), NAMES)
 
     def test_the_page_shows_the_model(self):
         page = self.model.report_html()
@@ -135,10 +159,11 @@ class Bytes(InFolder):
         body = self.image("body.nii", (spheres() > 0).astype(np.uint8))
         arguments = ["--labels", path, "--head-mask", body, "--gifti", "--vtp", *ARGUMENTS]
         options = {"labels": path, "head_mask": body, **QUICK}
+        named = adaptiso.bem(tissues="totalsegmentator", **options)
         self.compare(["--preset", "totalsegmentator", *arguments],
-                     adaptiso.bem(tissues="totalsegmentator", **options), gifti=True, vtp=True)
-        by_hand = adaptiso.bem(tissues={"brain": [90], "skull": [91]}, **options)
-        self.assertEqual(by_hand.surfaces, adaptiso.bem(tissues="totalsegmentator", **options).surfaces)
+                     named, gifti=True, vtp=True)
+        self.assertEqual(adaptiso.bem(tissues={"brain": [90], "skull": [91]}, **options).surfaces,
+                         named.surfaces)
 
     def test_of_a_t1_with_its_mask_in_other_frames_and_units(self):
         t1, mask = phantom()
@@ -161,7 +186,7 @@ class Bytes(InFolder):
         self.compare(["--ct", ct, "--meg", *ARGUMENTS], adaptiso.bem(ct=ct, meg=True, **QUICK))
 
     def test_of_surfaces(self):
-        model = adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), **QUICK)
+        model = three_spheres()
         files = []
         for name, mesh in model.surfaces.items():
             files.append(self.folder / f"{name}.vtp")
@@ -169,8 +194,8 @@ class Bytes(InFolder):
         theirs, ours = self.folder / "theirs", self.folder / "ours"
         program("adaptiso-bem", "--surfaces", *files, "-o", theirs)
         adaptiso.bem(surfaces=files).save(ours)
-        adaptiso.bem(surfaces=[(mesh.vertices, mesh.faces) for mesh in model.surfaces.values()]).save(
-            self.folder / "arrays")
+        adaptiso.bem(surfaces={name: (mesh.vertices, mesh.faces) for name, mesh in model.surfaces.items()}
+                     ).save(self.folder / "arrays")
         for name in NAMES:
             truth = (theirs / f"{name}.tri").read_bytes()
             self.assertEqual((ours / f"{name}.tri").read_bytes(), truth)
@@ -315,9 +340,7 @@ class Electrodes(unittest.TestCase):
 
 class Failures(unittest.TestCase):
     def test_a_model_that_cannot_be_is_an_error_that_shows_where(self):
-        metres = [(points, faces) for points, faces in (
-            (mesh.vertices / 1000, mesh.faces) for mesh in adaptiso.bem(
-                labels=spheres(), tissues=TISSUES, affine=affine(), **QUICK).surfaces.values())]
+        metres = [(mesh.vertices / 1000, mesh.faces) for mesh in three_spheres().surfaces.values()]
         with self.assertRaises(adaptiso.NoModel) as caught:
             adaptiso.bem(surfaces=metres)
         self.assertIn("size", str(caught.exception))
@@ -327,6 +350,9 @@ class Failures(unittest.TestCase):
         self.assertFalse(model.report["model"])
         self.assertGreater(len(model.report["findings"]), 0)
         self.assertIn("FAILED", model.report_html())
+        again = pickle.loads(pickle.dumps(caught.exception))  # as of a pool of processes
+        self.assertEqual(str(again), str(caught.exception))
+        self.assertEqual(again.model.surfaces, model.surfaces)
         with self.assertRaisesRegex(adaptiso.Error, "no model to save"):
             model.save("nowhere")
 

@@ -105,6 +105,10 @@ class Truth(unittest.TestCase):
         with self.assertRaises(adaptiso.Error):
             some.region(1)
 
+    def test_nothing_of_them_changes(self):
+        self.walls.regions.clear()
+        self.assertGreater(len(self.walls.regions), 0)
+
     def test_pickles_are_whole(self):
         walls = adaptiso.labels(self.volume, affine=SHEARED, names={2: "two"})
         again = pickle.loads(pickle.dumps(walls))

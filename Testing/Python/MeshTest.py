@@ -40,6 +40,25 @@ class Values(unittest.TestCase):
         self.assertEqual(copy.deepcopy(mesh), mesh)
         self.assertNotEqual(mesh, sphere(method="mc"))
 
+    def test_arrays_stay_read_only(self):
+        mesh = sphere()
+        for array in (mesh.vertices, mesh.faces, mesh.normals):
+            with self.assertRaises(ValueError):
+                array.setflags(write=True)
+
+    def test_findings_and_images_are_values_too(self):
+        mesh, other = sphere(), sphere(method="mc")
+        image = adaptiso.Image(np.zeros((2, 3, 4)), np.eye(4), [], "array")
+        for value, unlike in ((adaptiso.check(mesh), adaptiso.check(other)),
+                              (adaptiso.compare(mesh, other), adaptiso.compare(other, mesh)),
+                              (image, image._replace(array=np.ones((2, 3, 4))))):
+            for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+                self.assertEqual(pickle.loads(pickle.dumps(value, protocol)), value)
+            self.assertEqual(copy.deepcopy(value), value)
+            self.assertNotEqual(value, unlike)
+            self.assertNotEqual(value, None)
+        self.assertEqual(repr(image), "<adaptiso.Image of 2 x 3 x 4 voxels, float64, array>")
+
     def test_own_arrays_make_a_mesh_and_are_copied(self):
         points = np.array([[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]], np.float32)
         mesh = adaptiso.Mesh(points, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
@@ -55,7 +74,8 @@ class Values(unittest.TestCase):
                           (points, [[0.0, 1, 2]]), (points, faces, np.eye(2)),
                           (points, faces, np.ones((2, 3))), (points * 1e308 * 10, faces),
                           (points, np.array([[0, 1, 2**63]], np.uint64)), (None, None),
-                          ([[1, 2, 3], [4, 5]], faces), (points.astype(complex), faces)):
+                          ([[1, 2, 3], [4, 5]], faces), (points.astype(complex), faces),
+                          (np.ma.masked_equal(points, 1), faces)):
             with np.errstate(all="ignore"), self.assertRaises(adaptiso.Error) as caught:
                 adaptiso.Mesh(*arguments)
             self.assertNotIn("\n", str(caught.exception))

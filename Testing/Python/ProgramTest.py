@@ -156,8 +156,9 @@ class Findings(InFolder):
             self.assertEqual(value, theirs["nesting"]["pairs"][0][key], key)
         self.assertEqual(ours.failed[0].split(":")[0], "inner.ply")  # smaller than a head
         self.assertTrue(adaptiso.check_nested([self.inner, self.outer], "print").passed)
-        swapped = adaptiso.check_nested([self.outer, self.inner], "print")
+        swapped = adaptiso.check_nested({"brain": self.outer, "skull": self.inner}, "print")
         self.assertFalse(swapped)
+        self.assertEqual(swapped.failed, ["brain in skull: strictlyNested"])
         self.assertIn("swapped order", swapped.findings[0])
 
     def test_compare_says_what_adaptiso_compare_says(self):

@@ -121,6 +121,9 @@ class Zarr(InFolder):
             with self.assertRaises(adaptiso.Error) as caught:
                 adaptiso.read(self.root, **options)
             self.assertNotIn("\n", str(caught.exception))
+            self.assertNotIn("--", str(caught.exception))  # options of the programs
+        with self.assertRaisesRegex(adaptiso.Error, r"\((channel|time)= of adaptiso.read\)"):
+            adaptiso.surface(self.root, 5)
 
     def test_missing_chunks_are_told_or_refused(self):
         (self.root / "0" / "0.0.0.0.0").unlink()

@@ -125,6 +125,50 @@ print(*(b - a for a, b in zip(before, after)))
         self.assertLessEqual(sys.getrefcount(value), count)
 
 
+class Ends(unittest.TestCase):
+    """Of an interpreter whose threads are in calls."""
+
+    def test_daemons_end_without_a_word(self):
+        """Python waits for no daemon; one that asks for its lock then is unwound, which aborts in C++."""
+        for work in ("adaptiso.surface(noise, 0.0)", "adaptiso.check(mesh)",
+                     "[adaptiso.surface(noise[:6, :6, :6], 0.0, threads=1) for n in range(10**6)]",
+                     "adaptiso.surface(noise, 0.0, method='boxes', progress=lambda stage, done: sum(range(999)))"):
+            self.assertEqual(in_child(f"""
+import adaptiso, numpy as np, sys, threading, time
+sys.stderr = sys.stdout
+noise = np.asfortranarray(np.random.default_rng(1).normal(size=(80, 80, 80)))
+mesh = adaptiso.surface(noise[:50, :50, :50], 0.0, method="mc")
+for n in range(2):
+    threading.Thread(target=lambda: {work}, daemon=True).start()
+time.sleep(0.2)
+"""), "")
+
+    def test_the_last_thread_makes_calls_to_the_end(self):
+        self.assertEqual(in_child("""
+import atexit, numpy as np
+volume = np.zeros((8, 8, 8)); volume[2:5, 2:5, 2:5] = 1
+atexit.register(lambda: print(len(adaptiso.surface(volume, 0.5, method="mc").faces) > 0))
+import adaptiso
+class Last:
+    def __del__(self, surface=adaptiso.surface, volume=volume):
+        print(len(surface(volume, 0.5).faces) > 0)
+last = Last()
+"""), "True\nTrue\n")
+
+    @has_own_memory
+    def test_a_lack_of_memory_is_told_in_words(self):
+        self.assertEqual(in_child("""
+import adaptiso, numpy as np, resource
+noise = np.random.default_rng(1).random((160, 160, 160))
+used = int(open("/proc/self/statm").read().split()[0]) * 4096
+resource.setrlimit(resource.RLIMIT_AS, (used + 60_000_000,) * 2)
+try:
+    adaptiso.surface(noise, 0.5, method="mc", threads=2)
+except MemoryError as error:
+    print(error, noise.flags.writeable)
+"""), "adaptiso: there is not enough memory True\n")
+
+
 class Forks(unittest.TestCase):
     """After a parent that has used threads."""
 

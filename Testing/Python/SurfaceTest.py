@@ -244,6 +244,15 @@ class Affines(unittest.TestCase):
         with self.assertRaisesRegex(adaptiso.Error, "has its own"):
             adaptiso.surface(image, -9, affine=SHEARED)
 
+    @needs("nibabel")
+    def test_a_nibabel_image_may_have_further_axes_of_one(self):
+        import nibabel
+        volume = ball()
+        image = nibabel.Nifti1Image(volume[..., None, None], np.eye(4))
+        self.assertEqual(adaptiso.surface(image, -8), adaptiso.surface(volume, -8))
+        with self.assertRaisesRegex(adaptiso.Error, "one volume"):
+            adaptiso.surface(nibabel.Nifti1Image(np.stack([volume] * 2, -1), np.eye(4)), -8)
+
     def test_an_itk_image_is_taken_as_its_package_shows_it(self):
         """By a stand-in for SimpleITK, which Debian does not have: its documented conventions,
         direction by rows, spacing and origin in LPS mm, views with k first."""
@@ -308,6 +317,8 @@ class BadInput(unittest.TestCase):
         for level in (None, "otsu", float("nan"), float("inf"), True, [1], 1j, "1", b"auto",
                       np.array([1, 2])):
             self.refuse("level", volume, level)
+        for level in (True, np.True_):
+            self.refuse("level True: must be a number", volume > -8, level)
         self.refuse("level 5: no voxel reaches it; the range of the image is -19.9", volume, 5)
         self.refuse("level -100: every voxel reaches it", volume, -100)
         self.refuse("level 1: no voxel reaches it; the image holds no numbers",
@@ -316,9 +327,8 @@ class BadInput(unittest.TestCase):
 
     def test_affines(self):
         for affine in (np.eye(3), 1, "ras", np.zeros((4, 4)), np.full((4, 4), np.nan),
-                       np.ones((4, 4)), [[1, 2], [3]], np.eye(4)[::-1], None and 0, [object()] * 4):
-            if affine is None:
-                continue
+                       np.ones((4, 4)), [[1, 2], [3]], np.eye(4)[::-1], [object()] * 4,
+                       np.eye(4) + 1j, np.ma.masked_equal(np.eye(4), 0)):
             self.refuse("affine", ball(), -8, affine=affine)
 
     def test_voxels_that_are_needles(self):
@@ -405,6 +415,23 @@ print(len(adaptiso.surface(noise[:9, :9, :9], 0.0).faces) > 0, noise.flags.write
         self.assertIn("interrupted in time: True", done.stdout)
         self.assertTrue(done.stdout.endswith("True True\n"), done.stdout)
         self.assertEqual(done.stderr, "")
+
+    def test_control_c_ends_a_check(self):
+        script = """
+import adaptiso, numpy as np, signal, threading, os
+mesh = adaptiso.surface(np.random.default_rng(1).normal(size=(60, 60, 60)), 0.0, method="mc")
+threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+try:
+    while True:
+        adaptiso.check(mesh)
+        print("whole")
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+        done = subprocess.run([sys.executable, "-c", script], text=True, capture_output=True,
+                              timeout=600)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("interrupted", done.stdout)
 
 
 class Quiet(unittest.TestCase):

@@ -10,6 +10,7 @@ whose message is one line. C++ works without the interpreter's lock, so threads 
 Ctrl+C ends a call. Nothing is printed: warnings go to the logger "adaptiso".
 """
 
+import atexit as _atexit
 import logging as _logging
 import os as _os
 
@@ -35,6 +36,9 @@ if hasattr(_os, "register_at_fork"):
     _os.register_at_fork(before=_adaptiso.before_fork,
                          after_in_parent=_adaptiso.after_fork_in_parent,
                          after_in_child=_adaptiso.after_fork_in_child)
+
+# daemon threads, which Python does not wait for, must not work with what the process's end frees
+_atexit.register(_adaptiso.end_calls_of_other_threads)
 
 Error.__module__ = InternalError.__module__ = "adaptiso"
 InternalError.__doc__ = "A promise of the library is broken: a bug of adaptiso, not of the input."

@@ -28,7 +28,7 @@ def shown(value: Any) -> str:
 def number(name: str, value: Any, rule: str = "a finite number",
            holds: Callable[[float], bool] = lambda value: True) -> float:
     """`value` as a float that `holds`. \\raises Error"""
-    if isinstance(value, (bool, str, bytes)) or not hasattr(value, "__float__"):
+    if is_truth(value) or isinstance(value, (str, bytes)) or not hasattr(value, "__float__"):
         raise Error(f"{name} {shown(value)}: must be {rule}")
     try:
         result = float(value)
@@ -69,9 +69,14 @@ def listed(name: str, value: Any, rule: str = "a sequence") -> List[Any]:
     return parts
 
 
+def is_truth(value: Any) -> bool:
+    """It is Python's or NumPy's True or False."""
+    return isinstance(value, bool) or type(value).__name__ in ("bool_", "bool")
+
+
 def flag(name: str, value: Any) -> bool:
     """`value` as a truth value; a NumPy one will do. \\raises Error"""
-    if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):
+    if is_truth(value):
         return bool(value)
     raise Error(f"{name} {shown(value)}: must be True or False")
 

@@ -52,9 +52,49 @@ class NoModel(Error):
         super().__init__(message)
         self.model = model
 
+    def __reduce__(self) -> Tuple[Any, ...]:
+        return type(self), (str(self), self.model)
+
+
+class _Carried:
+    """What pickle carries of a model, in the place of C++'s: not the image, nor how it was made."""
+
+    def __init__(self, state: Dict[str, Any]) -> None:
+        self.state = state
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self.__dict__["state"][name]
+        except KeyError:
+            raise AttributeError(name) from None
+
+    @property
+    def surfaces(self) -> List[_adaptiso.MeshData]:
+        return [mesh._data for mesh in self.state["meshes"]]
+
+    def check(self, threads: int) -> str:
+        return str(self.state["check_text"])
+
+    def report(self) -> str:
+        return str(self.state["report_text"])
+
+    def write(self, folder: str, options: Dict[str, Any]) -> None:
+        raise Error("save: this model was pickled; save it in the process that made it")
+
+    def page(self, deface: bool) -> str:
+        raise Error("report_html: this model was pickled; ask for the page in the process that made "
+                    "it")
+
+
+def _unpickled(state: Dict[str, Any], conductivity: Tuple[float, ...], threads: int) -> "HeadModel":
+    return HeadModel(_Carried(state), conductivity, threads)
+
 
 class HeadModel:
     """The nested surfaces of a head, for boundary elements: what `bem` makes.
+
+    It pickles, so that a pool of processes can return it; `save` and `report_html` need the image,
+    and are for the process that made it.
 
     Attributes
     ----------
@@ -76,7 +116,7 @@ class HeadModel:
     __slots__ = ("_data", "_surfaces", "_check", "_report", "_conductivity", "_threads",
                  "__weakref__")
 
-    def __init__(self, data: _adaptiso.HeadModelData, conductivity: Tuple[float, ...],
+    def __init__(self, data: Union[_adaptiso.HeadModelData, _Carried], conductivity: Tuple[float, ...],
                  threads: int) -> None:
         self._data = data
         self._conductivity = conductivity
@@ -92,7 +132,7 @@ class HeadModel:
             meshes = list(map(Mesh._of, self._data.surfaces))
             names = ("inner_skull",) if len(meshes) == 1 else SURFACES[-len(meshes):]
             self._surfaces = dict(zip(names, meshes))
-        return self._surfaces
+        return dict(self._surfaces)
 
     @property
     def electrodes(self) -> Dict[str, Point]:
@@ -218,6 +258,21 @@ class HeadModel:
         """
         return self._data.page(flag("deface", deface))
 
+    def __copy__(self) -> "HeadModel":
+        return self  # nothing of it changes
+
+    def __deepcopy__(self, memo: Any) -> "HeadModel":
+        return self
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        data = self._data
+        state = {name: getattr(data, name) for name in
+                 ("has_model", "failure", "warnings", "has_volume", "has_head_shape", "electrodes",
+                  "landmarks")}
+        state["meshes"] = list(self.surfaces.values())
+        state["check_text"], state["report_text"] = data.check(self._threads), data.report()
+        return _unpickled, (state, self._conductivity, self._threads)
+
     def __repr__(self) -> str:
         if not self._data.has_model:
             return f"<adaptiso.HeadModel: none: {self._data.failure}>"
@@ -259,8 +314,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
         pial: Optional[Sequence[Any]] = None, labels: Any = None,
         tissues: Union[str, Mapping[str, Sequence[int]], None] = None, head_mask: Any = None,
         probabilities: Optional[Sequence[Any]] = None, ct: Any = None,
-        surfaces: Optional[Sequence[Any]] = None, volume: Any = None, affine: Any = None,
-        layers: int = 3, vertices: Union[int, Sequence[int], None] = None,
+        surfaces: Union[Sequence[Any], Mapping[str, Any], None] = None, volume: Any = None,
+        affine: Any = None, layers: int = 3, vertices: Union[int, Sequence[int], None] = None,
         edge_length: Optional[Tuple[float, float]] = None, meg: bool = False,
         min_gap: Union[float, Sequence[float]] = (2, 2, 1), csf: float = 2, skull: float = 6,
         max_skull: float = 20, skull_hu: float = 300, skin_hu: float = -300, closing: float = 10,
@@ -301,9 +356,9 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
         Tissue maps in SPM's order: grey, white, CSF, bone, soft tissue.
     ct : image, optional
         A CT of the whole head, in Hounsfield units.
-    surfaces : sequence, optional
+    surfaces : sequence or dict, optional
         Ready surfaces from inside out, each a Mesh, (vertices, faces), a path, or an object with
-        vertices and faces. Checked, mended where need be, kept as they are where not.
+        vertices and faces; of a dict (as ``HeadModel.surfaces``) its values. Checked, mended where need be, kept as they are where not.
     volume : image, optional
         With `surfaces`: the image they belong to, for tkRAS.
     affine : array_like of shape (4, 4), optional
@@ -482,7 +537,7 @@ def _image(name: str, image: Any, affine: Any, source: _Source) -> Samples:
 def _surfaces(name: str, surfaces: Any, source: _Source) -> List[Mesh]:
     role = "surface" if name == "surfaces" else "pial surface"
     meshes = []
-    for surface in listed(name, surfaces):
+    for surface in listed(name, surfaces.values() if isinstance(surfaces, Mapping) else surfaces):
         file = base_name(checked_path(name, surface)) if is_path(surface) else ""
         source.inputs.append([file, role, "file" if file else type(surface).__name__])
         if isinstance(surface, Mesh):

@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
+import re
 import sys
 import threading
 import weakref
@@ -50,6 +51,21 @@ class Image(NamedTuple):
     affine: Affine
     warnings: List[str]
     format: str
+
+    def __repr__(self) -> str:
+        shape = " x ".join(map(str, self.array.shape))
+        return f"<adaptiso.Image of {shape} voxels, {self.array.dtype}, {self.format}>"
+
+    def __eq__(self, other: object) -> bool:
+        """The same samples (NaN too), affine, warnings and format."""
+        if not isinstance(other, Image):
+            return NotImplemented
+        return (self.format == other.format and self.warnings == other.warnings
+                and np.array_equal(self.affine, other.affine)
+                and np.array_equal(self.array, other.array, equal_nan=self.array.dtype.kind == "f"))
+
+    def __ne__(self, other: object) -> bool:  # of a tuple it would be the tuple's own
+        return not self == other
 
 
 def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int] = None,
@@ -111,15 +127,26 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
     no_zarr = f"{name}: is no Zarr, which level, channel, time and all_chunks are for"
     if is_of_zarr and not os.path.isdir(name):
         raise Error(no_zarr)
-    with _reading:
-        array, affine, kind, warnings = _adaptiso.read_image(
-            name, None if series is None else str(series), **numbers, all_chunks=whole,
-            resample_slices=resample)
+    try:
+        with _reading:
+            array, affine, kind, warnings = _adaptiso.read_image(
+                name, None if series is None else str(series), **numbers, all_chunks=whole,
+                resample_slices=resample)
+    except Error as error:
+        raise Error(_in_python(str(error))) from None
     if is_of_zarr and "Zarr" not in kind:
         raise Error(no_zarr)
     for warning in warnings:
         logger.warning("%s: %s", base_name(name), warning)
     return Image(array, affine, warnings, kind)
+
+
+def _in_python(message: str) -> str:
+    """A reader's message, which names options as the programs have them."""
+    for option in ("series", "volume-index", "level", "channel", "time", "resample-slices"):
+        name = option.replace("-", "_")
+        message = re.sub(rf"--{option}\b", f"{name}= of adaptiso.read", message)
+    return message.replace("leave --refuse-missing-chunks out", "leave all_chunks=True out")
 
 
 def _read_by_nibabel(name: str, volume_index: Optional[int], wants_more: bool) -> Image:
@@ -192,12 +219,17 @@ def samples_of(image: Any, affine: Any, in_file_order: bool = False) -> Samples:
 def affine_of(value: Any) -> Affine:
     """A matrix of voxel indices to scanner RAS mm. \\raises Error"""
     try:
-        affine = np.array(value, dtype=np.float64)
+        affine = np.array(value, dtype=np.float64) if _is_plain(value) else np.empty(0)
     except (TypeError, ValueError, OverflowError):
         affine = np.empty(0)
     if affine.shape != (4, 4):
         raise Error(f"affine {shown(value)}: must be a 4 x 4 matrix, voxel indices to RAS mm")
     return affine
+
+
+def _is_plain(value: Any) -> bool:
+    """No part of it would be lost without a word."""
+    return not isinstance(value, np.ma.MaskedArray) and not np.iscomplexobj(value)
 
 
 def _array_of(image: Any) -> Tuple[Array, Optional[Affine], str]:
@@ -210,7 +242,10 @@ def _array_of(image: Any) -> Tuple[Array, Optional[Affine], str]:
     if hasattr(image, "dataobj") and hasattr(image, "affine"):
         if image.affine is None:
             raise Error("image: the nibabel image has no affine; give its array and one")
-        return np.asanyarray(image.dataobj), affine_of(image.affine), type(image).__name__
+        array = np.asanyarray(image.dataobj)
+        single = all(size == 1 for size in array.shape[3:])  # as files of one volume may have it
+        return (array.reshape(array.shape[:3]) if single else array, affine_of(image.affine),
+                type(image).__name__)
     if hasattr(image, "GetSpacing") and hasattr(image, "GetDirection"):
         return _itk_array(image), _itk_affine(image), type(image).__name__
     raise Error(f"image {shown(image)}: must be a NumPy array, a nibabel, SimpleITK or ITK image, "

@@ -115,7 +115,7 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
         if self._regions is None:
             self._regions = {entry["label"]: self._region_of(entry)
                              for entry in self.report["regions"]}
-        return self._regions
+        return dict(self._regions)
 
     def _region_of(self, entry: Dict[str, Any]) -> Region:
         label = entry["label"]

@@ -80,7 +80,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         if self._normals is None:
             normals = self._data.normals.astype(np.float64)
             normals.flags.writeable = False
-            self._normals = normals
+            self._normals = normals.view()  # of which nobody can make it writable again
         return self._normals
 
     @property
@@ -308,6 +308,8 @@ def _geometry_of(volume: Any) -> Tuple[Any, Any]:
 
 def _table(name: str, value: Any, dtype: Any) -> Any:
     """Rows of three numbers. \\raises Error"""
+    if isinstance(value, np.ma.MaskedArray):
+        raise Error(f"{name}: is a masked array; fill it first, or take the rows that are not masked")
     try:
         table = np.asarray(value)
     except (TypeError, ValueError, OverflowError):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 
 from . import _adaptiso
 from ._adaptiso import Error
@@ -15,7 +15,26 @@ from ._mesh import Mesh, mesh_data_of
 PROFILES = ("bem", "print", "view")
 
 
-class Check:
+class _Report:
+    """A report as a value."""
+
+    __slots__ = ("report",)
+
+    def __init__(self, report: Dict[str, Any]) -> None:
+        self.report = report
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, type(self)):
+            return NotImplemented
+        return self.report == other.report
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> "tuple[Any, ...]":
+        return type(self), (self.report,)
+
+
+class Check(_Report):
     """What `check` and `check_nested` found; true when all that is required holds.
 
     Attributes
@@ -30,10 +49,7 @@ class Check:
         ``surfaces``, of nested ones ``surfaces`` and ``nesting``.
     """
 
-    __slots__ = ("report",)
-
-    def __init__(self, report: Dict[str, Any]) -> None:
-        self.report = report
+    __slots__ = ()
 
     @property
     def passed(self) -> bool:
@@ -69,7 +85,7 @@ class Check:
         return f"<adaptiso.Check: failed: {', '.join(self.failed)}>"
 
 
-class Comparison:
+class Comparison(_Report):
     """The distance between two surfaces, both ways together, mm.
 
     Attributes
@@ -80,10 +96,7 @@ class Comparison:
         ``a``, ``b`` and ``distances`` as ``adaptiso-compare --json`` has them.
     """
 
-    __slots__ = ("report",)
-
-    def __init__(self, report: Dict[str, Any]) -> None:
-        self.report = report
+    __slots__ = ()
 
     def _of(self, key: str) -> float:
         return float(self.report["distances"]["combined"][key])
@@ -156,21 +169,22 @@ def check(mesh: Any, profile: str = "print", *, min_angle: Optional[float] = Non
     return Check(json.loads(text))
 
 
-def check_nested(meshes: Sequence[Any], profile: str = "bem", *, min_gap: Optional[float] = None,
-                 min_angle: Optional[float] = None, max_pairs: int = 1000,
-                 names: Optional[Sequence[str]] = None, threads: int = 0) -> Check:
+def check_nested(meshes: Union[Sequence[Any], Mapping[str, Any]], profile: str = "bem", *,
+                 min_gap: Optional[float] = None, min_angle: Optional[float] = None,
+                 max_pairs: int = 1000, names: Optional[Sequence[str]] = None,
+                 threads: int = 0) -> Check:
     """Check surfaces that lie in each other, and each of them.
 
     Parameters
     ----------
-    meshes : sequence of what `check` takes
-        From inside out; all in one frame.
+    meshes : sequence of what `check` takes, or a dict of them by name
+        From inside out; all in one frame. ``HeadModel.surfaces`` is such a dict.
     profile, min_angle, max_pairs, threads
         As for `check`.
     min_gap : float, optional
         Required distance of neighbours, mm; default 0.5, required of "bem" only.
     names : sequence of str, optional
-        What findings call them; default the files' names, or "surface 1" and so on.
+        What findings call them; default the dict's keys, the files' names, or "surface 1" and so on.
 
     Returns
     -------
@@ -192,7 +206,10 @@ def check_nested(meshes: Sequence[Any], profile: str = "bem", *, min_gap: Option
     >>> adaptiso.check_nested([outer, inner], "print").failed
     ['surface 1 in surface 2: strictlyNested']
     """
-    surfaces = listed("meshes", meshes, "a sequence of surfaces, from inside out")
+    if names is None and isinstance(meshes, Mapping):
+        names = list(map(str, meshes))
+    surfaces = listed("meshes", meshes.values() if isinstance(meshes, Mapping) else meshes,
+                      "a sequence of surfaces, from inside out")
     if len(surfaces) < 2:
         raise Error(f"meshes: are {len(surfaces)}, must be two or more")
     told = _names(surfaces, names)

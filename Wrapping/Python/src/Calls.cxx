@@ -1,12 +1,15 @@
 #include "Calls.h"
 
+#include <cxxabi.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <thread>
 
 #include "adaptiso/Core/Interruption.h"
 
@@ -31,11 +34,37 @@ tbb::task_scheduler_handle*& workers() {
 std::atomic<bool> forkedDuringCall{false};  ///< the workers could not be ended before the fork
 std::atomic<bool> hasOneThread{false};      ///< this is a child of such a fork
 
-}  // namespace
+std::atomic<int> unlockedThreads{0};
+std::atomic<bool> isEnding{false};
+std::thread::id lastThread;  ///< may make calls while the interpreter ends
 
-void runUnlocked(int threads, const std::function<void()>& work) {
+bool mustEnd() {
+    return isEnding && std::this_thread::get_id() != lastThread;
+}
+
+/// Does what may ask for the interpreter's lock; see Unlocked.
+template <class F>
+void outlastingTheInterpreter(const F& work) {
+    try {
+        work();
+    } catch (const abi::__forced_unwind&) {
+        for (;;) pause();  // to leave this block would be the abort
+    }
+}
+
+class Locked {
+public:
+    Locked() {
+        outlastingTheInterpreter([this] { lock_.emplace(); });
+    }
+
+private:
+    std::optional<py::gil_scoped_acquire> lock_;
+};
+
+void runInArena(int threads, const std::function<void()>& work) {
     workers();
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     // more than there are only makes oneTBB print a warning
     const auto most = static_cast<int>(
         tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
@@ -43,26 +72,53 @@ void runUnlocked(int threads, const std::function<void()>& work) {
     arena.execute(work);
 }
 
-/// To be called without the lock. \throws Stopped
-void Watcher::lookForSignals() {
-    const py::gil_scoped_acquire locked;
-    if (PyErr_CheckSignals() == 0) return;
+}  // namespace
+
+Unlocked::Unlocked() {
+    ++unlockedThreads;
+    state_ = PyEval_SaveThread();
+}
+
+Unlocked::~Unlocked() {
+    --unlockedThreads;
+    outlastingTheInterpreter([this] { PyEval_RestoreThread(state_); });
+}
+
+void runUnlocked(int threads, const std::function<void()>& work) {
+    Watcher(py::none()).run(threads, work);
+}
+
+/// To be called with the lock, and an exception of Python's.
+void Watcher::stop() {
     error_.emplace();
     throw Stopped();
+}
+
+/// To be called without the lock. \throws Stopped
+void Watcher::lookForSignals() {
+    const Locked locked;
+    if (mustEnd()) {
+        PyErr_SetNone(PyExc_SystemExit);
+        stop();
+    }
+    if (PyErr_CheckSignals() != 0) stop();
 }
 
 void Watcher::tell(std::string_view stage, double fraction) {
     const double time = now();
     if (fraction < 1 && time - lastTold_ < kToldEverySeconds) return;
     lastTold_ = time;
-    const py::gil_scoped_acquire locked;
-    try {
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        if (!callback_.is_none()) callback_(py::str(stage.data(), stage.size()), fraction);
-    } catch (const py::error_already_set& error) {
-        error_.emplace(error);
-        throw Stopped();
-    }
+    lookForSignals();
+    if (callback_.is_none()) return;
+    const Locked locked;
+    outlastingTheInterpreter([&] {
+        try {
+            callback_(py::str(stage.data(), stage.size()), fraction);
+        } catch (const py::error_already_set& error) {
+            error_.emplace(error);
+            throw Stopped();
+        }
+    });
 }
 
 ProgressCallback Watcher::callback() {
@@ -70,14 +126,30 @@ ProgressCallback Watcher::callback() {
 }
 
 void Watcher::run(int threads, const std::function<void()>& work) {
+    if (mustEnd()) {
+        PyErr_SetNone(PyExc_SystemExit);
+        throw py::error_already_set();
+    }
     try {
         const std::function<void()> look = [this] { lookForSignals(); };
-        runUnlocked(threads, [&] {
+        runInArena(threads, [&] {
             const InterruptionCheck check(look);
             work();
         });
     } catch (const Stopped&) {
         throw py::error_already_set(*error_);
+    }
+}
+
+void endCallsOfOtherThreads() {
+    constexpr std::chrono::seconds kMost{5};
+    constexpr std::chrono::milliseconds kStep{2};
+    lastThread = std::this_thread::get_id();
+    isEnding = true;
+    const Unlocked unlocked;  // so that they can end, and this thread is one of those counted
+    const auto end = std::chrono::steady_clock::now() + kMost;
+    while (unlockedThreads > 1 && std::chrono::steady_clock::now() < end) {
+        std::this_thread::sleep_for(kStep);
     }
 }
 
@@ -94,6 +166,7 @@ void afterForkInParent() {
 
 void afterForkInChild() {
     if (forkedDuringCall) hasOneThread = true;
+    unlockedThreads = 0;  // the child has this thread alone
     workers() = new tbb::task_scheduler_handle{tbb::attach{}};
 }
 

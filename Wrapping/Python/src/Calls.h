@@ -13,10 +13,26 @@ namespace adaptiso::python {
 
 namespace py = pybind11;
 
+/// The interpreter's lock is given up as long as this lives.
+///
+/// A thread that asks for the lock while the interpreter ends is ended by it, by unwinding its
+/// stack, which would abort the process here. It waits for the process to end instead, as all
+/// threads do from Python 3.14 on.
+class Unlocked {
+public:
+    Unlocked();
+    Unlocked(const Unlocked&) = delete;
+    Unlocked& operator=(const Unlocked&) = delete;
+    ~Unlocked();
+
+private:
+    PyThreadState* state_;
+};
+
 /// Runs `work` without the interpreter's lock, in at most `threads` threads (0: all that there
 /// are). Every call has an arena of its own, so that calls of several Python threads neither limit
 /// nor wait for each other. In a child of fork() that took place during another call there is one
-/// thread.
+/// thread. Ctrl+C ends the call, as of a Watcher.
 void runUnlocked(int threads, const std::function<void()>& work);
 
 /// Tells Python how far a call has come, and sees to it that Ctrl+C ends it. An exception, of the
@@ -32,18 +48,24 @@ public:
     /// Asks for signals, and tells `callback` a stage; with the lock or without. \throws Stopped
     void tell(std::string_view stage, double fraction);
 
-    /// Runs `work` as runUnlocked(); raises in Python what stopped it.
+    /// Runs `work` without the lock; raises in Python what stopped it.
     void run(int threads, const std::function<void()>& work);
 
 private:
     struct Stopped : std::exception {};
 
     void lookForSignals();
+    [[noreturn]] void stop();
 
     py::object callback_;
     std::optional<py::error_already_set> error_;
     double lastTold_ = -1;  ///< seconds of a steady clock
 };
+
+/// For atexit: ends the calls of all other threads, which the end of the process would take away
+/// what they work with, and waits for them, some seconds at most. Calls that those threads begin
+/// later raise SystemExit, which ends a thread without a word.
+void endCallsOfOtherThreads();
 
 /// What has to be done around fork(), for os.register_at_fork: workers end before it and come back
 /// when they are needed, in the parent and in the child.

@@ -73,7 +73,7 @@ Vec3 toLps(const Place& place) {
 PointFile pointsOf(const py::object& electrodes) {
     if (py::isinstance<py::str>(electrodes)) {
         const auto path = electrodes.cast<std::string>();
-        const py::gil_scoped_release unlocked;
+        const Unlocked unlocked;
         return readPoints(path);
     }
     PointFile file;

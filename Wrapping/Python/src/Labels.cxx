@@ -89,7 +89,7 @@ void declareLabelData(py::module_& module) {
         .def(
             "region",
             [](const LabelData& self, Label label) {
-                const py::gil_scoped_release unlocked;
+                const Unlocked unlocked;
                 return self.region(label);
             },
             py::arg("label"))
@@ -99,7 +99,7 @@ void declareLabelData(py::module_& module) {
             [](const LabelData& self, const std::string& path,
                const std::optional<std::string>& frame) {
                 const auto wanted = frameOf(frame);
-                const py::gil_scoped_release unlocked;
+                const Unlocked unlocked;
                 self.write(path, wanted);
             },
             py::arg("path"), py::arg("frame"));

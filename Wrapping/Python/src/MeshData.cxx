@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "Calls.h"
 #include "Resources.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
@@ -168,7 +169,7 @@ std::string MeshData::report() {
     if (!report_.empty() || !history_) return report_;
     SurfaceHistory history = *history_;
     if (!history.record.crossingPairs) {
-        const py::gil_scoped_release unlocked;
+        const Unlocked unlocked;
         history.record.crossingPairs = findSelfIntersections(mesh_, {.maxPairs = 0}).pairCount;
     }
     report_ = reportOf(history, *image_);

@@ -78,7 +78,7 @@ void declareMeshes(py::module_& module) {
             [](const MeshData& self, const std::string& path,
                const std::optional<std::string>& frame) {
                 const auto wanted = frameOf(frame);
-                const py::gil_scoped_release unlocked;
+                const Unlocked unlocked;
                 self.write(path, wanted);
             },
             py::arg("path"), py::arg("frame") = py::none())
@@ -124,7 +124,7 @@ void declareMeshes(py::module_& module) {
         [](const std::string& path, const std::optional<std::vector<std::int64_t>>& shape,
            const std::optional<py::array_t<double>>& affine, bool keepsFaults) {
             const std::optional<ImageGeometry> image = imageOf(shape, affine);
-            const py::gil_scoped_release unlocked;
+            const Unlocked unlocked;
             return readMeshData(path, image, keepsFaults);
         },
         py::arg("path"), py::arg("shape"), py::arg("affine"), py::arg("keeps_faults"));

@@ -2,6 +2,10 @@
 // named by the Python half (adaptiso/*.py), which documents what users see.
 #include <pybind11/pybind11.h>
 
+#include <exception>
+#include <new>
+#include <utility>
+
 #include "Calls.h"
 #include "Declarations.h"
 #include "adaptiso/Core/Errors.h"
@@ -12,6 +16,13 @@ PYBIND11_MODULE(_adaptiso, module) {
     const auto error = py::register_exception<adaptiso::Error>(module, "Error", PyExc_ValueError);
     error.doc() = "What can't be used: a file, an array, an argument. The message is one line.";
     py::register_exception<adaptiso::InternalError>(module, "InternalError", PyExc_RuntimeError);
+    py::register_local_exception_translator([](std::exception_ptr thrown) {
+        try {
+            std::rethrow_exception(std::move(thrown));
+        } catch (const std::bad_alloc&) {
+            PyErr_SetString(PyExc_MemoryError, "adaptiso: there is not enough memory");
+        }
+    });
     declareMeshes(module);
     declareSurfaces(module);
     declareReaders(module);
@@ -19,6 +30,7 @@ PYBIND11_MODULE(_adaptiso, module) {
     declareSimplify(module);
     declareHeadModels(module);
     declareLabels(module);
+    module.def("end_calls_of_other_threads", &endCallsOfOtherThreads);
     module.def("before_fork", &beforeFork);
     module.def("after_fork_in_parent", &afterForkInParent);
     module.def("after_fork_in_child", &afterForkInChild);

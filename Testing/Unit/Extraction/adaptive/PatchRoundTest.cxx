@@ -29,7 +29,9 @@ struct Ball {
         limits.maxDistanceMm = kDistanceMm;
         return limits;
     }
-    void run(const PatchWork& work) { PatchRound(surface, kCut, scene.frame).run(work); }
+    void run(const PatchWork& work, const detail::PatchCut& cut = kCut) {
+        PatchRound(surface, cut, scene.frame).run(work);
+    }
 
     double squaredDistance(std::size_t s) const {
         const auto& [a, b, c] = surface.triangles[surface.sampleTriangle[s]];
@@ -109,6 +111,33 @@ TEST(PatchRound, TriesOutWhatItWouldDo) {
     EXPECT_EQ(2 * trial.collapses(), before.triangleCount() - ball.surface.triangleCount());
     for (const auto& patch : trial.costs) {
         for (const double cost : patch) EXPECT_LE(cost, Ball::limits().maxCost);
+    }
+}
+
+TEST(PatchRound, LendsAPatchOfAllTheSamplesAndGetsThemBack) {
+    // the second cut has the ball in one cube, and a vertex without triangles in another: so its
+    // samples are copied
+    const detail::PatchCut cut{256, {-100, -100, -100}};
+    Ball lent, copied;
+    copied.surface.points.push_back(copied.scene.frame.fromIndex({1000, 0, 0}));
+    copied.surface.states.push_back(detail::Patch::State::Final);
+    copied.surface.quadrics.emplace_back();
+    ASSERT_TRUE(detail::PatchGroups(lent.surface, cut, lent.scene.frame).isOne());
+    ASSERT_FALSE(detail::PatchGroups(copied.surface, cut, copied.scene.frame).isOne());
+    const std::vector<detail::Sample> before = lent.surface.samples;
+    EXPECT_GT(
+        PatchRound(lent.surface, cut, lent.scene.frame).tryOut(Ball::limits(), true).collapses(),
+        0);
+    PatchWork work{Ball::limits()};
+    work.fits = true;
+    lent.run(work, cut);
+    copied.run(work, cut);
+    EXPECT_EQ(lent.surface.points, copied.surface.points);
+    EXPECT_EQ(lent.surface.triangles, copied.surface.triangles);
+    EXPECT_EQ(lent.surface.sampleTriangle, copied.surface.sampleTriangle);
+    ASSERT_EQ(lent.surface.samples.size(), before.size());
+    for (std::size_t s = 0; s < before.size(); ++s) {
+        EXPECT_EQ(lent.surface.samples[s].position, before[s].position);
     }
 }
 

@@ -97,6 +97,7 @@ PatchGroups::PatchGroups(const SimplifiedSurface& surface, const PatchCut& cut,
       obstacles_(cubes_.count()) {
     tbb::parallel_invoke([&] { groupVertices(); }, [&] { groupTriangles(); },
                          [&] {
+                             if (isOne()) return;  // it has them all
                              samples_ = Groups(count(), surface.samples.size(), [&](std::size_t s) {
                                  return cubeOfTriangle_[surface.sampleTriangle[s]];
                              });
@@ -138,6 +139,7 @@ void PatchGroups::groupTriangles() {
     triangles_ = Groups(count(), surface_.triangles.size(),
                         [&](std::size_t t) { return cubeOfTriangle_[t]; });
     triangles_.number(placeOfTriangle_);
+    if (isOne()) return;
     for (std::uint32_t t = 0; t < cubeOfTriangle_.size(); ++t) {
         if (cubeOfTriangle_[t] != kStraddles) continue;
         placeOfTriangle_[t] = static_cast<std::uint32_t>(straddling_.size());
@@ -227,6 +229,16 @@ Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
             {placeOfVertex_[c[0]], placeOfVertex_[c[1]], placeOfVertex_[c[2]]});
     }
     patch.ownTriangles = static_cast<std::uint32_t>(own.size());
+    if (isOne()) {
+        patch.sampleTriangle = surface_.sampleTriangle;  // triangles have their own numbers
+    } else {
+        addSamples(n, patch, scratch);
+        addObstacles(n, patch, scratch);
+    }
+    return patch;
+}
+
+void PatchGroups::addSamples(std::size_t n, Patch& patch, PatchScratch& scratch) const {
     sortSamples(n, scratch.samples);
     patch.samples.reserve(scratch.samples.size());
     patch.sampleTriangle.reserve(scratch.samples.size());
@@ -234,8 +246,6 @@ Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
         patch.samples.push_back(surface_.samples[s]);
         patch.sampleTriangle.push_back(placeOfTriangle_[surface_.sampleTriangle[s]]);
     }
-    addObstacles(n, patch, scratch);
-    return patch;
 }
 
 /// Adds the triangles that straddle the cube's walls, with their vertices and samples.
@@ -278,6 +288,7 @@ void PatchGroups::putBack(std::size_t n, const Patch& patch, const PatchScratch&
         surface.quadrics[members[v]] = StoredQuadric::of(patch.quadrics[v], patch.points[v]);
     }
     const auto own = triangles_.of(n);
+    if (isOne()) surface.sampleTriangle = patch.sampleTriangle;
     for (std::size_t i = 0; i < scratch.samples.size(); ++i) {
         surface.sampleTriangle[scratch.samples[i]] = own[patch.sampleTriangle[i]];
     }

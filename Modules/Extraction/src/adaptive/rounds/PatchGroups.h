@@ -122,6 +122,8 @@ public:
     PatchGroups(const SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame);
 
     std::size_t count() const { return cubes_.count(); }
+    /// There is one patch, which holds all of the surface.
+    bool isOne() const { return count() == 1; }
     /// Nothing of it can change.
     bool isIdle(std::size_t n) const;
     std::size_t triangleCount(std::size_t n) const { return triangles_.of(n).size(); }
@@ -129,7 +131,8 @@ public:
     /// `total` dealt out by the patches' numbers of triangles.
     std::vector<std::int64_t> shares(std::int64_t total) const;
 
-    /// A copy of a patch, with the triangles around it as obstacles.
+    /// A copy of a patch, with the triangles around it as obstacles; where it is the only one, but
+    /// for the samples, which the caller can lend it as they are.
     Patch take(std::size_t n, PatchScratch& scratch) const;
 
     /// Writes what take() copied, and has changed since, back to the surface. Different patches
@@ -151,6 +154,7 @@ private:
     void groupTriangles();
     void collectObstacles();
     void sortSamples(std::size_t n, std::vector<std::uint32_t>& sorted) const;
+    void addSamples(std::size_t n, Patch& patch, PatchScratch& scratch) const;
     void addObstacles(std::size_t n, Patch& patch, PatchScratch& scratch) const;
 
     const SimplifiedSurface& surface_;

@@ -77,6 +77,12 @@ PatchRound::PatchRound(SimplifiedSurface& surface, const PatchCut& cut, const Me
     groups_.emplace(surface, cut, frame);
 }
 
+/// A patch that is the only one works with the surface's own samples: a copy of them would be the
+/// largest list of all. Called again it gives them back.
+void PatchRound::lendSamples(Patch& patch) const {
+    if (groups_->isOne()) patch.samples.swap(surface_.samples);
+}
+
 PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
     std::vector<std::size_t> all, some;
     for (std::size_t n = 0; n < groups_->count(); ++n) {
@@ -98,7 +104,9 @@ PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
     tbb::enumerable_thread_specific<PatchScratch> scratches;
     parallelForPieces(std::ssize(some), 1, [&](std::int64_t i, std::int64_t) {
         Patch patch = groups_->take(some[i], scratches.local());
+        lendSamples(patch);
         PatchSimplifier(patch, frame_, limits).collapseEdges(patch.ownTriangles, &trial.costs[i]);
+        lendSamples(patch);
     });
     return trial;
 }
@@ -114,11 +122,13 @@ void PatchRound::run(const PatchWork& work, CollapseCosts* costs) {
             if (groups_->isIdle(n)) return;
             PatchScratch& scratch = scratches.local();
             Patch patch = groups_->take(n, scratch);
+            lendSamples(patch);
             PatchSimplifier simplifier(patch, frame_, work.limits);
             if (work.collapses) {
                 simplifier.collapseEdges(quota[n], costs == nullptr ? nullptr : &(*costs)[n]);
             }
             if (work.fits) simplifier.fitVertices();
+            lendSamples(patch);
             groups_->putBack(n, patch, scratch, surface_);
             if (!mergedInto.empty()) groups_->noteMerges(n, patch, mergedInto);
         });

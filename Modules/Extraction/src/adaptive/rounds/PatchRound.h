@@ -42,6 +42,8 @@ public:
     void run(const PatchWork& work, CollapseCosts* costs = nullptr);
 
 private:
+    void lendSamples(Patch& patch) const;
+
     SimplifiedSurface& surface_;
     const MetricFrame& frame_;
     std::optional<PatchGroups> groups_;  ///< none after run()
