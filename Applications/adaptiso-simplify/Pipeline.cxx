@@ -290,6 +290,17 @@ int exitCode(const SimplifyRun& run) {
     return kExitCheckFailed;
 }
 
+/// As simplify() does, in the words of the command line.
+void requireProvable(const TriangleMesh& mesh, const SimplifyCommand& command) {
+    constexpr double kLeastPart = 1e-12;
+    if (!command.aim.maxErrorMm) return;
+    const BoundingBox box = boundingBox(mesh);
+    if (*command.aim.maxErrorMm >= kLeastPart * norm(box.maximum - box.minimum)) return;
+    throw InvalidInput("--max-error " + formatNumber(*command.aim.maxErrorMm) +
+                       ": is less than 1e-12 of the diagonal of " + baseName(command.input) +
+                       ", which its coordinates can't tell; allow more");
+}
+
 FrameChange chooseFrame(const MeshFile& input, SimplifyRun& run) {
     const FrameChange change = naming(baseName(run.input.file), [&] {
         return changeFrame(input, run.command.frame, *run.output.format);
@@ -323,6 +334,7 @@ int runSimplify(const SimplifyCommand& command) {
         throw InvalidInput(command.input.string() +
                            ": its triangles have no area, so there is nothing to simplify");
     }
+    requireProvable(input.mesh, command);
     const std::vector<PointData> data = run.timer.time(kRead, [&] { return readData(run); });
     const FrameChange change = chooseFrame(input, run);
     progress.show(kCheck);

@@ -319,6 +319,10 @@ class Refusals(SimplifyTest):
         self.refused(BAD_INPUT, "no such folder|does not exist|there is no folder", "a.off", *aim,
                      "-o", "none/b.off")
 
+    def test_a_bound_that_no_coordinate_can_tell(self):
+        self.refused(BAD_INPUT, r"--max-error 1e-14: is less than 1e-12 of the diagonal of a.off",
+                     "a.off", "--max-error", "1e-14", "-o", "b.off")
+
     def test_a_surface_without_area(self):
         self.write("flat.off", ([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)]))
         self.refused(BAD_INPUT, "flat.off", "flat.off", "--max-error", "1", "-o", "b.off")
