@@ -431,6 +431,14 @@ class Reports(SimplifyTest):
                 self.assertIn(words, self.path("page.html").read_text())
                 self.path("page.html").unlink()
 
+    def test_a_page_tells_what_was_read_from_what_was_written(self):
+        # also where both have one name, as in a folder of FreeSurfer's
+        self.path("out").mkdir()
+        self.run_simplify("ball.off", "--max-error", "0.1", "-o", "out/", "--report", "page.html")
+        page = self.path("page.html").read_text()
+        for word in ("read", "written"):
+            self.assertTrue(f'<th scope="row">{word}</th><td>ball.off</td>' in page, word)
+
     def test_text_tells_what_came_of_it(self):
         done = self.run_simplify("ball.off", "--max-error", "0.1", "-o", "out.vtp")
         self.assertRegex(done.stdout, r"ball.off: 5,120 triangles, OFF, RAS mm\n"
