@@ -48,8 +48,8 @@ struct MeshWriteOptions {
     std::string volumeName;
     /// Where the format holds them (MeshFormat::holdsPointArrays): written with the mesh, in VTK's
     /// formats the first as the active scalars. PLY has no names with blanks and no arrays of
-    /// several components: blanks become _, and components arrays of their own. OBJ and OFF hold one
-    /// array of colours alone (MeshFormat::holdsColors).
+    /// several components: blanks become _, and components arrays of their own. OBJ and OFF hold
+    /// one array of colours alone (MeshFormat::holdsColors).
     std::vector<PointArray> pointArrays{};
     /// VTK XML only: written beside the mesh, as Int32.
     std::vector<CellArray> cellArrays{};
