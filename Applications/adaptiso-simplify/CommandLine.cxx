@@ -84,7 +84,7 @@ void declareInput(CLI::App& app, SimplifyCommand& command) {
         ->type_name("");
     app.add_option("--data", command.data,
                    "Values at the surface's points in a file of their own: FreeSurfer's "
-                   "lh.thickness, lh.curv, lh.sulc and the like, lh.aparc.annot, GIFTI's "
+                   "lh.thickness, lh.curv, lh.sulc and the like, lh.aparc.annot, .mgh; GIFTI's "
                    ".shape.gii, .func.gii, .label.gii. They are taken to the new points, numbers "
                    "interpolated, labels from the nearest point, and written beside the surface "
                    "under their own names. May be given several times")

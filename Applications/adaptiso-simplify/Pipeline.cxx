@@ -177,26 +177,38 @@ struct TakenValues {
     std::vector<PointData> data;
 };
 
+/// The input's arrays that the output's format holds. Of others a warning tells.
+std::vector<const PointArray*> heldArrays(const MeshFile& input, SimplifyRun& run) {
+    const MeshFormat& format = *run.output.format;
+    std::vector<const PointArray*> held;
+    std::string others;
+    for (const PointArray& array : input.pointArrays) {
+        const bool isFirstColor =
+            std::holds_alternative<std::vector<Color>>(array.values) && held.empty();
+        if (format.holdsPointArrays || (format.holdsColors && isFirstColor)) {
+            held.push_back(&array);
+        } else {
+            others += (others.empty() ? "" : ", ") + array.name;
+        }
+    }
+    if (!others.empty()) {
+        run.warnings.push_back(baseName(run.output.file) + ": " + std::string(format.name) +
+                               " holds no values at points" +
+                               (format.holdsColors ? " but colours" : "") +
+                               "; left out: " + others);
+    }
+    return held;
+}
+
 TakenValues takeValues(const MeshFile& input, const std::vector<PointData>& data,
                        const TriangleMesh& result, SimplifyRun& run) {
     TakenValues taken;
-    const bool holdsArrays = run.output.format->holdsPointArrays;
-    if (!holdsArrays && !input.pointArrays.empty()) {
-        std::string names;
-        for (const PointArray& array : input.pointArrays) {
-            names += (names.empty() ? "" : ", ") + array.name;
-        }
-        run.warnings.push_back(baseName(run.output.file) + ": " +
-                               std::string(run.output.format->name) +
-                               " holds no values at points; left out: " + names);
-    }
-    if (data.empty() && (!holdsArrays || input.pointArrays.empty())) return taken;
+    const std::vector<const PointArray*> held = heldArrays(input, run);
+    if (data.empty() && held.empty()) return taken;
     const PointTransfer transfer(input.mesh, result);
-    if (holdsArrays) {
-        for (const PointArray& array : input.pointArrays) {
-            taken.arrays.push_back(transfer(array));
-            run.keptArrays.push_back(array.name);
-        }
+    for (const PointArray* const array : held) {
+        taken.arrays.push_back(transfer(*array));
+        run.keptArrays.push_back(array->name);
     }
     for (std::size_t n = 0; n < data.size(); ++n) {
         taken.data.push_back(transfer(data[n]));
@@ -278,6 +290,17 @@ int exitCode(const SimplifyRun& run) {
     return kExitCheckFailed;
 }
 
+/// As simplify() does, in the words of the command line.
+void requireProvable(const TriangleMesh& mesh, const SimplifyCommand& command) {
+    constexpr double kLeastPart = 1e-12;
+    if (!command.aim.maxErrorMm) return;
+    const BoundingBox box = boundingBox(mesh);
+    if (*command.aim.maxErrorMm >= kLeastPart * norm(box.maximum - box.minimum)) return;
+    throw InvalidInput("--max-error " + formatNumber(*command.aim.maxErrorMm) +
+                       ": is less than 1e-12 of the diagonal of " + baseName(command.input) +
+                       ", which its coordinates can't tell; allow more");
+}
+
 FrameChange chooseFrame(const MeshFile& input, SimplifyRun& run) {
     const FrameChange change = naming(baseName(run.input.file), [&] {
         return changeFrame(input, run.command.frame, *run.output.format);
@@ -311,6 +334,7 @@ int runSimplify(const SimplifyCommand& command) {
         throw InvalidInput(command.input.string() +
                            ": its triangles have no area, so there is nothing to simplify");
     }
+    requireProvable(input.mesh, command);
     const std::vector<PointData> data = run.timer.time(kRead, [&] { return readData(run); });
     const FrameChange change = chooseFrame(input, run);
     progress.show(kCheck);

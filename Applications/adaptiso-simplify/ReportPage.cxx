@@ -97,12 +97,13 @@ void tellChecks(const SimplifyRun& run, Report& report) {
 }
 
 ReportTable surfaceTable(const SimplifyRun& run) {
-    ReportTable table{
-        "Surfaces", {"File", "Triangles", "Vertices", "Pieces", "Genus", "Area, mm²"}, {}};
+    ReportTable table{"Surfaces",
+                      {"Surface", "File", "Triangles", "Vertices", "Pieces", "Genus", "Area, mm²"},
+                      {}};
     const auto add = [&](const SurfaceSummary& surface) {
         const auto genus = surface.topology.genus();
-        table.rows.push_back({baseName(surface.file), formatCount(surface.triangles),
-                              formatCount(surface.vertices),
+        table.rows.push_back({&surface == &run.input ? "read" : "written", baseName(surface.file),
+                              formatCount(surface.triangles), formatCount(surface.vertices),
                               formatCount(std::ssize(surface.topology.components)),
                               genus ? formatCount(*genus) : "–", formatRounded(surface.areaMm2)});
     };

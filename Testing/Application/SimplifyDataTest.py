@@ -61,6 +61,25 @@ class FreeSurfer(SimplifyTest):
                 self.assertEqual(label, label_of(point))
             self.assertIn(label, (1, 2, 3))
 
+    def test_frames_of_an_mgh_come_along(self):
+        heights = [p[2] for p in BALL[0]]
+        header = struct.pack(">6i", 1, len(heights), 1, 1, 2, 3) + bytes(260)
+        both = struct.pack(f">{2 * len(heights)}f", *heights, *(-z for z in heights))
+        self.path("lh.z.mgh").write_bytes(header + both + b"mri_surf2surf --s jane")
+        report, (points, _, _) = self.simplified("--data", "lh.z.mgh")
+        self.assertEqual(report["data"][0]["format"], "FreeSurfer mgh")
+        content = self.path("out/lh.z.mgh").read_bytes()
+        count = len(points)
+        self.assertEqual(struct.unpack(">6i", content[:24]), (1, count, 1, 1, 2, 3))
+        self.assertEqual(len(content), 284 + 8 * count)  # no command
+        values = struct.unpack(f">{2 * count}f", content[284:])
+        for point, value, turned in zip(points, values[:count], values[count:]):
+            self.assertLess(abs(value - point[2]), 0.2 + 1e-5)
+            self.assertEqual(turned, -value)
+        self.path("lh.z.mgz").write_bytes(b"")
+        self.refused(BAD_INPUT, "lh.z.mgz: is packed; unpack it", "lh.pial", "--max-error", "1",
+                     "--data", "lh.z.mgz", "-o", "out/b.pial")
+
     def test_points_that_stay_keep_their_values_to_the_bit(self):
         _, (points, _, _) = self.simplified("--data", "lh.thickness")
         values, _ = read_curv(self.path("out/lh.thickness"))
@@ -226,6 +245,23 @@ class InTheFile(SimplifyTest):
             point = data.GetPoint(n)
             self.assertLess(abs(depth.GetValue(n) - point[2]), 0.2 + 1e-9)
             self.assertIn(part.GetValue(n), (1, 2, 3))
+
+    def test_each_format_holds_what_it_can(self):
+        everything, colors, nothing = ["RGB", "depth", "part"], ["RGB"], []
+        held = {"vtp": everything, "vtk": everything, "ply": everything, "obj": colors,
+                "off": colors, "stl": nothing, "gii": nothing, "pial": nothing, "tri": nothing}
+        for ending, kept in held.items():
+            with self.subTest(ending):
+                first = self.simplify("in.ply", "--max-error", "0.2", "-o", f"a.{ending}")
+                self.assertEqual(first["output"]["values"], kept)
+                left = [name for name in everything if name not in kept]
+                told = [text for text in first["warnings"] if "left out" in text]
+                self.assertEqual([text.endswith(": " + ", ".join(left)) for text in told],
+                                 [True] if left else [])
+                again = self.simplify(f"a.{ending}", "--max-error", "0.2", "-o", "b.vtp")
+                self.assertEqual(again["output"]["values"], kept)
+                self.assertEqual(again["input"]["triangles"], first["output"]["triangles"])
+                self.assertLessEqual(again["output"]["triangles"], first["output"]["triangles"])
 
     def test_a_format_without_values_is_a_warning(self):
         report = self.simplify("in.ply", "--max-error", "0.2", "-o", "out.stl")

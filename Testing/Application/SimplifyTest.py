@@ -319,6 +319,10 @@ class Refusals(SimplifyTest):
         self.refused(BAD_INPUT, "no such folder|does not exist|there is no folder", "a.off", *aim,
                      "-o", "none/b.off")
 
+    def test_a_bound_that_no_coordinate_can_tell(self):
+        self.refused(BAD_INPUT, r"--max-error 1e-14: is less than 1e-12 of the diagonal of a.off",
+                     "a.off", "--max-error", "1e-14", "-o", "b.off")
+
     def test_a_surface_without_area(self):
         self.write("flat.off", ([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)]))
         self.refused(BAD_INPUT, "flat.off", "flat.off", "--max-error", "1", "-o", "b.off")
@@ -426,6 +430,14 @@ class Reports(SimplifyTest):
                                   "page.html", *arguments)
                 self.assertIn(words, self.path("page.html").read_text())
                 self.path("page.html").unlink()
+
+    def test_a_page_tells_what_was_read_from_what_was_written(self):
+        # also where both have one name, as in a folder of FreeSurfer's
+        self.path("out").mkdir()
+        self.run_simplify("ball.off", "--max-error", "0.1", "-o", "out/", "--report", "page.html")
+        page = self.path("page.html").read_text()
+        for word in ("read", "written"):
+            self.assertTrue(f'<th scope="row">{word}</th><td>ball.off</td>' in page, word)
 
     def test_text_tells_what_came_of_it(self):
         done = self.run_simplify("ball.off", "--max-error", "0.1", "-o", "out.vtp")

@@ -72,6 +72,14 @@ void addValues(Seeds& seeds) {
     data.annotTable = one + "\xFF\xFF\xFF\xFE" + one + one + "t" + one + one + one + "x" + color;
     writePointData(data, 4, folder.path() / "lh.annot");
     seeds.add("annot", bytesOf(folder.path() / "lh.annot"));
+    data = {PointDataFormat::FreeSurferMgh,
+            4,
+            {{{}, numbers, 1, {}}, {{}, numbers, 1, {}}},
+            {},
+            {},
+            {}};
+    writePointData(data, 4, folder.path() / "lh.mgh");
+    seeds.add("overlay", bytesOf(folder.path() / "lh.mgh"));
     data = {PointDataFormat::Gifti, 4,  {},
             {{1, "one", {}}},       {}, {{"AnatomicalStructurePrimary", "CortexLeft"}}};
     data.arrays = {{"NIFTI_INTENT_SHAPE", numbers, 1, {{"Name", "depth"}}},

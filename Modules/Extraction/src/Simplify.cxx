@@ -41,9 +41,11 @@ SurfacePoint surfacePointAt(const Vec3& p, const TriangleMesh& mesh, std::int64_
     return {triangle, {u / sum, v / sum, w / sum}};
 }
 
-/// \param tree  of `onto`
-std::vector<SurfacePoint> nearestPoints(const TriangleMesh& mesh, const TriangleMesh& onto,
-                                        const AabbTree& tree) {
+}  // namespace
+
+std::vector<SurfacePoint> nearestPoints(const TriangleMesh& mesh, const TriangleMesh& onto) {
+    if (onto.triangles.empty()) throw InvalidInput("nearestPoints: the surface has no triangle");
+    const AabbTree tree(onto);
     std::vector<SurfacePoint> places(mesh.points.size());
     parallelForPieces(std::ssize(places), kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t v = begin; v < end; ++v) {
@@ -57,13 +59,10 @@ std::vector<SurfacePoint> nearestPoints(const TriangleMesh& mesh, const Triangle
     return places;
 }
 
-}  // namespace
-
-std::vector<Normal> detail::normalsFrom(const TriangleMesh& input, const TriangleMesh& mesh,
-                                        const AabbTree& tree) {
+std::vector<Normal> detail::normalsFrom(const TriangleMesh& input, const TriangleMesh& mesh) {
     std::vector<Normal> normals;
     normals.reserve(mesh.points.size());
-    for (const SurfacePoint& place : nearestPoints(mesh, input, tree)) {
+    for (const SurfacePoint& place : nearestPoints(mesh, input)) {
         Vec3 sum;
         for (int c = 0; c < 3; ++c) {
             const VertexId v = input.triangles[place.triangle][c];
@@ -117,7 +116,7 @@ Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& opti
     Simplified result;
     result.mesh = std::move(made.mesh);
     if (!mesh.normals.empty()) {
-        result.mesh.normals = detail::normalsFrom(mesh, result.mesh, *parts.tree);
+        result.mesh.normals = detail::normalsFrom(mesh, result.mesh);
     }
     SimplifyStatistics& statistics = result.statistics;
     statistics.degenerateTriangles = parts.degenerate;
@@ -135,11 +134,6 @@ Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& opti
 }
 
 }  // namespace
-
-std::vector<SurfacePoint> nearestPoints(const TriangleMesh& mesh, const TriangleMesh& onto) {
-    if (onto.triangles.empty()) throw InvalidInput("nearestPoints: the surface has no triangle");
-    return nearestPoints(mesh, onto, AabbTree(onto));
-}
 
 Simplified simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
     const AdaptiveOptions aims = aimsOf(options);

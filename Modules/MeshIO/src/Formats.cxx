@@ -34,16 +34,16 @@ constexpr bool yes = true, no = false;
 
 // clang-format off
 constexpr std::array<MeshFormat, 9> kFormats{{
-    //                         name                extensions   digits normals frame voxel geometry arrays vertices most
-    {MeshFormatId::VtkXml,     "VTK XML PolyData", kVtkXml,     F64,   yes,    yes,  yes,  no,      yes,   yes,     kInt64},
-    {MeshFormatId::VtkLegacy,  "VTK legacy",       kVtkLegacy,  F64,   yes,    yes,  yes,  no,      yes,   yes,     kInt64},
-    {MeshFormatId::Ply,        "PLY (binary)",     kPly,        F64,   yes,    yes,  yes,  no,      yes,   yes,     kInt32},
-    {MeshFormatId::Stl,        "STL (binary)",     kStl,        F32,   no,     yes,  yes,  no,      no,    no,      kInt32},
-    {MeshFormatId::Obj,        "Wavefront OBJ",    kObj,        Text,  yes,    yes,  yes,  no,      no,    yes,     kInt64},
-    {MeshFormatId::Off,        "OFF",              kOff,        Text,  no,     yes,  yes,  no,      no,    yes,     kInt64},
-    {MeshFormatId::Gifti,      "GIFTI",            kGifti,      F32,   no,     yes,  yes,  no,      no,    yes,     kInt32},
-    {MeshFormatId::FreeSurfer, "FreeSurfer",       kFreeSurfer, F32,   no,     yes,  no,   yes,     no,    yes,     kInt32},
-    {MeshFormatId::OpenMeeg,   "OpenMEEG",         kOpenMeeg,   Text,  yes,    no,   yes,  no,      no,    yes,     kInt32},
+    //                         name                extensions   digits normals frame voxel geometry arrays colors vertices most
+    {MeshFormatId::VtkXml,     "VTK XML PolyData", kVtkXml,     F64,   yes,    yes,  yes,  no,      yes,    yes,    yes,      kInt64},
+    {MeshFormatId::VtkLegacy,  "VTK legacy",       kVtkLegacy,  F64,   yes,    yes,  yes,  no,      yes,    yes,    yes,      kInt64},
+    {MeshFormatId::Ply,        "PLY (binary)",     kPly,        F64,   yes,    yes,  yes,  no,      yes,    yes,    yes,      kInt32},
+    {MeshFormatId::Stl,        "STL (binary)",     kStl,        F32,   no,     yes,  yes,  no,      no,     no,     no,       kInt32},
+    {MeshFormatId::Obj,        "Wavefront OBJ",    kObj,        Text,  yes,    yes,  yes,  no,      no,     yes,    yes,      kInt64},
+    {MeshFormatId::Off,        "OFF",              kOff,        Text,  no,     yes,  yes,  no,      no,     yes,    yes,      kInt64},
+    {MeshFormatId::Gifti,      "GIFTI",            kGifti,      F32,   no,     yes,  yes,  no,      no,     no,     yes,      kInt32},
+    {MeshFormatId::FreeSurfer, "FreeSurfer",       kFreeSurfer, F32,   no,     yes,  no,   yes,     no,     no,     yes,      kInt32},
+    {MeshFormatId::OpenMeeg,   "OpenMEEG",         kOpenMeeg,   Text,  yes,    no,   yes,  no,      no,     no,     yes,      kInt32},
 }};
 // clang-format on
 

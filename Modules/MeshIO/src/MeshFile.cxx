@@ -40,9 +40,9 @@ Codec codecOf(MeshFormatId id) {
         case MeshFormatId::Stl:
             return {meshio::encodeStl, decodePlain<meshio::decodeStl>};
         case MeshFormatId::Obj:
-            return {meshio::encodeObj, decodePlain<meshio::decodeObj>};
+            return {meshio::encodeObj, meshio::decodeObj};
         case MeshFormatId::Off:
-            return {meshio::encodeOff, decodePlain<meshio::decodeOff>};
+            return {meshio::encodeOff, meshio::decodeOff};
         case MeshFormatId::Gifti:
             return {meshio::encodeGifti, decodePlain<meshio::decodeGifti>};
         case MeshFormatId::FreeSurfer:
@@ -130,7 +130,11 @@ void requireOneEach(const std::string& array, std::size_t values, std::size_t co
 
 void requireArrays(const MeshWriteOptions& options, const TriangleMesh& mesh,
                    const MeshFormat& format, const std::string& file) {
-    const bool fits = (options.pointArrays.empty() || format.holdsPointArrays) &&
+    const bool areColors =
+        options.pointArrays.size() == 1 &&
+        std::holds_alternative<std::vector<Color>>(options.pointArrays.front().values);
+    const bool fits = (options.pointArrays.empty() || format.holdsPointArrays ||
+                       (areColors && format.holdsColors)) &&
                       (options.cellArrays.empty() || format.id == MeshFormatId::VtkXml);
     if (!fits) {
         throw InvalidInput(file + ": " + std::string(format.name) + " files hold no values at " +

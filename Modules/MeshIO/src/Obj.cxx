@@ -1,7 +1,9 @@
-// Wavefront OBJ: "v x y z", "vn x y z", "f a//a b//b c//c", numbered from 1. Groups, materials
-// and texture coordinates are passed over when read.
+// Wavefront OBJ: "v x y z", "vn x y z", "f a//a b//b c//c", numbered from 1. As many
+// programs have it, "v x y z r g b" is a point with a colour, 0 to 1. Groups, materials and texture
+// coordinates are passed over when read.
 #include "ByteSource.h"
 #include "Codecs.h"
+#include "PointColors.h"
 
 namespace adaptiso::meshio {
 namespace {
@@ -23,11 +25,14 @@ std::int64_t resolved(std::string_view word, std::size_t count, std::string_view
 
 class ObjDecoder {
 public:
+    explicit ObjDecoder(bool keepsColors) : colors_(keepsColors) {}
+
     void decodeLine(std::string_view text) {
         ByteSource line(text);
         const std::string_view kind = line.word();
         if (kind == "v") {
             mesh_.points.push_back(readVec(line, "a coordinate"));
+            colors_.add(line, ColorScale::One);
         } else if (kind == "vn") {
             normals_.push_back(storedNormal(readVec(line, "a normal")));
         } else if (kind == "f") {
@@ -38,23 +43,27 @@ public:
     }
 
     MeshFile finish() && {
+        finishNormals();
+        MeshFile file{std::move(mesh_), frame_, std::nullopt};
+        file.pointArrays = colors_.take(file.mesh.points.size());
+        return file;
+    }
+
+private:
+    void finishNormals() {
         if (isNumberedAlike()) {
-            return {{std::move(mesh_.points), std::move(normals_), std::move(mesh_.triangles)},
-                    frame_,
-                    std::nullopt};
+            mesh_.normals = std::move(normals_);
+            return;
         }
         const bool eachHasOne =
             oneNormalEach_ && !normals_.empty() && normalOf_.size() == mesh_.points.size();
         for (std::size_t i = 0; eachHasOne && i < normalOf_.size(); ++i) {
-            if (normalOf_[i] == kNone) return {std::move(mesh_), frame_, std::nullopt};
+            if (normalOf_[i] == kNone) return;
         }
-        if (eachHasOne) {
-            for (const std::int64_t n : normalOf_) mesh_.normals.push_back(normals_[n]);
-        }
-        return {std::move(mesh_), frame_, std::nullopt};
+        if (!eachHasOne) return;
+        for (const std::int64_t n : normalOf_) mesh_.normals.push_back(normals_[n]);
     }
 
-private:
     /// One normal for each vertex, under the same number: then vertices that no face uses have
     /// theirs too.
     bool isNumberedAlike() const {
@@ -104,6 +113,7 @@ private:
     }
 
     TriangleMesh mesh_;
+    PointColors colors_;
     std::optional<CoordinateFrame> frame_;
     std::vector<Normal> normals_;         ///< as listed in the file
     std::vector<std::int64_t> normalOf_;  ///< of each vertex; kNone where no face gave one yet
@@ -115,7 +125,15 @@ private:
 void encodeObj(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
     sink << "# " << headerLine(record.options) << "\n";
-    for (const Vec3& p : mesh.points) sink << "v " << p.x << " " << p.y << " " << p.z << "\n";
+    const std::vector<Color>* const colors = colorsOf(record.options);
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+        const Vec3& p = mesh.points[i];
+        sink << "v " << p.x << " " << p.y << " " << p.z;
+        if (colors != nullptr) {
+            for (const std::uint8_t shade : (*colors)[i]) sink << " " << shade / 255.0;
+        }
+        sink << "\n";
+    }
     for (const Normal& n : mesh.normals) {
         sink << "vn " << double{n.x} << " " << double{n.y} << " " << double{n.z} << "\n";
     }
@@ -129,9 +147,9 @@ void encodeObj(const MeshRecord& record, ByteSink& sink) {
     }
 }
 
-MeshFile decodeObj(std::string_view bytes) {
+MeshFile decodeObj(std::string_view bytes, const MeshReadOptions& options) {
     ByteSource source(bytes);
-    ObjDecoder decoder;
+    ObjDecoder decoder(options.keepsPointArrays);
     while (!source.atEnd()) decoder.decodeLine(source.line());
     return std::move(decoder).finish();
 }

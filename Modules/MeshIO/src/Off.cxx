@@ -1,6 +1,8 @@
-// OFF: "OFF", "V T 0", V lines "x y z", T lines "3 a b c" from 0; '#' begins a comment.
+// OFF: "OFF", "V T 0", V lines "x y z", T lines "3 a b c" from 0; '#' begins a comment. With "COFF"
+// points have colours, "x y z r g b a": whole numbers to 255, or with a decimal point, 0 to 1.
 #include "ByteSource.h"
 #include "Codecs.h"
+#include "PointColors.h"
 
 namespace adaptiso::meshio {
 namespace {
@@ -34,16 +36,25 @@ private:
 
 void encodeOff(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
-    sink << "OFF\n# " << headerLine(record.options) << "\n";
+    const std::vector<Color>* const colors = colorsOf(record.options);
+    sink << (colors != nullptr ? "COFF" : "OFF") << "\n# " << headerLine(record.options) << "\n";
     sink << static_cast<std::int64_t>(mesh.points.size()) << " "
          << static_cast<std::int64_t>(mesh.triangles.size()) << " 0\n";
-    for (const Vec3& p : mesh.points) sink << p.x << " " << p.y << " " << p.z << "\n";
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+        const Vec3& p = mesh.points[i];
+        sink << p.x << " " << p.y << " " << p.z;
+        if (colors != nullptr) {
+            for (const std::uint8_t shade : (*colors)[i]) sink << " " << std::int64_t{shade};
+            sink << " 255";
+        }
+        sink << "\n";
+    }
     for (const Triangle& t : mesh.triangles) {
         sink << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
     }
 }
 
-MeshFile decodeOff(std::string_view bytes) {
+MeshFile decodeOff(std::string_view bytes, const MeshReadOptions& options) {
     OffLines lines(bytes);
     ByteSource line = lines.next("the word OFF");
     const std::string_view magic = line.word();
@@ -51,6 +62,7 @@ MeshFile decodeOff(std::string_view bytes) {
         unsupported("it begins with " + printable(magic) + ", must begin with OFF or COFF",
                     "save it as plain OFF text");
     }
+    const bool hasColors = magic == "COFF";
     if (trimmed(line.rest()).empty()) line = lines.next("the number of points");
     const std::int64_t points = line.integerWord("the number of points");
     const std::int64_t triangles = line.integerWord("the number of faces");
@@ -58,11 +70,14 @@ MeshFile decodeOff(std::string_view bytes) {
     requireRoom("faces", triangles, 7, lines.left());  // at least "3 0 0 0"
 
     MeshFile file;
+    PointColors colors(options.keepsPointArrays && hasColors);
     file.mesh.points.resize(points);
     for (Vec3& p : file.mesh.points) {
         line = lines.next("a point");
         for (int axis = 0; axis < 3; ++axis) p[axis] = line.realWord("a coordinate");
+        colors.add(line, ColorScale::Byte);
     }
+    file.pointArrays = colors.take(file.mesh.points.size());
     file.mesh.triangles.resize(triangles);
     for (Triangle& t : file.mesh.triangles) {
         line = lines.next("a face");

@@ -12,6 +12,7 @@
 #include "ByteSource.h"
 #include "FileBytes.h"
 #include "GiftiData.h"
+#include "MghData.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -158,6 +159,14 @@ void requireWritable(const PointData& data, const std::string& file) {
     if (const std::string fault = faultOf(data); !fault.empty()) refuse(fault);
     if (isGifti) return;
     const PointValues& first = data.arrays.front();
+    if (data.format == PointDataFormat::FreeSurferMgh) {
+        for (const PointValues& array : data.arrays) {
+            if (array.columns != 1 || array.areLabels() != first.areLabels()) {
+                refuse("FreeSurfer mgh files hold numbers or labels, one a point and frame");
+            }
+        }
+        return;
+    }
     if (data.arrays.size() != 1 || first.columns != 1 || first.areLabels() != wantsLabels) {
         refuse(std::string(toString(data.format)) + " files hold one " +
                (wantsLabels ? "label" : "number") + " a point");
@@ -170,6 +179,35 @@ void requireWritable(const PointData& data, const std::string& file) {
     }
 }
 
+PointData decode(std::string_view bytes, PointDataFormat format) {
+    switch (format) {
+        case PointDataFormat::FreeSurferCurv:
+            return decodeCurv(bytes);
+        case PointDataFormat::FreeSurferAnnot:
+            return decodeAnnot(bytes);
+        case PointDataFormat::FreeSurferMgh:
+            return meshio::decodeMghData(bytes);
+        case PointDataFormat::Gifti:
+            return meshio::decodeGiftiData(bytes);
+    }
+    throw InternalError("decodePointData: unknown format of values at points");
+}
+
+/// What to do with a file that has values at points in a form that is not read; empty: it may be
+/// one that is.
+std::string adviceFor(const std::filesystem::path& path) {
+    const std::string extension = meshio::lowerCase(path.extension().string());
+    if (extension == ".mgz") return "is packed; unpack it to .mgh (mri_convert, or gzip -dc)";
+    if (extension == ".label") {
+        return "lists points, and has no value for each; make an .annot of it (mris_label2annot)";
+    }
+    if (extension == ".nii") {
+        return "CIFTI and NIfTI files are not read; make a .shape.gii, .func.gii or .label.gii of "
+               "it (wb_command -cifti-separate)";
+    }
+    return {};
+}
+
 }  // namespace
 
 std::string_view toString(PointDataFormat format) {
@@ -178,6 +216,8 @@ std::string_view toString(PointDataFormat format) {
             return "FreeSurfer curv";
         case PointDataFormat::FreeSurferAnnot:
             return "FreeSurfer annot";
+        case PointDataFormat::FreeSurferMgh:
+            return "FreeSurfer mgh";
         case PointDataFormat::Gifti:
             return "GIFTI";
     }
@@ -188,15 +228,14 @@ PointDataFormat findPointDataFormat(const std::filesystem::path& path) {
     const std::string extension = meshio::lowerCase(path.extension().string());
     if (extension == ".gii") return PointDataFormat::Gifti;
     if (extension == ".annot") return PointDataFormat::FreeSurferAnnot;
+    if (extension == ".mgh") return PointDataFormat::FreeSurferMgh;
     return PointDataFormat::FreeSurferCurv;
 }
 
 PointData decodePointData(std::string_view bytes, PointDataFormat format, std::string_view name) {
     const std::string prefix = std::string(name) + ": ";
     try {
-        PointData data = format == PointDataFormat::Gifti ? meshio::decodeGiftiData(bytes)
-                         : format == PointDataFormat::FreeSurferAnnot ? decodeAnnot(bytes)
-                                                                      : decodeCurv(bytes);
+        PointData data = decode(bytes, format);
         if (const std::string fault = faultOf(data); !fault.empty()) damaged(fault);
         return data;
     } catch (const FileError& error) {
@@ -207,6 +246,9 @@ PointData decodePointData(std::string_view bytes, PointDataFormat format, std::s
 }
 
 PointData readPointData(const std::filesystem::path& path) {
+    if (const std::string advice = adviceFor(path); !advice.empty()) {
+        throw FileError(path.string() + ": " + advice);
+    }
     return decodePointData(meshio::readBytes(path), findPointDataFormat(path), path.string());
 }
 
@@ -219,6 +261,8 @@ void writePointData(const PointData& data, std::int64_t triangles,
                 return encodeCurv(data, triangles, sink);
             case PointDataFormat::FreeSurferAnnot:
                 return encodeAnnot(data, sink);
+            case PointDataFormat::FreeSurferMgh:
+                return meshio::encodeMghData(data, sink);
             case PointDataFormat::Gifti:
                 return meshio::encodeGiftiData(data, sink);
         }

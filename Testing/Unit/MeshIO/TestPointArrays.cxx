@@ -73,6 +73,41 @@ TEST(PointArrays, OfVtkFilesComeBack) {
     }
 }
 
+TEST(PointArrays, OfObjAndOffAreColorsAlone) {
+    MeshWriteOptions options;
+    options.pointArrays = {{"hue", kColors}};
+    for (const std::string name : {"a.obj", "a.off"}) {
+        const std::string bytes = written(tetrahedron(), name, options);
+        const MeshFile file = withArrays(bytes, name);
+        EXPECT_EQ(file.mesh.triangles, tetrahedron().triangles) << name;
+        EXPECT_EQ(colorsOf(file, "RGB"), kColors) << name;
+        EXPECT_TRUE(testing::decoded(bytes, name).pointArrays.empty()) << name;
+        EXPECT_THROW(written(tetrahedron(), name, fourArrays()), InvalidInput);
+    }
+}
+
+TEST(PointArrays, OfForeignObjAndOffAreRead) {
+    const std::string end = "f 1 2 3\n";
+    const std::vector<Color> expected{{255, 0, 128}, {0, 255, 0}, {0, 0, 255}};
+    EXPECT_EQ(
+        colorsOf(withArrays("v 0 0 0 1 0 0.5\nv 1 0 0 0 1 -3\nv 0 1 0 0 0 7 x\n" + end, "a.obj"),
+                 "RGB"),
+        expected);
+    EXPECT_EQ(colorsOf(withArrays("COFF 3 1 0\n0 0 0 255 0 128 255\n1 0 0 0.0 1.0 0.0 1.0\n"
+                                  "0 1 0 0 0 300\n3 0 1 2\n",
+                                  "a.off"),
+                       "RGB"),
+              expected);
+    // one point without, a weight, words: no colours
+    for (const std::string points :
+         {"v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0 0 0 1\n", "v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 1\n",
+          "v 0 0 0 a b c\nv 1 0 0 nan 0 0\nv 0 1 0 # \n"}) {
+        const MeshFile file = withArrays(points + end, "a.obj");
+        EXPECT_TRUE(file.pointArrays.empty()) << points;
+        EXPECT_EQ(file.mesh.points.size(), 3u);
+    }
+}
+
 TEST(PointArrays, OfPlyFilesComeBackAsWordsAndColumns) {
     MeshWriteOptions options = fourArrays();
     options.isInFrame = true;

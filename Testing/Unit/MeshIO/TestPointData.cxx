@@ -60,6 +60,20 @@ PointData gifti() {
     return data;
 }
 
+PointData mgh() {
+    PointData data{PointDataFormat::FreeSurferMgh, 3, {}, {}, {}, {}};
+    data.arrays = {{{}, std::vector<float>{1, -2, NAN}, 1, {}},
+                   {{}, std::vector<float>{0.5f, 0, 1e30f}, 1, {}}};
+    return data;
+}
+
+/// A header of .mgh.
+std::string mghHeader(std::int32_t width, std::int32_t height, std::int32_t depth,
+                      std::int32_t frames, std::int32_t type) {
+    return big32(1) + big32(width) + big32(height) + big32(depth) + big32(frames) + big32(type) +
+           std::string(260, '\0');
+}
+
 PointData roundTrip(const PointData& data, const std::string& name) {
     const auto path = temporaryFile(name);
     writePointData(data, 5, path);
@@ -75,6 +89,7 @@ TEST(PointData, FormatsFollowFromNames) {
     EXPECT_EQ(findPointDataFormat("a/lh.thickness"), PointDataFormat::FreeSurferCurv);
     EXPECT_EQ(findPointDataFormat("rh.aparc.a2009s.annot"), PointDataFormat::FreeSurferAnnot);
     EXPECT_EQ(findPointDataFormat("x.shape.GII"), PointDataFormat::Gifti);
+    EXPECT_EQ(findPointDataFormat("lh.area.fsaverage.mgh"), PointDataFormat::FreeSurferMgh);
 }
 
 TEST(PointData, CurvComesBack) {
@@ -107,6 +122,40 @@ TEST(PointData, AnnotsOfTheOldVersionAndWithoutTableAreRead) {
             decodePointData(labels + table, PointDataFormat::FreeSurferAnnot, "lh.annot");
         EXPECT_EQ(valuesOf<std::int32_t>(data), (std::vector<std::int32_t>{10, 11}));
         EXPECT_EQ(data.annotTable, table);
+    }
+}
+
+TEST(PointData, MghComesBackFrameByFrame) {
+    const PointData back = roundTrip(mgh(), "lh.thickness.mgh");
+    EXPECT_EQ(back.points, 3);
+    ASSERT_EQ(back.arrays.size(), 2u);
+    EXPECT_TRUE(std::isnan(valuesOf<float>(back)[2]));
+    EXPECT_EQ(valuesOf<float>(back, 1), valuesOf<float>(mgh(), 1));
+    PointData labels = annot();
+    labels.format = PointDataFormat::FreeSurferMgh;
+    EXPECT_EQ(valuesOf<std::int32_t>(roundTrip(labels, "lh.labels.mgh")),
+              valuesOf<std::int32_t>(labels));
+}
+
+TEST(PointData, MghOfAnyShapeAndWholeNumbersIsRead) {
+    const auto Mgh = PointDataFormat::FreeSurferMgh;
+    const std::string shorts("\x00\x07\xFF\xFE\x01\x00", 6);
+    const std::string tags = "whatever follows";
+    EXPECT_EQ(valuesOf<std::int32_t>(
+                  decodePointData(mghHeader(1, 3, 1, 1, 4) + shorts + tags, Mgh, "a.mgh")),
+              (std::vector<std::int32_t>{7, -2, 256}));
+    const PointData bytes = decodePointData(mghHeader(1, 1, 3, 2, 0) + shorts, Mgh, "a.mgh");
+    EXPECT_EQ(bytes.points, 3);
+    EXPECT_EQ(valuesOf<std::int32_t>(bytes, 1), (std::vector<std::int32_t>{254, 1, 0}));
+}
+
+TEST(PointData, ItsKindsThatAreNotReadAreToldByName) {
+    for (const auto& [name, words] : {std::pair{"lh.thickness.mgz", "unpack it"},
+                                      std::pair{"lh.cortex.label", "mris_label2annot"},
+                                      std::pair{"S.dscalar.nii", "wb_command"}}) {
+        const std::string message = messageOf<FileError>([&] { readPointData(name); });
+        EXPECT_TRUE(message.starts_with(std::string(name) + ": ")) << message;
+        EXPECT_NE(message.find(words), std::string::npos) << message;
     }
 }
 
@@ -156,6 +205,7 @@ TEST(PointData, WhatIsNotReadIsRefusedInALine) {
     };
     const auto Curv = PointDataFormat::FreeSurferCurv;
     const auto Annot = PointDataFormat::FreeSurferAnnot;
+    const auto Mgh = PointDataFormat::FreeSurferMgh;
     const auto Gifti = PointDataFormat::Gifti;
     const std::string float3 = "DataType=\"NIFTI_TYPE_FLOAT32\" Dim0=\"3\"><Data>";
     const Case cases[] = {
@@ -170,6 +220,14 @@ TEST(PointData, WhatIsNotReadIsRefusedInALine) {
         {two + big32(1) + big32(-3), Annot, "unknown version"},
         {two + big32(1) + big32(-2) + big32(1) + text32("x") + big32(400000000), Annot, "labels"},
         {two + big32(1) + big32(1) + big32(70000), Annot, "characters"},
+        {big32(2) + big32(3), Mgh, "begin"},
+        {mghHeader(3, 1, 1, 1, 3) + big32(0), Mgh, "3 values"},
+        {mghHeader(1, 1, 1, 900000000, 3) + big32(0), Mgh, "900000000 frames"},
+        {mghHeader(2000000000, 2000000000, 2000000000, 1, 0), Mgh, "values"},
+        {mghHeader(-1, -1, 1, 1, 3), Mgh, "values"},
+        {mghHeader(0, 1, 1, 1, 3), Mgh, "no values"},
+        {mghHeader(1, 1, 1, 0, 3) + big32(0), Mgh, "no values"},
+        {mghHeader(1, 1, 1, 1, 2) + big32(0), Mgh, "type 2"},
         {"<x/>", Gifti, "must be GIFTI"},
         {"<GIFTI/>", Gifti, "no values"},
         {giftiText(float3 + "1 2"), Gifti, "values"},
@@ -205,7 +263,10 @@ TEST(PointData, ThatDoesNotFitIsNotWritten) {
     kind.format = PointDataFormat::FreeSurferAnnot;
     PointData table = annot();
     table.annotTable.resize(20);
-    for (const PointData& bad : {PointData{}, two, few, kind, table}) {
+    PointData mixed = mgh(), columns = mgh();
+    mixed.arrays.push_back({{}, std::vector<std::int32_t>{1, 2, 3}, 1, {}});
+    columns.arrays[0] = {{}, std::vector<float>(6), 2, {}};
+    for (const PointData& bad : {PointData{}, two, few, kind, table, mixed, columns}) {
         EXPECT_THROW(writePointData(bad, 1, path), InvalidInput);
         EXPECT_FALSE(std::filesystem::exists(path));
     }
@@ -214,8 +275,10 @@ TEST(PointData, ThatDoesNotFitIsNotWritten) {
 
 TEST(PointData, DamagedAtRandomIsAnErrorOrData) {
     std::mt19937 random(5u);
-    const std::pair<PointData, std::string> sources[] = {
-        {curv(), "lh.curv"}, {annot(), "lh.annot"}, {gifti(), "lh.shape.gii"}};
+    const std::pair<PointData, std::string> sources[] = {{curv(), "lh.curv"},
+                                                         {annot(), "lh.annot"},
+                                                         {mgh(), "lh.area.mgh"},
+                                                         {gifti(), "lh.shape.gii"}};
     for (const auto& [data, name] : sources) {
         const auto path = temporaryFile(name);
         writePointData(data, 1, path);

@@ -203,7 +203,7 @@ public:
                 AdaptiveOptions aims;
                 aims.maxErrorMm = maxErrorMm;
                 AdaptiveResult made = simplifyWithin(full, aims, {});
-                std::vector<Normal> normals = normalsFrom(metric_, made.mesh, *parts.tree);
+                std::vector<Normal> normals = normalsFrom(metric_, made.mesh);
                 SimplifiedPart part = taken(made, std::move(normals));
                 if (isGood(part)) return part;
             }

@@ -96,6 +96,38 @@ TEST(HalfEdges, AreListedByTheirVertexInAscendingOrder) {
     EXPECT_EQ(listed, 3 * mesh.triangles.size());
 }
 
+// Beyond 32,768 triangles several threads work.
+TEST(HalfEdges, AreTheSameForManyTriangles) {
+    const TriangleMesh one = withDuplicateTriangle(withHole(torusMesh(20, 10, 3, 1)));
+    const std::vector<VertexId> expected = twinsOf(one);
+    TriangleMesh many;
+    constexpr VertexId kCopies = 100;
+    const VertexId points = std::ssize(one.points);
+    many.points.resize(kCopies * points);
+    for (VertexId copy = 0; copy < kCopies; ++copy) {
+        for (const auto& [a, b, c] : one.triangles) {
+            many.triangles.push_back({a + copy * points, b + copy * points, c + copy * points});
+        }
+    }
+    ASSERT_GT(many.triangles.size(), 32768U);
+    const std::vector<VertexId> twin = twinsOf(many);
+    for (VertexId h = 0; h < std::ssize(twin); ++h) {
+        const VertexId first = h / std::ssize(expected) * std::ssize(expected),
+                       alone = expected[h - first];
+        ASSERT_EQ(twin[h], alone == HalfEdges::kNone ? alone : first + alone) << h;
+    }
+    HalfEdges halfEdges;
+    halfEdges.assign(many.points.size(), many.triangles);
+    for (VertexId v = 0; v < std::ssize(many.points); ++v) {
+        VertexId last = -1;
+        for (const auto leaving : halfEdges.from(v)) {
+            ASSERT_LT(last, leaving.halfEdge);
+            ASSERT_EQ(from(many, leaving.halfEdge), v);
+            last = leaving.halfEdge;
+        }
+    }
+}
+
 TEST(HalfEdges, ForgetTheLastMesh) {
     const TriangleMesh large = icosphere(2), small = planeMesh(1, 1);
     HalfEdges halfEdges;

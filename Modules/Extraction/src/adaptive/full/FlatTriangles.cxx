@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "adaptiso/Core/DisjointSets.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso::detail {
@@ -120,10 +121,17 @@ private:
 }  // namespace
 
 AreaTriangles withoutFlatTriangles(const TriangleMesh& mesh) {
+    constexpr std::int64_t kPiece = 1 << 13;
+    const std::int64_t count = std::ssize(mesh.triangles);
+    std::vector<std::vector<std::int64_t>> flatIn((count + kPiece - 1) / kPiece);
+    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t t = begin; t < end; ++t) {
+            if (isDegenerate(mesh, mesh.triangles[t])) flatIn[begin / kPiece].push_back(t);
+        }
+    });
     std::vector<std::int64_t> flat;
-    for (std::int64_t t = 0; t < std::ssize(mesh.triangles); ++t) {
-        if (isDegenerate(mesh, mesh.triangles[t])) flat.push_back(t);
-    }
+    for (const auto& some : flatIn) flat.insert(flat.end(), some.begin(), some.end());
+    if (flat.empty()) return {};
     return Repair(mesh, std::move(flat)).run();
 }
 

@@ -11,6 +11,7 @@ namespace adaptiso::detail {
 /// surface: vertices at one place that such a triangle joins become one; where a corner lies on the
 /// opposite side the neighbour across that side is split there. What neither serves is left out.
 struct AreaTriangles {
+    // both empty where all have an area, as most meshes' do: they are the mesh's own then
     std::vector<Triangle> triangles;
     std::vector<std::uint8_t> isLeftOut;  ///< of each
     std::int64_t flat = 0;                ///< how many had no area

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "adaptiso/Core/Errors.h"
@@ -46,40 +47,6 @@ void requireSimplifiable(const TriangleMesh& mesh) {
     }
 }
 
-/// Of triangles, those that have the corners of one before them, whichever way round.
-std::vector<std::uint8_t> findDuplicateTriangles(const std::vector<Triangle>& triangles,
-                                                 std::size_t points) {
-    const std::size_t count = triangles.size();
-    // by its smallest corner, as the others it shares a bucket with are few
-    const Buckets<std::uint32_t, std::uint32_t> bySmallest(points, [&](const auto& give) {
-        for (std::uint32_t t = 0; t < count; ++t) {
-            const auto& [a, b, c] = triangles[t];
-            give(static_cast<std::size_t>(std::min({a, b, c})), t);
-        }
-    });
-    std::vector<std::uint8_t> isDuplicate(count, 0);
-    const auto sorted = [&](std::uint32_t t) {
-        Triangle corners = triangles[t];
-        std::sort(corners.begin(), corners.end());
-        return corners;
-    };
-    parallelForPieces(
-        static_cast<std::int64_t>(points), kPiece, [&](std::int64_t begin, std::int64_t end) {
-            std::vector<std::pair<Triangle, std::uint32_t>> here;
-            for (std::int64_t v = begin; v < end; ++v) {
-                here.clear();
-                for (const std::uint32_t t : bySmallest.of(static_cast<std::size_t>(v))) {
-                    here.emplace_back(sorted(t), t);
-                }
-                std::sort(here.begin(), here.end());
-                for (std::size_t i = 1; i < here.size(); ++i) {
-                    if (here[i].first == here[i - 1].first) isDuplicate[here[i].second] = 1;
-                }
-            }
-        });
-    return isDuplicate;
-}
-
 /// Along an axis where the points are no farther apart than from 0, the middle: both differ by a
 /// factor of two at most, and their difference is exact (Sterbenz's lemma).
 Vec3 originFor(const TriangleMesh& mesh) {
@@ -104,8 +71,9 @@ public:
         parts_.origin = originFor(mesh_);
         takeTriangles();
         halfEdges_.assign(parts_.points.size(), parts_.triangles);
+        if (dropDuplicates()) halfEdges_.assign(parts_.points.size(), parts_.triangles);
         halfEdges_.match(parts_.triangles, twin_);
-        const std::vector<std::int64_t> crossing = findCrossings();
+        const std::vector<std::int64_t> crossing = crossingTriangles(parts_.view(), parts_.tree);
         cutEdges();
         cutPoints();
         keepCrossings(crossing);
@@ -126,40 +94,87 @@ private:
     static std::uint32_t previous(std::uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
     std::uint32_t to(std::uint32_t h) const { return from(next(h)); }
 
-    /// Those with an area, each once; with the points that they use.
+    /// Those with an area, with the points that they use.
     void takeTriangles() {
-        const AreaTriangles withArea = withoutFlatTriangles(mesh_);
-        const std::vector<std::uint8_t> isDuplicate =
-            findDuplicateTriangles(withArea.triangles, mesh_.points.size());
+        AreaTriangles withArea = withoutFlatTriangles(mesh_);
         parts_.degenerate = withArea.flat;
+        const bool isWhole = withArea.flat == 0;
+        const std::vector<Triangle>& triangles = isWhole ? mesh_.triangles : withArea.triangles;
         std::vector<std::uint32_t> number(mesh_.points.size(), kNone);
-        for (std::size_t t = 0; t < withArea.triangles.size(); ++t) {
-            if (withArea.isLeftOut[t] != 0) continue;
-            if (isDuplicate[t] != 0) {
-                ++parts_.duplicate;
-                continue;
-            }
-            const auto& [a, b, c] = withArea.triangles[t];
+        parts_.triangles.reserve(triangles.size());
+        for (std::size_t t = 0; t < triangles.size(); ++t) {
+            if (!isWhole && withArea.isLeftOut[t] != 0) continue;
+            const auto& [a, b, c] = triangles[t];
             parts_.triangles.push_back({static_cast<std::uint32_t>(a),
                                         static_cast<std::uint32_t>(b),
                                         static_cast<std::uint32_t>(c)});
-            parts_.inputTriangle.push_back(static_cast<std::uint32_t>(t));
+            if (!isWhole) parts_.inputTriangle.push_back(static_cast<std::uint32_t>(t));
             number[a] = number[b] = number[c] = 0;
         }
-        isWhole_ = withArea.flat == 0 && parts_.duplicate == 0;
-        if (isWhole_) freeMemory(parts_.inputTriangle);
+        freeMemory(withArea.triangles, withArea.isLeftOut);
         if (parts_.triangles.empty()) {
             throw InvalidInput("simplify: the mesh has no triangle with an area");
         }
+        takePoints(number);
+        forEach(parts_.triangles.size(), [&](std::size_t t) {
+            for (std::uint32_t& v : parts_.triangles[t]) v = number[v];
+        });
+    }
+
+    /// \param number  kNone for points that no triangle uses; gets the numbers of the others
+    void takePoints(std::vector<std::uint32_t>& number) {
+        const std::size_t count = number.size() - std::count(number.begin(), number.end(), kNone);
+        parts_.points.reserve(count);
+        inputPoint_.reserve(count);
         for (std::size_t v = 0; v < number.size(); ++v) {
             if (number[v] == kNone) continue;
             number[v] = static_cast<std::uint32_t>(parts_.points.size());
             parts_.points.push_back(mesh_.points[v] - parts_.origin);
             inputPoint_.push_back(static_cast<std::uint32_t>(v));
         }
-        for (auto& t : parts_.triangles) {
-            for (std::uint32_t& v : t) v = number[v];
+    }
+
+    /// A triangle before it has the same corners, whichever way round.
+    bool isDuplicate(std::uint32_t t) const {
+        const auto& [a, b, c] = parts_.triangles[t];
+        for (const auto& l : halfEdges_.from(a)) {
+            const std::uint32_t other = l.halfEdge / 3;
+            if (other >= t) break;
+            const std::uint32_t third = parts_.triangles[other][(l.halfEdge + 2) % 3];
+            if ((l.to == b && third == c) || (l.to == c && third == b)) return true;
         }
+        return false;
+    }
+
+    /// \return whether there were any
+    bool dropDuplicates() {
+        std::vector<std::uint8_t> isGone(parts_.triangles.size(), 0);
+        forEach(isGone.size(), [&](std::size_t t) {
+            isGone[t] = static_cast<std::uint8_t>(isDuplicate(static_cast<std::uint32_t>(t)));
+        });
+        parts_.duplicate = std::count(isGone.begin(), isGone.end(), 1);
+        if (parts_.duplicate == 0) return false;
+        std::vector<std::uint32_t>& input = parts_.inputTriangle;
+        if (input.empty()) {
+            input.resize(isGone.size());
+            std::iota(input.begin(), input.end(), std::uint32_t{0});
+        }
+        const auto erase = [&](auto& members) {
+            std::size_t t = 0;
+            std::erase_if(members, [&](const auto&) { return isGone[t++] != 0; });
+        };
+        erase(parts_.triangles);
+        erase(input);
+        return true;
+    }
+
+    /// Calls f(i) for all numbers below a count, side by side.
+    template <class F>
+    static void forEach(std::size_t count, const F& f) {
+        parallelForPieces(static_cast<std::int64_t>(count), kPiece,
+                          [&](std::int64_t begin, std::int64_t end) {
+                              for (std::int64_t i = begin; i < end; ++i) f(i);
+                          });
     }
 
     std::int64_t countOf(std::uint32_t a, std::uint32_t b) const {
@@ -171,14 +186,11 @@ private:
     /// Edges with more than two triangles, or two that face opposite sides, lose their twins.
     void cutEdges() {
         isCut_.assign(twin_.size(), 0);
-        parallelForPieces(
-            static_cast<std::int64_t>(twin_.size()), kPiece,
-            [&](std::int64_t begin, std::int64_t end) {
-                for (auto h = static_cast<std::uint32_t>(begin); h < end; ++h) {
-                    const std::uint32_t a = from(h), b = to(h);
-                    isCut_[h] = static_cast<std::uint8_t>(countOf(a, b) > 1 || countOf(b, a) > 1);
-                }
-            });
+        forEach(twin_.size(), [&](std::size_t i) {
+            const auto h = static_cast<std::uint32_t>(i);
+            const std::uint32_t a = from(h), b = to(h);
+            isCut_[h] = static_cast<std::uint8_t>(countOf(a, b) > 1 || countOf(b, a) > 1);
+        });
         for (std::uint32_t h = 0; h < twin_.size(); ++h) {
             if (isCut_[h] != 0) {
                 twin_[h] = kNone;
@@ -260,15 +272,6 @@ private:
         parts_.isKept[v] = 1;
     }
 
-    std::vector<std::int64_t> findCrossings() {
-        parts_.tree = std::make_shared<const AabbTree>(mesh_);
-        if (isWhole_) return crossingTriangles(mesh_, *parts_.tree);
-        TriangleMesh left;
-        left.points = parts_.points;
-        for (const auto& [a, b, c] : parts_.triangles) left.triangles.push_back({a, b, c});
-        return crossingTriangles(left);
-    }
-
     void keepCrossings(const std::vector<std::int64_t>& crossing) {
         parts_.crossing = crossing;
         for (const std::int64_t t : crossing) {
@@ -282,7 +285,6 @@ private:
     bool keepsBorders_;
     MeshParts parts_;
     std::vector<std::uint32_t> inputPoint_;  ///< of each point
-    bool isWhole_ = true;                    ///< no triangle of the input was left out or changed
     HalfEdges<std::uint32_t> halfEdges_;
     std::vector<std::uint32_t> twin_;
     std::vector<std::uint8_t> isCut_;  ///< of each half-edge

@@ -2,11 +2,10 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
-#include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptive/proof/TriangleTree.h"
 
 namespace adaptiso::detail {
 
@@ -28,8 +27,10 @@ struct MeshParts {
     std::vector<VertexId> nonManifold;           ///< points of the input, ascending
     std::vector<std::int64_t> crossing;          ///< triangles that cross others, ascending
     std::vector<std::uint32_t> inputTriangle;    ///< of each triangle. Empty: its own number
-    std::shared_ptr<const AabbTree> tree;        ///< of the input
+    TriangleTree tree;                           ///< of the triangles
     std::int64_t degenerate = 0, duplicate = 0;  ///< triangles that were dropped
+
+    TriangleView view() const { return {points, triangles}; }
 };
 
 /// \param keepsBorders  points of open borders stay

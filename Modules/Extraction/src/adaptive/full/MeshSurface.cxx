@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/Parameters.h"
@@ -19,11 +20,12 @@ constexpr std::int64_t kPiece = 1 << 12;
 /// about three triangles for each voxel's face that the surface covers.
 double voxelOf(const MeshParts& parts, std::optional<double> boundMm) {
     std::vector<double> areas(parts.triangles.size());
-    for (std::size_t t = 0; t < areas.size(); ++t) {
-        const MeshParts::Triangle& c = parts.triangles[t];
-        areas[t] =
-            0.5 * norm(areaVector2(parts.points[c[0]], parts.points[c[1]], parts.points[c[2]]));
-    }
+    parallelForPieces(std::ssize(areas), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t t = begin; t < end; ++t) {
+            const Corners c = parts.view().cornersOf(t);
+            areas[t] = 0.5 * norm(areaVector2(c[0], c[1], c[2]));
+        }
+    });
     const auto middle = areas.begin() + std::ssize(areas) / 2;
     std::nth_element(areas.begin(), middle, areas.end());
     CornerBox box{parts.points[0], parts.points[0]};
@@ -76,11 +78,13 @@ SimplifiedSurface MeshSurface::whole(const TightPlaces& tight) const {
     for (const auto& [a, b, c] : parts_.triangles) surface.triangles.push_back({a, b, c});
     surface.fineTriangles = surface.tableTriangles = std::ssize(surface.triangles);
     {
-        const Around around(parts_.points.size(), [&](const auto& give) {
-            for (std::uint32_t t = 0; t < parts_.triangles.size(); ++t) {
-                for (const std::uint32_t v : parts_.triangles[t]) give(v, t);
-            }
-        });
+        Around around;
+        around.assign(parts_.points.size(), parts_.triangles.size(),
+                      [&](std::size_t t, const auto& put) {
+                          for (const std::uint32_t v : parts_.triangles[t]) {
+                              put(v, static_cast<std::uint32_t>(t));
+                          }
+                      });
         const std::vector<Vec3> areas = addPoints(around, surface);
         addSamples(around, areas, surface);
     }
@@ -121,10 +125,14 @@ std::vector<Vec3> MeshSurface::addPoints(const Around& around, SimplifiedSurface
 std::vector<std::uint8_t> MeshSurface::roomsOf(const SimplifiedSurface& surface,
                                                const std::vector<Vec3>& areas) const {
     const PatchCubes cubes(surface, {}, frame());
-    const Buckets<std::uint32_t, std::uint32_t> inCube(cubes.count(), [&](const auto& give) {
-        for (std::uint32_t v = 0; v < surface.points.size(); ++v) {
-            give(cubes.numberOf(cubes.cubeAt(surface.points[v])), v);
+    std::vector<std::uint32_t> cubeOf(surface.points.size());
+    parallelForPieces(std::ssize(cubeOf), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t v = begin; v < end; ++v) {
+            cubeOf[v] = cubes.numberOf(cubes.cubeAt(surface.points[v]));
         }
+    });
+    const Buckets<std::uint32_t, std::uint32_t> inCube(cubes.count(), [&](const auto& give) {
+        for (std::uint32_t v = 0; v < cubeOf.size(); ++v) give(cubeOf[v], v);
     });
     std::vector<std::uint8_t> rooms(surface.points.size(), SheetRoom::kAlone);
     parallelForPieces(
@@ -158,11 +166,32 @@ std::vector<std::uint8_t> MeshSurface::roomsOf(const SimplifiedSurface& surface,
     return rooms;
 }
 
+/// \param areas  the sums of area vectors around each point \return of each triangle
+std::vector<std::uint8_t> MeshSurface::bentTriangles(const std::vector<Vec3>& areas) const {
+    std::vector<std::uint8_t> isBent(parts_.triangles.size());
+    parallelForPieces(std::ssize(isBent), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t t = begin; t < end; ++t) {
+            const MeshParts::Triangle& v = parts_.triangles[t];
+            const Vec3 a = normalized(areas[v[0]]), b = normalized(areas[v[1]]),
+                       c = normalized(areas[v[2]]);
+            isBent[t] = static_cast<std::uint8_t>(
+                !(std::min({dot(a, b), dot(b, c), dot(c, a)}) > kBentCosine));
+        }
+    });
+    return isBent;
+}
+
 /// All points; and the middles of triangles in which the surface bends, as a ridge could pass
 /// unseen there.
 void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& areas,
                              SimplifiedSurface& surface) const {
     const std::vector<std::uint8_t> rooms = roomsOf(surface, areas);
+    const std::vector<std::uint8_t> isBent = bentTriangles(areas);
+    // to the sample: noise bends all triangles
+    const std::size_t count =
+        parts_.points.size() + std::count(isBent.begin(), isBent.end(), std::uint8_t{1});
+    surface.samples.reserve(count);
+    surface.sampleTriangle.reserve(count);
     surface.samples.resize(parts_.points.size());
     surface.sampleTriangle.resize(parts_.points.size());
     parallelForPieces(std::ssize(surface.samples), kPiece,
@@ -175,16 +204,6 @@ void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& area
                               surface.sampleTriangle[v] = around.of(v).front();
                           }
                       });
-    std::vector<std::uint8_t> isBent(parts_.triangles.size());
-    parallelForPieces(std::ssize(isBent), kPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t t = begin; t < end; ++t) {
-            const MeshParts::Triangle& v = parts_.triangles[t];
-            const Vec3 a = normalized(areas[v[0]]), b = normalized(areas[v[1]]),
-                       c = normalized(areas[v[2]]);
-            isBent[t] = static_cast<std::uint8_t>(
-                !(std::min({dot(a, b), dot(b, c), dot(c, a)}) > kBentCosine));
-        }
-    });
     for (std::size_t t = 0; t < isBent.size(); ++t) {
         if (isBent[t] == 0) continue;
         const Corners c = cornersOf(t);
@@ -198,7 +217,7 @@ void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& area
 }
 
 std::unique_ptr<DistanceProof> MeshSurface::proof(double limitMm) const {
-    return std::make_unique<MeshProof>(input_, parts_, frame(), limitMm);
+    return std::make_unique<MeshProof>(parts_, frame(), limitMm);
 }
 
 /// Points that were cut apart become one again.

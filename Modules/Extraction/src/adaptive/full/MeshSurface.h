@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "adaptiso/Core/Buckets.h"
 #include "adaptive/full/FullSurface.h"
 #include "adaptive/full/MeshParts.h"
+#include "adaptive/mesh/OrderedBuckets.h"
 #include "adaptive/proof/PieceBound.h"
 
 namespace adaptiso::detail {
@@ -35,12 +35,13 @@ public:
     double largestExtentMm() const override;
 
 private:
-    using Around = Buckets<std::uint32_t, std::uint32_t>;
+    using Around = OrderedBuckets<std::uint32_t>;
 
     SimplifiedSurface whole(const TightPlaces& tight) const;
     std::vector<Vec3> addPoints(const Around& around, SimplifiedSurface& surface) const;
     std::vector<std::uint8_t> roomsOf(const SimplifiedSurface& surface,
                                       const std::vector<Vec3>& areas) const;
+    std::vector<std::uint8_t> bentTriangles(const std::vector<Vec3>& areas) const;
     void addSamples(const Around& around, const std::vector<Vec3>& areas,
                     SimplifiedSurface& surface) const;
     Corners cornersOf(std::size_t t) const {

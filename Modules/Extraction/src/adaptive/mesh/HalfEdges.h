@@ -3,10 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <ranges>
 #include <span>
 #include <vector>
 
-#include "adaptiso/Core/Buckets.h"
+#include "adaptiso/Core/Parallel.h"
+#include "adaptive/mesh/OrderedBuckets.h"
 
 namespace adaptiso::detail {
 
@@ -21,44 +23,70 @@ public:
         Index to, halfEdge;
     };
 
+    /// Keeps a reference to the triangles.
     void assign(std::size_t points, std::span<const std::array<Index, 3>> triangles) {
-        leaving_.assign(points, [&](const auto& give) {
-            Index h = 0;
-            for (const auto& [a, b, c] : triangles) {
-                give(a, {b, h++});
-                give(b, {c, h++});
-                give(c, {a, h++});
+        triangles_ = triangles;
+        leaving_.assign(points, triangles.size(), [&](std::size_t t, const auto& put) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                put(triangles[t][c], static_cast<Index>(3 * t + c));
             }
         });
     }
 
     /// In ascending order.
-    std::span<const Leaving> from(Index vertex) const { return leaving_.of(vertex); }
+    auto from(Index vertex) const {
+        return leaving_.of(vertex) | std::views::transform([this](Index h) -> Leaving {
+                   return {triangles_[h / 3][(h + 1) % 3], h};
+               });
+    }
 
     /// The opposite of each half-edge, or kNone. Where several run along an edge they are matched
-    /// in ascending order.
+    /// in ascending order. \param triangles  as given to assign()
     void match(std::span<const std::array<Index, 3>> triangles, std::vector<Index>& twin) const {
+        constexpr std::size_t kMany = 1 << 15;  // below, threads cost more than they save
         twin.assign(3 * triangles.size(), kNone);
-        Index h = 0;
-        for (const auto& [a, b, c] : triangles) {
-            matchOne(h++, a, b, twin);
-            matchOne(h++, b, c, twin);
-            matchOne(h++, c, a, twin);
+        if (triangles.size() < kMany) {
+            forEachOf(0, triangles.size(), [&](Index h, Index a, Index b) {
+                if (twin[h] != kNone) return;
+                twin[h] = twinOf(h, a, b);
+                if (twin[h] != kNone) twin[twin[h]] = h;
+            });
+            return;
         }
+        constexpr std::int64_t kPiece = 1 << 13;
+        parallelForPieces(std::ssize(triangles), kPiece, [&](std::int64_t begin, std::int64_t end) {
+            forEachOf(begin, end, [&](Index h, Index a, Index b) { twin[h] = twinOf(h, a, b); });
+        });
     }
 
 private:
-    void matchOne(Index h, Index a, Index b, std::vector<Index>& twin) const {
-        if (twin[h] != kNone) return;
-        for (const Leaving& l : from(b)) {
-            if (l.to != a || twin[l.halfEdge] != kNone) continue;
-            twin[h] = l.halfEdge;
-            twin[l.halfEdge] = h;
-            return;
+    /// Calls f(half-edge, from, to) for those of the triangles [begin, end).
+    template <class F>
+    void forEachOf(std::size_t begin, std::size_t end, const F& f) const {
+        for (std::size_t t = begin; t < end; ++t) {
+            const auto& [a, b, c] = triangles_[t];
+            const auto h = static_cast<Index>(3 * t);
+            f(h, a, b);
+            f(h + 1, b, c);
+            f(h + 2, c, a);
         }
     }
 
-    Buckets<Leaving, Index> leaving_;  ///< of each vertex
+    /// Of several that run from a to b the first goes with the first that runs back, and so on.
+    Index twinOf(Index h, Index a, Index b) const {
+        std::size_t before = 0;
+        for (const Leaving l : from(a)) {
+            if (l.halfEdge == h) break;
+            before += l.to == b ? 1 : 0;
+        }
+        for (const Leaving l : from(b)) {
+            if (l.to == a && before-- == 0) return l.halfEdge;
+        }
+        return kNone;
+    }
+
+    std::span<const std::array<Index, 3>> triangles_;
+    OrderedBuckets<Index, Index> leaving_;  ///< half-edges, of each vertex
 };
 
 }  // namespace adaptiso::detail

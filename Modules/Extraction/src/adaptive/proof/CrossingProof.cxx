@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "Certificate.h"
-#include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
@@ -20,14 +20,14 @@ namespace {
 /// The triangles round each vertex, and whether they are clear of each other.
 class Fans {
 public:
-    explicit Fans(const TriangleMesh& mesh)
+    explicit Fans(const TriangleView& mesh)
         : mesh_(mesh),
           around_(mesh.points.size(),
                   [&](const auto& give) {
                       for (const auto& [a, b, c] : mesh.triangles) {
-                          give(a, sector(b, c));
-                          give(b, sector(c, a));
-                          give(c, sector(a, b));
+                          give(a, Sector{b, c});
+                          give(b, Sector{c, a});
+                          give(c, Sector{a, b});
                       }
                   }),
           isClear_(mesh.points.size(), 0) {
@@ -38,14 +38,10 @@ public:
                           });
     }
 
-    bool isClear(VertexId v) const { return isClear_[v] != 0; }
+    bool isClear(std::uint32_t v) const { return isClear_[v] != 0; }
 
 private:
     using Sector = std::array<std::uint32_t, 2>;  ///< the other corners of a triangle, in its order
-
-    static Sector sector(VertexId a, VertexId b) {
-        return {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)};
-    }
 
     /// Seen along one direction all are upright and go round the vertex once.
     bool prove(std::int64_t v) {
@@ -83,15 +79,15 @@ private:
         return rounds == 1;
     }
 
-    const TriangleMesh& mesh_;
-    Buckets<Sector> around_;
+    const TriangleView& mesh_;
+    Buckets<Sector, std::uint32_t> around_;
     std::vector<std::uint8_t> isClear_;
 };
 
 /// Two triangles that do not cross, for sure.
-bool areClear(const TriangleMesh& mesh, const Fans& fans, std::int64_t a, std::int64_t b,
+bool areClear(const TriangleView& mesh, const Fans& fans, std::uint32_t a, std::uint32_t b,
               double gap) {
-    const Triangle &s = mesh.triangles[a], &t = mesh.triangles[b];
+    const TriangleView::Triangle &s = mesh.triangles[a], &t = mesh.triangles[b];
     std::array<int, 3> inT{};
     int shared = 0;
     for (int i = 0; i < 3; ++i) {
@@ -101,7 +97,7 @@ bool areClear(const TriangleMesh& mesh, const Fans& fans, std::int64_t a, std::i
         if (fans.isClear(s[i])) return true;
         ++shared;
     }
-    const auto cornersFrom = [&](const Triangle& u, int first) {
+    const auto cornersFrom = [&](const TriangleView::Triangle& u, int first) {
         return Corners{mesh.points[u[first]], mesh.points[u[(first + 1) % 3]],
                        mesh.points[u[(first + 2) % 3]]};
     };
@@ -120,26 +116,32 @@ bool areClear(const TriangleMesh& mesh, const Fans& fans, std::int64_t a, std::i
 }  // namespace
 
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh) {
-    if (mesh.triangles.empty()) return {};
-    return crossingTriangles(mesh, AabbTree(mesh));
+    std::vector<TriangleView::Triangle> triangles;
+    triangles.reserve(mesh.triangles.size());
+    for (const auto& [a, b, c] : mesh.triangles) {
+        triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                             static_cast<std::uint32_t>(c)});
+    }
+    TriangleTree tree;
+    return crossingTriangles({mesh.points, triangles}, tree);
 }
 
-std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh, const AabbTree& tree) {
-    constexpr std::int64_t kPiece = 1024;
-    const Fans fans(mesh);
-    const BoundingBox box = boundingBox(mesh);
-    const double gap = 1e-13 * (norm(box.maximum) + norm(box.minimum));  // rounding of coordinates
-    const auto count = tree.triangleCount();
-    const auto cornersOf = [&](std::int64_t t) {
-        const Triangle& c = mesh.triangles[t];
-        return Corners{mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]};
-    };
-    std::vector<std::vector<std::int64_t>> crossing((count + kPiece - 1) / kPiece);
-    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
-        tree.forEachOverlappingPair(begin, end, [&](std::int64_t a, std::int64_t b) {
-            if (areClear(mesh, fans, a, b, gap)) return;
-            if (!trianglesCross(cornersOf(a), cornersOf(b))) return;
-            crossing[begin / kPiece].insert(crossing[begin / kPiece].end(), {a, b});
+std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh, TriangleTree& tree) {
+    if (mesh.triangles.empty()) return {};
+    constexpr std::int64_t kPiece = 128;  // leaves
+    std::optional<Fans> fans;
+    parallelInvoke([&] { tree = TriangleTree(mesh); }, [&] { fans.emplace(mesh); });
+    CornerBox box{mesh.points[0], mesh.points[0]};
+    for (const Vec3& p : mesh.points) box.add(p);
+    const double gap = 1e-13 * (norm(box.high) + norm(box.low));  // rounding of coordinates
+    const TriangleTree::Pairs pairs(tree, mesh);
+    std::vector<std::vector<std::int64_t>> crossing((tree.leafCount() + kPiece - 1) / kPiece);
+    parallelForPieces(tree.leafCount(), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        std::vector<std::int64_t>& here = crossing[begin / kPiece];
+        pairs.forEach(begin, end, [&](std::uint32_t a, std::uint32_t b) {
+            if (areClear(mesh, *fans, a, b, gap)) return;
+            if (trianglesCross(mesh.cornersOf(a), mesh.cornersOf(b)))
+                here.insert(here.end(), {a, b});
         });
     });
     std::vector<std::int64_t> all;

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptive/proof/TriangleTree.h"
 
 namespace adaptiso::detail {
 
@@ -14,7 +14,7 @@ namespace adaptiso::detail {
 /// \pre fewer than 2^32 points
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh);
 
-/// The same with a tree that is there. \param tree  of the mesh
-std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh, const AabbTree& tree);
+/// The same. \param tree  gets a tree of the triangles
+std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh, TriangleTree& tree);
 
 }  // namespace adaptiso::detail

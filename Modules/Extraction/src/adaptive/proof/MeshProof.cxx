@@ -45,9 +45,8 @@ struct PartBound {
 template <class Index>
 struct Target {
     const WalkableSurface<Index>& walkable;
-    const TriangleMesh& mesh;  ///< for searches
-    Vec3 origin;               ///< of the frame, in the mesh's coordinates
-    std::function<const AabbTree&()> tree;
+    TriangleView view;
+    std::function<const TriangleTree&()> tree;  ///< of the view
 };
 
 /// Bounds how far triangles of one surface are from another; keeps its working memory.
@@ -108,8 +107,7 @@ private:
         if (!near_.empty() && bound_.isWithin(piece)) return;
         double reachMm = bound_.boundMm();
         for (const Vec3& corner : piece) {
-            const ClosestPoint nearest = to_.tree().closestPoint(corner + to_.origin);
-            reachMm = std::max(reachMm, std::sqrt(nearest.squaredDistanceMm2));
+            reachMm = std::max(reachMm, std::sqrt(to_.tree().squaredDistance(corner, to_.view)));
         }
         collectWithin(reachMm, piece);
         includeNear(piece, makePlace);
@@ -121,13 +119,9 @@ private:
         box.widen(kRounding * distanceMm);
         near_.clear();
         bound_.nearby().clear();
-        const BoundingBox inMesh{box.low + to_.origin, box.high + to_.origin};
-        to_.tree().forEachOverlap(inMesh, [&](std::int64_t t) {
+        to_.tree().forEachOverlap(box, to_.view, [&](std::uint32_t t) {
             near_.push_back(t);
-            const adaptiso::Triangle& c = to_.mesh.triangles[t];
-            bound_.nearby().push_back({to_.mesh.points[c[0]] - to_.origin,
-                                       to_.mesh.points[c[1]] - to_.origin,
-                                       to_.mesh.points[c[2]] - to_.origin});
+            bound_.nearby().push_back(to_.view.cornersOf(t));
         });
     }
 
@@ -159,7 +153,7 @@ private:
     SurfaceWalk walk_;
     std::vector<Index> numbers_;
     std::vector<Corners> around_;     ///< where walks start
-    std::vector<std::int64_t> near_;  ///< of the mesh, as bound_.nearby()
+    std::vector<std::int64_t> near_;  ///< as bound_.nearby()
     PartBound result_;
 };
 
@@ -170,28 +164,24 @@ public:
         walkable_.assign(surface.points, surface.triangles);
     }
     Target<Number> target() {
-        return {walkable_, mesh_, {}, [this]() -> const AabbTree& { return tree(); }};
+        return {walkable_, view(), [this]() -> const TriangleTree& { return tree(); }};
     }
 
 private:
-    const AabbTree& tree() {
+    TriangleView view() const { return {surface_.points, surface_.triangles}; }
+
+    const TriangleTree& tree() {
         std::call_once(treeIsBuilt_, [&] {
-            mesh_.points = surface_.points;
-            for (const auto& [a, b, c] : surface_.triangles) {
-                mesh_.triangles.push_back(
-                    {static_cast<VertexId>(a), static_cast<VertexId>(b), static_cast<VertexId>(c)});
-            }
             // while it waits for its own tasks a thread must not take one that asks for the tree
-            tbb::this_task_arena::isolate([&] { tree_.emplace(mesh_); });
+            tbb::this_task_arena::isolate([&] { tree_.emplace(view()); });
         });
         return *tree_;
     }
 
     const SimplifiedSurface& surface_;
     WalkableSurface<Number> walkable_;
-    TriangleMesh mesh_;
     std::once_flag treeIsBuilt_;
-    std::optional<AabbTree> tree_;
+    std::optional<TriangleTree> tree_;
 };
 
 /// Cubes of space, some of them marked: by a hash, so that now and then another one counts as
@@ -369,9 +359,8 @@ std::vector<std::uint32_t> startsOf(const SimplifiedSurface& surface,
 
 }  // namespace
 
-MeshProof::MeshProof(const TriangleMesh& input, const MeshParts& parts, const MetricFrame& frame,
-                     double limitMm)
-    : input_(input), parts_(parts), frame_(frame), limitMm_(limitMm) {}
+MeshProof::MeshProof(const MeshParts& parts, const MetricFrame& frame, double limitMm)
+    : parts_(parts), frame_(frame), limitMm_(limitMm) {}
 
 double MeshProof::largestSampleDistance(const SimplifiedSurface& surface) const {
     constexpr std::int64_t kSamples = 1 << 14;
@@ -403,8 +392,8 @@ ErrorBound MeshProof::proveAgain(const SimplifiedSurface& surface, const Surface
 ErrorBound MeshProof::prove(const SimplifiedSurface& surface, const Scope& scope) {
     if (last_.empty()) provedMm_ = 0;
     if (fine_.isEmpty()) fine_.assign(parts_.points, parts_.triangles);
-    const Target<std::uint32_t> fine{fine_, input_, parts_.origin,
-                                     [&]() -> const AabbTree& { return *parts_.tree; }};
+    const Target<std::uint32_t> fine{fine_, parts_.view(),
+                                     [&]() -> const TriangleTree& { return parts_.tree; }};
     SimplifiedTarget target(surface);
     const Target<Number> simplified = target.target();
     const Task task{parts_, surface, frame_.voxelMm(), enoughMm_, limitMm_};
@@ -439,8 +428,8 @@ ErrorBound MeshProof::prove(const SimplifiedSurface& surface, const Scope& scope
 }
 
 void MeshProof::remember(const SimplifiedSurface& surface, std::vector<PlaceBeyond> beyond) {
-    last_.resize(surface.triangles.size());
-    for (std::size_t t = 0; t < last_.size(); ++t) last_[t] = cornersOf(surface, t);
+    lastPoints_ = surface.points;
+    last_ = surface.triangles;
     isWithin_.assign(last_.size(), 1);
     for (const PlaceBeyond& place : beyond) {
         if (!place.isOfFine) isWithin_[place.triangle] = 0;
@@ -455,7 +444,7 @@ MeshProof::Scope MeshProof::scopeOf(const SimplifiedSurface& surface) const {
     if (last_.empty()) return scope;
     std::vector<Corners> known;
     for (std::size_t t = 0; t < last_.size(); ++t) {
-        if (isWithin_[t] != 0) known.push_back(last_[t]);
+        if (isWithin_[t] != 0) known.push_back(lastCorners(t));
     }
     tbb::parallel_sort(known.begin(), known.end(), isBefore);
     std::vector<std::uint8_t> isStillThere(known.size(), 0);
@@ -475,7 +464,7 @@ MeshProof::Scope MeshProof::scopeOf(const SimplifiedSurface& surface) const {
         if (isStillThere[i] == 0) changed.push_back(known[i]);
     }
     for (std::size_t t = 0; t < last_.size(); ++t) {
-        if (isWithin_[t] == 0) changed.push_back(last_[t]);
+        if (isWithin_[t] == 0) changed.push_back(lastCorners(t));
     }
     markFine(changed, scope);
     return scope;

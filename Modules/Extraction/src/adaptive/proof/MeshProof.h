@@ -15,9 +15,8 @@ namespace adaptiso::detail {
 class MeshProof final : public DistanceProof {
 public:
     /// Keeps references to all it is given.
-    /// \param input  the mesh, as it was \param limitMm  what is farther than that is noted
-    MeshProof(const TriangleMesh& input, const MeshParts& parts, const MetricFrame& frame,
-              double limitMm);
+    /// \param limitMm  what is farther than that is noted
+    MeshProof(const MeshParts& parts, const MetricFrame& frame, double limitMm);
 
     ErrorBound prove(const SimplifiedSurface& surface) override;
     ErrorBound proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes) override;
@@ -31,11 +30,13 @@ private:
     Scope scopeOf(const SimplifiedSurface& surface) const;
     Scope scopeOf(const SimplifiedSurface& surface, const SurfaceChanges& changes) const;
     void remember(const SimplifiedSurface& surface, std::vector<PlaceBeyond> beyond);
+    Corners lastCorners(std::size_t t) const {
+        return {lastPoints_[last_[t][0]], lastPoints_[last_[t][1]], lastPoints_[last_[t][2]]};
+    }
     void markFine(const std::vector<Corners>& changed, Scope& scope) const;
     ErrorBound prove(const SimplifiedSurface& surface, const Scope& scope);
     double largestSampleDistance(const SimplifiedSurface& surface) const;
 
-    const TriangleMesh& input_;
     const MeshParts& parts_;
     const MetricFrame& frame_;
     double limitMm_;
@@ -43,8 +44,9 @@ private:
     double enoughMm_ = 0;                  ///< no bound need be tighter
     double provedMm_ = 0;                  ///< so far, of what lies within the limit
     // of the last surface; empty where none was proved
-    std::vector<Corners> last_;           ///< its triangles
-    std::vector<std::uint8_t> isWithin_;  ///< the limit, each triangle
+    std::vector<Vec3> lastPoints_;
+    std::vector<SurfaceState::Triangle> last_;  ///< its triangles
+    std::vector<std::uint8_t> isWithin_;        ///< the limit, each triangle
     std::vector<PlaceBeyond> beyond_;
 };
 

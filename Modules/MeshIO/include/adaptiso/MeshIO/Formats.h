@@ -29,6 +29,7 @@ struct MeshFormat {
     bool holdsVoxelFrame;      ///< its points may be voxel indices rather than mm
     bool holdsVolumeGeometry;  ///< the geometry of the volume comes back (CoordinateFrame::TkRas)
     bool holdsPointArrays;     ///< values at points come back (MeshReadOptions::keepsPointArrays)
+    bool holdsColors;          ///< so does a colour for each point
     bool sharesVertices;       ///< vertices no triangle uses, and their order, come back
     std::int64_t maxElements;  ///< largest number of points, and of triangles
 };

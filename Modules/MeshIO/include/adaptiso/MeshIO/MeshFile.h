@@ -48,7 +48,8 @@ struct MeshWriteOptions {
     std::string volumeName;
     /// Where the format holds them (MeshFormat::holdsPointArrays): written with the mesh, in VTK's
     /// formats the first as the active scalars. PLY has no names with blanks and no arrays of
-    /// several components: blanks become _, and components arrays of their own.
+    /// several components: blanks become _, and components arrays of their own. OBJ and OFF hold
+    /// one array of colours alone (MeshFormat::holdsColors).
     std::vector<PointArray> pointArrays{};
     /// VTK XML only: written beside the mesh, as Int32.
     std::vector<CellArray> cellArrays{};
@@ -100,7 +101,7 @@ struct MeshFile {
     std::optional<CoordinateFrame> frame;  ///< if the file says so
     std::optional<ImageGeometry> volume;   ///< from a FreeSurfer surface's footer (frame TkRas)
     /// One value a point each; names hold no control characters. PLY's red, green and blue are one
-    /// array of colours, "RGB". Arrays of text are passed over.
+    /// array of colours, "RGB", and so are those of OBJ and OFF. Arrays of text are passed over.
     std::vector<PointArray> pointArrays{};
 };
 

@@ -16,13 +16,14 @@ namespace adaptiso {
 enum class PointDataFormat {
     FreeSurferCurv,   ///< a number a point: lh.thickness, lh.curv, lh.sulc, lh.area, ...
     FreeSurferAnnot,  ///< a label a point and a table of names: lh.aparc.annot
+    FreeSurferMgh,    ///< numbers, or labels, in one frame or several: lh.thickness.fsaverage.mgh
     Gifti             ///< .shape.gii, .func.gii, .label.gii
 };
 
-/// "FreeSurfer curv", "FreeSurfer annot", "GIFTI"
+/// "FreeSurfer curv", "FreeSurfer annot", "FreeSurfer mgh", "GIFTI"
 std::string_view toString(PointDataFormat format);
 
-/// The format of a file, by its name alone: .gii, .annot, and curv for all others.
+/// The format of a file, by its name alone: .gii, .annot, .mgh, and curv for all others.
 PointDataFormat findPointDataFormat(const std::filesystem::path& path);
 
 /// One array of values at points: numbers, or labels.
@@ -60,9 +61,11 @@ struct PointData {
 /// are kept: the rest may name people, places and dates.
 ///
 /// curv: the form of 2000 and later (float32), and the older one (16 bits, hundredths).
-/// GIFTI: float32, int32 and uint8 arrays of a value, or several, for every point; sparse ones
-/// (NIFTI_INTENT_NODE_INDEX) are refused.
-/// \throws FileError  "<file>: what is wrong; what to do"
+/// mgh: float32, and int32, int16 and uint8, which are taken for labels; an array a frame. Its
+/// header beyond that and all that follows the values are not kept. GIFTI: float32, int32 and uint8
+/// arrays of a value, or several, for every point; sparse ones (NIFTI_INTENT_NODE_INDEX) are
+/// refused. So are, by their names, .mgz and .label, and the .nii of CIFTI. \throws FileError
+/// "<file>: what is wrong; what to do"
 PointData readPointData(const std::filesystem::path& path);
 
 /// The same from bytes in memory. \throws FileError  "<name>: what is wrong; what to do"
@@ -72,7 +75,7 @@ PointData decodePointData(std::string_view bytes, PointDataFormat format, std::s
 /// \param triangles  of the surface: a curv file says how many
 /// \throws InvalidInput  no points or arrays, values that are not one a point and column, more than
 ///                       the format can count; curv: not one array of numbers; annot: not one of
-///                       labels, or a table that is damaged
+///                       labels, or a table that is damaged; mgh: columns, or numbers beside labels
 /// \throws FileError     the file can't be written
 void writePointData(const PointData& data, std::int64_t triangles,
                     const std::filesystem::path& path);

@@ -1,0 +1,144 @@
+#include "adaptive/proof/TriangleTree.h"
+
+#include <cmath>
+
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Parallel.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr std::int64_t kPiece = 1 << 13;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// The largest numbers stand for those that are larger.
+float nearest(double x) {
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp(x, -kLargest, kLargest));
+}
+float atMost(double x) {
+    const float rounded = nearest(x);
+    return rounded > x ? std::nextafter(rounded, -kInfinity) : rounded;
+}
+float atLeast(double x) {
+    const float rounded = nearest(x);
+    return rounded < x ? std::nextafter(rounded, kInfinity) : rounded;
+}
+
+}  // namespace
+
+TriangleTree::Box TriangleTree::Box::around(const CornerBox& exact) {
+    return {{atMost(exact.low.x), atMost(exact.low.y), atMost(exact.low.z)},
+            {atLeast(exact.high.x), atLeast(exact.high.y), atLeast(exact.high.z)}};
+}
+
+/// A triangle while the tree is built.
+struct TriangleTree::Item {
+    std::array<float, 3> centre;
+    std::uint32_t triangle;
+};
+
+TriangleTree::TriangleTree(const TriangleView& of) {
+    const std::int64_t count = std::ssize(of.triangles);
+    if (count == 0) return;
+    std::vector<Item> items(count);
+    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t t = begin; t < end; ++t) {
+            const Corners c = of.cornersOf(t);
+            const Vec3 middle = (1.0 / 3) * (c[0] + c[1] + c[2]);
+            items[t] = {{nearest(middle.x), nearest(middle.y), nearest(middle.z)},
+                        static_cast<std::uint32_t>(t)};
+        }
+    });
+    order_.resize(count);
+    boxes_.resize(2 * leafCount() - 1);
+    build(items, {0, 0, leafCount()}, of);
+}
+
+/// Halves the triangles by their centres along the longest side.
+/// \param items  of the subtree
+void TriangleTree::build(std::span<Item> items, const Subtree& subtree, const TriangleView& of) {
+    Box& box = boxes_[subtree.node];
+    if (subtree.isLeaf()) {
+        std::size_t place = subtree.firstLeaf * kLeafTriangles;
+        CornerBox exact = boxOf(of.cornersOf(items[0].triangle));
+        for (const Item& item : items) {
+            order_[place++] = item.triangle;
+            for (const Vec3& p : of.cornersOf(item.triangle)) exact.add(p);
+        }
+        box = Box::around(exact);
+        return;
+    }
+    Box centres{items[0].centre, items[0].centre};
+    for (const Item& item : items) centres.add({item.centre, item.centre});
+    std::size_t axis = 0;
+    for (std::size_t a = 1; a < 3; ++a) {
+        if (centres.high[a] - centres.low[a] > centres.high[axis] - centres.low[axis]) axis = a;
+    }
+    const Subtree left = subtree.left(), right = subtree.right();
+    const std::size_t half = left.leaves * kLeafTriangles;
+    std::nth_element(items.begin(), items.begin() + std::ptrdiff_t(half), items.end(),
+                     [axis](const Item& a, const Item& b) {
+                         return a.centre[axis] < b.centre[axis] ||
+                                (a.centre[axis] == b.centre[axis] && a.triangle < b.triangle);
+                     });
+    const auto buildLeft = [&] { build(items.first(half), left, of); };
+    const auto buildRight = [&] { build(items.subspan(half), right, of); };
+    constexpr std::int64_t kParallelLeaves = 512;  // below, a task costs more than it saves
+    if (subtree.leaves >= kParallelLeaves) {
+        parallelInvoke(buildLeft, buildRight);
+    } else {
+        buildLeft();
+        buildRight();
+    }
+    box = boxes_[left.node];
+    box.add(boxes_[right.node]);
+}
+
+TriangleTree::Pairs::Pairs(const TriangleTree& tree, const TriangleView& of)
+    : tree_(tree), boxes_(tree.order_.size()) {
+    parallelForPieces(std::ssize(boxes_), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i) boxes_[i] = boxAround(of, tree.order_[i]);
+    });
+}
+
+double TriangleTree::squaredDistance(const Vec3& p, const TriangleView& of) const {
+    double best = std::numeric_limits<double>::infinity();
+    if (order_.empty()) return best;
+    const auto squaredTo = [&](const Subtree& subtree) {
+        const Box& box = boxes_[subtree.node];
+        double sum = 0;
+        for (int a = 0; a < 3; ++a) {
+            const double beyond =
+                std::max({double{box.low[a]} - p[a], 0.0, p[a] - double{box.high[a]}});
+            sum += beyond * beyond;
+        }
+        return sum;
+    };
+    struct Candidate {
+        Subtree subtree;
+        double squared;
+    };
+    std::array<Candidate, std::tuple_size_v<Stack>> stack;
+    std::size_t depth = 0;
+    stack[depth++] = {{0, 0, leafCount()}, 0};
+    while (depth > 0) {
+        const Candidate at = stack[--depth];
+        if (at.squared >= best) continue;
+        if (at.subtree.isLeaf()) {
+            for (const std::uint32_t t : leaf(at.subtree.firstLeaf)) {
+                const Corners c = of.cornersOf(t);
+                best = std::min(best, squaredNorm(p - closestPointOnTriangle(p, c[0], c[1], c[2])));
+            }
+            continue;
+        }
+        const Subtree left = at.subtree.left(), right = at.subtree.right();
+        Candidate nearer{left, squaredTo(left)}, farther{right, squaredTo(right)};
+        if (farther.squared < nearer.squared) std::swap(nearer, farther);
+        stack[depth++] = farther;
+        stack[depth++] = nearer;
+    }
+    return best;
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,192 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "Certificate.h"
+
+namespace adaptiso::detail {
+
+/// Triangles and their points, as surfaces of the adaptive method keep them.
+struct TriangleView {
+    using Triangle = std::array<std::uint32_t, 3>;
+
+    std::span<const Vec3> points;
+    std::span<const Triangle> triangles;
+
+    Corners cornersOf(std::size_t t) const {
+        const Triangle& c = triangles[t];
+        return {points[c[0]], points[c[1]], points[c[2]]};
+    }
+};
+
+/// A tree of boxes over triangles, as AabbTree, in a third of its memory: 10 bytes a triangle, 16
+/// more while it is made. Boxes are in single precision, rounded outward. It keeps no reference to
+/// what it is made of: queries are given the same triangles again.
+///
+/// The same triangles give the same tree and the same answers, whatever the number of threads.
+class TriangleTree {
+public:
+    TriangleTree() = default;
+    /// \pre all corners are finite
+    explicit TriangleTree(const TriangleView& of);
+
+    std::int64_t leafCount() const {
+        return (std::ssize(order_) + kLeafTriangles - 1) / kLeafTriangles;
+    }
+
+    /// To the nearest triangle; infinite where there is none.
+    double squaredDistance(const Vec3& p, const TriangleView& of) const;
+
+    /// Calls visit(triangle) for every triangle whose box, rounded outward, overlaps `box`; in an
+    /// order that is always the same.
+    template <class Visit>
+    void forEachOverlap(const CornerBox& box, const TriangleView& of, const Visit& visit) const;
+
+    class Pairs;
+
+private:
+    static constexpr std::int64_t kLeafTriangles = 8;
+
+    struct Box {
+        std::array<float, 3> low, high;
+
+        static Box around(const CornerBox& exact);
+        bool overlaps(const Box& o) const {
+            // no branches: most boxes near each other differ along one axis, now this, now that
+            int count = 0;
+            for (std::size_t a = 0; a < 3; ++a) {
+                count += int{low[a] <= o.high[a]} + int{o.low[a] <= high[a]};
+            }
+            return count == 6;
+        }
+        void add(const Box& o) {
+            for (std::size_t a = 0; a < 3; ++a) {
+                low[a] = std::min(low[a], o.low[a]);
+                high[a] = std::max(high[a], o.high[a]);
+            }
+        }
+    };
+    /// A node and the leaves below it. Nodes lie in one array in depth-first order.
+    struct Subtree {
+        std::int64_t node, firstLeaf, leaves;
+
+        bool isLeaf() const { return leaves == 1; }
+        Subtree left() const { return {node + 1, firstLeaf, leaves / 2}; }
+        Subtree right() const {
+            return {node + 2 * (leaves / 2), firstLeaf + leaves / 2, leaves - leaves / 2};
+        }
+    };
+    /// Halving leaves no more than 64 levels, with one subtree a level left to do.
+    using Stack = std::array<Subtree, 64>;
+    struct Item;
+
+    std::span<const std::uint32_t> leaf(std::int64_t number) const {
+        const std::int64_t begin = number * kLeafTriangles;
+        return std::span(order_).subspan(begin,
+                                         std::min(kLeafTriangles, std::ssize(order_) - begin));
+    }
+    static Box boxAround(const TriangleView& of, std::uint32_t t) {
+        return Box::around(boxOf(of.cornersOf(t)));
+    }
+    void build(std::span<Item> items, const Subtree& subtree, const TriangleView& of);
+    /// Calls f(leaf, box of the node) for leaves from one on that overlap a box.
+    template <class F>
+    void forEachLeaf(const Box& box, std::int64_t first, const F& f) const;
+
+    std::vector<std::uint32_t> order_;  ///< triangles, leaf after leaf
+    std::vector<Box> boxes_;            ///< of every node
+};
+
+template <class F>
+void TriangleTree::forEachLeaf(const Box& box, std::int64_t first, const F& f) const {
+    Stack stack;
+    std::size_t depth = 0;
+    const auto push = [&](const Subtree& subtree) {
+        const bool isWanted = subtree.firstLeaf + subtree.leaves > first;
+        if (isWanted && box.overlaps(boxes_[subtree.node])) stack[depth++] = subtree;
+    };
+    if (!order_.empty()) push({0, 0, leafCount()});
+    while (depth > 0) {
+        const Subtree at = stack[--depth];
+        if (at.isLeaf()) {
+            f(at.firstLeaf, boxes_[at.node]);
+        } else {
+            push(at.right());
+            push(at.left());
+        }
+    }
+}
+
+template <class Visit>
+void TriangleTree::forEachOverlap(const CornerBox& box, const TriangleView& of,
+                                  const Visit& visit) const {
+    const Box rounded = Box::around(box);
+    forEachLeaf(rounded, 0, [&](std::int64_t number, const Box&) {
+        for (const std::uint32_t t : leaf(number)) {
+            if (boxAround(of, t).overlaps(rounded)) visit(t);
+        }
+    });
+}
+
+/// Finds the pairs of triangles whose boxes, rounded outward, overlap. Keeps a reference to the
+/// tree, and 24 bytes a triangle.
+class TriangleTree::Pairs {
+public:
+    Pairs(const TriangleTree& tree, const TriangleView& of);
+
+    /// Calls visit(a, b), a < b, for the pairs of which the triangle that comes first by order of
+    /// leaves lies in one of the leaves [begin, end): all leaves give each pair once.
+    template <class Visit>
+    void forEach(std::int64_t begin, std::int64_t end, const Visit& visit) const;
+
+private:
+    std::span<const Box> boxesOf(std::int64_t leaf) const {
+        return std::span(boxes_).subspan(leaf * kLeafTriangles, tree_.leaf(leaf).size());
+    }
+
+    const TriangleTree& tree_;
+    std::vector<Box> boxes_;  ///< of the triangles, leaf after leaf
+};
+
+template <class Visit>
+void TriangleTree::Pairs::forEach(std::int64_t begin, std::int64_t end, const Visit& visit) const {
+    const auto tell = [&](std::uint32_t a, std::uint32_t b) {
+        visit(std::min(a, b), std::max(a, b));
+    };
+    for (std::int64_t number = begin; number < end; ++number) {
+        const auto triangles = tree_.leaf(number);
+        const auto own = boxesOf(number);
+        Box all = own[0];
+        for (std::size_t i = 1; i < triangles.size(); ++i) {
+            all.add(own[i]);
+            for (std::size_t j = 0; j < i; ++j) {
+                if (own[i].overlaps(own[j])) tell(triangles[i], triangles[j]);
+            }
+        }
+        tree_.forEachLeaf(all, number + 1, [&](std::int64_t other, const Box& box) {
+            std::array<std::size_t, kLeafTriangles> near;
+            std::size_t count = 0;
+            for (std::size_t i = 0; i < triangles.size(); ++i) {
+                near[count] = i;
+                count += std::size_t{own[i].overlaps(box)};
+            }
+            if (count == 0) return;
+            const auto others = tree_.leaf(other);
+            const auto theirs = boxesOf(other);
+            for (std::size_t t = 0; t < others.size(); ++t) {
+                if (!theirs[t].overlaps(all)) continue;
+                for (std::size_t i = 0; i < count; ++i) {
+                    if (own[near[i]].overlaps(theirs[t])) tell(triangles[near[i]], others[t]);
+                }
+            }
+        });
+    }
+}
+
+}  // namespace adaptiso::detail
