@@ -266,13 +266,15 @@ SurfaceChanges LocalUndo::apply() {
 void LocalUndo::handOver(const Numbers& removed, const Numbers& numbers) {
     std::vector<bool> isRemoved(surface_.triangles.size());
     for (const Number t : removed) isRemoved[t] = true;
+    const TriangleTree tree({surface_.points, fresh_});
     for (std::size_t s = 0; s < surface_.sampleTriangle.size(); ++s) {
         if (!isRemoved[surface_.sampleTriangle[s]]) continue;
         const Number before = start_.sampleTriangle[s];
         const auto at = std::lower_bound(origin_.begin(), origin_.end(), before);
         const bool isThere = at != origin_.end() && *at == before && isWhole(before);
         surface_.sampleTriangle[s] =
-            numbers[isThere ? at - origin_.begin() : nearestFresh(surface_.samples[s].point())];
+            numbers[isThere ? at - origin_.begin()
+                            : nearestFresh(surface_.samples[s].point(), tree)];
     }
 }
 
@@ -284,15 +286,17 @@ bool LocalUndo::isWhole(Number triangle) const {
     });
 }
 
-std::ptrdiff_t LocalUndo::nearestFresh(const Vec3& p) const {
-    const auto squaredTo = [&](const Triangle& t) {
-        return squaredDistanceToTriangle(
-            p, {surface_.points[t[0]], surface_.points[t[1]], surface_.points[t[2]]});
-    };
-    return std::min_element(
-               fresh_.begin(), fresh_.end(),
-               [&](const Triangle& t, const Triangle& u) { return squaredTo(t) < squaredTo(u); }) -
-           fresh_.begin();
+/// Of those equally near the first. \param tree  of the fresh ones
+std::ptrdiff_t LocalUndo::nearestFresh(const Vec3& p, const TriangleTree& tree) const {
+    constexpr double kRounding = 1 + 1e-9;
+    const TriangleView view{surface_.points, fresh_};
+    CornerBox box{p, p};
+    box.widen(kRounding * std::sqrt(tree.squaredDistance(p, view)));
+    std::pair<double, std::uint32_t> best{std::numeric_limits<double>::infinity(), 0};
+    tree.forEachOverlap(box, view, [&](std::uint32_t t) {
+        best = std::min(best, {squaredDistanceToTriangle(p, view.cornersOf(t)), t});
+    });
+    return best.second;
 }
 
 }  // namespace adaptiso::detail

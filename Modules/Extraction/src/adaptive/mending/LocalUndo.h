@@ -7,6 +7,7 @@
 
 #include "adaptiso/Core/DisjointSets.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
+#include "adaptive/proof/TriangleTree.h"
 
 namespace adaptiso::detail {
 
@@ -48,7 +49,7 @@ private:
     SurfaceChanges apply();
     void handOver(const Numbers& removed, const Numbers& numbers);
     bool isWhole(Number triangle) const;
-    std::ptrdiff_t nearestFresh(const Vec3& p) const;
+    std::ptrdiff_t nearestFresh(const Vec3& p, const TriangleTree& tree) const;
 
     bool isTouched(const Triangle& t) const {
         return comesApart_[t[0]] || comesApart_[t[1]] || comesApart_[t[2]];
