@@ -112,11 +112,15 @@ CornerBox WallMender::boxAround(Id triangle, double distanceMm) const {
     return box;
 }
 
-/// Triangles that were there before cross nothing.
+/// Triangles that were there at the last look, or before the collapses, cross nothing. One that came
+/// back since then was cleared among others than those that are there now.
 void WallMender::findCrossings() {
     isClear_.resize(mesh_.triangleCount(), 0);
+    const auto wasThere = [&](Id t) { return t < isLast_.size() && isLast_[t] != 0; };
     std::vector<Id> alive, asked;
-    const auto isAsked = [&](Id t) { return mesh_.makerOf(t) != kNone && isClear_[t] == 0; };
+    const auto isAsked = [&](Id t) {
+        return !wasThere(t) || (mesh_.makerOf(t) != kNone && isClear_[t] == 0);
+    };
     for (Id t = mesh_.firstTriangle(); t < mesh_.triangleCount(); ++t) {
         if (!mesh_.isTriangleAlive(t)) continue;
         alive.push_back(t);
