@@ -284,15 +284,22 @@ TEST(ExtractLabels, HoldsWhereARegionOnlyReachesIntoACube) {
     }
 }
 
+// Walks could not prove triangles that are large beside those of the full walls: 956 were left.
+TEST(ExtractLabels, ProvesTrianglesAsLargeAsAFlatWall) {
+    const Map map(centredGeometry({60, 20, 12}), [](const Index3& i) { return i[2] < 6 ? 1 : 2; });
+    EXPECT_LT(extractLabels(map.view(), {}).complex.triangles.size(), 350);
+}
+
 TEST(ExtractLabels, LeavesNoTrianglesWhereCubesMeet) {
-    // a slab from end to end: its walls need as many triangles in three cubes as in one
+    // a slab from end to end: its walls need no more triangles in three cubes than in one
     const auto slab = [](std::int64_t length) {
         const Map map(centredGeometry({length, 20, 12}),
                       [](const Index3& i) { return i[2] < 6 ? 1 : 2; });
         return extractLabels(map.view(), {}).complex;
     };
     const LabelComplex complex = slab(190);
-    EXPECT_LT(complex.triangles.size(), slab(60).triangles.size() + 120);
+    // its four rims have 1.7 triangles for each voxel of length, in one cube as in several
+    EXPECT_LT(complex.triangles.size(), slab(60).triangles.size() + 130 * 2);
     // its full walls have some 800 triangles at the two planes between the cubes
     int small = 0;
     for (const Triangle& t : complex.triangles) {
