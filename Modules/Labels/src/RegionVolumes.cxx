@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "Placement.h"
@@ -74,7 +75,9 @@ struct Region {
     /// than some voxels. Edges that smoothing rounds off are not made up for by large walls.
     double lack() const {
         constexpr double kFree = 0.01, kThick = 1.5;  // thickness: a third of a ball's radius
-        const double thickness = voxels / std::max(area, 1e-9) / kThick;
+        // nothing is thicker than a ball: what smoothing closed up has next to no area left
+        const double ofBall = std::cbrt(voxels / (36 * std::numbers::pi));
+        const double thickness = std::min(voxels / std::max(area, 1e-9), ofBall) / kThick;
         const double free = kFree * voxels * (1 + std::pow(thickness, 4));
         const double all = voxels - volume;
         return all - std::clamp(all, -free, free);
