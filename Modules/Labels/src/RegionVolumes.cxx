@@ -158,8 +158,11 @@ void restoreVolumes(const LabelGrid& grid, const DualComplex& complex,
                 return std::clamp(regions[side].lack() / regions[side].area, -kLargestStep,
                                   kLargestStep);
             };
-            const Vec3 step = (outward(sides[n][0]) - outward(sides[n][1])) * facet.area;
-            const double area = norm(facet.area);
+            // who lacks most has the say: a small region's facets are small beside its neighbours'
+            const double push = outward(sides[n][0]) - outward(sides[n][1]);
+            const double say = std::abs(push);
+            const Vec3 step = say * push * facet.area;
+            const double area = say * norm(facet.area);
             for (int c = 0; c < facet.count; ++c) {
                 way[facet.vertices[c]] += step;
                 weight[facet.vertices[c]] += area;

@@ -216,6 +216,15 @@ TEST(ExtractLabels, HoldsForCheckerboardsSheetsAndSingleVoxels) {
         EXPECT_TRUE(keepsPromises(maps[n])) << "map " << n;
 }
 
+// All walls, and enough of them for many rounds of taking back; larger ones: LabelsNoiseTest.py.
+TEST(ExtractLabels, HoldsForLargerNoiseAndCheckerboards) {
+    const ImageGeometry geometry = centredGeometry({9, 9, 9});
+    EXPECT_TRUE(keepsPromises(noise(geometry, 5, 18)));
+    EXPECT_TRUE(keepsPromises({geometry, [](const Index3& i) {
+                                   return static_cast<Label>(1 + (i[0] + i[1] + i[2]) % 2);
+                               }}));
+}
+
 TEST(ExtractLabels, HoldsForRoundWallsThatMeet) {
     // smooth maps let walls leave the middle of their cells, as noise does not
     std::uint64_t seed = 5;
@@ -367,15 +376,28 @@ TEST(ExtractLabels, GivesSmallRegionsTheVolumeOfTheirVoxels) {
     }
 }
 
-// Smoothing shuts the corner of a block down to a thousandth of its volume, and what has no area left
-// counted as thick: thick regions are left as they are.
+// Smoothing shuts the corner of a block down to a thousandth of its volume, and what has no area
+// left counted as thick: thick regions are left as they are.
 TEST(ExtractLabels, GivesTheCornerOfABlockItsVolume) {
     const Map map(centredGeometry({12, 12, 12}), [](const Index3& i) {
         return i == Index3{7, 7, 7} ? 2 : i[0] < 8 && i[1] < 8 && i[2] < 8 ? 1 : 0;
     });
     const auto measures = measureRegions(extractLabels(map.view(), fullResolution()).complex, {2});
-    // three walls meet around it in a curve that stays in its cells: three quarters are what is left
+    // three walls meet around it in a curve that stays in its cells: three quarters are what is
+    // left
     EXPECT_GT(measures.front().volumeMm3, 0.7);
+}
+
+// A voxel in the surface of a small region that is short of volume, too: the mean over walls by
+// area left it a tenth of its own.
+TEST(ExtractLabels, GivesAVoxelInASmallRegionsSurfaceItsVolume) {
+    const Map map = Map::inSpace(centredGeometry({14, 14, 14}), [](const Vec3& p) {
+        return norm(p) > 3 ? 0 : p.x > 2 && p.y > 1 && p.z > 0 ? 2 : 1;
+    });
+    ASSERT_EQ(std::ranges::count(map.labels, 2), 1);
+    const auto measures = measureRegions(extractLabels(map.view(), fullResolution()).complex);
+    EXPECT_GT(measures[1].volumeMm3, 0.7);
+    EXPECT_NEAR(measures[0].volumeMm3, static_cast<double>(std::ranges::count(map.labels, 1)), 1.5);
 }
 
 /// Two half-balls that meet in the plane x = 0, half-way between voxel centres.
