@@ -28,10 +28,10 @@ def three_boxes(kind="h", spacing=(1, 1, 1), origin=(0, 0, 0)):
 
 
 class LabelsTest(ApplicationTest):
-    def run_labels(self, *arguments, **options):
+    def run_labels(self, *arguments, timeout=600, **options):
         """Runs adaptiso-labels in the test's folder; stdout and stderr are kept apart."""
         return subprocess.run([LABELS, *map(str, arguments)], cwd=self.folder, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=600,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=timeout,
                               **options)
 
     def labels(self, *arguments, **options):

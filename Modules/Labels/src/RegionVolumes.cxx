@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "Placement.h"
@@ -74,7 +75,9 @@ struct Region {
     /// than some voxels. Edges that smoothing rounds off are not made up for by large walls.
     double lack() const {
         constexpr double kFree = 0.01, kThick = 1.5;  // thickness: a third of a ball's radius
-        const double thickness = voxels / std::max(area, 1e-9) / kThick;
+        // nothing is thicker than a ball: what smoothing closed up has next to no area left
+        const double ofBall = std::cbrt(voxels / (36 * std::numbers::pi));
+        const double thickness = std::min(voxels / std::max(area, 1e-9), ofBall) / kThick;
         const double free = kFree * voxels * (1 + std::pow(thickness, 4));
         const double all = voxels - volume;
         return all - std::clamp(all, -free, free);
@@ -155,8 +158,11 @@ void restoreVolumes(const LabelGrid& grid, const DualComplex& complex,
                 return std::clamp(regions[side].lack() / regions[side].area, -kLargestStep,
                                   kLargestStep);
             };
-            const Vec3 step = (outward(sides[n][0]) - outward(sides[n][1])) * facet.area;
-            const double area = norm(facet.area);
+            // who lacks most has the say: a small region's facets are small beside its neighbours'
+            const double push = outward(sides[n][0]) - outward(sides[n][1]);
+            const double say = std::abs(push);
+            const Vec3 step = say * push * facet.area;
+            const double area = say * norm(facet.area);
             for (int c = 0; c < facet.count; ++c) {
                 way[facet.vertices[c]] += step;
                 weight[facet.vertices[c]] += area;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "SweptCentres.h"
@@ -36,6 +37,18 @@ public:
     SampleHome homeOf(Id sample) const {
         const Sample& s = samples_[sample];
         return {s.home, s.tightness, s.slot};
+    }
+
+    /// Of the full walls: a triangle, those at a vertex, samples that are assigned to one of the
+    /// mesh.
+    const WallTriangle& fullTriangle(Id full) const { return patch_.fullTriangles[full]; }
+    std::span<const Id> fullAround(Id sample) const {
+        return {fullAround_.data() + fullBegin_[sample],
+                fullBegin_[sample + 1] - fullBegin_[sample]};
+    }
+    template <class F>
+    void forEachSample(Id triangle, const F& f) const {
+        for (Id s = firstSample_[triangle]; s != kNone; s = samples_[s].next) f(s);
     }
 
     /// Collapses all edges that it can, up to a cost, until only `enough` triangles are left.

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "WallMap.h"
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
@@ -14,6 +15,8 @@ namespace {
 constexpr std::int64_t kMostCells = 1 << 24;
 /// Where less than one in so many triangles is asked for, what is near them is looked up.
 constexpr std::size_t kFew = 4, kVeryFew = 32;
+/// Where more of the walls than one in so many full triangles are to be proved, all are mapped.
+constexpr std::size_t kOfAll = 6;
 
 CornerBox boxOfAll(const WallMesh& mesh) {
     CornerBox box{mesh.point(0), mesh.point(0)};
@@ -92,6 +95,7 @@ bool WallMender::mend() {
     changes_.clear();
     findCrossings();
     forgetChanged();
+    proveByMap();
     findBeyondOfSimple();
     findBeyondOfFull();
     std::sort(changes_.begin(), changes_.end());
@@ -112,11 +116,15 @@ CornerBox WallMender::boxAround(Id triangle, double distanceMm) const {
     return box;
 }
 
-/// Triangles that were there before cross nothing.
+/// Triangles that were there at the last look, or before the collapses, cross nothing. One that
+/// came back since then was cleared among others than those that are there now.
 void WallMender::findCrossings() {
     isClear_.resize(mesh_.triangleCount(), 0);
+    const auto wasThere = [&](Id t) { return t < isLast_.size() && isLast_[t] != 0; };
     std::vector<Id> alive, asked;
-    const auto isAsked = [&](Id t) { return mesh_.makerOf(t) != kNone && isClear_[t] == 0; };
+    const auto isAsked = [&](Id t) {
+        return !wasThere(t) || (mesh_.makerOf(t) != kNone && isClear_[t] == 0);
+    };
     for (Id t = mesh_.firstTriangle(); t < mesh_.triangleCount(); ++t) {
         if (!mesh_.isTriangleAlive(t)) continue;
         alive.push_back(t);
@@ -236,14 +244,95 @@ const WallSurface& WallMender::fullNear(const std::vector<Id>& triangles) {
     return *nearFull_;
 }
 
-void WallMender::findBeyondOfSimple() {
-    std::vector<Id> unproved, starts;
-    for (Id t = mesh_.firstTriangle(); t < mesh_.triangleCount(); ++t) {
-        if (!mesh_.isTriangleAlive(t) || isProved_[t] != 0 || mesh_.makerOf(t) == kNone) continue;
-        unproved.push_back(t);
-        starts.push_back(collapser_.fullNear(t));
+/// Triangles of the full walls that have a vertex that is assigned to one of these.
+std::vector<WallMender::Id> WallMender::fullOver(const std::vector<Id>& triangles) const {
+    std::vector<std::uint8_t> isIn(mesh_.fullTriangles(), 0);
+    std::vector<Id> over;
+    for (const Id t : triangles) {
+        collapser_.forEachSample(t, [&](Id sample) {
+            for (const Id f : collapser_.fullAround(sample)) {
+                if (isIn[f] == 0) over.push_back(f);
+                isIn[f] = 1;
+            }
+        });
     }
+    return over;
+}
+
+std::vector<WallMender::Id> WallMender::unprovedTriangles() const {
+    std::vector<Id> unproved;
+    for (Id t = mesh_.firstTriangle(); t < mesh_.triangleCount(); ++t) {
+        if (mesh_.isTriangleAlive(t) && isProved_[t] == 0 && mesh_.makerOf(t) != kNone) {
+            unproved.push_back(t);
+        }
+    }
+    return unproved;
+}
+
+/// Of the full walls.
+std::vector<WallMender::Id> WallMender::unprovedFull() const {
+    std::vector<Id> unproved;
+    for (Id t = 0; t < mesh_.fullTriangles(); ++t) {
+        if (!mesh_.isTriangleAlive(t) && isFullProved_[t] == 0) unproved.push_back(t);
+    }
+    return unproved;
+}
+
+/// Triangles of the mesh: all, or those that may be near some of the full walls.
+std::vector<WallMender::Id> WallMender::aliveTriangles(bool areAll,
+                                                       const std::vector<Id>& full) const {
+    MarkedCells marks(cells_);
+    if (!areAll) {
+        for (const Id t : full) marks.mark(boxAround(t, limitMm_ + collapser_.voxelMm()));
+    }
+    std::vector<Id> alive;
+    for (Id t = mesh_.firstTriangle(); t < mesh_.triangleCount(); ++t) {
+        if (!mesh_.isTriangleAlive(t)) continue;
+        if (areAll || marks.isMarked(boxAround(t, 0))) alive.push_back(t);
+    }
+    return alive;
+}
+
+/// Most of what is to be proved, both ways; the rest is left to walks.
+void WallMender::proveByMap() {
+    const std::vector<Id> unproved = unprovedTriangles();
+    const bool areAll =
+        mesh_.firstTriangle() == 0 && kOfAll * unproved.size() > mesh_.fullTriangles();
+    std::vector<Id> full;
+    if (areAll) {
+        full.resize(mesh_.fullTriangles());
+        std::iota(full.begin(), full.end(), 0);
+    } else {
+        full = unprovedFull();
+        const std::vector<Id> over = fullOver(unproved);
+        full.insert(full.end(), over.begin(), over.end());
+        std::sort(full.begin(), full.end());
+        full.erase(std::unique(full.begin(), full.end()), full.end());
+    }
+    if (full.empty()) return;
+    const WallSurface simple(mesh_, aliveTriangles(areAll, full));
+    WallMap map(collapser_, simple);
+    const WallMap::Result mapped = map.map(full, areAll, limitMm_);
+    auto witness = mapped.witnesses.begin();
+    for (std::size_t n = 0; n < full.size(); ++n) {
+        const auto end = witness + mapped.witnessCounts[n];
+        if (mapped.isMapped[n] != 0 && isFullProved_[full[n]] == 0) {
+            isFullProved_[full[n]] = 1;
+            witnessesOf_[full[n]] = {static_cast<Id>(witnesses_.size()), mapped.witnessCounts[n]};
+            witnesses_.insert(witnesses_.end(), witness, end);
+        }
+        witness = end;
+    }
+    for (const Id t : unproved) {
+        if (map.covers(t)) isProved_[t] = 1;
+    }
+}
+
+void WallMender::findBeyondOfSimple() {
+    const std::vector<Id> unproved = unprovedTriangles();
     if (unproved.empty()) return;
+    std::vector<Id> starts;
+    for (const Id t : unproved) starts.push_back(collapser_.fullNear(t));
     const WallBound bound =
         proveNear(mesh_, unproved, starts, fullNear(unproved), limitMm_, mayGrow_, false);
     for (const Id t : unproved) isProved_[t] = 1;
@@ -256,24 +345,12 @@ void WallMender::findBeyondOfSimple() {
 }
 
 void WallMender::findBeyondOfFull() {
-    std::vector<Id> full, starts;
-    for (Id t = 0; t < mesh_.fullTriangles(); ++t) {
-        if (mesh_.isTriangleAlive(t) || isFullProved_[t] != 0) continue;
-        full.push_back(t);
-        starts.push_back(collapser_.standInOf(t));
-    }
+    const std::vector<Id> full = unprovedFull();
     if (full.empty()) return;
-    const bool areFew = !mayGrow_ && kFew * full.size() < mesh_.fullTriangles();
-    MarkedCells marks(cells_);
-    if (areFew) {  // of the walls only what is near those is asked
-        for (const Id t : full) marks.mark(boxAround(t, limitMm_ + collapser_.voxelMm()));
-    }
-    std::vector<Id> alive;
-    for (Id t = mesh_.firstTriangle(); t < mesh_.triangleCount(); ++t) {
-        if (!mesh_.isTriangleAlive(t)) continue;
-        if (!areFew || marks.isMarked(boxAround(t, 0))) alive.push_back(t);
-    }
-    const WallSurface simple(mesh_, std::move(alive));
+    std::vector<Id> starts;
+    for (const Id t : full) starts.push_back(collapser_.standInOf(t));
+    const WallSurface simple(
+        mesh_, aliveTriangles(mayGrow_ || kFew * full.size() > mesh_.fullTriangles(), full));
     const WallBound bound = proveNear(mesh_, full, starts, simple, limitMm_, mayGrow_, true);
     keepWitnesses(full, bound);
     for (const Id t : full) isFullProved_[t] = 1;

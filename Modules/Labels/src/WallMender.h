@@ -30,6 +30,11 @@ private:
     void findCrossings();
     void forgetChanged();
     void keepWitnesses(const std::vector<Id>& full, const WallBound& bound);
+    std::vector<Id> fullOver(const std::vector<Id>& triangles) const;
+    std::vector<Id> unprovedTriangles() const;
+    std::vector<Id> unprovedFull() const;
+    std::vector<Id> aliveTriangles(bool areAll, const std::vector<Id>& full) const;
+    void proveByMap();
     const WallSurface& fullNear(const std::vector<Id>& triangles);
     void findBeyondOfSimple();
     void findBeyondOfFull();

@@ -67,73 +67,113 @@ void WallSurface::collect(const Corners& piece, Id wall, double distanceMm,
     });
 }
 
+namespace {
+
+/// Proves one triangle after the other; keeps its working memory.
+class NearProof {
+public:
+    using Id = WallMesh::Id;
+
+    NearProof(const WallMesh& mesh, const WallSurface& to, double limitMm, bool mayGrow)
+        : mesh_(mesh), to_(to), limitMm_(limitMm), mayGrow_(mayGrow), enoughMm_(limitMm) {}
+
+    /// \param start  of `to`, a number
+    void prove(Id triangle, Id start, int steps) {
+        const Corners corners = mesh_.cornersOf(triangle);
+        const Id place = to_.placeOf(start);
+        witnesses_.clear();
+        beyond_.clear();
+        isBeyond_ = false;
+        left_.clear();
+        if (place == WallMesh::kNone) {
+            left_.emplace_back(corners);
+        } else {
+            walk_.cover(ConvexPiece(corners), to_.walkable(), place, limitMm_ * limitMm_, steps);
+            left_ = walk_.left();
+            for (const std::uint64_t t : walk_.witnesses()) witnesses_.push_back(to_.numberOf(t));
+        }
+        const Id wall = mesh_.triangle(triangle).wall;
+        for (const ConvexPiece& piece : left_) {
+            for (int i = 2; i < piece.count(); ++i) {
+                provePart({piece.corner(0), piece.corner(i - 1), piece.corner(i)}, wall);
+            }
+        }
+    }
+
+    /// Of the last triangle: what lies near it.
+    std::vector<Id>& witnesses() { return witnesses_; }
+    bool isBeyond() const { return isBeyond_; }
+    const std::vector<Id>& nearWhatIsBeyond() const { return beyond_; }
+    /// Of all so far.
+    double boundMm() const { return enoughMm_; }
+
+private:
+    /// What the walk could not prove, by all that lies near it.
+    void provePart(const Corners& part, Id wall) {
+        PieceBound own(enoughMm_);
+        for (double reachMm = enoughMm_; own.nearby().empty(); reachMm *= 4) {
+            to_.collect(part, wall, reachMm, near_);
+            for (const Id t : near_) own.nearby().push_back(to_.walkable().cornersOf(t));
+            if (!mayGrow_ || reachMm > 1e6 * limitMm_) break;
+        }
+        for (const Id t : near_) witnesses_.push_back(to_.numberOf(t));
+        own.include(part);
+        if (own.boundMm() <= enoughMm_) return;
+        if (mayGrow_) {
+            enoughMm_ = own.boundMm();
+            return;
+        }
+        isBeyond_ = true;
+        for (const Id t : near_) beyond_.push_back(to_.numberOf(t));
+    }
+
+    const WallMesh& mesh_;
+    const WallSurface& to_;
+    double limitMm_;
+    bool mayGrow_;
+    double enoughMm_;
+    SurfaceWalk walk_;
+    std::vector<ConvexPiece> left_;
+    std::vector<Id> near_, witnesses_, beyond_;
+    bool isBeyond_ = false;
+};
+
+double meanArea2Of(const WallSurface& surface) {
+    double area2 = 0;
+    for (const WallMesh::Id n : surface.numbers()) {
+        const Corners c = surface.mesh().cornersOf(n);
+        area2 += norm(areaVector2(c[0], c[1], c[2]));
+    }
+    return area2 / std::max<double>(1, static_cast<double>(surface.count()));
+}
+
+}  // namespace
+
 WallBound proveNear(const WallMesh& mesh, const std::vector<WallMesh::Id>& triangles,
                     const std::vector<WallMesh::Id>& starts, const WallSurface& to, double limitMm,
                     bool mayGrow, bool hasWitnesses) {
-    using Id = WallMesh::Id;
     const auto count = static_cast<std::int64_t>(triangles.size());
-    double area = 0;
-    for (const Id n : to.numbers()) {
-        const Corners c = mesh.cornersOf(n);
-        area += norm(areaVector2(c[0], c[1], c[2]));
-    }
-    const double meanArea = area / std::max<double>(1, static_cast<double>(to.count()));
+    const double meanArea2 = meanArea2Of(to);
     std::vector<WallBound> bounds((count + kPiece - 1) / kPiece);
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
         WallBound& bound = bounds[begin / kPiece];
-        SurfaceWalk walk;
-        std::vector<Id> near, witnesses;
-        double enoughMm = limitMm;
+        NearProof proof(mesh, to, limitMm, mayGrow);
         for (std::int64_t n = begin; n < end; ++n) {
-            const Corners corners = mesh.cornersOf(triangles[n]);
-            const double size = norm(areaVector2(corners[0], corners[1], corners[2])) / meanArea;
-            const int steps =
-                kLeastSteps + static_cast<int>(std::min(kMostSteps, kStepsPerTriangle * size));
-            const Id start = to.placeOf(starts[n]);
-            witnesses.clear();
-            std::vector<ConvexPiece> left;
-            if (start == WallMesh::kNone) {
-                left.emplace_back(corners);
-            } else {
-                walk.cover(ConvexPiece(corners), to.walkable(), start, limitMm * limitMm, steps);
-                left = walk.left();
-                for (const std::uint64_t t : walk.witnesses()) {
-                    witnesses.push_back(to.numberOf(t));
-                }
-            }
-            bool isBeyond = false;
-            std::vector<Id> nearby;
-            for (const ConvexPiece& piece : left) {
-                for (int i = 2; i < piece.count(); ++i) {
-                    const Corners part{piece.corner(0), piece.corner(i - 1), piece.corner(i)};
-                    PieceBound own(enoughMm);
-                    for (double reachMm = enoughMm; own.nearby().empty(); reachMm *= 4) {
-                        to.collect(part, mesh.triangle(triangles[n]).wall, reachMm, near);
-                        for (const Id t : near) {
-                            own.nearby().push_back(to.walkable().cornersOf(t));
-                        }
-                        if (!mayGrow || reachMm > 1e6 * limitMm) break;
-                    }
-                    for (const Id t : near) witnesses.push_back(to.numberOf(t));
-                    own.include(part);
-                    if (own.boundMm() <= enoughMm) continue;
-                    if (mayGrow) {
-                        enoughMm = own.boundMm();
-                        continue;
-                    }
-                    isBeyond = true;
-                    for (const Id t : near) nearby.push_back(to.numberOf(t));
-                }
-            }
+            const Corners c = mesh.cornersOf(triangles[n]);
+            const double size = norm(areaVector2(c[0], c[1], c[2])) / meanArea2;
+            proof.prove(
+                triangles[n], starts[n],
+                kLeastSteps + static_cast<int>(std::min(kMostSteps, kStepsPerTriangle * size)));
             if (hasWitnesses) {
-                std::sort(witnesses.begin(), witnesses.end());
-                const auto last = std::unique(witnesses.begin(), witnesses.end());
-                bound.witnessCounts.push_back(static_cast<Id>(last - witnesses.begin()));
-                bound.witnesses.insert(bound.witnesses.end(), witnesses.begin(), last);
+                std::vector<WallMesh::Id>& near = proof.witnesses();
+                std::sort(near.begin(), near.end());
+                const auto last = std::unique(near.begin(), near.end());
+                bound.witnessCounts.push_back(static_cast<WallMesh::Id>(last - near.begin()));
+                bound.witnesses.insert(bound.witnesses.end(), near.begin(), last);
             }
-            if (isBeyond) bound.beyond.push_back({triangles[n], std::move(nearby)});
+            if (proof.isBeyond()) bound.beyond.push_back({triangles[n], proof.nearWhatIsBeyond()});
         }
-        bound.largestMm = enoughMm;
+        bound.largestMm = proof.boundMm();
     });
     WallBound all;
     all.largestMm = limitMm;

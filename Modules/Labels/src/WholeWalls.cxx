@@ -13,6 +13,7 @@
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/VoxelShape.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -204,8 +205,7 @@ WholeWalls::Lists WholeWalls::listsOf(const CubeCut& cut, const WallAim& aim) co
     });
     if (isFull()) return lists;
     // what a collapse looks at lies within the limit, or is a neighbour of that
-    const Vec3 spacing = geometry_.spacingMm();
-    const double around = 4 + 2 * aim.limitMm / std::min({spacing.x, spacing.y, spacing.z});
+    const double around = 4 + 2 * aim.limitMm / leastPlaneDistanceMm(geometry_);
     lists.full.assign(cubes, [&](const auto& give) {
         for (Id t = 0; t < full_.size(); ++t) giveReached(fullPoints_, full_[t], around, t, give);
     });

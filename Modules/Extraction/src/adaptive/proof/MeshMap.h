@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,35 +11,6 @@
 #include "adaptive/proof/SurfaceMap.h"
 
 namespace adaptiso::detail {
-
-/// What maps of pieces of the full surface cover of the simplified one, as MapCover, for pieces
-/// side by side: shares are summed as whole numbers of a small part, so that their order changes
-/// nothing.
-class SharedCover {
-public:
-    explicit SharedCover(std::size_t triangles) : parts_(triangles, 0), hasBorder_(triangles, 0) {}
-
-    void add(std::uint64_t triangle, double share) {
-        if (std::abs(share) < kMostShare) {
-            std::atomic_ref(parts_[triangle]).fetch_add(std::llround(kOne * share));
-        } else {
-            addBorder(triangle);
-        }
-    }
-    void addBorder(std::uint64_t triangle) {
-        std::atomic_ref(hasBorder_[triangle]).store(1, std::memory_order_relaxed);
-    }
-    bool covers(std::uint64_t triangle) const {
-        const double sum = static_cast<double>(parts_[triangle]) / kOne;
-        return hasBorder_[triangle] == 0 && std::abs(sum - 1) < kCoverRounding;
-    }
-
-private:
-    static constexpr double kOne = 1LL << 40, kMostShare = 1 << 10;
-
-    std::vector<std::int64_t> parts_;
-    std::vector<std::uint8_t> hasBorder_;
-};
 
 /// Maps triangles of a mesh, one by one, to the simplified surface.
 class PieceMap {

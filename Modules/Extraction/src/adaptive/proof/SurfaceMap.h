@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <span>
 #include <vector>
@@ -72,6 +74,12 @@ public:
         Vec3 area2;  ///< twice its area vector
     };
 
+    /// Where an edge passes from one triangle to another.
+    struct Cut {
+        Vec3 image;
+        Index before, after;
+    };
+
     /// \param enough  squared distance below which cuts need not be nearer to their images
     SurfaceMap(const WalkableSurface<Index>& onto, double enough) : onto_(&onto), enough_(enough) {}
 
@@ -89,6 +97,15 @@ public:
         Way way{static_cast<std::uint32_t>(cuts_.size()), 0, 0};
         if (!stepAlong(a, b, way)) search(a, b, way);
         way.count = static_cast<std::uint32_t>(cuts_.size()) - way.begin;
+        return way;
+    }
+
+    /// The way of an edge whose cuts are known: a few, each in both of its triangles.
+    /// \param squared  the largest distance of a cut to its image
+    Way wayOver(std::initializer_list<Cut> cuts, double squared) {
+        const Way way{static_cast<std::uint32_t>(cuts_.size()),
+                      static_cast<std::uint32_t>(cuts.size()), squared};
+        cuts_.insert(cuts_.end(), cuts);
         return way;
     }
 
@@ -132,11 +149,6 @@ private:
 
     static constexpr double kCostOfCut = 0.01;  ///< of the distance that is near enough
 
-    /// Where an edge passes from one triangle to another.
-    struct Cut {
-        Vec3 image;
-        Index before, after;
-    };
     /// A point of a triangle's border, and the triangle that the way from it to the next one goes
     /// to.
     struct LoopPoint {
@@ -453,6 +465,35 @@ private:
     const WalkableSurface<Index>* onto_;
     ZeroedTable entryOf_;  ///< of each triangle: its number in entries_, + 1
     std::vector<Entry> entries_;
+};
+
+/// What maps of pieces of the full surface cover of the simplified one, as MapCover, for pieces
+/// side by side: shares are summed as whole numbers of a small part, so that their order changes
+/// nothing.
+class SharedCover {
+public:
+    explicit SharedCover(std::size_t triangles) : parts_(triangles, 0), hasBorder_(triangles, 0) {}
+
+    void add(std::uint64_t triangle, double share) {
+        if (std::abs(share) < kMostShare) {
+            std::atomic_ref(parts_[triangle]).fetch_add(std::llround(kOne * share));
+        } else {
+            addBorder(triangle);
+        }
+    }
+    void addBorder(std::uint64_t triangle) {
+        std::atomic_ref(hasBorder_[triangle]).store(1, std::memory_order_relaxed);
+    }
+    bool covers(std::uint64_t triangle) const {
+        const double sum = static_cast<double>(parts_[triangle]) / kOne;
+        return hasBorder_[triangle] == 0 && std::abs(sum - 1) < kCoverRounding;
+    }
+
+private:
+    static constexpr double kOne = 1LL << 40, kMostShare = 1 << 10;
+
+    std::vector<std::int64_t> parts_;
+    std::vector<std::uint8_t> hasBorder_;
 };
 
 }  // namespace adaptiso::detail
