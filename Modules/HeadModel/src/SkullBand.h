@@ -12,7 +12,10 @@ struct SkullBand {
     std::vector<float> outerSkull;  ///< raw part of voxels inside the outer skull
     std::vector<Vec3> seenMm;       ///< where rays show the outer skull
     double seenFraction = 0;        ///< of the rays towards the scalp, those that show the band
-    double medianThicknessMm = 0;   ///< over the rays that do
+    /// The part of these rays that begins in 4 mm as bright as half of the brain's level: brain was
+    /// lost there, or the inner skull lies in muscle.
+    double tissueFraction = 0;
+    double medianThicknessMm = 0;  ///< over the rays that do
 };
 
 /// The grey levels that rule the search.
