@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Release.h"
 
 namespace adaptiso::headmodel {
 namespace {
@@ -270,11 +271,10 @@ void dropOutliers(const std::vector<Ray>& rays, const Thickness& thickness, cons
 }
 
 /// The inner skull grown by the thickness there, as parts of voxels.
-std::vector<float> grownBy(const Thickness& thickness, const std::vector<float>& innerSkull,
+std::vector<float> grownBy(const Thickness& thickness, const Mask& innerSkull,
                            const ImageGeometry& grid) {
     const double step = stepMm(grid), most = thickness.mostMm();
-    std::vector<float> part =
-        depthMm(above(innerSkull, kFractionIsovalue), grid, {step, most + step});
+    std::vector<float> part = depthMm(innerSkull, grid, {step, most + step});
     const std::int64_t width = grid.size[0];
     parallelForPieces(grid.size[1] * grid.size[2], 64, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t row = begin; row < end; ++row) {
@@ -293,10 +293,12 @@ std::vector<float> grownBy(const Thickness& thickness, const std::vector<float>&
 }  // namespace
 
 SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
-                        const std::vector<float>& innerSkull, const Mask& skin,
-                        const HeadLevels& levels, const BoundaryOptions& options) {
+                        std::vector<float> innerSkull, const Mask& skin, const HeadLevels& levels,
+                        const BoundaryOptions& options) {
     const double step = stepMm(grid);
     const std::vector<Ray> rays = raysFrom(innerSkull, grid.size);
+    const Mask within = above(innerSkull, kFractionIsovalue);
+    release(innerSkull);  // a head's worth of memory
     std::vector<Search::Answer> answers = search(rays, t1, grid, skin, levels, options);
 
     SkullBand band;
@@ -321,7 +323,7 @@ SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
         const Vec3 end = rays[n].start + (*answers[n].thicknessMm / step) * rays[n].direction;
         band.seenMm.push_back(grid.toPhysical(end));
     }
-    band.outerSkull = grownBy(Thickness(rays, answers, grid, options.skullMm), innerSkull, grid);
+    band.outerSkull = grownBy(Thickness(rays, answers, grid, options.skullMm), within, grid);
     return band;
 }
 

@@ -36,7 +36,7 @@ struct HeadLevels {
 /// by normalized convolution [Knutsson1993] with a Gaussian of 6 mm, a second time without what
 /// differs by more than 3 mm from the first; where nothing is seen nearby it tends to skullMm.
 SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
-                        const std::vector<float>& innerSkull, const Mask& skin,
-                        const HeadLevels& levels, const BoundaryOptions& options);
+                        std::vector<float> innerSkull, const Mask& skin, const HeadLevels& levels,
+                        const BoundaryOptions& options);
 
 }  // namespace adaptiso::headmodel

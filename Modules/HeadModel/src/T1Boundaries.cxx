@@ -14,6 +14,7 @@
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Release.h"
 
 namespace adaptiso {
 
@@ -85,11 +86,15 @@ std::int64_t deepestVoxel(const std::vector<float>& depth) {
 Mask headMask(const Head& head, double level, double closingMm) {
     // the scalp may hang together with nothing within it, but it is all around; where a face was
     // taken out it may not enclose the brain
-    const Mask tissue = above(head.t1, level);
-    Mask raw = widestComponent(tissue, head.grid.size);
-    const Mask largest = largestComponent(tissue, head.grid.size);
-    for (std::size_t n = 0; n < raw.size(); ++n) raw[n] |= largest[n];
-    return filledAtBorder(closed(raw, head.grid, closingMm), head.faces, head.grid.size);
+    Mask raw;
+    {
+        const Mask tissue = above(head.t1, level);
+        raw = widestComponent(tissue, head.grid.size);
+        const Mask largest = largestComponent(tissue, head.grid.size);
+        for (std::size_t n = 0; n < raw.size(); ++n) raw[n] |= largest[n];
+    }
+    raw = closed(raw, head.grid, closingMm);
+    return filledAtBorder(raw, head.faces, head.grid.size);
 }
 
 /// The skin's isovalue: above the air's noise, and low, since skin is darker than what lies below.
@@ -263,8 +268,8 @@ Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
     head.t1 = resampled(image, head.grid, *air);
     head.faces = imageFaces(image.geometry, head.grid);
 
-    const Mask roughMask = headMask(head, rough, options.closingMm);
-    const std::vector<float> depth = depthInHeadMm(roughMask, head.grid);
+    Mask roughMask = headMask(head, rough, options.closingMm);
+    std::vector<float> depth = depthInHeadMm(roughMask, head.grid);
     const std::int64_t middle = deepestVoxel(depth);
     if (!(depth[middle] >= 40)) {
         throw InvalidInput("the largest object is " +
@@ -273,8 +278,10 @@ Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
     }
     head.levels.air = *air;
     takeBiasOut(head, roughMask, depth, rough);
+    release(depth);
     head.levels.tissue = medianWhere(head.t1, ballAround(middle, head.grid, 35));
     head.skinLevel = skinLevelOf(head, roughMask, head.levels);
+    release(roughMask);
     head.mask = headMask(head, head.skinLevel, options.closingMm);
     requireSkull(head);
     findCut(head, image);
@@ -385,7 +392,9 @@ private:
 bool dropsMuscle(const Mask& brain, const Mask& next, const ImageGeometry& grid) {
     constexpr double kTipMm = 3, kLeastCm3 = 15, kLeastBelowMm = 40;
     Mask lump = brain;
-    for (std::size_t n = 0; n < lump.size(); ++n) lump[n] &= next[n] == 0 ? 1 : 0;
+    for (std::size_t n = 0; n < lump.size(); ++n) {
+        if (next[n] != 0) lump[n] = 0;
+    }
     lump = largestComponent(opened(lump, grid, kTipMm), grid.size);
     const auto heightMm = [&](const Mask& mask) {
         Vec3 sum;
@@ -546,13 +555,14 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
                             "there");
     }
     tell(options, "brain", 0);
-    const Mask brain = brainOf(sources, head, raw.notes);
+    Mask brain = brainOf(sources, head, raw.notes);
     raw.parts.push_back(innerSkullPart(brain, head, options));
     cutNecks(raw, options);
     if (options.withBrain) {
         raw.brain = brainSurfacePart(sources, {head.grid, head.t1, head.faces, head.levels, brain},
                                      options, raw.notes, raw.brainSeenMm);
     }
+    release(brain);
     tell(options, "skull", 0);
     SkullBand band =
         findSkullBand(head.t1, head.grid, smoothed(raw.parts[0], head.grid, options.smoothingMm),
