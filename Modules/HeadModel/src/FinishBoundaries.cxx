@@ -267,7 +267,9 @@ void tell(const BoundaryOptions& options, const char* stage, double fraction) {
 
 std::string shortNumber(double value) {
     std::array<char, 32> text;
-    std::snprintf(text.data(), text.size(), "%.3g", value);
+    // three digits, but no power of ten where a whole number will do: 1770, not 1.77e+03
+    const bool isLarge = std::abs(value) >= 1000 && std::abs(value) < 1e7;
+    std::snprintf(text.data(), text.size(), isLarge ? "%.0f" : "%.3g", value);
     return text.data();
 }
 
