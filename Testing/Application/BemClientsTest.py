@@ -4,6 +4,7 @@ python3-nibabel; exits 77 (skipped) without them.
 import json
 import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -103,6 +104,18 @@ class ClientTest(ApplicationTest):
         if solve:
             mne.make_bem_solution(model)
         return model
+
+
+class SharedFolderTest(ClientTest):
+    """All tests of a class run in one folder, so that a model is made once."""
+    @classmethod
+    def setUpClass(cls):
+        kept = tempfile.TemporaryDirectory(prefix="adaptiso-test-")
+        cls.addClassCleanup(kept.cleanup)
+        cls.folder = Path(kept.name)
+
+    def setUp(self):
+        pass
 
 
 class Spheres(ClientTest):
@@ -226,18 +239,38 @@ class Frames(ClientTest):
         self.accepted()
 
 
-class Toolboxes(ClientTest):
-    """Off-centre spheres through every file format: what each client reads lies where the spheres are."""
-    def setUp(self):
-        super().setUp()
+class Toolboxes(SharedFolderTest):
+    """Off-centre spheres through every file format: what each client reads lies where the spheres are. The models are made
+    once: in RAS with every format (again for the same bytes), in LPS, and of the inner skull alone."""
+    CONDUCTIVITIES = (0.33, 0.0041, 0.44)
+    ARGUMENTS = ("--labels", "seg.nii", "--tissue", "brain=3", "--tissue", "skull=2", "--tissue", "scalp=1", "--vertices",
+                 300, "--voxel", 2, "--conductivity", ",".join(map(str, CONDUCTIVITIES)))
+    FORMATS = ("--fif", "--fieldtrip", "--brainstorm", "--simnibs", "--curry")
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        (cls.folder / "subjects" / "anna" / "bem").mkdir(parents=True)
         affine = np.diag([2.0, 2, 2, 1])
         affine[:3, 3] = np.array(CENTRE) - 110
         distance = np.linalg.norm(lattice((111, 111, 111), affine) - CENTRE, axis=-1)
-        save(self.path("seg.nii"), sum((distance <= r).astype(np.uint8) for r in RADII), affine)
-        self.conductivities = (0.33, 0.0041, 0.44)
-        self.arguments = ("--labels", "seg.nii", "--tissue", "brain=3", "--tissue", "skull=2",
-                          "--tissue", "scalp=1", "--vertices", 300, "--conductivity",
-                          ",".join(map(str, self.conductivities)))
+        save(cls.folder / "seg.nii", sum((distance <= r).astype(np.uint8) for r in RADII), affine)
+
+    def model(self, name):
+        """Makes it, unless another test has."""
+        if self.path(name).exists():
+            return
+        x, y, z = CENTRE
+        electrodes = ("--montage", "10-20", "--nasion", f"{x},{y + 92},{z}", f"--left-ear={x - 92},{y},{z}",
+                      f"--right-ear={x + 92},{y},{z}")
+        arguments = {
+            "ras": (*self.ARGUMENTS, *self.FORMATS, *electrodes, "--subjects-dir", "subjects", "--subject", "anna"),
+            "again": (*self.ARGUMENTS, *self.FORMATS, *electrodes),
+            "lps": (*self.ARGUMENTS, "--fieldtrip", "--simnibs", "--coordinates", "lps"),
+            "guessed": (*self.ARGUMENTS, "--brainstorm"),
+            "meg": (*self.ARGUMENTS[:4], "--meg", "--vertices", 300, "--voxel", 2, "--fieldtrip"),
+        }[name]
+        self.bem(*arguments, "-o", name)
 
     def assert_sphere(self, points, triangles, radius, centre=CENTRE, is_outward=True):
         points, triangles = np.asarray(points, float), np.asarray(triangles, int)
@@ -252,28 +285,28 @@ class Toolboxes(ClientTest):
     def test_fieldtrip(self):
         from scipy.io import loadmat
         for frame, coordsys, sign in (("ras", "scanras", (1, 1, 1)), ("lps", "scanlps", (-1, -1, 1))):
-            self.bem(*self.arguments, "--fieldtrip", "--coordinates", frame, "-o", frame)
+            self.model(frame)
             model = loadmat(self.path(frame) / "headmodel.mat", simplify_cells=True)["headmodel"]
             self.assertEqual(model["type"], "openmeeg")
             self.assertEqual((model["unit"], model["coordsys"]), ("mm", coordsys))
             self.assertEqual(list(model["tissue"]), ["scalp", "skull", "brain"])
-            np.testing.assert_allclose(model["cond"], self.conductivities[::-1])
+            np.testing.assert_allclose(model["cond"], self.CONDUCTIVITIES[::-1])
             self.assertEqual((model["skin_surface"], model["source"]), (1, 3))
             for surface, radius in zip(model["bnd"], (92, 86, 80)):
                 self.assertEqual((surface["unit"], surface["coordsys"]), ("mm", coordsys))
                 self.assertEqual(surface["tri"].min(), 1)
                 self.assert_sphere(surface["pos"], surface["tri"] - 1, radius,
                                    np.array(sign) * CENTRE)
-        self.bem(*self.arguments[:4], "--meg", "--vertices", 300, "--fieldtrip", "-o", "meg")
+        self.model("meg")
         model = loadmat(self.path("meg/headmodel.mat"), simplify_cells=True)["headmodel"]
         self.assertEqual(model["type"], "singleshell")
         self.assert_sphere(model["bnd"]["pos"], model["bnd"]["tri"] - 1, 80)
 
     def test_brainstorm(self):
         from scipy.io import loadmat
-        self.bem(*self.arguments, "--brainstorm", "-o", "model")
+        self.model("guessed")
         for name, radius in (("innerskull", 80), ("outerskull", 86), ("head", 92)):
-            surface = loadmat(self.path(f"model/tess_{name}_bem.mat"), simplify_cells=True)
+            surface = loadmat(self.path(f"guessed/tess_{name}_bem.mat"), simplify_cells=True)
             # metres; clockwise seen from outside
             self.assert_sphere(1000 * surface["Vertices"], surface["Faces"] - 1, radius,
                                is_outward=False)
@@ -283,15 +316,15 @@ class Toolboxes(ClientTest):
 
     def test_simnibs(self):
         import meshio
-        self.bem(*self.arguments, "--simnibs", "--coordinates", "lps", "-o", "model")
+        self.model("lps")
         for name, radius in (("csf", 80), ("bone", 86), ("skin", 92)):
-            surface = meshio.read(self.path(f"model/{name}.stl"))
+            surface = meshio.read(self.path(f"lps/{name}.stl"))
             self.assert_sphere(surface.points, surface.cells_dict["triangle"], radius)  # RAS always
 
     def test_curry(self):
-        self.bem(*self.arguments, "--curry", "-o", "model")
+        self.model("ras")
         for name, radius in (("inner_skull.s02", 80), ("outer_skull.s01", 86), ("outer_skin.s00", 92)):
-            text = self.path(f"model/{name}").read_text()
+            text = self.path(f"ras/{name}").read_text()
             self.assertIn("CoordinateFrame: RAS mm", text)
             lists = {key: np.array(text.split(f"{key} START_LIST")[1].split(f"{key} END_LIST")[0]
                                    .split(), float).reshape(-1, 3)
@@ -299,19 +332,19 @@ class Toolboxes(ClientTest):
             self.assert_sphere(lists["LOCATION_LIST"], lists["TRIANGLE_LIST"], radius)
 
     def test_mne_without_a_freesurfer_folder(self):
-        self.bem(*self.arguments, "--fif", "-o", "model")
-        surfaces = mne.read_bem_surfaces(self.path("model/bem.fif"))
+        self.model("ras")
+        surfaces = mne.read_bem_surfaces(self.path("ras/bem.fif"))
         self.assertEqual([surface["id"] for surface in surfaces], [4, 3, 1])
         np.testing.assert_allclose([surface["sigma"] for surface in surfaces],
-                                   self.conductivities[::-1])
+                                   self.CONDUCTIVITIES[::-1])
         for surface, name, radius in zip(surfaces, NAMES[::-1], (92, 86, 80)):
             self.assertEqual(surface["coord_frame"], mne.io.constants.FIFF.FIFFV_COORD_MRI)
-            points, triangles = mne.read_surface(self.path(f"model/{name}.surf"))
+            points, triangles = mne.read_surface(self.path(f"ras/{name}.surf"))
             np.testing.assert_allclose(1000 * surface["rr"], points, atol=1e-4)  # tkRAS, as .surf
             np.testing.assert_array_equal(surface["tris"], triangles)
         mne.make_bem_solution(surfaces)
-        dense, = mne.read_bem_surfaces(self.path("model/head-dense.fif"))
-        sparse, = mne.read_bem_surfaces(self.path("model/head-sparse.fif"))
+        dense, = mne.read_bem_surfaces(self.path("ras/head-dense.fif"))
+        sparse, = mne.read_bem_surfaces(self.path("ras/head-sparse.fif"))
         self.assertEqual((dense["id"], sparse["id"]), (4, 4))
         self.assertGreater(dense["ntri"], 20_000)
         self.assertLessEqual(sparse["ntri"], 2500)
@@ -321,61 +354,83 @@ class Toolboxes(ClientTest):
             self.assertLess(np.abs(off).max(), 2)
 
     def test_mne_finds_the_heads_of_a_subject(self):
-        (self.path("subjects") / "anna" / "bem").mkdir(parents=True)
-        self.bem(*self.arguments, "--fif", "-o", "model", "--subjects-dir", "subjects", "--subject",
-                 "anna")
+        self.model("ras")
         bem = self.path("subjects/anna/bem")
         self.assertEqual((bem / "anna-head-dense.fif").read_bytes(),
-                         self.path("model/head-dense.fif").read_bytes())
+                         self.path("ras/head-dense.fif").read_bytes())
         surface = mne.get_head_surf("anna", source=("head-dense", "head"),
                                     subjects_dir=self.path("subjects"))
         self.assertGreater(surface["ntri"], 20_000)
         self.assertEqual(len(mne.read_bem_surfaces(bem / "anna-bem.fif")), 3)
 
     def test_mne_reads_electrodes(self):
-        x, y, z = CENTRE
-        self.bem(*self.arguments, "--montage", "10-20", "--nasion", f"{x},{y + 92},{z}",
-                 f"--left-ear={x - 92},{y},{z}", f"--right-ear={x + 92},{y},{z}", "-o", "model")
-        rows = self.path("model/electrodes.tsv").read_text().splitlines()[1:]
+        self.model("ras")
+        rows = self.path("ras/electrodes.tsv").read_text().splitlines()[1:]
         expected = {row.split("\t")[0]: np.array(row.split("\t")[1:], float) for row in rows}
         np.testing.assert_allclose(expected["Cz"], CENTRE + np.array([0, 0, 92]), atol=3)
         # .sfp says no unit: MNE takes its numbers for metres
         for name, scale in (("electrodes.sfp", 1), ("electrodes.elc", 1000)):
-            montage = mne.channels.read_custom_montage(self.path("model") / name, head_size=None)
+            montage = mne.channels.read_custom_montage(self.path("ras") / name, head_size=None)
             found = montage.get_positions()["ch_pos"]
             for electrode, place in expected.items():
                 np.testing.assert_allclose(scale * found[electrode], place, atol=1e-3)
-        dig = mne.channels.read_dig_fif(self.path("model/electrodes-dig.fif")).get_positions()
+        dig = mne.channels.read_dig_fif(self.path("ras/electrodes-dig.fif")).get_positions()
         self.assertEqual(dig["coord_frame"], "mri")
         self.assertEqual(len(dig["ch_pos"]), 21)
-        skin, _ = mne.read_surface(self.path("model/outer_skin.surf"))  # tkRAS
+        skin, _ = mne.read_surface(self.path("ras/outer_skin.surf"))  # tkRAS
         middle = skin.mean(axis=0)
         for place in dig["ch_pos"].values():
             self.assertAlmostEqual(np.linalg.norm(1000 * place - middle), 92, delta=3)
         np.testing.assert_allclose(1000 * dig["nasion"] - middle, (0, 92, 0), atol=2)
 
     def test_the_same_bytes_again(self):
-        for name in ("one", "two"):
-            self.bem(*self.arguments, "--fif", "--fieldtrip", "--brainstorm", "--simnibs", "--curry",
-                     "-o", name)
-        for path in sorted(self.path("one").iterdir()):
+        for name in ("ras", "again"):
+            self.model(name)
+        for path in sorted(self.path("again").iterdir()):
             if path.name != "report.json":
-                self.assertEqual(path.read_bytes(), (self.path("two") / path.name).read_bytes(), path)
+                self.assertEqual(path.read_bytes(), (self.path("ras") / path.name).read_bytes(), path)
 
 
 @unittest.skipUnless((TEMPLATES / "ch2.nii.gz").exists(), "needs Debian's mricron-data")
-class RealHead(ClientTest):
+class RealHead(SharedFolderTest):
     def test_with_a_brain_mask(self):
         self.bem("--t1", TEMPLATES / "ch2.nii.gz", "--brain-mask", TEMPLATES / "ch2bet.nii.gz",
-                 "--vertices", 642, "-o", "model")
-        self.accepted()
-        self.assert_head("model")
+                 "--vertices", 642, "-o", "masked")
+        self.accepted("masked")
+        self.assert_head("masked")
+
+    def make_alone(self):
+        if not self.path("alone").exists():
+            self.bem("--t1", TEMPLATES / "ch2.nii.gz", "-o", "alone")
 
     def test_alone_at_full_size(self):
-        self.bem("--t1", TEMPLATES / "ch2.nii.gz", "-o", "model")
-        model = self.accepted(solve=False)  # 7,686 equations take MNE a minute
+        self.make_alone()
+        model = self.accepted("alone", solve=False)  # 7,686 equations take MNE a minute
         self.assertEqual([surface["np"] for surface in model], [2562] * 3)
-        self.assert_head("model")
+        self.assert_head("alone")
+
+    def test_a_bad_scan_gives_the_same_inner_skull(self):
+        """Brighter to one side by 10 to 30 % along each axis, noise of 5 %, and the right side cut off: more than half of the
+        brain was once lost, and all checks passed."""
+        image = nibabel.load(TEMPLATES / "ch2.nii.gz")
+        t1 = np.asarray(image.dataobj).astype(np.float32)
+        for axis, bias in enumerate((0.1, 0.15, 0.3)):
+            place = np.linspace(-1, 1, t1.shape[axis], dtype=np.float32)
+            t1 *= np.expand_dims(1 + bias * place, tuple(a for a in range(3) if a != axis))
+        random = np.random.RandomState(0)
+        t1 = np.hypot(*(part + 5.5 * random.standard_normal(t1.shape).astype(np.float32) for part in (t1, 0)))
+        kept = t1.shape[0] - 30
+        save(self.path("bad.nii"), t1[:kept], image.affine)
+        self.make_alone()
+        self.bem("--t1", "bad.nii", "--meg", "-o", "bad")
+        report = json.loads((self.path("bad") / "report.json").read_text())
+        self.assertFalse([text for text in report["input"]["warnings"] if "as bright as brain" in text])
+        voxels = np.argwhere(np.ones((kept - 5, *t1.shape[1:]), bool))[::971]  # its skull ends at the cut
+        points = voxels @ image.affine[:3, :3].T + image.affine[:3, 3]
+        good, bad = (windings(points, *scanner_points(self.path(name) / "inner_skull.surf")) > 0
+                     for name in ("alone", "bad"))
+        # voxels of the solids overlap by 0.986
+        self.assertGreater(2 * (good & bad).sum() / (good.sum() + bad.sum()), 0.97)
 
     def test_four_layers_of_labels_of_simnibs_kind(self):
         """Thin canals, eyes, sinuses, a burr hole and blood, as charm's final_tissues have them: an outer skull with bony
@@ -386,8 +441,8 @@ class RealHead(ClientTest):
             self.skipTest("needs python3-scipy")
         image = nibabel.load(TEMPLATES / "ch2.nii.gz")
         save(self.path("charm.nii.gz"), charm_like(image, ndimage), image.affine)
-        self.bem("--labels", "charm.nii.gz", "--preset", "charm", "--layers", 4, "-o", "model")
-        report = json.loads((self.path("model") / "report.json").read_text())
+        self.bem("--labels", "charm.nii.gz", "--preset", "charm", "--layers", 4, "-o", "charm")
+        report = json.loads((self.path("charm") / "report.json").read_text())
         self.assertTrue(all(check["passed"] for check in report["checks"]))
         self.assertLessEqual(sum(surface["vertices"] for surface in report["surfaces"]), 10_000)
         volumes = [surface["volumeMm3"] / 1000 for surface in report["surfaces"]]

@@ -37,7 +37,8 @@ Mask carvedBall(const Mask& kept, const std::vector<float>& priority, Mask hull,
                 const Index3& size);
 
 /// Makes the solid of `part` (>= 0.5) a ball by changing as little as it can: stray pieces go,
-/// cavities are filled, and handles are either cut (growing from the inside) or closed by a
+/// cavities are filled; where the voxels around pinched places filled, or emptied, make it a ball,
+/// no more is done; else handles are either cut (growing from the inside) or closed by a
 /// membrane (carving from the outside), whichever changes fewer voxels [Kriegeskorte2001].
 /// Both start as near to the solid as its erosions and dilations are balls. Changed voxels get a
 /// part just beyond 0.5. \return voxels whose side changed to cut or close handles (0: it was a

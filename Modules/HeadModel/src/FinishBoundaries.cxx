@@ -80,11 +80,10 @@ std::vector<float> settled(std::vector<float> part, const ImageGeometry& grid, d
 void keepWithin(std::vector<float>& part, const Mask& solid, const ImageGeometry& grid,
                 double gapMm) {
     const double step = stepMm(grid);
-    const double offset = gapMm + step / 2;  // distances are of voxels
-    const std::vector<float> depth = depthMm(solid, grid, {offset + step, step});
+    const std::vector<float> depth = depthMm(solid, grid, {gapMm + step, step});
     forVoxels(part, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t n = begin; n < end; ++n) {
-            part[n] = std::min(part[n], partAtDepth(depth[n] - offset, step));
+            part[n] = std::min(part[n], partAtDepth(depth[n] - gapMm, step));
         }
     });
 }
@@ -227,7 +226,8 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
         result.solids.push_back(std::move(solid.field));
     }
     if (!raw.brain.empty()) {
-        keepWithin(raw.brain, innerSkull, raw.grid, options.minCsfMm);
+        // distances are of voxels
+        keepWithin(raw.brain, innerSkull, raw.grid, options.minCsfMm + step / 2);
         result.solids.insert(result.solids.begin(),
                              settle(std::move(raw.brain), HeadSurface::Brain).field);
         if (!result.seenMm.empty()) {
@@ -239,15 +239,14 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
 
 void limitOuterSkull(RawBoundaries& raw, const BoundaryOptions& options) {
     const double step = stepMm(raw.grid);
+    std::vector<float>& part = raw.parts[1];
+    // one distance after the other: each is a head's worth of memory
+    keepWithin(part, above(raw.parts[2], kFractionIsovalue), raw.grid, options.minScalpMm);
     const std::vector<float> inner = depthMm(above(raw.parts[0], kFractionIsovalue), raw.grid,
                                              {step, options.maxSkullMm + step});
-    const std::vector<float> skin = depthMm(above(raw.parts[2], kFractionIsovalue), raw.grid,
-                                            {options.minScalpMm + step, step});
-    std::vector<float>& part = raw.parts[1];
     forVoxels(part, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t n = begin; n < end; ++n) {
-            part[n] = std::min({part[n], partAtDepth(inner[n] + options.maxSkullMm, step),
-                                partAtDepth(skin[n] - options.minScalpMm, step)});
+            part[n] = std::min(part[n], partAtDepth(inner[n] + options.maxSkullMm, step));
         }
     });
     growTo(part, inner, options.minSkullMm, step);
@@ -268,7 +267,9 @@ void tell(const BoundaryOptions& options, const char* stage, double fraction) {
 
 std::string shortNumber(double value) {
     std::array<char, 32> text;
-    std::snprintf(text.data(), text.size(), "%.3g", value);
+    // three digits, but no power of ten where a whole number will do: 1770, not 1.77e+03
+    const bool isLarge = std::abs(value) >= 1000 && std::abs(value) < 1e7;
+    std::snprintf(text.data(), text.size(), isLarge ? "%.0f" : "%.3g", value);
     return text.data();
 }
 

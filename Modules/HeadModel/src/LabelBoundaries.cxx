@@ -9,6 +9,7 @@
 #include "Necks.h"
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Release.h"
 
 namespace adaptiso {
 
@@ -69,9 +70,9 @@ void unite(FloatImage& solid, const VolumeView& mask) {
 
 /// \param enclosed  by inner skull, outer skull and skin
 /// \param brain     by the brain's own surface, if that is wanted
-HeadBoundaries boundariesFrom(const std::vector<FloatImage>& enclosed,
-                              const std::optional<FloatImage>& brain, BoundaryOptions options) {
-    const ImageGeometry& image = enclosed.front().geometry;
+HeadBoundaries boundariesFrom(std::vector<FloatImage> enclosed, std::optional<FloatImage> brain,
+                              BoundaryOptions options) {
+    const ImageGeometry image = enclosed.front().geometry;
     Index3 first, last;
     if (!boundingIndices(enclosed.back().values, enclosed.back().geometry.size, kFractionIsovalue,
                          first, last)) {
@@ -96,8 +97,10 @@ HeadBoundaries boundariesFrom(const std::vector<FloatImage>& enclosed,
         raw.brainSeenMm =
             sidesOf(above(resampled(*brain, raw.grid, 0), kFractionIsovalue), raw.grid, faces);
         raw.brain = solidOf(resampled(*brain, raw.grid, 0), raw.grid, faces, options.sulciMm);
+        brain.reset();
     }
     requireOrder(enclosed, raw);
+    release(enclosed);  // what follows takes memory of its own
     cutNecks(raw, options);
     if (raw.parts.size() > 1) limitOuterSkull(raw, options);
     options.smoothingMm = sigmaFor(image, options);
@@ -176,7 +179,7 @@ HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels
         if (headMask) unite(enclosed[2], *headMask);
         requireSome(enclosed[2], &enclosed[1], "scalp");
     }
-    return boundariesFrom(enclosed, brain, options);
+    return boundariesFrom(std::move(enclosed), std::move(brain), options);
 }
 
 HeadBoundaries boundariesFromProbabilities(std::span<const VolumeView> maps,
@@ -218,7 +221,7 @@ HeadBoundaries boundariesFromProbabilities(std::span<const VolumeView> maps,
             enclosed.push_back(std::move(scaled));
         }
     }
-    return boundariesFrom(enclosed, brain, options);
+    return boundariesFrom(std::move(enclosed), std::move(brain), options);
 }
 
 }  // namespace adaptiso

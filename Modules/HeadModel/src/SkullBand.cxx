@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Release.h"
 
 namespace adaptiso::headmodel {
 namespace {
@@ -13,6 +14,7 @@ constexpr double kRayStepMm = 0.5;
 constexpr double kMostScalpMm = 15;
 constexpr double kSpreadMm = 6;
 constexpr double kOutlierMm = 3;
+constexpr double kLostBrainMm = 4;
 /// Weight of "as thick as usual" beside a surface that is seen everywhere, which has about 0.07:
 /// a layer of one voxel (h = 1 mm) under a Gaussian of kSpreadMm.
 constexpr float kPriorWeight = 0.001f;
@@ -96,6 +98,7 @@ struct Search {
     struct Answer {
         bool reachesSkin = false;
         std::optional<double> thicknessMm;
+        bool startsInTissue = false;  ///< as bright as brain, beyond the inner skull
     };
 
     Answer along(const Ray& ray) const {
@@ -107,8 +110,19 @@ struct Search {
             answer.reachesSkin = sampleAt(skinDepth, size, at) <= 0;
             profile.push_back(sampleAt(t1, size, at));
         }
-        if (answer.reachesSkin) answer.thicknessMm = thickness(profile);
+        if (!answer.reachesSkin) return answer;
+        answer.thicknessMm = thickness(profile);
+        answer.startsInTissue = startsInTissue(profile);
         return answer;
+    }
+
+    /// CSF and bone are dark: as much brain as this beyond the inner skull was lost.
+    bool startsInTissue(const std::vector<double>& profile) const {
+        constexpr int kLost = static_cast<int>(kLostBrainMm / kRayStepMm);
+        if (std::ssize(profile) < 2 * kLost) return false;  // a thin scalp on a thin skull
+        const double bright = levels.air + 0.5 * (levels.tissue - levels.air);
+        return std::all_of(profile.begin(), profile.begin() + kLost,
+                           [&](double value) { return value > bright; });
     }
 
     std::optional<double> thickness(const std::vector<double>& profile) const {
@@ -257,11 +271,10 @@ void dropOutliers(const std::vector<Ray>& rays, const Thickness& thickness, cons
 }
 
 /// The inner skull grown by the thickness there, as parts of voxels.
-std::vector<float> grownBy(const Thickness& thickness, const std::vector<float>& innerSkull,
+std::vector<float> grownBy(const Thickness& thickness, const Mask& innerSkull,
                            const ImageGeometry& grid) {
     const double step = stepMm(grid), most = thickness.mostMm();
-    std::vector<float> part =
-        depthMm(above(innerSkull, kFractionIsovalue), grid, {step, most + step});
+    std::vector<float> part = depthMm(innerSkull, grid, {step, most + step});
     const std::int64_t width = grid.size[0];
     parallelForPieces(grid.size[1] * grid.size[2], 64, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t row = begin; row < end; ++row) {
@@ -280,17 +293,20 @@ std::vector<float> grownBy(const Thickness& thickness, const std::vector<float>&
 }  // namespace
 
 SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
-                        const std::vector<float>& innerSkull, const Mask& skin,
-                        const HeadLevels& levels, const BoundaryOptions& options) {
+                        std::vector<float> innerSkull, const Mask& skin, const HeadLevels& levels,
+                        const BoundaryOptions& options) {
     const double step = stepMm(grid);
     const std::vector<Ray> rays = raysFrom(innerSkull, grid.size);
+    const Mask within = above(innerSkull, kFractionIsovalue);
+    release(innerSkull);  // a head's worth of memory
     std::vector<Search::Answer> answers = search(rays, t1, grid, skin, levels, options);
 
     SkullBand band;
     std::vector<double> seen;
-    std::int64_t towardsScalp = 0;
+    std::int64_t towardsScalp = 0, inTissue = 0;
     for (const Search::Answer& answer : answers) {
         towardsScalp += answer.reachesSkin ? 1 : 0;
+        inTissue += answer.startsInTissue ? 1 : 0;
         if (answer.thicknessMm) seen.push_back(*answer.thicknessMm);
     }
     if (!seen.empty()) {
@@ -298,13 +314,16 @@ SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
         band.medianThicknessMm = seen[seen.size() / 2];
         band.seenFraction = static_cast<double>(seen.size()) / static_cast<double>(towardsScalp);
     }
+    if (towardsScalp > 0) {
+        band.tissueFraction = static_cast<double>(inTissue) / static_cast<double>(towardsScalp);
+    }
     dropOutliers(rays, Thickness(rays, answers, grid, options.skullMm), grid.size, answers);
     for (std::size_t n = 0; n < rays.size(); ++n) {
         if (!answers[n].thicknessMm) continue;
         const Vec3 end = rays[n].start + (*answers[n].thicknessMm / step) * rays[n].direction;
         band.seenMm.push_back(grid.toPhysical(end));
     }
-    band.outerSkull = grownBy(Thickness(rays, answers, grid, options.skullMm), innerSkull, grid);
+    band.outerSkull = grownBy(Thickness(rays, answers, grid, options.skullMm), within, grid);
     return band;
 }
 

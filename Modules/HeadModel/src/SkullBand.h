@@ -12,7 +12,10 @@ struct SkullBand {
     std::vector<float> outerSkull;  ///< raw part of voxels inside the outer skull
     std::vector<Vec3> seenMm;       ///< where rays show the outer skull
     double seenFraction = 0;        ///< of the rays towards the scalp, those that show the band
-    double medianThicknessMm = 0;   ///< over the rays that do
+    /// The part of these rays that begins in 4 mm as bright as half of the brain's level: brain was
+    /// lost there, or the inner skull lies in muscle.
+    double tissueFraction = 0;
+    double medianThicknessMm = 0;  ///< over the rays that do
 };
 
 /// The grey levels that rule the search.
@@ -33,7 +36,7 @@ struct HeadLevels {
 /// by normalized convolution [Knutsson1993] with a Gaussian of 6 mm, a second time without what
 /// differs by more than 3 mm from the first; where nothing is seen nearby it tends to skullMm.
 SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
-                        const std::vector<float>& innerSkull, const Mask& skin,
-                        const HeadLevels& levels, const BoundaryOptions& options);
+                        std::vector<float> innerSkull, const Mask& skin, const HeadLevels& levels,
+                        const BoundaryOptions& options);
 
 }  // namespace adaptiso::headmodel

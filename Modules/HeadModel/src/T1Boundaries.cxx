@@ -6,12 +6,15 @@
 #include <string>
 #include <utility>
 
+#include "BiasField.h"
 #include "BrainSurface.h"
 #include "FinishBoundaries.h"
 #include "Necks.h"
 #include "SkullBand.h"
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Release.h"
 
 namespace adaptiso {
 
@@ -28,6 +31,7 @@ struct Head {
     double skinLevel = 0;
     Mask mask;          ///< closed and filled
     double cutMm2 = 0;  ///< of its side, where tissue was taken out of the image
+    BiasField bias;     ///< as it was taken out of t1
 };
 
 double medianWhere(const std::vector<float>& values, const Mask& mask) {
@@ -82,11 +86,15 @@ std::int64_t deepestVoxel(const std::vector<float>& depth) {
 Mask headMask(const Head& head, double level, double closingMm) {
     // the scalp may hang together with nothing within it, but it is all around; where a face was
     // taken out it may not enclose the brain
-    const Mask tissue = above(head.t1, level);
-    Mask raw = widestComponent(tissue, head.grid.size);
-    const Mask largest = largestComponent(tissue, head.grid.size);
-    for (std::size_t n = 0; n < raw.size(); ++n) raw[n] |= largest[n];
-    return filledAtBorder(closed(raw, head.grid, closingMm), head.faces, head.grid.size);
+    Mask raw;
+    {
+        const Mask tissue = above(head.t1, level);
+        raw = widestComponent(tissue, head.grid.size);
+        const Mask largest = largestComponent(tissue, head.grid.size);
+        for (std::size_t n = 0; n < raw.size(); ++n) raw[n] |= largest[n];
+    }
+    raw = closed(raw, head.grid, closingMm);
+    return filledAtBorder(raw, head.faces, head.grid.size);
 }
 
 /// The skin's isovalue: above the air's noise, and low, since skin is darker than what lies below.
@@ -139,6 +147,9 @@ std::vector<float> belowSkinMm(const Head& head) {
 }
 
 constexpr double kMostBrainCm3 = 2500;
+
+/// Below this nobody needs to be told of a bias field (ch2: 0.79 to 1.04, darker towards its neck).
+constexpr double kNotableBias = 0.3;
 
 /// Refuses an image whose skull was removed: its largest piece is no larger than a brain, and
 /// nowhere near its surface is the dark of bone. A whole head shows bone on a fifth of the voxels
@@ -222,6 +233,17 @@ void findCut(Head& head, const FloatImage& image) {
     head.mask = filledAtBorder(head.mask, head.faces, head.grid.size);
 }
 
+/// Tissue deep in the head is mostly brain: fat, and the dark of bone, lie above.
+void takeBiasOut(Head& head, const Mask& rough, const std::vector<float>& depth, double level) {
+    constexpr float kDeepMm = 10;
+    Mask tissue(rough.size());
+    for (std::size_t n = 0; n < tissue.size(); ++n) {
+        tissue[n] = rough[n] != 0 && depth[n] > kDeepMm && head.t1[n] > level ? 1 : 0;
+    }
+    head.bias = BiasField::estimated(head.t1, head.levels.air, tissue, head.grid);
+    head.bias.removeFrom(head.t1, head.levels.air, head.grid.size);
+}
+
 Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
     FloatImage image = toFloat(t1, std::numeric_limits<float>::quiet_NaN());
     clipSpikes(image.values);
@@ -246,8 +268,8 @@ Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
     head.t1 = resampled(image, head.grid, *air);
     head.faces = imageFaces(image.geometry, head.grid);
 
-    const Mask roughMask = headMask(head, rough, options.closingMm);
-    const std::vector<float> depth = depthInHeadMm(roughMask, head.grid);
+    Mask roughMask = headMask(head, rough, options.closingMm);
+    std::vector<float> depth = depthInHeadMm(roughMask, head.grid);
     const std::int64_t middle = deepestVoxel(depth);
     if (!(depth[middle] >= 40)) {
         throw InvalidInput("the largest object is " +
@@ -255,8 +277,11 @@ Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
                            " mm thick; a head is 80 mm or more (a mask? wrong units?)");
     }
     head.levels.air = *air;
+    takeBiasOut(head, roughMask, depth, rough);
+    release(depth);
     head.levels.tissue = medianWhere(head.t1, ballAround(middle, head.grid, 35));
     head.skinLevel = skinLevelOf(head, roughMask, head.levels);
+    release(roughMask);
     head.mask = headMask(head, head.skinLevel, options.closingMm);
     requireSkull(head);
     findCut(head, image);
@@ -305,27 +330,107 @@ Mask withoutTongues(const Mask& brain, const Head& head) {
     return result;
 }
 
-/// The brain by thresholds and morphology.
+/// With voxels whose 26 neighbours are in the mask but for a few: noise makes holes that an erosion
+/// would widen to pits. A gap between two solids, one voxel wide, has 18 neighbours and stays.
+Mask withoutHoles(const Mask& mask, const Index3& size) {
+    constexpr int kLeastNeighbours = 20;
+    Mask result = mask;
+    const std::int64_t row = size[0], slice = size[0] * size[1];
+    parallelForPieces(size[2], 1, [&](std::int64_t k, std::int64_t) {
+        if (k == 0 || k + 1 == size[2]) return;
+        for (std::int64_t j = 1; j + 1 < size[1]; ++j) {
+            for (std::int64_t i = 1; i + 1 < size[0]; ++i) {
+                const std::int64_t n = i + row * j + slice * k;
+                if (mask[n] != 0 || mask[n - 1] + mask[n + 1] == 0) continue;
+                int count = 0;
+                for (std::int64_t z = n - slice; z <= n + slice; z += slice) {
+                    for (std::int64_t y = z - row; y <= z + row; y += row) {
+                        count += mask[y - 1] + mask[y] + mask[y + 1];
+                    }
+                }
+                result[n] = count >= kLeastNeighbours ? 1 : 0;
+            }
+        }
+    });
+    return result;
+}
+
+/// What thresholds and morphology know of the brain.
+class BrainSearch {
+public:
+    explicit BrainSearch(const Head& head)
+        : head_(head), tissue_(head.t1.size()), belowSkin_(belowSkinMm(head)) {
+        const std::vector<float> depth = depthInHeadMm(head.mask, head.grid);
+        const double span = head.levels.tissue - head.levels.air;
+        for (std::size_t n = 0; n < tissue_.size(); ++n) {
+            const double level = (head.t1[n] - head.levels.air) / span;
+            tissue_[n] = level > 0.55 && level < 1.45 && depth[n] > 4 ? 1 : 0;
+        }
+        tissue_ = withoutHoles(tissue_, head.grid.size);
+        middle_ = ballAround(deepestVoxel(depth), head.grid, 20);
+    }
+
+    /// What hangs together with the head's middle by more than twice `radiusMm`.
+    Mask looseAt(double radiusMm) const {
+        const Index3& size = head_.grid.size;
+        const Mask core = componentsWith(middle_, eroded(tissue_, head_.grid, radiusMm), size);
+        Mask brain = dilated(core, head_.grid, radiusMm + 1);
+        for (std::size_t v = 0; v < brain.size(); ++v) brain[v] &= tissue_[v];
+        return filled(largestComponent(brain, size), size);
+    }
+
+    bool isPlausible(const Mask& brain) const { return isPlausibleBrain(brain, head_, belowSkin_); }
+
+private:
+    const Head& head_;
+    Mask tissue_, middle_;
+    std::vector<float> belowSkin_;
+};
+
+/// Muscle below the skull's base that still hangs on `brain`, and no longer on `next`: a lump far
+/// below its middle. What an erosion takes of a brain are tips of gyri.
+bool dropsMuscle(const Mask& brain, const Mask& next, const ImageGeometry& grid) {
+    constexpr double kTipMm = 3, kLeastCm3 = 15, kLeastBelowMm = 40;
+    Mask lump = brain;
+    for (std::size_t n = 0; n < lump.size(); ++n) {
+        if (next[n] != 0) lump[n] = 0;
+    }
+    lump = largestComponent(opened(lump, grid, kTipMm), grid.size);
+    const auto heightMm = [&](const Mask& mask) {
+        Vec3 sum;
+        for (std::int64_t n = 0; n < std::ssize(mask); ++n) {
+            if (mask[n] == 0) continue;
+            sum = sum + Vec3{static_cast<double>(n % grid.size[0]),
+                             static_cast<double>(n / grid.size[0] % grid.size[1]),
+                             static_cast<double>(n / (grid.size[0] * grid.size[1]))};
+        }
+        return grid.toPhysical(1 / static_cast<double>(voxelsIn(mask)) * sum).z;
+    };
+    return static_cast<double>(voxelsIn(lump)) * std::pow(stepMm(grid), 3) >= 1000 * kLeastCm3 &&
+           heightMm(next) - heightMm(lump) >= kLeastBelowMm;
+}
+
+/// The brain by thresholds and morphology: the first that is plausible, or one not much thinner
+/// that muscle has fallen off.
 Mask guessedBrain(const Head& head) {
-    const std::vector<float> depth = depthInHeadMm(head.mask, head.grid);
-    const double span = head.levels.tissue - head.levels.air;
-    Mask tissue(head.t1.size());
-    for (std::size_t n = 0; n < tissue.size(); ++n) {
-        const double level = (head.t1[n] - head.levels.air) / span;
-        tissue[n] = level > 0.55 && level < 1.45 && depth[n] > 4 ? 1 : 0;
-    }
-    const Mask middle = ballAround(deepestVoxel(depth), head.grid, 20);
-    const std::vector<float> belowSkin = belowSkinMm(head);
     constexpr double kFirstMm = 2, kStepMm = 0.5;
-    for (int n = 0; n <= 12; ++n) {
-        const double radius = kFirstMm + n * kStepMm;
-        const Mask core = componentsWith(middle, eroded(tissue, head.grid, radius), head.grid.size);
-        Mask brain = dilated(core, head.grid, radius + 1);
-        for (std::size_t v = 0; v < brain.size(); ++v) brain[v] &= tissue[v];
-        brain = filled(largestComponent(brain, head.grid.size), head.grid.size);
-        if (isPlausibleBrain(brain, head, belowSkin)) return withoutTongues(brain, head);
+    constexpr int kSteps = 12, kStepsAhead = 2;
+    const BrainSearch search(head);
+    Mask brain;
+    int found = kSteps + 1;
+    for (int n = 0; n <= std::min(kSteps, found + kStepsAhead); ++n) {
+        Mask loose = search.looseAt(kFirstMm + n * kStepMm);
+        if (!search.isPlausible(loose)) {
+            if (found <= kSteps) break;
+        } else if (found > kSteps || dropsMuscle(brain, loose, head.grid)) {
+            found = std::min(found, n);
+            brain = std::move(loose);
+        }
     }
-    throw InvalidInput("no brain comes loose by thresholds; give a brain mask");
+    if (found > kSteps) {
+        throw InvalidInput("no brain comes loose by thresholds; give a brain mask");
+    }
+    return withoutTongues(brain, head);
 }
 
 /// The brain mask of the caller on the head's grid.
@@ -389,6 +494,33 @@ Mask brainOf(const BrainSources& sources, const Head& head, std::vector<std::str
     return brain;
 }
 
+std::string percentOf(double share) {
+    return shortNumber(std::round(100 * share)) + " %";
+}
+
+/// What lies around the inner skull tells whether it is in its place. Right ones have 2 to 8 % of
+/// rays that begin in tissue (at the temples and the base), brains that lost a part 13 to 60 %.
+void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<std::string>& warnings) {
+    constexpr double kUsuallySeen = 0.6, kUsuallyInTissue = 0.12, kMostInTissue = 0.3;
+    if (isGuess && band.tissueFraction > kMostInTissue) {
+        throw InvalidInput("a part of the brain is lost by thresholds: outside what was found, " +
+                           percentOf(band.tissueFraction) +
+                           " of the rays to the scalp begin in 4 mm of tissue as bright as brain; "
+                           "give a brain mask");
+    }
+    if (band.tissueFraction > kUsuallyInTissue) {
+        warnings.push_back(percentOf(band.tissueFraction) +
+                           " of the rays to the scalp begin in 4 mm of tissue as bright as brain, "
+                           "2 to 8 % are usual: a part of the brain may be lost, or muscle taken "
+                           "for it; look at the result, or give a better brain mask");
+    }
+    if (band.seenFraction < kUsuallySeen) {
+        warnings.push_back("the skull shows on only " + shortNumber(100 * band.seenFraction) +
+                           " % of the rays to the scalp: the brain or its mask may lie wrong, or "
+                           "the image be too noisy; look at the result");
+    }
+}
+
 }  // namespace
 
 HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<VolumeView>& brainMask,
@@ -411,35 +543,36 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
     raw.grid = head.grid;
     raw.notes.push_back("skin at " + shortNumber(head.skinLevel) + ", brain tissue at " +
                         shortNumber(head.levels.tissue));
+    if (head.bias.most() - head.bias.least() > kNotableBias) {
+        raw.notes.push_back("the same tissue is " + shortNumber(head.bias.least()) + " to " +
+                            shortNumber(head.bias.most()) +
+                            " times as bright as usual from place to place (a bias field): taken "
+                            "out for this model, not in the image");
+    }
     if (head.cutMm2 > 0) {
         raw.notes.push_back("about " + shortNumber(head.cutMm2 / 100) +
                             " cm2 of the head's side are cut (a face taken out?): no skin is seen "
                             "there");
     }
     tell(options, "brain", 0);
-    const Mask brain = brainOf(sources, head, raw.notes);
+    Mask brain = brainOf(sources, head, raw.notes);
     raw.parts.push_back(innerSkullPart(brain, head, options));
     cutNecks(raw, options);
     if (options.withBrain) {
         raw.brain = brainSurfacePart(sources, {head.grid, head.t1, head.faces, head.levels, brain},
                                      options, raw.notes, raw.brainSeenMm);
     }
+    release(brain);
+    tell(options, "skull", 0);
+    SkullBand band =
+        findSkullBand(head.t1, head.grid, smoothed(raw.parts[0], head.grid, options.smoothingMm),
+                      head.mask, head.levels, options);
+    requireBandInSight(band, !sources.mask && !sources.aseg, raw.warnings);
     if (!options.innerSkullOnly) {
-        tell(options, "skull", 0);
-        SkullBand band = findSkullBand(head.t1, head.grid,
-                                       smoothed(raw.parts[0], head.grid, options.smoothingMm),
-                                       head.mask, head.levels, options);
         raw.notes.push_back("skull band seen on " + shortNumber(100 * band.seenFraction) +
                             " % of the rays to the scalp, median thickness " +
                             shortNumber(band.medianThicknessMm) + " mm; elsewhere " +
                             shortNumber(options.skullMm) + " mm");
-        constexpr double kUsuallySeen = 0.6;
-        if (band.seenFraction < kUsuallySeen) {
-            raw.warnings.push_back("the skull shows on only " +
-                                   shortNumber(100 * band.seenFraction) +
-                                   " % of the rays to the scalp: the brain or its mask may lie "
-                                   "wrong, or the image be too noisy; look at the result");
-        }
         // no T1 shows the inner skull: CSF and bone are dark alike
         raw.seenMm = {{}, std::move(band.seenMm), skinSides(head)};
         raw.parts.push_back(std::move(band.outerSkull));

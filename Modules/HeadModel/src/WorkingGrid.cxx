@@ -8,6 +8,7 @@
 #include "FinishBoundaries.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Release.h"
 
 namespace adaptiso::headmodel {
 namespace {
@@ -230,22 +231,26 @@ std::vector<std::uint8_t> imageFaces(const ImageGeometry& image, const ImageGeom
 }
 
 Mask filledAtBorder(const Mask& mask, const std::vector<std::uint8_t>& faces, const Index3& size) {
-    Mask air(mask.size()), airAtFaces(mask.size()), open(mask.size(), 0);
-    for (std::size_t n = 0; n < mask.size(); ++n) {
-        const unsigned face = faces[n] & ~unsigned{kInside};
-        air[n] = mask[n] == 0 && faces[n] != 0 ? 1 : 0;
-        airAtFaces[n] = air[n] != 0 && face != 0 ? 1 : 0;
-        open[n] = std::popcount(face) >= 2 ? 1 : 0;
+    Mask air(mask.size()), around;
+    {
+        Mask airAtFaces(mask.size()), open(mask.size());
+        for (std::size_t n = 0; n < mask.size(); ++n) {
+            const unsigned face = faces[n] & ~unsigned{kInside};
+            air[n] = mask[n] == 0 && faces[n] != 0 ? 1 : 0;
+            airAtFaces[n] = air[n] != 0 && face != 0 ? 1 : 0;
+            open[n] = std::popcount(face) >= 2 ? 1 : 0;
+        }
+        around = componentsWith(open, airAtFaces, size);
     }
-    Mask around = componentsWith(open, airAtFaces, size);
     // where the image goes on beyond the grid, the grid's border is around the head as well
     forEachBorderVoxel(size, [&](std::int64_t voxel) { around[voxel] |= air[voxel]; });
     const Mask outsideAir = componentsWith(around, air, size);
-    Mask result = mask;
+    release(around);
     for (std::size_t n = 0; n < mask.size(); ++n) {
-        if (air[n] != 0 && outsideAir[n] == 0) result[n] = 1;
+        // from here on the result: the mask, and air that the outside can't reach
+        air[n] = mask[n] != 0 || (air[n] != 0 && outsideAir[n] == 0) ? 1 : 0;
     }
-    return filled(result, size);
+    return filled(air, size);
 }
 
 }  // namespace adaptiso::headmodel

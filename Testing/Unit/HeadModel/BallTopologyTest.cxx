@@ -152,6 +152,19 @@ TEST(MakeBall, MakesASphereOfAnyMess) {
     }
 }
 
+TEST(MakeBall, MendsAPinchedPlaceWhereItIs) {
+    // a voxel beside a flat side that touches it along an edge only
+    Mask mask = maskOf(box({}, {10, 10, 10}));
+    std::int64_t last = 0;
+    for (std::int64_t n = 0; n < std::ssize(mask); ++n) last = mask[n] != 0 ? n : last;
+    mask[last + 1 + kSize[0] * kSize[1] - 5 * kSize[0]] = 1;  // out by x and by z: over the edge
+    ASSERT_EQ(maskTopology(mask, kSize).criticalPlaces > 0, true);
+    FractionField field = fieldOf(mask);
+    const std::int64_t changed = makeBall(field.part, kSize);
+    EXPECT_LE(changed, 16);  // at most eight around each end of the edge
+    EXPECT_TRUE(isBall(above(field.part, 0.5), kSize));
+}
+
 TEST(MakeBall, RefusesAnEmptySolid) {
     std::vector<float> nothing(40 * 40 * 40, 0);
     EXPECT_THROW(makeBall(nothing, kSize), InvalidInput);
