@@ -48,8 +48,8 @@ inline constexpr double kFirstCost = 1e-3, kLastCost = 10;
 /// collapses first, everywhere, so that walls between patches do not show. A round at 3e-3 before
 /// them takes a few per cent more time for as many triangles.
 inline constexpr std::array kBoundCosts{1.8e-2, 0.108, 0.648, 3.888};
-/// The surface that single places are taken back to: costs below this part of the square of the allowed
-/// distance, distances below this part of it.
+/// The surface that single places are taken back to: costs below this part of the square of the
+/// allowed distance, distances below this part of it.
 inline constexpr double kHalfwayCost = 2, kHalfwayDistance = 0.25;
 /// A larger distance helped towards a count when it leaves less than this part of the triangles
 /// that are still too many; after so many in a row that did not, the count is given up.
