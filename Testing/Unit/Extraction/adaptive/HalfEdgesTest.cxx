@@ -86,10 +86,10 @@ TEST(HalfEdges, AreListedByTheirVertexInAscendingOrder) {
         const auto leaving = halfEdges.from(v);
         listed += leaving.size();
         for (std::size_t i = 0; i < leaving.size(); ++i) {
-            EXPECT_EQ(from(mesh, leaving[i].halfEdge), v);
-            EXPECT_EQ(to(mesh, leaving[i].halfEdge), leaving[i].to);
+            EXPECT_EQ(from(mesh, leaving[i]), v);
+            EXPECT_EQ(to(mesh, leaving[i]), halfEdges.to(leaving[i]));
             if (i > 0) {
-                EXPECT_LT(leaving[i - 1].halfEdge, leaving[i].halfEdge);
+                EXPECT_LT(leaving[i - 1], leaving[i]);
             }
         }
     }
@@ -120,10 +120,10 @@ TEST(HalfEdges, AreTheSameForManyTriangles) {
     halfEdges.assign(many.points.size(), many.triangles);
     for (VertexId v = 0; v < std::ssize(many.points); ++v) {
         VertexId last = -1;
-        for (const auto leaving : halfEdges.from(v)) {
-            ASSERT_LT(last, leaving.halfEdge);
-            ASSERT_EQ(from(many, leaving.halfEdge), v);
-            last = leaving.halfEdge;
+        for (const VertexId h : halfEdges.from(v)) {
+            ASSERT_LT(last, h);
+            ASSERT_EQ(from(many, h), v);
+            last = h;
         }
     }
 }

@@ -75,25 +75,36 @@ TEST(PieceBound, IsTheDistanceOfAPieceAcrossARidge) {
     EXPECT_LE(bound.boundMm(), kLoose * exact);
 }
 
-TEST(PieceBound, SaysWhereItHadToGrow) {
+TEST(PieceBound, SaysWhatLiesBeyondALimit) {
     PieceBound bound(0.1);
     bound.nearby() = {{Vec3{50, 0, 0}, Vec3{59, 0, 0}, Vec3{50, 9, 0}},
                       {Vec3{0, 0, 0}, Vec3{9, 0, 0}, Vec3{0, 9, 0}}};
-    bound.include({Vec3{1, 1, 0}, Vec3{2, 1, 0}, Vec3{1, 2, 3}});  // one corner 3 above
-    EXPECT_EQ(bound.farthest().point, (Vec3{1, 2, 3}));
-    EXPECT_EQ(bound.farthest().onOther, (Vec3{1, 2, 0}));
-    EXPECT_TRUE(bound.farthest().hasNearest);
-    EXPECT_EQ(bound.farthest().nearest, 1U);
+    const Corners piece{Vec3{1, 1, 0}, Vec3{2, 1, 0}, Vec3{1, 2, 3}};  // one corner 3 above
+    double farthestMm = 0;
+    const auto far = bound.includeWithin(2.9, piece, farthestMm);
+    ASSERT_TRUE(far);
+    EXPECT_EQ(far->point, (Vec3{1, 2, 3}));
+    EXPECT_EQ(far->onOther, (Vec3{1, 2, 0}));
+    EXPECT_TRUE(far->hasNearest);
+    EXPECT_EQ(far->nearest, 1U);
+    EXPECT_GE(farthestMm, 3);
+    EXPECT_EQ(bound.boundMm(), 0.1);  // as before
+    EXPECT_FALSE(bound.includeWithin(3, piece, farthestMm));
+    EXPECT_EQ(bound.boundMm(), 3);
 }
 
 TEST(PieceBound, IsInfiniteWhereNoTriangleIsNear) {
     PieceBound bound(1);
+    double worst = 0;
     const Corners piece{Vec3{0, 0, 0}, Vec3{3, 0, 0}, Vec3{0, 3, 0}};
     EXPECT_FALSE(bound.isWithin(piece));
     bound.include(piece);
     EXPECT_EQ(bound.boundMm(), std::numeric_limits<double>::infinity());
-    EXPECT_EQ(bound.farthest().point, (Vec3{1, 1, 0}));
-    EXPECT_FALSE(bound.farthest().hasNearest);
+    const auto far = PieceBound(1).includeWithin(2, piece, worst);
+    ASSERT_TRUE(far);
+    EXPECT_EQ(far->point, (Vec3{1, 1, 0}));
+    EXPECT_FALSE(far->hasNearest);
+    EXPECT_EQ(worst, std::numeric_limits<double>::infinity());
 }
 
 // Certain, and not much more than what is true.

@@ -137,11 +137,11 @@ private:
     /// A triangle before it has the same corners, whichever way round.
     bool isDuplicate(std::uint32_t t) const {
         const auto& [a, b, c] = parts_.triangles[t];
-        for (const auto& l : halfEdges_.from(a)) {
-            const std::uint32_t other = l.halfEdge / 3;
+        for (const std::uint32_t h : halfEdges_.from(a)) {
+            const std::uint32_t other = h / 3, second = halfEdges_.to(h);
             if (other >= t) break;
-            const std::uint32_t third = parts_.triangles[other][(l.halfEdge + 2) % 3];
-            if ((l.to == b && third == c) || (l.to == c && third == b)) return true;
+            const std::uint32_t third = parts_.triangles[other][(h + 2) % 3];
+            if ((second == b && third == c) || (second == c && third == b)) return true;
         }
         return false;
     }
@@ -180,7 +180,7 @@ private:
     std::int64_t countOf(std::uint32_t a, std::uint32_t b) const {
         const auto leaving = halfEdges_.from(a);
         return std::count_if(leaving.begin(), leaving.end(),
-                             [&](const auto& l) { return l.to == b; });
+                             [&](std::uint32_t h) { return halfEdges_.to(h) == b; });
     }
 
     /// Edges with more than two triangles, or two that face opposite sides, lose their twins.
@@ -223,10 +223,9 @@ private:
         parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
             for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
                 const auto leaving = halfEdges_.from(v);
-                bool isWhole = fanSize(leaving.front().halfEdge) == leaving.size();
-                for (const auto& l : leaving) {
-                    isWhole =
-                        isWhole && isCut_[l.halfEdge] == 0 && isCut_[previous(l.halfEdge)] == 0;
+                bool isWhole = fanSize(leaving.front()) == leaving.size();
+                for (const std::uint32_t h : leaving) {
+                    isWhole = isWhole && isCut_[h] == 0 && isCut_[previous(h)] == 0;
                 }
                 isSingular[v] = static_cast<std::uint8_t>(!isWhole);
             }
@@ -239,8 +238,8 @@ private:
     }
 
     void split(std::uint32_t v, std::uint32_t mark) {
-        std::vector<std::uint32_t> left;
-        for (const auto& l : halfEdges_.from(v)) left.push_back(l.halfEdge);
+        const auto leaving = halfEdges_.from(v);
+        std::vector<std::uint32_t> left(leaving.begin(), leaving.end());
         for (bool isFirst = true; !left.empty(); isFirst = false) {
             std::uint32_t number = v;
             if (!isFirst) {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <limits>
-#include <ranges>
 #include <span>
 #include <vector>
 
@@ -19,10 +18,6 @@ class HalfEdges {
 public:
     static constexpr Index kNone = std::numeric_limits<Index>::max();
 
-    struct Leaving {
-        Index to, halfEdge;
-    };
-
     /// Keeps a reference to the triangles.
     void assign(std::size_t points, std::span<const std::array<Index, 3>> triangles) {
         triangles_ = triangles;
@@ -34,11 +29,9 @@ public:
     }
 
     /// In ascending order.
-    auto from(Index vertex) const {
-        return leaving_.of(vertex) | std::views::transform([this](Index h) -> Leaving {
-                   return {triangles_[h / 3][(h + 1) % 3], h};
-               });
-    }
+    std::span<const Index> from(Index vertex) const { return leaving_.of(vertex); }
+    /// The vertex that a half-edge runs to.
+    Index to(Index halfEdge) const { return triangles_[halfEdge / 3][(halfEdge + 1) % 3]; }
 
     /// The opposite of each half-edge, or kNone. Where several run along an edge they are matched
     /// in ascending order. \param triangles  as given to assign()
@@ -75,12 +68,12 @@ private:
     /// Of several that run from a to b the first goes with the first that runs back, and so on.
     Index twinOf(Index h, Index a, Index b) const {
         std::size_t before = 0;
-        for (const Leaving l : from(a)) {
-            if (l.halfEdge == h) break;
-            before += l.to == b ? 1 : 0;
+        for (const Index g : from(a)) {
+            if (g == h) break;
+            before += to(g) == b ? 1 : 0;
         }
-        for (const Leaving l : from(b)) {
-            if (l.to == a && before-- == 0) return l.halfEdge;
+        for (const Index g : from(b)) {
+            if (to(g) == a && before-- == 0) return g;
         }
         return kNone;
     }

@@ -246,7 +246,8 @@ void BrickProof::proveFinePart(const Corners& piece, const std::array<std::uint3
         reachMm = std::max(reachMm, std::sqrt(nearest));
     }
     collectWithin(reachMm, piece);
-    const std::optional<FarPoint> far = include(piece, fromFine_);
+    const std::optional<FarPoint> far =
+        fromFine_.includeWithin(limitMm_, piece, result_.farthestMm);
     if (!far) return;
     const Number t = far->hasNearest ? within_[far->nearest] : PlaceBeyond::kNone;
     result_.beyondLimit.push_back({far->onOther, far->point, t, true});
@@ -358,29 +359,8 @@ void BrickProof::proveLeaf(const Corners& piece, const CornerBox& box) {
         if (!near_.empty() || reach > kCells) break;
     }
     use();
-    const std::optional<FarPoint> far = include(piece, toFine_);
+    const std::optional<FarPoint> far = toFine_.includeWithin(limitMm_, piece, result_.farthestMm);
     if (far) result_.beyondLimit.push_back({far->point, far->onOther, triangle_, false});
-}
-
-/// \return a point of the piece, where that could not be shown to lie within the limit
-std::optional<FarPoint> BrickProof::include(const Corners& piece, PieceBound& bound) {
-    PieceBound atMost(limitMm_);
-    const double limit = atMost.squaredBound();
-    const PieceBound before = bound.withoutNearby();
-    bound.include(piece);
-    if (bound.squaredBound() <= limit) return {};
-    // it grew by more than it had to: try the limit itself
-    atMost.nearby() = bound.nearby();
-    const double reached = bound.boundMm();
-    atMost.include(piece);
-    if (atMost.squaredBound() <= limit) {
-        bound = atMost.withoutNearby();
-        return {};
-    }
-    result_.farthestMm = std::max(result_.farthestMm, reached);
-    const FarPoint far = atMost.farthest();
-    bound = before;
-    return far;
 }
 
 /// In cells, seen from the brick's first.

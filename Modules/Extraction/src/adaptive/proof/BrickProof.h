@@ -86,7 +86,6 @@ private:
                double squaredDistance, int steps);
     void proveSmall(const Corners& piece);
     void proveLeaf(const Corners& piece, const CornerBox& box);
-    std::optional<FarPoint> include(const Corners& piece, PieceBound& bound);
 
     CornerBox latticeBox(const Corners& piece) const;
     std::uint32_t nearestFine(const Vec3& p);

@@ -127,24 +127,10 @@ private:
 
     template <class MakePlace>
     void includeNear(const Corners& piece, const MakePlace& makePlace) {
-        PieceBound atMost(limitMm_);
-        const double limit = atMost.squaredBound();
-        const PieceBound before = bound_.withoutNearby();
-        bound_.include(piece);
-        if (bound_.squaredBound() <= limit) return;
-        // it grew by more than it had to: try the limit itself
-        atMost.nearby() = bound_.nearby();
-        const double reached = bound_.boundMm();
-        atMost.include(piece);
-        if (atMost.squaredBound() <= limit) {
-            bound_ = atMost.withoutNearby();
-            return;
-        }
-        result_.farthestMm = std::max(result_.farthestMm, reached);
-        const FarPoint& far = atMost.farthest();
+        const auto far = bound_.includeWithin(limitMm_, piece, result_.farthestMm);
+        if (!far) return;
         result_.beyond.push_back(
-            makePlace(far.point, far.onOther, far.hasNearest ? near_[far.nearest] : -1));
-        bound_ = before;
+            makePlace(far->point, far->onOther, far->hasNearest ? near_[far->nearest] : -1));
     }
 
     const Target<Index>& to_;

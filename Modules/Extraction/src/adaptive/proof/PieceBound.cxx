@@ -57,6 +57,21 @@ void PieceBound::include(const Corners& piece) {
     include(Piece{newCornerAt(piece[0]), newCornerAt(piece[1]), newCornerAt(piece[2])}, kManyCuts);
 }
 
+std::optional<FarPoint> PieceBound::includeWithin(double limitMm, const Corners& piece,
+                                                  double& farthestMm) {
+    const double before = enough_, limit = limitMm * limitMm;
+    include(piece);
+    if (enough_ <= limit) return {};
+    const double reachedMm = boundMm();
+    // it may have grown by more than it had to
+    enough_ = limit;
+    include(piece);
+    if (enough_ <= limit) return {};
+    enough_ = before;
+    farthestMm = std::max(farthestMm, reachedMm);
+    return farthest_;
+}
+
 void PieceBound::include(const Piece& piece, int depth) {
     const Corners points{piece[0].point, piece[1].point, piece[2].point};
     for (const Corner& corner : piece) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "Certificate.h"
@@ -30,18 +31,17 @@ public:
     /// Bounds the distance of the piece's points, too.
     void include(const Corners& piece);
 
+    /// The same where the points can be shown to lie within a limit.
+    /// \param farthestMm  where they can't: at least how far they may lie
+    /// \return where they can't: such a point; the bound stays as it was
+    std::optional<FarPoint> includeWithin(double limitMm, const Corners& piece, double& farthestMm);
+
     /// Proves that the piece lies within the bound so far, without much ado.
     /// \return false when it may not
     bool isWithin(const Corners& piece) const;
 
     /// The piece lies within the bound so far of this triangle.
     bool isWithin(const Corners& piece, const Corners& triangle) const;
-
-    /// Where the bound had to grow last; beside a nearest point of the surface.
-    const FarPoint& farthest() const { return farthest_; }
-
-    /// The bound so far alone.
-    PieceBound withoutNearby() const { return PieceBound(boundMm()); }
 
     /// No point of the pieces so far is farther from the surface, mm; at least enoughMm.
     double boundMm() const { return std::sqrt(enough_); }
@@ -69,8 +69,8 @@ private:
     void includeUncut(const Corners& piece);
 
     std::vector<Corners> nearby_;
-    double enough_;  ///< the bound so far, squared
-    FarPoint farthest_;
+    double enough_;      ///< the bound so far, squared
+    FarPoint farthest_;  ///< where the bound had to grow last
 };
 
 double squaredDistanceToTriangle(const Vec3& p, const Corners& triangle);

@@ -91,13 +91,13 @@ public:
     /// A triangle at a vertex; kNone for a vertex without one.
     Index triangleAt(Index vertex) const {
         const auto leaving = halfEdges_.from(vertex);
-        return leaving.empty() ? kNone : leaving.front().halfEdge / 3;
+        return leaving.empty() ? kNone : leaving.front() / 3;
     }
 
     /// Calls f(triangle) for those at a vertex.
     template <class F>
     void forEachAt(Index vertex, const F& f) const {
-        for (const auto& l : halfEdges_.from(vertex)) f(l.halfEdge / 3);
+        for (const Index h : halfEdges_.from(vertex)) f(h / 3);
     }
 
     bool isEmpty() const { return triangles_.empty(); }
@@ -117,10 +117,8 @@ public:
 
     /// The triangle with these corners in this order; kNone where there is none.
     Index find(Index a, Index b, Index c) const {
-        for (const auto& l : halfEdges_.from(a)) {
-            if (l.to == b && triangles_[l.halfEdge / 3][(l.halfEdge + 2) % 3] == c) {
-                return l.halfEdge / 3;
-            }
+        for (const Index h : halfEdges_.from(a)) {
+            if (halfEdges_.to(h) == b && triangles_[h / 3][(h + 2) % 3] == c) return h / 3;
         }
         return kNone;
     }
