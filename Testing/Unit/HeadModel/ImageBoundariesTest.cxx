@@ -415,7 +415,7 @@ TEST(BoundariesFromCt, FindSkinBoneAndCavityOfAPhantom) {
         [&] {
             boundariesFromCt({ct.data(), head.geometry}, options);
         },
-        "skin at 2e+03 HU and bone at 300 HU");
+        "skin at 2000 HU and bone at 300 HU");
     options = {};
     options.stepMm = 2;
     options.skullHu = 5000;
@@ -423,7 +423,7 @@ TEST(BoundariesFromCt, FindSkinBoneAndCavityOfAPhantom) {
         [&] {
             boundariesFromCt({ct.data(), head.geometry}, options);
         },
-        "nothing in the head is above 5e+03 HU");
+        "nothing in the head is above 5000 HU");
 }
 
 TEST(BoundariesFromCt, TakeOffAHeadRestThatTouchesAndLeaveWiresAndCushionOut) {
