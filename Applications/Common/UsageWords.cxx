@@ -84,6 +84,16 @@ std::string positionals(const CLI::App& app) {
     return text;
 }
 
+/// What a program without positionals takes: "options only, such as --t1 IMG".
+std::string optionsAlone(const CLI::App& app) {
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->get_type_name() == "IMG") {
+            return "options only, such as " + option->get_name() + " IMG";
+        }
+    }
+    return "options only";
+}
+
 std::string ofUnexpected(const CLI::App& app) {
     const std::vector<std::string> words = app.remaining();
     const auto option = std::find_if(words.begin(), words.end(), [](const std::string& word) {
@@ -92,8 +102,8 @@ std::string ofUnexpected(const CLI::App& app) {
     if (option == words.end()) {
         const std::string wanted = positionals(app);
         return shown(words.empty() ? "" : words.front()) + ": is one argument too many; " +
-               app.get_name() +
-               (wanted.empty() ? " takes options only" : " takes " + wanted + " and options");
+               app.get_name() + " takes " +
+               (wanted.empty() ? optionsAlone(app) : wanted + " and options");
     }
     const std::string_view name = beforeEquals(*option);
     const std::string_view letters = name.substr(

@@ -39,7 +39,8 @@ WRONG = [
     # too much
     (USAGE, "c.off: is one argument too many; adaptiso-compare takes A and B", COMPARE,
      ("a.off", "a.off", "c.off")),
-    (USAGE, "a.nii: is one argument too many; adaptiso-bem takes options only", BEM,
+    (USAGE, "a.nii: is one argument too many; adaptiso-bem takes options only, "
+     "such as --t1 IMG",  BEM,
      ("a.nii", "--t1", "ball.nii", "-o", "m")),
     (USAGE, "--threads: is given 2 times; give it once", MESH,
      (*BALL, "--threads", "1", "--threads", "2")),
