@@ -145,7 +145,7 @@ Report makeReport(const LabelsRun& run, const RegionSurfaces& surfaces,
     tellInputs(run, report);
     tellOptions(run, report);
     tellChecks(run, report);
-    report.notes = run.warnings;
+    report.warnings = run.warnings;
     const std::vector<std::size_t> shown = chooseShown(run, report);
     for (const std::size_t n : shown) {
         ReportSurface surface{run.nameOf(run.regions[n].label), surfaces.surface(n)};

@@ -154,7 +154,7 @@ Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh sh
             {baseName(run.output.file), std::move(after), std::move(distances)});
     }
     report.tables.push_back(surfaceTable(run));
-    report.notes = run.warnings;
+    report.warnings = run.warnings;
     tellStrict(report, run.command.common, run.warnings, kNotWritten);
     report.stageSeconds = run.timer.stages();
     return report;

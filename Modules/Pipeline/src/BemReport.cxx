@@ -206,8 +206,8 @@ Report bemReport(const BemModel& model,
     addNotes(model.plausibility, report);
     if (!model.checks.empty()) report.tables.push_back(surfaceTable(model));
     if (!files.empty()) report.tables.push_back(fileTable(files));
-    report.notes = model.warnings;
-    report.notes.insert(report.notes.end(), model.notes.begin(), model.notes.end());
+    report.warnings = model.warnings;
+    report.notes = model.notes;
     if (!model.hasModel() && !model.meshes.empty()) {
         report.notes.push_back(
             "The surfaces shown are those that the model was tried from; none was written.");

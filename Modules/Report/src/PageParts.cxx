@@ -62,6 +62,21 @@ std::string checkTable(const std::string& label, const std::vector<const ReportC
     return scrollable(label, html + "</tbody>\n</table>");
 }
 
+/// How many of its items a list in the banner shows.
+constexpr std::size_t kNamed = 3;
+
+/// A list in the banner of the first kNamed `items` of `count`. The others stand at `anchor`.
+std::string bannerList(const std::string& label, const std::string& items, std::size_t count,
+                       const std::string& anchor) {
+    if (count == 0) return "";
+    std::string html = "<ul class=\"named\" aria-label=\"" + label + "\">\n" + items;
+    if (count > kNamed) {
+        html += "<li><a href=\"#" + anchor + "\">and " + std::to_string(count - kNamed) +
+                " more</a></li>\n";
+    }
+    return html + "</ul>\n";
+}
+
 std::string tableHtml(const ReportTable& table) {
     std::string html = "<table>\n<thead><tr>";
     for (const std::string& column : table.columns) {
@@ -121,7 +136,6 @@ std::string scrollable(const std::string& label, const std::string& html) {
 }
 
 std::string failuresHtml(const Report& report) {
-    constexpr std::size_t kNamed = 3;
     std::string html;
     std::size_t failed = 0;
     for (const ReportCheck& check : report.checks) {
@@ -129,12 +143,15 @@ std::string failuresHtml(const Report& report) {
         html += "<li><strong>" + escaped(check.name) + "</strong>: " + escaped(check.subject) +
                 (check.finding.empty() ? "" : ", " + escaped(check.finding)) + "</li>\n";
     }
-    if (failed == 0) return "";
-    if (failed > kNamed) {
-        html +=
-            "<li><a href=\"#checks\">and " + std::to_string(failed - kNamed) + " more</a></li>\n";
+    return bannerList("What failed", html, failed, "checks");
+}
+
+std::string warningsHtml(const Report& report) {
+    std::string html;
+    for (std::size_t n = 0; n < std::min(report.warnings.size(), kNamed); ++n) {
+        html += "<li><strong>Warning</strong>: " + escaped(report.warnings[n]) + "</li>\n";
     }
-    return "<ul class=\"failures\" aria-label=\"What failed\">\n" + html + "</ul>\n";
+    return bannerList("Warnings", html, report.warnings.size(), "notes");
 }
 
 std::string faceHtml(const Report& report, const Scene& scene) {
@@ -289,12 +306,17 @@ std::string picturesHtml(const std::vector<Picture>& pictures) {
     return html + "</section>\n";
 }
 
-std::string notesHtml(const std::vector<std::string>& notes) {
-    if (notes.empty()) return "";
+std::string notesHtml(const Report& report, const std::vector<std::string>& notes) {
+    std::vector<std::string> told;
+    for (std::size_t n = kNamed; n < report.warnings.size(); ++n) {
+        told.push_back("Warning: " + report.warnings[n]);
+    }
+    told.insert(told.end(), notes.begin(), notes.end());
+    if (told.empty()) return "";
     std::string html =
-        "<section class=\"notes\" aria-labelledby=\"notes-title\">\n<h2 "
+        "<section class=\"notes\" id=\"notes\" aria-labelledby=\"notes-title\">\n<h2 "
         "id=\"notes-title\">Notes</h2>\n<ul>\n";
-    for (const std::string& note : notes) html += "<li>" + escaped(note) + "</li>\n";
+    for (const std::string& note : told) html += "<li>" + escaped(note) + "</li>\n";
     return html + "</ul>\n</section>\n";
 }
 

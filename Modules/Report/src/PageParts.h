@@ -19,6 +19,8 @@ std::string scrollable(const std::string& label, const std::string& html);
 
 /// Which of the required checks failed, for the banner: the first three by name.
 std::string failuresHtml(const Report& report);
+/// The warnings, for the banner: the first three; notesHtml() has the others.
+std::string warningsHtml(const Report& report);
 std::string factsHtml(const Report& report);
 /// One line on what the page shows of a face. Empty where nothing is shown.
 std::string faceHtml(const Report& report, const Scene& scene);
@@ -29,6 +31,7 @@ std::string spotsHtml(const Scene& scene, bool hasViewer);
 std::string checksHtml(const Report& report);
 std::string tablesHtml(const Report& report);
 std::string picturesHtml(const std::vector<Picture>& pictures);
-std::string notesHtml(const std::vector<std::string>& notes);
+/// The warnings that the banner does not show, then `notes`. Empty where there is neither.
+std::string notesHtml(const Report& report, const std::vector<std::string>& notes);
 
 }  // namespace adaptiso

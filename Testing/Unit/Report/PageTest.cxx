@@ -47,6 +47,21 @@ TEST(Page, HoldsWhatItWasGiven) {
     }
 }
 
+TEST(Page, TellsWarningsBesideTheVerdict) {
+    Report report = example();
+    report.verdict = ReportVerdict::Passed;
+    report.warnings = {"warning A7", "warning B7", "warning C7", "warning D7"};
+    report.notes = {"a remark"};
+    const std::string page = htmlPage(report, {});
+    const std::size_t bannerEnd = page.find("</header>"), notes = page.find("id=\"notes\"");
+    for (const char* shown : {"warning A7", "warning B7", "warning C7"}) {
+        EXPECT_LT(page.find("<li><strong>Warning</strong>: " + std::string(shown)), bannerEnd);
+        EXPECT_FALSE(holds(page.substr(notes), shown));
+    }
+    EXPECT_LT(page.find("<a href=\"#notes\">and 1 more</a>"), bannerEnd);
+    EXPECT_TRUE(holds(page.substr(notes), "<li>Warning: warning D7</li>\n<li>a remark</li>"));
+}
+
 TEST(Page, ForbidsToLoadAnything) {
     EXPECT_TRUE(holds(htmlPage(example(), {}), "default-src 'none'"));
 }
@@ -58,7 +73,7 @@ TEST(Page, TextsAreTextsWhateverTheyHold) {
     report.inputs = report.options = {{evil, evil}};
     report.checks[0].finding = report.spots[0].what = evil;
     report.tables = {{evil, {evil}, {{evil}}}};
-    report.notes = {evil};
+    report.notes = report.warnings = {evil};
     const std::string page = htmlPage(report, {{"p.png", evil, evil, "", 1, 1}});
     EXPECT_FALSE(holds(page, "<script>alert"));
     EXPECT_FALSE(holds(page, "\"1\")"));

@@ -88,7 +88,8 @@ struct Report {
     std::vector<ReportCheck> checks;
     std::vector<ReportSpot> spots;
     std::vector<ReportTable> tables;
-    std::vector<std::string> notes;  ///< warnings, and what is not shown
+    std::vector<std::string> warnings;  ///< shown beside the verdict, whatever it is
+    std::vector<std::string> notes;     ///< other remarks, and what is not shown: at the end
     std::vector<ReportSurface> surfaces;
     /// The surfaces are the regions of one map: they touch, none holds another, and there may be
     /// hundreds. They are drawn together, opaque, and the viewer has a list of them to click.
