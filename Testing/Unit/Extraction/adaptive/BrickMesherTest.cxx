@@ -103,7 +103,8 @@ TEST(BrickMesher, GivesAHaloOfTheCellsAround) {
         const std::size_t own = fine.triangles.size(), vertices = fine.vertices.size();
         std::vector<Key> alone, withHalo, expected;
         for (std::size_t t = 0; t < own; ++t) alone.push_back(keyOf(fine, t));
-        mesher.meshWithHalo(scene.bricks, b, fine);
+        mesher.meshWithHalo(
+            scene.bricks, b, [](std::uint32_t) { return true; }, fine);
         EXPECT_EQ(fine.ownTriangles, own);
         EXPECT_EQ(fine.ownVertices, vertices);
         for (std::size_t t = 0; t < own; ++t) EXPECT_EQ(keyOf(fine, t), alone[t]);

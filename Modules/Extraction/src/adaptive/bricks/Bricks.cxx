@@ -40,6 +40,10 @@ bool isCrossed(const LatticeEdge& edge, const LatticeSampler& sampler) {
     return ((rows[0] ^ ends[edge.axis]) & 1u) != 0;
 }
 
+bool isAny(std::uint32_t) {
+    return true;
+}
+
 /// The surface of a cell that needs fans.
 template <class VertexOn>
 void addFans(const BoxCase& boxCase, const CellCrossings& crossings, const VertexOn& vertexOn,
@@ -123,21 +127,23 @@ BrickMesher::BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid)
 
 void BrickMesher::mesh(const Brick& brick, FineSurface& surface) {
     findsSheets_ = true;
-    meshBrick(brick, surface);
+    meshBrick(brick, isAny, surface);
     findGaps(brick, surface);
     forget(brick, surface);
 }
 
 void BrickMesher::meshWithoutSheets(const Brick& brick, FineSurface& surface) {
     findsSheets_ = false;
-    meshBrick(brick, surface);
+    meshBrick(brick, isAny, surface);
     forget(brick, surface);
 }
 
-void BrickMesher::meshWithHalo(const Bricks& bricks, std::int64_t number, FineSurface& surface) {
+void BrickMesher::meshWithHalo(const Bricks& bricks, std::int64_t number,
+                               const std::function<bool(std::uint32_t)>& isNeeded,
+                               FineSurface& surface) {
     const Brick& brick = bricks[number];
     findsSheets_ = false;
-    meshBrick(brick, surface);
+    meshBrick(brick, isNeeded, surface);
     for (int n = 0; n < 27; ++n) {
         const std::int64_t other = bricks.at({brick.low[0] / Brick::kSide + n % 3 - 1,
                                               brick.low[1] / Brick::kSide + n / 3 % 3 - 1,
@@ -153,18 +159,23 @@ void BrickMesher::meshWithHalo(const Bricks& bricks, std::int64_t number, FineSu
                 range.end[a] = std::min(range.end[a], Brick::kSide + kHalo - inBrick);
                 isNear = isNear && range.begin[a] < range.end[a];
             }
-            if (isNear) meshBlock(brick, block, range, surface);
+            if (isNear && isNeeded(block)) meshBlock(brick, block, range, surface);
         }
     }
     forget(brick, surface);
 }
 
-void BrickMesher::meshBrick(const Brick& brick, FineSurface& surface) {
+void BrickMesher::meshBrick(const Brick& brick, const std::function<bool(std::uint32_t)>& isNeeded,
+                            FineSurface& surface) {
     surface.vertices.clear();
     surface.triangles.clear();
     surface.cells.clear();
+    surface.blocks.clear();
     surface.cellsSeen = 0;
-    for (const std::uint32_t block : brick.blocks) {
+    for (std::uint32_t place = 0; place < brick.blocks.size(); ++place) {
+        const std::uint32_t block = brick.blocks[place];
+        if (!isNeeded(block)) continue;
+        surface.blocks.push_back({place, static_cast<std::uint32_t>(surface.vertices.size())});
         meshBlock(brick, block, cellsOf(block), surface);
     }
     surface.ownVertices = surface.vertices.size();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -71,6 +72,12 @@ struct FineSurface {
         std::uint32_t firstTriangle;
     };
     std::vector<Cell> cells;
+    /// A block of the brick that was meshed, by its place in Brick::blocks, and the first of the
+    /// vertices that came with it.
+    struct Block {
+        std::uint32_t place, firstVertex;
+    };
+    std::vector<Block> blocks;
     std::int64_t cellsSeen = 0;  ///< of the active blocks, crossed or not
 };
 
@@ -89,13 +96,16 @@ public:
 
     /// The brick's surface, and after it that of the cells up to kHalo around the brick. Single
     /// sheets and gaps are not looked for.
-    void meshWithHalo(const Bricks& bricks, std::int64_t number, FineSurface& surface);
+    /// \param isNeeded  blocks for which it is false are left out
+    void meshWithHalo(const Bricks& bricks, std::int64_t number,
+                      const std::function<bool(std::uint32_t)>& isNeeded, FineSurface& surface);
 
 private:
     struct CellRange {
         std::array<int, 3> begin, end;  ///< cells of a block
     };
-    void meshBrick(const Brick& brick, FineSurface& surface);
+    void meshBrick(const Brick& brick, const std::function<bool(std::uint32_t)>& isNeeded,
+                   FineSurface& surface);
     void meshBlock(const Brick& brick, std::uint32_t block, const CellRange& range,
                    FineSurface& surface);
     CellRange cellsOf(std::uint32_t block) const;

@@ -21,13 +21,36 @@ std::size_t cellSlot(int x, int y, int z) {
 
 }  // namespace
 
+bool ProofScope::isNearWanted(std::uint32_t block, const BlockGrid& grid) const {
+    if (blocks.empty()) return true;
+    const std::int64_t reach = (BrickMesher::kHalo + grid.blockSize - 1) / grid.blockSize;
+    std::array<std::int64_t, 3> first{}, last{};
+    std::int64_t rest = block;
+    for (int a = 0; a < 3; ++a) {
+        const std::int64_t at = rest % grid.blocks[a];
+        rest /= grid.blocks[a];
+        first[a] = std::max<std::int64_t>(at - reach, 0);
+        last[a] = std::min(at + reach, grid.blocks[a] - 1);
+    }
+    for (std::int64_t z = first[2]; z <= last[2]; ++z) {
+        for (std::int64_t y = first[1]; y <= last[1]; ++y) {
+            const std::int64_t row = grid.blocks[0] * (y + grid.blocks[1] * z);
+            for (std::int64_t x = first[0]; x <= last[0]; ++x) {
+                if (blocks[row + x]) return true;
+            }
+        }
+    }
+    return false;
+}
+
 BrickProof::BrickProof(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
-                       const LatticeSampler& sampler, const ProofScope& scope, double enoughMm,
-                       double limitMm)
+                       const LatticeSampler& sampler, const ProofScope& scope,
+                       SampleNumbers& numbers, double enoughMm, double limitMm)
     : surface_(surface),
       lookup_(lookup),
       frame_(lookup.frame()),
       scope_(scope),
+      numbers_(numbers),
       enoughMm_(enoughMm),
       limitMm_(limitMm),
       mesher_(sampler, lookup.bricks().grid()),
@@ -39,7 +62,10 @@ BrickBound BrickProof::prove(std::int64_t brick) {
     brick_ = brick;
     if (isIdle()) return {};
     low_ = lookup_.bricks()[brick].low;
-    mesher_.meshWithHalo(lookup_.bricks(), brick, fine_);
+    const BlockGrid& grid = lookup_.bricks().grid();
+    mesher_.meshWithHalo(
+        lookup_.bricks(), brick,
+        [&](std::uint32_t block) { return scope_.isNearWanted(block, grid); }, fine_);
     points_.resize(fine_.vertices.size());
     for (std::size_t v = 0; v < points_.size(); ++v) {
         points_[v] = frame_.fromIndex(fine_.vertices[v].index);
@@ -107,24 +133,31 @@ void BrickProof::proveTriangles() {
 }
 
 void BrickProof::findStandIns() {
-    standIn_.resize(fine_.ownVertices);
-    std::uint64_t within = surface_.firstSample[brick_];
-    const std::uint64_t firstOnWall = surface_.firstSample.back();
+    if (scope_.blocks.empty()) {
+        numbers_.ofWhole(brick_, fine_, numberOf_);
+    } else {
+        numbers_.ofPart(brick_, fine_, numberOf_);
+    }
+    const auto standIns = std::span(surface_.sampleTriangle);
+    const auto within = standIns.subspan(surface_.firstSample[brick_]),
+               onWalls = standIns.subspan(surface_.firstSample.back());
+    const auto& edges = surface_.wallEdges;
+    standIn_.assign(fine_.ownVertices, kNone);
     for (std::size_t v = 0; v < fine_.ownVertices; ++v) {
-        const FineVertex& vertex = fine_.vertices[v];
-        if (!vertex.isOnWall) {
-            standIn_[v] = surface_.sampleTriangle[within++];
-            continue;
+        if (fine_.vertices[v].isOnWall) {
+            const std::uint64_t edge = fine_.vertices[v].edge.word;
+            standIn_[v] =
+                onWalls[std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin()];
+        } else if (numberOf_[v] != SampleNumbers::kNone) {
+            standIn_[v] = within[numberOf_[v]];
         }
-        const auto at = std::lower_bound(surface_.wallEdges.begin(), surface_.wallEdges.end(),
-                                         vertex.edge.word);
-        standIn_[v] = surface_.sampleTriangle[firstOnWall + (at - surface_.wallEdges.begin())];
     }
 }
 
 void BrickProof::findUnmoved() {
     unmoved_.assign(fine_.ownVertices, kNone);
     for (std::size_t v = 0; v < fine_.ownVertices; ++v) {
+        if (standIn_[v] == kNone) continue;
         for (const Number corner : lookup_.triangle(standIn_[v])) {
             if (lookup_.point(corner) == points_[v]) unmoved_[v] = corner;
         }
@@ -145,6 +178,7 @@ bool BrickProof::isUnchanged(const std::array<std::uint32_t, 3>& fine) {
 void BrickProof::findStarts(std::span<const Number> triangles) {
     startAt_.assign(triangles.size(), Walkable::kNone);
     for (std::uint32_t v = 0; v < fine_.ownVertices; ++v) {
+        if (standIn_[v] == kNone) continue;
         const auto at = std::lower_bound(triangles.begin(), triangles.end(), standIn_[v]);
         if (at != triangles.end() && *at == standIn_[v]) {
             startAt_[at - triangles.begin()] = walkable_.triangleAt(v);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adaptive/bricks/Bricks.h"
+#include "adaptive/bricks/SampleNumbers.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
 #include "adaptive/mesh/ZeroedTable.h"
@@ -35,6 +36,8 @@ struct ProofScope {
         return !isKnown.empty() && isKnown[triangle] != 0;
     }
     bool isWanted(std::uint64_t block) const { return blocks.empty() || blocks[block]; }
+    /// A block within reach of the mesher's halo is wanted.
+    bool isNearWanted(std::uint32_t block, const BlockGrid& grid) const;
 };
 
 /// Proves bounds of the distance between the full-resolution surface, made anew, and the simplified
@@ -44,11 +47,12 @@ struct ProofScope {
 /// can't settle is left to PieceBound.
 class BrickProof {
 public:
+    /// \param numbers  learnt where all is to be proved, used else
     /// \param enoughMm  no bound need be tighter
     /// \param limitMm   pieces farther off are noted, and do not loosen the bound of the rest
     BrickProof(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
-               const LatticeSampler& sampler, const ProofScope& scope, double enoughMm,
-               double limitMm);
+               const LatticeSampler& sampler, const ProofScope& scope, SampleNumbers& numbers,
+               double enoughMm, double limitMm);
 
     BrickBound prove(std::int64_t brick);
 
@@ -96,6 +100,7 @@ private:
     const SurfaceLookup& lookup_;
     const MetricFrame& frame_;
     const ProofScope& scope_;
+    SampleNumbers& numbers_;
     double enoughMm_, limitMm_;
     BrickMesher mesher_;
 
@@ -104,7 +109,10 @@ private:
     FineSurface fine_;
     std::vector<Vec3> points_;  ///< of the fine surface, metric frame
     Walkable walkable_;
-    std::vector<Number> standIn_;  ///< of each of the brick's own fine vertices
+    std::vector<std::uint32_t> numberOf_;  ///< of each of the brick's own fine vertices, the sample
+    /// Of each of the brick's own fine vertices; kNone where the block that it comes with is not
+    /// meshed.
+    std::vector<Number> standIn_;
     /// For each of the brick's own fine vertices the vertex of the simplified surface in its place.
     std::vector<Number> unmoved_;
     std::vector<Number> unchanged_;       ///< triangles that are fine ones too, ascending

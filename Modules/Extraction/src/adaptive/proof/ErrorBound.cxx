@@ -61,7 +61,11 @@ void forEachFarPiece(const SurfaceLookup& lookup, const Corners& piece, const F&
 
 ErrorProof::ErrorProof(const LatticeSampler& sampler, const Bricks& bricks,
                        const MetricFrame& frame, double limitMm)
-    : sampler_(sampler), bricks_(bricks), frame_(frame), limitMm_(limitMm) {}
+    : sampler_(sampler),
+      bricks_(bricks),
+      frame_(frame),
+      limitMm_(limitMm),
+      numbers_(bricks) {}
 
 ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
     auto lookup = std::make_unique<SurfaceLookup>(surface, bricks_, frame_);
@@ -84,8 +88,9 @@ ErrorBound ErrorProof::prove(const SimplifiedSurface& surface,
     if (last_.triangles.empty()) provedMm_ = 0;
     last_ = TriangleList();  // the scope has what is of use
     std::vector<BrickBound> results(bricks_.count());
-    tbb::enumerable_thread_specific<BrickProof> proofs(
-        [&] { return BrickProof(surface, *lookup, sampler_, scope, enoughMm_, limitMm_); });
+    tbb::enumerable_thread_specific<BrickProof> proofs([&] {
+        return BrickProof(surface, *lookup, sampler_, scope, numbers_, enoughMm_, limitMm_);
+    });
     parallelForPieces(bricks_.count(), 1,
                       [&](std::int64_t b, std::int64_t) { results[b] = proofs.local().prove(b); });
     double provedArea = 0, farthestMm = 0;

@@ -55,6 +55,7 @@ private:
     TriangleList last_;
     std::vector<std::uint8_t> isWithin_;  ///< the limit, each triangle
     std::vector<PlaceBeyond> beyond_;
+    SampleNumbers numbers_;
 };
 
 }  // namespace adaptiso::detail

@@ -13,17 +13,6 @@ std::int64_t floorOf(double x) {
     return static_cast<std::int64_t>(std::floor(x));
 }
 
-TriangleMesh meshOf(const SurfaceState& surface) {
-    TriangleMesh mesh;
-    mesh.points = surface.points;
-    mesh.triangles.reserve(surface.triangles.size());
-    for (const auto& [a, b, c] : surface.triangles) {
-        mesh.triangles.push_back(
-            {static_cast<VertexId>(a), static_cast<VertexId>(b), static_cast<VertexId>(c)});
-    }
-    return mesh;
-}
-
 }  // namespace
 
 std::pair<Index3, Index3> SurfaceLookup::placesNear(std::uint64_t t) const {
@@ -51,15 +40,12 @@ SurfaceLookup::SurfaceLookup(const SimplifiedSurface& surface, const Bricks& bri
                          });
 }
 
-const AabbTree& SurfaceLookup::tree() const {
+const TriangleTree& SurfaceLookup::tree() const {
     std::call_once(treeIsBuilt_, [&] {
         // while it waits for its own tasks a thread must not take one that asks for the tree
-        tbb::this_task_arena::isolate([&] {
-            mesh_ = meshOf(surface_);
-            tree_.emplace(mesh_);
-        });
+        tbb::this_task_arena::isolate([&] { tree_ = TriangleTree(view()); });
     });
-    return *tree_;
+    return tree_;
 }
 
 std::int64_t SurfaceLookup::brickFor(const Vec3& lattice) const {

@@ -2,17 +2,16 @@
 
 #include <array>
 #include <mutex>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Buckets.h"
 #include "adaptive/bricks/Bricks.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
 #include "adaptive/proof/SurfaceWalk.h"
+#include "adaptive/proof/TriangleTree.h"
 
 namespace adaptiso::detail {
 
@@ -42,8 +41,7 @@ public:
     void forEachNear(const Corners& piece, double distanceMm, const F& f) const {
         CornerBox box = boxOf(piece);
         box.widen(distanceMm);
-        tree().forEachOverlap({box.low, box.high},
-                              [&](std::int64_t t) { f(static_cast<SurfaceState::Number>(t)); });
+        tree().forEachOverlap(box, view(), f);
     }
     const WalkableSurface<SurfaceState::Number>& walkable() const { return walkable_; }
     std::span<const SurfaceState::Number> ofBrick(std::int64_t b) const {
@@ -92,15 +90,15 @@ private:
     /// First and last of the bricks' places that a triangle reaches into, with room around.
     std::pair<Index3, Index3> placesNear(std::uint64_t t) const;
 
+    TriangleView view() const { return {surface_.points, surface_.triangles}; }
     /// Built when it is first asked for.
-    const AabbTree& tree() const;
+    const TriangleTree& tree() const;
 
     const SurfaceState& surface_;
     const Bricks& bricks_;
     const MetricFrame& frame_;
     mutable std::once_flag treeIsBuilt_;
-    mutable TriangleMesh mesh_;  ///< the tree's
-    mutable std::optional<AabbTree> tree_;
+    mutable TriangleTree tree_;
     WalkableSurface<SurfaceState::Number> walkable_;
     Buckets<SurfaceState::Number> ofBrick_;
 };
