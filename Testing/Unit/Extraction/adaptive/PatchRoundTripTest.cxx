@@ -12,7 +12,7 @@ using detail::SimplifiedSurface;
 
 TEST(PatchGroups, PutBackWhatTheyTook) {
     PatchedBall ball;
-    detail::SurfaceState after = ball.surface.state();
+    detail::SimplifiedSurface after = ball.surface;
     for (std::size_t n = 0; n < ball.groups.count(); ++n) {
         const Patch patch = ball.groups.take(n, ball.scratch);
         ball.groups.putBack(n, patch, ball.scratch, after);
@@ -25,7 +25,7 @@ TEST(PatchGroups, PutBackWhatTheyTook) {
 
 TEST(PatchGroups, PutBackWhatChangedAndNothingElse) {
     PatchedBall ball;
-    detail::SurfaceState after = ball.surface.state();
+    detail::SimplifiedSurface after = ball.surface;
     std::size_t n = 0;
     while (ball.groups.triangleCount(n) < 20) ++n;
     Patch patch = ball.groups.take(n, ball.scratch);

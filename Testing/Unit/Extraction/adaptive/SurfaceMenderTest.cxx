@@ -49,7 +49,6 @@ TEST(SurfaceMender, SplitsATriangleInThree) {
     ASSERT_EQ(surface.points.size(), 5U);
     EXPECT_EQ(surface.points[4], (Vec3{6, 3, 1}));
     EXPECT_EQ(surface.states.size(), 5U);
-    EXPECT_EQ(surface.quadrics.size(), 5U);
 }
 
 TEST(SurfaceMender, SplitsAnEdgeWithBothTriangles) {

@@ -243,7 +243,6 @@ SurfaceChanges LocalUndo::apply() {
         const Number v = apart_[i];
         surface_.heirs[v] = static_cast<Number>(surface_.points.size());
         surface_.points.push_back(start_.points[v]);
-        surface_.quadrics.push_back(start_.quadrics[v]);
         surface_.states.push_back(start_.states[v]);
         if (!surface_.marks.empty()) surface_.marks.push_back(start_.marks[v]);
     }

@@ -467,10 +467,8 @@ bool SurfaceMender::isOnBorder(Number vertex) const {
 Number SurfaceMender::addVertex(const Vec3& point) {
     const auto v = static_cast<Number>(surface_.points.size());
     growALittle(surface_.points);
-    growALittle(surface_.quadrics);
     growALittle(surface_.states);
     surface_.points.push_back(point);
-    surface_.quadrics.emplace_back();
     surface_.states.push_back(Patch::State::Open);
     if (!surface_.marks.empty()) surface_.marks.push_back(Patch::kPlain);
     around_[v];

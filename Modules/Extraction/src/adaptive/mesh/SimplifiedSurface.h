@@ -19,7 +19,6 @@ struct SurfaceState {
     static constexpr std::size_t kMost = ~Number{0} / 3;
 
     std::vector<Vec3> points;
-    std::vector<StoredQuadric> quadrics;  ///< of each point, seen from it
     std::vector<Patch::State> states;     ///< of each point
     /// Of each point: Patch::kPlain; Patch::kBorder on an open border that may be simplified;
     /// above, a number of the point's own, by which it is known in the end. Empty: all are plain.
@@ -35,6 +34,8 @@ struct SimplifiedSurface : SurfaceState {
     static constexpr Number kGone = ~Number{0};
     static constexpr std::size_t kMostSamples = ~Number{0};
 
+    /// Of each point, seen from it. Empty once nothing is collapsed or fitted any more.
+    std::vector<StoredQuadric> quadrics;
     /// Those within bricks, brick by brick in the mesher's order; then those on bricks' walls,
     /// ordered by their lattice edge.
     std::vector<Sample> samples;

@@ -277,7 +277,7 @@ void PatchGroups::addObstacles(std::size_t n, Patch& patch, PatchScratch& scratc
 }
 
 void PatchGroups::putBack(std::size_t n, const Patch& patch, const PatchScratch& scratch,
-                          SurfaceState& surface) const {
+                          SimplifiedSurface& surface) const {
     const auto members = vertices_.of(n);
     for (std::size_t v = 0; v < members.size(); ++v) {
         surface.states[members[v]] = patch.states[v];

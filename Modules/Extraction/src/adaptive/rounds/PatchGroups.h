@@ -139,7 +139,7 @@ public:
     /// touch different members, so this may run in parallel.
     /// \param scratch  as take() left it
     void putBack(std::size_t n, const Patch& patch, const PatchScratch& scratch,
-                 SurfaceState& surface) const;
+                 SimplifiedSurface& surface) const;
     /// Says of each vertex of a patch what it was merged into.
     /// \param mergedInto  of each vertex of the surface
     void noteMerges(std::size_t n, const Patch& patch,

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "adaptiso/Core/FreeMemory.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
@@ -199,6 +200,7 @@ void Simplification::fit(SimplifiedSurface& surface) {
     work.collapses = false;
     work.fits = true;
     for (; fits_ < 2; ++fits_) PatchRound(surface, nextCut(surface), frame_).run(work);
+    freeMemory(surface.quadrics);
 }
 
 }  // namespace adaptiso::detail

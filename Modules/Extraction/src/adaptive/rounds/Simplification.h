@@ -42,7 +42,7 @@ public:
     SimplifiedSurface toCount(const WantedCount& wanted, double farthestMm);
 
     /// Moves vertices to where they lie closest to their samples: twice, so that what straddles the
-    /// cut has its turn as well.
+    /// cut has its turn as well. The last step: the quadrics are given up.
     void fit(SimplifiedSurface& surface);
 
 private:
