@@ -211,7 +211,10 @@ void MeshData::write(const std::string& path, std::optional<CoordinateFrame> fra
     }
     TriangleMesh lps = mesh_;
     turnXY(lps);
-    settleRounding(lps, format.precision, lpsToFrame(options.frame, options.volume));
+    // as the programs do; walls of labels are rounded alike on both sides instead
+    if (history_ || !report_.empty() || errorBoundMm_) {
+        settleRounding(lps, format.precision, lpsToFrame(options.frame, options.volume));
+    }
     writeMesh(lps, path, options);
 }
 
