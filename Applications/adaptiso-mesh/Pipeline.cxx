@@ -31,6 +31,7 @@
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/Pipeline/StoredMesh.h"
 #include "adaptiso/SpanSpace/IndexFile.h"
 
 namespace adaptiso {
@@ -179,6 +180,18 @@ FinishedSurface finishPieces(TriangleMesh mesh, const FinishOptions& options,
     }
 }
 
+/// What is sound is to be so in the file, too.
+/// \throws InvalidInput  the format has too few digits for that
+void fitToFormat(TriangleMesh& mesh, const MeshWriteOptions& write, const SurfaceSummary& summary,
+                 const MeshOptions& options) {
+    if (!options.checksCrossings && options.method != Method::Adaptive) return;
+    const RoundingHarm harm =
+        settleRounding(mesh, summary.format->precision, lpsToFrame(write.frame, write.volume));
+    if (harm) {
+        throw InvalidInput(summary.file.string() + ": " + textOf(harm, *summary.format));
+    }
+}
+
 /// Makes one surface and writes it under its temporary name.
 SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index, double isovalue,
                            const IsovalueChoice& choice, MeshRun& run, ProgressLine& progress,
@@ -231,6 +244,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         write.frame = summary.frame;
         // tkRAS and voxel indices are those of the image that the user has
         write.volume = frameVolume(summary.frame, run.input.geometry);
+        fitToFormat(finished.mesh, write, summary, options);
         output.write([&](const fs::path& path) { writeMesh(finished.mesh, path, write); });
         summary.bytes = fs::file_size(output.temporary());
     });

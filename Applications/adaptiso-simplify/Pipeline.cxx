@@ -26,6 +26,7 @@
 #include "SimplifyRun.h"
 #include "TextReport.h"
 #include "Verification.h"
+#include "adaptiso/Pipeline/StoredMesh.h"
 
 namespace adaptiso {
 namespace {
@@ -33,6 +34,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "adaptiso-simplify";
+
+/// That settleRounding() moves a point by: three units in the last place, rounding being half of
+/// one, and that one itself.
+constexpr double kMovedRoundings = 7;
 
 /// The stages of a run, as progress, `seconds` of the report and README.md name them.
 constexpr const char* kRead = "read";
@@ -260,9 +265,12 @@ void finish(Simplified result, const MeshFile& input, const std::vector<PointDat
     progress.show(kWrite);
     MeshFile written = run.timer.time(kWrite, [&] {
         if (!run.output.format->holdsNormals) result.mesh.normals.clear();
-        const TriangleMesh moved = change.apply(result.mesh);
+        TriangleMesh moved = change.apply(result.mesh);
+        const RoundingHarm harm =
+            settleRounding(moved, run.output.format->precision, AffineTransform{});
         const double largest = std::max(largestCoordinate(moved), largestCoordinate(result.mesh));
         run.roundingMm = std::sqrt(3.0) * roundingOf(run.output.format->precision, largest);
+        if (harm.movedPoints > 0) run.roundingMm *= kMovedRoundings;
         return writeFiles(moved, std::move(values), input, change, run, outputs);
     });
     progress.show(kVerify);

@@ -146,6 +146,17 @@ class Formats(ApplicationTest):
                 # no format takes less than an index of 4 bytes, or digit and space, a corner
                 self.assertGreater(size, 6 * triangles)
 
+    def test_a_format_with_too_few_digits_is_refused(self):
+        # at 1e8 mm single precision has steps of 8 mm
+        write_nifti(self.path("far.nii"), ball(16, 5, origin=(1e8, 1e8, 1e8)))
+        for extension in (".stl", ".gii"):
+            with self.subTest(extension):
+                self.assert_fails(BAD_INPUT, "^adaptiso-mesh: far" + extension + ": .* keeps 24 "
+                                  "bits of a coordinate: .* triangles would lose their area",
+                                  "far.nii", "--iso", "100", "-o", f"far{extension}")
+        for name in ("far.ply", "far.vtp", "far.surf"):  # tkRAS is measured from the middle
+            self.mesh("far.nii", "--iso", "100", "-o", name)
+
     def test_the_help_lists_no_other_format(self):
         text = self.mesh("--help").stdout
         for extension in FORMATS:

@@ -152,6 +152,22 @@ TEST(Simplify, InterpolatesNormalsWhereThereAreSome) {
     }
 }
 
+// A thin bowl as a tetrahedron: by way of six triangles it could become one on its other side.
+TEST(Simplify, TurnsNoSmallPieceInsideOut) {
+    constexpr double kThickness = 0.02;
+    for (int n = 1; n <= 8; ++n) {
+        TriangleMesh bowl = icosphere(2);
+        bowl.normals = {};
+        for (Vec3& p : bowl.points) {
+            p.z = kThickness * p.z + 0.2 * n * (p.x * p.x + p.y * p.y);
+        }
+        ASSERT_GT(enclosedVolume(bowl), 0);
+        const Simplified result = simplify(bowl, downTo(4));
+        EXPECT_LE(result.mesh.triangles.size(), 6U);
+        EXPECT_GT(enclosedVolume(result.mesh), 0) << n;
+    }
+}
+
 TEST(Simplify, LeavesTwelveTrianglesOfACubeCutFine) {
     // each face 20 x 20 squares: nothing but the edges bends
     const auto volume = sampled<float>(box({}, {8, 8, 8}), centredGeometry({24, 24, 24}));

@@ -8,6 +8,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/Pipeline/StoredMesh.h"
 #include "adaptiso/Pipeline/SurfaceJson.h"
 #include "adaptiso/Report/Page.h"
 #include "adaptiso/Report/Pictures.h"
@@ -210,6 +211,10 @@ void MeshData::write(const std::string& path, std::optional<CoordinateFrame> fra
     }
     TriangleMesh lps = mesh_;
     turnXY(lps);
+    // as the programs do; walls of labels are rounded alike on both sides instead
+    if (history_ || !report_.empty() || errorBoundMm_) {
+        settleRounding(lps, format.precision, lpsToFrame(options.frame, options.volume));
+    }
     writeMesh(lps, path, options);
 }
 

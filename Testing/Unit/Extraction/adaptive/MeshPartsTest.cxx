@@ -94,6 +94,26 @@ TEST(FlatTriangles, SplitTheirNeighbours) {
     expectSound(mended);
 }
 
+// A triangle without area on an edge that has its two triangles already: split there, one of these
+// would leave the other with an edge of its own, a slit in what was closed.
+TEST(FlatTriangles, AreLeftOutWhereTheirSideHasTwoOthers) {
+    const TriangleMesh sphere = bare(icosphere(2));
+    const Triangle& t = sphere.triangles[0];
+    for (const auto& [a, b] : {std::pair(t[0], t[1]), std::pair(t[1], t[0])}) {
+        TriangleMesh flat = sphere;
+        flat.points.push_back(0.5 * (flat.points[a] + flat.points[b]));
+        flat.triangles.push_back({a, b, std::ssize(flat.points) - 1});
+        ASSERT_TRUE(isDegenerate(flat, flat.triangles.back()));
+        const detail::AreaTriangles result = detail::withoutFlatTriangles(flat);
+        EXPECT_EQ(result.flat, 1);
+        ASSERT_EQ(result.triangles.size(), flat.triangles.size());
+        EXPECT_EQ(std::count(result.isLeftOut.begin(), result.isLeftOut.end(), 1), 1);
+        EXPECT_EQ(result.isLeftOut.back(), 1);
+        EXPECT_TRUE(
+            std::equal(sphere.triangles.begin(), sphere.triangles.end(), result.triangles.begin()));
+    }
+}
+
 TEST(FlatTriangles, JoinVerticesAtOnePlace) {
     // an edge of a sphere opened to two vertices at one place, with two triangles without area
     TriangleMesh sphere = bare(icosphere(2));

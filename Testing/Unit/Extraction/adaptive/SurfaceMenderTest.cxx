@@ -99,6 +99,19 @@ TEST(SurfaceMender, CrossesNoOtherSheet) {
     EXPECT_LE(surface.triangles.size(), before + 2);  // it may come a part of the way
 }
 
+// Two sheets that the same point of the full surface is nearest to: the second to reach it stops
+// short, for two vertices at one place are one to whoever welds them.
+TEST(SurfaceMender, PutsNoVertexOnAnother) {
+    detail::SimplifiedSurface surface = surfaceOf(merged({planeMesh(1, 9), planeMesh(1, 9, 1)}));
+    const Vec3 target{6, 3, 0.5};
+    detail::SurfaceMender mender(surface, unitFrame(), kLimitMm);
+    EXPECT_EQ(mender.mendDistances({placeAt({6, 3, 0}, target, triangleUnder(surface, {6, 3, -1})),
+                                    placeAt({6, 3, 1}, target, triangleUnder(surface, {6, 3, 2}))}),
+              2U);
+    EXPECT_EQ(std::count(surface.points.begin(), surface.points.end(), target), 1);
+    EXPECT_TRUE(detail::crossingTriangles(meshOf(surface)).empty());
+}
+
 // A flat square with a sample below its middle, which a vertex above would leave too far away.
 TEST(SurfaceMender, TakesNoSampleBeyondTheBound) {
     detail::SimplifiedSurface surface = surfaceOf(planeMesh(1, 9));

@@ -168,8 +168,36 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
 
 /// The star has the shape asked for and lies near its samples.
 bool PatchSimplifier::staysNear(Change& change) const {
-    return shapeStar(patch_, limits_.shape, change.star) &&
+    return shapeStar(patch_, limits_.shape, change.star) && !turnsOver(change) &&
            errors_.assign(change.star, limits_.maxDistanceMm, change.samples);
+}
+
+/// The star and one more triangle are all of a piece, and would be inside out: a bent sheet can
+/// become a tetrahedron on its other side with no triangle turning far.
+bool PatchSimplifier::turnsOver(const Change& change) const {
+    const Star& star = change.star.star;
+    if (star.count != 3 || star.isOpen) return false;
+    std::array<std::uint32_t, 3> opposite;
+    for (int i = 0; i < 3; ++i) {
+        const std::uint32_t twin =
+            topology_.twin(topology_.leavingIn(star.triangle[i], star.ring[i]));
+        if (twin == PatchTopology::kNone) return false;
+        opposite[i] = twin / 3;
+    }
+    if (opposite[1] != opposite[0] || opposite[2] != opposite[0]) return false;
+    const Vec3 origin = patch_.points[star.ring[0]];
+    const auto volume6 = [&](std::uint32_t t) {
+        const auto& [a, b, c] = patch_.triangles[t];
+        return dot(patch_.points[a] - origin,
+                   cross(patch_.points[b] - origin, patch_.points[c] - origin));
+    };
+    double before = volume6(opposite[0]);
+    for (int i = 0; i < star.count; ++i) before += volume6(star.triangle[i]);
+    for (int i = 0; i < star.removedCount; ++i) before += volume6(star.removed[i]);
+    const double after =
+        dot(change.star.vertex - origin,
+            cross(patch_.points[star.ring[1]] - origin, patch_.points[star.ring[2]] - origin));
+    return (before > 0) != (after > 0);
 }
 
 /// \pre staysNear() was true

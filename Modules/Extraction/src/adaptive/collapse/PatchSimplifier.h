@@ -89,6 +89,7 @@ private:
     void apply(const Change& change);
 
     bool staysNear(Change& change) const;
+    bool turnsOver(const Change& change) const;
     bool crossesNothing(const Change& change);
     bool isInBox(const Vec3& p) const;
     Vec3 fittedPlace(const ChangedStar& star, const Quadric& own) const;

@@ -44,6 +44,7 @@ public:
 
 private:
     using Edge = std::pair<VertexId, VertexId>;
+    static constexpr std::int64_t kSeveral = -1;
 
     /// Vertices at one place, of flat triangles.
     void mergeCorners() {
@@ -75,15 +76,24 @@ private:
             const bool isWanted =
                 result_.isLeftOut[t] == 0 && !hasRepeatedIndex(c) &&
                 std::any_of(c.begin(), c.end(), [&](VertexId v) { return isNear[v] != 0; });
-            if (isWanted) list(t);
+            if (!isWanted) continue;
+            for (int i = 0; i < 3; ++i) {
+                const auto [at, isNew] = triangleAt_.try_emplace({c[i], c[(i + 1) % 3]}, t);
+                if (!isNew) at->second = kSeveral;
+            }
         }
     }
+    /// Puts a changed triangle in the place of another on its edges.
     void list(std::int64_t t) {
         const Triangle& c = result_.triangles[t];
-        for (int i = 0; i < 3; ++i) triangleAt_[{c[i], c[(i + 1) % 3]}] = t;
+        for (int i = 0; i < 3; ++i) {
+            std::int64_t& at = triangleAt_[{c[i], c[(i + 1) % 3]}];
+            if (at != kSeveral) at = t;
+        }
     }
 
-    /// Gives a flat triangle and the one across its longest side their other diagonal.
+    /// Gives a flat triangle and the one across its longest side their other diagonal, where these
+    /// two alone have that side: a third one would be left with an edge of its own.
     bool splitAcross(std::int64_t t) {
         const Triangle flat = result_.triangles[t];
         const auto lengthOf = [&](int i) {
@@ -95,7 +105,10 @@ private:
         }
         const VertexId a = flat[longest], b = flat[(longest + 1) % 3], c = flat[(longest + 2) % 3];
         const auto across = triangleAt_.find(Edge{b, a});
-        if (across == triangleAt_.end() || across->second == t) return false;
+        if (across == triangleAt_.end() || across->second == t || across->second == kSeveral ||
+            triangleAt_.at({a, b}) != t) {
+            return false;
+        }
         const std::int64_t u = across->second;
         const Triangle other = result_.triangles[u];
         const VertexId d =
@@ -115,7 +128,7 @@ private:
     const TriangleMesh& mesh_;
     std::vector<std::int64_t> flat_;  ///< those that are still there
     AreaTriangles result_;
-    std::map<Edge, std::int64_t> triangleAt_;
+    std::map<Edge, std::int64_t> triangleAt_;  ///< kSeveral: of more than one
 };
 
 }  // namespace

@@ -222,9 +222,10 @@ bool SurfaceMender::moveVertex(Number vertex, const Vec3& step) {
         }
         if (!facesAs(now, before)) return false;
     }
-    if (!isSound(moved, around)) return false;
+    const Vec3 target = surface_.points[vertex] + step;
+    if (!isFree(target, around) || !isSound(moved, around)) return false;
     for (const Number t : around) note(t);
-    surface_.points[vertex] = surface_.points[vertex] + step;
+    surface_.points[vertex] = target;
     for (const Number t : Numbers(around)) replace(t, surface_.triangles[t]);
     return true;
 }
@@ -239,7 +240,8 @@ bool SurfaceMender::splitEdge(Number triangle, int corner, const Vec3& point) {
     const std::vector<Corners> parts{
         {at[a], point, at[c]}, {point, at[b], at[c]}, {at[b], point, at[d]}, {point, at[a], at[d]}};
     if (!facesAs(parts[0], first) || !facesAs(parts[1], first) || !facesAs(parts[2], second) ||
-        !facesAs(parts[3], second) || !isSound(parts, {triangle, twin})) {
+        !facesAs(parts[3], second) || !isFree(point, {triangle, twin}) ||
+        !isSound(parts, {triangle, twin})) {
         return false;
     }
     note(triangle);
@@ -260,7 +262,7 @@ bool SurfaceMender::splitTriangle(Number triangle, const Vec3& point) {
     const std::vector<Corners> parts{
         {at[a], at[b], point}, {at[b], at[c], point}, {at[c], at[a], point}};
     if (!isInBox(point) || !facesAs(parts[0], before) || !facesAs(parts[1], before) ||
-        !facesAs(parts[2], before) || !isSound(parts, {triangle})) {
+        !facesAs(parts[2], before) || !isFree(point, {triangle}) || !isSound(parts, {triangle})) {
         return false;
     }
     note(triangle);
@@ -327,7 +329,7 @@ bool SurfaceMender::collapseEdge(Number triangle, int corner, const PlaceBeyond&
         }
         if (!isAllowed ||
             (squared > 0 && squaredDistanceToNearest(place.onFine, parts) >= squared) ||
-            !isSound(parts, replaced)) {
+            !isFree(target, replaced) || !isSound(parts, replaced)) {
             continue;
         }
         for (const Number t : replaced) note(t);
@@ -389,6 +391,22 @@ bool SurfaceMender::facesAs(const Corners& now, const Corners& before) const {
 /// \param replaced  triangles that go
 bool SurfaceMender::isSound(const std::vector<Corners>& triangles, const Numbers& replaced) const {
     return staysNear(triangles, replaced) && crossesNothing(triangles, replaced);
+}
+
+/// No other triangle has a corner there: two vertices at one place do not cross as trianglesCross
+/// has it, but are one vertex to whoever welds them.
+bool SurfaceMender::isFree(const Vec3& point, const Numbers& replaced) const {
+    bool isFree = true;
+    forEachCube({point, point}, [&](const Index3& cube) {
+        const auto in = inCube_.find(cube);
+        if (in == inCube_.end()) return;
+        isFree = std::none_of(in->second.begin(), in->second.end(), [&](Number t) {
+            const Corners c = cornersOf(t);
+            return std::find(c.begin(), c.end(), point) != c.end() && !contains(replaced, t) &&
+                   !contains(gone_, t);
+        });
+    });
+    return isFree;
 }
 
 /// The samples of the replaced triangles lie within the bound of the new ones, or as near as the

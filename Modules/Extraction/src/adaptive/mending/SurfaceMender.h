@@ -74,6 +74,7 @@ private:
     bool isInBox(const Vec3& p) const { return !box_ || box_->overlaps({p, p}); }
     bool facesAs(const Corners& now, const Corners& before) const;
     bool isSound(const std::vector<Corners>& triangles, const Numbers& replaced) const;
+    bool isFree(const Vec3& point, const Numbers& replaced) const;
     bool staysNear(const std::vector<Corners>& triangles, const Numbers& replaced) const;
     bool crossesNothing(const std::vector<Corners>& triangles, const Numbers& replaced) const;
 

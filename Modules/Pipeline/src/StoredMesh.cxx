@@ -1,0 +1,256 @@
+#include "adaptiso/Pipeline/StoredMesh.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/MeshQuality/Topology.h"
+
+namespace adaptiso {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+constexpr std::int64_t kMostPairs = 300;  ///< more come of a mesh too fine for its coordinates
+constexpr int kMostPasses = 4;
+
+double toNineDigits(double value) {
+    std::array<char, 32> text{};
+    const auto [end, error] =
+        std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 9);
+    double read = value;
+    if (error == std::errc{}) std::from_chars(text.data(), end, read);
+    return read;
+}
+
+double stored(double value, CoordinatePrecision precision) {
+    if (precision == CoordinatePrecision::NineDigits) return toNineDigits(value);
+    const volatile float rounded = static_cast<float>(value);  // as Stl.cxx has it
+    return rounded;
+}
+
+/// The coordinate before or after that a file can hold.
+double neighbour(double value, int side, CoordinatePrecision precision) {
+    if (precision == CoordinatePrecision::NineDigits) {
+        const double last = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 8);
+        return value == 0 ? value : toNineDigits(value + side * last);
+    }
+    constexpr float kFar = std::numeric_limits<float>::max();
+    return std::nextafter(static_cast<float>(value), static_cast<float>(side) * kFar);
+}
+
+Corners cornersOf(const TriangleMesh& mesh, std::int64_t t) {
+    const Triangle& c = mesh.triangles[t];
+    return {mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]};
+}
+
+bool areSame(const TriangleMesh& mesh, const TriangleMesh& file, VertexId a, VertexId b) {
+    return file.points[a] == file.points[b] && mesh.points[a] != mesh.points[b];
+}
+
+/// Of one mesh, and of the same as a file holds it.
+class Settling {
+public:
+    /// \param exact  in the file's frame
+    Settling(TriangleMesh exact, CoordinatePrecision precision)
+        : exact_(std::move(exact)), precision_(precision), file_{{}, {}, exact_.triangles} {
+        file_.points.resize(exact_.points.size());
+        constexpr std::int64_t kPiece = 1 << 12;
+        parallelForPieces(std::ssize(file_.points), kPiece,
+                          [&](std::int64_t begin, std::int64_t end) {
+                              for (std::int64_t v = begin; v < end; ++v) {
+                                  for (int a = 0; a < 3; ++a) {
+                                      file_.points[v][a] = stored(exact_.points[v][a], precision_);
+                                  }
+                              }
+                          });
+    }
+
+    /// Moves vertices. \return what could not be helped
+    RoundingHarm run() {
+        RoundingHarm harm;
+        for (const Triangle& t : exact_.triangles) {
+            if (isDegenerate(file_, t) && !isDegenerate(exact_, t)) ++harm.flatTriangles;
+        }
+        harm.mergedPoints = mergedPoints();
+        std::vector<TrianglePair> pairs = newPairs(harm.crossingPairs);
+        for (int pass = 0; pass < kMostPasses && isWorthATry(harm); ++pass) {
+            bool isMoved = false;
+            for (const TrianglePair& pair : pairs) isMoved = mend(pair) || isMoved;
+            if (!isMoved) break;
+            pairs = newPairs(harm.crossingPairs);
+        }
+        return harm;
+    }
+
+    /// Vertices that lie elsewhere than rounding puts them, with their places in the file.
+    const std::vector<VertexId>& moved() const { return moved_; }
+    const Vec3& at(VertexId v) const { return file_.points[v]; }
+
+private:
+    static bool isWorthATry(const RoundingHarm& harm) {
+        return harm.crossingPairs > 0 && harm.crossingPairs <= kMostPairs;
+    }
+
+    /// Places in the file that more vertices share than before.
+    std::int64_t mergedPoints() const {
+        std::vector<VertexId> order(file_.points.size());
+        for (std::size_t v = 0; v < order.size(); ++v) order[v] = static_cast<VertexId>(v);
+        const auto key = [&](VertexId v) {
+            const Vec3& p = file_.points[v];
+            return std::array{p.x, p.y, p.z};
+        };
+        std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
+            return key(a) != key(b) ? key(a) < key(b) : a < b;
+        });
+        std::int64_t merged = 0;
+        for (std::size_t i = 1; i < order.size(); ++i) {
+            if (areSame(exact_, file_, order[i - 1], order[i])) ++merged;
+        }
+        return merged;
+    }
+
+    /// Pairs that cross in the file alone. \param count  of them
+    std::vector<TrianglePair> newPairs(std::int64_t& count) const {
+        constexpr std::int64_t kMostNamed = 100000;
+        SelfIntersections found = findSelfIntersections(file_, {.maxPairs = kMostNamed});
+        std::erase_if(found.pairs, [&](const TrianglePair& pair) {
+            return trianglesCross(cornersOf(exact_, pair[0]), cornersOf(exact_, pair[1]));
+        });
+        count = std::ssize(found.pairs);
+        return std::move(found.pairs);
+    }
+
+    /// Moves a corner of two triangles that cross, if that leaves fewer pairs.
+    bool mend(const TrianglePair& pair) {
+        if (!trianglesCross(cornersOf(file_, pair[0]), cornersOf(file_, pair[1]))) return false;
+        std::vector<VertexId> corners;
+        for (const std::int64_t t : pair) {
+            corners.insert(corners.end(), file_.triangles[t].begin(), file_.triangles[t].end());
+        }
+        std::sort(corners.begin(), corners.end());
+        corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+        return std::any_of(corners.begin(), corners.end(), [&](VertexId v) { return move(v); });
+    }
+
+    bool move(VertexId v) {
+        std::vector<std::int64_t> star, near;
+        listAround(v, star, near);
+        std::int64_t least = harmOf(star, near);
+        const Vec3 before = file_.points[v];
+        Vec3 best = before;
+        for (int n = 0; n < 27; ++n) {
+            const std::array<int, 3> side{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+            Vec3& place = file_.points[v];
+            place = before;
+            for (int a = 0; a < 3; ++a) {
+                if (side[a] != 0) place[a] = neighbour(before[a], side[a], precision_);
+            }
+            const Vec3 off = place - exact_.points[v];
+            if (!(norm(off) <= kFarthest * ulpAt(v))) continue;
+            const std::int64_t harm = harmOf(star, near);
+            if (harm >= least) continue;
+            least = harm;
+            best = place;
+        }
+        file_.points[v] = best;
+        if (best == before) return false;
+        moved_.push_back(v);
+        return true;
+    }
+
+    /// How far apart coordinates are there, at most.
+    double ulpAt(VertexId v) const {
+        double most = 0;
+        for (int a = 0; a < 3; ++a) {
+            const double value = file_.points[v][a];
+            most = std::max(most, std::abs(neighbour(value, 1, precision_) - value));
+        }
+        return most;
+    }
+
+    /// The triangles at a vertex, and those that they may come near.
+    void listAround(VertexId v, std::vector<std::int64_t>& star, std::vector<std::int64_t>& near) {
+        BoundingBox box{file_.points[v], file_.points[v]};
+        const auto isAt = [&](const Triangle& t) { return t[0] == v || t[1] == v || t[2] == v; };
+        for (std::size_t t = 0; t < file_.triangles.size(); ++t) {
+            if (!isAt(file_.triangles[t])) continue;
+            star.push_back(static_cast<std::int64_t>(t));
+            for (const Vec3& p : cornersOf(file_, star.back())) {
+                for (int a = 0; a < 3; ++a) {
+                    box.minimum[a] = std::min(box.minimum[a], p[a]);
+                    box.maximum[a] = std::max(box.maximum[a], p[a]);
+                }
+            }
+        }
+        const double more = (1 + kFarthest) * ulpAt(v);
+        for (std::int64_t t = 0; t < std::ssize(file_.triangles); ++t) {
+            const Corners c = cornersOf(file_, t);
+            bool isNear = true;
+            for (int a = 0; a < 3 && isNear; ++a) {
+                isNear = std::max({c[0][a], c[1][a], c[2][a]}) >= box.minimum[a] - more &&
+                         std::min({c[0][a], c[1][a], c[2][a]}) <= box.maximum[a] + more;
+            }
+            if (isNear) near.push_back(t);
+        }
+    }
+
+    /// Pairs that cross, and more than any number of them where a triangle loses its area.
+    std::int64_t harmOf(const std::vector<std::int64_t>& star,
+                        const std::vector<std::int64_t>& near) const {
+        std::int64_t harm = 0;
+        for (const std::int64_t s : star) {
+            if (isDegenerate(file_, file_.triangles[s])) harm += 1 << 20;
+            for (const std::int64_t t : near) {
+                const bool isCounted = std::find(star.begin(), star.end(), t) != star.end();
+                if (t == s || (isCounted && t < s)) continue;
+                if (trianglesCross(cornersOf(file_, s), cornersOf(file_, t))) ++harm;
+            }
+        }
+        return harm;
+    }
+
+    static constexpr double kFarthest = 3;  ///< of a moved vertex, units in the last place
+
+    TriangleMesh exact_;
+    CoordinatePrecision precision_;
+    TriangleMesh file_;
+    std::vector<VertexId> moved_;
+};
+
+}  // namespace
+
+RoundingHarm settleRounding(TriangleMesh& mesh, CoordinatePrecision precision,
+                            const AffineTransform& toFrame) {
+    if (precision == CoordinatePrecision::Float64) return {};
+    TriangleMesh bare{mesh.points, {}, mesh.triangles};
+    Settling settling(transformed(bare, toFrame), precision);
+    RoundingHarm harm = settling.run();
+    const AffineTransform back = inverse(toFrame);
+    for (const VertexId v : settling.moved()) mesh.points[v] = back(settling.at(v));
+    harm.movedPoints = std::ssize(settling.moved());
+    return harm;
+}
+
+std::string textOf(const RoundingHarm& harm, const MeshFormat& format) {
+    const char* const keeps =
+        format.precision == CoordinatePrecision::Float32 ? "24 bits" : "nine digits";
+    std::string what;
+    const auto add = [&](std::int64_t count, const char* text) {
+        if (count == 0) return;
+        what += (what.empty() ? "" : ", ") + formatCount(count) + text;
+    };
+    add(harm.flatTriangles, " triangles would lose their area");
+    add(harm.mergedPoints, " vertices would lie on another");
+    add(harm.crossingPairs, " pairs of triangles would cross");
+    return std::string(format.name) + " keeps " + keeps + " of a coordinate: " + what +
+           "; write a .vtp or .ply, or move the image nearer to the origin";
+}
+
+}  // namespace adaptiso
