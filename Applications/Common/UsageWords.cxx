@@ -181,8 +181,11 @@ std::string shown(std::string_view text) {
         cut.resize(end);
         cut += "...";
     }
+    for (char& c : cut) {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    }
     const bool isPlain = !cut.empty() && std::all_of(cut.begin(), cut.end(), [](char c) {
-        return static_cast<unsigned char>(c) > ' ' && c != 0x7f;
+        return static_cast<unsigned char>(c) > ' ';
     });
     return isPlain ? cut : "'" + cut + "'";
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 #include <unordered_map>
 #include <utility>
@@ -19,13 +20,13 @@ struct Count {
 };
 using Counts = std::unordered_map<Label, Count>;
 
-/// The largest that a float holds exactly, and so the same for all types of samples.
-constexpr Label kMost = 2147483520;
+constexpr Label kMost = std::numeric_limits<Label>::max();
 
 template <class T>
 bool isLabel(T value) {
     if constexpr (std::is_floating_point_v<T>) {
-        return value == std::floor(value) && std::abs(value) <= T(kMost);
+        constexpr T kEnd = T(2147483648);  // kMost is no float
+        return value == std::floor(value) && std::abs(value) < kEnd;
     } else {
         return std::cmp_less_equal(value, kMost) && std::cmp_greater_equal(value, -kMost);
     }
@@ -39,7 +40,7 @@ std::string faultText(const TypedVolumeView<T>& view, const Index3& at) {
     const auto number = static_cast<double>(value);
     const bool isWhole = std::isfinite(number) && number == std::floor(number);
     text += isWhole ? formatNumber(number) : formatShort(number);
-    return text + (isWhole ? ", beyond the labels that are read, -2147483520 to 2147483520"
+    return text + (isWhole ? ", beyond the labels that are read, -2147483647 to 2147483647"
                            : ", which is no whole number, so this is no label map");
 }
 

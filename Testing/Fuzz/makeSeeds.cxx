@@ -86,6 +86,10 @@ void addLabelSeeds(Seeds& seeds) {
         seeds.add("labels", text);
     }
     seeds.add("labels", std::string(767, '\0') + "\xff");
+    for (const char* const text : {"01,2,10-20", "0-5--2,2147483647", "1Thalamus=10,49",
+                                   "1a=1-3\nb=4\na=b=5,6", "21=0.33,2=0.0066", "2-7=1e-3"}) {
+        seeds.add("lists", text);
+    }
 }
 
 void addGiantSeeds(Seeds& seeds) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <unordered_set>
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
@@ -33,17 +34,17 @@ Label toLabel(T sample) {
 }  // namespace
 
 std::vector<Label> findLabels(const VolumeView& volume) {
-    std::vector<Label> labels;
+    std::unordered_set<Label> found;  // a map may have tens of thousands
     dispatchPixelType(volume, [&](const auto& view) {
         Label last = 0;
         for (std::int64_t n = 0; n < view.geometry.voxelCount(); ++n) {
             const Label label = toLabel(view.samples[n]);
-            if (label == last) continue;
+            if (label != last && label != 0) found.insert(label);
             last = label;
-            const auto at = std::lower_bound(labels.begin(), labels.end(), label);
-            if (label != 0 && (at == labels.end() || *at != label)) labels.insert(at, label);
         }
     });
+    std::vector<Label> labels(found.begin(), found.end());
+    std::sort(labels.begin(), labels.end());
     return labels;
 }
 

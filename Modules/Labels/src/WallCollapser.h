@@ -107,6 +107,7 @@ private:
     double homeOnCurve(const Vec3& p, Id u, Id v, const Plan& plan, std::size_t i, NewHome& home);
     bool isNearFull(const Vec3& point, double limitMm);
     void link(Id sample, Id triangle, std::uint8_t slot);
+    bool isNearSamples(const Vec3& point, double limitMm);
     bool spokesAreNear(const Plan& plan, double limitMm);
 
     const WallPatch& patch_;
@@ -123,13 +124,28 @@ private:
     std::vector<Id> fullAround_;   ///< triangles of the full walls at their vertices
     std::vector<Sample> samples_;  ///< of the full walls
     std::vector<Id> firstSample_;  ///< of each triangle
+    /// A triangle, ready to tell what lies over it.
+    struct Plane {
+        Vec3 corner, toFirst, toSecond;  ///< slopes of the barycentric coordinates of corners 1, 2
+        Vec3 normal;                     ///< of length 1; 0 where the triangle is flat, as slopes
+
+        Plane() = default;
+        explicit Plane(const std::array<Vec3, 3>& corners);
+        bool isFlat() const { return normal == Vec3{}; }
+        /// \pre not flat
+        bool isUnder(const Vec3& p) const {
+            const Vec3 q = p - corner;
+            const double a = dot(toFirst, q), b = dot(toSecond, q);
+            return a >= 0 && b >= 0 && a + b <= 1;
+        }
+        double heightOf(const Vec3& p) const { return dot(normal, p - corner); }
+    };
+    std::vector<Plane> fullPlanes_;  ///< of the triangles of the full walls
     // of one collapse
     struct Part {
         std::array<Vec3, 3> corners;
         Id wall;
-        Vec3 toFirst, toSecond;  ///< slopes of the barycentric coordinates of corners 1 and 2
-        Vec3 normal;
-        bool isFlat;
+        Plane plane;
     };
     struct CurvePart {
         Vec3 end;

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <numbers>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include "Canvas.h"
 
@@ -124,33 +126,59 @@ ReportColor onPaper(ReportColor color) {
     return color;
 }
 
+/// More surfaces than that share one row: a picture for each of hundreds is read by nobody, and
+/// Cairo refuses one of 32,768 pixels.
+constexpr std::size_t kMostRows = 24;
+
+struct TriangleRow {
+    std::string name;
+    ReportColor color;
+    std::vector<double> areas, angles;
+};
+
+std::vector<TriangleRow> triangleRows(const Scene& scene) {
+    std::vector<TriangleRow> rows;
+    const bool areJoined = scene.surfaces.size() > kMostRows;
+    for (const SceneSurface& surface : scene.surfaces) {
+        if (surface.mesh.isEmpty()) continue;
+        if (!areJoined) {
+            rows.push_back({surface.name, surface.color, {}, {}});
+        } else if (rows.empty()) {
+            rows.push_back({"all surfaces", surfaceColor(0), {}, {}});
+        }
+        const auto append = [](std::vector<double>& to, const std::vector<double>& values) {
+            to.insert(to.end(), values.begin(), values.end());
+        };
+        append(rows.back().areas, triangleAreas(surface.mesh));
+        append(rows.back().angles, smallestAngles(surface.mesh));
+    }
+    return rows;
+}
+
 }  // namespace
 
 std::optional<Picture> trianglePicture(const Scene& scene) {
     constexpr int kWidth = 460, kHeight = 250, kMargin = 20;
-    const auto rows =
-        std::count_if(scene.surfaces.begin(), scene.surfaces.end(),
-                      [](const SceneSurface& surface) { return !surface.mesh.isEmpty(); });
-    if (rows == 0) return std::nullopt;
+    const std::vector<TriangleRow> rows = triangleRows(scene);
+    if (rows.empty()) return std::nullopt;
     Canvas canvas(2 * (kWidth + kMargin) + kMargin,
-                  static_cast<int>(rows) * (kHeight + kMargin) + kMargin, kWhite);
+                  static_cast<int>(rows.size()) * (kHeight + kMargin) + kMargin, kWhite);
     Pixel corner{kMargin, kMargin};
-    for (const SceneSurface& surface : scene.surfaces) {
-        if (surface.mesh.isEmpty()) continue;
-        const ReportColor color = onPaper(surface.color);
+    for (const TriangleRow& row : rows) {
+        const ReportColor color = onPaper(row.color);
+        drawPanel(canvas, {row.name + ": area of triangles", "mm²", row.areas, color}, corner,
+                  kWidth, kHeight);
         drawPanel(canvas,
-                  {surface.name + ": area of triangles", "mm²", triangleAreas(surface.mesh), color},
-                  corner, kWidth, kHeight);
-        drawPanel(canvas,
-                  {surface.name + ": smallest angle of triangles", "degrees",
-                   smallestAngles(surface.mesh), color, 60.0},
+                  {row.name + ": smallest angle of triangles", "degrees", row.angles, color, 60.0},
                   {corner.x + kWidth + kMargin, corner.y}, kWidth, kHeight);
         corner.y += kHeight + kMargin;
     }
     return Picture{"triangles.png",
                    "Size and shape of the triangles",
-                   "Histograms of the area and of the smallest angle of the triangles of every "
-                   "surface; the tables hold the numbers.",
+                   "Histograms of the area and of the smallest angle of the triangles of " +
+                       std::string(scene.surfaces.size() > kMostRows ? "all surfaces together"
+                                                                     : "every surface") +
+                       "; the tables hold the numbers.",
                    canvas.png(),
                    canvas.width(),
                    canvas.height()};

@@ -59,6 +59,20 @@ TEST(Pictures, RegionsAreDrawnTogether) {
     EXPECT_FALSE(names.contains("surface-1.png"));
 }
 
+// a row for each was a picture taller than Cairo makes, from 122 on, and there was no page
+TEST(Pictures, ManySurfacesShareOneChartOfTriangles) {
+    Report report;
+    report.areRegions = true;
+    for (int n = 0; n < 130; ++n) report.surfaces.push_back({"a cube", testing::cubeMesh()});
+    const std::vector<Picture> pictures = drawPictures(report);
+    const auto chart = std::find_if(pictures.begin(), pictures.end(), [](const Picture& picture) {
+        return picture.name == "triangles.png";
+    });
+    ASSERT_NE(chart, pictures.end());
+    EXPECT_LT(chart->height, 400);
+    EXPECT_NE(chart->altText.find("all surfaces together"), std::string::npos);
+}
+
 TEST(Pictures, ArePngFilesWithAltTexts) {
     const Example example;
     for (const Picture& picture : drawPictures(example.report)) {
