@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <string>
 
 #include "adaptiso/Core/Errors.h"
@@ -72,7 +73,7 @@ public:
         takeTriangles();
         halfEdges_.assign(parts_.points.size(), parts_.triangles);
         if (dropDuplicates()) halfEdges_.assign(parts_.points.size(), parts_.triangles);
-        halfEdges_.match(parts_.triangles, twin_);
+        halfEdges_.match(twin_);
         const std::vector<std::int64_t> crossing = crossingTriangles(parts_.view(), parts_.tree);
         cutEdges();
         cutPoints();
@@ -87,6 +88,7 @@ public:
     }
 
 private:
+    using Spoke = HalfEdges<std::uint32_t>::Spoke;
     static constexpr std::uint32_t kNone = HalfEdges<std::uint32_t>::kNone;
 
     std::uint32_t from(std::uint32_t h) const { return parts_.triangles[h / 3][h % 3]; }
@@ -135,22 +137,22 @@ private:
     }
 
     /// A triangle before it has the same corners, whichever way round.
-    bool isDuplicate(std::uint32_t t) const {
-        const auto& [a, b, c] = parts_.triangles[t];
-        for (const std::uint32_t h : halfEdges_.from(a)) {
-            const std::uint32_t other = h / 3, second = halfEdges_.to(h);
-            if (other >= t) break;
-            const std::uint32_t third = parts_.triangles[other][(h + 2) % 3];
-            if ((second == b && third == c) || (second == c && third == b)) return true;
-        }
-        return false;
+    static bool isDuplicate(const Spoke& spoke, std::span<const Spoke> before) {
+        return std::any_of(before.begin(), before.end(), [&](const Spoke& s) {
+            return std::minmax(s.to, s.from) == std::minmax(spoke.to, spoke.from);
+        });
     }
 
     /// \return whether there were any
     bool dropDuplicates() {
         std::vector<std::uint8_t> isGone(parts_.triangles.size(), 0);
-        forEach(isGone.size(), [&](std::size_t t) {
-            isGone[t] = static_cast<std::uint8_t>(isDuplicate(static_cast<std::uint32_t>(t)));
+        halfEdges_.forEachFan([&](std::span<const Spoke> spokes) {
+            for (std::size_t i = 0; i < spokes.size(); ++i) {
+                const Spoke& spoke = spokes[i];
+                if (spoke.leaving % 3 == 0 && isDuplicate(spoke, spokes.first(i))) {
+                    isGone[spoke.leaving / 3] = 1;
+                }
+            }
         });
         parts_.duplicate = std::count(isGone.begin(), isGone.end(), 1);
         if (parts_.duplicate == 0) return false;
@@ -177,19 +179,18 @@ private:
                           });
     }
 
-    std::int64_t countOf(std::uint32_t a, std::uint32_t b) const {
-        const auto leaving = halfEdges_.from(a);
-        return std::count_if(leaving.begin(), leaving.end(),
-                             [&](std::uint32_t h) { return halfEdges_.to(h) == b; });
-    }
-
     /// Edges with more than two triangles, or two that face opposite sides, lose their twins.
     void cutEdges() {
         isCut_.assign(twin_.size(), 0);
-        forEach(twin_.size(), [&](std::size_t i) {
-            const auto h = static_cast<std::uint32_t>(i);
-            const std::uint32_t a = from(h), b = to(h);
-            isCut_[h] = static_cast<std::uint8_t>(countOf(a, b) > 1 || countOf(b, a) > 1);
+        halfEdges_.forEachFan([&](std::span<const Spoke> spokes) {
+            for (const Spoke& spoke : spokes) {
+                const auto count = [&](std::uint32_t Spoke::*end) {
+                    return std::count_if(spokes.begin(), spokes.end(),
+                                         [&](const Spoke& s) { return s.*end == spoke.to; });
+                };
+                isCut_[spoke.leaving] =
+                    static_cast<std::uint8_t>(count(&Spoke::to) > 1 || count(&Spoke::from) > 1);
+            }
         });
         for (std::uint32_t h = 0; h < twin_.size(); ++h) {
             if (isCut_[h] != 0) {
