@@ -127,6 +127,8 @@ Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& opti
         statistics.crossingTriangles.push_back(
             parts.inputTriangle.empty() ? t : std::int64_t{parts.inputTriangle[t]});
     }
+    std::ranges::sort(statistics.nonManifoldVertices);
+    std::ranges::sort(statistics.crossingTriangles);
     statistics.errorBoundMm = made.errorBoundMm;
     statistics.wantedTriangles = made.wantedTriangles;
     statistics.work = made.work;

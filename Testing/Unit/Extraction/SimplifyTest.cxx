@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <set>
 #include <string>
@@ -300,6 +301,40 @@ TEST(Simplify, DoesNotDependOnTheUnit) {
         EXPECT_EQ(result.statistics.errorBoundMm,
                   std::ldexp(expected.statistics.errorBoundMm, power));
     }
+}
+
+// Those whose neighbours are far apart in memory are sorted first; what is told of them has the
+// numbers of the file.
+TEST(Simplify, TakesManyTrianglesInAnyOrder) {
+    TriangleMesh inOrder = torusMesh(200, 100, 30, 10), turned = inOrder;
+    for (Vec3& p : turned.points) p = {p.x + 15.1, p.z, p.y};  // passes through the first
+    const VertexId count = std::ssize(inOrder.points);
+    inOrder.points.insert(inOrder.points.end(), turned.points.begin(), turned.points.end());
+    for (const auto& [a, b, c] : turned.triangles) {
+        inOrder.triangles.push_back({a + count, c + count, b + count});
+    }
+    inOrder.normals = {};
+    std::vector<VertexId> number(inOrder.points.size());
+    std::iota(number.begin(), number.end(), VertexId{0});
+    std::mt19937 random(1);
+    std::shuffle(number.begin(), number.end(), random);
+    TriangleMesh mixed = inOrder;
+    for (std::size_t v = 0; v < number.size(); ++v) mixed.points[number[v]] = inOrder.points[v];
+    for (Triangle& t : mixed.triangles) {
+        for (VertexId& v : t) v = number[v];
+    }
+    std::shuffle(mixed.triangles.begin(), mixed.triangles.end(), random);
+    const Simplified result = simplify(mixed, within(0.1)),
+                     expected = simplify(inOrder, within(0.1));
+    const auto& crossing = result.statistics.crossingTriangles;
+    ASSERT_FALSE(crossing.empty());
+    EXPECT_TRUE(std::ranges::is_sorted(crossing));
+    EXPECT_EQ(trianglesOf(mixed, crossing), crossingOf(mixed));
+    EXPECT_EQ(crossingOf(result.mesh), crossingOf(mixed));  // kept, and no others
+    EXPECT_LE(largestDistanceMm(mixed, result.mesh), 0.1);
+    const auto made = static_cast<double>(result.mesh.triangles.size()),
+               wanted = static_cast<double>(expected.mesh.triangles.size());
+    EXPECT_NEAR(made / wanted, 1, 0.03);
 }
 
 TEST(Simplify, TakesBoundsLargerAndSmallerThanAllThereIs) {

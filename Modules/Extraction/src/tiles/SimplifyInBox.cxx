@@ -302,7 +302,7 @@ BorderEdges borderOf(const TriangleMesh& mesh) {
     HalfEdges<std::uint64_t> halfEdges;
     halfEdges.assign(mesh.points.size(), triangles);
     std::vector<std::uint64_t> twin;
-    halfEdges.match(triangles, twin);
+    halfEdges.match(twin);
     BorderEdges border;
     for (std::size_t h = 0; h < twin.size(); ++h) {
         if (twin[h] != HalfEdges<std::uint64_t>::kNone) continue;

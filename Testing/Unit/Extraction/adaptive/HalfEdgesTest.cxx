@@ -16,7 +16,7 @@ std::vector<VertexId> twinsOf(const TriangleMesh& mesh) {
     HalfEdges halfEdges;
     halfEdges.assign(mesh.points.size(), mesh.triangles);
     std::vector<VertexId> twin;
-    halfEdges.match(mesh.triangles, twin);
+    halfEdges.match(twin);
     return twin;
 }
 
@@ -134,7 +134,7 @@ TEST(HalfEdges, ForgetTheLastMesh) {
     std::vector<VertexId> twin;
     for (const TriangleMesh* mesh : {&large, &small}) {
         halfEdges.assign(mesh->points.size(), mesh->triangles);
-        halfEdges.match(mesh->triangles, twin);
+        halfEdges.match(twin);
     }
     EXPECT_EQ(twin, twinsOf(small));
 }

@@ -19,7 +19,7 @@ QuadricMinimum PatchSimplifier::bestPlace(std::uint32_t a, std::uint32_t b) cons
     const Quadric sum = patch_.quadrics[a] + patch_.quadrics[b];
     const Vec3 &p = patch_.points[a], &q = patch_.points[b];
     const bool endsAtA = topology_.isOnBorder(a), endsAtB = topology_.isOnBorder(b);
-    if (!endsAtA && !endsAtB) return minimize(sum, 0.5 * (p + q));
+    if (!endsAtA && !endsAtB) return minimize(sum, 0.5 * (p + q), kPlaceStiffness);
     // vertices of a border stay vertices of the border that it was
     const double atA = std::max(sum.at(p), 0.0), atB = std::max(sum.at(q), 0.0);
     return endsAtA && (!endsAtB || atA <= atB) ? QuadricMinimum{p, atA} : QuadricMinimum{q, atB};
@@ -249,7 +249,9 @@ Vec3 PatchSimplifier::fittedPlace(const ChangedStar& star, const Quadric& own) c
             sum.b += -dot(normal, d) * g;
         }
     }
-    return star.vertex + minimize(sum, {}, kFitStiffness).point;
+    const Vec3 step = minimize(sum, {}, kFitStiffness).point;
+    const double length = norm(step), most = kFitStep * frame_.voxelMm();
+    return star.vertex + (length > most ? most / length : 1.0) * step;
 }
 
 }  // namespace adaptiso::detail

@@ -22,12 +22,13 @@ struct MeshParts {
     /// Of each point: Patch::kPlain, or for those that were cut apart Patch::kBorder + 1 + the
     /// number of the input's point in nonManifold. Empty: all plain.
     std::vector<std::uint32_t> marks;
-    std::vector<std::uint8_t> isKept;            ///< of each point: it stays. Empty: none is
-    std::vector<std::uint64_t> borderEdges;      ///< half-edges of open borders, not of cuts
-    std::vector<VertexId> nonManifold;           ///< points of the input, ascending
-    std::vector<std::int64_t> crossing;          ///< triangles that cross others, ascending
-    std::vector<std::uint32_t> inputTriangle;    ///< of each triangle. Empty: its own number
-    TriangleTree tree;                           ///< of the triangles
+    std::vector<std::uint8_t> isKept;        ///< of each point: it stays. Empty: none is
+    std::vector<std::uint64_t> borderEdges;  ///< half-edges of open borders, not of cuts
+    std::vector<VertexId> nonManifold;       ///< points of the input
+    std::vector<std::int64_t> crossing;      ///< triangles that cross others, ascending
+    std::vector<std::uint32_t>
+        inputTriangle;  ///< of each triangle. Empty: its own number, or none crosses
+    TriangleTree tree;  ///< of the triangles
     std::int64_t degenerate = 0, duplicate = 0;  ///< triangles that were dropped
 
     TriangleView view() const { return {points, triangles}; }

@@ -33,47 +33,62 @@ public:
     /// The vertex that a half-edge runs to.
     Index to(Index halfEdge) const { return triangles_[halfEdge / 3][(halfEdge + 1) % 3]; }
 
-    /// The opposite of each half-edge, or kNone. Where several run along an edge they are matched
-    /// in ascending order. \param triangles  as given to assign()
-    void match(std::span<const std::array<Index, 3>> triangles, std::vector<Index>& twin) const {
+    /// A triangle at a vertex: its half-edge that starts there, where that leads, and where its
+    /// half-edge that arrives there comes from.
+    struct Spoke {
+        Index leaving, to, from;
+    };
+
+    /// Calls f(spokes) for each vertex, side by side where there are many: with its triangles in
+    /// ascending order, which are read once.
+    template <class F>
+    void forEachFan(const F& f) const {
         constexpr std::size_t kMany = 1 << 15;  // below, threads cost more than they save
-        twin.assign(3 * triangles.size(), kNone);
-        if (triangles.size() < kMany) {
-            forEachOf(0, triangles.size(), [&](Index h, Index a, Index b) {
-                if (twin[h] != kNone) return;
-                twin[h] = twinOf(h, a, b);
-                if (twin[h] != kNone) twin[twin[h]] = h;
-            });
+        const auto count = static_cast<std::int64_t>(leaving_.count());
+        if (triangles_.size() < kMany) {
+            forEachFanOf(0, count, f);
             return;
         }
         constexpr std::int64_t kPiece = 1 << 13;
-        parallelForPieces(std::ssize(triangles), kPiece, [&](std::int64_t begin, std::int64_t end) {
-            forEachOf(begin, end, [&](Index h, Index a, Index b) { twin[h] = twinOf(h, a, b); });
+        parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
+            forEachFanOf(begin, end, f);
+        });
+    }
+
+    /// The opposite of each half-edge, or kNone. Where several run along an edge they are matched
+    /// in ascending order.
+    void match(std::vector<Index>& twin) const {
+        twin.resize(3 * triangles_.size());
+        forEachFan([&](std::span<const Spoke> spokes) {  // opposite ones arrive in the same fan
+            for (std::size_t i = 0; i < spokes.size(); ++i) {
+                twin[spokes[i].leaving] = oppositeOf(i, spokes);
+            }
         });
     }
 
 private:
-    /// Calls f(half-edge, from, to) for those of the triangles [begin, end).
     template <class F>
-    void forEachOf(std::size_t begin, std::size_t end, const F& f) const {
-        for (std::size_t t = begin; t < end; ++t) {
-            const auto& [a, b, c] = triangles_[t];
-            const auto h = static_cast<Index>(3 * t);
-            f(h, a, b);
-            f(h + 1, b, c);
-            f(h + 2, c, a);
+    void forEachFanOf(std::int64_t begin, std::int64_t end, const F& f) const {
+        std::vector<Spoke> spokes;
+        for (std::int64_t v = begin; v < end; ++v) {
+            spokes.clear();
+            for (const Index h : from(static_cast<Index>(v))) {
+                const auto& t = triangles_[h / 3];
+                spokes.push_back({h, t[(h + 1) % 3], t[(h + 2) % 3]});
+            }
+            f(std::span<const Spoke>(spokes));
         }
     }
 
-    /// Of several that run from a to b the first goes with the first that runs back, and so on.
-    Index twinOf(Index h, Index a, Index b) const {
+    /// Of several that lead to one vertex the first goes with the first that comes from it, and so
+    /// on.
+    static Index oppositeOf(std::size_t spoke, std::span<const Spoke> spokes) {
+        const Index other = spokes[spoke].to;
         std::size_t before = 0;
-        for (const Index g : from(a)) {
-            if (g == h) break;
-            before += to(g) == b ? 1 : 0;
-        }
-        for (const Index g : from(b)) {
-            if (to(g) == a && before-- == 0) return g;
+        for (std::size_t i = 0; i < spoke; ++i) before += spokes[i].to == other ? 1 : 0;
+        for (const Spoke& s : spokes) {
+            if (s.from == other && before-- == 0)
+                return s.leaving % 3 == 0 ? s.leaving + 2 : s.leaving - 1;
         }
         return kNone;
     }

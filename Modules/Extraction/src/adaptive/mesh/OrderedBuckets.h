@@ -30,6 +30,7 @@ public:
         }
     }
 
+    std::size_t count() const { return begin_.size() - 2; }
     std::span<const Item> of(std::size_t bucket) const {
         return {items_.data() + begin_[bucket], items_.data() + begin_[bucket + 1]};
     }

@@ -12,7 +12,7 @@ PatchTopology::PatchTopology(Patch& patch)
     const std::span own(patch.triangles.data(), patch.ownTriangles);
     HalfEdges<std::uint32_t> halfEdges;
     halfEdges.assign(patch.points.size(), own);
-    halfEdges.match(own, twin_);
+    halfEdges.match(twin_);
     // the whole surface is a manifold: a vertex whose triangles all are here has one fan
     std::uint32_t h = 0;
     for (const auto& t : own) {

@@ -60,7 +60,7 @@ public:
         triangles_ = triangles;
         normals_.clear();
         halfEdges_.assign(points.size(), triangles);
-        halfEdges_.match(triangles, twin_);
+        halfEdges_.match(twin_);
     }
 
     Corners cornersOf(Index t) const {
