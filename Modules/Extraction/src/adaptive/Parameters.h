@@ -69,6 +69,12 @@ inline constexpr double kNearCount = 1.05;
 /// Where some patches tell for all, this part of the wanted collapses is aimed at, so that it does
 /// not become more of them.
 inline constexpr double kTrialAim = 0.95;
+/// A round that drops less than this part of the triangles that are too many hardly brings the
+/// count nearer: the limit of cost grows sixteenfold then.
+inline constexpr double kHardly = 0.05;
+/// A round may lead to the count where the one before made this part of the collapses that are left
+/// to make: it is tried out first. Else a trial is half of the round's time for nothing.
+inline constexpr double kLikely = 0.5;
 /// A trial takes every eighth patch, or as many as to have 16 of them.
 inline constexpr std::size_t kTrialFewest = 16, kTrialEvery = 8;
 /// Above this cost cubes are twice as large as bricks: else too much would straddle them. Small
