@@ -35,6 +35,12 @@ std::optional<PatchCut> cutAround(const SimplifiedSurface& surface, const Metric
     return cut;
 }
 
+/// All of it stays as it is, as noise at full resolution does.
+bool isSettled(const SurfaceState& surface) {
+    return std::all_of(surface.states.begin(), surface.states.end(),
+                       [](Patch::State state) { return state == Patch::State::Final; });
+}
+
 bool leavesLess(double part, std::int64_t now, std::int64_t before) {
     return static_cast<double>(now) < part * static_cast<double>(before);
 }
@@ -84,6 +90,7 @@ PatchCut Simplification::nextCut(const SimplifiedSurface& surface) {
 void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
     limits_.triedCost = limits_.maxCost;
     limits_.maxCost = cost;
+    if (isSettled(surface)) return;
     PatchRound(surface, nextCut(surface), frame_).run({limits_});
     surface.returnFreedMemory();
 }
@@ -118,6 +125,7 @@ SimplifiedSurface Simplification::toLimits(SurfaceState& halfway) {
     for (int idle = 0; idle < 2;) {
         const std::int64_t before = surface.triangleCount();
         roundUpTo(std::numeric_limits<double>::max(), surface);
+        if (!leavesLess(kFutile, surface.triangleCount(), before)) break;
         idle = leavesLess(kWorthwhile, surface.triangleCount(), before) ? 0 : idle + 1;
     }
     return surface;
@@ -185,18 +193,23 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
         surface = full_.firstRound(tight_, limits_, nullptr);
     }
     limits_.triedCost = limits_.maxCost;
+    const auto isWithin = [&](double times) {  // of the target
+        return static_cast<double>(surface.triangleCount()) <= times * static_cast<double>(target);
+    };
     for (int helpless = 0; helpless < kMostHelpless;) {
         const std::int64_t above = surface.triangleCount() - target;
-        for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
+        const double worthwhile =
+            limits_.maxDistanceMm < farthestMm ? kWorthwhileAsFar : kWorthwhile;
+        for (int idle = 0; !isWithin(1) && idle < 2;) {
             const std::int64_t before = surface.triangleCount();
             cost *= costStep(before, target, collapsed_);
             if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
             roundTowards(surface, target, cost);
             const bool helped =
-                leavesLess(kWorthwhile, surface.triangleCount() - target, before - target);
+                leavesLess(worthwhile, surface.triangleCount() - target, before - target);
             if (cost > kLastCost) idle = helped ? 0 : idle + 1;
         }
-        if (surface.triangleCount() <= target || limits_.maxDistanceMm >= farthestMm) break;
+        if (isWithin(kMet) || limits_.maxDistanceMm >= farthestMm) break;
         const bool helped = leavesLess(kHelped, surface.triangleCount() - target, above);
         helpless = helped ? 0 : helpless + 1;
         goFarther(surface);
@@ -215,6 +228,7 @@ void Simplification::goFarther(SimplifiedSurface& surface) {
 }
 
 void Simplification::fit(SimplifiedSurface& surface) {
+    if (isSettled(surface)) return;
     PatchWork work{limits_};
     work.collapses = false;
     work.fits = true;
