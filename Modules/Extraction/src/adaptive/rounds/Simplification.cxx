@@ -144,6 +144,7 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
     bool isLanding = false;
     PatchWork work{limits_};
     SurfaceState kept;
+    std::vector<StoredQuadric> keptQuadrics;
     const auto run = [&](bool tries, bool triesAll) {
         PatchRound round(surface, cut, frame_);
         if (tries) isLanding = landOn(wanted, round.tryOut(limits_, triesAll), work);
@@ -154,6 +155,7 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
         work.fits = dealsOut;
     } else {
         kept = surface.state();
+        keptQuadrics = surface.quadrics;
     }
     const bool isLikely =
         static_cast<double>(collapsed_) >= kLikely * static_cast<double>(wanted) ||
@@ -161,6 +163,7 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
     run(isNear && !dealsOut && isLikely, false);
     if (!kept.triangles.empty() && surface.triangleCount() + 1 < target) {
         surface.state() = std::move(kept);
+        surface.quadrics = std::move(keptQuadrics);
         work = PatchWork{limits_};
         run(true, true);
     }
@@ -228,11 +231,11 @@ void Simplification::goFarther(SimplifiedSurface& surface) {
 }
 
 void Simplification::fit(SimplifiedSurface& surface) {
-    if (isSettled(surface)) return;
     PatchWork work{limits_};
     work.collapses = false;
     work.fits = true;
-    for (; fits_ < 2; ++fits_) PatchRound(surface, nextCut(surface), frame_).run(work);
+    for (; fits_ < 2 && !isSettled(surface); ++fits_)
+        PatchRound(surface, nextCut(surface), frame_).run(work);
     freeMemory(surface.quadrics);
 }
 
