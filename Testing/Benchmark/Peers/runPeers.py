@@ -108,7 +108,8 @@ def scans(bench, arguments):
         for part in (0.3, 0.1, 0.03):
             count = round(part * facts["mcTriangles"])
             rows = [peers.quadric(count),
-                    peers.ours("adaptive", "open", triangles=count, border_="open")]
+                    peers.ours("adaptive", arguments.border, triangles=count,
+                               border_=arguments.border)]
             base, ours = rows = bench.rows(volume, rows, arguments.repeats, meters_heap=False)
             results.append({"name": name, "isovalue": isovalue, "part": part, "wanted": count,
                             "rows": rows})

@@ -54,13 +54,18 @@ inline constexpr double kHalfwayCost = 2, kHalfwayDistance = 0.25;
 /// A larger distance helped towards a count when it leaves less than this part of the triangles
 /// that are still too many; after so many in a row that did not, the count is given up.
 inline constexpr double kHelped = 0.95;
-inline constexpr int kMostHelpless = 3;
+inline constexpr int kMostHelpless = 2;
+/// Times the count: no larger distance is allowed for the rest.
+inline constexpr double kMet = 1.001;
 /// Limit of cost before the first round after the allowed distance has grown on the way to a count:
 /// what costs less was hardly refused for its distance.
 inline constexpr double kCostAfterDistance = 0.16;
 /// A round that leaves more than this part of the triangles, or of those that are too many for a
-/// count, was hardly worth it.
-inline constexpr double kWorthwhile = 0.99;
+/// count, was hardly worth it; the second where a larger distance can be allowed instead.
+inline constexpr double kWorthwhile = 0.99, kWorthwhileAsFar = 0.95;
+/// A round without a limit of cost that leaves more than this part of the triangles is the last:
+/// the next one, with the other cut, takes as long and drops fewer.
+inline constexpr double kFutile = 0.999;
 /// Above this part of the wanted count a round is not thought to lead below it.
 inline constexpr double kFarFromCount = 1.6;
 /// Up to this part of the wanted count the rest is dealt out by size: the patches' costs hardly
@@ -69,6 +74,12 @@ inline constexpr double kNearCount = 1.05;
 /// Where some patches tell for all, this part of the wanted collapses is aimed at, so that it does
 /// not become more of them.
 inline constexpr double kTrialAim = 0.95;
+/// A round that drops less than this part of the triangles that are too many hardly brings the
+/// count nearer: the limit of cost grows sixteenfold then.
+inline constexpr double kHardly = 0.05;
+/// A round may lead to the count where the one before made this part of the collapses that are left
+/// to make: it is tried out first. Else a trial is half of the round's time for nothing.
+inline constexpr double kLikely = 0.5;
 /// A trial takes every eighth patch, or as many as to have 16 of them.
 inline constexpr std::size_t kTrialFewest = 16, kTrialEvery = 8;
 /// Above this cost cubes are twice as large as bricks: else too much would straddle them. Small

@@ -2,6 +2,7 @@
 #include <array>
 #include <optional>
 
+#include "Certificate.h"
 #include "adaptiso/Extraction/Tiles.h"
 
 namespace adaptiso {
@@ -11,19 +12,8 @@ namespace {
 /// full resolution, a cell deep. All else is as it can be.
 constexpr double kReach = 2;
 
-struct Extent {
-    Vec3 low, high;
-};
-
-Extent extentOf(const TriangleMesh& mesh, const Triangle& t) {
-    Extent extent{mesh.points[t[0]], mesh.points[t[0]]};
-    for (const VertexId v : t) {
-        for (int a = 0; a < 3; ++a) {
-            extent.low[a] = std::min(extent.low[a], mesh.points[v][a]);
-            extent.high[a] = std::max(extent.high[a], mesh.points[v][a]);
-        }
-    }
-    return extent;
+detail::CornerBox extentOf(const TriangleMesh& mesh, const Triangle& t) {
+    return detail::boxOf({mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]});
 }
 
 }  // namespace
@@ -68,7 +58,7 @@ SeamPart seamPartOf(const TriangleMesh& tiles, const TileCut& cut, const Index3&
     part.mesh.points = tiles.points;
     part.mesh.normals = tiles.normals;
     for (const Triangle& t : tiles.triangles) {
-        const Extent extent = extentOf(tiles, t);
+        const detail::CornerBox extent = extentOf(tiles, t);
         bool isIn = true, touches = true, isNear = false;
         for (int a = 0; a < 3; ++a) {
             isIn = isIn && extent.low[a] > box.low[a] && extent.high[a] < box.high[a];

@@ -93,6 +93,29 @@ TEST(Simplification, MakesTheWantedCount) {
     }
 }
 
+/// Whatever the round before made of it: no round leads below the count for good.
+TEST(Simplification, NoCountIsPassed) {
+    const Ball ball;
+    const std::int64_t fine = ball.simplification().toCount({{}, 0.0}, 0).fineTriangles;
+    for (double part = 0.9; part > 0.15; part *= 0.8) {
+        const auto wanted = static_cast<std::int64_t>(part * static_cast<double>(fine));
+        const SimplifiedSurface surface = ball.simplification().toCount({wanted, {}}, 0);
+        EXPECT_LE(surface.triangleCount(), wanted);
+        EXPECT_GE(surface.triangleCount(), wanted - 1);
+    }
+}
+
+TEST(Simplification, ASettledSurfaceStaysAsItIs) {
+    Ball ball;
+    ball.tight.freeze({kBallMiddle}, 8);  // all of it
+    detail::SurfaceState halfway;
+    SimplifiedSurface surface = ball.simplification().toLimits(halfway);
+    ball.simplification().fit(surface);
+    EXPECT_EQ(surface.triangleCount(), surface.fineTriangles);
+    EXPECT_EQ(surface.points, halfway.points);
+    EXPECT_EQ(surface.heirs.size(), surface.points.size());
+}
+
 TEST(Simplification, GoesFartherForACountWhereItMay) {
     const Ball ball;
     const WantedCount wanted{40, {}};

@@ -35,15 +35,34 @@ std::optional<PatchCut> cutAround(const SimplifiedSurface& surface, const Metric
     return cut;
 }
 
+/// All of it stays as it is, as noise at full resolution does.
+bool isSettled(const SurfaceState& surface) {
+    return std::all_of(surface.states.begin(), surface.states.end(),
+                       [](Patch::State state) { return state == Patch::State::Final; });
+}
+
 bool leavesLess(double part, std::int64_t now, std::int64_t before) {
     return static_cast<double>(now) < part * static_cast<double>(before);
 }
 
-/// How much the limit of cost may grow in a round: the more the farther the wanted count is.
-double costStep(std::int64_t triangles, std::int64_t target) {
+/// How much the limit of cost may grow in a round: the more the farther the wanted count is, and
+/// where the last round hardly brought it nearer.
+/// \param collapsed  in the last round
+double costStep(std::int64_t triangles, std::int64_t target, std::int64_t collapsed) {
     const double part = static_cast<double>(triangles) / static_cast<double>(target);
-    if (part > 2) return 16;
+    if (part > 2 || leavesLess(kHardly, 2 * collapsed, triangles - target)) return 16;
     return part > 1.4 ? 4 : 2;
+}
+
+/// Lowers the limit of cost to where as many collapses are made as wanted; leaves it where that
+/// many are not reached. \return whether they are
+bool landOn(std::int64_t wanted, const PatchTrial& trial, PatchWork& work) {
+    const double part = trial.share < 1 ? kTrialAim * trial.share : 1;
+    const auto most = static_cast<std::int64_t>(part * static_cast<double>(wanted));
+    if (trial.collapses() <= most) return false;
+    work.limits.maxCost = costLimitFor(trial.costs, most);
+    work.fits = true;
+    return true;
 }
 
 }  // namespace
@@ -71,6 +90,7 @@ PatchCut Simplification::nextCut(const SimplifiedSurface& surface) {
 void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
     limits_.triedCost = limits_.maxCost;
     limits_.maxCost = cost;
+    if (isSettled(surface)) return;
     PatchRound(surface, nextCut(surface), frame_).run({limits_});
     surface.returnFreedMemory();
 }
@@ -105,48 +125,57 @@ SimplifiedSurface Simplification::toLimits(SurfaceState& halfway) {
     for (int idle = 0; idle < 2;) {
         const std::int64_t before = surface.triangleCount();
         roundUpTo(std::numeric_limits<double>::max(), surface);
+        if (!leavesLess(kFutile, surface.triangleCount(), before)) break;
         idle = leavesLess(kWorthwhile, surface.triangleCount(), before) ? 0 : idle + 1;
     }
     return surface;
 }
 
-/// A round up to a cost that does not lead below the target: where it would, by a trial, up to the
-/// cost that makes as many collapses as wanted.
+/// A round up to a cost that does not lead below the target: where it may, by a trial, up to the
+/// cost that makes as many collapses as wanted. Where it did all the same it is made again, by a
+/// trial of all patches.
 void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
     limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
     const std::int64_t before = surface.triangleCount(), wanted = (before - target + 1) / 2;
     const double times = static_cast<double>(before) / static_cast<double>(target);
-    PatchWork work{limits_};
-    work.mostCollapses = wanted;
-    PatchRound round(surface, nextCut(surface), frame_);
+    const PatchCut cut = nextCut(surface);
+    const bool dealsOut = times < kNearCount || isTied_;
+    const bool isNear = times <= kFarFromCount;  // from afar not reached but by a cost far too high
     bool isLanding = false;
-    if (times < kNearCount || isTied_) {
-        work.fits = true;
-    } else if (times <= kFarFromCount) {  // from afar not reached but by a cost far too high
-        const PatchTrial trial = round.tryOut(limits_, triesAll_);
-        const double part = trial.share < 1 ? kTrialAim * trial.share : 1;
-        const auto most = static_cast<std::int64_t>(part * static_cast<double>(wanted));
-        if (trial.collapses() > most) {
-            work.limits.maxCost = costLimitFor(trial.costs, most);
-            work.fits = isLanding = true;
-        }
-        work.mostCollapses = PatchWork{}.mostCollapses;
+    PatchWork work{limits_};
+    SurfaceState kept;
+    std::vector<StoredQuadric> keptQuadrics;
+    const auto run = [&](bool tries, bool triesAll) {
+        PatchRound round(surface, cut, frame_);
+        if (tries) isLanding = landOn(wanted, round.tryOut(limits_, triesAll), work);
+        round.run(work);
+    };
+    if (dealsOut || !isNear) {
+        work.mostCollapses = wanted;
+        work.fits = dealsOut;
+    } else {
+        kept = surface.state();
+        keptQuadrics = surface.quadrics;
+    }
+    const bool isLikely =
+        static_cast<double>(collapsed_) >= kLikely * static_cast<double>(wanted) ||
+        (cost > kLastCost && limits_.triedCost <= kLastCost * costUnit_);
+    run(isNear && !dealsOut && isLikely, false);
+    if (!kept.triangles.empty() && surface.triangleCount() + 1 < target) {
+        surface.state() = std::move(kept);
+        surface.quadrics = std::move(keptQuadrics);
+        work = PatchWork{limits_};
+        run(true, true);
     }
     fits_ = work.fits ? fits_ + 1 : 0;
-    round.run(work);
     limits_.triedCost = work.limits.maxCost;
+    collapsed_ = (before - surface.triangleCount()) / 2;
     // where costs are equal, as on flat parts, a limit leaves all or none: the next round deals out
     isTied_ = isLanding && before - surface.triangleCount() < wanted;
 }
 
 SimplifiedSurface Simplification::toCount(const WantedCount& wanted, double farthestMm) {
-    const PatchLimits limits = limits_;
     SimplifiedSurface surface = towards(wanted, farthestMm);
-    if (surface.triangleCount() + 1 < wanted.of(surface.fineTriangles)) {
-        triesAll_ = true;  // the patches that were tried were not like the others
-        limits_ = limits;
-        surface = towards(wanted, farthestMm);
-    }
     fit(surface);
     return surface;
 }
@@ -160,24 +189,30 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
     rounds_ = fits_ = 0;
     isTied_ = false;
     SimplifiedSurface surface = full_.firstRound(tight_, limits_, &costs);
+    collapsed_ = (surface.fineTriangles - surface.triangleCount()) / 2;
     const std::int64_t target = wanted.of(surface.fineTriangles);
     if (surface.triangleCount() < target) {
         limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
         surface = full_.firstRound(tight_, limits_, nullptr);
     }
     limits_.triedCost = limits_.maxCost;
+    const auto isWithin = [&](double times) {  // of the target
+        return static_cast<double>(surface.triangleCount()) <= times * static_cast<double>(target);
+    };
     for (int helpless = 0; helpless < kMostHelpless;) {
         const std::int64_t above = surface.triangleCount() - target;
-        for (int idle = 0; surface.triangleCount() > target && idle < 2;) {
+        const double worthwhile =
+            limits_.maxDistanceMm < farthestMm ? kWorthwhileAsFar : kWorthwhile;
+        for (int idle = 0; !isWithin(1) && idle < 2;) {
             const std::int64_t before = surface.triangleCount();
-            cost *= costStep(before, target);
+            cost *= costStep(before, target, collapsed_);
             if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
             roundTowards(surface, target, cost);
             const bool helped =
-                leavesLess(kWorthwhile, surface.triangleCount() - target, before - target);
+                leavesLess(worthwhile, surface.triangleCount() - target, before - target);
             if (cost > kLastCost) idle = helped ? 0 : idle + 1;
         }
-        if (surface.triangleCount() <= target || limits_.maxDistanceMm >= farthestMm) break;
+        if (isWithin(kMet) || limits_.maxDistanceMm >= farthestMm) break;
         const bool helped = leavesLess(kHelped, surface.triangleCount() - target, above);
         helpless = helped ? 0 : helpless + 1;
         goFarther(surface);
@@ -199,7 +234,8 @@ void Simplification::fit(SimplifiedSurface& surface) {
     PatchWork work{limits_};
     work.collapses = false;
     work.fits = true;
-    for (; fits_ < 2; ++fits_) PatchRound(surface, nextCut(surface), frame_).run(work);
+    for (; fits_ < 2 && !isSettled(surface); ++fits_)
+        PatchRound(surface, nextCut(surface), frame_).run(work);
     freeMemory(surface.quadrics);
 }
 

@@ -59,9 +59,9 @@ private:
     PatchLimits limits_;
     double costUnit_;
     int rounds_ = 0;
-    int fits_ = 0;           ///< how many of the last rounds were with fits
-    bool isTied_ = false;    ///< the last round made less than half of its collapses
-    bool triesAll_ = false;  ///< patches, before it lands on a count
+    int fits_ = 0;                ///< how many of the last rounds were with fits
+    std::int64_t collapsed_ = 0;  ///< in the last round
+    bool isTied_ = false;         ///< the last round made less than half of its collapses
 };
 
 }  // namespace adaptiso::detail
