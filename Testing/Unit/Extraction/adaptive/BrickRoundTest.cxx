@@ -89,7 +89,9 @@ TEST(BrickRound, KeepsWebsCloser) {
         std::size_t tight = 0;
         for (const detail::Sample& sample : surface.samples) {
             const bool isOfBall = sample.point().x > 20;
-            if (isOfBall) ASSERT_EQ(sample.tightness, 0);
+            if (isOfBall) {
+                ASSERT_EQ(sample.tightness, 0);
+            }
             tight += sample.tightness > 0 ? 1 : 0;
         }
         EXPECT_EQ(tight > 1000, webMm == 0.11) << webMm;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "adaptiso/Core/HalvedLeaves.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
 namespace adaptiso {
@@ -86,18 +87,8 @@ public:
 private:
     static constexpr std::int64_t kLeafTriangles = 4;
 
-    /// A node and the leaves below it.
-    struct Subtree {
-        std::int64_t node, firstLeaf, leaves;
-
-        bool isLeaf() const { return leaves == 1; }
-        Subtree left() const { return {node + 1, firstLeaf, leaves / 2}; }
-        Subtree right() const {
-            return {node + 2 * (leaves / 2), firstLeaf + leaves / 2, leaves - leaves / 2};
-        }
-    };
-    /// Halving leaves no more than 64 levels, with one subtree a level left to do.
-    using Stack = std::array<Subtree, 64>;
+    using Subtree = HalvedLeaves;
+    using Stack = HalvedLeaves::Stack;
 
     /// Calls visit(place, box) for the triangles of the leaves, from one on, that overlap a box.
     template <class Visit>

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "Certificate.h"
+#include "adaptiso/Core/HalvedLeaves.h"
 
 namespace adaptiso::detail {
 
@@ -72,18 +73,8 @@ private:
             }
         }
     };
-    /// A node and the leaves below it. Nodes lie in one array in depth-first order.
-    struct Subtree {
-        std::int64_t node, firstLeaf, leaves;
-
-        bool isLeaf() const { return leaves == 1; }
-        Subtree left() const { return {node + 1, firstLeaf, leaves / 2}; }
-        Subtree right() const {
-            return {node + 2 * (leaves / 2), firstLeaf + leaves / 2, leaves - leaves / 2};
-        }
-    };
-    /// Halving leaves no more than 64 levels, with one subtree a level left to do.
-    using Stack = std::array<Subtree, 64>;
+    using Subtree = HalvedLeaves;
+    using Stack = HalvedLeaves::Stack;
     struct Item;
 
     std::span<const std::uint32_t> leaf(std::int64_t number) const {
