@@ -19,7 +19,7 @@ struct SurfaceState {
     static constexpr std::size_t kMost = ~Number{0} / 3;
 
     std::vector<Vec3> points;
-    std::vector<Patch::State> states;     ///< of each point
+    std::vector<Patch::State> states;  ///< of each point
     /// Of each point: Patch::kPlain; Patch::kBorder on an open border that may be simplified;
     /// above, a number of the point's own, by which it is known in the end. Empty: all are plain.
     std::vector<std::uint32_t> marks;

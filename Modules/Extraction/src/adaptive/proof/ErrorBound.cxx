@@ -61,11 +61,7 @@ void forEachFarPiece(const SurfaceLookup& lookup, const Corners& piece, const F&
 
 ErrorProof::ErrorProof(const LatticeSampler& sampler, const Bricks& bricks,
                        const MetricFrame& frame, double limitMm)
-    : sampler_(sampler),
-      bricks_(bricks),
-      frame_(frame),
-      limitMm_(limitMm),
-      numbers_(bricks) {}
+    : sampler_(sampler), bricks_(bricks), frame_(frame), limitMm_(limitMm), numbers_(bricks) {}
 
 ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
     auto lookup = std::make_unique<SurfaceLookup>(surface, bricks_, frame_);
