@@ -54,7 +54,10 @@ std::string formatFixed(double value, int digits) {
     if (!(std::abs(value) < kMostInFull)) return formatShort(value);
     std::ostringstream text;
     text << std::fixed << std::setprecision(digits) << value;
-    return text.str();
+    const std::string shown = text.str();
+    const bool isMinusZero =
+        shown[0] == '-' && shown.find_first_of("123456789") == std::string::npos;
+    return isMinusZero ? shown.substr(1) : shown;
 }
 
 }  // namespace adaptiso

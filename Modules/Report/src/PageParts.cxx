@@ -7,6 +7,7 @@
 
 #include "Payload.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -41,9 +42,8 @@ OutcomeWords wordsOf(ReportOutcome outcome) {
 }
 
 std::string pointText(const Vec3& rasMm) {
-    char text[96];
-    std::snprintf(text, sizeof text, "%.1f, %.1f, %.1f", rasMm.x, rasMm.y, rasMm.z);
-    return text;
+    return formatFixed(rasMm.x, 1) + ", " + formatFixed(rasMm.y, 1) + ", " +
+           formatFixed(rasMm.z, 1);
 }
 
 std::string checkRow(const ReportCheck& check) {

@@ -67,6 +67,9 @@ TEST(FormatRounded, KeepsHugeNumbersShort) {
 TEST(FormatFixed, KeepsTheDigitsAskedFor) {
     EXPECT_EQ(formatFixed(0.1, 2), "0.10");
     EXPECT_EQ(formatFixed(-1234.5678, 3), "-1234.568");
+    EXPECT_EQ(formatFixed(-0.04, 1), "0.0");
+    EXPECT_EQ(formatFixed(-0.0, 0), "0");
+    EXPECT_EQ(formatFixed(-0.06, 1), "-0.1");
 }
 
 }  // namespace adaptiso

@@ -24,8 +24,8 @@ std::string formatCount(long long value);
 /// NaN, as formatShort().
 std::string formatRounded(double value);
 
-/// `value` with `digits` decimals: "0.10"; from 1e15 on, and for infinity and NaN, as
-/// formatShort().
+/// `value` with `digits` decimals: "0.10", never "-0.00"; from 1e15 on, and for infinity and NaN,
+/// as formatShort().
 std::string formatFixed(double value, int digits);
 
 }  // namespace adaptiso
