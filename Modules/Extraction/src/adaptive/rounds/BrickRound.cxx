@@ -147,7 +147,8 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, const N
         middle.setPoint((1.0 / 3) * (p + q + r));
         middle.setNormal(areaVector2(p, q, r));
         middle.room = std::min({near.room[v[0]], near.room[v[1]], near.room[v[2]]});
-        middle.tightness = near.tightness(v[0]) | near.tightness(v[1]) | near.tightness(v[2]);
+        middle.tightness = (near.tightness(v[0]) | near.tightness(v[1]) | near.tightness(v[2])) &
+                           Sample::kMostHalvings;
         patch.sampleTriangle.push_back(t);
     }
 }
@@ -206,7 +207,7 @@ Patch patchOf(const FineSurface& fine, const MetricFrame& frame, double webMm, B
         sample.setPoint(patch.points[v]);
         sample.setNormal(areas[v]);
         sample.room = near.room[v];
-        sample.tightness = near.tightness(v);
+        sample.tightness = near.tightness(v) & Sample::kMostHalvings;
         patch.sampleTriangle.push_back(triangleAt[v]);
     }
     addMiddles(fine, areas, near, patch);
