@@ -118,9 +118,11 @@ zpty -w shell "zstyle ':completion:*' list-max 1000; LISTMAX=1000; COLUMNS=200; 
 zpty -w shell "bindkey '^I' list-choices; print READY"
 zpty -r shell text '*READY*READY*'
 zpty -w -n shell "$3"$'\t'
-sleep 2
-zpty -r -t shell more && print -r -- "$more"
-while zpty -r -t shell more; do print -r -- "$more"; done
+# until nothing has come for two seconds
+for ((idle = 0, tries = 0; idle < 10 && tries < 200; ++idle, ++tries)); do
+    sleep 0.2
+    while zpty -r -t shell more; do print -r -- "$more"; idle=-1; done
+done
 zpty -d shell
 """
 
