@@ -174,8 +174,6 @@ inline constexpr double kLooseBound = 0.2;
 inline constexpr double kSmallQuarter = 2, kLargeQuarter = 6;
 /// Steps towards the triangle under a point.
 inline constexpr int kStepsUnder = 16;
-/// After so many searches in a brick all its triangles are gone through instead.
-inline constexpr int kSearches = 30;
 /// So many full-resolution triangles are asked whether a piece lies near them: with those whose
 /// middles are nearest nearly every piece is settled.
 inline constexpr std::size_t kNearestFine = 6;

@@ -72,7 +72,7 @@ BrickBound BrickProof::prove(std::int64_t brick) {
     }
     walkable_.assign(points_, fine_.triangles);
     result_ = {};
-    searches_ = 0;
+    boxes_.clear();
     fromFine_ = toFine_ = PieceBound(enoughMm_);
     proveOwnCells();
     proveTriangles();
@@ -310,15 +310,17 @@ void BrickProof::collectWithin(double distanceMm, const Corners& piece) {
         nearby.push_back(lookup_.cornersOf(t));
         within_.push_back(t);
     };
-    if (++searches_ > kSearches || !lookup_.ofBrickHasAllWithin(distanceMm)) {
+    if (!lookup_.ofBrickHasAllWithin(distanceMm)) {
         lookup_.forEachNear(piece, distanceMm, add);
         return;
     }
+    const auto triangles = lookup_.ofBrick(brick_);
+    if (boxes_.isEmpty()) {
+        for (const Number t : triangles) boxes_.add(boxOf(lookup_.cornersOf(t)));
+    }
     CornerBox box = boxOf(piece);
     box.widen(distanceMm);
-    for (const Number t : lookup_.ofBrick(brick_)) {
-        if (boxOf(lookup_.cornersOf(t)).overlaps(box)) add(t);
-    }
+    boxes_.forEachOverlap(box, [&](std::size_t i) { add(triangles[i]); });
 }
 
 /// Goes over the pieces of a triangle of the simplified surface that this brick answers for.

@@ -11,6 +11,7 @@
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
 #include "adaptive/mesh/ZeroedTable.h"
+#include "adaptive/proof/BoxList.h"
 #include "adaptive/proof/DistanceProof.h"
 #include "adaptive/proof/PieceBound.h"
 #include "adaptive/proof/SurfaceLookup.h"
@@ -120,7 +121,7 @@ private:
     ZeroedTable cellAt_;                  ///< number + 1
     Number triangle_ = 0;                 ///< whose pieces are looked at
 
-    int searches_ = 0;  ///< for near triangles of the simplified surface
+    BoxList boxes_;  ///< of the brick's triangles; empty until they are asked for
 
     PieceBound fromFine_, toFine_;
     BrickBound result_;

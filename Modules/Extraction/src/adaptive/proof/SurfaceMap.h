@@ -144,7 +144,7 @@ public:
 
 private:
     static constexpr Index kNone = WalkableSurface<Index>::kNone;
-    static constexpr std::size_t kMostCuts = 8, kFewCuts = 3, kMostStops = 32;
+    static constexpr std::size_t kMostCuts = 8, kFewCuts = 5, kMostStops = 32;
     static constexpr std::size_t kMostLoop = 3 * (1 + kMostCuts);
 
     static constexpr double kCostOfCut = 0.01;  ///< of the distance that is near enough
@@ -187,15 +187,21 @@ private:
             SegmentPair nearest;
             double least = std::numeric_limits<double>::max();
             Index next = kNone;
-            for (int side = 0; side < 3; ++side) {
+            const int towards = sideTowards(b.point, onto_->cornersOf(t));
+            if (towards >= 0) {
+                const Index beside = onto_->across(t, towards);
+                if (beside != kNone && beside != last) {
+                    nearest = crossing(t, towards, a, b);
+                    least = nearest.squaredDistance();
+                    next = beside;
+                }
+            }
+            for (int side = 0; least > most && side < 3; ++side) {
                 const Index beside = onto_->across(t, side);
-                if (beside == kNone || beside == last) continue;
+                if (beside == kNone || beside == last || side == towards) continue;
                 const SegmentPair pair = crossing(t, side, a, b);
                 const double squared = pair.squaredDistance();
-                const bool isLast = beside == b.standIn && squared <= most;
-                if (!isLast && squared >= least) continue;
-                nearest = pair, least = squared, next = beside;
-                if (isLast) break;
+                if (squared < least) nearest = pair, least = squared, next = beside;
             }
             if (least > most || cuts_.size() == way.begin + kFewCuts) {
                 cuts_.resize(way.begin);

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "Certificate.h"
+
+namespace adaptiso::detail {
+
+/// Boxes that are all gone through for each question, several at once: some thousand take a
+/// microsecond or two, and no tree has to be made. In single precision, rounded outward.
+class BoxList {
+public:
+    bool isEmpty() const { return low_[0].empty(); }
+    void clear() {
+        for (int a = 0; a < 3; ++a) low_[a].clear(), high_[a].clear();
+    }
+    void add(const CornerBox& box) {
+        for (int a = 0; a < 3; ++a) {
+            low_[a].push_back(below(box.low[a]));
+            high_[a].push_back(above(box.high[a]));
+        }
+    }
+
+    /// Calls f(number) for the boxes that overlap one, or nearly, in ascending order.
+    template <class F>
+    void forEachOverlap(const CornerBox& box, const F& f) const {
+        constexpr std::size_t kAtOnce = 256;
+        std::array<float, kAtOnce> apart;  // above 0 where they do not overlap
+        const std::size_t count = low_[0].size();
+        for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
+            const std::size_t here = std::min(kAtOnce, count - begin);
+            for (int a = 0; a < 3; ++a) {
+                const float *low = low_[a].data() + begin, *high = high_[a].data() + begin;
+                const float lowest = below(box.low[a]), highest = above(box.high[a]);
+                for (std::size_t i = 0; i < here; ++i) {
+                    const float gap = std::max(low[i] - highest, lowest - high[i]);
+                    apart[i] = a == 0 ? gap : std::max(apart[i], gap);
+                }
+            }
+            for (std::size_t i = 0; i < here; ++i) {
+                if (apart[i] <= 0) f(begin + i);
+            }
+        }
+    }
+
+private:
+    static constexpr float kMore = 2 * std::numeric_limits<float>::epsilon(),
+                           kLeast = std::numeric_limits<float>::min();
+    static float below(double x) {
+        const auto f = static_cast<float>(x);
+        return f - (kMore * std::abs(f) + kLeast);
+    }
+    static float above(double x) {
+        const auto f = static_cast<float>(x);
+        return f + (kMore * std::abs(f) + kLeast);
+    }
+
+    std::array<std::vector<float>, 3> low_, high_;  ///< by axis
+};
+
+}  // namespace adaptiso::detail
