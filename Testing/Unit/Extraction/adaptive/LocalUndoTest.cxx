@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <random>
 #include <set>
@@ -12,6 +13,7 @@
 #include "Surfaces.h"
 #include "adaptive/mending/LocalUndo.h"
 #include "adaptive/mending/SurfaceMender.h"
+#include "adaptive/proof/CrossingProof.h"
 #include "adaptive/proof/PieceBound.h"
 #include "adaptive/rounds/PatchRound.h"
 
@@ -109,9 +111,15 @@ TEST(LocalUndo, BringsTheStartBackAroundAPlaceAndNowhereElse) {
         ++near;
     }
     EXPECT_GT(near, 5);
+    // a vertex comes apart in cubes as wide as the reach: the place's own and those beside it
+    const auto isInReach = [&](std::uint32_t v) {
+        const Vec3 way = sphere.coarse.points[v] - place;
+        return std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)}) < 2 * kReach;
+    };
     for (std::size_t t = 0; t < sphere.coarse.triangles.size(); ++t) {
-        const Vec3& p = sphere.coarse.points[sphere.coarse.triangles[t][0]];
-        EXPECT_TRUE(norm(p - place) < 6 || now.contains(cornersOf(sphere.coarse, t)));
+        const auto& corners = sphere.coarse.triangles[t];
+        EXPECT_TRUE(std::any_of(corners.begin(), corners.end(), isInReach) ||
+                    now.contains(cornersOf(sphere.coarse, t)));
     }
 }
 
@@ -143,6 +151,26 @@ TEST(LocalUndo, LeavesSamplesWithTrianglesNearThem) {
                                                     {points[a], points[b], points[c]}),
                   0.3 * 0.3);
     }
+}
+
+// Where a vertex came through the sphere what crosses comes apart, and what crosses that then.
+TEST(LocalUndo, TakesBackWhatCrosses) {
+    CoarseSphere sphere;
+    auto& points = sphere.surface.points;
+    const auto top = std::max_element(points.begin(), points.end(),
+                                      [](const Vec3& a, const Vec3& b) { return a.z < b.z; });
+    top->z = -1.2 * kRadius;
+    std::vector<std::int64_t> crossing = detail::crossingTriangles(meshOf(sphere.surface));
+    ASSERT_GT(crossing.size(), 2U);
+    constexpr int kTimes = 3;
+    for (int n = 0; n < kTimes && !crossing.empty(); ++n) {
+        const std::vector<SurfaceState::Number> seeds(crossing.begin(), crossing.end());
+        ASSERT_TRUE(detail::LocalUndo(sphere.start, sphere.surface).around({}, seeds, {}, 1));
+        expectSound(meshOf(sphere.surface));
+        crossing = detail::crossingTriangles(meshOf(sphere.surface));
+    }
+    EXPECT_TRUE(crossing.empty());
+    EXPECT_LT(sphere.surface.triangles.size(), sphere.start.triangles.size() / 2);
 }
 
 TEST(LocalUndo, HasNothingToDoWhereNothingWasMerged) {
