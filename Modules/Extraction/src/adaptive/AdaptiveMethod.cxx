@@ -70,7 +70,7 @@ private:
         if (isBeyond(attempt.error)) return false;
         findCrossings(attempt);
         for (int mend = 0; mend < kMostMends && !attempt.crossing.empty(); ++mend) {
-            if (wanted_.isGiven() || !mendCrossings(attempt)) break;
+            if (wanted_.isGiven() || !(mendCrossings(attempt) || undoCrossings(attempt))) break;
             attempt.error = proveAndMend(attempt.surface);
             findCrossings(attempt);
         }
@@ -132,13 +132,13 @@ private:
     void mend(SimplifiedSurface& surface, ErrorBound& error) {
         SurfaceMender mender(surface, frame_, *boundMm_, full_.box());
         for (int idle = 0; isBeyond(error) && idle < kMostIdleMends;) {
-            const std::size_t before = error.beyondLimit.size();
+            const std::size_t before = trianglesOf(error).size();
             const std::size_t mended = mender.mendDistances(error.beyondLimit);
             if (mended == 0) break;
             work_.placesMended += static_cast<std::int64_t>(mended);
             surface.returnFreedMemory();
             error = proof_->proveAgain(surface, mender.takeChanges());
-            const bool isLess = static_cast<double>(error.beyondLimit.size()) <
+            const bool isLess = static_cast<double>(trianglesOf(error).size()) <
                                 kMended * static_cast<double>(before);
             idle = isLess ? 0 : idle + 1;
         }
@@ -155,11 +155,8 @@ private:
     void undo(SimplifiedSurface& surface, ErrorBound& error) {
         double reachMm = kUndoReach * frame_.narrowestMm();
         for (int n = 0; n < kMostUndos && isBeyond(error) && !halfway_.points.empty(); ++n) {
-            const std::ptrdiff_t points = std::ssize(surface.points);
-            const auto changes = LocalUndo(halfway_, surface)
-                                     .around(mended_, trianglesOf(error), pointsOf(error), reachMm);
+            const auto changes = undoAround(surface, trianglesOf(error), pointsOf(error), reachMm);
             if (changes) {
-                work_.verticesUndone += std::ssize(surface.points) - points;
                 error = proof_->proveAgain(surface, *changes);
                 mend(surface, error);
             }
@@ -167,11 +164,23 @@ private:
         }
     }
 
+    std::optional<SurfaceChanges> undoAround(SimplifiedSurface& surface,
+                                             const std::vector<SurfaceState::Number>& triangles,
+                                             const std::vector<Vec3>& places, double reachMm) {
+        const std::ptrdiff_t points = std::ssize(surface.points);
+        auto changes = LocalUndo(halfway_, surface).around(mended_, triangles, places, reachMm);
+        work_.verticesUndone += std::ssize(surface.points) - points;
+        return changes;
+    }
+
+    /// Of places beyond the bound, each once: some have hundreds of places.
     static std::vector<SurfaceState::Number> trianglesOf(const ErrorBound& error) {
         std::vector<SurfaceState::Number> triangles;
         for (const PlaceBeyond& place : error.beyondLimit) {
             if (place.triangle != PlaceBeyond::kNone) triangles.push_back(place.triangle);
         }
+        std::sort(triangles.begin(), triangles.end());
+        triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
         return triangles;
     }
     static std::vector<Vec3> pointsOf(const ErrorBound& error) {
@@ -202,6 +211,15 @@ private:
         work_.placesMended += static_cast<std::int64_t>(mended);
         keepChanged(mender);
         return mended > 0;
+    }
+
+    /// Takes triangles that cross others back: where the simplification was taken back, its surface
+    /// can cross that of halfway.
+    bool undoCrossings(Attempt& attempt) {
+        const std::vector<SurfaceState::Number> triangles(attempt.crossing.begin(),
+                                                          attempt.crossing.end());
+        const double reachMm = kUndoReach * frame_.narrowestMm();
+        return undoAround(attempt.surface, triangles, {}, reachMm).has_value();
     }
 
     std::optional<double> boundOf(const AdaptiveOptions& adaptive) const {
