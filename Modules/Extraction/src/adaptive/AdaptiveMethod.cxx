@@ -66,12 +66,18 @@ private:
     /// The surface is proved to lie within the bound and to cross nothing. Single places where it
     /// does not are mended.
     bool keepsPromises(Attempt& attempt) {
-        attempt.error = proveAndMend(attempt.surface);
+        attempt.error = proof_->prove(attempt.surface);
+        attempt.surface.returnFreedMemory();
+        mendDistances(attempt);
         if (isBeyond(attempt.error)) return false;
         findCrossings(attempt);
         for (int mend = 0; mend < kMostMends && !attempt.crossing.empty(); ++mend) {
-            if (wanted_.isGiven() || !(mendCrossings(attempt) || undoCrossings(attempt))) break;
-            attempt.error = proveAndMend(attempt.surface);
+            if (wanted_.isGiven()) break;
+            auto changes = mendCrossings(attempt);
+            if (!changes) changes = undoCrossings(attempt);
+            if (!changes) break;
+            attempt.error = proof_->proveAgain(attempt.surface, *changes);
+            mendDistances(attempt);
             findCrossings(attempt);
         }
         return attempt.crossing.empty() && !isBeyond(attempt.error);
@@ -118,14 +124,11 @@ private:
 
     bool isBeyond(const ErrorBound& error) const { return boundMm_ && error.largestMm > *boundMm_; }
 
-    /// What is proved of the surface, after places beyond the bound were mended.
-    ErrorBound proveAndMend(SimplifiedSurface& surface) {
-        ErrorBound error = proof_->prove(surface);
-        surface.returnFreedMemory();
-        if (wanted_.isGiven() || !isBeyond(error)) return error;
-        mend(surface, error);
-        undo(surface, error);
-        return error;
+    /// Mends places beyond the bound, and proves what was changed.
+    void mendDistances(Attempt& attempt) {
+        if (wanted_.isGiven() || !isBeyond(attempt.error)) return;
+        mend(attempt.surface, attempt.error);
+        undo(attempt.surface, attempt.error);
     }
 
     /// \param error  what was proved; then what is
@@ -205,21 +208,21 @@ private:
         return places;
     }
 
-    bool mendCrossings(Attempt& attempt) {
+    std::optional<SurfaceChanges> mendCrossings(Attempt& attempt) {
         SurfaceMender mender(attempt.surface, frame_, *boundMm_, full_.box());
         const std::size_t mended = mender.mendCrossings(attempt.crossing);
         work_.placesMended += static_cast<std::int64_t>(mended);
         keepChanged(mender);
-        return mended > 0;
+        if (mended == 0) return {};
+        return mender.takeChanges();
     }
 
     /// Takes triangles that cross others back: where the simplification was taken back, its surface
     /// can cross that of halfway.
-    bool undoCrossings(Attempt& attempt) {
+    std::optional<SurfaceChanges> undoCrossings(Attempt& attempt) {
         const std::vector<SurfaceState::Number> triangles(attempt.crossing.begin(),
                                                           attempt.crossing.end());
-        const double reachMm = kUndoReach * frame_.narrowestMm();
-        return undoAround(attempt.surface, triangles, {}, reachMm).has_value();
+        return undoAround(attempt.surface, triangles, {}, kUndoReach * frame_.narrowestMm());
     }
 
     std::optional<double> boundOf(const AdaptiveOptions& adaptive) const {
