@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -273,6 +274,24 @@ TEST(Simplify, DropsTrianglesWithoutAreaAndDoubledOnes) {
     EXPECT_EQ(repeated.statistics.degenerateTriangles, 1);
     expectSound(repeated.mesh);
     expectSound(simplify(withUnusedVertex(sphere), within(0.1)).mesh);
+}
+
+TEST(Simplify, KeepsASurfaceWithNeedlesClosed) {
+    TriangleMesh sphere = icosphere(4, {}, 10);
+    for (std::size_t t = 0; t < 2000; t += 97) {
+        const auto [a, b, c] = sphere.triangles[t];
+        const auto copy = std::ssize(sphere.points);
+        sphere.points.push_back(sphere.points[a] + 1e-11 * (sphere.points[b] - sphere.points[a]));
+        sphere.triangles[t] = {copy, b, c};
+        sphere.triangles.push_back({a, b, copy});
+        sphere.triangles.push_back({a, copy, c});
+    }
+    sphere.normals.clear();
+    const Simplified result = simplify(sphere, within(0.1));
+    EXPECT_GT(result.statistics.degenerateTriangles, 30);
+    expectSound(result.mesh);
+    EXPECT_LE(result.statistics.errorBoundMm, 0.1);
+    expectBoundHolds(sphere, result);
 }
 
 TEST(Simplify, RefusesWhatIsNoMesh) {
