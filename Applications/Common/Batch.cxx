@@ -39,6 +39,18 @@ public:
           progress_(common.isQuiet) {}
 
     int run() {
+        try {
+            return runAll();
+        } catch (...) {
+            removeUnused();
+            throw;
+        }
+    }
+
+private:
+    using Planned = std::vector<PlannedRecord>;
+
+    int runAll() {
         if (batch_.skipsExisting) findEarlierRuns();
         std::vector<std::size_t> waiting;
         for (std::size_t n = 0; n < items_.size(); ++n) {
@@ -60,9 +72,6 @@ public:
         flushResults();
         return failedCount() == 0 ? kExitOk : kExitCheckFailed;
     }
-
-private:
-    using Planned = std::vector<PlannedRecord>;
 
     void findEarlierRuns() {
         for (std::size_t n = 0; n < items_.size(); ++n) {
@@ -90,13 +99,27 @@ private:
 
     /// What has no record gets one that says that it has not ended: if this batch is killed, nobody
     /// who builds the page takes what it left for all.
-    void announce(const std::vector<std::size_t>& waiting) const {
+    void announce(const std::vector<std::size_t>& waiting) {
         if (!plan_.keepsRecords()) return;
         for (const std::size_t n : waiting) {
             if (!items_[n].folder.empty()) fs::create_directories(items_[n].folder);
-            for (const auto& [file, record] : notFinished(n)) {
-                if (!fs::exists(file)) writeRecord(file, record);
+            for (const PlannedRecord& planned : plan_.records(items_[n])) {
+                if (fs::exists(planned.file)) continue;
+                writeRecord(planned.file, newRecord(n, planned));
+                announced_.push_back(planned);
             }
+        }
+    }
+
+    /// This batch ends before its time, and lives to tell: of what it has announced and not made
+    /// nothing stays.
+    void removeUnused() const {
+        for (const PlannedRecord& planned : announced_) {
+            std::error_code error;
+            if (!planned.surface.empty() && fs::exists(planned.surface, error)) continue;
+            RecordFault fault = RecordFault::None;
+            const std::optional<KeptRecord> record = readRecord(planned.file, fault);
+            if (record && !record->hasEnded) fs::remove(planned.file, error);
         }
     }
 
@@ -379,7 +402,8 @@ private:
     std::vector<std::optional<BatchRecord>> records_;  ///< none: not ended yet
     std::vector<std::string> reasons_;  ///< why it is made again; empty: it was not made before
     EarlierRuns earlier_;
-    Records own_;  ///< that are kept in no file
+    Records own_;        ///< that are kept in no file
+    Planned announced_;  ///< whose records were not there before
     const std::vector<BatchItem> expected_;
     Clock::time_point pageWritten_{};
     ProgressLine progress_;

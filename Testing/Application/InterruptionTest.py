@@ -2,6 +2,7 @@
 
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -260,14 +261,29 @@ class NoRoom(ApplicationTest):
         self.assertIn("report.json", done.stderr)
         self.assertEqual(self.contents(), before)
 
-    @unittest.skipIf(os.geteuid() != 0, "only root can mount")
-    def test_a_full_disk(self):
+    def small_disk(self, size):
         disk = Path(tempfile.mkdtemp(prefix="adaptiso-disk-"))
         self.addCleanup(disk.rmdir)
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k", "tmpfs", disk],
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=" + size, "tmpfs", disk],
                           stderr=subprocess.DEVNULL).returncode != 0:
             self.skipTest("this machine lets nobody mount")
         self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        return disk
+
+    @unittest.skipIf(os.geteuid() != 0, "only root can mount")
+    def test_a_batch_that_fills_the_disk_leaves_no_record_of_what_it_has_not_made(self):
+        disk = self.small_disk("32k")
+        for n in range(20):
+            shutil.copy(self.path("ball.nii"), self.path(f"ball-{n}.nii"))
+        done = self.run_mesh(*(f"ball-{n}.nii" for n in range(20)), "--iso", "100",
+                             "--output-dir", disk)
+        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1)
+        self.assertEqual(list(disk.iterdir()), [])
+
+    @unittest.skipIf(os.geteuid() != 0, "only root can mount")
+    def test_a_full_disk(self):
+        disk = self.small_disk("16k")
         for extension in self.EXTENSIONS:
             with self.subTest(extension):
                 done = self.run_mesh("ball.nii", "--iso", "100", "-o", disk / f"lh{extension}",

@@ -127,7 +127,8 @@ class Files(InFolder):
         before = file.read_bytes()
         for path, frame in ((file, "scanner"), (self.folder / "a.xyz", None),
                             (self.folder / "b.surf", "voxel"), (self.folder / "no" / "a.ply", None),
-                            (self.folder, None), ("", None), (3, None)):
+                            (self.folder, None), ("", None), (3, None),
+                            (f"{self.folder}/b.ply/", None), (f"{self.folder}/b.ply/.", None)):
             with self.assertRaises(adaptiso.Error) as caught:
                 mesh.save(path, frame)
             self.assertNotIn("\n", str(caught.exception))
@@ -135,6 +136,22 @@ class Files(InFolder):
             adaptiso.Mesh(mesh.vertices, mesh.faces).save(self.folder / "a.surf")
         self.assertEqual(file.read_bytes(), before)
         self.assertEqual([entry.name for entry in self.folder.iterdir()], ["a.ply"])
+
+    def test_a_format_with_too_few_digits_is_refused(self):
+        # at 1e8 mm single precision has steps of 8 mm
+        affine = np.diag([-1.0, -1, 1, 1])
+        affine[:3, 3] = 1e8
+        mesh = adaptiso.surface(np.asfortranarray(ball((16, 16, 16))), -5, affine=affine)
+        simplified = adaptiso.simplify(mesh, max_error=0.5)
+        for extension in (".stl", ".gii"):
+            for surface in (mesh, simplified, pickle.loads(pickle.dumps(mesh))):
+                with self.assertRaisesRegex(adaptiso.Error, "far.* keeps 24 bits of a coordinate: "
+                                            ".* triangles would lose their area"):
+                    surface.save(self.folder / ("far" + extension))
+        self.assertEqual(list(self.folder.iterdir()), [])
+        mesh.save(self.folder / "far.ply")
+        # what was made elsewhere is written as it is
+        adaptiso.Mesh(mesh.vertices, mesh.faces).save(self.folder / "far.stl")
 
     def test_a_link_stays_a_link(self):
         (self.folder / "link.ply").symlink_to(self.folder / "real.ply")

@@ -73,6 +73,22 @@ VolumeView::VolumeView(const void* samples, PixelType type, const ImageGeometry&
     }
 }
 
+namespace {
+
+template <class T>
+constexpr T largest() {
+    using Limits = std::numeric_limits<T>;
+    return Limits::has_infinity ? Limits::infinity() : Limits::max();
+}
+
+template <class T>
+constexpr T least() {
+    using Limits = std::numeric_limits<T>;
+    return Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
+}
+
+}  // namespace
+
 ValueRange valueRange(const VolumeView& volume) {
     return dispatchPixelType(volume, [](const auto& view) {
         ValueRange range{std::numeric_limits<double>::infinity(),
@@ -81,8 +97,7 @@ ValueRange valueRange(const VolumeView& volume) {
         parallelForPieces(view.geometry.voxelCount(), std::int64_t{1} << 20,
                           [&](std::int64_t begin, std::int64_t end) {
                               using T = std::decay_t<decltype(*view.samples)>;
-                              T low = std::numeric_limits<T>::max(),
-                                high = std::numeric_limits<T>::lowest();
+                              T low = largest<T>(), high = least<T>();
                               bool found = false;
                               for (std::int64_t i = begin; i < end; ++i) {
                                   const T value = view.samples[i];

@@ -110,9 +110,14 @@ void requireProvable(const TriangleMesh& mesh, const SimplifyOptions& options) {
 
 Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& options) {
     requireProvable(mesh, options);
-    detail::MeshParts parts = detail::takeApart(mesh, options.keepBorders);
+    constexpr double kPartToMove = 0.01;  // of what the bound allows, for needles
+    const double mayMoveMm =
+        kPartToMove * options.maxErrorMm.value_or(std::numeric_limits<double>::max());
+    detail::MeshParts parts = detail::takeApart(mesh, options.keepBorders, mayMoveMm);
+    AdaptiveOptions aims = aimsOf(options);
+    if (aims.maxErrorMm) *aims.maxErrorMm -= parts.movedMm;
     detail::AdaptiveResult made = detail::simplifyWithin(
-        detail::MeshSurface(mesh, parts, options.maxErrorMm), aimsOf(options), options.progress);
+        detail::MeshSurface(mesh, parts, aims.maxErrorMm), aims, options.progress);
     Simplified result;
     result.mesh = std::move(made.mesh);
     if (!mesh.normals.empty()) {
@@ -129,7 +134,7 @@ Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& opti
     }
     std::ranges::sort(statistics.nonManifoldVertices);
     std::ranges::sort(statistics.crossingTriangles);
-    statistics.errorBoundMm = made.errorBoundMm;
+    statistics.errorBoundMm = made.errorBoundMm + parts.movedMm;
     statistics.wantedTriangles = made.wantedTriangles;
     statistics.work = made.work;
     return result;

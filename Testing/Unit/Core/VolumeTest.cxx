@@ -94,6 +94,17 @@ TEST(ValueRange, LeavesNanAside) {
     EXPECT_EQ(none.maximum, -std::numeric_limits<double>::infinity());
 }
 
+TEST(ValueRange, IsInfiniteWhereAllSamplesAre) {
+    const float far = std::numeric_limits<float>::infinity();
+    const ImageGeometry geometry = testing::centredGeometry({3, 1, 1});
+    for (const float value : {far, -far}) {
+        const ValueRange range =
+            valueRange(Volume::fromSamples<float>({value, value, value}, geometry));
+        EXPECT_EQ(range.minimum, value);
+        EXPECT_EQ(range.maximum, value);
+    }
+}
+
 TEST(ValueRange, LooksAtEveryPieceOfALargeVolume) {
     std::vector<std::uint16_t> samples(3 * 1024 * 1024, 500);  // several pieces of work
     samples.front() = 7;

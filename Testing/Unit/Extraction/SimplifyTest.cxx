@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -273,6 +274,64 @@ TEST(Simplify, DropsTrianglesWithoutAreaAndDoubledOnes) {
     EXPECT_EQ(repeated.statistics.degenerateTriangles, 1);
     expectSound(repeated.mesh);
     expectSound(simplify(withUnusedVertex(sphere), within(0.1)).mesh);
+}
+
+TEST(Simplify, KeepsASurfaceWithNeedlesClosed) {
+    TriangleMesh sphere = icosphere(4, {}, 10);
+    for (std::size_t t = 0; t < 2000; t += 97) {
+        const auto [a, b, c] = sphere.triangles[t];
+        const auto copy = std::ssize(sphere.points);
+        sphere.points.push_back(sphere.points[a] + 1e-11 * (sphere.points[b] - sphere.points[a]));
+        sphere.triangles[t] = {copy, b, c};
+        sphere.triangles.push_back({a, b, copy});
+        sphere.triangles.push_back({a, copy, c});
+    }
+    sphere.normals.clear();
+    const Simplified result = simplify(sphere, within(0.1));
+    EXPECT_GT(result.statistics.degenerateTriangles, 30);
+    expectSound(result.mesh);
+    EXPECT_LE(result.statistics.errorBoundMm, 0.1);
+    expectBoundHolds(sphere, result);
+}
+
+/// The surface of a box, n * n squares on each side.
+TriangleMesh boxOfSquares(int n, const Vec3& extentMm) {
+    TriangleMesh box;
+    std::map<std::array<int, 3>, VertexId> numbers;
+    const auto vertex = [&](const std::array<int, 3>& p) {
+        const auto [at, isNew] = numbers.try_emplace(p, std::ssize(box.points));
+        if (isNew) {
+            box.points.push_back(
+                {p[0] * extentMm.x / n, p[1] * extentMm.y / n, p[2] * extentMm.z / n});
+        }
+        return at->second;
+    };
+    for (int side = 0; side < 6; ++side) {
+        const int a = side / 2, isFar = side % 2;
+        for (int square = 0; square < n * n; ++square) {
+            std::array<VertexId, 4> corner{};
+            for (int k = 0; k < 4; ++k) {
+                std::array<int, 3> p{};
+                p[a] = isFar * n;
+                p[(a + 1) % 3] = square / n + (k == 1 || k == 2 ? 1 : 0);
+                p[(a + 2) % 3] = square % n + (k >= 2 ? 1 : 0);
+                corner[isFar == 1 ? k : 3 - k] = vertex(p);
+            }
+            box.triangles.push_back({corner[0], corner[1], corner[2]});
+            box.triangles.push_back({corner[0], corner[2], corner[3]});
+        }
+    }
+    return box;
+}
+
+// most triangles are tiny, and the others 10,000 times the bound: these were cut into millions of
+// parts to be proved
+TEST(Simplify, ProvesHugeTrianglesBesideTinyOnes) {
+    const TriangleMesh box = boxOfSquares(7, {2e6, 0.03, 2e6});
+    expectSound(box);
+    const Simplified result = simplify(box, within(170));
+    expectSound(result.mesh);
+    EXPECT_LE(result.statistics.errorBoundMm, 170);
 }
 
 TEST(Simplify, RefusesWhatIsNoMesh) {

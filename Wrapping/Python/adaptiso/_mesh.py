@@ -137,7 +137,8 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         ------
         Error
             An unknown extension, a frame that the format can't hold or that needs an image that
-            the mesh does not know, a file that can't be written.
+            the mesh does not know, a format that keeps too few digits of the coordinates for a
+            surface made here to stay sound, a file that can't be written.
         """
         self._save(checked_path("path", path), frame)
 

@@ -48,6 +48,8 @@ class Triangles(Generic[Data]):
 
 def save_whole(path: str, write: Callable[[str], None]) -> None:
     """Writes a file by `write` under a temporary name beside it, and renames it. \\raises Error"""
+    if os.path.basename(path) in ("", ".", ".."):
+        raise Error(f"{path}: is a folder's name; give a file's")
     name = os.path.realpath(path)
     if os.path.exists(name) and not os.path.isfile(name):
         raise Error(f"{name}: is no regular file; give another name")

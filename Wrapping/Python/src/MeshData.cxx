@@ -212,8 +212,11 @@ void MeshData::write(const std::string& path, std::optional<CoordinateFrame> fra
     TriangleMesh lps = mesh_;
     turnXY(lps);
     // as the programs do; walls of labels are rounded alike on both sides instead
-    if (history_ || !report_.empty() || errorBoundMm_) {
-        settleRounding(lps, format.precision, lpsToFrame(options.frame, options.volume));
+    if (history_ || !report_.empty()) {
+        RoundingHarm harm =
+            settleRounding(lps, format.precision, lpsToFrame(options.frame, options.volume));
+        if (!history_) harm.mergedPoints = 0;  // adaptiso-simplify looks at triangles alone
+        if (harm) throw InvalidInput(path + ": " + textOf(harm, format));
     }
     writeMesh(lps, path, options);
 }

@@ -86,7 +86,7 @@ TEST(MeshParts, KeepsWhatCrosses) {
 
 TEST(FlatTriangles, SplitTheirNeighbours) {
     const TriangleMesh flat = withZeroAreaTriangle(icosphere(2));
-    const detail::AreaTriangles result = detail::withoutFlatTriangles(flat);
+    const detail::AreaTriangles result = detail::withoutFlatTriangles(flat, 0);
     EXPECT_EQ(result.flat, 1);
     EXPECT_EQ(std::count(result.isLeftOut.begin(), result.isLeftOut.end(), 1), 0);
     TriangleMesh mended = bare(flat);
@@ -104,7 +104,7 @@ TEST(FlatTriangles, AreLeftOutWhereTheirSideHasTwoOthers) {
         flat.points.push_back(0.5 * (flat.points[a] + flat.points[b]));
         flat.triangles.push_back({a, b, std::ssize(flat.points) - 1});
         ASSERT_TRUE(isDegenerate(flat, flat.triangles.back()));
-        const detail::AreaTriangles result = detail::withoutFlatTriangles(flat);
+        const detail::AreaTriangles result = detail::withoutFlatTriangles(flat, 0);
         EXPECT_EQ(result.flat, 1);
         ASSERT_EQ(result.triangles.size(), flat.triangles.size());
         EXPECT_EQ(std::count(result.isLeftOut.begin(), result.isLeftOut.end(), 1), 1);
@@ -123,10 +123,42 @@ TEST(FlatTriangles, JoinVerticesAtOnePlace) {
     sphere.triangles[0] = {copy, first[1], first[2]};
     sphere.triangles.push_back({first[0], first[1], copy});
     sphere.triangles.push_back({first[0], copy, first[2]});
-    const detail::AreaTriangles result = detail::withoutFlatTriangles(sphere);
+    const detail::AreaTriangles result = detail::withoutFlatTriangles(sphere, 0);
     EXPECT_EQ(result.flat, 2);
     EXPECT_EQ(std::count(result.isLeftOut.begin(), result.isLeftOut.end(), 1), 2);
     EXPECT_EQ(result.triangles[0], first);
+}
+
+/// A sphere with a vertex in two parts next to each other, closed by two needles.
+TriangleMesh withNeedles(double gapMm) {
+    TriangleMesh sphere = bare(icosphere(2));
+    const auto [a, b, c] = sphere.triangles[0];
+    const auto copy = std::ssize(sphere.points);
+    sphere.points.push_back(sphere.points[a] + gapMm * (sphere.points[b] - sphere.points[a]));
+    sphere.triangles[0] = {copy, b, c};
+    sphere.triangles.push_back({a, b, copy});
+    sphere.triangles.push_back({a, copy, c});
+    return sphere;
+}
+
+// left out, they were slits in a surface that was closed
+TEST(FlatTriangles, ThatAreNeedlesLoseTheirShortestEdge) {
+    const TriangleMesh sphere = withNeedles(1e-11);
+    const detail::AreaTriangles result = detail::withoutFlatTriangles(sphere, 1e-10);
+    EXPECT_EQ(result.flat, 2);
+    EXPECT_EQ(std::count(result.isLeftOut.begin(), result.isLeftOut.end(), 1), 2);
+    EXPECT_EQ(result.triangles[0], icosphere(2).triangles[0]);
+    EXPECT_GT(result.movedMm, 1e-12);
+    EXPECT_LE(result.movedMm, 1e-11);
+    EXPECT_EQ(detail::withoutFlatTriangles(sphere, 1e-12).movedMm, 0);
+}
+
+TEST(FlatTriangles, ThatAreNeedlesStayAtEdgesOfThreeTriangles) {
+    TriangleMesh sphere = withNeedles(1e-11);
+    const auto [a, b, c] = sphere.triangles[0];
+    sphere.points.push_back({0, 0, 9});
+    sphere.triangles.push_back({a, b, std::ssize(sphere.points) - 1});
+    EXPECT_EQ(detail::withoutFlatTriangles(sphere, 1e-10).movedMm, 0);
 }
 
 TEST(BorderMarks, FindAndWeighTheBorder) {

@@ -32,7 +32,8 @@ struct SimplifyOptions {
 /// What was found of the input, and what is proved of the result.
 struct SimplifyStatistics {
     /// Of the input, without area: dropped. Where a corner lies on the opposite side the triangle
-    /// across it is split there, so that the surface does not open.
+    /// across it is split there, and where two corners lie next to each other they become one, so
+    /// that the surface does not open.
     std::int64_t degenerateTriangles = 0;
     std::int64_t duplicateTriangles = 0;  ///< of the input, with the corners of another: dropped
     std::int64_t borderEdges = 0;         ///< of the input: with one triangle

@@ -73,8 +73,8 @@ Vec3 originFor(const TriangleMesh& mesh) {
 /// Takes a mesh apart, step by step.
 class Cutter {
 public:
-    Cutter(const TriangleMesh& mesh, bool keepsBorders)
-        : mesh_(mesh), keepsBorders_(keepsBorders) {}
+    Cutter(const TriangleMesh& mesh, bool keepsBorders, double mayMoveMm)
+        : mesh_(mesh), keepsBorders_(keepsBorders), mayMoveMm_(mayMoveMm) {}
 
     MeshParts run() {
         parts_.origin = originFor(mesh_);
@@ -107,8 +107,9 @@ private:
 
     /// Those with an area, with the points that they use.
     void takeTriangles() {
-        AreaTriangles withArea = withoutFlatTriangles(mesh_);
+        AreaTriangles withArea = withoutFlatTriangles(mesh_, mayMoveMm_);
         parts_.degenerate = withArea.flat;
+        parts_.movedMm = withArea.movedMm;
         const bool isWhole = withArea.flat == 0;
         const std::vector<Triangle>& triangles = isWhole ? mesh_.triangles : withArea.triangles;
         std::vector<std::uint32_t> number(mesh_.points.size(), kNone);
@@ -333,6 +334,7 @@ private:
 
     const TriangleMesh& mesh_;
     bool keepsBorders_;
+    double mayMoveMm_;
     MeshParts parts_;
     std::vector<std::uint32_t> inputPoint_;  ///< of each point
     HalfEdges<std::uint32_t> halfEdges_;
@@ -342,9 +344,9 @@ private:
 
 }  // namespace
 
-MeshParts takeApart(const TriangleMesh& mesh, bool keepsBorders) {
+MeshParts takeApart(const TriangleMesh& mesh, bool keepsBorders, double mayMoveMm) {
     requireSimplifiable(mesh);
-    return Cutter(mesh, keepsBorders).run();
+    return Cutter(mesh, keepsBorders, mayMoveMm).run();
 }
 
 }  // namespace adaptiso::detail

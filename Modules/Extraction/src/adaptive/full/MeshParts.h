@@ -30,13 +30,15 @@ struct MeshParts {
         inputTriangle;  ///< of each triangle. Empty: its own number, or none crosses
     TriangleTree tree;  ///< of the triangles
     std::int64_t degenerate = 0, duplicate = 0;  ///< triangles that were dropped
+    double movedMm = 0;  ///< no vertex of needles was farther from the one that it became
 
     TriangleView view() const { return {points, triangles}; }
 };
 
 /// \param keepsBorders  points of open borders stay
+/// \param mayMoveMm     as far as movedMm may be
 /// \throws InvalidInput when the mesh has no triangle with an area, an index out of range, a
 ///         coordinate that is not finite, or too many triangles
-MeshParts takeApart(const TriangleMesh& mesh, bool keepsBorders);
+MeshParts takeApart(const TriangleMesh& mesh, bool keepsBorders, double mayMoveMm = 0);
 
 }  // namespace adaptiso::detail

@@ -61,7 +61,7 @@ public:
     template <class MakePlace>
     void include(const Corners& piece, std::span<const Index> starts, int steps,
                  const MakePlace& makePlace) {
-        if (bound_.boundMm() > looseMm_) {
+        if (bound_.boundMm() > looseMm_ && quarters(piece) <= std::ssize(to_.view.triangles)) {
             walk_.coverLoosely(piece, to_.walkable, starts[0], bound_.squaredBound(), steps);
         } else {
             walk_.cover(ConvexPiece(piece), to_.walkable, starts[0], bound_.squaredBound(), steps);
@@ -78,6 +78,15 @@ public:
     }
 
     double squaredBound() const { return bound_.squaredBound(); }
+
+    /// How many parts coverLoosely() makes of a triangle, about: of one that is huge beside the
+    /// bound, in a mesh whose usual triangles are tiny, too many.
+    std::int64_t quarters(const Corners& t) const {
+        const double longest = std::max(
+            {squaredNorm(t[1] - t[0]), squaredNorm(t[2] - t[1]), squaredNorm(t[0] - t[2])});
+        const double parts = longest / (kLargeQuarter * kLargeQuarter * bound_.squaredBound());
+        return static_cast<std::int64_t>(std::min(parts, 1e18));
+    }
 
     PartBound result() {
         result_.provedMm = bound_.boundMm();
