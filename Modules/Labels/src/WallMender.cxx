@@ -176,7 +176,7 @@ void WallMender::forgetChanged() {
             continue;
         }
         const Id wall = mesh_.triangle(t).wall;
-        full_.forEachNear(boxAround(t, boundMm_), [&](Id f) {
+        full_.forEachNearOften(boxAround(t, boundMm_), [&](Id f) {
             if (witnessesOf_[f].count == 0 && mesh_.triangle(f).wall == wall) isFullProved_[f] = 0;
         });
     }
