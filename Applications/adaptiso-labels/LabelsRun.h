@@ -79,6 +79,7 @@ struct LabelsRun {
     std::vector<LabelsCheck> checks{};
     std::optional<RegionTetrahedra> tetrahedra{};                 ///< if wanted
     std::vector<std::pair<std::string, std::uintmax_t>> files{};  ///< of the folder
+    bool leavesGiftiOut = false;                                  ///< its digits do not do
     StageTimer timer{};
     std::vector<std::string> warnings{};  ///< all; each names its file
     std::string reportFailure{};          ///< why there is no page; empty: nothing failed

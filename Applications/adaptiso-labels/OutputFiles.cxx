@@ -152,7 +152,7 @@ void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, Lab
     const auto add = [&](auto&& work) { works.emplace_back(std::forward<decltype(work)>(work)); };
     folder.fill([&] {
         add([&, path = folder.place("walls.vtp")] { writeWalls(complex, path, run); });
-        if (fitsGifti(run)) {
+        if (!run.leavesGiftiOut && fitsGifti(run)) {
             add([&, surface = folder.place("all.surf.gii"),
                  labels = folder.place("all.label.gii")] {
                 writeJoined(surfaces, surface, labels, run);

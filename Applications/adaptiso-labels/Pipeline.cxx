@@ -18,6 +18,7 @@
 #include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
+#include "FileRounding.h"
 #include "JsonReport.h"
 #include "LabelMap.h"
 #include "LabelsBatch.h"
@@ -39,6 +40,7 @@ constexpr const char* kProgram = "adaptiso-labels";
 /// of checkComplex().
 constexpr const char* kRead = "read";
 constexpr const char* kExtract = "extract";
+constexpr const char* kFit = "fit";
 constexpr const char* kMeasure = "measure";
 constexpr const char* kTetrahedra = "tetrahedra";
 constexpr const char* kWrite = "write";
@@ -231,8 +233,8 @@ int runLabels(const LabelsOptions& options) {
     printWarnings(kProgram, options.common, run.warnings);
     const std::size_t told = run.warnings.size();
 
-    const LabelComplex complex =
-        run.timer.time(kExtract, [&] { return extract(map, run, progress); });
+    LabelComplex complex = run.timer.time(kExtract, [&] { return extract(map, run, progress); });
+    run.timer.time(kFit, [&] { fitToFiles(complex, run); });
     progress.show(kMeasure);
     run.timer.time(kMeasure, [&] { measure(complex, run); });
     const RegionSurfaces surfaces(complex, run.regions);
@@ -242,7 +244,7 @@ int runLabels(const LabelsOptions& options) {
         run.timer.time(kTetrahedra, [&] { makeTetrahedra(complex, run); });
     }
     warnOfCount(run);
-    if (!fitsGifti(run)) {
+    if (!run.leavesGiftiOut && !fitsGifti(run)) {
         run.warnings.push_back(baseName(options.input) +
                                ": all.surf.gii is left out, as the surfaces have more points or "
                                "triangles than GIFTI counts");

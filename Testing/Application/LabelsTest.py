@@ -22,6 +22,17 @@ class OutputTest(LabelsTest):
         self.assertEqual(done.stdout.count("holds:"), 4)
         self.assertNotIn("FAILED", done.stdout)
 
+    def test_refuses_formats_of_too_few_digits(self):
+        # 1 km from the origin coordinates of single precision are 1/16 mm apart
+        write_nifti(self.path("far.nii"),
+                    three_boxes(spacing=(0.01, 0.01, 0.01), origin=(1e6, 0, 0)))
+        self.refused(BAD_INPUT, r"regions/\*\.stl: STL \(binary\) keeps 24 bits of a coordinate",
+                     "far.nii", "-o", "out", "--format", "stl")
+        done = self.labels("far.nii", "-o", "out")
+        self.assertIn("all.surf.gii is left out", done.stderr)
+        self.assertIn("regions/1.vtp", self.files("out"))
+        self.assertNotIn("all.surf.gii", self.files("out"))
+
     def test_is_named_after_the_input_by_default(self):
         self.labels("boxes.nii", "--quiet")
         self.assertTrue((self.path("boxes-labels") / "walls.vtp").is_file())

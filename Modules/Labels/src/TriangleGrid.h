@@ -57,6 +57,9 @@ public:
     /// Calls f(n) once for each triangle whose box overlaps one.
     template <class F>
     void forEachNear(const CornerBox& box, const F& f) const;
+    /// The same, maybe several times.
+    template <class F>
+    void forEachNearOften(const CornerBox& box, const F& f) const;
 
 private:
     static constexpr std::int64_t kMostCells = 64;  ///< of a triangle in cells; others are large
@@ -115,6 +118,19 @@ void TriangleGrid::assign(Id count, const F& boxOfTriangle) {
             } else {
                 cells_.forEach(range, [&](std::int64_t cell, const auto&) { give(cell, n); });
             }
+        }
+    });
+}
+
+template <class F>
+void TriangleGrid::forEachNearOften(const CornerBox& box, const F& f) const {
+    if (boxes_.empty()) return;
+    for (const Id n : large_) {
+        if (boxes_[n].overlaps(box)) f(n);
+    }
+    cells_.forEach(cells_.rangeOf(box), [&](std::int64_t cell, const auto&) {
+        for (const Id n : own_.of(cell)) {
+            if (boxes_[n].overlaps(box)) f(n);
         }
     });
 }

@@ -24,7 +24,8 @@ Vec3 nearestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-/// Maps one triangle after the other.
+/// Maps one triangle after the other. A vertex is looked at once for those around it, an edge for
+/// both beside it, as long as they come soon.
 class WallMap::Mapper {
 public:
     Mapper(const WallMap& whole, double limitMm)
@@ -35,18 +36,17 @@ public:
 
     /// \return false when no map within the limit was found
     bool map(Id full) {
-        map_.clear();
         const WallTriangle& t = whole_.collapser_.fullTriangle(full);
         std::array<const Map::Vertex*, 3> corners{};
         std::array<Map::Side, 3> sides{};
         bool isMapped = true;
         for (int i = 0; i < 3; ++i) {
-            hasFoot_[i] = findFoot(t.v[i], t.wall, foot_[i]);
+            hasFoot_[i] = lookUpFoot(t.v[i], t.wall, foot_[i]);
             isMapped = isMapped && hasFoot_[i] && foot_[i].vertex.squared <= limit2_;
             corners[i] = &foot_[i].vertex;
         }
         for (int i = 0; i < 3; ++i) {
-            hasWay_[i] = hasFoot_[i] && hasFoot_[(i + 1) % 3] && findWay(t, i);
+            hasWay_[i] = hasFoot_[i] && hasFoot_[(i + 1) % 3] && lookUpWay(t, i);
             isMapped = isMapped && hasWay_[i];
             sides[i] = {way_[i].count > 0 ? &way_[i] : nullptr, isForward(t, i)};
         }
@@ -106,6 +106,38 @@ private:
             if (mesh_.triangle(t).wall == wall) return whole_.places_[t];
         }
         return kNone;
+    }
+
+    struct KnownFoot {
+        Id vertex = kNone, wall = kNone;
+        bool isThere = false;
+        Foot foot;
+    };
+    struct KnownWay {
+        Id from = kNone, to = kNone, wall = kNone;
+        bool isThere = false;
+        Map::Way way;
+    };
+    static constexpr std::size_t kKnownFeet = 1024, kKnownWays = 2048;  // powers of 2
+
+    bool lookUpFoot(Id v, Id wall, Foot& foot) {
+        KnownFoot& known = feet_[v % kKnownFeet];
+        if (known.vertex != v || known.wall != wall) {
+            known.vertex = v;
+            known.wall = wall;
+            known.isThere = findFoot(v, wall, known.foot);
+        }
+        foot = known.foot;
+        return known.isThere;
+    }
+    bool lookUpWay(const WallTriangle& t, int side) {
+        const auto [from, to] = std::minmax(t.v[side], t.v[(side + 1) % 3]);
+        KnownWay& known = ways_[(2 * from + 3 * to) % kKnownWays];
+        if (known.from != from || known.to != to || known.wall != t.wall) {
+            known = {from, to, t.wall, findWay(t, side), way_[side]};
+        }
+        way_[side] = known.way;
+        return known.isThere;
     }
 
     /// \return false when there is none
@@ -177,6 +209,8 @@ private:
     std::array<Foot, 3> foot_{};
     std::array<bool, 3> hasFoot_{}, hasWay_{};
     std::array<Map::Way, 3> way_;
+    std::vector<KnownFoot> feet_{kKnownFeet};
+    std::vector<KnownWay> ways_{kKnownWays};
 };
 
 WallMap::WallMap(const WallCollapser& collapser, const WallSurface& to)

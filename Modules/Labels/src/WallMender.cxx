@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kMostCells = 1 << 24;
 /// Where less than one in so many triangles is asked for, what is near them is looked up.
-constexpr std::size_t kFew = 4, kVeryFew = 32;
+constexpr std::size_t kFew = 4;
 /// Where more of the walls than one in so many full triangles are to be proved, all are mapped.
 constexpr std::size_t kOfAll = 6;
 
@@ -88,7 +88,9 @@ WallMender::WallMender(WallCollapser& collapser, double limitMm, bool mayGrow)
         // what was there when the collapser began
         isLast_.push_back(mesh_.makerOf(t) == kNone ? 1 : 0);
     }
-    full_.assign(mesh_.fullTriangles(), [&](Id t) { return boxAround(t, 0); });
+    if (mesh_.firstTriangle() != 0) {
+        full_.assign(mesh_.fullTriangles(), [&](Id t) { return boxAround(t, 0); });
+    }
 }
 
 bool WallMender::mend() {
@@ -174,7 +176,7 @@ void WallMender::forgetChanged() {
             continue;
         }
         const Id wall = mesh_.triangle(t).wall;
-        full_.forEachNear(boxAround(t, boundMm_), [&](Id f) {
+        full_.forEachNearOften(boxAround(t, boundMm_), [&](Id f) {
             if (witnessesOf_[f].count == 0 && mesh_.triangle(f).wall == wall) isFullProved_[f] = 0;
         });
     }
@@ -223,23 +225,27 @@ void WallMender::blameNear(const std::vector<WallPlace>& places) {
     }
 }
 
-/// The full walls, as far as they may be near triangles of the mesh.
+/// The full walls, as far as they may be near triangles of the mesh: round the samples of these and
+/// of their neighbours.
 const WallSurface& WallMender::fullNear(const std::vector<Id>& triangles) {
-    if (!wholeFull_ && (mayGrow_ || kVeryFew * triangles.size() > mesh_.fullTriangles())) {
+    if (!wholeFull_ && (mayGrow_ || kFew * triangles.size() > mesh_.fullTriangles())) {
         std::vector<Id> all(mesh_.fullTriangles());
         std::iota(all.begin(), all.end(), 0);
         wholeFull_.emplace(mesh_, std::move(all));
     }
     if (wholeFull_) return *wholeFull_;
-    std::vector<Id> near;
+    std::vector<std::uint8_t> isIn(mesh_.triangleCount(), 0);
+    std::vector<Id> beside;
     for (const Id t : triangles) {
-        const Id wall = mesh_.triangle(t).wall;
-        full_.forEachNear(boxAround(t, limitMm_ + collapser_.voxelMm()), [&](Id f) {
-            if (mesh_.triangle(f).wall == wall) near.push_back(f);
-        });
+        for (const Id v : mesh_.triangle(t).v) {
+            for (const Id n : mesh_.around(v)) {
+                if (isIn[n] == 0) beside.push_back(n);
+                isIn[n] = 1;
+            }
+        }
     }
+    std::vector<Id> near = fullOver(beside);
     std::sort(near.begin(), near.end());
-    near.erase(std::unique(near.begin(), near.end()), near.end());
     nearFull_.emplace(mesh_, std::move(near));
     return *nearFull_;
 }
@@ -278,17 +284,28 @@ std::vector<WallMender::Id> WallMender::unprovedFull() const {
     return unproved;
 }
 
-/// Triangles of the mesh: all, or those that may be near some of the full walls.
+/// Triangles of the mesh: all, or those round what vertices of some of the full walls are assigned
+/// to.
 std::vector<WallMender::Id> WallMender::aliveTriangles(bool areAll,
                                                        const std::vector<Id>& full) const {
-    MarkedCells marks(cells_);
+    std::vector<std::uint8_t> isNear(areAll ? 0 : mesh_.pointCount(), 0);
     if (!areAll) {
-        for (const Id t : full) marks.mark(boxAround(t, limitMm_ + collapser_.voxelMm()));
+        for (const Id f : full) {
+            for (const Id sample : collapser_.fullTriangle(f).v) {
+                const Id home = collapser_.homeOf(sample).triangle;
+                if (home == kNone) {
+                    isNear[sample] = 1;
+                } else {
+                    for (const Id v : mesh_.triangle(home).v) isNear[v] = 1;
+                }
+            }
+        }
     }
     std::vector<Id> alive;
     for (Id t = mesh_.firstTriangle(); t < mesh_.triangleCount(); ++t) {
         if (!mesh_.isTriangleAlive(t)) continue;
-        if (areAll || marks.isMarked(boxAround(t, 0))) alive.push_back(t);
+        const auto& v = mesh_.triangle(t).v;
+        if (areAll || (isNear[v[0]] | isNear[v[1]] | isNear[v[2]]) != 0) alive.push_back(t);
     }
     return alive;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "WallPatch.h"
@@ -77,6 +78,7 @@ private:
     Vec3 toIndex(const Vec3& pointMm) const { return toIndex_ * (pointMm - geometry_.originMm); }
 
     Lists listsOf(const CubeCut& cut, const WallAim& aim) const;
+    std::vector<Id> inBlocks(std::span<const Id> own) const;
     WallPatch patchOf(const CubeCut& cut, const Lists& lists, std::int64_t cube,
                       Numbers& numbers) const;
     void addFull(const Lists& lists, std::int64_t cube, WallPatch& patch, Numbers& numbers) const;

@@ -337,6 +337,7 @@ void encodeVtkXml(const MeshRecord& record, ByteSink& sink) {
     writer->SetDataModeToAppended();
     writer->EncodeAppendedDataOn();
     writer->SetCompressorTypeToZLib();
+    writer->SetCompressionLevel(1);  // as in Packing.cxx
     writer->SetHeaderTypeToUInt64();
     writer->SetByteOrderToLittleEndian();
     writer->WriteToOutputStringOn();
