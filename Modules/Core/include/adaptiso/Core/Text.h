@@ -12,4 +12,10 @@ std::string shortText(double value);
 /// Base64 with padding, in one line (RFC 4648).
 std::string encodeBase64(std::string_view bytes);
 
+/// Whether `text` is UTF-8 as RFC 3629 has it.
+bool isUtf8(std::string_view text);
+
+/// `text` as UTF-8: text that is not is taken for Latin-1.
+std::string toUtf8(std::string_view text);
+
 }  // namespace adaptiso
