@@ -452,7 +452,9 @@ private:
                      std::to_string(data_.size()) + "\"/>\n";
     }
 
-    static std::string inXml(std::string_view name) { return escaped(toUtf8(storedName(name))); }
+    static std::string inXml(std::string_view name) {
+        return escapedMarkup(toUtf8(storedName(name)));
+    }
 
     std::string elements_, data_;
 };

@@ -13,6 +13,14 @@ TEST(Base64, GivesTheExamplesOfItsStandard) {  // RFC 4648, section 10
     EXPECT_EQ(encodeBase64("\xff\xfe\xfd"), "//79");
 }
 
+TEST(Text, IsTrimmedLoweredAndEscaped) {
+    EXPECT_EQ(trimmed(" \t\r\n\v\fa b\n"), "a b");
+    EXPECT_EQ(trimmed(" \n"), "");
+    EXPECT_EQ(trimmed(""), "");
+    EXPECT_EQ(lowerCase("AZaz[@ \xc4"), "azaz[@ \xc4");
+    EXPECT_EQ(escapedMarkup("a<b>&\"'\n\x1f\xc3\xa4"), "a&lt;b&gt;&amp;&quot;'  \xc3\xa4");
+}
+
 TEST(Utf8, IsWhatItsStandardAllows) {  // RFC 3629, section 4
     for (const char* const text : {"", "a~", "\xc2\x80", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf",
                                    "\xef\xbf\xbf", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"}) {
