@@ -224,25 +224,17 @@ private:
         limits.maxDistanceMm =
             boundMm - std::min(kSlackVoxels * frame_.narrowestMm(), kSlackPart * boundMm);
         if (boundMm_) limits.webMm = kWeb * *boundMm_;
+        if (!wanted_.isGiven()) limits.maxFittedMm = kFitDistance * limits.maxDistanceMm;
         limits.provesAll = lessons_.provesAll || limits.maxDistanceMm > sheetMm;
         return limits;
-    }
-
-    /// Moves vertices to where they serve the mean distance best.
-    void fit(SimplifiedSurface& surface) const {
-        PatchLimits closer = limits();
-        closer.maxFittedMm = kFitDistance * closer.maxDistanceMm;
-        Simplification(full_, lessons_.tight, closer).fit(surface);
     }
 
     SimplifiedSurface simplify() {
         halfway_ = {};
         Simplification simplification(full_, lessons_.tight, limits());
         if (!wanted_.isGiven()) {
-            SimplifiedSurface surface = simplification.toLimits(halfway_);
             mended_.clear();
-            fit(surface);
-            return surface;
+            return simplification.toLimits(halfway_);
         }
         if (boundMm_) return simplification.toCount(wanted_, 0);
         // without a bound the count goes before closeness

@@ -82,6 +82,43 @@ TEST(SurfaceLookup, FindsAllTrianglesNearAPiece) {
     }
 }
 
+// Triangles move, go and come: the lists of bricks, the half-edges and the tree are as if made
+// anew.
+TEST(SurfaceLookup, KnowsASurfaceAgainThatHasChanged) {
+    Ball ball;
+    detail::SimplifiedSurface& surface = ball.surface;
+    std::mt19937 random(2);
+    const Corners anywhere{Vec3{0, 0, 0}, Vec3{60, 0, 0}, Vec3{0, 60, 60}};
+    ball.lookup.forEachNear(anywhere, 1, [](std::uint32_t) {});  // makes the tree
+    for (int n = 0; n < 20; ++n) {
+        std::vector<std::uint32_t> changed;
+        const auto count = static_cast<std::uint32_t>(surface.triangles.size());
+        for (int i = 0; i < 5; ++i) {
+            changed.push_back(static_cast<std::uint32_t>(random() % count));
+            surface.triangles[changed.back()] = surface.triangles[random() % count];
+        }
+        surface.triangles.resize(count + 3 - random() % 7);
+        for (std::size_t t = count; t < surface.triangles.size(); ++t) {
+            surface.triangles[t] = surface.triangles[t % 100];
+        }
+        changed.push_back(count + 5);  // came and went
+        ball.lookup.update(changed);
+        const SurfaceLookup anew(surface, ball.scene.bricks, ball.scene.frame);
+        ASSERT_EQ(ball.lookup.triangleCount(), anew.triangleCount());
+        for (std::int64_t b = 0; b < ball.scene.bricks.count(); ++b) {
+            ASSERT_TRUE(std::ranges::equal(ball.lookup.ofBrick(b), anew.ofBrick(b))) << n;
+        }
+        for (std::uint32_t h = 0; h < 3 * anew.triangleCount(); ++h) {
+            ASSERT_EQ(ball.lookup.walkable().twin(h), anew.walkable().twin(h)) << n;
+        }
+        const Corners piece{kBallMiddle, kBallMiddle + randomPoint(random, 9), kBallMiddle};
+        std::set<std::uint32_t> found, expected;
+        ball.lookup.forEachNear(piece, 1, [&](std::uint32_t t) { found.insert(t); });
+        anew.forEachNear(piece, 1, [&](std::uint32_t t) { expected.insert(t); });
+        ASSERT_EQ(found, expected) << n;
+    }
+}
+
 TEST(SurfaceLookup, GivesEveryPointNearTheBricksToOneOfThem) {
     const Ball ball;
     const Bricks& bricks = ball.scene.bricks;

@@ -60,7 +60,7 @@ void SampleAssignment::clear() {
     moves.clear();
     for (auto& along : position) along.clear();
     sumOfSquares = largestSquare = 0;
-    leastRoom = SheetRoom::kAlone;
+    leastRoom = roomUnseen = SheetRoom::kAlone;
     isCrowded = false;
 }
 
@@ -83,16 +83,11 @@ ErrorTracker::ErrorTracker(Patch& patch, const MetricFrame& frame)
     }
 }
 
-/// Calls f(triangle, wedge that takes its place or lies beside it) until f returns false.
+/// Calls f(triangle, wedge that takes its place or lies beside it).
 template <class F>
-bool ErrorTracker::forEachTriangle(const Star& star, const F& f) const {
-    for (int i = 0; i < star.count; ++i) {
-        if (!f(star.triangle[i], i)) return false;
-    }
-    for (int i = 0; i < star.removedCount; ++i) {
-        if (!f(star.removed[i], star.beside[i])) return false;
-    }
-    return true;
+void ErrorTracker::forEachTriangle(const Star& star, const F& f) {
+    for (int i = 0; i < star.count; ++i) f(star.triangle[i], i);
+    for (int i = 0; i < star.removedCount; ++i) f(star.removed[i], star.beside[i]);
 }
 
 SampleAssignment::Move ErrorTracker::nearest(const ChangedStar& changed, std::uint32_t sample,
@@ -119,56 +114,76 @@ SampleAssignment::Move ErrorTracker::nearest(const ChangedStar& changed, std::ui
 
 std::optional<StarFit> ErrorTracker::measure(const ChangedStar& unchanged) const {
     StarFit fit;
-    const bool isLoose = forEachTriangle(unchanged.star, [&](std::uint32_t triangle, int wedge) {
-        for (std::uint32_t s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
+    bool isLoose = true;
+    forEachTriangle(unchanged.star, [&](std::uint32_t triangle, int wedge) {
+        for (std::uint32_t s = firstSample_[triangle]; s != kNone && isLoose; s = nextSample_[s]) {
             const Sample& sample = patch_.samples[s];
-            if (sample.tightness > 0) return false;
+            isLoose = sample.tightness == 0;
             const double squared =
                 distanceTo(unchanged.wedge[wedge], sample.point() - unchanged.vertex).squared;
             fit.sumOfSquares += squared;
             fit.largestSquare = std::max(fit.largestSquare, squared);
         }
-        return true;
     });
     return isLoose ? std::optional(fit) : std::nullopt;
 }
 
 bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm,
                           SampleAssignment& result) const {
-    const double most = maxDistanceMm * maxDistanceMm;
+    collect(changed.star, result);
+    // points of the star first: more changes fail by them, and they take less time
+    return starIsNear(changed, maxDistanceMm, result) &&
+           samplesAreNear(changed, maxDistanceMm * maxDistanceMm, result);
+}
+
+/// The star's samples, each with the wedge to look at first.
+void ErrorTracker::collect(const Star& star, SampleAssignment& result) const {
     result.clear();
     std::uint8_t roomUnseen = SheetRoom::kAlone;
-    const bool isNear = forEachTriangle(changed.star, [&](std::uint32_t triangle, int wedge) {
+    forEachTriangle(star, [&](std::uint32_t triangle, int wedge) {
         roomUnseen = std::min(roomUnseen, triangleRoom_[triangle]);
         for (std::uint32_t s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
-            double squared = 0;
-            const SampleAssignment::Move move = nearest(changed, s, wedge, squared);
             const Sample& sample = patch_.samples[s];
             result.leastRoom = std::min(result.leastRoom, sample.room);
-            if (squared > squaredRoom_[sample.room]) result.isCrowded = true;
-            if (!(squared <=
-                  (sample.tightness == 0 ? most : std::ldexp(most, -sample.tightness)))) {
-                return false;
-            }
-            if (sample.isOnBorder && !borderIsNear(changed, move, most)) return false;
-            result.sumOfSquares += squared;
-            result.largestSquare = std::max(result.largestSquare, squared);
-            result.moves.push_back(move);
+            result.moves.push_back({s, wedge});
             for (int a = 0; a < 3; ++a) result.position[a].push_back(sample.position[a]);
         }
-        return true;
     });
+    result.roomUnseen = roomUnseen;
     result.leastRoom = std::min(result.leastRoom, roomUnseen);
-    if (!isNear) return false;
+}
+
+/// The new vertex and points of sharp edges are near the full-resolution surface, as the nearest
+/// sample tells.
+bool ErrorTracker::starIsNear(const ChangedStar& changed, double maxDistanceMm,
+                              SampleAssignment& result) const {
     if (result.moves.empty()) {
         result.isCrowded = result.leastRoom != SheetRoom::kAlone;
         return true;
     }
     const Sample& nearest = sampleNearest(changed.vertex, result);
     const double height = heightOver(nearest, changed.vertex);
-    if (height * height > squaredRoom_[std::min(nearest.room, roomUnseen)]) result.isCrowded = true;
+    result.isCrowded = height * height > squaredRoom_[std::min(nearest.room, result.roomUnseen)];
     return tightened(height, nearest) <= maxDistanceMm &&
            ridgesAreNear(changed, result, maxDistanceMm);
+}
+
+/// Hands each sample to the near one of the changed triangles.
+bool ErrorTracker::samplesAreNear(const ChangedStar& changed, double most,
+                                  SampleAssignment& result) const {
+    for (SampleAssignment::Move& move : result.moves) {
+        double squared = 0;
+        move = nearest(changed, move.sample, move.wedge, squared);
+        const Sample& sample = patch_.samples[move.sample];
+        if (!(squared <= (sample.tightness == 0 ? most : std::ldexp(most, -sample.tightness))) ||
+            (sample.isOnBorder && !borderIsNear(changed, move, most))) {
+            return false;
+        }
+        if (squared > squaredRoom_[sample.room]) result.isCrowded = true;
+        result.sumOfSquares += squared;
+        result.largestSquare = std::max(result.largestSquare, squared);
+    }
+    return true;
 }
 
 /// A sample on the border is near what the border becomes, not just the surface.
@@ -240,10 +255,8 @@ bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, const SampleAssignm
 }
 
 void ErrorTracker::commit(const ChangedStar& changed, const SampleAssignment& assignment) {
-    forEachTriangle(changed.star, [&](std::uint32_t triangle, int) {
-        firstSample_[triangle] = kNone;
-        return true;
-    });
+    forEachTriangle(changed.star,
+                    [&](std::uint32_t triangle, int) { firstSample_[triangle] = kNone; });
     for (const SampleAssignment::Move& move : assignment.moves) {
         const std::uint32_t t = changed.star.triangle[move.wedge];
         nextSample_[move.sample] = firstSample_[t];

@@ -18,10 +18,11 @@ struct SampleAssignment {
         int wedge;
     };
     std::vector<Move> moves;
-    std::array<std::vector<float>, 3> position;  ///< of the moves' samples, by axis
-    double sumOfSquares = 0;                     ///< of distances, mm2
-    double largestSquare = 0;                    ///< of distances, mm2
-    std::uint8_t leastRoom = SheetRoom::kAlone;  ///< of all samples, see Sample
+    std::array<std::vector<float>, 3> position;   ///< of the moves' samples, by axis
+    double sumOfSquares = 0;                      ///< of distances, mm2
+    double largestSquare = 0;                     ///< of distances, mm2
+    std::uint8_t leastRoom = SheetRoom::kAlone;   ///< of all samples, see Sample
+    std::uint8_t roomUnseen = SheetRoom::kAlone;  ///< of triangles without samples
     /// The star comes so far towards other sheets that it could meet them.
     bool isCrowded = false;
 
@@ -61,7 +62,11 @@ public:
 
 private:
     template <class F>
-    bool forEachTriangle(const Star& star, const F& f) const;
+    static void forEachTriangle(const Star& star, const F& f);
+    void collect(const Star& star, SampleAssignment& result) const;
+    bool starIsNear(const ChangedStar& changed, double maxDistanceMm,
+                    SampleAssignment& result) const;
+    bool samplesAreNear(const ChangedStar& changed, double most, SampleAssignment& result) const;
     SampleAssignment::Move nearest(const ChangedStar& changed, std::uint32_t sample, int start,
                                    double& squaredDistance) const;
 

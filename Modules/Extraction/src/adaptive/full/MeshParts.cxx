@@ -14,6 +14,7 @@
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/full/FlatTriangles.h"
 #include "adaptive/mesh/HalfEdges.h"
+#include "adaptive/mesh/MortonOrder.h"
 #include "adaptive/mesh/Patch.h"
 #include "adaptive/proof/CrossingProof.h"
 
@@ -158,26 +159,13 @@ private:
         });
     }
 
-    /// Along a curve through cubes of space, halved axis by axis (Morton's order).
     void sortPoints() {
-        constexpr int kBits = 10;
         const BoundingBox box = boundingBox(mesh_);
-        const Vec3 extent = box.maximum - box.minimum;
-        const double unit = ((1 << kBits) - 1) / std::max({extent.x, extent.y, extent.z});
-        std::vector<std::uint64_t> keys(inputPoint_.size());
-        forEach(keys.size(), [&](std::size_t i) {
-            const Vec3 place = unit * (mesh_.points[inputPoint_[i]] - box.minimum);
-            std::uint64_t key = 0;
-            for (int bit = kBits; bit-- > 0;) {
-                for (int a = 0; a < 3; ++a) {
-                    key = key << 1 | (static_cast<std::uint64_t>(place[a]) >> bit & 1);
-                }
-            }
-            keys[i] = key << 32 | inputPoint_[i];
-        });
-        tbb::parallel_sort(keys.begin(), keys.end());
-        forEach(keys.size(),
-                [&](std::size_t i) { inputPoint_[i] = static_cast<std::uint32_t>(keys[i]); });
+        std::vector<std::uint32_t> order =
+            inMortonOrder(inputPoint_.size(), {box.minimum, box.maximum},
+                          [&](std::uint32_t i) { return mesh_.points[inputPoint_[i]]; });
+        for (std::uint32_t& i : order) i = inputPoint_[i];
+        inputPoint_ = std::move(order);
     }
 
     /// By their first point.

@@ -39,6 +39,22 @@ void growALittle(std::vector<T>& list) {
     if (list.size() == list.capacity()) list.reserve(list.size() + list.size() / 16 + 16);
 }
 
+/// The numbers below `count` of which isMeant(number) is true, ascending.
+template <class IsMeant>
+std::vector<Number> numbersWhere(std::size_t count, const IsMeant& isMeant) {
+    const auto end = static_cast<std::int64_t>(count);
+    std::vector<std::vector<Number>> found((end + kPiece - 1) / kPiece);
+    parallelForPieces(end, kPiece, [&](std::int64_t first, std::int64_t last) {
+        for (std::int64_t n = first; n < last; ++n) {
+            if (isMeant(static_cast<Number>(n)))
+                found[first / kPiece].push_back(static_cast<Number>(n));
+        }
+    });
+    std::vector<Number> all;
+    for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+    return all;
+}
+
 bool contains(const std::vector<Number>& numbers, Number number) {
     return std::find(numbers.begin(), numbers.end(), number) != numbers.end();
 }
@@ -116,13 +132,15 @@ void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
     for (const PlaceBeyond& place : places) {
         for (const Number v : surface_.triangles[place.triangle]) isTrackedVertex[v] = true;
     }
-    for (Number t = 0; t < isNear.size(); ++t) {
+    const Numbers near = numbersWhere(isNear.size(), [&](Number t) {
+        const auto& [a, b, c] = surface_.triangles[t];
+        return isTrackedVertex[a] || isTrackedVertex[b] || isTrackedVertex[c];
+    });
+    for (const Number t : near) {
         for (const Number v : surface_.triangles[t]) {
-            if (!isTrackedVertex[v]) continue;
-            around_[v].push_back(t);
-            isNear[t] = true;
+            if (isTrackedVertex[v]) around_[v].push_back(t);
         }
-        if (!isNear[t]) continue;
+        isNear[t] = true;
         CornerBox box = boxOf(cornersOf(t));
         box.widen(cubeMm_ / 2);  // new vertices lie beside the triangle
         forEachCube(box, [&](const Index3& cube) {
@@ -131,21 +149,17 @@ void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
         });
     }
     // most triangles lie in none of the cubes
-    std::vector<std::uint8_t> mayBeIn(isNear.size());
-    parallelForPieces(std::ssize(mayBeIn), kPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t t = begin; t < end; ++t) {
-            forEachCube(boxOf(cornersOf(static_cast<Number>(t))), [&](const Index3& cube) {
-                if (mayHaveCube_[hashSlot(cube)]) mayBeIn[t] = 1;
-            });
-        }
+    const Numbers inCubes = numbersWhere(isNear.size(), [&](Number t) {
+        bool mayBeIn = false;
+        forEachCube(boxOf(cornersOf(t)),
+                    [&](const Index3& cube) { mayBeIn = mayBeIn || mayHaveCube_[hashSlot(cube)]; });
+        return mayBeIn;
     });
-    for (Number t = 0; t < isNear.size(); ++t) {
-        if (mayBeIn[t] != 0) trackCubes(t);
-    }
-    for (Number s = 0; s < surface_.sampleTriangle.size(); ++s) {
-        const Number t = surface_.sampleTriangle[s];
-        if (isNear[t]) samplesOf_[t].push_back(s);
-    }
+    for (const Number t : inCubes) trackCubes(t);
+    const Numbers samples = numbersWhere(surface_.sampleTriangle.size(), [&](Number s) {
+        return isNear[surface_.sampleTriangle[s]];
+    });
+    for (const Number s : samples) samplesOf_[surface_.sampleTriangle[s]].push_back(s);
 }
 
 bool SurfaceMender::mendPlace(const PlaceBeyond& place) {

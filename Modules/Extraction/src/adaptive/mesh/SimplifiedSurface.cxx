@@ -23,9 +23,7 @@ void removeTriangles(std::vector<SurfaceState::Number> gone, SurfaceState& surfa
         surface.triangles.pop_back();
     }
     for (SurfaceState::Number& t : surface.sampleTriangle) {
-        for (auto at = renumbered.find(t); at != renumbered.end(); at = renumbered.find(t)) {
-            t = at->second;
-        }
+        while (t >= surface.triangles.size()) t = renumbered.at(t);
     }
 }
 

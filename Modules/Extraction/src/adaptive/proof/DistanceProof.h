@@ -40,9 +40,9 @@ struct ErrorBound {
 /// Proves how far a simplified surface and the full-resolution one are apart, both ways. Nothing of
 /// what the simplification believed is trusted, except for where to look first.
 ///
-/// What was proved of one surface holds for the next as far as both are the same: a triangle of
-/// both lies as near to the full-resolution surface as before, and a piece of the latter has not
-/// lost what is near it where no triangle came or went within the limit.
+/// What was proved of a surface holds after changes as far as it is the same: a triangle of before
+/// lies as near to the full-resolution surface, and a piece of the latter has not lost what is near
+/// it where no triangle came or went within the limit.
 class DistanceProof {
 public:
     DistanceProof() = default;
@@ -52,10 +52,9 @@ public:
     DistanceProof& operator=(DistanceProof&&) = delete;
     virtual ~DistanceProof() = default;
 
-    /// What was proved of the last surface is not proved again.
     virtual ErrorBound prove(const SimplifiedSurface& surface) = 0;
 
-    /// The same of the last surface after some changes.
+    /// The same of the last surface, which is still there, after some changes.
     virtual ErrorBound proveAgain(const SimplifiedSurface& surface,
                                   const SurfaceChanges& changes) = 0;
 };

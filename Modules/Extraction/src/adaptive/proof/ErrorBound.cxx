@@ -1,7 +1,6 @@
 #include "adaptive/proof/ErrorBound.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
@@ -64,28 +63,24 @@ ErrorProof::ErrorProof(const LatticeSampler& sampler, const Bricks& bricks,
     : sampler_(sampler), bricks_(bricks), frame_(frame), limitMm_(limitMm), numbers_(bricks) {}
 
 ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
-    auto lookup = std::make_unique<SurfaceLookup>(surface, bricks_, frame_);
+    lookup_ = std::make_unique<SurfaceLookup>(surface, bricks_, frame_);
     // bounds are as tight as the largest sample's distance, or as a hundredth of a voxel
     enoughMm_ = std::min(
-        limitMm_, std::max(largestSampleDistance(surface, *lookup), 0.01 * frame_.narrowestMm()));
-    const ProofScope scope = scopeOf(*lookup);
-    return prove(surface, std::move(lookup), scope);
+        limitMm_, std::max(largestSampleDistance(surface, *lookup_), 0.01 * frame_.narrowestMm()));
+    provedMm_ = 0;
+    return prove(surface, ProofScope());
 }
 
 ErrorBound ErrorProof::proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes) {
-    if (last_.triangles.empty()) return prove(surface);
-    auto lookup = std::make_unique<SurfaceLookup>(surface, bricks_, frame_);
-    const ProofScope scope = scopeOf(*lookup, changes);
-    return prove(surface, std::move(lookup), scope);
+    if (!lookup_) return prove(surface);
+    lookup_->update(changes.triangles);
+    return prove(surface, scopeOf(*lookup_, changes));
 }
 
-ErrorBound ErrorProof::prove(const SimplifiedSurface& surface,
-                             std::unique_ptr<SurfaceLookup> lookup, const ProofScope& scope) {
-    if (last_.triangles.empty()) provedMm_ = 0;
-    last_ = TriangleList();  // the scope has what is of use
+ErrorBound ErrorProof::prove(const SimplifiedSurface& surface, const ProofScope& scope) {
     std::vector<BrickBound> results(bricks_.count());
     tbb::enumerable_thread_specific<BrickProof> proofs([&] {
-        return BrickProof(surface, *lookup, sampler_, scope, numbers_, enoughMm_, limitMm_);
+        return BrickProof(surface, *lookup_, sampler_, scope, numbers_, enoughMm_, limitMm_);
     });
     parallelForPieces(bricks_.count(), 1,
                       [&](std::int64_t b, std::int64_t) { results[b] = proofs.local().prove(b); });
@@ -100,12 +95,13 @@ ErrorBound ErrorProof::prove(const SimplifiedSurface& surface,
     ErrorBound bound;
     bound.largestMm = std::max(provedMm_, farthestMm);
     bound.beyondLimit = beyond;
-    if (!(provedArea >= (1 - 1e-9) * areaOf(*lookup, scope))) {
-        includeFarPieces(surface, *lookup, bound);
+    if (!(provedArea >= (1 - 1e-9) * areaOf(*lookup_, scope))) {
+        includeFarPieces(surface, *lookup_, bound);
+        lookup_.reset();
     } else if (limitMm_ < std::numeric_limits<double>::max()) {
-        proofs.clear();  // they look into the lookup
-        lookup.reset();
-        remember(surface, std::move(beyond));
+        remember(std::move(beyond));
+    } else {
+        lookup_.reset();
     }
     return bound;
 }
@@ -142,9 +138,8 @@ void ErrorProof::includeFarPieces(const SimplifiedSurface& surface, const Surfac
     }
 }
 
-void ErrorProof::remember(const SimplifiedSurface& surface, std::vector<PlaceBeyond> beyond) {
-    last_ = {surface.points, surface.triangles};
-    isWithin_.assign(last_.triangles.size(), 1);
+void ErrorProof::remember(std::vector<PlaceBeyond> beyond) {
+    isWithin_.assign(lookup_->triangleCount(), 1);
     for (const PlaceBeyond& place : beyond) {
         if (!place.isOfFine) isWithin_[place.triangle] = 0;
     }
@@ -153,37 +148,6 @@ void ErrorProof::remember(const SimplifiedSurface& surface, std::vector<PlaceBey
 
 /// What is to be proved: the new triangles, and the full-resolution surface near those that came or
 /// went and where it lay beyond the limit.
-ProofScope ErrorProof::scopeOf(const SurfaceLookup& lookup) const {
-    ProofScope scope;
-    if (last_.triangles.empty()) return scope;
-    std::vector<Corners> known;
-    for (std::size_t t = 0; t < last_.triangles.size(); ++t) {
-        if (isWithin_[t] != 0) known.push_back(last_.cornersOf(t));
-    }
-    tbb::parallel_sort(known.begin(), known.end(), isBefore);
-    const auto count = static_cast<std::int64_t>(lookup.triangleCount());
-    scope.isKnown.assign(count, 0);
-    scope.blocks.assign(bricks_.grid().blockCount(), false);
-    std::vector<std::uint8_t> isStillThere(known.size(), 0);
-    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t t = begin; t < end; ++t) {
-            const Corners corners = lookup.cornersOf(t);
-            const auto at = std::lower_bound(known.begin(), known.end(), corners, isBefore);
-            if (at == known.end() || *at != corners) continue;
-            isStillThere[at - known.begin()] = 1;
-            scope.isKnown[t] = 1;
-        }
-    });
-    for (std::int64_t t = 0; t < count; ++t) {
-        if (scope.isKnown[t] == 0) markAround(lookup.cornersOf(t), limitMm_, scope);
-    }
-    for (std::size_t i = 0; i < known.size(); ++i) {
-        if (isStillThere[i] == 0) markAround(known[i], limitMm_, scope);
-    }
-    markBeyond(scope);
-    return scope;
-}
-
 ProofScope ErrorProof::scopeOf(const SurfaceLookup& lookup, const SurfaceChanges& changes) const {
     ProofScope scope;
     scope.isKnown = isWithin_;

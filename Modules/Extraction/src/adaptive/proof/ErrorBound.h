@@ -24,26 +24,13 @@ public:
     ErrorBound proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes) override;
 
 private:
-    ProofScope scopeOf(const SurfaceLookup& lookup) const;
     ProofScope scopeOf(const SurfaceLookup& lookup, const SurfaceChanges& changes) const;
-    ErrorBound prove(const SimplifiedSurface& surface, std::unique_ptr<SurfaceLookup> lookup,
-                     const ProofScope& scope);
+    ErrorBound prove(const SimplifiedSurface& surface, const ProofScope& scope);
     void includeFarPieces(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
                           ErrorBound& bound) const;
     void markBeyond(ProofScope& scope) const;
     void markAround(const Corners& triangle, double distanceMm, ProofScope& scope) const;
-    void remember(const SimplifiedSurface& surface, std::vector<PlaceBeyond> beyond);
-
-    /// Points and triangles of a surface alone.
-    struct TriangleList {
-        std::vector<Vec3> points;
-        std::vector<SurfaceState::Triangle> triangles;
-
-        Corners cornersOf(std::size_t t) const {
-            const auto& [a, b, c] = triangles[t];
-            return {points[a], points[b], points[c]};
-        }
-    };
+    void remember(std::vector<PlaceBeyond> beyond);
 
     const LatticeSampler& sampler_;
     const Bricks& bricks_;
@@ -51,8 +38,8 @@ private:
     double limitMm_;
     double enoughMm_ = 0;  ///< no bound need be tighter
     double provedMm_ = 0;  ///< so far, of what lies within the limit
-    // of the last surface; empty where not all of it was proved
-    TriangleList last_;
+    // of the last surface; none where not all of it was proved
+    std::unique_ptr<SurfaceLookup> lookup_;
     std::vector<std::uint8_t> isWithin_;  ///< the limit, each triangle
     std::vector<PlaceBeyond> beyond_;
     SampleNumbers numbers_;

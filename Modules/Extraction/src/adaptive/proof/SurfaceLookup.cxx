@@ -40,8 +40,40 @@ SurfaceLookup::SurfaceLookup(const SimplifiedSurface& surface, const Bricks& bri
                          });
 }
 
+void SurfaceLookup::update(std::vector<SurfaceState::Number> changed) {
+    const auto before = static_cast<SurfaceState::Number>(walkable_.triangleCount()),
+               now = static_cast<SurfaceState::Number>(triangleCount());
+    // triangles may have come and gone meanwhile
+    std::erase_if(changed, [&](SurfaceState::Number t) { return t >= std::min(before, now); });
+    for (SurfaceState::Number t = std::min(before, now); t < std::max(before, now); ++t) {
+        changed.push_back(t);
+    }
+    std::sort(changed.begin(), changed.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    std::vector<std::uint8_t> isChanged(std::max(before, now), 0);
+    for (const SurfaceState::Number t : changed) isChanged[t] = 1;
+    Buckets<SurfaceState::Number> ofBrick(bricks_.count(), [&](const auto& give) {
+        for (std::int64_t b = 0; b < bricks_.count(); ++b) {
+            for (const SurfaceState::Number t : this->ofBrick(b)) {
+                if (isChanged[t] == 0) give(b, t);
+            }
+        }
+        for (const SurfaceState::Number t : changed) {
+            if (t < now) forEachBrickNear(t, [&](std::int64_t b) { give(b, t); });
+        }
+    });
+    for (std::size_t b = 0; b < ofBrick.count(); ++b) {
+        const auto triangles = ofBrick.of(b);
+        const auto added = std::is_sorted_until(triangles.begin(), triangles.end());
+        std::inplace_merge(triangles.begin(), added, triangles.end());
+    }
+    ofBrick_ = std::move(ofBrick);
+    walkable_.update(surface_.points, surface_.triangles, changed);
+    treeIsBuilt_ = std::make_unique<std::once_flag>();
+}
+
 const TriangleTree& SurfaceLookup::tree() const {
-    std::call_once(treeIsBuilt_, [&] {
+    std::call_once(*treeIsBuilt_, [&] {
         // while it waits for its own tasks a thread must not take one that asks for the tree
         tbb::this_task_arena::isolate([&] { tree_ = TriangleTree(view()); });
     });

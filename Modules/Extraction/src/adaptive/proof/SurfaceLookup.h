@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <utility>
@@ -21,10 +22,14 @@ inline std::array<Corners, 4> quarter(const Corners& t) {
 }
 
 /// Triangles of a simplified surface by the bricks whose neighbourhood they reach into, and by
-/// their places. The surface must not change meanwhile.
+/// their places. Keeps a reference to the surface.
 class SurfaceLookup {
 public:
     SurfaceLookup(const SimplifiedSurface& surface, const Bricks& bricks, const MetricFrame& frame);
+
+    /// To be called once the surface has changed, before anything else is asked.
+    /// \param changed  its triangles that are new or changed, or got another number
+    void update(std::vector<SurfaceState::Number> changed);
 
     const Bricks& bricks() const { return bricks_; }
     const MetricFrame& frame() const { return frame_; }
@@ -97,7 +102,7 @@ private:
     const SurfaceState& surface_;
     const Bricks& bricks_;
     const MetricFrame& frame_;
-    mutable std::once_flag treeIsBuilt_;
+    mutable std::unique_ptr<std::once_flag> treeIsBuilt_ = std::make_unique<std::once_flag>();
     mutable TriangleTree tree_;
     WalkableSurface<SurfaceState::Number> walkable_;
     Buckets<SurfaceState::Number> ofBrick_;

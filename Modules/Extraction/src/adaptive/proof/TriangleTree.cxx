@@ -4,6 +4,7 @@
 
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptive/mesh/MortonOrder.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -32,64 +33,37 @@ TriangleTree::Box TriangleTree::Box::around(const CornerBox& exact) {
             {atLeast(exact.high.x), atLeast(exact.high.y), atLeast(exact.high.z)}};
 }
 
-/// A triangle while the tree is built.
-struct TriangleTree::Item {
-    std::array<float, 3> centre;
-    std::uint32_t triangle;
-};
-
 TriangleTree::TriangleTree(const TriangleView& of) {
-    const std::int64_t count = std::ssize(of.triangles);
-    if (count == 0) return;
-    std::vector<Item> items(count);
-    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t t = begin; t < end; ++t) {
-            const Corners c = of.cornersOf(t);
-            const Vec3 middle = (1.0 / 3) * (c[0] + c[1] + c[2]);
-            items[t] = {{nearest(middle.x), nearest(middle.y), nearest(middle.z)},
-                        static_cast<std::uint32_t>(t)};
-        }
+    if (of.triangles.empty()) return;
+    CornerBox box = boxOf(of.cornersOf(0));
+    for (const Vec3& p : of.points) box.add(p);
+    order_ = inMortonOrder(of.triangles.size(), box, [&](std::uint32_t t) {
+        const Corners c = of.cornersOf(t);
+        return (1.0 / 3) * (c[0] + c[1] + c[2]);
     });
-    order_.resize(count);
     boxes_.resize(2 * leafCount() - 1);
-    build(items, {0, 0, leafCount()}, of);
+    build({0, 0, leafCount()}, of);
 }
 
-/// Halves the triangles by their centres along the longest side.
-/// \param items  of the subtree
-void TriangleTree::build(std::span<Item> items, const Subtree& subtree, const TriangleView& of) {
+/// The boxes of a node and of those below it.
+void TriangleTree::build(const Subtree& subtree, const TriangleView& of) {
     Box& box = boxes_[subtree.node];
     if (subtree.isLeaf()) {
-        std::size_t place = subtree.firstLeaf * kLeafTriangles;
-        CornerBox exact = boxOf(of.cornersOf(items[0].triangle));
-        for (const Item& item : items) {
-            order_[place++] = item.triangle;
-            for (const Vec3& p : of.cornersOf(item.triangle)) exact.add(p);
+        const auto triangles = leaf(subtree.firstLeaf);
+        CornerBox exact = boxOf(of.cornersOf(triangles[0]));
+        for (const std::uint32_t t : triangles) {
+            for (const Vec3& p : of.cornersOf(t)) exact.add(p);
         }
         box = Box::around(exact);
         return;
     }
-    Box centres{items[0].centre, items[0].centre};
-    for (const Item& item : items) centres.add({item.centre, item.centre});
-    std::size_t axis = 0;
-    for (std::size_t a = 1; a < 3; ++a) {
-        if (centres.high[a] - centres.low[a] > centres.high[axis] - centres.low[axis]) axis = a;
-    }
     const Subtree left = subtree.left(), right = subtree.right();
-    const std::size_t half = left.leaves * kLeafTriangles;
-    std::nth_element(items.begin(), items.begin() + std::ptrdiff_t(half), items.end(),
-                     [axis](const Item& a, const Item& b) {
-                         return a.centre[axis] < b.centre[axis] ||
-                                (a.centre[axis] == b.centre[axis] && a.triangle < b.triangle);
-                     });
-    const auto buildLeft = [&] { build(items.first(half), left, of); };
-    const auto buildRight = [&] { build(items.subspan(half), right, of); };
     constexpr std::int64_t kParallelLeaves = 512;  // below, a task costs more than it saves
     if (subtree.leaves >= kParallelLeaves) {
-        parallelInvoke(buildLeft, buildRight);
+        parallelInvoke([&] { build(left, of); }, [&] { build(right, of); });
     } else {
-        buildLeft();
-        buildRight();
+        build(left, of);
+        build(right, of);
     }
     box = boxes_[left.node];
     box.add(boxes_[right.node]);

@@ -75,7 +75,6 @@ private:
     };
     using Subtree = HalvedLeaves;
     using Stack = HalvedLeaves::Stack;
-    struct Item;
 
     std::span<const std::uint32_t> leaf(std::int64_t number) const {
         const std::int64_t begin = number * kLeafTriangles;
@@ -85,7 +84,7 @@ private:
     static Box boxAround(const TriangleView& of, std::uint32_t t) {
         return Box::around(boxOf(of.cornersOf(t)));
     }
-    void build(std::span<Item> items, const Subtree& subtree, const TriangleView& of);
+    void build(const Subtree& subtree, const TriangleView& of);
     /// Calls f(leaf, box of the node) for leaves from one on that overlap a box.
     template <class F>
     void forEachLeaf(const Box& box, std::int64_t first, const F& f) const;

@@ -87,11 +87,14 @@ PatchCut Simplification::nextCut(const SimplifiedSurface& surface) {
     return {side, {shift, shift, shift}};
 }
 
-void Simplification::roundUpTo(double cost, SimplifiedSurface& surface) {
+void Simplification::roundUpTo(double cost, SimplifiedSurface& surface, bool fits) {
     limits_.triedCost = limits_.maxCost;
     limits_.maxCost = cost;
     if (isSettled(surface)) return;
-    PatchRound(surface, nextCut(surface), frame_).run({limits_});
+    PatchWork work{limits_};
+    work.fits = fits;
+    PatchRound(surface, nextCut(surface), frame_).run(work);
+    fits_ = fits ? 1 : 0;
     surface.returnFreedMemory();
 }
 
@@ -122,12 +125,12 @@ SimplifiedSurface Simplification::toLimits(SurfaceState& halfway) {
     for (const double cost : kBoundCosts) {
         if (cost * costUnit_ > limits_.maxCost) roundUpTo(cost * costUnit_, surface);
     }
-    for (int idle = 0; idle < 2;) {
-        const std::int64_t before = surface.triangleCount();
-        roundUpTo(std::numeric_limits<double>::max(), surface);
-        if (!leavesLess(kFutile, surface.triangleCount(), before)) break;
-        idle = leavesLess(kWorthwhile, surface.triangleCount(), before) ? 0 : idle + 1;
-    }
+    std::int64_t before = 0;
+    do {
+        before = surface.triangleCount();
+        roundUpTo(std::numeric_limits<double>::max(), surface, true);
+    } while (leavesLess(kFutile, surface.triangleCount(), before));
+    fit(surface);
     return surface;
 }
 
@@ -230,6 +233,8 @@ void Simplification::goFarther(SimplifiedSurface& surface) {
     }
 }
 
+/// Moves vertices to where they lie closest to their samples: twice, so that what straddles the cut
+/// has its turn as well. The last step: the quadrics are given up.
 void Simplification::fit(SimplifiedSurface& surface) {
     PatchWork work{limits_};
     work.collapses = false;

@@ -31,7 +31,7 @@ class Simplification {
 public:
     Simplification(const FullSurface& full, const TightPlaces& tight, const PatchLimits& limits);
 
-    /// As few triangles as the limits allow; vertices are not fitted.
+    /// As few triangles as the limits allow.
     /// \param halfway  gets the surface after its first rounds, whose changes are small in every
     ///                 way: the heirs are of its vertices
     SimplifiedSurface toLimits(SurfaceState& halfway);
@@ -41,13 +41,10 @@ public:
     ///                    until it is as large as that
     SimplifiedSurface toCount(const WantedCount& wanted, double farthestMm);
 
-    /// Moves vertices to where they lie closest to their samples: twice, so that what straddles the
-    /// cut has its turn as well. The last step: the quadrics are given up.
-    void fit(SimplifiedSurface& surface);
-
 private:
+    void fit(SimplifiedSurface& surface);
     PatchCut nextCut(const SimplifiedSurface& surface);
-    void roundUpTo(double cost, SimplifiedSurface& surface);
+    void roundUpTo(double cost, SimplifiedSurface& surface, bool fits = false);
     SimplifiedSurface toHalfway();
     SimplifiedSurface towards(const WantedCount& wanted, double farthestMm);
     void goFarther(SimplifiedSurface& surface);
