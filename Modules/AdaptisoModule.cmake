@@ -1,7 +1,8 @@
 # adaptiso_module(): one call declares one module, the layer it stands on and what it may use.
 #
-#   adaptiso_module(<Name> LAYER <n> [DEPENDS <Module>...] [MAY_INCLUDE itk|vtk|gdcm...]
-#                   [PUBLIC <target>...] [PRIVATE <target>...] [PACKAGES <find_package line>...])
+#   adaptiso_module(<Name> LAYER <n> [ON_DEMAND] [DEPENDS <Module>...]
+#                   [MAY_INCLUDE itk|vtk|gdcm...] [PUBLIC <target>...] [PRIVATE <target>...]
+#                   [PACKAGES <find_package line>...])
 #
 # Makes the library adaptiso<Name> (alias adaptiso::<Name>) of Modules/<Name>, whose own
 # CMakeLists.txt lists the sources. Configuring fails when
@@ -9,7 +10,8 @@
 #   - a source includes a header of a module that it does not name under DEPENDS;
 #   - a source includes ITK, VTK, GDCM or CLI11 without naming it under MAY_INCLUDE.
 # PACKAGES are what a consumer of this module has to find, each as one string with the arguments
-# of find_package(): "VTK 9.1 COMPONENTS CommonCore IOXML".
+# of find_package(): "VTK 9.1 COMPONENTS CommonCore". What is ON_DEMAND is left out of
+# find_package(adaptiso) without COMPONENTS.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -74,7 +76,7 @@ function(adaptiso_check_layers name layer)
 endfunction()
 
 function(adaptiso_module name)
-    cmake_parse_arguments(A "" "LAYER" "DEPENDS;MAY_INCLUDE;PUBLIC;PRIVATE;PACKAGES" ${ARGN})
+    cmake_parse_arguments(A "ON_DEMAND" "LAYER" "DEPENDS;MAY_INCLUDE;PUBLIC;PRIVATE;PACKAGES" ${ARGN})
     set(target adaptiso${name})
     add_library(${target})
     add_library(adaptiso::${name} ALIAS ${target})
@@ -94,6 +96,9 @@ function(adaptiso_module name)
     adaptiso_check_layers(${name} ${A_LAYER} DEPENDS ${A_DEPENDS} MAY_INCLUDE ${A_MAY_INCLUDE})
     set_property(GLOBAL PROPERTY ADAPTISO_LAYER_${name} ${A_LAYER})
     set_property(GLOBAL APPEND PROPERTY ADAPTISO_MODULES ${name})
+    if(NOT A_ON_DEMAND)
+        set_property(GLOBAL APPEND PROPERTY ADAPTISO_USUAL_MODULES ${name})
+    endif()
 
     install(TARGETS ${target} EXPORT adaptiso-${name} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
             LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
@@ -106,6 +111,7 @@ endfunction()
 
 function(adaptiso_install_package)
     get_property(ADAPTISO_MODULES GLOBAL PROPERTY ADAPTISO_MODULES)
+    get_property(ADAPTISO_USUAL_MODULES GLOBAL PROPERTY ADAPTISO_USUAL_MODULES)
     get_property(ADAPTISO_CONFIG_MODULES GLOBAL PROPERTY ADAPTISO_CONFIG_MODULES)
     configure_package_config_file(${PROJECT_SOURCE_DIR}/Modules/adaptisoConfig.cmake.in
         ${PROJECT_BINARY_DIR}/adaptisoConfig.cmake

@@ -252,9 +252,7 @@ private:
         const std::string name = top.substr(0, top.find('.')) + ".json";
         std::vector<AtomicOutput> outputs;
         outputs.emplace_back(item.folder / name)
-            .writeText(program_.sidecar(item, record.run.report)
-                           .dump(2, ' ', false, Json::error_handler_t::replace) +
-                       "\n");
+            .writeText(jsonText(program_.sidecar(item, record.run.report)) + "\n");
         AtomicOutput::commit(outputs);
         record.outputs.push_back({kOutputOption, kept(name, item.folder / name)});
     }
@@ -323,9 +321,7 @@ private:
         const std::string name = item.inputs.front().string();
         printWarnings(program_.name, common_, warningsOf(record));
         if (common_.wantsJson()) {
-            const std::string line =
-                toJson(record, program_.name).dump(-1, ' ', false, Json::error_handler_t::replace) +
-                "\n";
+            const std::string line = jsonText(toJson(record, program_.name), -1) + "\n";
             if (common_.wantsJsonOnStdout())
                 std::cout << line << std::flush;
             else

@@ -199,8 +199,7 @@ std::optional<KeptRecord> readRecord(const fs::path& path, RecordFault& fault) {
 
 void writeRecord(const fs::path& file, const KeptRecord& record) {
     std::vector<AtomicOutput> outputs;
-    outputs.emplace_back(file).writeText(
-        recordJson(record).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    outputs.emplace_back(file).writeText(jsonText(recordJson(record)) + "\n");
     AtomicOutput::commit(outputs);
 }
 

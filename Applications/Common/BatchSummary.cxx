@@ -9,6 +9,7 @@
 
 #include "Common/CommonOptions.h"
 #include "Common/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
@@ -24,29 +25,6 @@ th,td{border-bottom:1px solid #bbb;padding:.4em .6em;text-align:left;vertical-al
 tr.bad{background:#fff0f0}tr.unusual{background:#fff8e0}img{max-width:160px;max-height:120px}td.number{text-align:right}
 @media print{@page{size:A4;margin:15mm}body{margin:0;font-size:11px}tr{break-inside:avoid}.scroll{overflow:visible}table{min-width:0}}
 )";
-
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-        }
-    }
-    return result;
-}
 
 /// As a link's target: percent signs where a name has what a URL may not.
 std::string linkTo(const fs::path& target, const fs::path& page) {
@@ -68,7 +46,7 @@ std::string linkTo(const fs::path& target, const fs::path& page) {
 }
 
 std::string anchor(const fs::path& target, const std::string& text, const fs::path& page) {
-    return "<a href=\"" + linkTo(target, page) + "\">" + escaped(text) + "</a>";
+    return "<a href=\"" + linkTo(target, page) + "\">" + escapedMarkup(text) + "</a>";
 }
 
 /// The first picture of a report, as it stands in the page ("data:image/png;base64,..."); empty:
@@ -94,7 +72,7 @@ std::string thumbnail(const SummaryRow& row, const fs::path& page) {
     const std::string source = pictureSource(row, page);
     if (source.empty()) return {};
     const std::string image =
-        "<img src=\"" + source + "\" alt=\"picture of " + escaped(row.name) + "\">";
+        "<img src=\"" + source + "\" alt=\"picture of " + escapedMarkup(row.name) + "\">";
     if (row.report.empty()) return image;
     return "<a href=\"" + linkTo(row.report, page) + "\">" + image + "</a>";
 }
@@ -136,11 +114,12 @@ std::string rowText(const SummaryRow& row, const fs::path& page) {
                                                                    : "";
     return std::string("<tr") + std::string(mark) + "><td class=\"" + (isDone ? "ok" : "failed") +
            "\">" + std::string(stateText(row.state)) + "</td><th scope=\"row\">" +
-           escaped(row.name) + "</th><td>" + escaped(row.program) + "</td><td>" +
-           escaped(row.file) + "</td><td>" + escaped(row.says) + "</td><td>" + report +
+           escapedMarkup(row.name) + "</th><td>" + escapedMarkup(row.program) + "</td><td>" +
+           escapedMarkup(row.file) + "</td><td>" + escapedMarkup(row.says) + "</td><td>" + report +
            (report.empty() || files.empty() ? "" : "<br>") + files + "</td><td>" +
-           thumbnail(row, page) + "</td><td>" + escaped(row.date) + "</td><td class=\"number\">" +
-           (row.seconds > 0 ? formatFixed(row.seconds, 1) : "") + "</td></tr>\n";
+           thumbnail(row, page) + "</td><td>" + escapedMarkup(row.date) +
+           "</td><td class=\"number\">" + (row.seconds > 0 ? formatFixed(row.seconds, 1) : "") +
+           "</td></tr>\n";
 }
 
 /// "2 of 12 failed, 1 missing or changed"; "All 12 done".

@@ -202,9 +202,7 @@ void makeDerivatives(const fs::path& root, const fs::path& derivatives,
     if (fs::exists(derivatives / kDescription)) return;
     std::vector<AtomicOutput> outputs;
     outputs.emplace_back(derivatives / kDescription)
-        .writeText(bidsDescription(root, derivatives, program)
-                       .dump(2, ' ', false, Json::error_handler_t::replace) +
-                   "\n");
+        .writeText(jsonText(bidsDescription(root, derivatives, program)) + "\n");
     AtomicOutput::commit(outputs);
 }
 

@@ -41,7 +41,7 @@ std::string programVersion() {
 
 std::string versionText(const std::string& programName) {
     return programName + " " + programVersion() +
-           "\nbuilt with ITK " ADAPTISO_ITK_VERSION ", VTK " ADAPTISO_VTK_VERSION ", oneTBB " +
+           "\nbuilt with ITK " ADAPTISO_ITK_VERSION ", oneTBB " +
            std::to_string(TBB_VERSION_MAJOR) + "." + std::to_string(TBB_VERSION_MINOR) + ".0";
 }
 

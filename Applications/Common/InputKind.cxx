@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
 #include <string_view>
 
+#include "Common/RunApp.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso {
@@ -26,9 +27,7 @@ bool hasImageName(const fs::path& file) {
     constexpr std::array<std::string_view, 13> kExtensions{
         ".nii.gz", ".nii", ".hdr.gz", ".hdr", ".img.gz", ".img", ".nrrd",
         ".nhdr",   ".mha", ".mhd",    ".mgh", ".mgz",    ".dcm"};
-    std::string name = file.filename().string();
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string name = lowerCase(file.filename().string());
     return std::any_of(kExtensions.begin(), kExtensions.end(), [&](std::string_view extension) {
         return name.size() > extension.size() && name.ends_with(extension);
     });
@@ -43,6 +42,15 @@ std::string imageHint(const fs::path& file) {
     }
     if (!fs::is_regular_file(file, error) || !(hasImageName(file) || isDicom(file))) return "";
     return "this is an image, not a surface; adaptiso-mesh makes surfaces of images";
+}
+
+const MeshFormat& meshFormatOf(const fs::path& file) {
+    try {
+        return findMeshFormat(file);
+    } catch (const InvalidInput& error) {
+        const std::string hint = imageHint(file);
+        throw UsageError(hint.empty() ? error.what() : file.string() + ": " + hint);
+    }
 }
 
 std::string surfaceHint(const fs::path& file) {

@@ -11,17 +11,12 @@
 #include "Common/Sha256.h"
 #include "Common/Temporaries.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lowerCase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
 
 std::int64_t nanoseconds(const timespec& time) {
     constexpr std::int64_t kPerSecond = 1'000'000'000;
@@ -64,12 +59,6 @@ std::string headerText(const fs::path& file) {
     return text;
 }
 
-std::string trimmed(const std::string& text) {
-    const std::size_t begin = text.find_first_not_of(" \t\r");
-    if (begin == std::string::npos) return {};
-    return text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
-}
-
 /// The value of a line "ElementDataFile = x" (MetaImage) or "data file: x" (NRRD); empty: none.
 std::string dataFileOf(const std::string& header) {
     const bool isNrrd = header.starts_with("NRRD");
@@ -78,9 +67,9 @@ std::string dataFileOf(const std::string& header) {
     for (std::string line; std::getline(lines, line) && !trimmed(line).empty();) {
         const std::size_t sign = line.find(isNrrd ? ':' : '=');
         if (sign == std::string::npos) continue;
-        const std::string key = lowerCase(trimmed(line.substr(0, sign)));
+        const std::string key = lowerCase(trimmed(std::string_view(line).substr(0, sign)));
         if (key == "elementdatafile" || key == "data file" || key == "datafile") {
-            return trimmed(line.substr(sign + 1));
+            return std::string(trimmed(std::string_view(line).substr(sign + 1)));
         }
     }
     return {};

@@ -2,6 +2,10 @@
 
 #include <sys/resource.h>
 
+#include <ostream>
+
+#include "adaptiso/Core/Numbers.h"
+
 namespace adaptiso {
 
 double peakMemoryMb() {
@@ -25,6 +29,16 @@ void StageTimer::add(std::string_view stage, double seconds) {
         }
     }
     stages_.emplace_back(stage, seconds);
+}
+
+void printTimes(std::ostream& out, const StageTimer& timer, int decimals) {
+    out << formatFixed(timer.total(), decimals) << " s (";
+    std::string_view separator;
+    for (const auto& [stage, seconds] : timer.stages()) {
+        out << separator << stage << ' ' << formatFixed(seconds, decimals);
+        separator = ", ";
+    }
+    out << "), peak memory " << formatRounded(peakMemoryMb()) << " MB\n";
 }
 
 }  // namespace adaptiso

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <iosfwd>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -51,5 +52,8 @@ private:
     Clock::time_point start_ = Clock::now();
     std::vector<std::pair<std::string, double>> stages_;
 };
+
+/// The last line of a program's report: "1.23 s (read 0.50, extract 0.73), peak memory 100 MB".
+void printTimes(std::ostream& out, const StageTimer& timer, int decimals = 2);
 
 }  // namespace adaptiso

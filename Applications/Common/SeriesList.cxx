@@ -85,7 +85,7 @@ std::string listJson(const std::string& program, const std::string& name,
                       {"filesWithoutImage", listing.otherFiles},
                       {"damagedFiles", damaged},
                       {"warnings", listing.warnings}};
-    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(report) + "\n";
 }
 
 /// All that the list tells as warnings.

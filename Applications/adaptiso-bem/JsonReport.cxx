@@ -34,8 +34,7 @@ std::string jsonReport(const BemRun& run) {
     report["reportFailure"] = reportFailureJson(run.reportFailure);
     report["seconds"] = secondsJson(run.timer);
     report["peakMemoryMb"] = peakMemoryMb();
-    // a file's name need not be UTF-8: what is not becomes U+FFFD
-    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(report) + "\n";
 }
 
 }  // namespace adaptiso

@@ -62,13 +62,7 @@ void printReport(std::ostream& out, const BemRun& run) {
             << (holdsModel ? ": holds the head model" : ": holds the report only") << '\n';
         for (const auto& path : run.subjectFiles) out << path.string() << '\n';
     }
-    out << formatFixed(run.timer.total(), 1) << " s (";
-    std::string_view separator;
-    for (const auto& [stage, seconds] : run.timer.stages()) {
-        out << separator << stage << ' ' << formatFixed(seconds, 1);
-        separator = ", ";
-    }
-    out << "), peak memory " << formatRounded(peakMemoryMb()) << " MB\n";
+    printTimes(out, run.timer, 1);
 }
 
 }  // namespace adaptiso

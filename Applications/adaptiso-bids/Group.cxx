@@ -38,7 +38,7 @@ sub-*/             surfaces, each with a sidecar (.json) that says what it was m
 )";
 
 std::string dumped(const Json& json) {
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(json) + "\n";
 }
 
 Json descriptionOf(const BidsOptions& options) {

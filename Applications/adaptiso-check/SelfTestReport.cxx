@@ -138,7 +138,7 @@ std::string jsonText(const SelfTest& test, const Machine& machine, const std::st
                       {"failures", test.failures()},
                       {"seconds", secondsJson(timer)},
                       {"peakMemoryMb", peakMemoryMb()}};
-    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return adaptiso::jsonText(report) + "\n";
 }
 
 Report reportPage(SelfTest& test, const Machine& machine) {

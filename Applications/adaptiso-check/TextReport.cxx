@@ -105,13 +105,7 @@ void printReport(std::ostream& out, const CheckRun& run) {
             << "; what is unusual of adults' heads is noted, and may be right)\n";
         printNotes(out, run.notes);
     }
-    out << formatFixed(run.timer.total(), 2) << " s (";
-    std::string_view separator;
-    for (const auto& [stage, seconds] : run.timer.stages()) {
-        out << separator << stage << ' ' << formatFixed(seconds, 2);
-        separator = ", ";
-    }
-    out << "), peak memory " << formatRounded(peakMemoryMb()) << " MB\n";
+    printTimes(out, run.timer);
 }
 
 }  // namespace adaptiso

@@ -115,8 +115,7 @@ std::string jsonReport(const CompareRun& run) {
                       {"reportFailure", reportFailureJson(run.reportFailure)},
                       {"seconds", secondsJson(run.timer)},
                       {"peakMemoryMb", peakMemoryMb()}};
-    // a file's name need not be UTF-8: what is not becomes U+FFFD
-    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(report) + "\n";
 }
 
 }  // namespace adaptiso

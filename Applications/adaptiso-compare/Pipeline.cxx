@@ -23,10 +23,9 @@
 #include "JsonReport.h"
 #include "ReportPage.h"
 #include "TextReport.h"
-#include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/FreeMemory.h"
-#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/Report/ColorMap.h"
 
@@ -44,15 +43,6 @@ constexpr const char* kOverlap = "overlap";
 constexpr const char* kWrite = "write";
 constexpr const char* kReport = "report";
 
-const MeshFormat& formatOf(const fs::path& path) {
-    try {
-        return findMeshFormat(path);
-    } catch (const InvalidInput& error) {
-        const std::string hint = imageHint(path);
-        throw UsageError(hint.empty() ? error.what() : path.string() + ": " + hint);
-    }
-}
-
 bool areSame(const fs::path& a, const fs::path& b) {
     return fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b));
 }
@@ -60,13 +50,13 @@ bool areSame(const fs::path& a, const fs::path& b) {
 /// Everything about the files that can be told from their names.
 void checkNames(const CompareOptions& options) {
     std::vector<fs::path> inputs{options.a, options.b};
-    for (const fs::path& mesh : inputs) formatOf(mesh);
+    for (const fs::path& mesh : inputs) meshFormatOf(mesh);
     if (!options.volume.empty()) inputs.push_back(options.volume);
     checkReportOutputs(options.report, inputs);
 
     std::vector<fs::path> outputs;
     if (!options.colored.empty()) {
-        if (formatOf(options.colored).id != MeshFormatId::VtkXml) {
+        if (meshFormatOf(options.colored).id != MeshFormatId::VtkXml) {
             throw UsageError("--colored " + options.colored.string() + ": must be a .vtp file");
         }
         outputs.push_back(options.colored);
@@ -95,7 +85,7 @@ SurfaceSummary summarize(const NamedMesh& surface, std::optional<CoordinateFrame
     const TriangleMesh& mesh = surface.file.mesh;
     SurfaceSummary summary;
     summary.file = surface.path;
-    summary.format = &formatOf(surface.path);
+    summary.format = &meshFormatOf(surface.path);
     summary.frame = frame;
     summary.triangles = std::ssize(mesh.triangles);
     summary.vertices = std::ssize(mesh.points);
@@ -168,22 +158,6 @@ void measureOverlap(CompareRun& run, const TriangleMesh& a, const TriangleMesh& 
                                ": no voxel's centre lies inside either surface");
     }
     run.overlap = overlap;
-}
-
-/// Of every vertex of `from`, to the surface `to`.
-std::vector<double> vertexDistancesMm(const TriangleMesh& from, const TriangleMesh& to) {
-    constexpr std::int64_t kGrain = 4096;
-    const AabbTree tree(to);
-    std::vector<double> distances(from.points.size());
-    parallelForPieces(std::ssize(from.points), kGrain, [&](std::int64_t begin, std::int64_t end) {
-        std::int64_t hint = -1;
-        for (std::int64_t v = begin; v < end; ++v) {
-            const ClosestPoint nearest = tree.closestPoint(from.points[v], hint);
-            distances[v] = std::sqrt(nearest.squaredDistanceMm2);
-            hint = nearest.triangle;
-        }
-    });
-    return distances;
 }
 
 std::vector<Color> colorsOf(const std::vector<double>& values, double maximum) {

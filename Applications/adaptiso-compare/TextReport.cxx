@@ -90,13 +90,7 @@ void printReport(std::ostream& out, const CompareRun& run) {
         out << run.options.colored.string() << ": A with its distances, viridis from 0 to "
             << formatFixed(run.colored->maximumMm, 4) << " mm\n";
     }
-    out << formatFixed(run.timer.total(), 2) << " s (";
-    std::string_view separator;
-    for (const auto& [stage, seconds] : run.timer.stages()) {
-        out << separator << stage << ' ' << formatFixed(seconds, 2);
-        separator = ", ";
-    }
-    out << "), peak memory " << formatRounded(peakMemoryMb()) << " MB\n";
+    printTimes(out, run.timer);
 }
 
 }  // namespace adaptiso

@@ -134,8 +134,7 @@ Json sharedJson(const LabelsRun& run) {
 }
 
 std::string textOf(const Json& json) {
-    // a file's name need not be UTF-8: what is not becomes U+FFFD
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(json) + "\n";
 }
 
 }  // namespace

@@ -191,7 +191,7 @@ std::string infoJson(const MeshOptions& options, const ImageInfo& info) {
                 {"warnings", namedWarnings(options, info)},
                 {"failedByWarnings", failsStrict(options.common, info.warnings)}};
     if (info.series) report["series"] = seriesJson(*info.series);
-    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(report) + "\n";
 }
 
 }  // namespace adaptiso

@@ -1,22 +1,16 @@
 #include "OutputNames.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string_view>
 
 #include "Common/Bids.h"
 #include "Common/InputNames.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lowerCase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
 
 std::string replaced(std::string text, std::string_view place, const std::string& by) {
     for (std::size_t at = text.find(place); at != std::string::npos;

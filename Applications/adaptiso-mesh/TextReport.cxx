@@ -70,13 +70,7 @@ void printReport(std::ostream& out, const MeshRun& run) {
         out << oneLine(run.index.file.string()) << ": index for --index ("
             << toString(run.index.search) << "), " << formatCount(run.index.blocks) << " blocks\n";
     }
-    out << formatFixed(run.timer.total(), 2) << " s (";
-    std::string_view separator;
-    for (const auto& [stage, seconds] : run.timer.stages()) {
-        out << separator << stage << ' ' << formatFixed(seconds, 2);
-        separator = ", ";
-    }
-    out << "), peak memory " << formatRounded(peakMemoryMb()) << " MB\n";
+    printTimes(out, run.timer);
 }
 
 }  // namespace adaptiso

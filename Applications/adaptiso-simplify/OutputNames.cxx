@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/Formats.h"
 
 namespace adaptiso {
@@ -14,12 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kMark = "simplified";
-
-std::string lowerCase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
 
 /// Length of an ending of two parts; 0: the name has none.
 std::size_t twoPartEnding(const std::string& name) {

@@ -48,15 +48,6 @@ constexpr const char* kWrite = "write";
 constexpr const char* kVerify = "verify";
 constexpr const char* kReport = "report";
 
-const MeshFormat& formatOf(const fs::path& path) {
-    try {
-        return findMeshFormat(path);
-    } catch (const InvalidInput& error) {
-        const std::string hint = imageHint(path);
-        throw UsageError(hint.empty() ? error.what() : path.string() + ": " + hint);
-    }
-}
-
 /// Values in files of their own belong to points by number.
 void requirePointOrder(const SimplifyRun& run, const fs::path& data) {
     for (const SurfaceSummary* surface : {&run.input, &run.output}) {
@@ -70,9 +61,9 @@ void requirePointOrder(const SimplifyRun& run, const fs::path& data) {
 void checkNames(SimplifyRun& run) {
     const SimplifyCommand& command = run.command;
     run.input.file = command.input;
-    run.input.format = &formatOf(command.input);
+    run.input.format = &meshFormatOf(command.input);
     run.output.file = surfaceFile(command.output, command.input);
-    run.output.format = &formatOf(run.output.file);
+    run.output.format = &meshFormatOf(run.output.file);
     std::vector<fs::path> inputs{command.input}, outputs{run.output.file};
     for (const fs::path& data : command.data) {
         requirePointOrder(run, data);

@@ -1,34 +1,16 @@
 #include "ReportPage.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "Common/Json.h"
 #include "Common/Numbers.h"
 #include "Common/ReportOutput.h"
 #include "Common/SpotClusters.h"
 #include "Frames.h"
-#include "adaptiso/Core/AabbTree.h"
-#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
 
 namespace adaptiso {
 namespace {
-
-/// Of every vertex of `from`, to the surface `to`.
-std::vector<double> vertexDistancesMm(const TriangleMesh& from, const TriangleMesh& to) {
-    constexpr std::int64_t kGrain = 4096;
-    const AabbTree tree(to);
-    std::vector<double> distances(from.points.size());
-    parallelForPieces(std::ssize(from.points), kGrain, [&](std::int64_t begin, std::int64_t end) {
-        std::int64_t hint = -1;
-        for (std::int64_t v = begin; v < end; ++v) {
-            const ClosestPoint nearest = tree.closestPoint(from.points[v], hint);
-            distances[v] = std::sqrt(nearest.squaredDistanceMm2);
-            hint = nearest.triangle;
-        }
-    });
-    return distances;
-}
 
 void tellVerdict(const SimplifyRun& run, Report& report) {
     report.title = baseName(run.input.file) + " simplified";

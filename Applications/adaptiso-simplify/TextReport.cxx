@@ -58,13 +58,7 @@ void printReport(std::ostream& out, const SimplifyRun& run) {
                 << oneLine(baseName(data.file)) << ", " << toString(data.format) << '\n';
         }
     }
-    out << formatFixed(run.timer.total(), 2) << " s (";
-    std::string_view separator;
-    for (const auto& [stage, seconds] : run.timer.stages()) {
-        out << separator << stage << ' ' << formatFixed(seconds, 2);
-        separator = ", ";
-    }
-    out << "), peak memory " << formatRounded(peakMemoryMb()) << " MB\n";
+    printTimes(out, run.timer);
 }
 
 }  // namespace adaptiso

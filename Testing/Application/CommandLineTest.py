@@ -103,7 +103,7 @@ class Help(ApplicationTest):
 
     def test_version_names_the_libraries(self):
         done = self.mesh("--version")
-        self.assertRegex(done.stdout, r"^adaptiso-mesh \d+\.\d+\.\d+\n.*ITK \d+\.\d+.*VTK \d+\.\d+")
+        self.assertRegex(done.stdout, r"^adaptiso-mesh \d+\.\d+\.\d+\n.*ITK \d+\.\d+.*oneTBB \d+\.\d+")
         self.assertEqual(done.stderr, "")
 
 

@@ -15,11 +15,11 @@
 #include "HeapMeter.h"
 #include "VtkThreads.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/MeshIO/VtkAdaptor.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
+#include "adaptiso/VtkAdaptor/VtkAdaptor.h"
 
 namespace adaptiso::benchmarks {
 namespace {

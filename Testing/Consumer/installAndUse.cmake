@@ -8,9 +8,9 @@ endfunction()
 
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --config ${CONFIG} --prefix ${WORK}/prefix)
-# Extraction rests on neither ITK nor VTK: finding them is forbidden, and REQUIRED ones then fail
+# Extraction and MeshIO rest on neither ITK nor VTK: finding them is forbidden, and REQUIRED ones then fail
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR}
     -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_BUILD_TYPE=${CONFIG} -DCMAKE_CXX_COMPILER=${COMPILER}
     -DCMAKE_DISABLE_FIND_PACKAGE_ITK=ON -DCMAKE_DISABLE_FIND_PACKAGE_VTK=ON)
 run(${CMAKE_COMMAND} --build ${WORK}/build --config ${CONFIG})
-run(${WORK}/build/sphere)
+run(${WORK}/build/sphere ${WORK}/build)

@@ -15,7 +15,7 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshIO/PointData.h"
 #include "adaptiso/MeshIO/PointFiles.h"
-#include "adaptiso/MeshIO/VtkAdaptor.h"
+#include "adaptiso/VtkAdaptor/VtkAdaptor.h"
 
 namespace adaptiso::fuzz {
 namespace {

@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
+#include "adaptiso/Core/Text.h"
+
 /// What NRRD's and MetaImage's text headers share.
 namespace adaptiso::detail {
 
-std::string_view trimmed(std::string_view text);
-std::string lowerCase(std::string_view text);
 /// Cut at blanks.
 std::vector<std::string_view> words(std::string_view text);
 

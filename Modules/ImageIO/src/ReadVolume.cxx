@@ -31,8 +31,8 @@ std::string inflatedHead(const fs::path& file) {
 /// "nii" for both x.nii and x.nii.gz
 std::string formatEnding(const fs::path& file) {
     fs::path name = file.filename();
-    if (detail::lowerCase(name.extension().native()) == ".gz") name = name.stem();
-    const std::string ending = detail::lowerCase(name.extension().native());
+    if (lowerCase(name.extension().native()) == ".gz") name = name.stem();
+    const std::string ending = lowerCase(name.extension().native());
     return ending.empty() ? ending : ending.substr(1);
 }
 

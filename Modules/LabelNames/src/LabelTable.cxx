@@ -8,6 +8,7 @@
 #include <new>
 
 #include "Rows.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
@@ -22,41 +23,6 @@ bool isText(std::string_view bytes) {
         return (c < 0x20 && c != '\t' && c != '\n' && c != '\r' && c != '\f' && c != '\v') ||
                c == 0x7f;
     });
-}
-
-bool isUtf8(std::string_view text) {
-    for (std::size_t n = 0; n < text.size();) {
-        const auto c = static_cast<unsigned char>(text[n++]);
-        if (c < 0x80) continue;
-        const int more = c >= 0xf0 ? 3 : c >= 0xe0 ? 2 : 1;
-        if (c < 0xc2 || c > 0xf4) return false;
-        for (int k = 0; k < more; ++k, ++n) {
-            if (n == text.size() || (static_cast<unsigned char>(text[n]) & 0xc0) != 0x80) {
-                return false;
-            }
-        }
-        // too long a form, half of a pair, or beyond the last character
-        const auto second = static_cast<unsigned char>(text[n - static_cast<std::size_t>(more)]);
-        if ((c == 0xe0 && second < 0xa0) || (c == 0xed && second > 0x9f) ||
-            (c == 0xf0 && second < 0x90) || (c == 0xf4 && second > 0x8f)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-std::string fromLatin1(std::string_view text) {
-    std::string result;
-    for (const char each : text) {
-        const auto c = static_cast<unsigned char>(each);
-        if (c < 0x80) {
-            result += each;
-        } else {
-            result += static_cast<char>(0xc0 | c >> 6);
-            result += static_cast<char>(0x80 | (c & 0x3f));
-        }
-    }
-    return result;
 }
 
 /// Reds, greens and blues of 0 to 255. MRIcron's own atlases have black where they have no colour.
@@ -85,9 +51,8 @@ LabelTable decode(std::string_view bytes) {
         refuseKind("it is UTF-16; save it as UTF-8");
     }
     if (!isText(bytes)) refuseKind("it is no text");
-    const std::string latin = isUtf8(bytes) ? std::string() : fromLatin1(bytes);
-    const std::string_view text = latin.empty() ? bytes : std::string_view(latin);
-    const std::string_view start = trimmed(text.substr(0, 4096));
+    const std::string text = toUtf8(bytes);
+    const std::string_view start = trimmed(std::string_view(text).substr(0, 4096));
     if (start.empty()) refuseKind("it holds nothing but blanks");
     // XML names its own encoding
     if (start.front() == '<') return decodeXml(trimmed(bytes));

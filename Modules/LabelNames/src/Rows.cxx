@@ -47,21 +47,6 @@ std::string printable(std::string_view text) {
     return "'" + result + (text.size() > kMost ? "...'" : "'");
 }
 
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view kBlanks = " \t\r\n\v\f";
-    const std::size_t first = text.find_first_not_of(kBlanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
-std::string lowerCase(std::string_view text) {
-    std::string lower(text);
-    for (char& c : lower) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
-    return lower;
-}
-
 std::vector<Line> linesOf(std::string_view text) {
     std::vector<Line> lines;
     std::int64_t number = 0;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/LabelNames/LabelTable.h"
 
 namespace adaptiso::labelnames {
@@ -19,9 +20,6 @@ namespace adaptiso::labelnames {
 
 /// `text` with what a terminal can't show as '?', cut at 40 characters: for messages.
 std::string printable(std::string_view text);
-
-std::string_view trimmed(std::string_view text);
-std::string lowerCase(std::string_view text);
 
 /// A line that is neither empty nor a comment.
 struct Line {

@@ -19,6 +19,13 @@ T swappedBytes(T value) {
     return value;
 }
 
+/// Appends the bytes of a number, the least first.
+template <class T>
+void appendLittleEndian(T value, std::string& bytes) {
+    if (std::endian::native == std::endian::big) value = swappedBytes(value);
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+
 /// Collects the bytes of a file in memory and hands them to a stream in large pieces. Errors of
 /// the stream are the owner's to check, after finish().
 class ByteSink {

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "ByteSink.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::meshio {
 
@@ -69,8 +70,5 @@ float toFloat(double value, std::string_view what);
 
 /// `text` with what a terminal can't show as '?', cut at 40 characters: for messages.
 std::string printable(std::string_view text);
-
-std::string lowerCase(std::string_view text);
-std::string_view trimmed(std::string_view text);
 
 }  // namespace adaptiso::meshio

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -44,6 +45,9 @@ std::string headerLine(const MeshWriteOptions& options);
 /// A name from a file as messages and other files can have it: control characters are '?', and it
 /// is cut at 200 bytes.
 std::string storedName(std::string_view name);
+
+/// `name`, with as many '_' behind it as none of `taken` has; it is taken from now on.
+std::string unusedName(std::string name, std::set<std::string>& taken);
 
 /// A normal as a file has it, whatever its length. Damage where float can't hold it.
 Normal storedNormal(const Vec3& v);

@@ -64,7 +64,7 @@ std::span<const MeshFormat> meshFormats() {
 }
 
 const MeshFormat& findMeshFormat(const std::filesystem::path& path) {
-    const std::string extension = meshio::lowerCase(path.extension().string());
+    const std::string extension = lowerCase(path.extension().string());
     for (const MeshFormat& format : kFormats) {
         if (std::ranges::find(format.extensions, extension) != format.extensions.end()) {
             return format;

@@ -36,13 +36,6 @@ GiftiShape shapeOf(const XmlAttributes& attributes, std::string_view what);
 /// The encoding says that numbers are packed (true), or base64 alone. \throws FileError  neither
 bool isPackedGifti(const std::string& encoding, std::string_view what);
 
-/// Appends the bytes of a number as these files have them.
-template <class T>
-void appendLittleEndian(T value, std::string& bytes) {
-    if (std::endian::native == std::endian::big) value = swappedBytes(value);
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
-}
-
 /// The numbers of an array in the order in which they are stored.
 template <class Stored, class T>
 std::vector<T> decodeGiftiNumbers(const GiftiArray& array, const GiftiShape& shape,

@@ -123,7 +123,7 @@ void encodeMetadata(const Metadata& metadata, ByteSink& sink) {
     }
     sink << "<MetaData>\n";
     for (const auto& [name, value] : metadata) {
-        sink << "<MD><Name>" << escaped(name) << "</Name><Value>" << escaped(value)
+        sink << "<MD><Name>" << escapedMarkup(name) << "</Name><Value>" << escapedMarkup(value)
              << "</Value></MD>\n";
     }
     sink << "</MetaData>\n";
@@ -142,7 +142,7 @@ void encodeLabels(const std::vector<PointLabel>& labels, ByteSink& sink) {
         for (std::size_t n = 0; label.rgba && n < 4; ++n) {
             sink << kChannels[n] << (*label.rgba)[n] << "\"";
         }
-        sink << ">" << escaped(label.name) << "</Label>\n";
+        sink << ">" << escapedMarkup(label.name) << "</Label>\n";
     }
     sink << "</LabelTable>\n";
 }
@@ -171,7 +171,7 @@ void encodeGiftiData(const PointData& data, ByteSink& sink) {
     encodeMetadata(data.metadata, sink);
     encodeLabels(data.labels, sink);
     for (const PointValues& array : data.arrays) {
-        beginGiftiArray(array.intent.empty() ? "NIFTI_INTENT_NONE" : escaped(array.intent),
+        beginGiftiArray(array.intent.empty() ? "NIFTI_INTENT_NONE" : escapedMarkup(array.intent),
                         array.areLabels() ? "NIFTI_TYPE_INT32" : "NIFTI_TYPE_FLOAT32",
                         {data.points, array.columns}, sink);
         encodeMetadata(array.metadata, sink);

@@ -5,19 +5,20 @@
 #include "FileBytes.h"
 #include "GiftiArrays.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
 
 using meshio::ByteSink;
-using meshio::escaped;
 using meshio::writeBytes;
 
 void encodeKey(const LabelKey& label, bool isSeen, ByteSink& sink) {
     sink << "<Label Key=\"" << std::int64_t{label.key} << "\"";
     constexpr const char* kChannels[] = {" Red=\"", " Green=\"", " Blue=\""};
     for (std::size_t n = 0; n < 3; ++n) sink << kChannels[n] << label.color[n] / 255.0 << "\"";
-    sink << " Alpha=\"" << (isSeen ? "1" : "0") << "\">" << escaped(label.name) << "</Label>\n";
+    sink << " Alpha=\"" << (isSeen ? "1" : "0") << "\">" << escapedMarkup(label.name)
+         << "</Label>\n";
 }
 
 }  // namespace
@@ -55,8 +56,8 @@ void writeMultiBlock(std::span<const VtkBlock> blocks, const std::filesystem::pa
                 "byte_order=\"LittleEndian\">\n<vtkMultiBlockDataSet>\n";
         std::int64_t index = 0;
         for (const VtkBlock& block : blocks) {
-            sink << "<DataSet index=\"" << index++ << "\" name=\"" << escaped(block.name)
-                 << "\" file=\"" << escaped(block.file) << "\"/>\n";
+            sink << "<DataSet index=\"" << index++ << "\" name=\"" << escapedMarkup(block.name)
+                 << "\" file=\"" << escapedMarkup(block.file) << "\"/>\n";
         }
         sink << "</vtkMultiBlockDataSet>\n</VTKFile>\n";
     });

@@ -203,6 +203,11 @@ std::string storedName(std::string_view name) {
     return stored;
 }
 
+std::string unusedName(std::string name, std::set<std::string>& taken) {
+    while (!taken.insert(name).second) name += '_';
+    return name;
+}
+
 Normal storedNormal(const Vec3& v) {
     return {toFloat(v.x, "a normal"), toFloat(v.y, "a normal"), toFloat(v.z, "a normal")};
 }

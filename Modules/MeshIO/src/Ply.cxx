@@ -336,8 +336,7 @@ std::string propertyName(const std::string& name, std::set<std::string>& taken) 
     for (char& c : word) {
         if (c <= ' ' || c > '~') c = '_';
     }
-    while (!taken.insert(word).second) word += '_';
-    return word;
+    return unusedName(std::move(word), taken);
 }
 
 std::vector<Column> columnsOf(const std::vector<PointArray>& arrays) {

@@ -196,7 +196,7 @@ PointData decode(std::string_view bytes, PointDataFormat format) {
 /// What to do with a file that has values at points in a form that is not read; empty: it may be
 /// one that is.
 std::string adviceFor(const std::filesystem::path& path) {
-    const std::string extension = meshio::lowerCase(path.extension().string());
+    const std::string extension = lowerCase(path.extension().string());
     if (extension == ".mgz") return "is packed; unpack it to .mgh (mri_convert, or gzip -dc)";
     if (extension == ".label") {
         return "lists points, and has no value for each; make an .annot of it (mris_label2annot)";
@@ -225,7 +225,7 @@ std::string_view toString(PointDataFormat format) {
 }
 
 PointDataFormat findPointDataFormat(const std::filesystem::path& path) {
-    const std::string extension = meshio::lowerCase(path.extension().string());
+    const std::string extension = lowerCase(path.extension().string());
     if (extension == ".gii") return PointDataFormat::Gifti;
     if (extension == ".annot") return PointDataFormat::FreeSurferAnnot;
     if (extension == ".mgh") return PointDataFormat::FreeSurferMgh;

@@ -1,17 +1,15 @@
-// VTK legacy PolyData (.vtk). Written by VTK: binary (big endian), double points; version 4.2,
-// which old programs read too, unless the surface needs the 64-bit cells of 5.1.
+// VTK legacy PolyData (.vtk). Written: binary (big endian), double points; version 4.2, which old
+// programs read too, unless the surface needs the 64-bit cells of 5.1. Read: text and binary,
+// versions 1 to 5.1.
 //
-// Read here, not by vtkPolyDataReader: that one allocates what the file claims and walks cell
-// lists unchecked. Read: text and binary, versions 1 to 5.1.
-#include <vtkNew.h>
-#include <vtkPolyDataWriter.h>
-
+// By hand, not by vtkPolyDataReader: that one allocates what the file claims and walks cell lists
+// unchecked. What is written has the very bytes of vtkPolyDataWriter.
 #include <charconv>
 #include <limits>
 #include <vector>
 
 #include "ByteSource.h"
-#include "VtkEncode.h"
+#include "VtkFiles.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::meshio {
@@ -392,24 +390,108 @@ private:
     std::int64_t tuples_ = 0;   ///< tuples of each attribute array at this place
 };
 
+/// A name as one word: what could end it is "%20", in hexadecimal digits.
+std::string wordOf(std::string_view name) {
+    constexpr std::string_view kDigits = "0123456789ABCDEF";
+    std::string word;
+    for (const char c : name) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c > ' ' && c <= '~' && c != '"' && c != '%') {
+            word += c;
+        } else {
+            word += {'%', kDigits[byte / 16], kDigits[byte % 16]};
+        }
+    }
+    return word;
+}
+
+template <class Row>
+void encodeNumbers(const std::vector<Row>& rows, ByteSink& sink) {
+    forEachNumber(rows, [&](auto number) { sink.bigEndian(number); });
+    sink << "\n";
+}
+
+void encodeFields(const MeshWriteOptions& options, ByteSink& sink) {
+    const auto fields = fieldsOf(options);
+    sink << "FIELD FieldData " << std::ssize(fields) << "\n";
+    for (const auto& [name, text] : fields) {
+        constexpr unsigned kShort = 0xC0;  // a length below 64 follows in this byte
+        sink << name << " 1 1 string\n";
+        sink.bigEndian(static_cast<std::uint8_t>(kShort | text.size()));
+        sink << text << "\n";
+    }
+}
+
+void encodeCells(const std::vector<Triangle>& triangles, bool are32Bits, ByteSink& sink) {
+    const std::int64_t count = std::ssize(triangles);
+    if (!are32Bits) {
+        sink << "POLYGONS " << count + 1 << " " << 3 * count << "\nOFFSETS vtktypeint64\n";
+        for (std::int64_t i = 0; i <= count; ++i) sink.bigEndian(3 * i);
+        sink << "\nCONNECTIVITY vtktypeint64\n";
+        return encodeNumbers(triangles, sink);
+    }
+    sink << "POLYGONS " << count << " " << 4 * count << "\n";
+    for (const Triangle& triangle : triangles) {
+        sink.bigEndian(std::int32_t{3});
+        for (const VertexId v : triangle) sink.bigEndian(static_cast<std::int32_t>(v));
+    }
+    sink << "\n";
+}
+
+/// The active array.
+void encodeScalars(const std::string& name, const PointArray& array, ByteSink& sink) {
+    const auto encode = [&]<class Row>(const std::vector<Row>& rows) {
+        if constexpr (std::is_same_v<Row, Color>) {
+            sink << "COLOR_SCALARS " << wordOf(name) << " 3\n";
+        } else {
+            sink << "SCALARS " << wordOf(name) << " " << numberType<Row>().inLegacy;
+            if (array.components > 1) sink << " " << std::int64_t{array.components};
+            sink << "\nLOOKUP_TABLE default\n";
+        }
+        encodeNumbers(rows, sink);
+    };
+    std::visit(encode, array.values);
+}
+
+void encodePointData(const MeshRecord& record, ByteSink& sink) {
+    const std::vector<Normal>& normals = record.mesh.normals;
+    const std::vector<PointArray>& arrays = record.options.pointArrays;
+    if (arrays.empty() && normals.empty()) return;
+    const std::int64_t points = std::ssize(record.mesh.points);
+    const std::vector<std::string> names = arrayNames(arrays);
+    sink << "POINT_DATA " << points << "\n";
+    if (!arrays.empty()) encodeScalars(names[0], arrays[0], sink);
+    if (!normals.empty()) {
+        sink << "NORMALS " << kNormalsName << " float\n";
+        encodeNumbers(normals, sink);
+    }
+    if (arrays.size() < 2) return;
+    sink << "FIELD FieldData " << std::ssize(arrays) - 1 << "\n";
+    for (std::size_t i = 1; i < arrays.size(); ++i) {
+        const auto encode = [&]<class Row>(const std::vector<Row>& rows) {
+            sink << wordOf(names[i]) << " "
+                 << std::int64_t{rowComponents<Row>(arrays[i].components)} << " " << points << " "
+                 << numberType<NumberOf<Row>>().inLegacy << "\n";
+            encodeNumbers(rows, sink);
+        };
+        std::visit(encode, arrays[i].values);
+    }
+}
+
 }  // namespace
 
 void encodeVtkLegacy(const MeshRecord& record, ByteSink& sink) {
     constexpr std::size_t kMost32BitTriangles = std::numeric_limits<std::int32_t>::max() / 4;
-    const bool fits32Bits = record.mesh.triangles.size() <= kMost32BitTriangles &&
-                            record.mesh.points.size() <= kMost32BitTriangles;
-    vtkNew<vtkPolyDataWriter> writer;
-    writer->SetInputData(toLabelledPolyData(record));
-    writer->SetHeader(headerLine(record.options).c_str());
-    writer->SetFileTypeToBinary();
-    writer->SetFileVersion(fits32Bits ? vtkDataWriter::VTK_LEGACY_READER_VERSION_4_2
-                                      : vtkDataWriter::VTK_LEGACY_READER_VERSION_5_1);
-    writer->WriteToOutputStringOn();
-    if (writer->Write() == 0) {
-        throw InternalError("encodeVtkLegacy: VTK failed to encode the surface");
-    }
-    sink << std::string_view(writer->GetOutputString(),
-                             static_cast<std::size_t>(writer->GetOutputStringLength()));
+    const TriangleMesh& mesh = record.mesh;
+    const bool fits32Bits =
+        mesh.triangles.size() <= kMost32BitTriangles && mesh.points.size() <= kMost32BitTriangles;
+    sink << "# vtk DataFile Version " << (fits32Bits ? "4.2" : "5.1") << "\n"
+         << headerLine(record.options) << "\nBINARY\nDATASET POLYDATA\n";
+    encodeFields(record.options, sink);
+    sink << "POINTS " << std::ssize(mesh.points) << " double\n";
+    encodeNumbers(mesh.points, sink);
+    encodeCells(mesh.triangles, fits32Bits, sink);
+    encodePointData(record, sink);
 }
 
 MeshFile decodeVtkLegacy(std::string_view bytes, const MeshReadOptions& options) {

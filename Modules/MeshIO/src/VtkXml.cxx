@@ -1,20 +1,19 @@
-// VTK XML PolyData (.vtp). Written by VTK: appended, base64, zlib, double points, 64-bit headers.
+// VTK XML PolyData (.vtp). Written: appended, base64, zlib, double points, 64-bit headers. Read:
+// one piece; text, base64 or raw data, inline or appended, plain or zlib, either byte order.
 //
-// Read here, not by vtkXMLPolyDataReader: that one allocates what the file claims and follows
-// offsets and block tables unchecked. Read: one piece; text, base64 or raw data, inline or
-// appended, plain or zlib, either byte order.
-#include <vtkNew.h>
-#include <vtkXMLPolyDataWriter.h>
-
+// By hand, not by VTK: vtkXMLPolyDataReader allocates what the file claims and follows offsets and
+// block tables unchecked; vtkXMLPolyDataWriter writes names of arrays as they are, so that a quote
+// or '<' in one breaks the file.
 #include <algorithm>
 #include <deque>
 #include <vector>
 
 #include "ByteSource.h"
 #include "Packing.h"
-#include "VtkEncode.h"
+#include "VtkFiles.h"
 #include "Xml.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::meshio {
 namespace {
@@ -329,20 +328,141 @@ std::optional<PointArray> decodePointArray(const DataArray& stored, std::int64_t
     return array;
 }
 
+/// Numbers as appended data holds them: a table of the lengths of packed blocks, then the blocks,
+/// each in a run of base64.
+class PackedBlocks {
+public:
+    template <class T>
+    void add(T number) {
+        appendLittleEndian(number, block_);
+        if (block_.size() == kBlockBytes) pack();
+    }
+
+    std::string finish() {
+        const std::uint64_t last = block_.size();
+        if (last > 0) pack();
+        std::string table;
+        for (const std::uint64_t word : {std::uint64_t{lengths_.size()}, kBlockBytes, last}) {
+            appendLittleEndian(word, table);
+        }
+        for (const std::uint64_t length : lengths_) appendLittleEndian(length, table);
+        return encodeBase64(table) + encodeBase64(packed_);
+    }
+
+private:
+    static constexpr std::uint64_t kBlockBytes = std::uint64_t{1} << 15;  // as VTK
+
+    void pack() {
+        const std::string packed = deflated(block_);
+        lengths_.push_back(packed.size());
+        packed_ += packed;
+        block_.clear();
+    }
+
+    std::string block_, packed_;
+    std::vector<std::uint64_t> lengths_;
+};
+
+class VtpEncoder {
+public:
+    void encode(const MeshRecord& record, ByteSink& sink) {
+        const TriangleMesh& mesh = record.mesh;
+        elements_ =
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
+            "byte_order=\"LittleEndian\" header_type=\"UInt64\" "
+            "compressor=\"vtkZLibDataCompressor\">\n<PolyData>\n<FieldData>\n";
+        for (const auto& [name, text] : fieldsOf(record.options)) addText(name, text);
+        elements_ += "</FieldData>\n<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) +
+                     "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
+                     "NumberOfPolys=\"" +
+                     std::to_string(mesh.triangles.size()) + "\">\n";
+        addPointData(mesh, record.options.pointArrays);
+        addCellData(record.options.cellArrays);
+        elements_ += "<Points>\n";
+        addArray("Points", mesh.points, 3);
+        elements_ += "</Points>\n<Polys>\n";
+        addTriangles(mesh.triangles);
+        elements_ += "</Polys>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"base64\">\n_";
+        sink << elements_ << data_ << "\n</AppendedData>\n</VTKFile>\n";
+    }
+
+private:
+    void addPointData(const TriangleMesh& mesh, const std::vector<PointArray>& arrays) {
+        const std::vector<std::string> names = arrayNames(arrays);
+        beginData("PointData", names, !mesh.normals.empty());
+        if (!mesh.normals.empty()) addArray(kNormalsName, mesh.normals, 3);
+        for (std::size_t i = 0; i < arrays.size(); ++i) {
+            const auto add = [&]<class Row>(const std::vector<Row>& rows) {
+                addArray(names[i], rows, rowComponents<Row>(arrays[i].components));
+            };
+            std::visit(add, arrays[i].values);
+        }
+        elements_ += "</PointData>\n";
+    }
+
+    void addCellData(const std::vector<CellArray>& arrays) {
+        const std::vector<std::string> names = arrayNames(arrays);
+        beginData("CellData", names, false);
+        for (std::size_t i = 0; i < arrays.size(); ++i) addArray(names[i], arrays[i].values, 1);
+        elements_ += "</CellData>\n";
+    }
+
+    void addTriangles(const std::vector<Triangle>& triangles) {
+        addArray("connectivity", triangles, 1);
+        addElement("DataArray", numberType<VertexId>().inXml, "offsets", "");
+        PackedBlocks blocks;
+        for (std::size_t i = 1; i <= triangles.size(); ++i) {
+            blocks.add(static_cast<VertexId>(3 * i));
+        }
+        data_ += blocks.finish();
+    }
+
+    /// The first of the arrays is the active one.
+    void beginData(const std::string& element, const std::vector<std::string>& names,
+                   bool hasNormals) {
+        elements_ += "<" + element;
+        if (!names.empty()) elements_ += " Scalars=\"" + inXml(names[0]) + "\"";
+        if (hasNormals) elements_ += " Normals=\"" + std::string(kNormalsName) + "\"";
+        elements_ += ">\n";
+    }
+
+    template <class Row>
+    void addArray(std::string_view name, const std::vector<Row>& rows, int components) {
+        addElement("DataArray", numberType<NumberOf<Row>>().inXml, name,
+                   components == 1 ? std::string()
+                                   : " NumberOfComponents=\"" + std::to_string(components) + "\"");
+        PackedBlocks blocks;
+        forEachNumber(rows, [&](auto number) { blocks.add(number); });
+        data_ += blocks.finish();
+    }
+
+    void addText(std::string_view name, std::string_view text) {
+        addElement("Array", "String", name, " NumberOfTuples=\"1\"");
+        PackedBlocks blocks;
+        for (const char c : text) blocks.add(c);
+        blocks.add('\0');
+        data_ += blocks.finish();
+    }
+
+    /// An array whose data come next.
+    void addElement(std::string_view element, std::string_view type, std::string_view name,
+                    const std::string& size) {
+        elements_ += "<" + std::string(element) + " type=\"" + std::string(type) + "\" Name=\"" +
+                     inXml(name) + "\"" + size + " format=\"appended\" offset=\"" +
+                     std::to_string(data_.size()) + "\"/>\n";
+    }
+
+    static std::string inXml(std::string_view name) {
+        return escapedMarkup(toUtf8(storedName(name)));
+    }
+
+    std::string elements_, data_;
+};
+
 }  // namespace
 
 void encodeVtkXml(const MeshRecord& record, ByteSink& sink) {
-    vtkNew<vtkXMLPolyDataWriter> writer;
-    writer->SetInputData(toLabelledPolyData(record));
-    writer->SetDataModeToAppended();
-    writer->EncodeAppendedDataOn();
-    writer->SetCompressorTypeToZLib();
-    writer->SetCompressionLevel(1);  // as in Packing.cxx
-    writer->SetHeaderTypeToUInt64();
-    writer->SetByteOrderToLittleEndian();
-    writer->WriteToOutputStringOn();
-    if (writer->Write() == 0) throw InternalError("encodeVtkXml: VTK failed to encode the surface");
-    sink << writer->GetOutputString();
+    VtpEncoder().encode(record, sink);
 }
 
 MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options) {

@@ -80,29 +80,6 @@ private:
 
 }  // namespace
 
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += c;
-        }
-    }
-    return result;
-}
-
 const std::string& requireAttribute(const XmlAttributes& attributes, std::string_view name) {
     const auto found = attributes.find(name);
     if (found == attributes.end()) damaged("its XML lacks the attribute " + printable(name));

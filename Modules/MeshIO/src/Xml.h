@@ -15,9 +15,6 @@ const std::string& requireAttribute(const XmlAttributes& attributes, std::string
 std::string attributeOr(const XmlAttributes& attributes, std::string_view name,
                         std::string_view otherwise);
 
-/// A text as an element or a quoted attribute has it.
-std::string escaped(std::string_view text);
-
 /// What parseXml() calls, in document order.
 class XmlHandler {
 public:

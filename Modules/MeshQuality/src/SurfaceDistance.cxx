@@ -231,4 +231,18 @@ DistanceReport surfaceDistance(const TriangleMesh& a, const TriangleMesh& b,
     return report;
 }
 
+std::vector<double> vertexDistancesMm(const TriangleMesh& from, const TriangleMesh& to) {
+    const AabbTree tree(to);
+    std::vector<double> distances(from.points.size());
+    parallelForPieces(std::ssize(from.points), kGrain, [&](std::int64_t begin, std::int64_t end) {
+        std::int64_t hint = -1;
+        for (std::int64_t v = begin; v < end; ++v) {
+            const ClosestPoint nearest = tree.closestPoint(from.points[v], hint);
+            distances[v] = std::sqrt(nearest.squaredDistanceMm2);
+            hint = nearest.triangle;
+        }
+    });
+    return distances;
+}
+
 }  // namespace adaptiso

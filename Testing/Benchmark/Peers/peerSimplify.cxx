@@ -22,7 +22,7 @@
 #include "../VtkThreads.h"
 #include "adaptiso/Extraction/Simplify.h"
 #include "adaptiso/MeshIO/MeshFile.h"
-#include "adaptiso/MeshIO/VtkAdaptor.h"
+#include "adaptiso/VtkAdaptor/VtkAdaptor.h"
 
 namespace adaptiso::benchmarks {
 namespace {

@@ -9,7 +9,7 @@
 #include "../FlyingEdges.h"
 #include "../VtkThreads.h"
 #include "PeerRun.h"
-#include "adaptiso/MeshIO/VtkAdaptor.h"
+#include "adaptiso/VtkAdaptor/VtkAdaptor.h"
 
 namespace adaptiso::benchmarks {
 namespace {

@@ -1,15 +1,18 @@
-// A program outside adaptiso: the surface of a ball from samples in memory, by both methods.
-// Exits 0 when they are right, 1 when they are not.
+// A program outside adaptiso: the surface of a ball from samples in memory, by both methods, into
+// files and back: sphere <folder>. Exits 0 when they are right, 1 when they are not.
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
 namespace {
@@ -38,7 +41,7 @@ adaptiso::Volume makeBall() {
 /// than the ball. All of its vertices lie on lattice edges at crossings of a concave function taken
 /// as linear between samples, so inside the ball (float samples: up to 1e-6 of the radius beyond).
 bool surfaceIsRight(const adaptiso::VolumeView& ball, const adaptiso::SpanSpaceIndex& index,
-                    adaptiso::Method method, double leastPart) {
+                    adaptiso::Method method, double leastPart, const std::filesystem::path& file) {
     adaptiso::ExtractionOptions options;
     options.isovalue = 0;
     options.method = method;
@@ -48,21 +51,27 @@ bool surfaceIsRight(const adaptiso::VolumeView& ball, const adaptiso::SpanSpaceI
     const double part = adaptiso::enclosedVolume(mesh) / ballMm3;
     std::printf("method %d: %zu triangles enclose %.4f of the ball\n", static_cast<int>(method),
                 mesh.triangles.size(), part);
-    return !mesh.triangles.empty() && part >= leastPart && part <= 1 + 1e-5;
+    adaptiso::writeMesh(mesh, file);
+    const bool isKept = adaptiso::readMesh(file).mesh.triangles == mesh.triangles;
+    return isKept && !mesh.triangles.empty() && part >= leastPart && part <= 1 + 1e-5;
 }
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
     try {
+        if (argc != 2) throw std::invalid_argument("give a folder");
+        const std::filesystem::path folder = argv[1];
         const adaptiso::Volume ball = makeBall();
         const auto index = adaptiso::SpanSpaceIndex::build(ball, {.blockSize = 4});
         // marching cubes: sides of up to sqrt(3) mm cut 3 / (8 * 24) = 0.016 mm off at most
         // (0.2 % of the volume)
-        const bool isFineRight = surfaceIsRight(ball, index, adaptiso::Method::MarchingCubes, 0.98);
+        const bool isFineRight =
+            surfaceIsRight(ball, index, adaptiso::Method::MarchingCubes, 0.98, folder / "fine.vtp");
         // boxes of 4 mm: both the surface and the facet that stands for it pass through the same
         // boxes, so they are at most 4 mm apart along an axis (3 * 4 / 24 = half the volume)
-        const bool isAdaptiveRight = surfaceIsRight(ball, index, adaptiso::Method::Boxes, 0.5);
+        const bool isAdaptiveRight =
+            surfaceIsRight(ball, index, adaptiso::Method::Boxes, 0.5, folder / "adaptive.vtk");
         return isFineRight && isAdaptiveRight ? 0 : 1;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "sphere: %s\n", error.what());

@@ -13,4 +13,29 @@ TEST(Base64, GivesTheExamplesOfItsStandard) {  // RFC 4648, section 10
     EXPECT_EQ(encodeBase64("\xff\xfe\xfd"), "//79");
 }
 
+TEST(Text, IsTrimmedLoweredAndEscaped) {
+    EXPECT_EQ(trimmed(" \t\r\n\v\fa b\n"), "a b");
+    EXPECT_EQ(trimmed(" \n"), "");
+    EXPECT_EQ(trimmed(""), "");
+    EXPECT_EQ(lowerCase("AZaz[@ \xc4"), "azaz[@ \xc4");
+    EXPECT_EQ(escapedMarkup("a<b>&\"'\n\x1f\xc3\xa4"), "a&lt;b&gt;&amp;&quot;'  \xc3\xa4");
+}
+
+TEST(Utf8, IsWhatItsStandardAllows) {  // RFC 3629, section 4
+    for (const char* const text : {"", "a~", "\xc2\x80", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf",
+                                   "\xef\xbf\xbf", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"}) {
+        EXPECT_TRUE(isUtf8(text)) << text;
+        EXPECT_EQ(toUtf8(text), text);
+    }
+    for (const char* const text :
+         {"\x80", "\xc1\xbf", "\xc3", "\xc3z", "\xe0\x9f\xbf", "\xed\xa0\x80", "\xef\xbf",
+          "\xf0\x8f\xbf\xbf", "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xff"}) {
+        EXPECT_FALSE(isUtf8(text)) << text;
+        EXPECT_TRUE(isUtf8(toUtf8(text))) << text;
+    }
+    EXPECT_EQ(toUtf8("Gr\xf6\xdf"
+                     "e"),
+              "Größe");
+}
+
 }  // namespace adaptiso::testing

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "Support/Meshes.h"
+#include "Support/Messages.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
@@ -41,17 +42,6 @@ inline std::string written(const TriangleMesh& mesh, const std::string& fileName
 
 inline MeshFile decoded(const std::string& bytes, const std::string& fileName) {
     return decodeMesh(bytes, findMeshFormat(fileName), fileName);
-}
-
-/// The message of the E that `call` throws; empty if it throws none.
-template <class E>
-std::string messageOf(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const E& error) {
-        return error.what();
-    }
-    return {};
 }
 
 /// One file name for each format.

@@ -16,7 +16,7 @@
 
 #include "MeshIOTestSupport.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/MeshIO/VtkAdaptor.h"
+#include "adaptiso/VtkAdaptor/VtkAdaptor.h"
 
 namespace adaptiso {
 namespace {

@@ -235,7 +235,7 @@ std::string HeadModelData::reportOf(const BemModel& model, const BemFileOptions&
     seconds["total"] = totalSeconds_;
     report["seconds"] = seconds;
     report["peakMemoryMb"] = peakMemoryMb_;
-    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(report) + "\n";
 }
 
 std::string HeadModelData::report(const BemFileOptions& options) const {

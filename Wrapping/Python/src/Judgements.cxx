@@ -45,7 +45,7 @@ Json nestedJson(std::span<const TriangleMesh* const> meshes, std::span<const std
 }
 
 std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return jsonText(json, -1);
 }
 
 }  // namespace adaptiso::python

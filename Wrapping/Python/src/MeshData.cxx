@@ -83,7 +83,7 @@ std::string reportOf(const SurfaceHistory& history, const ImageGeometry& image) 
                       {"reportFailure", nullptr},
                       {"seconds", timesJson(history)},
                       {"peakMemoryMb", history.peakMemoryMb}};
-    return report.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return jsonText(report, -1);
 }
 
 void requireRows(const py::array& array, const char* name) {

@@ -41,15 +41,8 @@ Key keyOf(const FineSurface& fine, std::size_t t) {
 /// The triangles of a surface, by the lattice position of their cells.
 std::map<Key, Index3> cellsOf(const FineSurface& fine, const Brick& brick) {
     std::map<Key, Index3> cells;
-    for (std::size_t c = 0; c < fine.cells.size(); ++c) {
-        const auto& at = fine.cells[c].position;
-        const std::size_t end =
-            c + 1 < fine.cells.size() ? fine.cells[c + 1].firstTriangle : fine.triangles.size();
-        for (std::size_t t = fine.cells[c].firstTriangle; t < end; ++t) {
-            cells[keyOf(fine, t)] = {brick.low[0] + at[0], brick.low[1] + at[1],
-                                     brick.low[2] + at[2]};
-        }
-    }
+    forEachCellTriangle(fine, brick,
+                        [&](const Index3& cell, std::size_t t) { cells[keyOf(fine, t)] = cell; });
     return cells;
 }
 

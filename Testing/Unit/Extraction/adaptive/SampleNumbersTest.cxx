@@ -37,20 +37,13 @@ bool areBeside(std::uint32_t a, std::uint32_t b, const BlockGrid& grid) {
 template <class F>
 void forEachCorner(const FineSurface& fine, const detail::Brick& brick, std::uint32_t block,
                    const BlockGrid& grid, const F& f) {
-    for (std::size_t c = 0; c < fine.cells.size(); ++c) {
-        Index3 at{};
-        for (int a = 0; a < 3; ++a) {
-            at[a] = (brick.low[a] + fine.cells[c].position[a]) / grid.blockSize;
-        }
-        if (fine.cells[c].firstTriangle >= fine.ownTriangles || at != placeOf(block, grid)) {
-            continue;
-        }
-        const std::size_t end =
-            c + 1 < fine.cells.size() ? fine.cells[c + 1].firstTriangle : fine.triangles.size();
-        for (std::size_t t = fine.cells[c].firstTriangle; t < end; ++t) {
-            for (const std::uint32_t v : fine.triangles[t]) f(v);
-        }
-    }
+    const Index3 place = placeOf(block, grid);
+    forEachCellTriangle(fine, brick, [&](const Index3& cell, std::size_t t) {
+        const int side = grid.blockSize;
+        const bool isIn = Index3{cell[0] / side, cell[1] / side, cell[2] / side} == place;
+        if (t >= fine.ownTriangles || !isIn) return;
+        for (const std::uint32_t v : fine.triangles[t]) f(v);
+    });
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "adaptiso/Core/Progress.h"
 #include "adaptiso/Core/TriangleMesh.h"
@@ -52,5 +53,8 @@ struct DistanceReport {
 /// using the Hausdorff distance, ICME 2002.
 DistanceReport surfaceDistance(const TriangleMesh& a, const TriangleMesh& b,
                                const DistanceOptions& options = {});
+
+/// The distance from each vertex of `from` to the surface `to`. \pre `to` has a triangle
+std::vector<double> vertexDistancesMm(const TriangleMesh& from, const TriangleMesh& to);
 
 }  // namespace adaptiso

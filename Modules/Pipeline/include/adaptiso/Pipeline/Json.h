@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "adaptiso/Core/Geometry.h"
@@ -26,6 +27,12 @@ inline Json vector(const Vec3& v) {
 template <class T>
 Json orNull(const std::optional<T>& value) {
     return value ? Json(*value) : Json(nullptr);
+}
+
+/// `json` as a file has it; on one line where `indent` is -1. What is not UTF-8, as names of files
+/// need not be, becomes U+FFFD.
+inline std::string jsonText(const Json& json, int indent = 2) {
+    return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
 /// "ras", "lps", "tkras", "voxel": as --coordinates and the Python module take it.

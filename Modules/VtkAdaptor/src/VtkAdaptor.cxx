@@ -1,4 +1,4 @@
-#include "adaptiso/MeshIO/VtkAdaptor.h"
+#include "adaptiso/VtkAdaptor/VtkAdaptor.h"
 
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>

@@ -1,6 +1,5 @@
 #pragma once
 
-// The one public header of MeshIO that includes VTK; MeshFile.h does without.
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 

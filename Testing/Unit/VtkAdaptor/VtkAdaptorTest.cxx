@@ -5,16 +5,17 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 
-#include "MeshIOTestSupport.h"
+#include "Support/Meshes.h"
+#include "Support/Messages.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/MeshIO/VtkAdaptor.h"
+#include "adaptiso/VtkAdaptor/VtkAdaptor.h"
 
 namespace adaptiso {
 namespace {
 
+using testing::cubeMesh;
 using testing::icosphere;
 using testing::messageOf;
-using testing::tetrahedron;
 
 TEST(VtkAdaptor, GivesTheSameMeshBack) {
     const TriangleMesh sphere = icosphere(2, {1, 2, 3}, 40);
@@ -28,7 +29,7 @@ TEST(VtkAdaptor, GivesTheSameMeshBack) {
         EXPECT_FLOAT_EQ(back.normals[i].y, sphere.normals[i].y);
         EXPECT_FLOAT_EQ(back.normals[i].z, sphere.normals[i].z);
     }
-    EXPECT_TRUE(fromVtkPolyData(toVtkPolyData(tetrahedron())).normals.empty());
+    EXPECT_TRUE(fromVtkPolyData(toVtkPolyData(cubeMesh())).normals.empty());
 }
 
 TEST(VtkAdaptor, NormalsAreTheActiveOnes) {
@@ -44,7 +45,7 @@ TEST(VtkAdaptor, AnEmptyMeshIsEmptyData) {
 
 TEST(VtkAdaptor, RefusesWhatIsNoTriangle) {
     const auto withPolygon = [](std::initializer_list<vtkIdType> corners) {
-        const auto data = toVtkPolyData(tetrahedron());
+        const auto data = toVtkPolyData(cubeMesh());
         vtkNew<vtkCellArray> cells;
         cells->InsertNextCell(corners);
         data->SetPolys(cells);
@@ -52,11 +53,11 @@ TEST(VtkAdaptor, RefusesWhatIsNoTriangle) {
     };
     EXPECT_NE(withPolygon({0, 1, 2, 3}).find("4 corners"), std::string::npos);
     EXPECT_NE(withPolygon({0, 1}).find("2 corners"), std::string::npos);
-    EXPECT_NE(withPolygon({0, 1, 4}).find("uses point 4"), std::string::npos);
+    EXPECT_NE(withPolygon({0, 1, 8}).find("uses point 8"), std::string::npos);
     EXPECT_NE(withPolygon({0, -1, 2}).find("uses point -1"), std::string::npos);
     EXPECT_THROW(fromVtkPolyData(nullptr), InvalidInput);
 
-    const auto strips = toVtkPolyData(tetrahedron());
+    const auto strips = toVtkPolyData(cubeMesh());
     vtkNew<vtkCellArray> cells;
     cells->InsertNextCell({0, 1, 2, 3});
     strips->SetStrips(cells);
@@ -65,7 +66,7 @@ TEST(VtkAdaptor, RefusesWhatIsNoTriangle) {
 }
 
 TEST(VtkAdaptor, RefusesNormalsThatAreNotOneAPoint) {
-    const auto data = toVtkPolyData(tetrahedron());
+    const auto data = toVtkPolyData(cubeMesh());
     vtkNew<vtkFloatArray> normals;
     normals->SetNumberOfComponents(3);
     normals->SetNumberOfTuples(2);

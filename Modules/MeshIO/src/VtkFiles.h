@@ -1,0 +1,91 @@
+#pragma once
+
+// What both of VTK's formats have in common: the texts they hold, and numbers by their types.
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "Codecs.h"
+
+namespace adaptiso::meshio {
+
+inline constexpr std::string_view kFrameFieldName = "CoordinateFrame";
+inline constexpr std::string_view kNormalsName = "Normals";
+
+/// Names and texts of field data: the frame, unless the file is not to say it, and the version of
+/// these files.
+inline std::vector<std::pair<std::string_view, std::string_view>> fieldsOf(
+    const MeshWriteOptions& options) {
+    std::vector<std::pair<std::string_view, std::string_view>> fields;
+    if (options.saysFrame) fields.emplace_back(kFrameFieldName, toString(options.frame));
+    fields.emplace_back("AdaptisoSurfaceVersion", "1");
+    return fields;
+}
+
+/// The names of arrays in a file that holds each name once, and the normals under theirs.
+template <class Array>
+std::vector<std::string> arrayNames(const std::vector<Array>& arrays) {
+    std::set<std::string> taken{std::string(kNormalsName)};
+    std::vector<std::string> names;
+    for (const Array& array : arrays) {
+        names.push_back(unusedName(array.name.empty() ? "values" : array.name, taken));
+    }
+    return names;
+}
+
+/// What the formats call numbers of a type.
+struct NumberType {
+    std::string_view inXml, inLegacy;
+};
+
+template <class T>
+constexpr NumberType numberType() {
+    if constexpr (std::is_same_v<T, double>) return {"Float64", "double"};
+    if constexpr (std::is_same_v<T, float>) return {"Float32", "float"};
+    if constexpr (std::is_same_v<T, std::int64_t>) return {"Int64", "vtktypeint64"};
+    if constexpr (std::is_same_v<T, std::int32_t>) return {"Int32", "int"};
+    if constexpr (std::is_same_v<T, std::uint8_t>) return {"UInt8", "unsigned_char"};
+}
+
+/// Calls f(number) for each number of `rows`: of points, normals, colours, triangles or numbers.
+template <class Row, class F>
+void forEachNumber(const std::vector<Row>& rows, const F& f) {
+    for (const Row& row : rows) {
+        if constexpr (std::is_arithmetic_v<Row>) {
+            f(row);
+        } else if constexpr (requires { row.x; }) {
+            f(row.x);
+            f(row.y);
+            f(row.z);
+        } else {
+            for (const auto number : row) f(number);
+        }
+    }
+}
+
+/// The type of the numbers of a row.
+template <class Row>
+auto numberOf(const Row& row) {
+    if constexpr (std::is_arithmetic_v<Row>) {
+        return row;
+    } else if constexpr (requires { row.x; }) {
+        return row.x;
+    } else {
+        return row[0];
+    }
+}
+template <class Row>
+using NumberOf = decltype(numberOf(std::declval<Row>()));
+
+/// How many numbers a row of an array has, which is `components` numbers of a plain list.
+template <class Row>
+constexpr int rowComponents(int components) {
+    return std::is_arithmetic_v<Row> ? components : 3;
+}
+
+}  // namespace adaptiso::meshio
