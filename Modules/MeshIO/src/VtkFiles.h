@@ -32,6 +32,7 @@ template <class Array>
 std::vector<std::string> arrayNames(const std::vector<Array>& arrays) {
     std::set<std::string> taken{std::string(kNormalsName)};
     std::vector<std::string> names;
+    names.reserve(arrays.size());
     for (const Array& array : arrays) {
         names.push_back(unusedName(array.name.empty() ? "values" : array.name, taken));
     }
