@@ -219,7 +219,7 @@ WholeWalls::Lists WholeWalls::listsOf(const CubeCut& cut, const WallAim& aim) co
 
 /// Triangles block after block, so that what is near lies near in memory.
 std::vector<Id> WholeWalls::inBlocks(std::span<const Id> own) const {
-    constexpr double kBlockVoxels = 8;
+    constexpr double kBlockVoxels = 16;
     struct Place {
         Index3 block;
         Id triangle;
