@@ -116,7 +116,12 @@ private:
         if (!near_.empty() && bound_.isWithin(piece)) return;
         double reachMm = bound_.boundMm();
         for (const Vec3& corner : piece) {
-            reachMm = std::max(reachMm, std::sqrt(to_.tree().squaredDistance(corner, to_.view)));
+            double nearest = std::numeric_limits<double>::infinity();
+            for (const Corners& t : around_) {
+                nearest = std::min(nearest, squaredDistanceToTriangle(corner, t));
+            }
+            nearest = to_.tree().squaredDistance(corner, to_.view, nearest);
+            reachMm = std::max(reachMm, std::sqrt(nearest));
         }
         collectWithin(reachMm, piece);
         includeNear(piece, makePlace);

@@ -76,8 +76,8 @@ TriangleTree::Pairs::Pairs(const TriangleTree& tree, const TriangleView& of)
     });
 }
 
-double TriangleTree::squaredDistance(const Vec3& p, const TriangleView& of) const {
-    double best = std::numeric_limits<double>::infinity();
+double TriangleTree::squaredDistance(const Vec3& p, const TriangleView& of, double most) const {
+    double best = most;
     if (order_.empty()) return best;
     const auto squaredTo = [&](const Subtree& subtree) {
         const Box& box = boxes_[subtree.node];

@@ -41,8 +41,9 @@ public:
         return (std::ssize(order_) + kLeafTriangles - 1) / kLeafTriangles;
     }
 
-    /// To the nearest triangle; infinite where there is none.
-    double squaredDistance(const Vec3& p, const TriangleView& of) const;
+    /// To the nearest triangle, or `most` where there is none as near.
+    double squaredDistance(const Vec3& p, const TriangleView& of,
+                           double most = std::numeric_limits<double>::infinity()) const;
 
     /// Calls visit(triangle) for every triangle whose box, rounded outward, overlaps `box`; in an
     /// order that is always the same.
