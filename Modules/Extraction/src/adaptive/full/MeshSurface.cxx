@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/ImageGeometry.h"
@@ -13,6 +14,14 @@
 
 namespace adaptiso::detail {
 namespace {
+
+/// An order of triangles by their corners' coordinates, to find equal ones.
+bool isBefore(const Corners& a, const Corners& b) {
+    return std::lexicographical_compare(
+        a.begin(), a.end(), b.begin(), b.end(), [](const Vec3& p, const Vec3& q) {
+            return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+        });
+}
 
 constexpr std::int64_t kPiece = 1 << 12;
 

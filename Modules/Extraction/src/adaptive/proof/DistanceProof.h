@@ -1,21 +1,11 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <tuple>
 #include <vector>
 
 #include "adaptive/mesh/SimplifiedSurface.h"
 
 namespace adaptiso::detail {
-
-/// An order of triangles by their corners' coordinates, to find equal ones.
-inline bool isBefore(const Corners& a, const Corners& b) {
-    return std::lexicographical_compare(
-        a.begin(), a.end(), b.begin(), b.end(), [](const Vec3& p, const Vec3& q) {
-            return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
-        });
-}
 
 /// A place where one of the two surfaces lies beyond the limit. Points in the metric frame.
 struct PlaceBeyond {

@@ -1,6 +1,5 @@
 #include "adaptive/proof/MeshProof.h"
 
-#include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -381,16 +380,16 @@ ErrorBound MeshProof::prove(const SimplifiedSurface& surface) {
     // bounds are as tight as the largest sample's distance, or as a hundredth of a voxel
     enoughMm_ =
         std::min(limitMm_, std::max(largestSampleDistance(surface), 0.01 * frame_.narrowestMm()));
-    return prove(surface, scopeOf(surface));
+    provedMm_ = 0;
+    return prove(surface, Scope());
 }
 
 ErrorBound MeshProof::proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes) {
-    if (last_.empty()) return prove(surface);
+    if (isWithin_.empty()) return prove(surface);
     return prove(surface, scopeOf(surface, changes));
 }
 
 ErrorBound MeshProof::prove(const SimplifiedSurface& surface, const Scope& scope) {
-    if (last_.empty()) provedMm_ = 0;
     if (fine_.isEmpty()) fine_.assign(parts_.points, parts_.triangles);
     const Target<std::uint32_t> fine{fine_, parts_.view(),
                                      [&]() -> const TriangleTree& { return parts_.tree; }};
@@ -423,14 +422,14 @@ ErrorBound MeshProof::prove(const SimplifiedSurface& surface, const Scope& scope
                                  result.beyond.end());
     }
     bound.largestMm = std::max(provedMm_, farthestMm);
-    if (limitMm_ < std::numeric_limits<double>::max()) remember(surface, bound.beyondLimit);
+    if (limitMm_ < std::numeric_limits<double>::max()) {
+        remember(surface.triangles.size(), bound.beyondLimit);
+    }
     return bound;
 }
 
-void MeshProof::remember(const SimplifiedSurface& surface, std::vector<PlaceBeyond> beyond) {
-    lastPoints_ = surface.points;
-    last_ = surface.triangles;
-    isWithin_.assign(last_.size(), 1);
+void MeshProof::remember(std::size_t triangles, std::vector<PlaceBeyond> beyond) {
+    isWithin_.assign(triangles, 1);
     for (const PlaceBeyond& place : beyond) {
         if (!place.isOfFine) isWithin_[place.triangle] = 0;
     }
@@ -439,37 +438,6 @@ void MeshProof::remember(const SimplifiedSurface& surface, std::vector<PlaceBeyo
 
 /// What is to be proved: the new triangles, and the full surface near those that came or went and
 /// where it lay beyond the limit.
-MeshProof::Scope MeshProof::scopeOf(const SimplifiedSurface& surface) const {
-    Scope scope;
-    if (last_.empty()) return scope;
-    std::vector<Corners> known;
-    for (std::size_t t = 0; t < last_.size(); ++t) {
-        if (isWithin_[t] != 0) known.push_back(lastCorners(t));
-    }
-    tbb::parallel_sort(known.begin(), known.end(), isBefore);
-    std::vector<std::uint8_t> isStillThere(known.size(), 0);
-    std::vector<Corners> changed;
-    scope.isKnown.assign(surface.triangles.size(), 0);
-    for (std::size_t t = 0; t < scope.isKnown.size(); ++t) {
-        const Corners corners = cornersOf(surface, t);
-        const auto at = std::lower_bound(known.begin(), known.end(), corners, isBefore);
-        if (at != known.end() && *at == corners) {
-            isStillThere[at - known.begin()] = 1;
-            scope.isKnown[t] = 1;
-        } else {
-            changed.push_back(corners);
-        }
-    }
-    for (std::size_t i = 0; i < known.size(); ++i) {
-        if (isStillThere[i] == 0) changed.push_back(known[i]);
-    }
-    for (std::size_t t = 0; t < last_.size(); ++t) {
-        if (isWithin_[t] == 0) changed.push_back(lastCorners(t));
-    }
-    markFine(changed, scope);
-    return scope;
-}
-
 MeshProof::Scope MeshProof::scopeOf(const SimplifiedSurface& surface,
                                     const SurfaceChanges& changes) const {
     Scope scope;

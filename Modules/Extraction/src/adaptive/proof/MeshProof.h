@@ -27,12 +27,8 @@ private:
         std::vector<std::uint8_t> isKnown;      ///< of each triangle of the simplified surface
         std::vector<std::uint8_t> isFineKnown;  ///< of each one of the full surface
     };
-    Scope scopeOf(const SimplifiedSurface& surface) const;
     Scope scopeOf(const SimplifiedSurface& surface, const SurfaceChanges& changes) const;
-    void remember(const SimplifiedSurface& surface, std::vector<PlaceBeyond> beyond);
-    Corners lastCorners(std::size_t t) const {
-        return {lastPoints_[last_[t][0]], lastPoints_[last_[t][1]], lastPoints_[last_[t][2]]};
-    }
+    void remember(std::size_t triangles, std::vector<PlaceBeyond> beyond);
     void markFine(const std::vector<Corners>& changed, Scope& scope) const;
     ErrorBound prove(const SimplifiedSurface& surface, const Scope& scope);
     double largestSampleDistance(const SimplifiedSurface& surface) const;
@@ -44,9 +40,7 @@ private:
     double enoughMm_ = 0;                  ///< no bound need be tighter
     double provedMm_ = 0;                  ///< so far, of what lies within the limit
     // of the last surface; empty where none was proved
-    std::vector<Vec3> lastPoints_;
-    std::vector<SurfaceState::Triangle> last_;  ///< its triangles
-    std::vector<std::uint8_t> isWithin_;        ///< the limit, each triangle
+    std::vector<std::uint8_t> isWithin_;  ///< the limit, each triangle
     std::vector<PlaceBeyond> beyond_;
 };
 
