@@ -137,6 +137,21 @@ public:
     void forEach(std::int64_t begin, std::int64_t end, const Visit& visit) const;
 
 private:
+    template <class Visit>
+    void forEachIn(std::int64_t number, const Visit& visit) const;
+    template <class Visit>
+    void forEachBetween(std::int64_t number, const Box& own, std::int64_t other, const Box& box,
+                        const Visit& visit) const;
+    template <class Visit>
+    static void tell(std::uint32_t a, std::uint32_t b, const Visit& visit) {
+        visit(std::min(a, b), std::max(a, b));
+    }
+    Box boxOfLeaf(std::int64_t leaf) const {
+        const auto boxes = boxesOf(leaf);
+        Box all = boxes[0];
+        for (const Box& box : boxes.subspan(1)) all.add(box);
+        return all;
+    }
     std::span<const Box> boxesOf(std::int64_t leaf) const {
         return std::span(boxes_).subspan(leaf * kLeafTriangles, tree_.leaf(leaf).size());
     }
@@ -147,36 +162,59 @@ private:
 
 template <class Visit>
 void TriangleTree::Pairs::forEach(std::int64_t begin, std::int64_t end, const Visit& visit) const {
-    const auto tell = [&](std::uint32_t a, std::uint32_t b) {
-        visit(std::min(a, b), std::max(a, b));
-    };
-    for (std::int64_t number = begin; number < end; ++number) {
-        const auto triangles = tree_.leaf(number);
-        const auto own = boxesOf(number);
-        Box all = own[0];
-        for (std::size_t i = 1; i < triangles.size(); ++i) {
-            all.add(own[i]);
-            for (std::size_t j = 0; j < i; ++j) {
-                if (own[i].overlaps(own[j])) tell(triangles[i], triangles[j]);
+    // leaves that come one after the other are near the same ones: these are looked up together
+    constexpr std::int64_t kTogether = 8;
+    std::vector<std::pair<std::int64_t, Box>> near;
+    for (std::int64_t first = begin; first < end; first += kTogether) {
+        const std::int64_t last = std::min(end, first + kTogether);
+        Box all = boxOfLeaf(first);
+        for (std::int64_t number = first + 1; number < last; ++number) all.add(boxOfLeaf(number));
+        near.clear();
+        tree_.forEachLeaf(all, first + 1, [&](std::int64_t other, const Box& box) {
+            near.emplace_back(other, box);
+        });
+        for (std::int64_t number = first; number < last; ++number) {
+            forEachIn(number, visit);
+            const Box own = boxOfLeaf(number);
+            for (const auto& [other, box] : near) {
+                if (other > number && box.overlaps(own))
+                    forEachBetween(number, own, other, box, visit);
             }
         }
-        tree_.forEachLeaf(all, number + 1, [&](std::int64_t other, const Box& box) {
-            std::array<std::size_t, kLeafTriangles> near;
-            std::size_t count = 0;
-            for (std::size_t i = 0; i < triangles.size(); ++i) {
-                near[count] = i;
-                count += std::size_t{own[i].overlaps(box)};
-            }
-            if (count == 0) return;
-            const auto others = tree_.leaf(other);
-            const auto theirs = boxesOf(other);
-            for (std::size_t t = 0; t < others.size(); ++t) {
-                if (!theirs[t].overlaps(all)) continue;
-                for (std::size_t i = 0; i < count; ++i) {
-                    if (own[near[i]].overlaps(theirs[t])) tell(triangles[near[i]], others[t]);
-                }
-            }
-        });
+    }
+}
+
+/// Of two triangles of a leaf.
+template <class Visit>
+void TriangleTree::Pairs::forEachIn(std::int64_t number, const Visit& visit) const {
+    const auto triangles = tree_.leaf(number);
+    const auto boxes = boxesOf(number);
+    for (std::size_t i = 1; i < triangles.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (boxes[i].overlaps(boxes[j])) tell(triangles[i], triangles[j], visit);
+        }
+    }
+}
+
+/// Of a triangle of a leaf and one of another.
+/// \param own, box  around the leaves
+template <class Visit>
+void TriangleTree::Pairs::forEachBetween(std::int64_t number, const Box& own, std::int64_t other,
+                                         const Box& box, const Visit& visit) const {
+    const auto triangles = tree_.leaf(number), others = tree_.leaf(other);
+    const auto boxes = boxesOf(number), theirs = boxesOf(other);
+    std::array<std::size_t, kLeafTriangles> near;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        near[count] = i;
+        count += std::size_t{boxes[i].overlaps(box)};
+    }
+    if (count == 0) return;
+    for (std::size_t t = 0; t < others.size(); ++t) {
+        if (!theirs[t].overlaps(own)) continue;
+        for (std::size_t i = 0; i < count; ++i) {
+            if (boxes[near[i]].overlaps(theirs[t])) tell(triangles[near[i]], others[t], visit);
+        }
     }
 }
 
