@@ -63,17 +63,18 @@ class Bounds(SimplifyTest):
         self.assertEqual(report["warnings"], [])
 
     def test_units_do_not_matter(self):
-        """Metres and micrometres: as many triangles but for ties, which rounding settles on a ball that is
-        as round everywhere; the bound scaled."""
+        """Metres and micrometres: about as many triangles, the bound scaled. Roundings differ, and what goes
+        first with them: of a ball, where all edges are as good, a tenth more or fewer; so it is a bent one."""
         counts = set()
         for scale in (1e-3, 1, 1e3):
             points, triangles = BALL
-            mesh = [tuple(x * scale for x in p) for p in points], triangles
+            bent = [(x + 0.03 * y * z, 0.7 * y + 0.02 * x * x, z) for x, y, z in points]
+            mesh = [tuple(x * scale for x in p) for p in bent], triangles
             self.path("in.ply").write_text(ply(mesh))
             report = self.simplify("in.ply", "--max-error", 0.1 * scale, "-o", "out.ply")
             counts.add(report["output"]["triangles"])
             self.assertLessEqual(report["output"]["errorBoundMm"], 0.1 * scale)
-        self.assertLess(max(counts), 1.1 * min(counts))
+        self.assertLess(max(counts), 1.05 * min(counts))
 
     def test_threads_give_the_same_bytes(self):
         self.write("ball.off", BALL)
