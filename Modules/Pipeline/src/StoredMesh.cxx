@@ -17,7 +17,7 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-constexpr std::int64_t kMostPairs = 300;  ///< more come of a mesh too fine for its coordinates
+constexpr std::size_t kMostTroubles = 300;  ///< more come of a mesh too fine for its coordinates
 constexpr int kMostPasses = 4;
 
 double toNineDigits(double value) {
@@ -74,18 +74,19 @@ public:
 
     /// Moves vertices. \return what could not be helped
     RoundingHarm run() {
-        RoundingHarm harm;
-        for (const Triangle& t : exact_.triangles) {
-            if (isDegenerate(file_, t) && !isDegenerate(exact_, t)) ++harm.flatTriangles;
-        }
-        harm.mergedPoints = mergedPoints();
-        std::vector<TrianglePair> pairs = newPairs(harm.crossingPairs);
-        for (int pass = 0; pass < kMostPasses && isWorthATry(harm); ++pass) {
+        Troubles troubles = find();
+        for (int pass = 0; pass < kMostPasses && isWorthATry(troubles); ++pass) {
             bool isMoved = false;
-            for (const TrianglePair& pair : pairs) isMoved = mend(pair) || isMoved;
+            for (const std::int64_t t : troubles.flat) isMoved = mendFlat(t) || isMoved;
+            for (const auto& points : troubles.merged) isMoved = mendMerged(points) || isMoved;
+            for (const TrianglePair& pair : troubles.crossing) isMoved = mendPair(pair) || isMoved;
             if (!isMoved) break;
-            pairs = newPairs(harm.crossingPairs);
+            troubles = find();
         }
+        RoundingHarm harm;
+        harm.flatTriangles = std::ssize(troubles.flat);
+        harm.mergedPoints = std::ssize(troubles.merged);
+        harm.crossingPairs = std::ssize(troubles.crossing);
         return harm;
     }
 
@@ -94,12 +95,37 @@ public:
     const Vec3& at(VertexId v) const { return file_.points[v]; }
 
 private:
-    static bool isWorthATry(const RoundingHarm& harm) {
-        return harm.crossingPairs > 0 && harm.crossingPairs <= kMostPairs;
+    /// What the file has and the mesh has not.
+    struct Troubles {
+        std::vector<std::int64_t> flat;               ///< triangles
+        std::vector<std::array<VertexId, 2>> merged;  ///< points at one place
+        std::vector<TrianglePair> crossing;
+    };
+
+    static bool isWorthATry(const Troubles& troubles) {
+        const std::size_t count =
+            troubles.flat.size() + troubles.merged.size() + troubles.crossing.size();
+        return count > 0 && count <= kMostTroubles;
     }
 
-    /// Places in the file that more vertices share than before.
-    std::int64_t mergedPoints() const {
+    Troubles find() const {
+        Troubles troubles;
+        for (std::size_t t = 0; t < exact_.triangles.size(); ++t) {
+            const Triangle& corners = exact_.triangles[t];
+            if (isDegenerate(file_, corners) && !isDegenerate(exact_, corners)) {
+                troubles.flat.push_back(static_cast<std::int64_t>(t));
+            }
+        }
+        troubles.merged = mergedPoints();
+        constexpr std::int64_t kMostNamed = 100000;
+        troubles.crossing = findSelfIntersections(file_, {.maxPairs = kMostNamed}).pairs;
+        std::erase_if(troubles.crossing, [&](const TrianglePair& pair) {
+            return trianglesCross(cornersOf(exact_, pair[0]), cornersOf(exact_, pair[1]));
+        });
+        return troubles;
+    }
+
+    std::vector<std::array<VertexId, 2>> mergedPoints() const {
         std::vector<VertexId> order(file_.points.size());
         for (std::size_t v = 0; v < order.size(); ++v) order[v] = static_cast<VertexId>(v);
         const auto key = [&](VertexId v) {
@@ -109,26 +135,26 @@ private:
         std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
             return key(a) != key(b) ? key(a) < key(b) : a < b;
         });
-        std::int64_t merged = 0;
+        std::vector<std::array<VertexId, 2>> merged;
         for (std::size_t i = 1; i < order.size(); ++i) {
-            if (areSame(exact_, file_, order[i - 1], order[i])) ++merged;
+            if (areSame(exact_, file_, order[i - 1], order[i])) {
+                merged.push_back({order[i - 1], order[i]});
+            }
         }
         return merged;
     }
 
-    /// Pairs that cross in the file alone. \param count  of them
-    std::vector<TrianglePair> newPairs(std::int64_t& count) const {
-        constexpr std::int64_t kMostNamed = 100000;
-        SelfIntersections found = findSelfIntersections(file_, {.maxPairs = kMostNamed});
-        std::erase_if(found.pairs, [&](const TrianglePair& pair) {
-            return trianglesCross(cornersOf(exact_, pair[0]), cornersOf(exact_, pair[1]));
-        });
-        count = std::ssize(found.pairs);
-        return std::move(found.pairs);
+    bool mendFlat(std::int64_t triangle) {
+        const Triangle& corners = file_.triangles[triangle];
+        return isDegenerate(file_, corners) && moveOneOf({corners.begin(), corners.end()});
     }
 
-    /// Moves a corner of two triangles that cross, if that leaves fewer pairs.
-    bool mend(const TrianglePair& pair) {
+    bool mendMerged(const std::array<VertexId, 2>& points) {
+        return areSame(exact_, file_, points[0], points[1]) &&
+               moveOneOf({points.begin(), points.end()});
+    }
+
+    bool mendPair(const TrianglePair& pair) {
         if (!trianglesCross(cornersOf(file_, pair[0]), cornersOf(file_, pair[1]))) return false;
         std::vector<VertexId> corners;
         for (const std::int64_t t : pair) {
@@ -136,13 +162,18 @@ private:
         }
         std::sort(corners.begin(), corners.end());
         corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-        return std::any_of(corners.begin(), corners.end(), [&](VertexId v) { return move(v); });
+        return moveOneOf(corners);
     }
 
+    bool moveOneOf(const std::vector<VertexId>& points) {
+        return std::any_of(points.begin(), points.end(), [&](VertexId v) { return move(v); });
+    }
+
+    /// Moves a vertex, if that leaves less harm.
     bool move(VertexId v) {
         std::vector<std::int64_t> star, near;
         listAround(v, star, near);
-        std::int64_t least = harmOf(star, near);
+        std::int64_t least = harmOf(v, star, near);
         const Vec3 before = file_.points[v];
         Vec3 best = before;
         for (int n = 0; n < 27; ++n) {
@@ -154,7 +185,7 @@ private:
             }
             const Vec3 off = place - exact_.points[v];
             if (!(norm(off) <= kFarthest * ulpAt(v))) continue;
-            const std::int64_t harm = harmOf(star, near);
+            const std::int64_t harm = harmOf(v, star, near);
             if (harm >= least) continue;
             least = harm;
             best = place;
@@ -201,17 +232,25 @@ private:
         }
     }
 
-    /// Pairs that cross, and more than any number of them where a triangle loses its area.
-    std::int64_t harmOf(const std::vector<std::int64_t>& star,
+    /// Of a vertex's triangles: the pairs that cross, and more than any number of them where the
+    /// vertex lies on another, and again where a triangle has no area.
+    std::int64_t harmOf(VertexId v, const std::vector<std::int64_t>& star,
                         const std::vector<std::int64_t>& near) const {
+        constexpr std::int64_t kFlat = 1 << 20, kMerged = 1 << 10;
         std::int64_t harm = 0;
         for (const std::int64_t s : star) {
-            if (isDegenerate(file_, file_.triangles[s])) harm += 1 << 20;
+            if (isDegenerate(file_, file_.triangles[s])) harm += kFlat;
             for (const std::int64_t t : near) {
                 const bool isCounted = std::find(star.begin(), star.end(), t) != star.end();
                 if (t == s || (isCounted && t < s)) continue;
                 if (trianglesCross(cornersOf(file_, s), cornersOf(file_, t))) ++harm;
             }
+        }
+        for (const std::int64_t t : near) {
+            const Triangle& corners = file_.triangles[t];
+            harm += kMerged * std::count_if(corners.begin(), corners.end(), [&](VertexId w) {
+                        return w != v && areSame(exact_, file_, v, w);
+                    });
         }
         return harm;
     }

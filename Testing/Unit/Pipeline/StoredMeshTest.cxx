@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "Support/Meshes.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/Pipeline/StoredMesh.h"
 
 namespace adaptiso {
@@ -60,6 +62,35 @@ TEST(SettleRounding, UncrossesTrianglesThatRoundingMakesCross) {
         }
     }
     EXPECT_GT(crossed, 5);
+}
+
+// A triangle of 1e-6 mm, and a corner of another surface as near to one of its corners.
+TEST(SettleRounding, PartsVerticesThatRoundingMerges) {
+    for (int n = 0; n < 30; ++n) {
+        const Vec3 middle{1003.1 + 0.371 * n, -1207.7 + 0.093 * n, 1100.3 - 0.517 * n};
+        TriangleMesh sphere = testing::icosphere(3, middle, 5);
+        const Triangle& t = sphere.triangles[7 * n];
+        const Vec3 centre =
+            (1.0 / 3) * (sphere.points[t[0]] + sphere.points[t[1]] + sphere.points[t[2]]);
+        for (const VertexId v : t) {
+            sphere.points[v] = centre + 1e-6 * (sphere.points[v] - centre);
+        }
+        const Vec3 corner = sphere.points[t[0]], outward = 0.2 * (corner - middle);
+        TriangleMesh beside = testing::icosphere(1, corner + 3 * outward, 1);
+        *std::min_element(beside.points.begin(), beside.points.end(),
+                          [&](const Vec3& p, const Vec3& q) {
+                              return norm(p - corner) < norm(q - corner);
+                          }) = corner + 1e-6 * outward;
+        TriangleMesh both = testing::merged({sphere, beside});
+        both.normals = {};
+        ASSERT_EQ(crossingsIn(both), 0) << n;
+        const RoundingHarm harm = settleRounding(both, CoordinatePrecision::Float32, kRas);
+        EXPECT_FALSE(harm) << n << textOf(harm, findMeshFormat("a.stl"));
+        EXPECT_GT(harm.movedPoints, 0);
+        const TriangleMesh file = asFloats(both);
+        EXPECT_EQ(crossingsIn(file), 0);
+        for (const Triangle& triangle : file.triangles) EXPECT_FALSE(isDegenerate(file, triangle));
+    }
 }
 
 TEST(SettleRounding, LeavesAMeshThatRoundingDoesNotHarm) {

@@ -20,10 +20,11 @@ struct RoundingHarm {
 };
 
 /// Moves single vertices to neighbouring coordinates of a file's precision where triangles would
-/// cross by its rounding alone, so that a surface that crosses nothing does so in the file too.
+/// cross or lose their area, or two vertices lie at one place, by its rounding alone: a surface
+/// that is sound is so in the file too.
 ///
 /// Vertices that are moved move by three units in the last place at most; all others
-/// stay as they are. More than a few hundred pairs are counted, and left.
+/// stay as they are. More than a few hundred such places are counted, and left.
 /// \param mesh     LPS mm
 /// \param toFrame  LPS mm to the frame of the file; invertible
 /// \return         what is left
