@@ -102,10 +102,12 @@ private:
         std::vector<TrianglePair> crossing;
     };
 
-    static bool isWorthATry(const Troubles& troubles) {
-        const std::size_t count =
-            troubles.flat.size() + troubles.merged.size() + troubles.crossing.size();
-        return count > 0 && count <= kMostTroubles;
+    /// Where more than a hundredth of the surface lies on itself its details are finer than what
+    /// the file can hold: no steps of that size mend it.
+    bool isWorthATry(const Troubles& troubles) const {
+        const std::size_t lost = troubles.flat.size() + troubles.merged.size(),
+                          count = lost + troubles.crossing.size();
+        return count > 0 && count <= kMostTroubles && 100 * lost <= file_.triangles.size();
     }
 
     Troubles find() const {

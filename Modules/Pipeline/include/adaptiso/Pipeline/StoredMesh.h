@@ -23,8 +23,10 @@ struct RoundingHarm {
 /// cross or lose their area, or two vertices lie at one place, by its rounding alone: a surface
 /// that is sound is so in the file too.
 ///
-/// Vertices that are moved move by three units in the last place at most; all others
-/// stay as they are. More than a few hundred such places are counted, and left.
+/// Vertices that are moved move by three units in the last place at most; all others stay as they
+/// are. More than a few hundred such places are counted, and left, and so are they where more than
+/// a hundredth of the triangles lose their area or corners.
+///
 /// \param mesh     LPS mm
 /// \param toFrame  LPS mm to the frame of the file; invertible
 /// \return         what is left
