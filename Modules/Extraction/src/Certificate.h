@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "adaptiso/Core/Geometry.h"
 
@@ -30,6 +32,18 @@ inline CornerBox boxOf(const Corners& c) {
     box.add(c[1]);
     box.add(c[2]);
     return box;
+}
+
+/// A little below a number, in single precision; and a little above.
+inline float floatBelow(double x) {
+    const auto f = static_cast<float>(x);
+    return f - (2 * std::numeric_limits<float>::epsilon() * std::abs(f) +
+                std::numeric_limits<float>::min());
+}
+inline float floatAbove(double x) {
+    const auto f = static_cast<float>(x);
+    return f + (2 * std::numeric_limits<float>::epsilon() * std::abs(f) +
+                std::numeric_limits<float>::min());
 }
 
 /// 0.8 degrees: sharper folds are refused while simplifying.

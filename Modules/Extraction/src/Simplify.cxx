@@ -10,6 +10,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/AdaptiveMethod.h"
+#include "adaptive/Parameters.h"
 #include "adaptive/full/MeshParts.h"
 #include "adaptive/full/MeshSurface.h"
 #include "adaptive/full/NearestNormals.h"
@@ -110,9 +111,8 @@ void requireProvable(const TriangleMesh& mesh, const SimplifyOptions& options) {
 
 Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& options) {
     requireProvable(mesh, options);
-    constexpr double kPartToMove = 0.01;  // of what the bound allows, for needles
     const double mayMoveMm =
-        kPartToMove * options.maxErrorMm.value_or(std::numeric_limits<double>::max());
+        detail::kNeedlePart * options.maxErrorMm.value_or(std::numeric_limits<double>::max());
     detail::MeshParts parts = detail::takeApart(mesh, options.keepBorders, mayMoveMm);
     AdaptiveOptions aims = aimsOf(options);
     if (aims.maxErrorMm) *aims.maxErrorMm -= parts.movedMm;

@@ -117,7 +117,10 @@ inline constexpr double kNarrowGap = 0.3;
 /// Another sheet is one whose normal differs by more: cosine of about 70 degrees.
 inline constexpr float kOtherSheetCosine = 0.3F;
 
-// ---- Meshes (MeshSurface) ----
+// ---- Meshes (simplify(), MeshSurface) ----
+
+/// Of the bound: collapsing needles, triangles without area, may move vertices as far.
+inline constexpr double kNeedlePart = 0.01;
 
 /// Triangles for each voxel's face of surface, by which a mesh gets voxels: marching cubes' on
 /// scans. Of them, the widest that they are made for the bound's sake.

@@ -126,13 +126,10 @@ Corners CrossingGuard::cornersOf(std::uint32_t triangle) const {
 }
 
 CrossingGuard::Box CrossingGuard::rounded(const CornerBox& box) {
-    constexpr float kMore = 2 * std::numeric_limits<float>::epsilon(),
-                    kLeast = std::numeric_limits<float>::min();
     Box result;
     for (int a = 0; a < 3; ++a) {
-        const auto low = static_cast<float>(box.low[a]), high = static_cast<float>(box.high[a]);
-        result.low[a] = low - (kMore * std::abs(low) + kLeast);
-        result.high[a] = high + (kMore * std::abs(high) + kLeast);
+        result.low[a] = floatBelow(box.low[a]);
+        result.high[a] = floatAbove(box.high[a]);
     }
     return result;
 }

@@ -139,9 +139,8 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm,
 /// The star's samples, each with the wedge to look at first.
 void ErrorTracker::collect(const Star& star, SampleAssignment& result) const {
     result.clear();
-    std::uint8_t roomUnseen = SheetRoom::kAlone;
     forEachTriangle(star, [&](std::uint32_t triangle, int wedge) {
-        roomUnseen = std::min(roomUnseen, triangleRoom_[triangle]);
+        result.roomUnseen = std::min(result.roomUnseen, triangleRoom_[triangle]);
         for (std::uint32_t s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
             const Sample& sample = patch_.samples[s];
             result.leastRoom = std::min(result.leastRoom, sample.room);
@@ -149,8 +148,7 @@ void ErrorTracker::collect(const Star& star, SampleAssignment& result) const {
             for (int a = 0; a < 3; ++a) result.position[a].push_back(sample.position[a]);
         }
     });
-    result.roomUnseen = roomUnseen;
-    result.leastRoom = std::min(result.leastRoom, roomUnseen);
+    result.leastRoom = std::min(result.leastRoom, result.roomUnseen);
 }
 
 /// The new vertex and points of sharp edges are near the full-resolution surface, as the nearest

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "Certificate.h"
@@ -21,8 +19,8 @@ public:
     }
     void add(const CornerBox& box) {
         for (int a = 0; a < 3; ++a) {
-            low_[a].push_back(below(box.low[a]));
-            high_[a].push_back(above(box.high[a]));
+            low_[a].push_back(floatBelow(box.low[a]));
+            high_[a].push_back(floatAbove(box.high[a]));
         }
     }
 
@@ -36,7 +34,7 @@ public:
             const std::size_t here = std::min(kAtOnce, count - begin);
             for (int a = 0; a < 3; ++a) {
                 const float *low = low_[a].data() + begin, *high = high_[a].data() + begin;
-                const float lowest = below(box.low[a]), highest = above(box.high[a]);
+                const float lowest = floatBelow(box.low[a]), highest = floatAbove(box.high[a]);
                 for (std::size_t i = 0; i < here; ++i) {
                     const float gap = std::max(low[i] - highest, lowest - high[i]);
                     apart[i] = a == 0 ? gap : std::max(apart[i], gap);
@@ -49,17 +47,6 @@ public:
     }
 
 private:
-    static constexpr float kMore = 2 * std::numeric_limits<float>::epsilon(),
-                           kLeast = std::numeric_limits<float>::min();
-    static float below(double x) {
-        const auto f = static_cast<float>(x);
-        return f - (kMore * std::abs(f) + kLeast);
-    }
-    static float above(double x) {
-        const auto f = static_cast<float>(x);
-        return f + (kMore * std::abs(f) + kLeast);
-    }
-
     std::array<std::vector<float>, 3> low_, high_;  ///< by axis
 };
 

@@ -102,7 +102,7 @@ private:
     const SurfaceState& surface_;
     const Bricks& bricks_;
     const MetricFrame& frame_;
-    mutable std::unique_ptr<std::once_flag> treeIsBuilt_ = std::make_unique<std::once_flag>();
+    std::unique_ptr<std::once_flag> treeIsBuilt_ = std::make_unique<std::once_flag>();
     mutable TriangleTree tree_;
     WalkableSurface<SurfaceState::Number> walkable_;
     Buckets<SurfaceState::Number> ofBrick_;
