@@ -148,10 +148,11 @@ inline constexpr double kQuadricWeight = 0.5, kFitStiffness = 5e-4, kFitStep = 0
 inline constexpr double kStarCosine = 0.3, kOwnCosine = 0.6;
 /// Twice the area over the squared longest side: below it a triangle counts as flat.
 inline constexpr double kFlatTriangle = 1e-5;
-/// A star may come this part of the way to other sheets without a proof that it meets none, unless
-/// they are nearer than kNarrowRoom voxels: two stars that come towards each other still pass, and
-/// what lies between samples strays little more than they.
-inline constexpr double kUsableRoom = 0.4, kNarrowRoom = 0.6;
+/// A star may come this part of the way to other sheets without a proof that it meets none: two
+/// stars that come towards each other still pass, and what lies between samples strays little more
+/// than they. To prove all that are nearer than 0.6 voxel to others as well refuses as few changes
+/// (14 of 600,000 on ch2bet), and takes 2 to 6 % more time.
+inline constexpr double kUsableRoom = 0.4;
 /// Along edges sharper than this cosine points are looked at, this far apart (of the samples'
 /// spacing), so many at most: a ridge may pass between the samples of a rounder surface.
 inline constexpr double kRidgeCosine = 0.95, kRidgeSpacing = 0.5;

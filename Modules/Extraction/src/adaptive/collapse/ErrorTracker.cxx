@@ -73,7 +73,7 @@ ErrorTracker::ErrorTracker(Patch& patch, const MetricFrame& frame)
     for (int room = 0; room < kRooms; ++room) {
         const double voxels = static_cast<double>(room) / SheetRoom::kParts,
                      mm = kUsableRoom * voxels * frame.narrowestMm();
-        squaredRoom_[room] = voxels < kNarrowRoom ? -1 : mm * mm;
+        squaredRoom_[room] = room == 0 ? -1 : mm * mm;
     }
     squaredRoom_[SheetRoom::kAlone] = kInfinity;
     for (auto s = static_cast<std::uint32_t>(patch.samples.size()); s-- > 0;) {

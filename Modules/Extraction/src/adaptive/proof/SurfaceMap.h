@@ -130,12 +130,17 @@ public:
     bool map(const std::array<const Vertex*, 3>& corners, const std::array<Side, 3>& sides,
              double squaredDistance) {
         count_ = parts_ = 0;
-        for (int i = 0; i < 3; ++i) {
+        int first = 0;  // the first side with cuts: there takeApart() begins
+        for (int i = 2; i >= 0; --i) {
             if (corners[i]->squared > squaredDistance) return false;
-            loop_[count_++] = {corners[i]->image, corners[i]->standIn};
             if (sides[i].way == nullptr) continue;
             if (sides[i].way->squared > squaredDistance) return false;
-            addCuts(*sides[i].way, sides[i].isForward);
+            if (sides[i].way->count > 0) first = i;
+        }
+        for (int i = first; i < first + 3; ++i) {
+            if (sides[i % 3].way != nullptr) addCuts(*sides[i % 3].way, sides[i % 3].isForward);
+            const Vertex& end = *corners[(i + 1) % 3];
+            loop_[count_++] = {end.image, end.standIn};
         }
         return takeApart(corners, squaredDistance);
     }
@@ -441,22 +446,24 @@ public:
         entries_.clear();
     }
     void add(const typename SurfaceMap<Index>::Part& part) {
-        at(part.triangle).share += shareOf(part.area2, onto_->cornersOf(part.triangle));
+        at(part.triangle).area2 += part.area2;
     }
     /// The border of what is mapped passes it.
     void addBorder(Index triangle) { at(triangle).hasBorder = true; }
 
     /// Each point of the triangle is the image of a mapped one.
     bool covers(Index triangle) const {
-        const std::uint32_t entry = entryOf_[static_cast<std::size_t>(triangle)];
-        return entry != 0 && !entries_[entry - 1].hasBorder &&
-               std::abs(entries_[entry - 1].share - 1) < kCoverRounding;
+        const std::uint32_t number = entryOf_[static_cast<std::size_t>(triangle)];
+        if (number == 0) return false;
+        const Entry& entry = entries_[number - 1];
+        return !entry.hasBorder &&
+               std::abs(shareOf(entry.area2, onto_->cornersOf(triangle)) - 1) < kCoverRounding;
     }
 
 private:
     struct Entry {
         Index triangle;
-        double share = 0;
+        Vec3 area2{};  ///< sum of the parts'
         bool hasBorder = false;
     };
     Entry& at(Index triangle) {
