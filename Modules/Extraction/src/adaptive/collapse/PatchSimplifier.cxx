@@ -12,8 +12,7 @@ PatchSimplifier::PatchSimplifier(Patch& patch, const MetricFrame& frame, const P
       limits_(limits),
       topology_(patch),
       errors_(patch, frame),
-      guard_(patch, topology_, frame, limits.provesAll),
-      changes_(patch.points.size(), 0) {}
+      guard_(patch, topology_, frame, limits.provesAll) {}
 
 QuadricMinimum PatchSimplifier::bestPlace(std::uint32_t a, std::uint32_t b) const {
     const Quadric sum = patch_.quadrics[a] + patch_.quadrics[b];
@@ -25,17 +24,34 @@ QuadricMinimum PatchSimplifier::bestPlace(std::uint32_t a, std::uint32_t b) cons
     return endsAtA && (!endsAtB || atA <= atB) ? QuadricMinimum{p, atA} : QuadricMinimum{q, atB};
 }
 
-void PatchSimplifier::propose(std::uint32_t halfEdge, double leastCost) {
+double PatchSimplifier::costOf(std::uint32_t halfEdge) const {
     const std::uint32_t a = topology_.from(halfEdge), b = topology_.to(halfEdge);
-    if (!mayChange(a) || !mayChange(b)) return;
+    if (!mayChange(a) || !mayChange(b)) return CollapseQueue::kNever;
     const double weight = patch_.quadrics[a].weight() + patch_.quadrics[b].weight();
     const double error = bestPlace(a, b).error;
-    if (error > weight * limits_.maxDistanceMm * limits_.maxDistanceMm) return;
+    if (error > weight * limits_.maxDistanceMm * limits_.maxDistanceMm)
+        return CollapseQueue::kNever;
     const double cost =
         error + kLengthWeight * weight * squaredNorm(patch_.points[b] - patch_.points[a]);
-    if (cost > limits_.maxCost || cost <= leastCost) return;
-    queue_.push_back({cost, halfEdge, a, b, changes_[a] + changes_[b]});
-    std::push_heap(queue_.begin(), queue_.end(), IsLater());
+    return cost > limits_.maxCost ? CollapseQueue::kNever : cost;
+}
+
+bool PatchSimplifier::isTried(std::uint32_t halfEdge, double cost) const {
+    return cost <= limits_.triedCost &&
+           patch_.states[topology_.from(halfEdge)] == Patch::State::Tried &&
+           patch_.states[topology_.to(halfEdge)] == Patch::State::Tried;
+}
+
+void PatchSimplifier::noteUntried(std::uint32_t halfEdge) {
+    untried_.insert(untried_.end(), {topology_.from(halfEdge), topology_.to(halfEdge)});
+}
+
+/// For the next cut.
+void PatchSimplifier::passOnUntried() {
+    for (const std::uint32_t v : untried_) {
+        if (patch_.states[v] == Patch::State::Tried) patch_.states[v] = Patch::State::Open;
+    }
+    untried_.clear();
 }
 
 void PatchSimplifier::setState(std::uint32_t v, Patch::State state) {
@@ -47,11 +63,6 @@ void PatchSimplifier::markChanged(const Star& star) {
     for (int i = 0; i < star.ringCount(); ++i) setState(star.ring[i], Patch::State::Open);
 }
 
-bool PatchSimplifier::isStale(const Candidate& c) const {
-    return changes_[c.a] + changes_[c.b] != c.changes || !topology_.isMovable(c.a) ||
-           !topology_.isMovable(c.b);
-}
-
 const PatchSimplifier::Change* PatchSimplifier::evaluateCollapse(std::uint32_t halfEdge) {
     Change& change = change_;
     if (!topology_.starOfEdge(halfEdge, change.star.star)) return nullptr;
@@ -59,7 +70,7 @@ const PatchSimplifier::Change* PatchSimplifier::evaluateCollapse(std::uint32_t h
     change.halfEdge = halfEdge;
     change.star.vertex = bestPlace(change.vertex, topology_.to(halfEdge)).point;
     if (!isInBox(change.star.vertex)) {
-        untried_.insert(untried_.end(), {change.vertex, topology_.to(halfEdge)});
+        noteUntried(halfEdge);
         return nullptr;
     }
     return staysNear(change) && crossesNothing(change) ? &change : nullptr;
@@ -94,8 +105,6 @@ void PatchSimplifier::apply(const Change& change) {
         setState(change.vertex, Patch::State::Open);
         patch_.quadrics[change.vertex] += patch_.quadrics[other];
         if (change.star.star.isOpen) patch_.marks[change.vertex] = Patch::kBorder;
-        ++changes_[change.vertex];
-        ++changes_[other];
         if (!patch_.heirs.empty()) patch_.heirs[other] = change.vertex;
     }
     errors_.commit(change.star, change.samples);
@@ -126,44 +135,33 @@ void PatchSimplifier::settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, i
 }
 
 void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* costs) {
-    for (std::uint32_t h = 0; h < 3 * patch_.ownTriangles; ++h) {
-        if (patch_.triangles[h / 3][0] == Patch::kGone) continue;
-        if (h > topology_.twin(h)) continue;
-        const std::uint32_t a = topology_.from(h), b = topology_.to(h);
-        if (topology_.isMovable(a) != topology_.isMovable(b))
-            untried_.insert(untried_.end(), {a, b});
-        const bool isTried =
-            patch_.states[a] == Patch::State::Tried && patch_.states[b] == Patch::State::Tried;
-        propose(h, isTried ? limits_.triedCost : -1);
-    }
+    CollapseQueue queue(topology_, patch_);
+    queue.fill(patch_, [&](std::uint32_t h) {
+        if (topology_.isMovable(topology_.from(h)) != topology_.isMovable(topology_.to(h)))
+            noteUntried(h);
+        const double cost = costOf(h);
+        return isTried(h, cost) ? CollapseQueue::kNever : cost;
+    });
     for (std::uint32_t v = 0; v < patch_.points.size(); ++v) {
         if (topology_.isMovable(v) && patch_.states[v] == Patch::State::Open) {
             patch_.states[v] = Patch::State::Tried;
         }
     }
-    std::int64_t made = 0;
-    while (!queue_.empty() && made < most) {
-        const Candidate best = queue_.front();
-        std::pop_heap(queue_.begin(), queue_.end(), IsLater());
-        queue_.pop_back();
-        if (isStale(best)) continue;
-        const Change* change = evaluateCollapse(best.halfEdge);
-        if (change == nullptr) continue;
+    for (std::int64_t made = 0; made < most;) {
+        const CollapseQueue::Edge edge = queue.cheapest();
+        if (edge.halfEdge == CollapseQueue::kNone) break;
+        const Change* change = evaluateCollapse(edge.halfEdge);
+        if (change == nullptr) {
+            queue.refuse(edge.halfEdge);
+            continue;
+        }
         apply(*change);
         ++made;
-        if (costs != nullptr) costs->push_back(best.cost);
-        topology_.forEachLeaving(best.a, [&](std::uint32_t h) {
-            propose(h, -1);
-            const std::uint32_t arriving = PatchTopology::previous(h);
-            if (topology_.twin(arriving) == PatchTopology::kNone) propose(arriving, -1);
-        });
+        if (costs != nullptr) costs->push_back(edge.cost);
+        queue.update(change->vertex, change->star.star, [&](std::uint32_t h) { return costOf(h); });
     }
-    for (const Candidate& left : queue_) untried_.insert(untried_.end(), {left.a, left.b});
-    queue_.clear();
-    for (const std::uint32_t v : untried_) {
-        if (patch_.states[v] == Patch::State::Tried) patch_.states[v] = Patch::State::Open;
-    }
-    untried_.clear();
+    queue.forEachLeft([&](std::uint32_t h) { noteUntried(h); });
+    passOnUntried();
 }
 
 /// The star has the shape asked for and lies near its samples.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "adaptive/collapse/CollapseQueue.h"
 #include "adaptive/collapse/CrossingGuard.h"
 #include "adaptive/collapse/ErrorTracker.h"
 #include "adaptive/mesh/MetricFrame.h"
@@ -49,18 +50,6 @@ public:
     void fitVertices();
 
 private:
-    struct Candidate {
-        double cost;
-        std::uint32_t halfEdge, a, b;
-        std::uint32_t changes;  ///< of both ends when it was proposed; stale when there are more
-    };
-    struct IsLater {
-        bool operator()(const Candidate& x, const Candidate& y) const {
-            if (x.cost != y.cost) return x.cost > y.cost;
-            return x.a != y.a ? x.a > y.a : x.b > y.b;
-        }
-    };
-
     /// A change that nothing refuses: all that apply() needs. An edge is collapsed into the vertex
     /// it starts from, or a vertex moves.
     struct Change {
@@ -76,9 +65,12 @@ private:
     void setState(std::uint32_t v, Patch::State state);
     void markChanged(const Star& star);
     QuadricMinimum bestPlace(std::uint32_t a, std::uint32_t b) const;
-    /// \param leastCost  of the collapse; it is not proposed below
-    void propose(std::uint32_t halfEdge, double leastCost);
-    bool isStale(const Candidate& candidate) const;
+    /// What collapsing an edge costs; kNever beyond the limits.
+    double costOf(std::uint32_t halfEdge) const;
+    /// As long as nothing around an edge has changed since it was tried, it is not tried again.
+    bool isTried(std::uint32_t halfEdge, double cost) const;
+    void noteUntried(std::uint32_t halfEdge);
+    void passOnUntried();
 
     /// What collapsing the edge would do; null when it must not be. Valid until the next
     /// evaluation: its memory, 5 kB and the samples, is used again.
@@ -100,8 +92,6 @@ private:
     PatchTopology topology_;
     ErrorTracker errors_;
     CrossingGuard guard_;
-    std::vector<std::uint32_t> changes_;  ///< of each vertex
-    std::vector<Candidate> queue_;        ///< a heap
     /// Ends of edges that were not tried, or led out of the box: another cut may allow those.
     std::vector<std::uint32_t> untried_;
     Change change_;  ///< the one that is evaluated
