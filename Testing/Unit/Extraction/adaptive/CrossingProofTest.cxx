@@ -41,7 +41,7 @@ TEST(CrossingProof, FindsTrianglesThatCross) {
     EXPECT_EQ(detail::crossingTriangles(mesh), (std::vector<std::int64_t>{0, 1}));
     mesh.points[3] = {1, 1, 0.5};
     EXPECT_TRUE(detail::crossingTriangles(mesh).empty());
-    EXPECT_TRUE(detail::crossingTriangles({}).empty());
+    EXPECT_TRUE(detail::crossingTriangles(TriangleMesh{}).empty());
 }
 
 // Few points: most triangles share corners, and edges.

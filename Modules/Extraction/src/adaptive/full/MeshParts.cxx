@@ -82,7 +82,7 @@ public:
         halfEdges_.assign(parts_.points.size(), parts_.triangles);
         if (dropDuplicates()) halfEdges_.assign(parts_.points.size(), parts_.triangles);
         halfEdges_.match(twin_);
-        const std::vector<std::int64_t> crossing = crossingTriangles(parts_.view(), parts_.tree);
+        const std::vector<std::int64_t> crossing = crossingTriangles(parts_.view());
         cutEdges();
         cutPoints();
         keepCrossings(crossing);

@@ -28,7 +28,6 @@ struct MeshParts {
     std::vector<std::int64_t> crossing;      ///< triangles that cross others, ascending
     std::vector<std::uint32_t>
         inputTriangle;  ///< of each triangle. Empty: its own number, or none crosses
-    TriangleTree tree;  ///< of the triangles
     std::int64_t degenerate = 0, duplicate = 0;  ///< triangles that were dropped
     double movedMm = 0;  ///< no vertex of needles was farther from the one that it became
 

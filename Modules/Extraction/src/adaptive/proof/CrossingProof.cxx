@@ -122,13 +122,13 @@ std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh) {
         triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
                              static_cast<std::uint32_t>(c)});
     }
-    TriangleTree tree;
-    return crossingTriangles({mesh.points, triangles}, tree);
+    return crossingTriangles(TriangleView{mesh.points, triangles});
 }
 
-std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh, TriangleTree& tree) {
+std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh) {
     if (mesh.triangles.empty()) return {};
     constexpr std::int64_t kPiece = 128;  // leaves
+    TriangleTree tree;
     std::optional<Fans> fans;
     parallelInvoke([&] { tree = TriangleTree(mesh); }, [&] { fans.emplace(mesh); });
     CornerBox box{mesh.points[0], mesh.points[0]};

@@ -14,7 +14,6 @@ namespace adaptiso::detail {
 /// \pre fewer than 2^32 points
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh);
 
-/// The same. \param tree  gets a tree of the triangles
-std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh, TriangleTree& tree);
+std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh);
 
 }  // namespace adaptiso::detail

@@ -1,14 +1,9 @@
 #include "adaptive/proof/MeshProof.h"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <mutex>
-#include <optional>
 #include <span>
 
 #include "adaptiso/Core/Parallel.h"
@@ -45,7 +40,7 @@ template <class Index>
 struct Target {
     const WalkableSurface<Index>& walkable;
     TriangleView view;
-    std::function<const TriangleTree&()> tree;  ///< of the view
+    TreeOnDemand& tree;  ///< of the view
 };
 
 /// Bounds how far triangles of one surface are from another; keeps its working memory.
@@ -119,7 +114,7 @@ private:
             for (const Corners& t : around_) {
                 nearest = std::min(nearest, squaredDistanceToTriangle(corner, t));
             }
-            nearest = to_.tree().squaredDistance(corner, to_.view, nearest);
+            nearest = to_.tree.get().squaredDistance(corner, to_.view, nearest);
             reachMm = std::max(reachMm, std::sqrt(nearest));
         }
         collectWithin(reachMm, piece);
@@ -132,7 +127,7 @@ private:
         box.widen(kRounding * distanceMm);
         near_.clear();
         bound_.nearby().clear();
-        to_.tree().forEachOverlap(box, to_.view, [&](std::uint32_t t) {
+        to_.tree.get().forEachOverlap(box, to_.view, [&](std::uint32_t t) {
             near_.push_back(t);
             bound_.nearby().push_back(to_.view.cornersOf(t));
         });
@@ -154,33 +149,6 @@ private:
     std::vector<Corners> around_;     ///< where walks start
     std::vector<std::int64_t> near_;  ///< as bound_.nearby()
     PartBound result_;
-};
-
-/// A simplified surface as a target, for the time of a proof.
-class SimplifiedTarget {
-public:
-    explicit SimplifiedTarget(const SimplifiedSurface& surface) : surface_(surface) {
-        walkable_.assign(surface.points, surface.triangles);
-    }
-    Target<Number> target() {
-        return {walkable_, view(), [this]() -> const TriangleTree& { return tree(); }};
-    }
-
-private:
-    TriangleView view() const { return {surface_.points, surface_.triangles}; }
-
-    const TriangleTree& tree() {
-        std::call_once(treeIsBuilt_, [&] {
-            // while it waits for its own tasks a thread must not take one that asks for the tree
-            tbb::this_task_arena::isolate([&] { tree_.emplace(view()); });
-        });
-        return *tree_;
-    }
-
-    const SimplifiedSurface& surface_;
-    WalkableSurface<Number> walkable_;
-    std::once_flag treeIsBuilt_;
-    std::optional<TriangleTree> tree_;
 };
 
 /// Cubes of space, some of them marked: by a hash, so that now and then another one counts as
@@ -359,7 +327,7 @@ std::vector<std::uint32_t> startsOf(const SimplifiedSurface& surface,
 }  // namespace
 
 MeshProof::MeshProof(const MeshParts& parts, const MetricFrame& frame, double limitMm)
-    : parts_(parts), frame_(frame), limitMm_(limitMm) {}
+    : parts_(parts), frame_(frame), limitMm_(limitMm), fineTree_(parts.view()) {}
 
 double MeshProof::largestSampleDistance(const SimplifiedSurface& surface) const {
     constexpr std::int64_t kSamples = 1 << 14;
@@ -391,10 +359,12 @@ ErrorBound MeshProof::proveAgain(const SimplifiedSurface& surface, const Surface
 
 ErrorBound MeshProof::prove(const SimplifiedSurface& surface, const Scope& scope) {
     if (fine_.isEmpty()) fine_.assign(parts_.points, parts_.triangles);
-    const Target<std::uint32_t> fine{fine_, parts_.view(),
-                                     [&]() -> const TriangleTree& { return parts_.tree; }};
-    SimplifiedTarget target(surface);
-    const Target<Number> simplified = target.target();
+    const Target<std::uint32_t> fine{fine_, parts_.view(), fineTree_};
+    WalkableSurface<Number> walkable;
+    walkable.assign(surface.points, surface.triangles);
+    const TriangleView view{surface.points, surface.triangles};
+    TreeOnDemand tree(view);
+    const Target<Number> simplified{walkable, view, tree};
     const Task task{parts_, surface, frame_.voxelMm(), enoughMm_, limitMm_};
     const std::vector<std::uint32_t> starts = startsOf(surface, fine_, parts_.points.size());
     const std::int64_t finePieces = (std::ssize(parts_.triangles) + kPiece - 1) / kPiece,

@@ -37,8 +37,9 @@ private:
     const MetricFrame& frame_;
     double limitMm_;
     WalkableSurface<std::uint32_t> fine_;  ///< empty until it is needed
-    double enoughMm_ = 0;                  ///< no bound need be tighter
-    double provedMm_ = 0;                  ///< so far, of what lies within the limit
+    TreeOnDemand fineTree_;
+    double enoughMm_ = 0;  ///< no bound need be tighter
+    double provedMm_ = 0;  ///< so far, of what lies within the limit
     // of the last surface; empty where none was proved
     std::vector<std::uint8_t> isWithin_;  ///< the limit, each triangle
     std::vector<PlaceBeyond> beyond_;

@@ -1,5 +1,7 @@
 #include "adaptive/proof/TriangleTree.h"
 
+#include <tbb/task_arena.h>
+
 #include <cmath>
 
 #include "adaptiso/Core/AabbTree.h"
@@ -74,6 +76,14 @@ TriangleTree::Pairs::Pairs(const TriangleTree& tree, const TriangleView& of)
     parallelForPieces(std::ssize(boxes_), kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i) boxes_[i] = boxAround(of, tree.order_[i]);
     });
+}
+
+const TriangleTree& TreeOnDemand::get() {
+    std::call_once(isMade_, [&] {
+        // while it waits for its own tasks a thread must not take one that asks for the tree
+        tbb::this_task_arena::isolate([&] { tree_ = TriangleTree(of_); });
+    });
+    return tree_;
 }
 
 double TriangleTree::squaredDistance(const Vec3& p, const TriangleView& of, double most) const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
@@ -124,6 +125,18 @@ void TriangleTree::forEachOverlap(const CornerBox& box, const TriangleView& of,
         }
     });
 }
+
+/// A tree that is made when it is first asked for, by whichever thread.
+class TreeOnDemand {
+public:
+    explicit TreeOnDemand(const TriangleView& of) : of_(of) {}
+    const TriangleTree& get();
+
+private:
+    TriangleView of_;
+    std::once_flag isMade_;
+    TriangleTree tree_;
+};
 
 /// Finds the pairs of triangles whose boxes, rounded outward, overlap. Keeps a reference to the
 /// tree, and 24 bytes a triangle.
