@@ -72,10 +72,31 @@ void TriangleTree::build(const Subtree& subtree, const TriangleView& of) {
 }
 
 TriangleTree::Pairs::Pairs(const TriangleTree& tree, const TriangleView& of)
-    : tree_(tree), boxes_(tree.order_.size()) {
-    parallelForPieces(std::ssize(boxes_), kPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) boxes_[i] = boxAround(of, tree.order_[i]);
-    });
+    : tree_(tree), leaves_(tree.leafCount()) {
+    parallelForPieces(tree.leafCount(), kPiece / kLeafTriangles,
+                      [&](std::int64_t begin, std::int64_t end) {
+                          for (std::int64_t number = begin; number < end; ++number) {
+                              const auto triangles = tree.leaf(number);
+                              for (std::size_t i = 0; i < triangles.size(); ++i) {
+                                  leaves_[number].set(i, boxAround(of, triangles[i]));
+                              }
+                          }
+                      });
+}
+
+// not inline: so GCC takes four at once
+unsigned TriangleTree::Pairs::LeafBoxes::overlapping(const Box& o) const {
+    std::array<std::int32_t, kLeafTriangles> overlaps;
+    for (std::size_t i = 0; i < kLeafTriangles; ++i) {
+        overlaps[i] = (low[0][i] <= o.high[0]) & (o.low[0] <= high[0][i]) &
+                      (low[1][i] <= o.high[1]) & (o.low[1] <= high[1][i]) &
+                      (low[2][i] <= o.high[2]) & (o.low[2] <= high[2][i]);
+    }
+    unsigned bits = 0;
+    for (std::size_t i = 0; i < kLeafTriangles; ++i) {
+        bits |= static_cast<unsigned>(overlaps[i]) << i;
+    }
+    return bits;
 }
 
 const TriangleTree& TreeOnDemand::get() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <mutex>
@@ -159,18 +160,42 @@ private:
     static void tell(std::uint32_t a, std::uint32_t b, const Visit& visit) {
         visit(std::min(a, b), std::max(a, b));
     }
-    Box boxOfLeaf(std::int64_t leaf) const {
-        const auto boxes = boxesOf(leaf);
-        Box all = boxes[0];
-        for (const Box& box : boxes.subspan(1)) all.add(box);
-        return all;
-    }
-    std::span<const Box> boxesOf(std::int64_t leaf) const {
-        return std::span(boxes_).subspan(leaf * kLeafTriangles, tree_.leaf(leaf).size());
+
+    /// The boxes of a leaf's triangles, coordinate by coordinate: the compiler takes several at
+    /// once. Those of places without a triangle overlap nothing.
+    struct LeafBoxes {
+        using Coordinates = std::array<float, kLeafTriangles>;
+        std::array<Coordinates, 3> low, high;
+
+        LeafBoxes() {
+            for (Coordinates& along : low) along.fill(std::numeric_limits<float>::infinity());
+            for (Coordinates& along : high) along.fill(-std::numeric_limits<float>::infinity());
+        }
+        void set(std::size_t i, const Box& box) {
+            for (std::size_t a = 0; a < 3; ++a) {
+                low[a][i] = box.low[a];
+                high[a][i] = box.high[a];
+            }
+        }
+        Box at(std::size_t i) const {
+            return {{low[0][i], low[1][i], low[2][i]}, {high[0][i], high[1][i], high[2][i]}};
+        }
+        Box all() const {
+            Box box = at(0);
+            for (std::size_t i = 1; i < kLeafTriangles; ++i) box.add(at(i));
+            return box;
+        }
+        /// A bit for each that overlaps a box.
+        unsigned overlapping(const Box& o) const;
+    };
+    /// Calls f(place) for each bit.
+    template <class F>
+    static void forEachBit(unsigned bits, const F& f) {
+        for (; bits != 0; bits &= bits - 1) f(static_cast<std::size_t>(std::countr_zero(bits)));
     }
 
     const TriangleTree& tree_;
-    std::vector<Box> boxes_;  ///< of the triangles, leaf after leaf
+    std::vector<LeafBoxes> leaves_;
 };
 
 template <class Visit>
@@ -180,15 +205,16 @@ void TriangleTree::Pairs::forEach(std::int64_t begin, std::int64_t end, const Vi
     std::vector<std::pair<std::int64_t, Box>> near;
     for (std::int64_t first = begin; first < end; first += kTogether) {
         const std::int64_t last = std::min(end, first + kTogether);
-        Box all = boxOfLeaf(first);
-        for (std::int64_t number = first + 1; number < last; ++number) all.add(boxOfLeaf(number));
+        Box all = leaves_[first].all();
+        for (std::int64_t number = first + 1; number < last; ++number)
+            all.add(leaves_[number].all());
         near.clear();
         tree_.forEachLeaf(all, first + 1, [&](std::int64_t other, const Box& box) {
             near.emplace_back(other, box);
         });
         for (std::int64_t number = first; number < last; ++number) {
             forEachIn(number, visit);
-            const Box own = boxOfLeaf(number);
+            const Box own = leaves_[number].all();
             for (const auto& [other, box] : near) {
                 if (other > number && box.overlaps(own))
                     forEachBetween(number, own, other, box, visit);
@@ -201,11 +227,10 @@ void TriangleTree::Pairs::forEach(std::int64_t begin, std::int64_t end, const Vi
 template <class Visit>
 void TriangleTree::Pairs::forEachIn(std::int64_t number, const Visit& visit) const {
     const auto triangles = tree_.leaf(number);
-    const auto boxes = boxesOf(number);
+    const LeafBoxes& boxes = leaves_[number];
     for (std::size_t i = 1; i < triangles.size(); ++i) {
-        for (std::size_t j = 0; j < i; ++j) {
-            if (boxes[i].overlaps(boxes[j])) tell(triangles[i], triangles[j], visit);
-        }
+        forEachBit(boxes.overlapping(boxes.at(i)) & ((1U << i) - 1),
+                   [&](std::size_t j) { tell(triangles[i], triangles[j], visit); });
     }
 }
 
@@ -215,20 +240,13 @@ template <class Visit>
 void TriangleTree::Pairs::forEachBetween(std::int64_t number, const Box& own, std::int64_t other,
                                          const Box& box, const Visit& visit) const {
     const auto triangles = tree_.leaf(number), others = tree_.leaf(other);
-    const auto boxes = boxesOf(number), theirs = boxesOf(other);
-    std::array<std::size_t, kLeafTriangles> near;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        near[count] = i;
-        count += std::size_t{boxes[i].overlaps(box)};
-    }
-    if (count == 0) return;
-    for (std::size_t t = 0; t < others.size(); ++t) {
-        if (!theirs[t].overlaps(own)) continue;
-        for (std::size_t i = 0; i < count; ++i) {
-            if (boxes[near[i]].overlaps(theirs[t])) tell(triangles[near[i]], others[t], visit);
-        }
-    }
+    const LeafBoxes &boxes = leaves_[number], &theirs = leaves_[other];
+    const unsigned near = boxes.overlapping(box);
+    if (near == 0) return;
+    forEachBit(theirs.overlapping(own), [&](std::size_t t) {
+        forEachBit(near & boxes.overlapping(theirs.at(t)),
+                   [&](std::size_t i) { tell(triangles[i], others[t], visit); });
+    });
 }
 
 }  // namespace adaptiso::detail
