@@ -10,6 +10,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/Predicates.h"
+#include "adaptiso/MeshQuality/ClearFans.h"
 
 namespace adaptiso {
 namespace {
@@ -147,11 +148,13 @@ SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
                            std::to_string(options.maxPairs) + ", must be at least 0");
     }
     const AabbTree tree(mesh);
+    const ClearFans fans(mesh.points, mesh.triangles);
     constexpr std::int64_t kGrain = 4096;
     std::vector<SelfIntersections> ofPiece((tree.triangleCount() + kGrain - 1) / kGrain);
     parallelForPieces(tree.triangleCount(), kGrain, [&](std::int64_t begin, std::int64_t end) {
         SelfIntersections& found = ofPiece[begin / kGrain];
         tree.forEachOverlappingPair(begin, end, [&](std::int64_t a, std::int64_t b) {
+            if (fans.areClear(mesh.triangles[a], mesh.triangles[b])) return;
             const Corners first = cornersOf(mesh, a), second = cornersOf(mesh, b);
             if (!areFinite(first) || !areFinite(second) || !trianglesCross(first, second)) return;
             ++found.pairCount;

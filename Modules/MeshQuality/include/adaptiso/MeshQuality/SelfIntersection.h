@@ -39,8 +39,8 @@ struct SelfIntersections {
 /// All pairs of triangles of `mesh` that cross, as trianglesCross has it. Triangles with a
 /// non-finite corner cross nothing.
 /// \pre triangles name points that are there, options.maxPairs >= 0 \throws InvalidInput otherwise
-/// Cost: O(T log T + pairs of overlapping boxes), in parallel; an AabbTree of memory. The same
-/// mesh gives the same bytes, whatever the number of threads.
+/// Cost: O(T log T + pairs of overlapping boxes), in parallel; memory of an AabbTree and ClearFans.
+/// The same mesh gives the same bytes, whatever the number of threads.
 SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
                                         const SelfIntersectionOptions& options = {});
 
