@@ -8,8 +8,8 @@
 namespace adaptiso {
 namespace {
 
-/// Triangles are upright when their normals' cosine to the direction is larger; of a fan with more
-/// nothing is said.
+/// A triangle is upright when its normal's cosine to the direction is larger than this. A fan with
+/// more triangles than that counts as not clear.
 constexpr double kLeastCosine = 0.02;
 constexpr std::int64_t kMostTriangles = 24;
 

@@ -24,9 +24,8 @@ public:
           cheapest_(patch.points.size(), kNone) {}
 
     /// Puts all edges in.
-    /// \param costOf  costOf(half-edge): what collapsing its edge costs, or kNever; an edge is
-    /// known
-    ///                by the smaller of its half-edges' numbers
+    /// \param costOf  costOf(half-edge): what collapsing its edge costs, or kNever. An edge is
+    ///                known by the half-edge with the smaller number.
     template <class CostOf>
     void fill(const Patch& patch, const CostOf& costOf);
 

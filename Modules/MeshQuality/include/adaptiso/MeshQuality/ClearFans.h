@@ -22,7 +22,7 @@ public:
     template <class Triangles>
     ClearFans(std::span<const Vec3> points, const Triangles& triangles)
         : isClear_(points.size(), 0) {
-        if (points.size() > kMostPoints) return;
+        if (points.size() > kMost || triangles.size() > kMost / 3) return;  // none is clear
         prove(points, Sectors(points.size(), [&](const auto& give) {
                   for (const auto& [a, b, c] : triangles) {
                       give(static_cast<std::size_t>(a), sector(b, c));
@@ -46,7 +46,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t kMostPoints = 0xFFFFFFFF;
+    static constexpr std::size_t kMost = 0xFFFFFFFF;  ///< that 32 bits can number
     using Sector = std::array<std::uint32_t, 2>;  ///< the other corners of a triangle, in its order
     using Sectors = Buckets<Sector, std::uint32_t>;
 
