@@ -20,7 +20,7 @@ double diagonalOf(const TriangleMesh& mesh) {
                  isFinite);
     if (finite.points.empty()) return 0;
     const BoundingBox box = boundingBox(finite);
-    return norm(box.maximum - box.minimum);
+    return norm(box.size());
 }
 
 }  // namespace

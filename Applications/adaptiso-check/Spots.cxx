@@ -22,11 +22,6 @@ const Check* failed(const std::vector<Check>& checks, std::string_view key) {
     return found != checks.end() && found->hasFailed() ? &*found : nullptr;
 }
 
-std::array<Vec3, 3> cornersOf(const TriangleMesh& mesh, std::int64_t triangle) {
-    const auto& [a, b, c] = mesh.triangles[triangle];
-    return {mesh.points[a], mesh.points[b], mesh.points[c]};
-}
-
 /// The spots of one surface.
 class SurfaceSpots {
 public:

@@ -97,7 +97,7 @@ SurfaceSummary summarize(const NamedMesh& surface, std::optional<CoordinateFrame
     const TopologyReport topology = checkTopology(mesh, {.maxExamplesPerDefect = 0});
     if (topology.isClosed() && topology.isOriented()) summary.volumeMm3 = enclosedVolume(mesh);
     const BoundingBox box = boundingBox(mesh);
-    summary.diagonalMm = norm(box.maximum - box.minimum);
+    summary.diagonalMm = norm(box.size());
     return summary;
 }
 

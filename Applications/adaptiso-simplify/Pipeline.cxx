@@ -294,7 +294,7 @@ void requireProvable(const TriangleMesh& mesh, const SimplifyCommand& command) {
     constexpr double kLeastPart = 1e-12;
     if (!command.aim.maxErrorMm) return;
     const BoundingBox box = boundingBox(mesh);
-    if (*command.aim.maxErrorMm >= kLeastPart * norm(box.maximum - box.minimum)) return;
+    if (*command.aim.maxErrorMm >= kLeastPart * norm(box.size())) return;
     throw InvalidInput("--max-error " + formatNumber(*command.aim.maxErrorMm) +
                        ": is less than 1e-12 of the diagonal of " + baseName(command.input) +
                        ", which its coordinates can't tell; allow more");

@@ -17,21 +17,8 @@ bool isFinite(const Vec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-BoundingBox emptyBox() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    return {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-}
-
-void extend(BoundingBox& box, const Vec3& p) {
-    // no loop: indices of Vec3 that the compiler can't see through cost three times as much
-    box.minimum = {std::min(box.minimum.x, p.x), std::min(box.minimum.y, p.y),
-                   std::min(box.minimum.z, p.z)};
-    box.maximum = {std::max(box.maximum.x, p.x), std::max(box.maximum.y, p.y),
-                   std::max(box.maximum.z, p.z)};
-}
-
 int longestAxis(const BoundingBox& box) {
-    const Vec3 size = box.maximum - box.minimum;
+    const Vec3 size = box.size();
     if (size.x >= size.y && size.x >= size.z) return 0;
     return size.y >= size.z ? 1 : 2;
 }
@@ -81,16 +68,6 @@ Vec3 closestPointOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
     return a + vb * scale * ab + vc * scale * ac;
 }
 
-double squaredDistance(const Vec3& p, const BoundingBox& box) {
-    const auto beyond = [](double low, double at, double high) {
-        return std::max(std::max(low - at, 0.0), at - high);
-    };
-    const double dx = beyond(box.minimum.x, p.x, box.maximum.x);
-    const double dy = beyond(box.minimum.y, p.y, box.maximum.y);
-    const double dz = beyond(box.minimum.z, p.z, box.maximum.z);
-    return dx * dx + dy * dy + dz * dz;
-}
-
 /// A triangle while the tree is built.
 struct AabbTree::Item {
     Vec3 centre;
@@ -122,16 +99,16 @@ AabbTree::AabbTree(const TriangleMesh& mesh) : mesh_(&mesh) {
 void AabbTree::build(std::vector<Item>& items, const Subtree& subtree) {
     const std::int64_t begin = leafBegin(subtree.firstLeaf);
     const std::int64_t end = leafEnd(subtree.firstLeaf + subtree.leaves - 1);
-    BoundingBox& box = boxes_[subtree.node] = emptyBox();
+    BoundingBox& box = boxes_[subtree.node] = BoundingBox::empty();
     if (subtree.isLeaf()) {
         for (std::int64_t n = begin; n < end; ++n) {
             order_[n] = items[n].triangle;
-            for (const VertexId v : mesh_->triangles[order_[n]]) extend(box, mesh_->points[v]);
+            for (const VertexId v : mesh_->triangles[order_[n]]) box.add(mesh_->points[v]);
         }
         return;
     }
-    BoundingBox centres = emptyBox();
-    for (std::int64_t n = begin; n < end; ++n) extend(centres, items[n].centre);
+    BoundingBox centres = BoundingBox::empty();
+    for (std::int64_t n = begin; n < end; ++n) centres.add(items[n].centre);
     const int axis = longestAxis(centres);
     const Subtree left = subtree.left(), right = subtree.right();
     std::nth_element(items.begin() + begin, items.begin() + leafBegin(right.firstLeaf),
@@ -147,14 +124,13 @@ void AabbTree::build(std::vector<Item>& items, const Subtree& subtree) {
         build(items, right);
     }
     for (const Subtree& half : {left, right}) {
-        extend(box, boxes_[half.node].minimum);
-        extend(box, boxes_[half.node].maximum);
+        box.add(boxes_[half.node]);
     }
 }
 
 BoundingBox AabbTree::triangleBox(std::int64_t triangle) const {
-    BoundingBox box = emptyBox();
-    for (const VertexId v : mesh_->triangles[triangle]) extend(box, mesh_->points[v]);
+    BoundingBox box = BoundingBox::empty();
+    for (const VertexId v : mesh_->triangles[triangle]) box.add(mesh_->points[v]);
     return box;
 }
 

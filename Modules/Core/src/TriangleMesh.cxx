@@ -28,12 +28,7 @@ double enclosedVolume(const TriangleMesh& mesh) {
 BoundingBox boundingBox(const TriangleMesh& mesh) {
     if (mesh.points.empty()) throw InvalidInput("the mesh has no point");
     BoundingBox box{mesh.points.front(), mesh.points.front()};
-    for (const Vec3& p : mesh.points) {
-        for (int axis = 0; axis < 3; ++axis) {
-            box.minimum[axis] = std::min(box.minimum[axis], p[axis]);
-            box.maximum[axis] = std::max(box.maximum[axis], p[axis]);
-        }
-    }
+    for (const Vec3& p : mesh.points) box.add(p);
     return box;
 }
 

@@ -48,13 +48,6 @@ bool hasOpenEdge(const TriangleMesh& mesh) {
     return forward != backward;
 }
 
-void grow(BoundingBox& box, const Vec3& point) {
-    for (int axis = 0; axis < 3; ++axis) {
-        box.minimum[axis] = std::min(box.minimum[axis], point[axis]);
-        box.maximum[axis] = std::max(box.maximum[axis], point[axis]);
-    }
-}
-
 std::vector<Piece> measurePieces(const TriangleMesh& mesh, const ComponentLabels& labels) {
     std::vector<Piece> pieces(labels.count);
     for (std::int64_t t = 0; t < std::ssize(mesh.triangles); ++t) {
@@ -72,7 +65,7 @@ std::vector<Piece> measurePieces(const TriangleMesh& mesh, const ComponentLabels
             const Vec3 c = mesh.points[triangle[2]] - base;
             piece.volumeMm3 += dot(a, cross(b, c));
             piece.areaMm2 += norm(areaVector2(a, b, c)) / 2;
-            for (const VertexId vertex : triangle) grow(piece.box, mesh.points[vertex]);
+            for (const VertexId vertex : triangle) piece.box.add(mesh.points[vertex]);
         }
         piece.volumeMm3 /= 6;
     }
@@ -89,7 +82,7 @@ class Columns {
 public:
     explicit Columns(const TriangleMesh& mesh) : mesh_(mesh) {
         const BoundingBox box = boundingBox(mesh);
-        const Vec3 extent = box.maximum - box.minimum;
+        const Vec3 extent = box.size();
         origin_ = box.minimum;
         const double longest = std::max({extent.x, extent.y, extent.z});
         scale_ = longest > 0 ? kRange / longest : 1;
@@ -208,14 +201,6 @@ private:
     Buckets<std::int64_t> cells_;  ///< triangles over each
 };
 
-bool contains(const BoundingBox& outer, const BoundingBox& inner) {
-    for (int axis = 0; axis < 3; ++axis) {
-        if (inner.minimum[axis] < outer.minimum[axis]) return false;
-        if (inner.maximum[axis] > outer.maximum[axis]) return false;
-    }
-    return true;
-}
-
 /// The components around `piece`, found by the majority of five of its triangles.
 std::vector<std::int64_t> enclosingPieces(const std::vector<Piece>& pieces, std::int64_t piece,
                                           const ComponentLabels& labels, const Columns& columns) {
@@ -223,7 +208,7 @@ std::vector<std::int64_t> enclosingPieces(const std::vector<Piece>& pieces, std:
     const Piece& inner = pieces[piece];
     const auto matters = [&](std::int64_t other) {
         return std::abs(pieces[other].volumeMm3) > std::abs(inner.volumeMm3) &&
-               contains(pieces[other].box, inner.box);
+               pieces[other].box.contains(inner.box);
     };
     std::vector<std::int64_t> votes;  // a component's number, once for each point inside it
     const std::int64_t count = std::ssize(inner.triangles);

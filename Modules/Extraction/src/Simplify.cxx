@@ -90,7 +90,7 @@ int exponentTowardsOne(const TriangleMesh& mesh) {
     constexpr int kFarFromOne = 12;
     if (mesh.points.empty()) return 0;
     const BoundingBox box = boundingBox(mesh);
-    const Vec3 extent = box.maximum - box.minimum;
+    const Vec3 extent = box.size();
     const double largest = std::max({extent.x, extent.y, extent.z});
     if (!std::isfinite(largest) || !(largest > 0)) return 0;
     const int exponent = std::ilogb(largest);
@@ -102,7 +102,7 @@ void requireProvable(const TriangleMesh& mesh, const SimplifyOptions& options) {
     constexpr double kLeastPart = 1e-12;
     if (!options.maxErrorMm || mesh.points.empty()) return;
     const BoundingBox box = boundingBox(mesh);
-    if (*options.maxErrorMm < kLeastPart * norm(box.maximum - box.minimum)) {
+    if (*options.maxErrorMm < kLeastPart * norm(box.size())) {
         throw InvalidInput(
             "simplify: maxErrorMm is less than 1e-12 of the mesh's diagonal; rounding of "
             "coordinates is as large");

@@ -93,12 +93,7 @@ struct Asked {
         }
         if (used.empty()) return;
         box = {mesh.points[used.front()], mesh.points[used.front()]};
-        for (const VertexId v : used) {
-            for (int a = 0; a < 3; ++a) {
-                box.minimum[a] = std::min(box.minimum[a], mesh.points[v][a]);
-                box.maximum[a] = std::max(box.maximum[a], mesh.points[v][a]);
-            }
-        }
+        for (const VertexId v : used) box.add(mesh.points[v]);
         isOfHeadSize = true;
         for (int a = 0; a < 3; ++a) {
             const double extent = box.maximum[a] - box.minimum[a];

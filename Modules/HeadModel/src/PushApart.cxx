@@ -25,11 +25,6 @@ constexpr double kFade = 0.75;       // of a movement, from a vertex to its neig
 constexpr int kFadeRings = 12;       // 0.75^12 = 3 %
 constexpr double kNoMove = 0.01;     // of the gap: movements below are none
 
-std::array<Vec3, 3> cornersOf(const TriangleMesh& mesh, std::int64_t triangle) {
-    const auto& [a, b, c] = mesh.triangles[triangle];
-    return {mesh.points[a], mesh.points[b], mesh.points[c]};
-}
-
 std::vector<std::vector<VertexId>> neighboursOf(const TriangleMesh& mesh) {
     std::vector<std::vector<VertexId>> neighbours(mesh.points.size());
     for (const Triangle& t : mesh.triangles) {  // closed: each edge runs once each way

@@ -22,13 +22,7 @@ constexpr double kCrackMm = 2;  ///< closing of what the vote leaves open
 /// Axes along x, y, z around all surfaces.
 ImageGeometry gridAround(std::span<const TriangleMesh> surfaces, double step, double marginMm) {
     BoundingBox box = boundingBox(surfaces.front());
-    for (const TriangleMesh& surface : surfaces) {
-        const BoundingBox next = boundingBox(surface);
-        for (int a = 0; a < 3; ++a) {
-            box.minimum[a] = std::min(box.minimum[a], next.minimum[a]);
-            box.maximum[a] = std::max(box.maximum[a], next.maximum[a]);
-        }
-    }
+    for (const TriangleMesh& surface : surfaces) box.add(boundingBox(surface));
     ImageGeometry grid;
     grid.indexToPhysical = Mat3::diagonal(step, step, step);
     for (int a = 0; a < 3; ++a) {

@@ -4,8 +4,9 @@
 
 namespace adaptiso::detail {
 
-SpaceCells::SpaceCells(const CornerBox& box, double cellMm, std::int64_t most) : low_(box.low) {
-    const Vec3 side = box.high - box.low;
+SpaceCells::SpaceCells(const BoundingBox& box, double cellMm, std::int64_t most)
+    : low_(box.minimum) {
+    const Vec3 side = box.size();
     const double longest = std::max({side.x, side.y, side.z});
     double cell = std::max(cellMm, 1e-6 * longest);
     if (!(cell > 0)) return;  // a point
@@ -18,14 +19,14 @@ SpaceCells::SpaceCells(const CornerBox& box, double cellMm, std::int64_t most) :
     }
 }
 
-SpaceCells::Range SpaceCells::rangeOf(const CornerBox& box) const {
+SpaceCells::Range SpaceCells::rangeOf(const BoundingBox& box) const {
     Range range;
     for (int axis = 0; axis < 3; ++axis) {
         const auto at = [&](double x) {
             const double last = static_cast<double>(size_[axis] - 1);
             return static_cast<std::int64_t>(std::clamp((x - low_[axis]) * perMm_, 0.0, last));
         };
-        range[axis] = {at(box.low[axis]), at(box.high[axis])};
+        range[axis] = {at(box.minimum[axis]), at(box.maximum[axis])};
     }
     return range;
 }

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "Certificate.h"
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Core/TriangleMesh.h"
 
 namespace adaptiso::detail {
 
@@ -18,11 +18,11 @@ public:
 
     SpaceCells() = default;
     /// \param most  there are no more cells than that; where needed they are larger. \pre >= 1
-    SpaceCells(const CornerBox& box, double cellMm, std::int64_t most);
+    SpaceCells(const BoundingBox& box, double cellMm, std::int64_t most);
 
     std::int64_t count() const { return size_[0] * size_[1] * size_[2]; }
     /// First and last cell along each axis that a box reaches.
-    Range rangeOf(const CornerBox& box) const;
+    Range rangeOf(const BoundingBox& box) const;
     static std::int64_t countOf(const Range& r) {
         return (r[0][1] - r[0][0] + 1) * (r[1][1] - r[1][0] + 1) * (r[2][1] - r[2][0] + 1);
     }
@@ -56,16 +56,16 @@ public:
 
     /// Calls f(n) once for each triangle whose box overlaps one.
     template <class F>
-    void forEachNear(const CornerBox& box, const F& f) const;
+    void forEachNear(const BoundingBox& box, const F& f) const;
     /// The same, maybe several times.
     template <class F>
-    void forEachNearOften(const CornerBox& box, const F& f) const;
+    void forEachNearOften(const BoundingBox& box, const F& f) const;
 
 private:
     static constexpr std::int64_t kMostCells = 64;  ///< of a triangle in cells; others are large
 
     SpaceCells cells_;
-    std::vector<CornerBox> boxes_;
+    std::vector<BoundingBox> boxes_;
     Buckets<Id, std::uint32_t> own_;
     std::vector<Id> large_;
 };
@@ -75,11 +75,11 @@ class MarkedCells {
 public:
     explicit MarkedCells(const SpaceCells& cells) : cells_(cells), isMarked_(cells.count(), 0) {}
 
-    void mark(const CornerBox& box) {
+    void mark(const BoundingBox& box) {
         cells_.forEach(cells_.rangeOf(box), [&](std::int64_t n, const auto&) { isMarked_[n] = 1; });
     }
     /// A box reaches a cell that another one reached.
-    bool isMarked(const CornerBox& box) const {
+    bool isMarked(const BoundingBox& box) const {
         bool isOne = false;
         cells_.forEach(cells_.rangeOf(box),
                        [&](std::int64_t n, const auto&) { isOne = isOne || isMarked_[n] != 0; });
@@ -96,14 +96,13 @@ void TriangleGrid::assign(Id count, const F& boxOfTriangle) {
     boxes_.clear();
     large_.clear();
     if (count == 0) return;
-    CornerBox all = boxOfTriangle(0);
+    BoundingBox all = boxOfTriangle(0);
     double sides = 0;
     boxes_.reserve(count);
     for (Id n = 0; n < count; ++n) {
-        const CornerBox box = boxOfTriangle(n);
-        all.add(box.low);
-        all.add(box.high);
-        const Vec3 side = box.high - box.low;
+        const BoundingBox box = boxOfTriangle(n);
+        all.add(box);
+        const Vec3 side = box.size();
         sides += std::max({side.x, side.y, side.z});
         boxes_.push_back(box);
     }
@@ -123,7 +122,7 @@ void TriangleGrid::assign(Id count, const F& boxOfTriangle) {
 }
 
 template <class F>
-void TriangleGrid::forEachNearOften(const CornerBox& box, const F& f) const {
+void TriangleGrid::forEachNearOften(const BoundingBox& box, const F& f) const {
     if (boxes_.empty()) return;
     for (const Id n : large_) {
         if (boxes_[n].overlaps(box)) f(n);
@@ -136,7 +135,7 @@ void TriangleGrid::forEachNearOften(const CornerBox& box, const F& f) const {
 }
 
 template <class F>
-void TriangleGrid::forEachNear(const CornerBox& box, const F& f) const {
+void TriangleGrid::forEachNear(const BoundingBox& box, const F& f) const {
     if (boxes_.empty()) return;
     for (const Id n : large_) {
         if (boxes_[n].overlaps(box)) f(n);
@@ -144,7 +143,7 @@ void TriangleGrid::forEachNear(const CornerBox& box, const F& f) const {
     const auto range = cells_.rangeOf(box);
     cells_.forEach(range, [&](std::int64_t cell, const std::array<std::int64_t, 3>& at) {
         for (const Id n : own_.of(cell)) {
-            const CornerBox& own = boxes_[n];
+            const BoundingBox& own = boxes_[n];
             if (!own.overlaps(box)) continue;
             const auto reached = cells_.rangeOf(own);  // in the first cell that both reach
             bool isFirst = true;

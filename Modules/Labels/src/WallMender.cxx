@@ -5,12 +5,13 @@
 #include <utility>
 
 #include "WallMap.h"
-#include "adaptiso/Core/AabbTree.h"
-#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/MeshQuality/CrossingSearch.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
 namespace adaptiso::detail {
 namespace {
+
+using Id = WallMesh::Id;
 
 constexpr std::int64_t kMostCells = 1 << 24;
 /// Where less than one in so many triangles is asked for, what is near them is looked up.
@@ -18,55 +19,21 @@ constexpr std::size_t kFew = 4;
 /// Where more of the walls than one in so many full triangles are to be proved, all are mapped.
 constexpr std::size_t kOfAll = 6;
 
-CornerBox boxOfAll(const WallMesh& mesh) {
-    CornerBox box{mesh.point(0), mesh.point(0)};
+BoundingBox boxOfAll(const WallMesh& mesh) {
+    BoundingBox box{mesh.point(0), mesh.point(0)};
     for (std::uint32_t v = 1; v < mesh.pointCount(); ++v) box.add(mesh.point(v));
     return box;
 }
 
-Corners cornersOf(const TriangleMesh& mesh, std::int64_t t) {
-    const Triangle& v = mesh.triangles[t];
-    return {mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]};
-}
-
 /// Pairs of triangles that cross, of which one is asked for.
-std::vector<TrianglePair> crossingPairs(const TriangleMesh& mesh,
+std::vector<TrianglePair> crossingPairs(const TriangleView& mesh,
                                         const std::vector<std::uint8_t>& isAsked) {
-    const auto asked = std::count(isAsked.begin(), isAsked.end(), 1);
-    if (asked == 0) return {};
-    constexpr std::int64_t kPiece = 2048;
-    const auto count = static_cast<std::int64_t>(isAsked.size());
-    std::vector<std::vector<TrianglePair>> found((count + kPiece - 1) / kPiece);
-    const auto test = [&](std::int64_t begin, std::int64_t a, std::int64_t b) {
-        if (!trianglesCross(cornersOf(mesh, a), cornersOf(mesh, b))) return;
-        found[begin / kPiece].push_back({a, b});
-    };
-    if (4 * asked > count) {
-        const AabbTree tree(mesh);
-        parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
-            tree.forEachOverlappingPair(begin, end, [&](std::int64_t a, std::int64_t b) {
-                if (isAsked[a] != 0 || isAsked[b] != 0) test(begin, a, b);
-            });
-        });
-    } else {  // all others through a tree of the few
-        TriangleMesh few{mesh.points, {}, {}};
-        std::vector<std::int64_t> numbers;
-        for (std::int64_t n = 0; n < count; ++n) {
-            if (isAsked[n] == 0) continue;
-            few.triangles.push_back(mesh.triangles[n]);
-            numbers.push_back(n);
-        }
-        const AabbTree tree(few);
-        parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
-            for (std::int64_t a = begin; a < end; ++a) {
-                const CornerBox box = boxOf(cornersOf(mesh, a));
-                tree.forEachOverlap({box.low, box.high}, [&](std::int64_t n) {
-                    const std::int64_t b = numbers[n];
-                    if (a != b && (isAsked[a] == 0 || a < b)) test(begin, a, b);
-                });
-            }
-        });
-    }
+    const CrossingSearch search(mesh);
+    std::vector<std::vector<TrianglePair>> found(search.pieceCount());
+    search.forEachPair([&](Id a, Id b) { return (isAsked[a] | isAsked[b]) != 0; },
+                       [&](std::int64_t piece, Id a, Id b) {
+                           found[piece].push_back({a, b});
+                       });
     std::vector<TrianglePair> all;
     for (const auto& own : found) all.insert(all.end(), own.begin(), own.end());
     return all;
@@ -112,8 +79,8 @@ void WallMender::blame(Id triangle) {
     }
 }
 
-CornerBox WallMender::boxAround(Id triangle, double distanceMm) const {
-    CornerBox box = boxOf(mesh_.cornersOf(triangle));
+BoundingBox WallMender::boxAround(Id triangle, double distanceMm) const {
+    BoundingBox box = boxOf(mesh_.cornersOf(triangle));
     box.widen(distanceMm);
     return box;
 }
@@ -138,23 +105,21 @@ void WallMender::findCrossings() {
         for (const Id t : asked) marks.mark(boxAround(t, 0));
         std::erase_if(alive, [&](Id t) { return !marks.isMarked(boxAround(t, 0)); });
     }
-    TriangleMesh mesh;
     std::vector<std::uint8_t> areAsked;
-    std::vector<VertexId> number(mesh_.pointCount(), -1);
+    std::vector<Vec3> points;
+    std::vector<TriangleView::Triangle> triangles;
+    std::vector<Id> number(mesh_.pointCount(), kNone);
     for (const Id t : alive) {
         areAsked.push_back(isAsked(t) ? 1 : 0);
-        Triangle corners;
-        for (int c = 0; c < 3; ++c) {
-            VertexId& v = number[mesh_.triangle(t).v[c]];
-            if (v < 0) {
-                v = static_cast<VertexId>(mesh.points.size());
-                mesh.points.push_back(mesh_.point(mesh_.triangle(t).v[c]));
-            }
-            corners[c] = v;
+        for (const Id v : mesh_.triangle(t).v) {
+            if (number[v] != kNone) continue;
+            number[v] = static_cast<Id>(points.size());
+            points.push_back(mesh_.point(v));
         }
-        mesh.triangles.push_back(corners);
+        const auto& [a, b, c] = mesh_.triangle(t).v;
+        triangles.push_back({number[a], number[b], number[c]});
     }
-    const auto pairs = crossingPairs(mesh, areAsked);
+    const auto pairs = crossingPairs({points, triangles}, areAsked);
     for (const Id t : asked) isClear_[t] = 1;
     for (const TrianglePair& pair : pairs) {
         for (const std::int64_t n : pair) {

@@ -38,7 +38,7 @@ private:
     const WallSurface& fullNear(const std::vector<Id>& triangles);
     void findBeyondOfSimple();
     void findBeyondOfFull();
-    CornerBox boxAround(Id triangle, double distanceMm) const;
+    BoundingBox boxAround(Id triangle, double distanceMm) const;
 
     WallCollapser& collapser_;
     const WallMesh& mesh_;

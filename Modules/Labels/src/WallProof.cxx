@@ -60,7 +60,7 @@ void WallSurface::collect(const Corners& piece, Id wall, double distanceMm,
                      [&](Id n) { return boxOf(walkable_.cornersOf(n)); });
     });
     places.clear();
-    CornerBox box = boxOf(piece);
+    BoundingBox box = boxOf(piece);
     box.widen(distanceMm);
     grid_.forEachNear(box, [&](Id n) {
         if (mesh_.triangle(numbers_[n]).wall == wall) places.push_back(n);

@@ -16,7 +16,6 @@ namespace {
 constexpr std::int64_t kPiece = 4096;
 
 using Polygon = DualComplex::Polygon;
-using Corners = std::array<Vec3, 3>;
 
 /// How a polygon is cut.
 enum class Cut : std::uint8_t { First, Second, Fan };  ///< diagonal 0-2, 1-3, none

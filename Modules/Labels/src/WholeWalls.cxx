@@ -188,10 +188,10 @@ WholeWalls::Lists WholeWalls::listsOf(const CubeCut& cut, const WallAim& aim) co
     });
     const auto giveReached = [&](const std::vector<Vec3>& corners, const WallTriangle& triangle,
                                  double around, Id t, const auto& give) {
-        CornerBox box = boxOf({toIndex(corners[triangle.v[0]]), toIndex(corners[triangle.v[1]]),
-                               toIndex(corners[triangle.v[2]])});
+        BoundingBox box = boxOf({toIndex(corners[triangle.v[0]]), toIndex(corners[triangle.v[1]]),
+                                 toIndex(corners[triangle.v[2]])});
         box.widen(around);
-        const Index3 first = cut.cubeOf(box.low), last = cut.cubeOf(box.high);
+        const Index3 first = cut.cubeOf(box.minimum), last = cut.cubeOf(box.maximum);
         for (std::int64_t k = first[2]; k <= last[2]; ++k) {
             for (std::int64_t j = first[1]; j <= last[1]; ++j) {
                 for (std::int64_t i = first[0]; i <= last[0]; ++i) give(cut.number({i, j, k}), t);

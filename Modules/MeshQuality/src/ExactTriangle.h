@@ -12,8 +12,6 @@ namespace adaptiso {
 
 // What the exact tests of this module share.
 
-using Corners = std::array<Vec3, 3>;
-
 /// `p` seen along an axis.
 inline Point2 dropAxis(const Vec3& p, int axis) {
     return {p[(axis + 1) % 3], p[(axis + 2) % 3]};
@@ -36,11 +34,6 @@ inline bool haveOneSign(int a, int b, int c) {
 inline bool areFinite(const Corners& corners) {
     return std::all_of(corners.begin(), corners.end(),
                        [](const Vec3& p) { return std::isfinite(p.x + p.y + p.z); });
-}
-
-inline Corners cornersOf(const TriangleMesh& mesh, std::int64_t triangle) {
-    const auto& [a, b, c] = mesh.triangles[triangle];
-    return {mesh.points[a], mesh.points[b], mesh.points[c]};
 }
 
 }  // namespace adaptiso

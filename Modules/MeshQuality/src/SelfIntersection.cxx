@@ -1,16 +1,10 @@
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
 #include <algorithm>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "ExactTriangle.h"
-#include "adaptiso/Core/AabbTree.h"
-#include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/Predicates.h"
-#include "adaptiso/MeshQuality/ClearFans.h"
 
 namespace adaptiso {
 namespace {
@@ -107,13 +101,6 @@ int alignSharedCorners(Corners& a, Corners& b) {
     return shared;
 }
 
-/// Leaves the `count` smallest, in any order.
-void keepFirst(std::vector<TrianglePair>& pairs, std::int64_t count) {
-    if (std::ssize(pairs) <= count) return;
-    std::nth_element(pairs.begin(), pairs.begin() + count, pairs.end());
-    pairs.resize(static_cast<std::size_t>(count));
-}
-
 }  // namespace
 
 bool trianglesCross(const Corners& a, const Corners& b) {
@@ -139,42 +126,6 @@ bool trianglesCross(const Corners& a, const Corners& b) {
 
 bool trianglesMeet(const Corners& a, const Corners& b) {
     return crossWithoutSharing(a, b) && axisWithArea(a) >= 0 && axisWithArea(b) >= 0;
-}
-
-SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
-                                        const SelfIntersectionOptions& options) {
-    if (options.maxPairs < 0) {
-        throw InvalidInput("findSelfIntersections: maxPairs is " +
-                           std::to_string(options.maxPairs) + ", must be at least 0");
-    }
-    const AabbTree tree(mesh);
-    const ClearFans fans(mesh.points, mesh.triangles);
-    constexpr std::int64_t kGrain = 4096;
-    std::vector<SelfIntersections> ofPiece((tree.triangleCount() + kGrain - 1) / kGrain);
-    parallelForPieces(tree.triangleCount(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-        SelfIntersections& found = ofPiece[begin / kGrain];
-        tree.forEachOverlappingPair(begin, end, [&](std::int64_t a, std::int64_t b) {
-            if (fans.areClear(mesh.triangles[a], mesh.triangles[b])) return;
-            const Corners first = cornersOf(mesh, a), second = cornersOf(mesh, b);
-            if (!areFinite(first) || !areFinite(second) || !trianglesCross(first, second)) return;
-            ++found.pairCount;
-            if (options.maxPairs == 0) return;
-            found.pairs.push_back({a, b});
-            if (std::ssize(found.pairs) / 2 > options.maxPairs) {
-                keepFirst(found.pairs, options.maxPairs);
-            }
-        });
-        keepFirst(found.pairs, options.maxPairs);
-    });
-
-    SelfIntersections result;
-    for (const SelfIntersections& piece : ofPiece) {
-        result.pairCount += piece.pairCount;
-        result.pairs.insert(result.pairs.end(), piece.pairs.begin(), piece.pairs.end());
-    }
-    keepFirst(result.pairs, options.maxPairs);
-    std::sort(result.pairs.begin(), result.pairs.end());
-    return result;
 }
 
 }  // namespace adaptiso

@@ -145,11 +145,7 @@ struct Group {
         : triangles(numbers), count(std::ssize(numbers)), box(tree.triangleBox(numbers[0])) {
         for (std::int64_t n = 0; n < count; ++n) {
             corners[n] = cornersOf(mesh, numbers[n]);
-            const BoundingBox other = tree.triangleBox(numbers[n]);
-            for (int axis = 0; axis < 3; ++axis) {
-                box.minimum[axis] = std::min(box.minimum[axis], other.minimum[axis]);
-                box.maximum[axis] = std::max(box.maximum[axis], other.maximum[axis]);
-            }
+            box.add(tree.triangleBox(numbers[n]));
         }
     }
 

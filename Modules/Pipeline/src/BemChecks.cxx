@@ -44,7 +44,7 @@ Vec3 placeOf(const Check& check, const SurfaceFacts& facts, const TriangleMesh& 
     }
     if (!topology.examples.empty()) return topology.examples.front().pointMm;
     const BoundingBox box = boundingBox(mesh);
-    return 0.5 * (box.minimum + box.maximum);
+    return box.middle();
 }
 
 /// Coordinates in findings are to be read by people: scanner RAS, as the program prints elsewhere.

@@ -15,8 +15,6 @@
 namespace adaptiso {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
-
 constexpr std::size_t kMostTroubles = 300;  ///< more come of a mesh too fine for its coordinates
 constexpr int kMostPasses = 4;
 
@@ -43,11 +41,6 @@ double neighbour(double value, int side, CoordinatePrecision precision) {
     }
     constexpr float kFar = std::numeric_limits<float>::max();
     return std::nextafter(static_cast<float>(value), static_cast<float>(side) * kFar);
-}
-
-Corners cornersOf(const TriangleMesh& mesh, std::int64_t t) {
-    const Triangle& c = mesh.triangles[t];
-    return {mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]};
 }
 
 bool areSame(const TriangleMesh& mesh, const TriangleMesh& file, VertexId a, VertexId b) {
@@ -215,12 +208,7 @@ private:
         for (std::size_t t = 0; t < file_.triangles.size(); ++t) {
             if (!isAt(file_.triangles[t])) continue;
             star.push_back(static_cast<std::int64_t>(t));
-            for (const Vec3& p : cornersOf(file_, star.back())) {
-                for (int a = 0; a < 3; ++a) {
-                    box.minimum[a] = std::min(box.minimum[a], p[a]);
-                    box.maximum[a] = std::max(box.maximum[a], p[a]);
-                }
-            }
+            for (const Vec3& p : cornersOf(file_, star.back())) box.add(p);
         }
         const double more = (1 + kFarthest) * ulpAt(v);
         for (std::int64_t t = 0; t < std::ssize(file_.triangles); ++t) {

@@ -61,7 +61,7 @@ Cells chooseCells(const SceneMesh& mesh, std::int64_t maxTriangles) {
     constexpr int kTrials = 6;
     constexpr double kEnough = 0.85, kAim = 0.93;
     const BoundingBox box = boxOf(mesh);
-    const Vec3 extent = box.maximum - box.minimum;
+    const Vec3 extent = box.size();
     const double longest = std::max({extent.x, extent.y, extent.z});
     const auto most = static_cast<double>(std::max<std::int64_t>(maxTriangles, 1));
     const double finest = longest / (1 << 20);  // so that a cell's place fits its bits

@@ -171,7 +171,7 @@ std::string blankNifti(const BoundingBox& box) {
     constexpr std::int64_t kSide = 16;
     ImageGeometry geometry;
     geometry.size = {kSide, kSide, kSide};
-    const Vec3 extent = box.maximum - box.minimum;
+    const Vec3 extent = box.size();
     const double longest = std::max({extent.x, extent.y, extent.z, 1e-6});
     Vec3 step;
     for (int axis = 0; axis < 3; ++axis) step[axis] = (extent[axis] + 0.1 * longest) / (kSide - 1);

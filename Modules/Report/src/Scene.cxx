@@ -11,35 +11,25 @@ bool isFinite(const Vec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-void extend(BoundingBox& box, const Vec3& p) {
-    for (int axis = 0; axis < 3; ++axis) {
-        box.minimum[axis] = std::min(box.minimum[axis], p[axis]);
-        box.maximum[axis] = std::max(box.maximum[axis], p[axis]);
-    }
-}
-
 void extendByImage(BoundingBox& box, const ImageGeometry& image) {
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 index{corner & 1 ? static_cast<double>(image.size[0] - 1) : 0.0,
                          corner & 2 ? static_cast<double>(image.size[1] - 1) : 0.0,
                          corner & 4 ? static_cast<double>(image.size[2] - 1) : 0.0};
-        extend(box, lpsToRas(image.toPhysical(index)));
+        box.add(lpsToRas(image.toPhysical(index)));
     }
 }
 
 BoundingBox boxOf(const Scene& scene, const Report& report) {
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    BoundingBox box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+    auto box = BoundingBox::empty();
     for (const SceneSurface& surface : scene.surfaces) {
         if (surface.mesh.isEmpty()) continue;
-        const BoundingBox own = boxOf(surface.mesh);
-        extend(box, own.minimum);
-        extend(box, own.maximum);
+        box.add(boxOf(surface.mesh));
     }
-    if (box.minimum.x > box.maximum.x && report.volume) {
+    if (box.isEmpty() && report.volume) {
         extendByImage(box, report.volume->view.geometry());
     }
-    return box.minimum.x > box.maximum.x ? BoundingBox{{-1, -1, -1}, {1, 1, 1}} : box;
+    return box.isEmpty() ? BoundingBox{{-1, -1, -1}, {1, 1, 1}} : box;
 }
 
 Vec3 between(const Vec3& a, const Vec3& b, int axis, double atMm) {

@@ -37,16 +37,9 @@ void SceneMesh::keepAllBut(std::vector<bool> left) {
 }
 
 BoundingBox boxOf(const SceneMesh& mesh) {
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    BoundingBox box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+    auto box = BoundingBox::empty();
     mesh.forEachTriangle([&](const Triangle& t) {
-        for (const VertexId v : t) {
-            const Vec3 p = mesh.point(v);
-            for (int axis = 0; axis < 3; ++axis) {
-                box.minimum[axis] = std::min(box.minimum[axis], p[axis]);
-                box.maximum[axis] = std::max(box.maximum[axis], p[axis]);
-            }
-        }
+        for (const VertexId v : t) box.add(mesh.point(v));
     });
     return box;
 }

@@ -53,7 +53,7 @@ void drawSixSides(Canvas& canvas, const Scene& scene, std::span<const SceneSurfa
     parallelForPieces(6, 1, [&](std::int64_t begin, std::int64_t) {
         renderings[begin] = render(surfaces, normals, box, sixViews()[begin], kSize);
     });
-    const double toleranceMm = 0.02 * norm(box.maximum - box.minimum);
+    const double toleranceMm = 0.02 * norm(box.size());
     for (int side = 0; side < 6; ++side) {
         const View& view = sixViews()[side];
         const Rendering& rendering = renderings[side];

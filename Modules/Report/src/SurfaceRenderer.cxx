@@ -29,7 +29,7 @@ public:
           light_(normalized(0.9 * view.toViewer + 0.45 * view.up - 0.35 * right_)),
           colors_(static_cast<std::size_t>(size_) * size_, kWhite),
           depths_(colors_.size(), kFarBehind) {
-        const Vec3 extent = box.maximum - box.minimum;
+        const Vec3 extent = box.size();
         mmPerPixel_ = 1.06 * std::max({extent.x, extent.y, extent.z, 1e-9}) / size_;
     }
 

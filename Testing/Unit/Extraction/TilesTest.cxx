@@ -170,13 +170,13 @@ TEST(Tiles, SeamBoxesHoldEachPlaceOnce) {
     EXPECT_EQ(cut.seams(), (Index3{3, 1, 1}));
     for (double x = -1; x <= 100; x += 0.25) {
         const Index3 seam = cut.seamAt({x, 3, 3});
-        const ContinuousBox box = cut.seamBox(seam);
-        EXPECT_TRUE(x >= box.low.x && x < box.high.x) << x;
+        const BoundingBox box = cut.seamBox(seam);
+        EXPECT_TRUE(x >= box.minimum.x && x < box.maximum.x) << x;
         const IndexBox tiles = cut.tilesOfSeam(seam);
-        const ContinuousBox first = cut.boxOf(tiles.first);
+        const BoundingBox first = cut.boxOf(tiles.first);
         Index3 lastTile{tiles.end[0] - 1, tiles.end[1] - 1, tiles.end[2] - 1};
-        EXPECT_GE(x, first.low.x);
-        EXPECT_LE(x, cut.boxOf(lastTile).high.x);
+        EXPECT_GE(x, first.minimum.x);
+        EXPECT_LE(x, cut.boxOf(lastTile).maximum.x);
     }
 }
 

@@ -21,8 +21,6 @@ using testing::icosphere;
 using testing::merged;
 using testing::translated;
 
-using Corners = std::array<Vec3, 3>;
-
 Side sideOf(const Vec3& p, const TriangleMesh& mesh) {
     const AabbTree tree(mesh);
     return InsideTest(mesh, tree).sideOf(p);

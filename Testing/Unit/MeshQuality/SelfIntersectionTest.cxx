@@ -14,8 +14,6 @@
 namespace adaptiso {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
-
 // ---- The truth, in whole numbers: separating axes ------------------------------------------
 
 struct IntVec {

@@ -64,7 +64,7 @@ Json measuresOf(const TriangleMesh& mesh, const char* name) {
             {"vertices", mesh.points.size()},
             {"areaMm2", number(areaMm2)},
             {"volumeMm3", isSolid ? number(enclosedVolume(mesh)) : Json(nullptr)},
-            {"boundingBoxDiagonalMm", number(norm(box.maximum - box.minimum))}};
+            {"boundingBoxDiagonalMm", number(norm(box.size()))}};
 }
 
 std::string compareMeshes(const MeshData& a, const MeshData& b, std::int64_t samples,

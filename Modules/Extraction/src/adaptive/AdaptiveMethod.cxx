@@ -6,11 +6,11 @@
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/FreeMemory.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/full/VolumeSurface.h"
 #include "adaptive/mending/LocalUndo.h"
 #include "adaptive/mending/SurfaceMender.h"
-#include "adaptive/proof/CrossingProof.h"
 #include "adaptive/rounds/Simplification.h"
 
 namespace adaptiso::detail {

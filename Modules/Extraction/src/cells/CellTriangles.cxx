@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "Certificate.h"
+#include "adaptiso/MeshQuality/Certificate.h"
 
 namespace adaptiso::detail {
 namespace {

@@ -2,7 +2,7 @@
 #include <array>
 #include <optional>
 
-#include "Certificate.h"
+#include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/Tiles.h"
 
 namespace adaptiso {
@@ -12,8 +12,8 @@ namespace {
 /// full resolution, a cell deep. All else is as it can be.
 constexpr double kReach = 2;
 
-detail::CornerBox extentOf(const TriangleMesh& mesh, const Triangle& t) {
-    return detail::boxOf({mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]});
+BoundingBox extentOf(const TriangleMesh& mesh, const Triangle& t) {
+    return boxOf({mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]});
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ namespace {
 std::array<std::optional<double>, 3> wallsIn(const TileCut& cut, const Index3& seam) {
     std::array<std::optional<double>, 3> walls;
     for (int a = 0; a < 3; ++a) {
-        if (seam[a] + 1 < cut.tiles()[a]) walls[a] = cut.boxOf(seam).high[a];
+        if (seam[a] + 1 < cut.tiles()[a]) walls[a] = cut.boxOf(seam).maximum[a];
     }
     return walls;
 }
@@ -52,19 +52,20 @@ std::array<std::optional<double>, 3> wallsIn(const TileCut& cut, const Index3& s
 }  // namespace
 
 SeamPart seamPartOf(const TriangleMesh& tiles, const TileCut& cut, const Index3& seam) {
-    const ContinuousBox box = cut.seamBox(seam);
+    const BoundingBox box = cut.seamBox(seam);
     const std::array<std::optional<double>, 3> walls = wallsIn(cut, seam);
     SeamPart part;
     part.mesh.points = tiles.points;
     part.mesh.normals = tiles.normals;
     for (const Triangle& t : tiles.triangles) {
-        const detail::CornerBox extent = extentOf(tiles, t);
+        const BoundingBox extent = extentOf(tiles, t);
         bool isIn = true, touches = true, isNear = false;
         for (int a = 0; a < 3; ++a) {
-            isIn = isIn && extent.low[a] > box.low[a] && extent.high[a] < box.high[a];
-            isNear = isNear || (walls[a] && extent.low[a] < *walls[a] + kReach &&
-                                extent.high[a] > *walls[a] - kReach);
-            touches = touches && extent.high[a] >= box.low[a] && extent.low[a] <= box.high[a];
+            isIn = isIn && extent.minimum[a] > box.minimum[a] && extent.maximum[a] < box.maximum[a];
+            isNear = isNear || (walls[a] && extent.minimum[a] < *walls[a] + kReach &&
+                                extent.maximum[a] > *walls[a] - kReach);
+            touches = touches && extent.maximum[a] >= box.minimum[a] &&
+                      extent.minimum[a] <= box.maximum[a];
         }
         if (!touches) continue;
         part.mesh.triangles.push_back(t);

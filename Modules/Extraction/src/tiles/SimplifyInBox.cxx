@@ -4,8 +4,8 @@
 #include <set>
 #include <unordered_map>
 
-#include "Certificate.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/Tiles.h"
 #include "adaptive/AdaptiveMethod.h"
 #include "adaptive/full/MeshParts.h"
@@ -41,16 +41,16 @@ Vec3 slantMm(const ImageGeometry& geometry) {
 
 }  // namespace
 
-CornerBox detail::boxWithin(const ContinuousBox& box, const ImageGeometry& geometry) {
+BoundingBox detail::boxWithin(const BoundingBox& box, const ImageGeometry& geometry) {
     const MetricFrame frame(geometry);
     const Vec3 slant = slantMm(geometry);
-    CornerBox within;
+    BoundingBox within;
     for (int a = 0; a < 3; ++a) {
         Vec3 low, high;
-        low[a] = box.low[a] + kWithin;
-        high[a] = box.high[a] - kWithin;
-        within.low[a] = frame.fromIndex(low)[a] + slant[a];
-        within.high[a] = frame.fromIndex(high)[a] - slant[a];
+        low[a] = box.minimum[a] + kWithin;
+        high[a] = box.maximum[a] - kWithin;
+        within.minimum[a] = frame.fromIndex(low)[a] + slant[a];
+        within.maximum[a] = frame.fromIndex(high)[a] - slant[a];
     }
     return within;
 }
@@ -91,7 +91,7 @@ public:
         };
         for (std::size_t t = 0; t < isWholeKept.size(); ++t) {
             if (isWholeKept[t] != 0) continue;
-            CornerBox extent = extentOf(t);
+            BoundingBox extent = extentOf(t);
             extent.widen(reach);
             anyCube(extent, [&](std::size_t cube) {
                 isMarked[cube] = true;
@@ -143,24 +143,25 @@ public:
 
 private:
     void spanCubes(double reach) {
-        CornerBox box{whole_.points[0], whole_.points[0]};
+        BoundingBox box{whole_.points[0], whole_.points[0]};
         for (const Vec3& p : whole_.points) box.add(p);
         box.widen(reach);
-        low_ = box.low;
+        low_ = box.minimum;
         constexpr double kLeast = 2, kMostAlong = 256;  // cells, cubes
-        const Vec3 size = box.high - box.low;
+        const Vec3 size = box.size();
         side_ = std::max(kLeast, std::max({size.x, size.y, size.z}) / kMostAlong);
-        for (int a = 0; a < 3; ++a) count_[a] = cubeAt(box.high, a) + 1;
+        for (int a = 0; a < 3; ++a) count_[a] = cubeAt(box.maximum, a) + 1;
     }
     std::int64_t cubeAt(const Vec3& index, int axis) const {
         return static_cast<std::int64_t>((index[axis] - low_[axis]) / side_);
     }
     /// \return f(cube) is true of one of the cubes that an extent lies in
     template <class F>
-    bool anyCube(const CornerBox& extent, const F& f) const {
-        for (std::int64_t z = cubeAt(extent.low, 2); z <= cubeAt(extent.high, 2); ++z) {
-            for (std::int64_t y = cubeAt(extent.low, 1); y <= cubeAt(extent.high, 1); ++y) {
-                for (std::int64_t x = cubeAt(extent.low, 0); x <= cubeAt(extent.high, 0); ++x) {
+    bool anyCube(const BoundingBox& extent, const F& f) const {
+        for (std::int64_t z = cubeAt(extent.minimum, 2); z <= cubeAt(extent.maximum, 2); ++z) {
+            for (std::int64_t y = cubeAt(extent.minimum, 1); y <= cubeAt(extent.maximum, 1); ++y) {
+                for (std::int64_t x = cubeAt(extent.minimum, 0); x <= cubeAt(extent.maximum, 0);
+                     ++x) {
                     if (f(static_cast<std::size_t>(x + count_[0] * (y + count_[1] * z)))) {
                         return true;
                     }
@@ -180,7 +181,7 @@ private:
 class PartSimplifier {
 public:
     PartSimplifier(const TriangleMesh& mesh, std::vector<std::uint8_t> isKept,
-                   const ImageGeometry& geometry, const ContinuousBox& box)
+                   const ImageGeometry& geometry, const BoundingBox& box)
         : mesh_(mesh), isKept_(std::move(isKept)), frame_(geometry), box_(box) {
         within_ = boxWithin(box, geometry);
         if (isKept_.empty()) keepBorder();
@@ -196,9 +197,9 @@ public:
             if (parts.degenerate == 0 && parts.duplicate == 0) {
                 keepPoints(parts);
                 MeshSurface full(metric_, parts, maxErrorMm);
-                CornerBox moved = within_;
-                moved.low = moved.low - parts.origin;
-                moved.high = moved.high - parts.origin;
+                BoundingBox moved = within_;
+                moved.minimum = moved.minimum - parts.origin;
+                moved.maximum = moved.maximum - parts.origin;
                 full.stayIn(moved);
                 AdaptiveOptions aims;
                 aims.maxErrorMm = maxErrorMm;
@@ -273,7 +274,7 @@ private:
             if (inputOf_[v] != kNew) continue;
             const Vec3& p = part.mesh.points[v];
             for (int a = 0; a < 3; ++a) {
-                if (!(p[a] > box_.low[a] && p[a] < box_.high[a])) return false;
+                if (!(p[a] > box_.minimum[a] && p[a] < box_.maximum[a])) return false;
             }
         }
         return found == kept.size();
@@ -284,8 +285,8 @@ private:
     const TriangleMesh& mesh_;
     std::vector<std::uint8_t> isKept_;
     MetricFrame frame_;
-    ContinuousBox box_;
-    CornerBox within_;
+    BoundingBox box_;
+    BoundingBox within_;
     TriangleMesh metric_;
     std::vector<VertexId> inputOf_;  ///< of each point of the result
 };
@@ -318,7 +319,7 @@ BorderEdges borderOf(const TriangleMesh& mesh) {
 }
 
 SimplifiedPart simplifyInBox(const TriangleMesh& mesh, std::vector<std::uint8_t> isKept,
-                             const ImageGeometry& geometry, const ContinuousBox& box,
+                             const ImageGeometry& geometry, const BoundingBox& box,
                              double maxErrorMm) {
     if (!canSimplifyInBoxes(geometry)) {
         throw InvalidInput("simplifyInBox: the volume's axes are not at right angles");

@@ -17,7 +17,7 @@ using namespace detail;
 /// The lattice of a tile as one of its own: indices begin at `shift`.
 class ShiftedSampler final : public LatticeSampler {
 public:
-    ShiftedSampler(const LatticeSampler& whole, const Index3& shift, const ContinuousBox& tile)
+    ShiftedSampler(const LatticeSampler& whole, const Index3& shift, const BoundingBox& tile)
         : whole_(whole), shift_(shift), tile_(tile) {}
 
     void insideRows(const Index3& first, int count, std::uint32_t* rows) const override {
@@ -40,8 +40,8 @@ public:
         constexpr double kWithin = 1e-9;
         Vec3 place;
         for (int a = 0; a < 3; ++a) {
-            place[a] = std::clamp(index[a] + static_cast<double>(shift_[a]), tile_.low[a],
-                                  tile_.high[a] - kWithin);
+            place[a] = std::clamp(index[a] + static_cast<double>(shift_[a]), tile_.minimum[a],
+                                  tile_.maximum[a] - kWithin);
         }
         return whole_.normalAt(place);
     }
@@ -54,7 +54,7 @@ private:
 
     const LatticeSampler& whole_;
     Index3 shift_;
-    ContinuousBox tile_;
+    BoundingBox tile_;
 };
 
 /// A tile as a volume of its own: its lattice begins with its first cell, so that neither numbers
@@ -74,8 +74,8 @@ public:
             geometry_.size[a] = grid_.volumeSize[a] = cells.end[a] - shift_[a];
             grid_.blocks[a] = (geometry_.size[a] - 1 + grid_.offset) / kTileBlock + 1;
             hasWall_[a] = {tile[a] > 0, tile[a] + 1 < tiles[a]};
-            box_.low[a] = static_cast<double>(cells.first[a] - shift_[a]);
-            box_.high[a] = static_cast<double>(cells.end[a] - shift_[a]);
+            box_.minimum[a] = static_cast<double>(cells.first[a] - shift_[a]);
+            box_.maximum[a] = static_cast<double>(cells.end[a] - shift_[a]);
         }
     }
 
@@ -115,20 +115,20 @@ private:
     }
 
     /// All but the outermost cells at walls that other tiles have too.
-    CornerBox movingBox() const {
+    BoundingBox movingBox() const {
         constexpr double kKept = 1 + 1e-9, kBeyond = 2;
-        CornerBox moving;
+        BoundingBox moving;
         for (int a = 0; a < 3; ++a) {
-            moving.low[a] = box_.low[a] + (hasWall_[a][0] ? kKept : -kBeyond);
-            moving.high[a] = box_.high[a] + (hasWall_[a][1] ? -kKept : kBeyond);
+            moving.minimum[a] = box_.minimum[a] + (hasWall_[a][0] ? kKept : -kBeyond);
+            moving.maximum[a] = box_.maximum[a] + (hasWall_[a][1] ? -kKept : kBeyond);
         }
         return moving;
     }
 
     bool isOnWall(const Vec3& index, int axis) const {
         constexpr double kNear = 1e-6;  // new vertices keep farther away, and so do others
-        return (hasWall_[axis][0] && std::abs(index[axis] - box_.low[axis]) < kNear) ||
-               (hasWall_[axis][1] && std::abs(index[axis] - box_.high[axis]) < kNear);
+        return (hasWall_[axis][0] && std::abs(index[axis] - box_.minimum[axis]) < kNear) ||
+               (hasWall_[axis][1] && std::abs(index[axis] - box_.maximum[axis]) < kNear);
     }
 
     /// A vertex on a wall gets the bits that the other tile's has: they follow from the samples.
@@ -163,7 +163,7 @@ private:
     ShiftedSampler sampler_;
     ImageGeometry geometry_;  ///< of the tile's own indices, about its first
     BlockGrid grid_;
-    ContinuousBox box_;  ///< the tile's own indices
+    BoundingBox box_;  ///< the tile's own indices
     std::array<std::array<bool, 2>, 3> hasWall_{};
 };
 

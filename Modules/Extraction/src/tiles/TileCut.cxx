@@ -53,12 +53,12 @@ IndexBox TileCut::samplesOf(const Index3& tile) const {
     return samples;
 }
 
-ContinuousBox TileCut::boxOf(const Index3& tile) const {
+BoundingBox TileCut::boxOf(const Index3& tile) const {
     const IndexBox cells = cellsOf(tile);
-    ContinuousBox box;
+    BoundingBox box;
     for (int a = 0; a < 3; ++a) {
-        box.low[a] = static_cast<double>(cells.first[a]);
-        box.high[a] = static_cast<double>(cells.end[a]);
+        box.minimum[a] = static_cast<double>(cells.first[a]);
+        box.maximum[a] = static_cast<double>(cells.end[a]);
     }
     return box;
 }
@@ -76,11 +76,11 @@ double TileCut::seamWall(std::int64_t seam, int axis) const {
     return static_cast<double>(wall(seam) + side_ / 2) + kOffLattice;
 }
 
-ContinuousBox TileCut::seamBox(const Index3& seam) const {
-    ContinuousBox box;
+BoundingBox TileCut::seamBox(const Index3& seam) const {
+    BoundingBox box;
     for (int a = 0; a < 3; ++a) {
-        box.low[a] = seamWall(seam[a], a);
-        box.high[a] = seamWall(seam[a] + 1, a);
+        box.minimum[a] = seamWall(seam[a], a);
+        box.maximum[a] = seamWall(seam[a] + 1, a);
     }
     return box;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Certificate.h"
+#include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/SpanSpace/BlockGrid.h"
 #include "lattice/LatticeSampler.h"
@@ -25,6 +25,6 @@ void requireTile(const VolumeView& window, const Index3& first, const ImageGeome
 
 /// Where new vertices lie of what is simplified in a box of the lattice: in the metric frame, a
 /// hair inside.
-CornerBox boxWithin(const ContinuousBox& box, const ImageGeometry& geometry);
+BoundingBox boxWithin(const BoundingBox& box, const ImageGeometry& geometry);
 
 }  // namespace adaptiso::detail

@@ -10,16 +10,15 @@ namespace adaptiso::testing {
 namespace {
 
 using detail::BoxList;
-using detail::CornerBox;
 
-CornerBox randomBox(std::mt19937& random, double size) {
+BoundingBox randomBox(std::mt19937& random, double size) {
     const Vec3 p = randomPoint(random, 10);
-    CornerBox box{p, p};
+    BoundingBox box{p, p};
     box.add(p + randomPoint(random, size));
     return box;
 }
 
-std::set<std::size_t> overlapsOf(const BoxList& list, const CornerBox& box) {
+std::set<std::size_t> overlapsOf(const BoxList& list, const BoundingBox& box) {
     std::set<std::size_t> found;
     list.forEachOverlap(box, [&](std::size_t i) { EXPECT_TRUE(found.insert(i).second); });
     return found;
@@ -29,7 +28,7 @@ std::set<std::size_t> overlapsOf(const BoxList& list, const CornerBox& box) {
 
 TEST(BoxList, FindsAllThatOverlapAndNoOthersButByRounding) {
     std::mt19937 random(1);
-    std::vector<CornerBox> boxes;
+    std::vector<BoundingBox> boxes;
     BoxList list;
     EXPECT_TRUE(list.isEmpty());
     for (int n = 0; n < 1000; ++n) {  // no multiple of what is looked at at once
@@ -38,8 +37,8 @@ TEST(BoxList, FindsAllThatOverlapAndNoOthersButByRounding) {
     }
     EXPECT_FALSE(list.isEmpty());
     for (int n = 0; n < 200; ++n) {
-        const CornerBox box = randomBox(random, 4);
-        CornerBox wider = box;
+        const BoundingBox box = randomBox(random, 4);
+        BoundingBox wider = box;
         wider.widen(1e-4);
         const auto found = overlapsOf(list, box);
         for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -11,9 +11,9 @@
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
 #include "Surfaces.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptive/mending/LocalUndo.h"
 #include "adaptive/mending/SurfaceMender.h"
-#include "adaptive/proof/CrossingProof.h"
 #include "adaptive/proof/PieceBound.h"
 #include "adaptive/rounds/PatchRound.h"
 
@@ -60,7 +60,7 @@ Triangle turned(Triangle t) {
 using Place = std::array<double, 3>;
 
 /// A triangle's corners, from the smallest on.
-std::array<Place, 3> fromSmallest(const detail::Corners& triangle) {
+std::array<Place, 3> fromSmallest(const Corners& triangle) {
     std::array<Place, 3> corners;
     for (int c = 0; c < 3; ++c) corners[c] = {triangle[c].x, triangle[c].y, triangle[c].z};
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
@@ -141,7 +141,7 @@ TEST(LocalUndo, TellsWhatItChanged) {
             EXPECT_TRUE(isSame || numbers.contains(t));
         }
         std::set<std::array<Place, 3>> toldBefore;
-        for (const detail::Corners& corners : changes->before) {
+        for (const Corners& corners : changes->before) {
             toldBefore.insert(fromSmallest(corners));
         }
         EXPECT_TRUE(
@@ -181,14 +181,14 @@ TEST(LocalUndo, TakesBackWhatCrosses) {
         CoarseSphere pulled = sphere;
         Vec3& p = pulled.surface.points[v];
         p = 0.99 * p + cross(normalized(p), {1, 2, 3});
-        std::vector<std::int64_t> crossing = detail::crossingTriangles(meshOf(pulled.surface));
+        std::vector<std::int64_t> crossing = crossingTriangles(meshOf(pulled.surface));
         if (crossing.empty()) continue;
         ++crossed;
         for (int n = 0; n < kTimes && !crossing.empty(); ++n) {
             const std::vector<SurfaceState::Number> seeds(crossing.begin(), crossing.end());
             if (!detail::LocalUndo(pulled.start, pulled.surface).around({}, seeds, {}, 1)) break;
             expectSound(meshOf(pulled.surface));
-            crossing = detail::crossingTriangles(meshOf(pulled.surface));
+            crossing = crossingTriangles(meshOf(pulled.surface));
         }
         cleared += crossing.empty() ? 1 : 0;
     }

@@ -12,7 +12,7 @@ TEST(NearTriangle, TellsWhatTheDistanceTells) {
     std::uniform_real_distribution<double> squared(0.001, 2);
     int within = 0;
     for (int n = 0; n < 20000; ++n) {
-        detail::Corners t{randomPoint(random), randomPoint(random), randomPoint(random)};
+        Corners t{randomPoint(random), randomPoint(random), randomPoint(random)};
         if (n % 10 == 0) t[2] = t[0] + 0.3 * (t[1] - t[0]) + 1e-9 * t[2];  // next to flat
         const Vec3 p = randomPoint(random);
         const double limit = squared(random), distance = detail::squaredDistanceToTriangle(p, t);
@@ -26,12 +26,12 @@ TEST(NearTriangle, TellsWhatTheDistanceTells) {
 }
 
 TEST(NearTriangle, HasAPieceWhoseCornersItHas) {
-    const detail::Corners t{Vec3{0, 0, 0}, Vec3{4, 0, 0}, Vec3{0, 4, 0}};
+    const Corners t{Vec3{0, 0, 0}, Vec3{4, 0, 0}, Vec3{0, 4, 0}};
     const detail::NearTriangle near(t, 0.25);
-    const detail::Corners piece{Vec3{1, 1, 0.4}, Vec3{-0.4, 1, 0}, Vec3{1, -0.3, -0.3}};
+    const Corners piece{Vec3{1, 1, 0.4}, Vec3{-0.4, 1, 0}, Vec3{1, -0.3, -0.3}};
     EXPECT_TRUE(near.has(piece));
     for (int c = 0; c < 3; ++c) {
-        detail::Corners far = piece;
+        Corners far = piece;
         far[c].z = 0.6;
         EXPECT_FALSE(near.has(far)) << c;
     }
@@ -39,7 +39,7 @@ TEST(NearTriangle, HasAPieceWhoseCornersItHas) {
 
 // A side is told by the corner at which it begins.
 TEST(NearTriangle, KnowsTheSideThatAPointLiesBeyond) {
-    const detail::Corners t{Vec3{0, 0, 0}, Vec3{4, 0, 0}, Vec3{0, 4, 0}};
+    const Corners t{Vec3{0, 0, 0}, Vec3{4, 0, 0}, Vec3{0, 4, 0}};
     EXPECT_EQ(detail::sideTowards({1, 1, 9}, t), -1);
     EXPECT_EQ(detail::sideTowards({1, -1, 9}, t), 0);
     EXPECT_EQ(detail::sideTowards({3, 3, -9}, t), 1);

@@ -10,7 +10,6 @@
 namespace adaptiso::testing {
 namespace {
 
-using detail::Corners;
 using detail::PieceBound;
 
 /// A bound that has to grow grows by a hundredth more, and cuts are not placed exactly.

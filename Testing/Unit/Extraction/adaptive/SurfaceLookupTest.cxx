@@ -12,7 +12,6 @@ namespace {
 
 using detail::Brick;
 using detail::Bricks;
-using detail::Corners;
 using detail::SurfaceLookup;
 
 /// A ball in eight bricks, and its triangles.
@@ -24,12 +23,13 @@ struct Ball {
     /// How far a triangle's box lies from a brick, cells.
     double cellsFrom(std::int64_t brick, std::uint32_t t) const {
         const Corners c = lookup.cornersOf(t);
-        const detail::CornerBox box =
-            detail::boxOf({lookup.latticeOf(c[0]), lookup.latticeOf(c[1]), lookup.latticeOf(c[2])});
+        const BoundingBox box =
+            boxOf({lookup.latticeOf(c[0]), lookup.latticeOf(c[1]), lookup.latticeOf(c[2])});
         double farthest = 0;
         for (int a = 0; a < 3; ++a) {
             const auto low = static_cast<double>(scene.bricks[brick].low[a]);
-            farthest = std::max({farthest, low - box.high[a], box.low[a] - low - Brick::kSide});
+            farthest =
+                std::max({farthest, low - box.maximum[a], box.minimum[a] - low - Brick::kSide});
         }
         return farthest;
     }

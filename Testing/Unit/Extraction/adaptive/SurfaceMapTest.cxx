@@ -10,7 +10,6 @@
 namespace adaptiso::testing {
 namespace {
 
-using detail::Corners;
 using Map = detail::SurfaceMap<VertexId>;
 using Cover = detail::MapCover<VertexId>;
 using Walkable = detail::WalkableSurface<VertexId>;

@@ -7,8 +7,8 @@
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
 #include "Surfaces.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptive/mending/SurfaceMender.h"
-#include "adaptive/proof/CrossingProof.h"
 #include "adaptive/proof/PieceBound.h"
 
 namespace adaptiso::testing {
@@ -60,7 +60,7 @@ TEST(SurfaceMender, SplitsAnEdgeWithBothTriangles) {
         1U);
     EXPECT_EQ(surface.triangles.size(), 4U);
     EXPECT_EQ(surface.points.back(), (Vec3{4.5, 4.5, 0.8}));
-    EXPECT_TRUE(detail::crossingTriangles(meshOf(surface)).empty());
+    EXPECT_TRUE(crossingTriangles(meshOf(surface)).empty());
 }
 
 TEST(SurfaceMender, MovesAVertexThatThePlaceLiesBeside) {
@@ -95,7 +95,7 @@ TEST(SurfaceMender, CrossesNoOtherSheet) {
     const std::size_t before = surface.triangles.size();
     detail::SurfaceMender mender(surface, unitFrame(), kLimitMm);
     mender.mendDistances({placeAt({5, 4, 0}, {5, 4, 1}, triangleUnder(surface, {5, 4, -1}))});
-    EXPECT_TRUE(detail::crossingTriangles(meshOf(surface)).empty());
+    EXPECT_TRUE(crossingTriangles(meshOf(surface)).empty());
     EXPECT_LE(surface.triangles.size(), before + 2);  // it may come a part of the way
 }
 
@@ -109,7 +109,7 @@ TEST(SurfaceMender, PutsNoVertexOnAnother) {
                                     placeAt({6, 3, 1}, target, triangleUnder(surface, {6, 3, 2}))}),
               2U);
     EXPECT_EQ(std::count(surface.points.begin(), surface.points.end(), target), 1);
-    EXPECT_TRUE(detail::crossingTriangles(meshOf(surface)).empty());
+    EXPECT_TRUE(crossingTriangles(meshOf(surface)).empty());
 }
 
 // A flat square with a sample below its middle, which a vertex above would leave too far away.
@@ -137,11 +137,11 @@ TEST(SurfaceMender, PartsTrianglesThatCross) {
     ASSERT_NE(at, mesh.points.end());
     detail::SimplifiedSurface surface = surfaceOf(mesh);
     surface.points[at - mesh.points.begin()] = {4, 4, 1.2};
-    const std::vector<std::int64_t> crossing = detail::crossingTriangles(meshOf(surface));
+    const std::vector<std::int64_t> crossing = crossingTriangles(meshOf(surface));
     ASSERT_FALSE(crossing.empty());
     detail::SurfaceMender mender(surface, unitFrame(), kLimitMm);
     EXPECT_GT(mender.mendCrossings(crossing), 0U);
-    EXPECT_TRUE(detail::crossingTriangles(meshOf(surface)).empty());
+    EXPECT_TRUE(crossingTriangles(meshOf(surface)).empty());
 }
 
 // Places all over a sphere, inside and outside, more than one in many of its triangles.
@@ -170,7 +170,7 @@ TEST(SurfaceMender, LeavesASoundSurface) {
         EXPECT_GT(mended, 100U);
         const TriangleMesh mesh = meshOf(surface);
         expectSound(mesh);
-        EXPECT_TRUE(detail::crossingTriangles(mesh).empty());
+        EXPECT_TRUE(crossingTriangles(mesh).empty());
     }
 }
 

@@ -10,7 +10,6 @@ namespace adaptiso::testing {
 namespace {
 
 using detail::ConvexPiece;
-using detail::Corners;
 using detail::SurfaceWalk;
 using Walkable = detail::WalkableSurface<VertexId>;
 

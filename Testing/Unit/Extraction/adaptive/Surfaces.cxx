@@ -123,12 +123,6 @@ Scene ballScene() {
     return Scene({38, 38, 38}, [](const Vec3& p) { return kBallRadius - norm(p - kBallMiddle); });
 }
 
-Vec3 randomPoint(std::mt19937& random, double halfSide) {
-    std::uniform_real_distribution<double> at(-halfSide, halfSide);
-    const double x = at(random), y = at(random), z = at(random);
-    return {x, y, z};
-}
-
 double distanceTo(const TriangleMesh& mesh, const Vec3& p) {
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [a, b, c] : mesh.triangles) {

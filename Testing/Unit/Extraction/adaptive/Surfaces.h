@@ -5,6 +5,7 @@
 #include <memory>
 #include <random>
 
+#include "Support/RandomPoints.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
@@ -67,9 +68,6 @@ void forEachCellTriangle(const detail::FineSurface& fine, const detail::Brick& b
 inline constexpr double kBallRadius = 7;
 inline constexpr Vec3 kBallMiddle{28.3, 27.9, 28.1};
 Scene ballScene();
-
-/// A point in a cube around the origin, by chance.
-Vec3 randomPoint(std::mt19937& random, double halfSide = 1);
 
 /// The distance from a point to the nearest of a mesh's triangles, by a look at all of them.
 double distanceTo(const TriangleMesh& mesh, const Vec3& p);

@@ -6,9 +6,9 @@
 #include <limits>
 #include <span>
 #include <tuple>
-#include <utility>
 #include <vector>
 
+#include "adaptiso/Core/BoundingBox.h"
 #include "adaptiso/Core/HalvedLeaves.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
@@ -17,15 +17,6 @@ namespace adaptiso {
 /// The point of the triangle a, b, c that lies nearest to `p`. Triangles without area are taken as
 /// the segment or point that they are.
 Vec3 closestPointOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
-
-/// Squared distance from a point to a box; 0 inside.
-double squaredDistance(const Vec3& p, const BoundingBox& box);
-
-/// Squared distance between two boxes; 0 when they overlap.
-double squaredDistance(const BoundingBox& a, const BoundingBox& b);
-
-/// They share a point; touching is enough.
-bool overlaps(const BoundingBox& a, const BoundingBox& b);
 
 /// The nearest place of a surface.
 struct ClosestPoint {
@@ -61,13 +52,6 @@ public:
     template <class Visit>
     void forEachOverlap(const BoundingBox& box, const Visit& visit) const;
 
-    /// Calls visit(a, b) for every two triangles a < b whose boxes overlap and of which the one
-    /// that comes first in triangles() has a place in [begin, end) there, in an order that is
-    /// always the same: all places give each pair once. One search serves a leaf's triangles, as a
-    /// search for each takes most of the time.
-    template <class Visit>
-    void forEachOverlappingPair(std::int64_t begin, std::int64_t end, const Visit& visit) const;
-
     /// Calls visit(triangle) for every triangle that may lie within a distance of `box`, nearer
     /// ones first by and large: all triangles of the leaves whose boxes do. squaredReachMm2() says
     /// the distance's square; it is asked at every box, so that it may shrink as the search goes
@@ -90,10 +74,6 @@ private:
     using Subtree = HalvedLeaves;
     using Stack = HalvedLeaves::Stack;
 
-    /// Calls visit(place, box) for the triangles of the leaves, from one on, that overlap a box.
-    template <class Visit>
-    void forEachPlace(const BoundingBox& box, std::int64_t firstLeaf, const Visit& visit) const;
-
     struct Item;
     void build(std::vector<Item>& items, const Subtree& subtree);
     Subtree root() const { return {0, 0, (triangleCount() + kLeafTriangles - 1) / kLeafTriangles}; }
@@ -101,12 +81,6 @@ private:
     std::int64_t leafEnd(std::int64_t leaf) const {
         const std::int64_t end = (leaf + 1) * kLeafTriangles;
         return end < triangleCount() ? end : triangleCount();
-    }
-    static BoundingBox unite(const BoundingBox& a, const BoundingBox& b) {
-        return {{std::min(a.minimum.x, b.minimum.x), std::min(a.minimum.y, b.minimum.y),
-                 std::min(a.minimum.z, b.minimum.z)},
-                {std::max(a.maximum.x, b.maximum.x), std::max(a.maximum.y, b.maximum.y),
-                 std::max(a.maximum.z, b.maximum.z)}};
     }
     void improve(ClosestPoint& best, const Vec3& p, std::int64_t triangle) const;
 
@@ -117,70 +91,24 @@ private:
 
 template <class Visit>
 void AabbTree::forEachOverlap(const BoundingBox& box, const Visit& visit) const {
-    forEachPlace(box, 0, [&](std::int64_t place, const BoundingBox& own) {
-        if (overlaps(box, own)) visit(order_[place]);
-    });
-}
-
-template <class Visit>
-void AabbTree::forEachPlace(const BoundingBox& box, std::int64_t firstLeaf,
-                            const Visit& visit) const {
-    if (order_.empty() || !overlaps(box, boxes_[0])) return;
+    if (order_.empty() || !box.overlaps(boxes_[0])) return;
     Stack stack;
     std::size_t depth = 0;
     stack[depth++] = root();
     const auto push = [&](const Subtree& subtree) {
-        const bool isWanted = subtree.firstLeaf + subtree.leaves > firstLeaf;
-        if (isWanted && overlaps(box, boxes_[subtree.node])) stack[depth++] = subtree;
+        if (box.overlaps(boxes_[subtree.node])) stack[depth++] = subtree;
     };
     while (depth > 0) {
         const Subtree at = stack[--depth];
         if (at.isLeaf()) {
             for (std::int64_t n = leafBegin(at.firstLeaf); n < leafEnd(at.firstLeaf); ++n) {
-                visit(n, triangleBox(order_[n]));
+                if (box.overlaps(triangleBox(order_[n]))) visit(order_[n]);
             }
             continue;
         }
         push(at.right());
         push(at.left());
     }
-}
-
-template <class Visit>
-void AabbTree::forEachOverlappingPair(std::int64_t begin, std::int64_t end,
-                                      const Visit& visit) const {
-    struct Other {
-        BoundingBox box;
-        std::int64_t place;
-    };
-    std::vector<Other> others;
-    for (std::int64_t at = begin; at < end;) {
-        const std::int64_t leaf = at / kLeafTriangles, last = std::min(end, leafEnd(leaf));
-        BoundingBox box = triangleBox(order_[at]);
-        for (std::int64_t n = at + 1; n < last; ++n) box = unite(box, triangleBox(order_[n]));
-        others.clear();
-        forEachPlace(box, leaf, [&](std::int64_t place, const BoundingBox& other) {
-            if (place > at && overlaps(box, other)) others.push_back({other, place});
-        });
-        for (; at < last; ++at) {
-            const BoundingBox own = triangleBox(order_[at]);
-            for (const Other& other : others) {
-                if (other.place <= at || !overlaps(own, other.box)) continue;
-                const auto [a, b] = std::minmax(order_[at], order_[other.place]);
-                visit(a, b);
-            }
-        }
-    }
-}
-
-inline double squaredDistance(const BoundingBox& a, const BoundingBox& b) {
-    double sum = 0;
-    for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
-        const double d =
-            std::max({a.minimum.*axis - b.maximum.*axis, 0.0, b.minimum.*axis - a.maximum.*axis});
-        sum += d * d;
-    }
-    return sum;
 }
 
 template <class Reach, class Visit>
@@ -211,11 +139,6 @@ void AabbTree::forEachNear(const BoundingBox& box, const Reach& squaredReachMm2,
         stack[depth++] = farther;
         stack[depth++] = nearer;
     }
-}
-
-inline bool overlaps(const BoundingBox& a, const BoundingBox& b) {
-    return a.minimum.x <= b.maximum.x && b.minimum.x <= a.maximum.x && a.minimum.y <= b.maximum.y &&
-           b.minimum.y <= a.maximum.y && a.minimum.z <= b.maximum.z && b.minimum.z <= a.maximum.z;
 }
 
 }  // namespace adaptiso

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "adaptiso/Core/BoundingBox.h"
 #include "adaptiso/Core/Geometry.h"
 
 namespace adaptiso {
@@ -11,6 +12,8 @@ namespace adaptiso {
 /// Number of a vertex; 64 bits, so that no volume is too large (and as VTK keeps them).
 using VertexId = std::int64_t;
 using Triangle = std::array<VertexId, 3>;
+/// Of a triangle, in its order.
+using Corners = std::array<Vec3, 3>;
 
 /// A triangle surface: V points, T triangles, and V normals or none.
 ///
@@ -30,10 +33,21 @@ double surfaceArea(const TriangleMesh& mesh);
 /// Signed volume (mm3) that a closed surface encloses: positive where normals point outward.
 double enclosedVolume(const TriangleMesh& mesh);
 
-struct BoundingBox {
-    Vec3 minimum;
-    Vec3 maximum;
-};
+/// Of a triangle.
+inline BoundingBox boxOf(const Corners& corners) {
+    BoundingBox box{corners[0], corners[0]};
+    box.add(corners[1]);
+    box.add(corners[2]);
+    return box;
+}
+
+inline Corners cornersOf(const TriangleMesh& mesh, std::int64_t triangle) {
+    const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(triangle)];
+    return {mesh.points[static_cast<std::size_t>(a)], mesh.points[static_cast<std::size_t>(b)],
+            mesh.points[static_cast<std::size_t>(c)]};
+}
+
+/// Of all points, used or not.
 /// \pre the mesh has a point \throws InvalidInput otherwise
 BoundingBox boundingBox(const TriangleMesh& mesh);
 

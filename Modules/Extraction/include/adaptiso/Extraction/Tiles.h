@@ -16,11 +16,6 @@ struct IndexBox {
     Index3 size() const { return {end[0] - first[0], end[1] - first[1], end[2] - first[2]}; }
 };
 
-/// Continuous sample indices.
-struct ContinuousBox {
-    Vec3 low, high;
-};
-
 /// How a volume that is too large to be worked on as a whole is cut, twice: into tiles, whose
 /// surfaces are made one by one, and into seam boxes, which hold the middles of the tiles' walls.
 ///
@@ -45,11 +40,11 @@ public:
     IndexBox cellsOf(const Index3& tile) const;
     /// What is needed of the volume to make a tile: its samples, and one more for normals.
     IndexBox samplesOf(const Index3& tile) const;
-    /// The place that vertices of a tile have.
-    ContinuousBox boxOf(const Index3& tile) const;
+    /// The place that vertices of a tile have, in continuous indices.
+    BoundingBox boxOf(const Index3& tile) const;
 
-    Index3 seams() const;  ///< seam boxes along each axis
-    ContinuousBox seamBox(const Index3& seam) const;
+    Index3 seams() const;                           ///< seam boxes along each axis
+    BoundingBox seamBox(const Index3& seam) const;  ///< in continuous indices
     /// The tiles that a seam box lies in.
     IndexBox tilesOfSeam(const Index3& seam) const;
     /// The seam box that a place lies in; those on a wall belong to the higher one.
@@ -108,13 +103,14 @@ SimplifiedPart extractSimplifiedTile(const VolumeView& window, const Index3& fir
 ///
 /// \param mesh     points in continuous indices of the volume of `geometry`, each used
 /// \param isKept   of each triangle: it stays as it is. Empty: those that touch the mesh's border
-/// \param box      no new vertex lies outside it, or on it. The others that may move lie in it
-/// \return  points that stay keep their bits and normals; the others' normals are interpolated.
+/// \param box      in continuous indices: no new vertex lies outside it, or on it. The others that
+/// may move lie in it \return  points that stay keep their bits and normals; the others' normals
+/// are interpolated.
 ///          Nothing crosses anything, also not what was kept
 /// \pre  mesh crosses nothing   \throws InvalidInput  axes are not at right angles
 /// (canTileAdaptive) The same input gives the same bytes, whatever the number of threads.
 SimplifiedPart simplifyInBox(const TriangleMesh& mesh, std::vector<std::uint8_t> isKept,
-                             const ImageGeometry& geometry, const ContinuousBox& box,
+                             const ImageGeometry& geometry, const BoundingBox& box,
                              double maxErrorMm);
 
 /// The triangles that a seam box's run may change, and those that it must not touch: of a mesh of

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "adaptiso/MeshQuality/Certificate.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
@@ -55,15 +56,15 @@ void CrossingGuard::buildGrid() {
     box_.resize(patch_.triangles.size());
     hasBox_.assign(patch_.triangles.size(), 0);
     // no star reaches beyond the patch's own triangles; what lies outside is in the outermost cubes
-    std::optional<CornerBox> own;
+    std::optional<BoundingBox> own;
     for (std::uint32_t t = 0; t < patch_.ownTriangles; ++t) {
         if (patch_.triangles[t][0] == Patch::kGone) continue;
         if (!own) own = boxOf(cornersOf(t));
         for (const Vec3& p : cornersOf(t)) own->add(p);
     }
-    const CornerBox all = own.value_or(CornerBox{});
-    low_ = all.low;
-    const Vec3 extent = all.high - all.low;
+    const BoundingBox all = own.value_or(BoundingBox{});
+    low_ = all.minimum;
+    const Vec3 extent = all.size();
     std::size_t cubes = 1;
     for (int a = 0; a < 3; ++a) {
         count_[a] = 1 + static_cast<std::int32_t>(extent[a] / cubeMm_);
@@ -125,11 +126,11 @@ Corners CrossingGuard::cornersOf(std::uint32_t triangle) const {
     return {patch_.points[t[0]], patch_.points[t[1]], patch_.points[t[2]]};
 }
 
-CrossingGuard::Box CrossingGuard::rounded(const CornerBox& box) {
+CrossingGuard::Box CrossingGuard::rounded(const BoundingBox& box) {
     Box result;
     for (int a = 0; a < 3; ++a) {
-        result.low[a] = floatBelow(box.low[a]);
-        result.high[a] = floatAbove(box.high[a]);
+        result.low[a] = floatBelow(box.minimum[a]);
+        result.high[a] = floatAbove(box.maximum[a]);
     }
     return result;
 }
@@ -290,10 +291,10 @@ void CrossingGuard::collectNear(const ChangedStar& changed) {
     const Star& star = changed.star;
     ++now_;
     near_.clear();
-    CornerBox whole{changed.vertex, changed.vertex};
+    BoundingBox whole{changed.vertex, changed.vertex};
     for (int i = 0; i < star.count; ++i) {
         const Vec3 &r = patch_.points[star.ring[i]], &s = patch_.points[star.ring[i + 1]];
-        CornerBox wedge = boxOf({changed.vertex, r, s});
+        BoundingBox wedge = boxOf({changed.vertex, r, s});
         wedge.widen(gapMm_);
         const Box box = rounded(wedge);
         for (int a = 0; a < 3; ++a) {

@@ -3,7 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "Certificate.h"
+#include "adaptiso/Core/FloatBounds.h"
+#include "adaptiso/Core/TriangleMesh.h"
 #include "adaptive/collapse/ChangedStar.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/PatchTopology.h"
@@ -45,7 +46,7 @@ private:
                    o.low[1] <= high[1] && low[2] <= o.high[2] && o.low[2] <= high[2];
         }
     };
-    static Box rounded(const CornerBox& box);
+    static Box rounded(const BoundingBox& box);
 
     /// The cubes that a box overlaps.
     struct Cubes {

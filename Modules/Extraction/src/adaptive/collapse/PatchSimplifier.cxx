@@ -205,7 +205,7 @@ bool PatchSimplifier::crossesNothing(const Change& change) {
 }
 
 bool PatchSimplifier::isInBox(const Vec3& p) const {
-    if (limits_.box && !limits_.box->overlaps({p, p})) return false;
+    if (limits_.box && !limits_.box->contains(p)) return false;
     const Vec3 index = frame_.toIndex(p);
     for (int a = 0; a < 3; ++a) {
         if (!(index[a] >= patch_.lowIndex[a] && index[a] <= patch_.highIndex[a])) return false;

@@ -23,9 +23,9 @@ struct PatchLimits {
     /// Parts of the surface that are thinner keep nearer to their samples.
     double webMm = 0;
     StarLimits shape;
-    bool provesAll = false;          ///< also stars that can cross nothing by what is known of them
-    bool leavesNoise = false;        ///< bricks full of it stay at full resolution
-    std::optional<CornerBox> box{};  ///< that new vertices stay in, metric frame
+    bool provesAll = false;    ///< also stars that can cross nothing by what is known of them
+    bool leavesNoise = false;  ///< bricks full of it stay at full resolution
+    std::optional<BoundingBox> box{};  ///< that new vertices stay in, metric frame
 };
 
 /// Simplifies a patch in place by quadric edge collapses, cheapest first [Garland1997].

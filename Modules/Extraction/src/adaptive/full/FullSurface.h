@@ -46,14 +46,14 @@ public:
     virtual double largestExtentMm() const = 0;
 
     /// Where new vertices stay, metric frame; none: anywhere.
-    const std::optional<CornerBox>& box() const { return box_; }
+    const std::optional<BoundingBox>& box() const { return box_; }
 
 protected:
-    void keepIn(const CornerBox& box) { box_ = box; }
+    void keepIn(const BoundingBox& box) { box_ = box; }
 
 private:
     MetricFrame frame_;
-    std::optional<CornerBox> box_;
+    std::optional<BoundingBox> box_;
 };
 
 }  // namespace adaptiso::detail

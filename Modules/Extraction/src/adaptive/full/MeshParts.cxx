@@ -11,12 +11,12 @@
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/FreeMemory.h"
+#include "adaptiso/Core/MortonOrder.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptive/full/FlatTriangles.h"
 #include "adaptive/mesh/HalfEdges.h"
-#include "adaptive/mesh/MortonOrder.h"
 #include "adaptive/mesh/Patch.h"
-#include "adaptive/proof/CrossingProof.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -41,7 +41,7 @@ void requireSimplifiable(const TriangleMesh& mesh) {
     }
     if (!mesh.points.empty()) {
         const BoundingBox box = boundingBox(mesh);
-        if (!std::isfinite(norm(box.maximum - box.minimum))) refuse("the mesh is too large");
+        if (!std::isfinite(norm(box.size()))) refuse("the mesh is too large");
     }
     const auto points = static_cast<VertexId>(mesh.points.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
-#include "adaptive/proof/TriangleTree.h"
+#include "adaptiso/MeshQuality/TriangleTree.h"
 
 namespace adaptiso::detail {
 

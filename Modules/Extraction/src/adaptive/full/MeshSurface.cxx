@@ -37,10 +37,10 @@ double voxelOf(const MeshParts& parts, std::optional<double> boundMm) {
     });
     const auto middle = areas.begin() + std::ssize(areas) / 2;
     std::nth_element(areas.begin(), middle, areas.end());
-    CornerBox box{parts.points[0], parts.points[0]};
+    BoundingBox box{parts.points[0], parts.points[0]};
     for (const Vec3& p : parts.points) box.add(p);
     const double voxel =
-        std::max(std::sqrt(kTrianglesPerFace * *middle), kLeastVoxel * norm(box.high - box.low));
+        std::max(std::sqrt(kTrianglesPerFace * *middle), kLeastVoxel * norm(box.size()));
     // single sheets are looked for within a voxel, and serve distances of half of it
     return std::clamp(boundMm.value_or(0) / kSheetDistance, voxel, kWidestVoxel * voxel);
 }
@@ -154,7 +154,7 @@ std::vector<std::uint8_t> MeshSurface::roomsOf(const SimplifiedSurface& surface,
                 normals.push_back(areas[v]);
             };
             for (const std::uint32_t v : own) add(v);
-            CornerBox box{points[0], points[0]};
+            BoundingBox box{points[0], points[0]};
             for (const Vec3& p : points) box.add(p);
             box.widen(frame().narrowestMm());
             const Index3 at = cubes.cubeAt(points[0]);
@@ -266,7 +266,7 @@ void MeshSurface::forgiveCrossings(const TriangleMesh& mesh,
 
 double MeshSurface::largestExtentMm() const {
     const BoundingBox box = boundingBox(input_);
-    return norm(box.maximum - box.minimum);
+    return norm(box.size());
 }
 
 }  // namespace adaptiso::detail

@@ -20,7 +20,7 @@ public:
     MeshSurface(const TriangleMesh& input, const MeshParts& parts, std::optional<double> boundMm);
 
     /// New vertices are to stay in a box. \param box  as seen from parts.origin
-    void stayIn(const CornerBox& box) { keepIn(box); }
+    void stayIn(const BoundingBox& box) { keepIn(box); }
 
     SimplifiedSurface firstRound(const TightPlaces& tight, const PatchLimits& limits,
                                  CollapseCosts* costs) const override;

@@ -65,7 +65,7 @@ VolumeSurface::VolumeSurface(const ImageGeometry& geometry, const LatticeSampler
                              const Bricks& bricks)
     : FullSurface(MetricFrame(geometry)), geometry_(geometry), sampler_(sampler), bricks_(bricks) {}
 
-void VolumeSurface::stayIn(const CornerBox& moving, const CornerBox& box) {
+void VolumeSurface::stayIn(const BoundingBox& moving, const BoundingBox& box) {
     moving_ = moving;
     keepIn(box);
 }

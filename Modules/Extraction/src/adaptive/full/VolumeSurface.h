@@ -18,7 +18,7 @@ public:
     /// Of a part of a surface whose open border is known to others: what lies outside `moving`
     /// stays at full resolution, and new vertices stay in `box`.
     /// \param moving  continuous sample indices \param box  metric frame
-    void stayIn(const CornerBox& moving, const CornerBox& box);
+    void stayIn(const BoundingBox& moving, const BoundingBox& box);
 
     SimplifiedSurface firstRound(const TightPlaces& tight, const PatchLimits& limits,
                                  CollapseCosts* costs) const override;
@@ -34,7 +34,7 @@ private:
     const ImageGeometry& geometry_;
     const LatticeSampler& sampler_;
     const Bricks& bricks_;
-    std::optional<CornerBox> moving_;
+    std::optional<BoundingBox> moving_;
 };
 
 }  // namespace adaptiso::detail

@@ -289,7 +289,7 @@ bool LocalUndo::isWhole(Number triangle) const {
 std::ptrdiff_t LocalUndo::nearestFresh(const Vec3& p, const TriangleTree& tree) const {
     constexpr double kRounding = 1 + 1e-9;
     const TriangleView view{surface_.points, fresh_};
-    CornerBox box{p, p};
+    BoundingBox box{p, p};
     box.widen(kRounding * std::sqrt(tree.squaredDistance(p, view)));
     std::pair<double, std::uint32_t> best{std::numeric_limits<double>::infinity(), 0};
     tree.forEachOverlap(box, view, [&](std::uint32_t t) {

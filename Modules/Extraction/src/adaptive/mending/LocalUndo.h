@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "adaptiso/Core/DisjointSets.h"
+#include "adaptiso/MeshQuality/TriangleTree.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
-#include "adaptive/proof/TriangleTree.h"
 
 namespace adaptiso::detail {
 

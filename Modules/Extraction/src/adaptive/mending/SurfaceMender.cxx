@@ -62,7 +62,7 @@ bool contains(const std::vector<Number>& numbers, Number number) {
 }  // namespace
 
 SurfaceMender::SurfaceMender(SimplifiedSurface& surface, const MetricFrame& frame, double limitMm,
-                             const std::optional<CornerBox>& box)
+                             const std::optional<BoundingBox>& box)
     : surface_(surface),
       squaredLimit_(limitMm * limitMm),
       cubeMm_(kNearCube * frame.voxelMm()),
@@ -141,7 +141,7 @@ void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
             if (isTrackedVertex[v]) around_[v].push_back(t);
         }
         isNear[t] = true;
-        CornerBox box = boxOf(cornersOf(t));
+        BoundingBox box = boxOf(cornersOf(t));
         box.widen(cubeMm_ / 2);  // new vertices lie beside the triangle
         forEachCube(box, [&](const Index3& cube) {
             inCube_[cube];
@@ -446,7 +446,7 @@ bool SurfaceMender::crossesNothing(const std::vector<Corners>& triangles,
         for (std::size_t j = 0; j < i; ++j) {
             if (trianglesCross(triangles[i], triangles[j])) return false;
         }
-        const CornerBox box = boxOf(triangles[i]);
+        const BoundingBox box = boxOf(triangles[i]);
         bool isClear = true;
         forEachCube(box, [&](const Index3& cube) {
             const auto in = inCube_.find(cube);
@@ -581,11 +581,12 @@ void SurfaceMender::handOver(const Numbers& from, const Numbers& to) {
 }
 
 template <class F>
-void SurfaceMender::forEachCube(const CornerBox& box, const F& f) const {
+void SurfaceMender::forEachCube(const BoundingBox& box, const F& f) const {
     const auto at = [&](double mm) { return static_cast<std::int64_t>(std::floor(mm / cubeMm_)); };
-    for (std::int64_t z = at(box.low.z); z <= at(box.high.z); ++z) {
-        for (std::int64_t y = at(box.low.y); y <= at(box.high.y); ++y) {
-            for (std::int64_t x = at(box.low.x); x <= at(box.high.x); ++x) f(Index3{x, y, z});
+    for (std::int64_t z = at(box.minimum.z); z <= at(box.maximum.z); ++z) {
+        for (std::int64_t y = at(box.minimum.y); y <= at(box.maximum.y); ++y) {
+            for (std::int64_t x = at(box.minimum.x); x <= at(box.maximum.x); ++x)
+                f(Index3{x, y, z});
         }
     }
 }

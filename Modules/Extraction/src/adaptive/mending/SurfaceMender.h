@@ -28,7 +28,7 @@ public:
     /// \param limitMm  the bound
     /// \param box      that new and moved vertices stay in, if any
     SurfaceMender(SimplifiedSurface& surface, const MetricFrame& frame, double limitMm,
-                  const std::optional<CornerBox>& box = {});
+                  const std::optional<BoundingBox>& box = {});
 
     /// Mends the farthest places first, and skips those that the surface has left by then.
     /// \return how many were mended
@@ -71,7 +71,7 @@ private:
     bool collapseEdge(Number triangle, int corner, const PlaceBeyond& place);
     bool mayMerge(const Edge& edge) const;
 
-    bool isInBox(const Vec3& p) const { return !box_ || box_->overlaps({p, p}); }
+    bool isInBox(const Vec3& p) const { return !box_ || box_->contains(p); }
     bool facesAs(const Corners& now, const Corners& before) const;
     bool isSound(const std::vector<Corners>& triangles, const Numbers& replaced) const;
     bool isFree(const Vec3& point, const Numbers& replaced) const;
@@ -95,11 +95,11 @@ private:
     void note(Number triangle);
     void handOver(const Numbers& from, const Numbers& to);
     template <class F>
-    void forEachCube(const CornerBox& box, const F& f) const;
+    void forEachCube(const BoundingBox& box, const F& f) const;
 
     SimplifiedSurface& surface_;
     double squaredLimit_, cubeMm_;
-    std::optional<CornerBox> box_;
+    std::optional<BoundingBox> box_;
     double leastCosine_ = 0;                  ///< between the normals before and after
     std::set<std::array<Number, 2>> turned_;  ///< edges that were: they do not come back
 

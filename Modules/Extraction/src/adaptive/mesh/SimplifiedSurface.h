@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "Certificate.h"
 #include "adaptiso/Core/ReturnMemory.h"
+#include "adaptiso/Core/TriangleMesh.h"
 #include "adaptive/mesh/Patch.h"
 
 namespace adaptiso::detail {

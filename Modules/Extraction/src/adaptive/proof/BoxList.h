@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "Certificate.h"
+#include "adaptiso/Core/FloatBounds.h"
+#include "adaptiso/Core/TriangleMesh.h"
 
 namespace adaptiso::detail {
 
@@ -17,16 +18,16 @@ public:
     void clear() {
         for (int a = 0; a < 3; ++a) low_[a].clear(), high_[a].clear();
     }
-    void add(const CornerBox& box) {
+    void add(const BoundingBox& box) {
         for (int a = 0; a < 3; ++a) {
-            low_[a].push_back(floatBelow(box.low[a]));
-            high_[a].push_back(floatAbove(box.high[a]));
+            low_[a].push_back(floatBelow(box.minimum[a]));
+            high_[a].push_back(floatAbove(box.maximum[a]));
         }
     }
 
     /// Calls f(number) for the boxes that overlap one, or nearly, in ascending order.
     template <class F>
-    void forEachOverlap(const CornerBox& box, const F& f) const {
+    void forEachOverlap(const BoundingBox& box, const F& f) const {
         constexpr std::size_t kAtOnce = 256;
         std::array<float, kAtOnce> apart;  // above 0 where they do not overlap
         const std::size_t count = low_[0].size();
@@ -34,7 +35,8 @@ public:
             const std::size_t here = std::min(kAtOnce, count - begin);
             for (int a = 0; a < 3; ++a) {
                 const float *low = low_[a].data() + begin, *high = high_[a].data() + begin;
-                const float lowest = floatBelow(box.low[a]), highest = floatAbove(box.high[a]);
+                const float lowest = floatBelow(box.minimum[a]),
+                            highest = floatAbove(box.maximum[a]);
                 for (std::size_t i = 0; i < here; ++i) {
                     const float gap = std::max(low[i] - highest, lowest - high[i]);
                     apart[i] = a == 0 ? gap : std::max(apart[i], gap);

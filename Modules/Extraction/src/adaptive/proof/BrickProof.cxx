@@ -318,7 +318,7 @@ void BrickProof::collectWithin(double distanceMm, const Corners& piece) {
     if (boxes_.isEmpty()) {
         for (const Number t : triangles) boxes_.add(boxOf(lookup_.cornersOf(t)));
     }
-    CornerBox box = boxOf(piece);
+    BoundingBox box = boxOf(piece);
     box.widen(distanceMm);
     boxes_.forEachOverlap(box, [&](std::size_t i) { add(triangles[i]); });
 }
@@ -326,10 +326,10 @@ void BrickProof::collectWithin(double distanceMm, const Corners& piece) {
 /// Goes over the pieces of a triangle of the simplified surface that this brick answers for.
 /// \param area2  twice the piece's area
 void BrickProof::provePiece(const Corners& piece, std::uint32_t start, double area2) {
-    const CornerBox box = latticeBox(piece);
+    const BoundingBox box = latticeBox(piece);
     constexpr double kRoom = BrickMesher::kHalo / 2.0;
     for (int a = 0; a < 3; ++a) {
-        if (box.high[a] < -kRoom || box.low[a] > Brick::kSide + kRoom) return;
+        if (box.maximum[a] < -kRoom || box.minimum[a] > Brick::kSide + kRoom) return;
     }
     const Vec3 middle = (1.0 / 3) * (piece[0] + piece[1] + piece[2]);
     const std::int64_t brick = lookup_.brickFor(lookup_.latticeOf(middle));
@@ -380,7 +380,7 @@ void BrickProof::proveSmall(const Corners& piece) {
     for (const Corners& part : quarter(piece)) proveSmall(part);
 }
 
-void BrickProof::proveLeaf(const Corners& piece, const CornerBox& box) {
+void BrickProof::proveLeaf(const Corners& piece, const BoundingBox& box) {
     const auto use = [&] {
         toFine_.nearby().clear();
         for (const std::uint32_t t : near_) toFine_.nearby().push_back(walkable_.cornersOf(t));
@@ -400,7 +400,7 @@ void BrickProof::proveLeaf(const Corners& piece, const CornerBox& box) {
 }
 
 /// In cells, seen from the brick's first.
-CornerBox BrickProof::latticeBox(const Corners& piece) const {
+BoundingBox BrickProof::latticeBox(const Corners& piece) const {
     const Vec3 low{static_cast<double>(low_[0]), static_cast<double>(low_[1]),
                    static_cast<double>(low_[2])};
     return boxOf({lookup_.latticeOf(piece[0]) - low, lookup_.latticeOf(piece[1]) - low,
@@ -408,7 +408,7 @@ CornerBox BrickProof::latticeBox(const Corners& piece) const {
 }
 
 std::uint32_t BrickProof::nearestFine(const Vec3& p) {
-    const CornerBox box = latticeBox({p, p, p});
+    const BoundingBox box = latticeBox({p, p, p});
     std::uint32_t best = Walkable::kNone;
     double least = kInfinity;
     for (double reach = 0.5; reach < 2 && best == Walkable::kNone; ++reach) {
@@ -425,14 +425,14 @@ std::uint32_t BrickProof::nearestFine(const Vec3& p) {
 }
 
 /// The fine triangles in the cells up to `reach` around a box.
-void BrickProof::collectNear(const CornerBox& box, double reach) {
+void BrickProof::collectNear(const BoundingBox& box, double reach) {
     near_.clear();
     std::array<int, 3> first{}, last{};
     for (int a = 0; a < 3; ++a) {
         constexpr int kHalo = BrickMesher::kHalo;
-        first[a] = std::max(-kHalo, static_cast<int>(std::floor(box.low[a] - reach)));
-        last[a] =
-            std::min(Brick::kSide + kHalo - 1, static_cast<int>(std::floor(box.high[a] + reach)));
+        first[a] = std::max(-kHalo, static_cast<int>(std::floor(box.minimum[a] - reach)));
+        last[a] = std::min(Brick::kSide + kHalo - 1,
+                           static_cast<int>(std::floor(box.maximum[a] + reach)));
     }
     for (int z = first[2]; z <= last[2]; ++z) {
         for (int y = first[1]; y <= last[1]; ++y) {

@@ -90,11 +90,11 @@ private:
     void cover(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
                double squaredDistance, int steps);
     void proveSmall(const Corners& piece);
-    void proveLeaf(const Corners& piece, const CornerBox& box);
+    void proveLeaf(const Corners& piece, const BoundingBox& box);
 
-    CornerBox latticeBox(const Corners& piece) const;
+    BoundingBox latticeBox(const Corners& piece) const;
     std::uint32_t nearestFine(const Vec3& p);
-    void collectNear(const CornerBox& box, double reach);
+    void collectNear(const BoundingBox& box, double reach);
     void keepNearest(const Corners& piece);
 
     const SimplifiedSurface& surface_;

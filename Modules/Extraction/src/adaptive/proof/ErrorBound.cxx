@@ -174,7 +174,7 @@ void ErrorProof::markBeyond(ProofScope& scope) const {
 void ErrorProof::markAround(const Corners& triangle, double distanceMm, ProofScope& scope) const {
     constexpr double kWall = 1e-3;  // of a voxel: on a block's wall both blocks are meant
     const BlockGrid& grid = bricks_.grid();
-    CornerBox box = boxOf(
+    BoundingBox box = boxOf(
         {frame_.toIndex(triangle[0]), frame_.toIndex(triangle[1]), frame_.toIndex(triangle[2])});
     box.widen(distanceMm / frame_.narrowestMm() + kWall);
     Index3 first, last;
@@ -184,8 +184,8 @@ void ErrorProof::markAround(const Corners& triangle, double distanceMm, ProofSco
                                               static_cast<double>(grid.blocks[a] * grid.blockSize));
             return static_cast<std::int64_t>(lattice) / grid.blockSize;
         };
-        first[a] = blockAt(box.low[a]);
-        last[a] = std::min(blockAt(box.high[a]), grid.blocks[a] - 1);
+        first[a] = blockAt(box.minimum[a]);
+        last[a] = std::min(blockAt(box.maximum[a]), grid.blocks[a] - 1);
     }
     for (std::int64_t z = first[2]; z <= last[2]; ++z) {
         for (std::int64_t y = first[1]; y <= last[1]; ++y) {

@@ -123,7 +123,7 @@ private:
 
     void collectWithin(double distanceMm, const Corners& piece) {
         constexpr double kRounding = 1 + 1e-9;
-        CornerBox box = boxOf(piece);
+        BoundingBox box = boxOf(piece);
         box.widen(kRounding * distanceMm);
         near_.clear();
         bound_.nearby().clear();
@@ -157,10 +157,10 @@ class MarkedCubes {
 public:
     explicit MarkedCubes(double sideMm) : sideMm_(sideMm), isMarked_(kSlots) {}
 
-    void mark(const CornerBox& box) {
+    void mark(const BoundingBox& box) {
         isAll_ = isAll_ || !forEachSlot(box, [&](std::size_t slot) { isMarked_[slot] = 1; });
     }
-    bool has(const CornerBox& box) const {
+    bool has(const BoundingBox& box) const {
         bool isFound = false;
         const auto look = [&](std::size_t slot) { isFound = isFound || isMarked_[slot] != 0; };
         return isAll_ || !forEachSlot(box, look) || isFound;
@@ -172,15 +172,15 @@ private:
 
     /// \return false where the box overlaps too many
     template <class F>
-    bool forEachSlot(const CornerBox& box, const F& f) const {
+    bool forEachSlot(const BoundingBox& box, const F& f) const {
         const auto at = [&](double mm) {
             return static_cast<std::int64_t>(std::floor(mm / sideMm_));
         };
-        const Vec3 extent = (1 / sideMm_) * (box.high - box.low);
+        const Vec3 extent = (1 / sideMm_) * box.size();
         if ((extent.x + 1) * (extent.y + 1) * (extent.z + 1) > kMostCubes) return false;
-        for (std::int64_t z = at(box.low.z); z <= at(box.high.z); ++z) {
-            for (std::int64_t y = at(box.low.y); y <= at(box.high.y); ++y) {
-                for (std::int64_t x = at(box.low.x); x <= at(box.high.x); ++x) {
+        for (std::int64_t z = at(box.minimum.z); z <= at(box.maximum.z); ++z) {
+            for (std::int64_t y = at(box.minimum.y); y <= at(box.maximum.y); ++y) {
+                for (std::int64_t x = at(box.minimum.x); x <= at(box.maximum.x); ++x) {
                     f(slotOf({x, y, z}));
                 }
             }
@@ -266,7 +266,7 @@ PartBound proveSimplified(const Task& task, const Target<std::uint32_t>& to,
     forEachUnknown(isKnown, piece, task.surface.triangles.size(), [&](std::size_t t) {
         if (cover.covers(t)) return;
         const Corners corners = cornersOf(task.surface, t);
-        const Vec3 extent = boxOf(corners).high - boxOf(corners).low;
+        const Vec3 extent = boxOf(corners).maximum - boxOf(corners).minimum;
         // along a needle, which has no area, lie triangles too
         const double faces =
             norm(areaVector2(corners[0], corners[1], corners[2])) / (task.voxelMm * task.voxelMm) +
@@ -432,7 +432,7 @@ void MeshProof::markFine(const std::vector<Corners>& changed, Scope& scope) cons
     MarkedCubes cubes(std::max(kNearCube * frame_.voxelMm(), limitMm_));
     const auto mark = [&](const Corners& corners) {
         constexpr double kRounding = 1 + 1e-9;
-        CornerBox box = boxOf(corners);
+        BoundingBox box = boxOf(corners);
         box.widen(kRounding * limitMm_);
         cubes.mark(box);
     };

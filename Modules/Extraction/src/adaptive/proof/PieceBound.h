@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "Certificate.h"
+#include "adaptiso/Core/TriangleMesh.h"
 
 namespace adaptiso::detail {
 

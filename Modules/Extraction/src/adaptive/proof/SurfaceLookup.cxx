@@ -17,12 +17,12 @@ std::int64_t floorOf(double x) {
 
 std::pair<Index3, Index3> SurfaceLookup::placesNear(std::uint64_t t) const {
     const Corners corners = cornersOf(t);
-    const CornerBox box =
+    const BoundingBox box =
         boxOf({latticeOf(corners[0]), latticeOf(corners[1]), latticeOf(corners[2])});
     std::pair<Index3, Index3> places;
     for (int a = 0; a < 3; ++a) {
-        places.first[a] = floorOf((box.low[a] - kRoom) / Brick::kSide);
-        places.second[a] = floorOf((box.high[a] + kRoom) / Brick::kSide);
+        places.first[a] = floorOf((box.minimum[a] - kRoom) / Brick::kSide);
+        places.second[a] = floorOf((box.maximum[a] + kRoom) / Brick::kSide);
     }
     return places;
 }
@@ -104,8 +104,8 @@ bool SurfaceLookup::isNear(const Brick& brick, const Vec3& lattice) {
 }
 
 bool SurfaceLookup::isSmall(const Corners& piece) const {
-    const CornerBox box = boxOf({latticeOf(piece[0]), latticeOf(piece[1]), latticeOf(piece[2])});
-    const Vec3 side = box.high - box.low;
+    const BoundingBox box = boxOf({latticeOf(piece[0]), latticeOf(piece[1]), latticeOf(piece[2])});
+    const Vec3 side = box.size();
     return std::max({side.x, side.y, side.z}) <= 1;
 }
 

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "adaptiso/Core/Buckets.h"
+#include "adaptiso/MeshQuality/TriangleTree.h"
 #include "adaptive/bricks/Bricks.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
 #include "adaptive/proof/SurfaceWalk.h"
-#include "adaptive/proof/TriangleTree.h"
 
 namespace adaptiso::detail {
 
@@ -44,7 +44,7 @@ public:
     /// Calls f(t) for all triangles that may lie within a distance of a piece.
     template <class F>
     void forEachNear(const Corners& piece, double distanceMm, const F& f) const {
-        CornerBox box = boxOf(piece);
+        BoundingBox box = boxOf(piece);
         box.widen(distanceMm);
         tree().forEachOverlap(box, view(), f);
     }

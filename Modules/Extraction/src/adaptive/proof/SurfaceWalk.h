@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "Certificate.h"
+#include "adaptiso/Core/TriangleMesh.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/mesh/HalfEdges.h"
 #include "adaptive/proof/NearTriangle.h"

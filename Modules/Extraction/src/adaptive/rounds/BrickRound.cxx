@@ -217,7 +217,7 @@ Patch patchOf(const FineSurface& fine, const MetricFrame& frame, double webMm, B
 /// \param lowIndex  sample index of the brick's first lattice position
 BrickSurface simplifyBrick(const FineSurface& fine, const Index3& lowIndex,
                            const MetricFrame& frame, const TightPlaces& tight,
-                           const PatchLimits& limits, const CornerBox* moving,
+                           const PatchLimits& limits, const BoundingBox* moving,
                            std::vector<double>* costs) {
     BrickSurface result;
     std::vector<std::uint8_t> isFlat;
@@ -228,7 +228,7 @@ BrickSurface simplifyBrick(const FineSurface& fine, const Index3& lowIndex,
     tight.apply(frame, patch.samples);
     for (std::size_t v = 0; v < patch.points.size(); ++v) {
         const Vec3& index = fine.vertices[v].index;
-        const bool isOutside = moving != nullptr && !moving->overlaps({index, index});
+        const bool isOutside = moving != nullptr && !moving->contains(index);
         if (isOutside || tight.isFrozen(index)) patch.states[v] = Patch::State::Final;
     }
     if (limits.leavesNoise && isNoise(fine)) {
@@ -389,7 +389,7 @@ private:
 SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& bricks,
                                  const MetricFrame& frame, const TightPlaces& tight,
                                  const PatchLimits& limits, CollapseCosts* costs,
-                                 const CornerBox* moving) {
+                                 const BoundingBox* moving) {
     struct Tools {
         BrickMesher mesher;
         FineSurface fine;

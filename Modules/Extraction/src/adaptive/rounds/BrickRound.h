@@ -15,6 +15,6 @@ namespace adaptiso::detail {
 SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& bricks,
                                  const MetricFrame& frame, const TightPlaces& tight,
                                  const PatchLimits& limits, CollapseCosts* costs,
-                                 const CornerBox* moving = nullptr);
+                                 const BoundingBox* moving = nullptr);
 
 }  // namespace adaptiso::detail

@@ -22,14 +22,14 @@ void keepHeirs(SimplifiedSurface& surface) {
 std::optional<PatchCut> cutAround(const SimplifiedSurface& surface, const MetricFrame& frame) {
     if (surface.points.empty()) return {};
     const Vec3 first = frame.toIndex(surface.points[0]);
-    CornerBox box{first, first};
+    BoundingBox box{first, first};
     for (const Vec3& p : surface.points) box.add(frame.toIndex(p));
-    const Vec3 extent = box.high - box.low;
+    const Vec3 extent = box.size();
     const double widest = std::max({extent.x, extent.y, extent.z});
     if (!(widest <= kOnePatchSide)) return {};
     PatchCut cut{static_cast<std::int64_t>(widest) + Brick::kSide};
     for (int a = 0; a < 3; ++a) {
-        const double middle = 0.5 * (box.low[a] + box.high[a]);
+        const double middle = 0.5 * (box.minimum[a] + box.maximum[a]);
         cut.shift[a] = static_cast<std::int64_t>(std::floor(middle)) - cut.side / 2;
     }
     return cut;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshQuality/TriangleTree.h"
 
 namespace adaptiso {
 
@@ -38,10 +39,16 @@ struct SelfIntersections {
 
 /// All pairs of triangles of `mesh` that cross, as trianglesCross has it. Triangles with a
 /// non-finite corner cross nothing.
-/// \pre triangles name points that are there, options.maxPairs >= 0 \throws InvalidInput otherwise
-/// Cost: O(T log T + pairs of overlapping boxes), in parallel; memory of an AabbTree and ClearFans.
+/// \pre triangles name points that are there, there are fewer than 2^32 of both, and
+///      options.maxPairs >= 0 \throws InvalidInput otherwise
+/// Cost: that of CrossingSearch, and 20 bytes a triangle.
 /// The same mesh gives the same bytes, whatever the number of threads.
 SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
                                         const SelfIntersectionOptions& options = {});
+
+/// The triangles of those pairs, ascending. \pre, \throws, cost: as findSelfIntersections()
+std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh);
+/// \pre the corners of triangles are finite
+std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh);
 
 }  // namespace adaptiso

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "Certificate.h"
 #include "ExactCrossing.h"
-#include "Surfaces.h"
+#include "Support/RandomPoints.h"
+#include "adaptiso/MeshQuality/Certificate.h"
 
 namespace adaptiso::testing {
 namespace {
-
-using detail::Corners;
 
 /// The corners in an order that begins with those that both triangles share.
 /// \return how many they share
@@ -33,11 +31,11 @@ Corners cornersOf(const IntegerSoup& soup, const std::array<int, 3>& t) {
 TEST(Certificate, KnowsTheGapBetweenParallelTriangles) {
     const Corners low{Vec3{0, 0, 0}, Vec3{4, 0, 0}, Vec3{0, 4, 0}},
         high{Vec3{0, 0, 0.5}, Vec3{0, 4, 0.5}, Vec3{4, 0, 0.5}};
-    EXPECT_TRUE(detail::areApart(low, high, 0.49));
-    EXPECT_FALSE(detail::areApart(low, high, 0.51));
+    EXPECT_TRUE(areApart(low, high, 0.49));
+    EXPECT_FALSE(areApart(low, high, 0.51));
     const Corners aside{Vec3{5, 0, 0}, Vec3{9, 0, 0}, Vec3{5, 4, 0}};  // in one plane
-    EXPECT_TRUE(detail::areApart(low, aside, 0.9));
-    EXPECT_FALSE(detail::areApart(low, aside, 1.1));
+    EXPECT_TRUE(areApart(low, aside, 0.9));
+    EXPECT_FALSE(areApart(low, aside, 1.1));
 }
 
 // A plane lies between two convex bodies if they do not meet (separating axis theorem), so among
@@ -54,7 +52,7 @@ TEST(Certificate, IsFoundWhereTrianglesAreApart) {
         }
         const std::optional<bool> cross = soup.cross(0, 1);
         if (!cross) continue;
-        ASSERT_EQ(detail::areApart(soup.corners(0), soup.corners(1), 1e-9), !*cross) << n;
+        ASSERT_EQ(areApart(soup.corners(0), soup.corners(1), 1e-9), !*cross) << n;
         (*cross ? crossed : apart)++;
     }
     EXPECT_GT(apart, 1000);
@@ -70,8 +68,7 @@ TEST(Certificate, IsFoundWhereTrianglesMeetInTheirVertexAlone) {
         if (orderByShared(s, t) != 1) continue;
         const std::optional<bool> cross = soup.cross(0, 1);
         if (!cross) continue;
-        ASSERT_EQ(detail::touchAtVertexOnly(cornersOf(soup, s), cornersOf(soup, t), 1e-9), !*cross)
-            << n;
+        ASSERT_EQ(touchAtVertexOnly(cornersOf(soup, s), cornersOf(soup, t), 1e-9), !*cross) << n;
         (*cross ? crossed : clear)++;
     }
     EXPECT_GT(clear, 1000);
@@ -86,7 +83,7 @@ TEST(Certificate, KnowsAFoldByItsAngle) {
                              Vec3{0.6, 3 * std::cos(angle), 3 * std::sin(angle)}};
         for (const double least : {0.5, 3.0}) {
             const double sine = std::sin(least * M_PI / 180);
-            EXPECT_EQ(detail::touchAtEdgeOnly(first, second, sine * sine), degrees > least)
+            EXPECT_EQ(touchAtEdgeOnly(first, second, sine * sine), degrees > least)
                 << degrees << ' ' << least;
         }
     }
@@ -96,27 +93,8 @@ TEST(Certificate, IsNotFoundForATriangleWithoutArea) {
     const Corners first{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}},
         line{Vec3{1, 0, 0}, Vec3{0, 0, 0}, Vec3{2, 0, 0}},
         noEdge{Vec3{0, 0, 0}, Vec3{0, 0, 0}, Vec3{2, 0, 0}};
-    EXPECT_FALSE(detail::touchAtEdgeOnly(first, line));
-    EXPECT_FALSE(detail::touchAtEdgeOnly(noEdge, noEdge));
-}
-
-TEST(CornerBox, OverlapsWhatItTouches) {
-    detail::CornerBox box = detail::boxOf({Vec3{1, 5, 0}, Vec3{2, 4, 3}, Vec3{0, 6, 1}});
-    EXPECT_EQ(box.low, (Vec3{0, 4, 0}));
-    EXPECT_EQ(box.high, (Vec3{2, 6, 3}));
-    for (int a = 0; a < 3; ++a) {
-        detail::CornerBox beside = box;
-        beside.low[a] = box.high[a];
-        beside.high[a] = box.high[a] + 1;
-        EXPECT_TRUE(box.overlaps(beside));
-        EXPECT_TRUE(beside.overlaps(box));
-        beside.low[a] += 0.5;
-        EXPECT_FALSE(box.overlaps(beside));
-        EXPECT_FALSE(beside.overlaps(box));
-    }
-    box.widen(2);
-    EXPECT_EQ(box.low, (Vec3{-2, 2, -2}));
-    EXPECT_EQ(box.high, (Vec3{4, 8, 5}));
+    EXPECT_FALSE(touchAtEdgeOnly(first, line));
+    EXPECT_FALSE(touchAtEdgeOnly(noEdge, noEdge));
 }
 
 }  // namespace adaptiso::testing

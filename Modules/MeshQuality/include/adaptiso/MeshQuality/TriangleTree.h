@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "Certificate.h"
 #include "adaptiso/Core/HalvedLeaves.h"
+#include "adaptiso/Core/TriangleMesh.h"
 
-namespace adaptiso::detail {
+namespace adaptiso {
 
-/// Triangles and their points, as surfaces of the adaptive method keep them.
+/// Triangles by 32-bit numbers, and their points: half the memory of a TriangleMesh.
 struct TriangleView {
     using Triangle = std::array<std::uint32_t, 3>;
 
@@ -26,6 +26,8 @@ struct TriangleView {
         const Triangle& c = triangles[t];
         return {points[c[0]], points[c[1]], points[c[2]]};
     }
+    /// Around all points that are finite, used or not.
+    BoundingBox box() const;
 };
 
 /// A tree of boxes over triangles, as AabbTree, in a third of its memory: 10 bytes a triangle, 16
@@ -50,7 +52,7 @@ public:
     /// Calls visit(triangle) for every triangle whose box, rounded outward, overlaps `box`; in an
     /// order that is always the same.
     template <class Visit>
-    void forEachOverlap(const CornerBox& box, const TriangleView& of, const Visit& visit) const;
+    void forEachOverlap(const BoundingBox& box, const TriangleView& of, const Visit& visit) const;
 
     class Pairs;
 
@@ -60,7 +62,7 @@ private:
     struct Box {
         std::array<float, 3> low, high;
 
-        static Box around(const CornerBox& exact);
+        static Box around(const BoundingBox& exact);
         bool overlaps(const Box& o) const {
             // no branches: most boxes near each other differ along one axis, now this, now that
             int count = 0;
@@ -117,7 +119,7 @@ void TriangleTree::forEachLeaf(const Box& box, std::int64_t first, const F& f) c
 }
 
 template <class Visit>
-void TriangleTree::forEachOverlap(const CornerBox& box, const TriangleView& of,
+void TriangleTree::forEachOverlap(const BoundingBox& box, const TriangleView& of,
                                   const Visit& visit) const {
     const Box rounded = Box::around(box);
     forEachLeaf(rounded, 0, [&](std::int64_t number, const Box&) {
@@ -249,4 +251,4 @@ void TriangleTree::Pairs::forEachBetween(std::int64_t number, const Box& own, st
     });
 }
 
-}  // namespace adaptiso::detail
+}  // namespace adaptiso

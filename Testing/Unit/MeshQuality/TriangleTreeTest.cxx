@@ -6,15 +6,13 @@
 #include <set>
 #include <vector>
 
+#include "Support/RandomPoints.h"
 #include "adaptiso/Core/AabbTree.h"
-#include "adaptive/proof/TriangleTree.h"
+#include "adaptiso/MeshQuality/TriangleTree.h"
 
 namespace adaptiso::testing {
 namespace {
 
-using detail::CornerBox;
-using detail::TriangleTree;
-using detail::TriangleView;
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Triangles of all sizes, everywhere.
@@ -23,13 +21,8 @@ struct Soup {
     std::vector<TriangleView::Triangle> triangles;
 
     TriangleView view() const { return {points, triangles}; }
-    CornerBox boxOf(std::size_t t) const { return detail::boxOf(view().cornersOf(t)); }
+    BoundingBox boxOf(std::size_t t) const { return adaptiso::boxOf(view().cornersOf(t)); }
 };
-
-Vec3 randomPoint(std::mt19937& random, double size) {
-    std::uniform_real_distribution<double> uniform(-size, size);
-    return {uniform(random), uniform(random), uniform(random)};
-}
 
 Soup randomSoup(std::mt19937& random, std::uint32_t count) {
     Soup soup;
@@ -70,14 +63,14 @@ TEST(TriangleTree, FindsAllThatOverlapABox) {
         const Soup soup = randomSoup(random, count);
         const TriangleTree tree(soup.view());
         for (int n = 0; n < 50; ++n) {
-            CornerBox box{randomPoint(random, 10), {}};
-            box.high = box.low;
+            BoundingBox box{randomPoint(random, 10), {}};
+            box.maximum = box.minimum;
             box.widen(n % 2 == 0 ? 0.5 : 4);
             std::set<std::uint32_t> found;
             tree.forEachOverlap(box, soup.view(), [&](std::uint32_t t) {
                 EXPECT_TRUE(found.insert(t).second) << "told twice";
             });
-            CornerBox wider = box;
+            BoundingBox wider = box;
             wider.widen(1e-5);  // single precision
             for (std::uint32_t t = 0; t < count; ++t) {
                 EXPECT_TRUE(found.contains(t) || !soup.boxOf(t).overlaps(box));

@@ -6,7 +6,6 @@
 #include <random>
 #include <vector>
 
-#include "Certificate.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
 namespace adaptiso::testing {
@@ -20,7 +19,7 @@ struct IntegerSoup {
     std::vector<std::array<int, 3>> triangles;
 
     TriangleMesh mesh() const;
-    detail::Corners corners(int t) const;
+    Corners corners(int t) const;
 
     /// Two triangles cross: an edge of one passes through the inside of the other, or runs in its
     /// plane. Corners that both share are not looked at.

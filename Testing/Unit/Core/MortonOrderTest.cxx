@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "Surfaces.h"
-#include "adaptive/mesh/MortonOrder.h"
+#include "Support/RandomPoints.h"
+#include "adaptiso/Core/MortonOrder.h"
 
 namespace adaptiso::testing {
 namespace {
@@ -13,9 +13,9 @@ namespace {
 using Numbers = std::vector<std::uint32_t>;
 
 Numbers inOrder(const std::vector<Vec3>& points) {
-    detail::CornerBox box{points[0], points[0]};
+    BoundingBox box{points[0], points[0]};
     for (const Vec3& p : points) box.add(p);
-    return detail::inMortonOrder(points.size(), box, [&](std::uint32_t i) { return points[i]; });
+    return inMortonOrder(points.size(), box, [&](std::uint32_t i) { return points[i]; });
 }
 
 }  // namespace

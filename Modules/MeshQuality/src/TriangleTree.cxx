@@ -1,14 +1,14 @@
-#include "adaptive/proof/TriangleTree.h"
+#include "adaptiso/MeshQuality/TriangleTree.h"
 
 #include <tbb/task_arena.h>
 
 #include <cmath>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/MortonOrder.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptive/mesh/MortonOrder.h"
 
-namespace adaptiso::detail {
+namespace adaptiso {
 namespace {
 
 constexpr std::int64_t kPiece = 1 << 13;
@@ -30,16 +30,22 @@ float atLeast(double x) {
 
 }  // namespace
 
-TriangleTree::Box TriangleTree::Box::around(const CornerBox& exact) {
-    return {{atMost(exact.low.x), atMost(exact.low.y), atMost(exact.low.z)},
-            {atLeast(exact.high.x), atLeast(exact.high.y), atLeast(exact.high.z)}};
+BoundingBox TriangleView::box() const {
+    auto box = BoundingBox::empty();
+    for (const Vec3& p : points) {
+        if (std::isfinite(p.x + p.y + p.z)) box.add(p);
+    }
+    return box;
+}
+
+TriangleTree::Box TriangleTree::Box::around(const BoundingBox& exact) {
+    return {{atMost(exact.minimum.x), atMost(exact.minimum.y), atMost(exact.minimum.z)},
+            {atLeast(exact.maximum.x), atLeast(exact.maximum.y), atLeast(exact.maximum.z)}};
 }
 
 TriangleTree::TriangleTree(const TriangleView& of) {
     if (of.triangles.empty()) return;
-    CornerBox box = boxOf(of.cornersOf(0));
-    for (const Vec3& p : of.points) box.add(p);
-    order_ = inMortonOrder(of.triangles.size(), box, [&](std::uint32_t t) {
+    order_ = inMortonOrder(of.triangles.size(), of.box(), [&](std::uint32_t t) {
         const Corners c = of.cornersOf(t);
         return (1.0 / 3) * (c[0] + c[1] + c[2]);
     });
@@ -52,7 +58,7 @@ void TriangleTree::build(const Subtree& subtree, const TriangleView& of) {
     Box& box = boxes_[subtree.node];
     if (subtree.isLeaf()) {
         const auto triangles = leaf(subtree.firstLeaf);
-        CornerBox exact = boxOf(of.cornersOf(triangles[0]));
+        BoundingBox exact = boxOf(of.cornersOf(triangles[0]));
         for (const std::uint32_t t : triangles) {
             for (const Vec3& p : of.cornersOf(t)) exact.add(p);
         }
@@ -146,4 +152,4 @@ double TriangleTree::squaredDistance(const Vec3& p, const TriangleView& of, doub
     return best;
 }
 
-}  // namespace adaptiso::detail
+}  // namespace adaptiso

@@ -1,8 +1,8 @@
-#include "Certificate.h"
+#include "adaptiso/MeshQuality/Certificate.h"
 
 #include <algorithm>
 
-namespace adaptiso::detail {
+namespace adaptiso {
 namespace {
 
 struct Interval {
@@ -105,4 +105,4 @@ bool touchAtEdgeOnly(const Corners& a, const Corners& b, double squaredSine) {
     return product <= 0 || squaredNorm(cross(u, v)) > squaredSine * squares + 1e-24 * squares;
 }
 
-}  // namespace adaptiso::detail
+}  // namespace adaptiso

@@ -36,8 +36,8 @@ TriangleMesh IntegerSoup::mesh() const {
     return mesh;
 }
 
-detail::Corners IntegerSoup::corners(int t) const {
-    detail::Corners corners;
+Corners IntegerSoup::corners(int t) const {
+    Corners corners;
     for (int c = 0; c < 3; ++c) {
         for (int a = 0; a < 3; ++a) {
             corners[c][a] = static_cast<double>(points[triangles[t][c]][a]);
