@@ -46,7 +46,8 @@ struct SelfIntersections {
 SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
                                         const SelfIntersectionOptions& options = {});
 
-/// The triangles of those pairs, ascending. \pre, \throws, cost: as findSelfIntersections()
+/// The triangles of those pairs, ascending. What is required, what is thrown and what it costs: as
+/// findSelfIntersections() has it.
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh);
 /// \pre the corners of triangles are finite
 std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh);
