@@ -411,9 +411,11 @@ void WholeWalls::join(const Lists& lists, std::vector<Made>& made) {
 double WholeWalls::simplify(const CubeCut& cut, const WallAim& aim) {
     const Lists lists = listsOf(cut, aim);
     std::vector<Made> made(cut.count());
-    parallelForPieces(cut.count(), 1, [&](std::int64_t cube, std::int64_t) {
-        made[cube] = simplifyOne(cut, lists, cube, aim);
-    });
+    std::vector<std::int64_t> sizes(cut.count());
+    for (std::int64_t cube = 0; cube < cut.count(); ++cube)
+        sizes[cube] = std::ssize(lists.own.of(cube));
+    parallelLargestFirst(
+        sizes, [&](std::int64_t cube) { made[cube] = simplifyOne(cut, lists, cube, aim); });
     double boundMm = aim.limitMm;
     for (const Made& each : made) boundMm = std::max(boundMm, each.boundMm);
     join(lists, made);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 namespace adaptiso {
 namespace detail {
@@ -22,6 +23,7 @@ struct BodyRef {
 };
 
 void runPieces(std::int64_t count, std::int64_t grain, BodyRef<std::int64_t, std::int64_t> body);
+void runLargestFirst(std::span<const std::int64_t> sizes, BodyRef<std::int64_t> body);
 void runBoth(BodyRef<> first, BodyRef<> second);
 
 }  // namespace detail
@@ -32,6 +34,13 @@ void runBoth(BodyRef<> first, BodyRef<> second);
 template <class Body>
 void parallelForPieces(std::int64_t count, std::int64_t grain, const Body& body) {
     detail::runPieces(count, grain, detail::BodyRef<std::int64_t, std::int64_t>::to(body));
+}
+
+/// Calls body(n) for every n below the number of sizes, in parallel, the largest first (of equal
+/// ones the first): no thread begins a large one when the others are about to end.
+template <class Body>
+void parallelLargestFirst(std::span<const std::int64_t> sizes, const Body& body) {
+    detail::runLargestFirst(sizes, detail::BodyRef<std::int64_t>::to(body));
 }
 
 /// Calls both, in parallel where a thread is free; they have ended when it returns.
