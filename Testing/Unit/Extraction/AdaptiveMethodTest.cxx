@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "RandomVolumes.h"
 #include "Support/AnalyticVolumes.h"
@@ -127,6 +128,39 @@ TEST(AdaptiveMethod, LeavesNoiseAtFullResolution) {
     fewer.reduction = 0.2;
     EXPECT_LT(extractWith(volume, 127.5, fewer).mesh.triangles.size(),
               full.mesh.triangles.size() * 81 / 100);
+}
+
+TEST(AdaptiveMethod, SimplifiesParallelSheetsThatFillTheVolume) {
+    ImageGeometry geometry;
+    geometry.size = {36, 34, 38};
+    const auto sheetsOf = [&](const Vec3& slope, double period) {
+        std::vector<float> samples;
+        for (std::int64_t z = 0; z < geometry.size[2]; ++z) {
+            for (std::int64_t y = 0; y < geometry.size[1]; ++y) {
+                for (std::int64_t x = 0; x < geometry.size[0]; ++x) {
+                    const double at = dot(slope, {static_cast<double>(x), static_cast<double>(y),
+                                                  static_cast<double>(z)});
+                    // from sheet to sheet as straight as can be
+                    samples.push_back(
+                        static_cast<float>(std::abs(std::remainder(at, period)) - period / 4));
+                }
+            }
+        }
+        return Volume::fromSamples(std::move(samples), geometry);
+    };
+    // along the lattice and tilted, one and two voxels apart
+    for (const auto& [slope, period, part] :
+         {std::tuple{Vec3{0, 0, 1}, 2.0, 0.02}, {Vec3{0.31, 0.17, 1}, 4.0, 0.2}}) {
+        const Volume volume = sheetsOf(slope, period);
+        const Extraction full = extractFrom(volume, 0.1, Method::MarchingCubes, 4, Border::Closed);
+        const Extraction ours = extractWith(volume, 0.1, {});
+        EXPECT_LT(static_cast<double>(ours.mesh.triangles.size()),
+                  part * static_cast<double>(full.mesh.triangles.size()))
+            << period;
+        EXPECT_TRUE(isSound(ours.mesh));
+        EXPECT_EQ(findSelfIntersections(ours.mesh).pairCount, 0);
+        expectWithin(ours.mesh, full.mesh, *ours.statistics.errorBoundMm);
+    }
 }
 
 TEST(AdaptiveMethod, ReachesACountWhereFewPatchesTellForAll) {

@@ -153,16 +153,20 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, const N
     }
 }
 
-/// Half of the cells are crossed, and nearly all of the surface has other parts of it near: there
-/// is nothing flat to simplify, and each change would take long to prove.
-bool isNoise(const FineSurface& fine) {
-    if (static_cast<double>(fine.cells.size()) <
-        kNoiseCrossed * static_cast<double>(fine.cellsSeen)) {
+/// Half of the cells are crossed, nearly all of the surface has other parts of it near, and most of
+/// it bends: there is nothing flat to simplify, and each change would take long to prove.
+/// \param middles  samples in the middle of triangles
+bool isNoise(const FineSurface& fine, std::size_t middles) {
+    const auto isPart = [](double part, std::size_t of, std::size_t all) {
+        return static_cast<double>(of) >= part * static_cast<double>(all);
+    };
+    if (!isPart(kNoiseCrossed, fine.cells.size(), static_cast<std::size_t>(fine.cellsSeen)) ||
+        !isPart(kNoiseBent, middles, fine.triangles.size())) {
         return false;
     }
     const auto single = std::count_if(fine.vertices.begin(), fine.vertices.end(),
                                       [](const FineVertex& v) { return v.isSingleSheet; });
-    return static_cast<double>(single) < kNoiseSingle * static_cast<double>(fine.vertices.size());
+    return !isPart(kNoiseSingle, static_cast<std::size_t>(single), fine.vertices.size());
 }
 
 /// Vertices whose triangles all lie in one plane: their area vectors add up to their area.
@@ -231,7 +235,8 @@ BrickSurface simplifyBrick(const FineSurface& fine, const Index3& lowIndex,
         const bool isOutside = moving != nullptr && !moving->contains(index);
         if (isOutside || tight.isFrozen(index)) patch.states[v] = Patch::State::Final;
     }
-    if (limits.leavesNoise && isNoise(fine)) {
+    const std::size_t middles = patch.samples.size() - (fine.vertices.size() - result.walls.size());
+    if (limits.leavesNoise && isNoise(fine, middles)) {
         patch.states.assign(patch.points.size(), Patch::State::Final);
     } else {
         PatchSimplifier simplifier(patch, frame, limits);
