@@ -104,8 +104,8 @@ SimplifiedPart extractSimplifiedTile(const VolumeView& window, const Index3& fir
 /// \param mesh     points in continuous indices of the volume of `geometry`, each used
 /// \param isKept   of each triangle: it stays as it is. Empty: those that touch the mesh's border
 /// \param box      in continuous indices: no new vertex lies outside it, or on it. The others that
-/// may move lie in it \return  points that stay keep their bits and normals; the others' normals
-/// are interpolated.
+///                 may move lie in it
+/// \return  points that stay keep their bits and normals; the others' normals are interpolated.
 ///          Nothing crosses anything, also not what was kept
 /// \pre  mesh crosses nothing   \throws InvalidInput  axes are not at right angles
 /// (canTileAdaptive) The same input gives the same bytes, whatever the number of threads.

@@ -4,7 +4,7 @@
 
 namespace adaptiso {
 
-/// 0.8 degrees: sharper folds are refused while simplifying.
+/// Of 0.8 degrees: triangles at an edge with a smaller angle between them count as folded.
 inline constexpr double kSquaredSineOfFold = 1.95e-4;
 
 // Conservative proofs that two triangles of a mesh do not cross: `true` is certain, `false` means
