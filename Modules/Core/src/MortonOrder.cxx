@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "adaptiso/Core/HugePages.h"
+
 namespace adaptiso::detail {
 
 MortonCurve::MortonCurve(const BoundingBox& box) : low_(box.minimum) {
@@ -18,7 +20,8 @@ MortonCurve::MortonCurve(const BoundingBox& box) : low_(box.minimum) {
 std::vector<std::uint32_t> sortedByKeys(std::vector<std::uint64_t> keys) {
     constexpr std::int64_t kPiece = 1 << 14;
     tbb::parallel_sort(keys.begin(), keys.end());
-    std::vector<std::uint32_t> numbers(keys.size());
+    std::vector<std::uint32_t> numbers;
+    assignInHugePages(numbers, keys.size());
     parallelForPieces(std::ssize(keys), kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i) numbers[i] = static_cast<std::uint32_t>(keys[i]);
     });

@@ -8,6 +8,7 @@
 
 #include "ExactTriangle.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/HugePages.h"
 #include "adaptiso/MeshQuality/Certificate.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
@@ -27,8 +28,8 @@ struct FiniteTriangles {
                                std::to_string(kMostNumbers) + " points or triangles");
         }
         const auto pointCount = static_cast<std::int64_t>(mesh.points.size());
-        triangles.reserve(mesh.triangles.size());
-        numbers.reserve(mesh.triangles.size());
+        reserveInHugePages(triangles, mesh.triangles.size());
+        reserveInHugePages(numbers, mesh.triangles.size());
         for (std::int64_t n = 0; n < std::ssize(mesh.triangles); ++n) {
             const auto& [a, b, c] = mesh.triangles[n];
             for (const VertexId v : {a, b, c}) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/MortonOrder.h"
 #include "adaptiso/Core/Parallel.h"
 
@@ -49,7 +50,7 @@ TriangleTree::TriangleTree(const TriangleView& of) {
         const Corners c = of.cornersOf(t);
         return (1.0 / 3) * (c[0] + c[1] + c[2]);
     });
-    boxes_.resize(2 * leafCount() - 1);
+    assignInHugePages(boxes_, static_cast<std::size_t>(2 * leafCount() - 1));
     build({0, 0, leafCount()}, of);
 }
 
@@ -77,8 +78,8 @@ void TriangleTree::build(const Subtree& subtree, const TriangleView& of) {
     box.add(boxes_[right.node]);
 }
 
-TriangleTree::Pairs::Pairs(const TriangleTree& tree, const TriangleView& of)
-    : tree_(tree), leaves_(tree.leafCount()) {
+TriangleTree::Pairs::Pairs(const TriangleTree& tree, const TriangleView& of) : tree_(tree) {
+    assignInHugePages(leaves_, static_cast<std::size_t>(tree.leafCount()));
     parallelForPieces(tree.leafCount(), kPiece / kLeafTriangles,
                       [&](std::int64_t begin, std::int64_t end) {
                           for (std::int64_t number = begin; number < end; ++number) {

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "adaptiso/Core/HugePages.h"
+
 namespace adaptiso {
 
 /// Items in numbered buckets, sorted by counting: those of a bucket lie side by side, in the order
@@ -23,10 +25,10 @@ public:
     /// As the constructor; uses the memory that is there.
     template <class GiveAll>
     void assign(std::size_t count, const GiveAll& giveAll) {
-        begin_.assign(count + 2, 0);
+        assignInHugePages(begin_, count + 2);
         giveAll([&](std::size_t bucket, const Item&) { ++begin_[bucket + 2]; });
         for (std::size_t b = 2; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
-        items_.resize(static_cast<std::size_t>(begin_.back()));
+        assignInHugePages(items_, static_cast<std::size_t>(begin_.back()));
         // begin_[bucket + 1] grows to the bucket's end
         giveAll([&](std::size_t bucket, const Item& item) { items_[begin_[bucket + 1]++] = item; });
     }

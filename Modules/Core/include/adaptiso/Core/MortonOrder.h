@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "adaptiso/Core/BoundingBox.h"
+#include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso {
@@ -51,7 +52,8 @@ std::vector<std::uint32_t> inMortonOrder(std::size_t count, const BoundingBox& b
                                          const PointOf& pointOf) {
     constexpr std::int64_t kPiece = 1 << 13;
     const detail::MortonCurve curve(box);
-    std::vector<std::uint64_t> keys(count);
+    std::vector<std::uint64_t> keys;
+    assignInHugePages(keys, count);
     parallelForPieces(static_cast<std::int64_t>(count), kPiece,
                       [&](std::int64_t begin, std::int64_t end) {
                           for (std::int64_t i = begin; i < end; ++i) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/proof/ErrorBound.h"
 #include "adaptive/rounds/BorderMarks.h"
@@ -38,8 +39,8 @@ void dropUnusedVertices(TriangleMesh& mesh) {
 TriangleMesh toMesh(const SimplifiedSurface& surface, const ImageGeometry& geometry,
                     const MetricFrame& frame, const LatticeSampler& sampler) {
     TriangleMesh mesh;
-    mesh.points.resize(surface.points.size());
-    mesh.normals.resize(surface.points.size());
+    assignInHugePages(mesh.points, surface.points.size());
+    assignInHugePages(mesh.normals, surface.points.size());
     parallelForPieces(std::ssize(mesh.points), kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t v = begin; v < end; ++v) {
             const Vec3 index = frame.toIndex(surface.points[v]);
@@ -47,7 +48,7 @@ TriangleMesh toMesh(const SimplifiedSurface& surface, const ImageGeometry& geome
             mesh.normals[v] = toNormal(sampler.normalAt(index));
         }
     });
-    mesh.triangles.reserve(surface.triangles.size());
+    reserveInHugePages(mesh.triangles, surface.triangles.size());
     const bool isMirrored = geometry.isMirrored();
     for (const auto& t : surface.triangles) {
         const auto id = [&](int c) { return static_cast<VertexId>(t[c]); };

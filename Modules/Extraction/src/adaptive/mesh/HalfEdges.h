@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/mesh/OrderedBuckets.h"
 
@@ -88,7 +89,7 @@ public:
     /// The opposite of each half-edge, or kNone. Where several run along an edge they are matched
     /// in ascending order.
     void match(std::vector<Index>& twin) const {
-        twin.resize(3 * triangles_.size());
+        assignInHugePages(twin, 3 * triangles_.size());
         forEachFan([&](std::span<const Spoke> spokes) { matchFan(spokes, twin); });
     }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {
@@ -24,7 +25,7 @@ public:
     template <class Give>
     void assign(std::size_t count, std::size_t givers, const Give& give) {
         constexpr std::size_t kMany = 1 << 15;  // below, threads cost more than they save
-        begin_.assign(count + 2, 0);
+        assignInHugePages(begin_, count + 2);
         if (givers < kMany) {
             assignInOrder(givers, give);
         } else {
@@ -70,7 +71,7 @@ public:
 private:
     void sumUp() {
         for (std::size_t b = 2; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
-        items_.resize(static_cast<std::size_t>(begin_.back()));
+        assignInHugePages(items_, static_cast<std::size_t>(begin_.back()));
     }
 
     template <class Give>

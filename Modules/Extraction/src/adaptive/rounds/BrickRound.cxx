@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/Interruption.h"
 #include "adaptive/Parameters.h"
 
@@ -321,8 +322,9 @@ private:
             const std::size_t least = list.size() + more;
             if (least <= list.capacity()) return;
             const double needed = static_cast<double>(least);
-            list.reserve(static_cast<std::size_t>(std::clamp(
-                kRoomToGrow * needed / share, kLeastGrowth * needed, kMostGrowth * needed)));
+            const double room = std::clamp(kRoomToGrow * needed / share, kLeastGrowth * needed,
+                                           kMostGrowth * needed);
+            reserveInHugePages(list, static_cast<std::size_t>(room));
         };
         grow(whole_.points, brick.points.size());
         grow(whole_.states, brick.points.size());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {
@@ -92,8 +93,6 @@ PatchGroups::PatchGroups(const SimplifiedSurface& surface, const PatchCut& cut,
       cubes_(surface, cut, frame),
       cubeOfVertex_(cubesOfVertices()),
       cubeOfTriangle_(cubesOfTriangles()),
-      placeOfVertex_(surface.points.size()),
-      placeOfTriangle_(surface.triangles.size()),
       obstacles_(cubes_.count()) {
     tbb::parallel_invoke([&] { groupVertices(); }, [&] { groupTriangles(); },
                          [&] {
@@ -105,7 +104,8 @@ PatchGroups::PatchGroups(const SimplifiedSurface& surface, const PatchCut& cut,
 }
 
 std::vector<std::uint32_t> PatchGroups::cubesOfVertices() const {
-    std::vector<std::uint32_t> cubes(surface_.points.size());
+    std::vector<std::uint32_t> cubes;
+    assignInHugePages(cubes, surface_.points.size());
     parallelForPieces(static_cast<std::int64_t>(cubes.size()), kPiece,
                       [&](std::int64_t begin, std::int64_t end) {
                           for (std::int64_t v = begin; v < end; ++v) {
@@ -116,7 +116,8 @@ std::vector<std::uint32_t> PatchGroups::cubesOfVertices() const {
 }
 
 std::vector<std::uint32_t> PatchGroups::cubesOfTriangles() const {
-    std::vector<std::uint32_t> cubes(surface_.triangles.size());
+    std::vector<std::uint32_t> cubes;
+    assignInHugePages(cubes, surface_.triangles.size());
     parallelForPieces(
         static_cast<std::int64_t>(cubes.size()), kPiece, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t t = begin; t < end; ++t) {
@@ -132,12 +133,14 @@ std::vector<std::uint32_t> PatchGroups::cubesOfTriangles() const {
 void PatchGroups::groupVertices() {
     vertices_ =
         Groups(count(), surface_.points.size(), [&](std::size_t v) { return cubeOfVertex_[v]; });
+    assignInHugePages(placeOfVertex_, surface_.points.size());
     vertices_.number(placeOfVertex_);
 }
 
 void PatchGroups::groupTriangles() {
     triangles_ = Groups(count(), surface_.triangles.size(),
                         [&](std::size_t t) { return cubeOfTriangle_[t]; });
+    assignInHugePages(placeOfTriangle_, surface_.triangles.size());
     triangles_.number(placeOfTriangle_);
     if (isOne()) return;
     for (std::uint32_t t = 0; t < cubeOfTriangle_.size(); ++t) {

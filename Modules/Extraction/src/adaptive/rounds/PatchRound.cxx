@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/Parameters.h"
 
@@ -26,8 +27,9 @@ void passOn(const std::vector<Number>& newVertex, const std::vector<Number>& mer
 /// \param mergedInto  of each vertex, in this round; empty where the surface keeps no heirs
 void removeGone(SimplifiedSurface& surface, const std::vector<Number>& mergedInto) {
     constexpr Number kGone = SimplifiedSurface::kGone;
-    std::vector<Number> newTriangle(surface.triangles.size()),
-        newVertex(surface.points.size(), kGone);
+    std::vector<Number> newTriangle, newVertex;
+    assignInHugePages(newTriangle, surface.triangles.size());
+    assignInHugePages(newVertex, surface.points.size(), kGone);
     Number triangles = 0, vertices = 0;
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
         if (surface.triangles[t][0] == kGone) continue;
@@ -43,12 +45,12 @@ void removeGone(SimplifiedSurface& surface, const std::vector<Number>& mergedInt
             if (newVertex[v] != kGone) members[newVertex[v]] = members[v];
         }
         members.resize(vertices);
-        members.shrink_to_fit();
+        shrinkInHugePages(members);
     };
     tbb::parallel_invoke(
         [&] {
             surface.triangles.resize(triangles);
-            surface.triangles.shrink_to_fit();
+            shrinkInHugePages(surface.triangles);
             for (auto& t : surface.triangles) {
                 for (Number& v : t) v = newVertex[v];
             }
