@@ -67,8 +67,8 @@ bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& change
     double sharpest = 0;  // squared cosine
     for (int i = 0; i < star.count; ++i) {
         ChangedStar::Wedge& w = changed.wedge[i];
-        const Vec3 after = cross(w.e1, w.e2);
-        const double squared = squaredNorm(after), area2 = std::sqrt(squared);
+        const Vec3 after = w.area2 = cross(w.e1, w.e2);
+        const double squared = squaredNorm(after), area2 = w.length = std::sqrt(squared);
         w.a11 = squaredNorm(w.e1);
         w.a12 = dot(w.e1, w.e2);
         w.a22 = squaredNorm(w.e2);

@@ -11,6 +11,8 @@ struct ChangedStar {
     /// A triangle (vertex, ring[i], ring[i + 1]), ready for distances.
     struct Wedge {
         Vec3 e1, e2;           ///< its sides from the vertex
+        Vec3 area2;            ///< twice its area vector
+        double length;         ///< of that
         double a11, a12, a22;  ///< products of the sides
         double inverse;        ///< 1 / (a11 a22 - a12 a12)
     };

@@ -12,6 +12,8 @@ namespace adaptiso::detail {
 namespace {
 
 constexpr std::uint32_t kNoEntry = 0xFFFFFFFF;
+/// About what a patch's triangles take in the end, so that the list rarely grows.
+constexpr std::size_t kEntriesPerTriangle = 3;
 
 }  // namespace
 
@@ -52,9 +54,9 @@ std::vector<std::uint8_t> CrossingGuard::trianglesInSingleSheets() const {
 }
 
 void CrossingGuard::buildGrid() {
-    stamp_.assign(patch_.triangles.size(), 0);
-    box_.resize(patch_.triangles.size());
-    hasBox_.assign(patch_.triangles.size(), 0);
+    known_.resize(patch_.triangles.size());
+    entered_.resize(patch_.triangles.size());
+    entries_.reserve(kEntriesPerTriangle * patch_.triangles.size());
     // no star reaches beyond the patch's own triangles; what lies outside is in the outermost cubes
     std::optional<BoundingBox> own;
     for (std::uint32_t t = 0; t < patch_.ownTriangles; ++t) {
@@ -94,31 +96,39 @@ CrossingGuard::Cubes CrossingGuard::cubesOf(const Box& box) const {
     return cubes;
 }
 
+/// Calls f(number of the cube at x = 0, y, z) for the rows along x.
 template <class F>
-void CrossingGuard::forEachCube(const Cubes& cubes, const F& f) const {
+void CrossingGuard::forEachRow(const Cubes& cubes, const F& f) const {
     for (std::int32_t z = cubes.first[2]; z <= cubes.last[2]; ++z) {
         for (std::int32_t y = cubes.first[1]; y <= cubes.last[1]; ++y) {
-            const std::size_t row =
-                static_cast<std::size_t>(count_[0]) *
-                static_cast<std::size_t>(y + static_cast<std::int64_t>(count_[1]) * z);
-            for (std::int32_t x = cubes.first[0]; x <= cubes.last[0]; ++x) f(row + x);
+            f(static_cast<std::size_t>(count_[0]) *
+                  static_cast<std::size_t>(y + static_cast<std::int64_t>(count_[1]) * z),
+              y, z);
         }
     }
 }
 
+/// Lists a triangle in the cubes that do not have it since it was last entered.
 void CrossingGuard::enter(std::uint32_t triangle) {
-    forEachCube(cubesOf(boxAt(triangle)), [&](std::size_t cube) {
-        entries_.push_back({triangle, firstEntry_[cube]});
-        firstEntry_[cube] = static_cast<std::uint32_t>(entries_.size() - 1);
+    const Cubes cubes = cubesOf(boxAt(triangle)), before = entered_[triangle];
+    entered_[triangle] = cubes;
+    forEachRow(cubes, [&](std::size_t row, std::int32_t y, std::int32_t z) {
+        const bool hadRow = before.hasRow(y, z);
+        for (std::int32_t x = cubes.first[0]; x <= cubes.last[0]; ++x) {
+            if (hadRow && before.first[0] <= x && x <= before.last[0]) continue;
+            entries_.push_back({triangle, firstEntry_[row + x]});
+            firstEntry_[row + x] = static_cast<std::uint32_t>(entries_.size() - 1);
+        }
     });
 }
 
 const CrossingGuard::Box& CrossingGuard::boxAt(std::uint32_t triangle) {
-    if (hasBox_[triangle] == 0) {
-        box_[triangle] = rounded(boxOf(cornersOf(triangle)));
-        hasBox_[triangle] = 1;
+    Known& known = known_[triangle];
+    if (!known.hasBox) {
+        known.box = rounded(boxOf(cornersOf(triangle)));
+        known.hasBox = true;
     }
-    return box_[triangle];
+    return known.box;
 }
 
 Corners CrossingGuard::cornersOf(std::uint32_t triangle) const {
@@ -136,31 +146,32 @@ CrossingGuard::Box CrossingGuard::rounded(const BoundingBox& box) {
 }
 
 void CrossingGuard::commit(const ChangedStar& changed, bool isSingleSheet) {
-    if (box_.empty()) return;
+    if (known_.empty()) return;
     const Star& star = changed.star;
     for (int i = 0; i < star.count; ++i) {
         const std::uint32_t t = star.triangle[i];
-        hasBox_[t] = 0;
+        known_[t].hasBox = false;
         if (isSingleSheet && !looksEverywhere_) continue;
-        box_[t] = rounded(
+        known_[t].box = rounded(
             boxOf({changed.vertex, patch_.points[star.ring[i]], patch_.points[star.ring[i + 1]]}));
-        hasBox_[t] = 1;
+        known_[t].hasBox = true;
         enter(t);
     }
     constexpr float kFar = std::numeric_limits<float>::max();
     for (int i = 0; i < star.removedCount; ++i) {  // some cubes still list them
-        box_[star.removed[i]] = {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
-        hasBox_[star.removed[i]] = 1;
+        Known& gone = known_[star.removed[i]];
+        gone.box = {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+        gone.hasBox = true;
     }
 }
 
 bool CrossingGuard::crossesNothing(const ChangedStar& changed) {
     if (!changed.isGraph && !wedgesAreClear(changed)) return false;
-    if (box_.empty()) buildGrid();
+    if (known_.empty()) buildGrid();
     collectNear(changed);
     const int n = changed.star.count;
     for (const std::uint32_t other : near_) {
-        const Box& box = box_[other];
+        const Box& box = known_[other].box;
         std::array<std::uint8_t, Star::kMost> overlaps;
         for (int i = 0; i < n; ++i) {
             overlaps[i] = static_cast<std::uint8_t>(
@@ -216,7 +227,7 @@ bool CrossingGuard::fanIsClear(const ChangedStar& changed, int at) const {
     std::uint32_t h = begin;
     do {
         const std::uint32_t inwards = PatchTopology::previous(h);
-        if (stamp_[h / 3] != now_) {
+        if (!isSeen(h / 3)) {
             if (count == kFanMost) return false;
             add(patch_.points[topology_.to(h)] - centre,
                 patch_.points[topology_.from(inwards)] - centre);
@@ -302,10 +313,10 @@ void CrossingGuard::collectNear(const ChangedStar& changed) {
             wedgeHigh_[a][i] = box.high[a];
         }
         whole.add(r);
-        stamp_[star.triangle[i]] = now_;
+        known_[star.triangle[i]].stamp = now_;
     }
     whole.add(patch_.points[star.ring[star.count]]);
-    for (int i = 0; i < star.removedCount; ++i) stamp_[star.removed[i]] = now_;
+    for (int i = 0; i < star.removedCount; ++i) known_[star.removed[i]].stamp = now_;
     whole.widen(gapMm_);
     starBox_ = rounded(whole);
     for (int i = 0; i < star.count; ++i) fanIsClear_[i] = fanIsClear(changed, i);
@@ -322,16 +333,19 @@ void CrossingGuard::collectAroundRing(const Star& star) {
 }
 
 void CrossingGuard::collectFromGrid() {
-    forEachCube(cubesOf(starBox_), [&](std::size_t cube) {
-        for (std::uint32_t e = firstEntry_[cube]; e != kNoEntry; e = entries_[e].next) {
-            addNear(entries_[e].triangle);
+    const Cubes cubes = cubesOf(starBox_);
+    forEachRow(cubes, [&](std::size_t row, std::int32_t, std::int32_t) {
+        for (std::int32_t x = cubes.first[0]; x <= cubes.last[0]; ++x) {
+            for (std::uint32_t e = firstEntry_[row + x]; e != kNoEntry; e = entries_[e].next) {
+                addNear(entries_[e].triangle);
+            }
         }
     });
 }
 
 void CrossingGuard::addNear(std::uint32_t triangle) {
-    if (stamp_[triangle] == now_) return;
-    stamp_[triangle] = now_;
+    if (isSeen(triangle)) return;
+    known_[triangle].stamp = now_;
     if (boxAt(triangle).overlaps(starBox_)) near_.push_back(triangle);
 }
 

@@ -48,18 +48,28 @@ private:
     };
     static Box rounded(const BoundingBox& box);
 
-    /// The cubes that a box overlaps.
+    /// The cubes that a box overlaps; first the lowest along each axis.
     struct Cubes {
-        std::array<std::int32_t, 3> first, last;
+        std::array<std::int32_t, 3> first{0, 0, 0}, last{-1, -1, -1};
+        bool hasRow(std::int32_t y, std::int32_t z) const {
+            return first[1] <= y && y <= last[1] && first[2] <= z && z <= last[2];
+        }
+    };
+    /// What is kept of a triangle, side by side: a search looks at all of it.
+    struct Known {
+        Box box;
+        bool hasBox = false;      ///< it is known
+        std::uint32_t stamp = 0;  ///< of the last search that has seen it
     };
     struct Entry {
         std::uint32_t triangle, next;
     };
+    bool isSeen(std::uint32_t triangle) const { return known_[triangle].stamp == now_; }
     void buildGrid();
     std::vector<std::uint8_t> trianglesInSingleSheets() const;
     Cubes cubesOf(const Box& box) const;
     template <class F>
-    void forEachCube(const Cubes& cubes, const F& f) const;
+    void forEachRow(const Cubes& cubes, const F& f) const;
     void enter(std::uint32_t triangle);
     const Box& boxAt(std::uint32_t triangle);
     Corners cornersOf(std::uint32_t triangle) const;
@@ -80,11 +90,10 @@ private:
     std::array<std::int32_t, 3> count_{};    ///< of its cubes, by axis
     std::vector<std::uint32_t> firstEntry_;  ///< of each cube: a list
     std::vector<Entry> entries_;             ///< some are of triangles that have changed since
-    std::vector<std::uint32_t> stamp_;       ///< of triangles seen in this search
-    std::uint32_t now_ = 0;
+    std::vector<Cubes> entered_;  ///< of each triangle: those that it was last entered in
+    std::vector<Known> known_;    ///< of each triangle; empty until the grid is built
+    std::uint32_t now_ = 0;       ///< the search
     std::vector<std::uint32_t> near_;
-    std::vector<Box> box_;              ///< of each triangle, where it is known
-    std::vector<std::uint8_t> hasBox_;  ///< it is known
     Box starBox_{};
     std::array<std::array<float, Star::kMost>, 3> wedgeLow_{}, wedgeHigh_{};  ///< by axis
     std::array<bool, Star::kMost + 1> fanIsClear_{};  ///< of each vertex of the ring

@@ -226,16 +226,12 @@ const Sample& ErrorTracker::sampleNearest(const Vec3& p, const SampleAssignment&
 bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, const SampleAssignment& assignment,
                                  double maxDistanceMm) const {
     const int n = changed.star.count;
-    const auto normal = [&](int i) {
-        const ChangedStar::Wedge& w = changed.wedge[i];
-        return std::sqrt(w.inverse) * cross(w.e1, w.e2);
-    };
     const int first = changed.star.isOpen ? 1 : 0;  // the spoke between two triangles
-    Vec3 before = normal((first + n - 1) % n);
     for (int i = first; i < n; ++i) {
-        const Vec3 after = normal(i);
-        const bool isSharp = dot(before, after) < kRidgeCosine;
-        before = after;
+        const ChangedStar::Wedge &before = changed.wedge[i == 0 ? n - 1 : i - 1],
+                                 &after = changed.wedge[i];
+        const bool isSharp =
+            dot(before.area2, after.area2) < kRidgeCosine * before.length * after.length;
         if (!isSharp) continue;
         const Vec3& spoke = changed.wedge[i].e1;
         const int steps =

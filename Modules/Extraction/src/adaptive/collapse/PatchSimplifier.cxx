@@ -234,7 +234,7 @@ Vec3 PatchSimplifier::fittedPlace(const ChangedStar& star, const Quadric& own) c
     sum.b = scale * (own.timesA(star.vertex) + own.b);
     for (int i = 0; i < star.star.count; ++i) {
         const ChangedStar::Wedge& w = star.wedge[i];
-        const Vec3 normal = std::sqrt(w.inverse) * cross(w.e1, w.e2);
+        const Vec3 normal = (1 / w.length) * w.area2;
         for (std::uint32_t s = errors_.first(star.star.triangle[i]); s != ErrorTracker::kNone;
              s = errors_.next(s)) {
             const Vec3 d = patch_.samples[s].point() - star.vertex;
