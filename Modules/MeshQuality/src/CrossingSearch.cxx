@@ -22,14 +22,21 @@ struct FiniteTriangles {
     std::vector<TriangleView::Triangle> triangles;
     std::vector<std::int64_t> numbers;  ///< in the mesh
 
-    explicit FiniteTriangles(const TriangleMesh& mesh) {
+    explicit FiniteTriangles(const TriangleMesh& mesh)
+        : FiniteTriangles(mesh, [](std::int64_t) { return true; }) {}
+
+    /// \param isMeant  isMeant(number): the triangle is one of them
+    template <class IsMeant>
+    FiniteTriangles(const TriangleMesh& mesh, const IsMeant& isMeant) {
         if (mesh.points.size() > kMostNumbers || mesh.triangles.size() > kMostNumbers) {
             throw InvalidInput("findSelfIntersections: the mesh has more than " +
                                std::to_string(kMostNumbers) + " points or triangles");
         }
         const auto pointCount = static_cast<std::int64_t>(mesh.points.size());
-        reserveInHugePages(triangles, mesh.triangles.size());
-        reserveInHugePages(numbers, mesh.triangles.size());
+        std::size_t count = 0;
+        for (std::int64_t n = 0; n < std::ssize(mesh.triangles); ++n) count += isMeant(n) ? 1 : 0;
+        reserveInHugePages(triangles, count);
+        reserveInHugePages(numbers, count);
         for (std::int64_t n = 0; n < std::ssize(mesh.triangles); ++n) {
             const auto& [a, b, c] = mesh.triangles[n];
             for (const VertexId v : {a, b, c}) {
@@ -38,13 +45,138 @@ struct FiniteTriangles {
                                    " names vertex " + std::to_string(v) + " of a mesh with " +
                                    std::to_string(pointCount) + " points");
             }
-            if (!areFinite(cornersOf(mesh, n))) continue;
+            if (!isMeant(n) || !areFinite(cornersOf(mesh, n))) continue;
             triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
                                  static_cast<std::uint32_t>(c)});
             numbers.push_back(n);
         }
     }
+
+    TriangleView view(const TriangleMesh& of) const { return {of.points, triangles}; }
 };
+
+/// What rounding of coordinates in a box may hide.
+double roundingIn(const BoundingBox& box) {
+    return 1e-13 * (norm(box.maximum) + norm(box.minimum));
+}
+
+/// A piece's triangles that cross others, as they come.
+using OfPieces = std::vector<std::vector<std::int64_t>>;
+
+/// All of them, ascending, each once.
+std::vector<std::int64_t> joined(const OfPieces& pieces) {
+    std::vector<std::int64_t> all;
+    for (const auto& some : pieces) all.insert(all.end(), some.begin(), some.end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+}
+
+/// \param isAsked  see CrossingSearch
+template <class IsAsked>
+std::vector<std::int64_t> crossingAmong(const TriangleView& mesh, const IsAsked& isAsked) {
+    const CrossingSearch search(mesh);
+    OfPieces ofPiece(search.pieceCount());
+    search.forEachPair(isAsked, [&](std::int64_t piece, std::uint32_t a, std::uint32_t b) {
+        ofPiece[piece].insert(ofPiece[piece].end(), {a, b});
+    });
+    return joined(ofPiece);
+}
+
+/// Triangles by their cells. Marching cubes makes those of a cell one after the other: nearly
+/// always they lie side by side already.
+class CellRuns {
+public:
+    explicit CellRuns(std::span<const std::uint64_t> cells) {
+        for (std::size_t t = 0; t < cells.size(); ++t) {
+            if (cells[t] == kNoCell) continue;
+            const bool goesOn = t > 0 && cells[t - 1] == cells[t];
+            if (goesOn) {
+                ++runs_.back().end;
+            } else {
+                runs_.push_back({cells[t], t, t + 1});
+            }
+        }
+        std::sort(runs_.begin(), runs_.end(), [](const Run& a, const Run& b) {
+            return a.cell != b.cell ? a.cell < b.cell : a.begin < b.begin;
+        });
+    }
+
+    std::int64_t count() const { return std::ssize(runs_); }
+
+    /// \param triangles  gets those of the cell whose first run it is; none for another run
+    void collect(std::int64_t run, std::vector<std::int64_t>& triangles) const {
+        triangles.clear();
+        const std::uint64_t cell = runs_[run].cell;
+        if (run > 0 && runs_[run - 1].cell == cell) return;
+        for (std::int64_t r = run; r < count() && runs_[r].cell == cell; ++r) {
+            for (std::size_t t = runs_[r].begin; t < runs_[r].end; ++t) {
+                triangles.push_back(static_cast<std::int64_t>(t));
+            }
+        }
+    }
+
+private:
+    struct Run {
+        std::uint64_t cell;
+        std::size_t begin, end;
+    };
+    std::vector<Run> runs_;
+};
+
+/// Those of the same cell that cross.
+std::vector<std::int64_t> crossingWithinCells(const TriangleMesh& mesh,
+                                              std::span<const std::uint64_t> cells) {
+    constexpr std::int64_t kPiece = 1 << 12;  // runs
+    const CellRuns runs(cells);
+    const double gap = roundingIn(TriangleView{mesh.points, {}}.box());
+    const auto cross = [&](std::int64_t a, std::int64_t b) {
+        const Triangle &s = mesh.triangles[a], &t = mesh.triangles[b];
+        if (areClear(mesh.points, s, t, gap, 0)) return false;
+        const Corners first = cornersOf(mesh, a), second = cornersOf(mesh, b);
+        return areFinite(first) && areFinite(second) && trianglesCross(first, second);
+    };
+    OfPieces ofPiece((runs.count() + kPiece - 1) / kPiece);
+    parallelForPieces(runs.count(), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        std::vector<std::int64_t> triangles;
+        for (std::int64_t run = begin; run < end; ++run) {
+            runs.collect(run, triangles);
+            for (std::size_t i = 0; i < triangles.size(); ++i) {
+                for (std::size_t j = 0; j < i; ++j) {
+                    if (!cross(triangles[i], triangles[j])) continue;
+                    ofPiece[begin / kPiece].insert(ofPiece[begin / kPiece].end(),
+                                                   {triangles[i], triangles[j]});
+                }
+            }
+        }
+    });
+    return joined(ofPiece);
+}
+
+/// Those that cross a triangle without a cell, and these.
+std::vector<std::int64_t> crossingWithoutCells(const TriangleMesh& mesh,
+                                               std::span<const std::uint64_t> cells) {
+    constexpr std::int64_t kPiece = 1 << 13;
+    const FiniteTriangles free(mesh, [&](std::int64_t t) { return cells[t] == kNoCell; });
+    if (free.triangles.empty()) return {};
+    const TriangleView view = free.view(mesh);
+    const TriangleTree tree(view);
+    std::vector<std::uint8_t> isNear(mesh.triangles.size(), 1);
+    parallelForPieces(std::ssize(isNear), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t t = begin; t < end; ++t) {
+            if (cells[t] == kNoCell) continue;
+            isNear[t] = 0;
+            tree.forEachOverlap(boxOf(cornersOf(mesh, t)), view,
+                                [&](std::uint32_t) { isNear[t] = 1; });
+        }
+    });
+    const FiniteTriangles near(mesh, [&](std::int64_t t) { return isNear[t] != 0; });
+    const auto isFree = [&](std::uint32_t t) { return cells[near.numbers[t]] == kNoCell; };
+    std::vector<std::int64_t> crossing = crossingAmong(
+        near.view(mesh), [&](std::uint32_t a, std::uint32_t b) { return isFree(a) || isFree(b); });
+    for (std::int64_t& t : crossing) t = near.numbers[t];
+    return crossing;
+}
 
 /// Leaves the `count` smallest, in any order.
 void keepFirst(std::vector<TrianglePair>& pairs, std::int64_t count) {
@@ -58,60 +190,30 @@ void keepFirst(std::vector<TrianglePair>& pairs, std::int64_t count) {
 CrossingSearch::CrossingSearch(const TriangleView& mesh) : mesh_(mesh) {
     parallelInvoke([&] { tree_ = TriangleTree(mesh); },
                    [&] { fans_.emplace(mesh.points, mesh.triangles); });
-    const BoundingBox box = mesh.box();
-    gap_ = mesh.triangles.empty() ? 0 : 1e-13 * (norm(box.maximum) + norm(box.minimum));
+    gap_ = mesh.triangles.empty() ? 0 : roundingIn(mesh.box());
 }
 
 bool CrossingSearch::cross(std::uint32_t a, std::uint32_t b) const {
-    return !areClear(a, b) && trianglesCross(mesh_.cornersOf(a), mesh_.cornersOf(b));
-}
-
-/// Two triangles that do not cross, for sure.
-bool CrossingSearch::areClear(std::uint32_t a, std::uint32_t b) const {
     const TriangleView::Triangle &s = mesh_.triangles[a], &t = mesh_.triangles[b];
-    std::array<int, 3> inT{};
-    int shared = 0;
-    for (int i = 0; i < 3; ++i) {
-        const auto at = std::find(t.begin(), t.end(), s[i]);
-        inT[i] = at == t.end() ? -1 : static_cast<int>(at - t.begin());
-        if (inT[i] < 0) continue;
-        if (fans_->isClear(s[i])) return true;
-        ++shared;
-    }
-    const auto cornersFrom = [&](const TriangleView::Triangle& u, int first) {
-        return Corners{mesh_.points[u[first]], mesh_.points[u[(first + 1) % 3]],
-                       mesh_.points[u[(first + 2) % 3]]};
-    };
-    if (shared == 0) return areApart(cornersFrom(s, 0), cornersFrom(t, 0), gap_);
-    if (shared == 1) {
-        const int i = inT[0] >= 0 ? 0 : inT[1] >= 0 ? 1 : 2;
-        return touchAtVertexOnly(cornersFrom(s, i), cornersFrom(t, inT[i]), gap_);
-    }
-    if (shared == 3) return false;
-    const int other = inT[0] < 0 ? 0 : inT[1] < 0 ? 1 : 2;
-    const Corners fromEdge = cornersFrom(s, (other + 1) % 3);
-    const int otherInT = 3 - inT[(other + 1) % 3] - inT[(other + 2) % 3];
-    return touchAtEdgeOnly(fromEdge, {fromEdge[1], fromEdge[0], mesh_.points[t[otherInT]]}, 0);
+    return !fans_->areClear(s, t) && !areClear(mesh_.points, s, t, gap_, 0) &&
+           trianglesCross(mesh_.cornersOf(a), mesh_.cornersOf(b));
 }
 
 std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh) {
-    const CrossingSearch search(mesh);
-    std::vector<std::vector<std::int64_t>> ofPiece(search.pieceCount());
-    search.forEachPair([&](std::int64_t piece, std::uint32_t a, std::uint32_t b) {
-        ofPiece[piece].insert(ofPiece[piece].end(), {a, b});
-    });
-    std::vector<std::int64_t> all;
-    for (const auto& some : ofPiece) all.insert(all.end(), some.begin(), some.end());
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    return all;
+    return crossingAmong(mesh, [](std::uint32_t, std::uint32_t) { return true; });
 }
 
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh) {
     const FiniteTriangles finite(mesh);
-    std::vector<std::int64_t> crossing = crossingTriangles({mesh.points, finite.triangles});
+    std::vector<std::int64_t> crossing = crossingTriangles(finite.view(mesh));
     for (std::int64_t& t : crossing) t = finite.numbers[t];
     return crossing;
+}
+
+std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh,
+                                            std::span<const std::uint64_t> cells) {
+    if (cells.empty()) return crossingTriangles(mesh);
+    return joined({crossingWithinCells(mesh, cells), crossingWithoutCells(mesh, cells)});
 }
 
 SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
@@ -121,7 +223,7 @@ SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
                            std::to_string(options.maxPairs) + ", must be at least 0");
     }
     const FiniteTriangles finite(mesh);
-    const CrossingSearch search({mesh.points, finite.triangles});
+    const CrossingSearch search(finite.view(mesh));
     std::vector<SelfIntersections> ofPiece(search.pieceCount());
     search.forEachPair([&](std::int64_t piece, std::uint32_t a, std::uint32_t b) {
         SelfIntersections& found = ofPiece[piece];

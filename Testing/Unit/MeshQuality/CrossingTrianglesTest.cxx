@@ -31,6 +31,22 @@ std::optional<std::vector<std::int64_t>> crossingByBruteForce(const IntegerSoup&
     return std::vector<std::int64_t>(crossing.begin(), crossing.end());
 }
 
+/// The same without pairs of different cells.
+std::optional<std::vector<std::int64_t>> crossingByBruteForce(
+    const IntegerSoup& soup, const std::vector<std::uint64_t>& cells) {
+    std::set<std::int64_t> crossing;
+    const int count = static_cast<int>(soup.triangles.size());
+    for (int s = 0; s < count; ++s) {
+        for (int t = s + 1; t < count; ++t) {
+            const std::optional<bool> cross = soup.cross(s, t);
+            if (!cross) return {};
+            const bool isAsked = cells[s] == cells[t] || cells[s] == kNoCell || cells[t] == kNoCell;
+            if (*cross && isAsked) crossing.insert({s, t});
+        }
+    }
+    return std::vector<std::int64_t>(crossing.begin(), crossing.end());
+}
+
 }  // namespace
 
 TEST(CrossingTriangles, FindsTrianglesThatCross) {
@@ -41,6 +57,43 @@ TEST(CrossingTriangles, FindsTrianglesThatCross) {
     mesh.points[3] = {1, 1, 0.5};
     EXPECT_TRUE(crossingTriangles(mesh).empty());
     EXPECT_TRUE(crossingTriangles(TriangleMesh{}).empty());
+}
+
+TEST(CrossingTriangles, LeavesOutPairsOfDifferentCells) {
+    TriangleMesh mesh;
+    mesh.points = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {5, 5, 1}};
+    mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+    const std::vector<std::int64_t> both{0, 1}, none;
+    using Cells = std::vector<std::uint64_t>;
+    EXPECT_EQ(crossingTriangles(mesh, Cells{3, 4}), none);
+    EXPECT_EQ(crossingTriangles(mesh, Cells{3, 3}), both);
+    EXPECT_EQ(crossingTriangles(mesh, Cells{3, kNoCell}), both);
+    EXPECT_EQ(crossingTriangles(mesh, Cells{kNoCell, 3}), both);
+    EXPECT_EQ(crossingTriangles(mesh, Cells{kNoCell, kNoCell}), both);
+    EXPECT_EQ(crossingTriangles(mesh, Cells{}), both);
+}
+
+// Cells come in any order, and again after others.
+TEST(CrossingTriangles, FindsExactlyWhatCrossesInCellsOfSoups) {
+    std::mt19937 random(6);
+    std::size_t compared = 0, found = 0, without = 0;
+    for (int n = 0; n < 600; ++n) {
+        const IntegerSoup soup = randomSoup(random, 8 + n % 40, 12, 1000);
+        const std::optional<std::vector<std::int64_t>> all = crossingByBruteForce(soup);
+        if (!all) continue;
+        std::vector<std::uint64_t> cells(soup.triangles.size());
+        for (std::uint64_t& cell : cells) {
+            cell = random() % 3 == 0 ? kNoCell : random() % (1 + n % 4);
+        }
+        const auto expected = crossingByBruteForce(soup, cells);
+        ASSERT_EQ(crossingTriangles(soup.mesh(), cells), *expected) << n;
+        ++compared;
+        found += expected->size();
+        without += all->size() - expected->size();
+    }
+    EXPECT_GT(compared, 200U);
+    EXPECT_GT(found, 100U);
+    EXPECT_GT(without, 100U);
 }
 
 // Few points: most triangles share corners, and edges.

@@ -45,7 +45,6 @@ private:
     static constexpr std::int64_t kPiece = 128;  ///< leaves
 
     bool cross(std::uint32_t a, std::uint32_t b) const;
-    bool areClear(std::uint32_t a, std::uint32_t b) const;
 
     TriangleView mesh_;
     double gap_;  ///< what rounding of coordinates may hide

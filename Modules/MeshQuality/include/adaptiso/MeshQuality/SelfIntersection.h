@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
@@ -49,6 +50,17 @@ SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
 /// The triangles of those pairs, ascending. What is required, what is thrown and what it costs: as
 /// findSelfIntersections() has it.
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh);
+
+/// Of a triangle that may cross any other.
+inline constexpr std::uint64_t kNoCell = ~std::uint64_t{0};
+
+/// The same of a mesh of which it is known that triangles of different cells do not cross, as where
+/// marching cubes put them there: such pairs are not looked at.
+/// \param cells  of each triangle; kNoCell: it may cross any other. Empty: each may
+/// Cost: without triangles in cells, that of CrossingSearch; where all are in cells, O(T)
+std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh,
+                                            std::span<const std::uint64_t> cells);
+
 /// \pre the corners of triangles are finite
 std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh);
 
