@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "AdaptivePromises.h"
 #include "Support/AnalyticVolumes.h"
@@ -73,6 +75,32 @@ TEST(AdaptivePromises, HoldOnShapesInAShearedGrid) {
 
 TEST(AdaptivePromises, HoldOnShapesInAMirroredGrid) {
     expectPromisesOfShapes(mirroredGeometry({14, 16, 12}, {1, 0.5, 1}));
+}
+
+// The first brick is noise, which stays, the second is not: they meet at x = 32.
+TEST(AdaptivePromises, HoldWhereNoiseMeetsASmoothSurface) {
+    std::uint64_t state = 3;
+    for (const ImageGeometry& geometry :
+         {centredGeometry({38, 9, 8}), mirroredGeometry({38, 9, 8}, {1, 0.5, 1})}) {
+        const Index3& size = geometry.size;
+        std::vector<float> samples;
+        for (std::int64_t i = 0; i < geometry.voxelCount(); ++i) {
+            const auto x = static_cast<double>(i % size[0]),
+                       y = static_cast<double>(i / size[0] % size[1]),
+                       z = static_cast<double>(i / (size[0] * size[1]));
+            const double noise = static_cast<double>(nextRandom(state) % 2001) / 1000 - 1;
+            samples.push_back(static_cast<float>(
+                x < 31 ? noise : std::sin(0.9 * z + std::sin(0.4 * x)) + 0.2 * std::cos(0.7 * y)));
+        }
+        const Volume volume = Volume::fromSamples(std::move(samples), geometry);
+        for (const Border border : {Border::Closed, Border::Open}) {
+            for (const double bound : {0.1, 0.5}) {
+                AdaptiveCase adaptive{volume, 0, 4, border, {}};
+                adaptive.options.maxErrorMm = bound;
+                EXPECT_TRUE(keepsAdaptivePromises(adaptive)) << describe(0, adaptive);
+            }
+        }
+    }
 }
 
 }  // namespace adaptiso::testing

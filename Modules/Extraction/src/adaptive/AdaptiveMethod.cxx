@@ -118,7 +118,7 @@ private:
 
     void findCrossings(Attempt& attempt) const {
         attempt.mesh = full_.meshOf(attempt.surface);
-        attempt.crossing = crossingTriangles(attempt.mesh);
+        attempt.crossing = crossingTriangles(attempt.mesh, full_.cellsOf(attempt.surface));
         full_.forgiveCrossings(attempt.mesh, attempt.crossing);
     }
 
@@ -157,7 +157,7 @@ private:
     /// \param error  what was proved; then what is
     void undo(SimplifiedSurface& surface, ErrorBound& error) {
         double reachMm = kUndoReach * frame_.narrowestMm();
-        for (int n = 0; n < kMostUndos && isBeyond(error) && !halfway_.points.empty(); ++n) {
+        for (int n = 0; n < kMostUndos && isBeyond(error); ++n) {
             const auto changes = undoAround(surface, trianglesOf(error), pointsOf(error), reachMm);
             if (changes) {
                 error = proof_->proveAgain(surface, *changes);
@@ -170,6 +170,7 @@ private:
     std::optional<SurfaceChanges> undoAround(SimplifiedSurface& surface,
                                              const std::vector<SurfaceState::Number>& triangles,
                                              const std::vector<Vec3>& places, double reachMm) {
+        if (halfway_.points.empty()) return {};
         const std::ptrdiff_t points = std::ssize(surface.points);
         auto changes = LocalUndo(halfway_, surface).around(mended_, triangles, places, reachMm);
         work_.verticesUndone += std::ssize(surface.points) - points;

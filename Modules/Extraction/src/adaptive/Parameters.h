@@ -118,6 +118,11 @@ inline constexpr double kNarrowGap = 0.3;
 /// Another sheet is one whose normal differs by more: cosine of about 70 degrees.
 inline constexpr float kOtherSheetCosine = 0.3F;
 
+/// Cells: rounding of points by less cannot let triangles of different cells cross (see
+/// VolumeSurface::cellsOf): it is a tenth of the least distance between them, and turns an edge by
+/// a tenth of the least angle.
+inline constexpr double kFineRounding = 1e-9;
+
 // ---- Meshes (simplify(), MeshSurface) ----
 
 /// Of the bound: collapsing needles, triangles without area, may move vertices as far.

@@ -25,12 +25,13 @@ struct Ball {
     std::vector<BrickBound> prove(double limitMm = kNoLimit) const {
         const detail::SurfaceLookup lookup(surface, scene.bricks, scene.frame);
         detail::SampleNumbers numbers(scene.bricks);
+        const detail::WholeBricks none;
         if (!scope.blocks.empty()) {  // learnt from the whole
             const ProofScope all;
-            BrickProof whole(surface, lookup, *scene.sampler, all, numbers, 0.01, limitMm);
+            BrickProof whole(surface, lookup, none, *scene.sampler, all, numbers, 0.01, limitMm);
             for (std::int64_t b = 0; b < scene.bricks.count(); ++b) whole.prove(b);
         }
-        BrickProof proof(surface, lookup, *scene.sampler, scope, numbers, 0.01, limitMm);
+        BrickProof proof(surface, lookup, none, *scene.sampler, scope, numbers, 0.01, limitMm);
         std::vector<BrickBound> bounds;
         for (std::int64_t b = 0; b < scene.bricks.count(); ++b) bounds.push_back(proof.prove(b));
         return bounds;

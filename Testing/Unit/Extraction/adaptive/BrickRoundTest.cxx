@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "NoisyScenes.h"
 #include "Surfaces.h"
 #include "adaptive/rounds/BrickRound.h"
 
@@ -95,6 +96,48 @@ TEST(BrickRound, KeepsWebsCloser) {
             tight += sample.tightness > 0 ? 1 : 0;
         }
         EXPECT_EQ(tight > 1000, webMm == 0.11) << webMm;
+    }
+}
+
+// A brick of noise keeps its walls too, of which a brick before it may have the vertices.
+TEST(BrickRound, LeavesNoiseWholeUpToItsWalls) {
+    for (const bool isMirrored : {false, true}) {  // noise comes first, or last
+        const Index3 size{64, 20, 20};
+        const Volume made = noiseBesideSmooth(size, {}, 5);
+        const auto samples = made.view().as<float>();
+        std::vector<float> values;
+        for (std::int64_t i = 0; i < made.view().geometry().voxelCount(); ++i) {
+            const std::int64_t x = i % size[0];
+            values.push_back(samples.at(isMirrored ? size[0] - 1 - x : x, i / size[0] % size[1],
+                                        i / (size[0] * size[1])));
+        }
+        const Scene scene(Volume::fromSamples(std::move(values), unitGeometry(size)), 0,
+                          Border::Open);
+        ASSERT_EQ(scene.bricks.count(), 2);
+        const std::int64_t noise = isMirrored ? 1 : 0, smooth = 1 - noise;
+        const detail::SimplifiedSurface surface = firstRoundOf(scene);
+        EXPECT_TRUE(surface.wasLeftWhole(noise));
+        EXPECT_FALSE(surface.wasLeftWhole(smooth));
+        EXPECT_EQ(surface.quadrics.size(), surface.points.size());
+        // no samples but those on walls
+        EXPECT_EQ(surface.firstSample[noise], surface.firstSample[noise + 1]);
+        EXPECT_LT(surface.firstSample[smooth], surface.firstSample[smooth + 1]);
+        EXPECT_EQ(surface.samples.size() - surface.firstSample.back(), surface.wallEdges.size());
+        std::size_t onWall = 0;
+        for (std::size_t v = 0; v < surface.points.size(); ++v) {
+            if (surface.points[v].x != detail::Brick::kSide) continue;
+            ++onWall;
+            EXPECT_EQ(surface.states[v], detail::Patch::State::Final);
+        }
+        EXPECT_GT(onWall, 10U);
+        // to a count nothing is left
+        detail::PatchLimits limits = limitsThatLeaveNoise();
+        limits.leavesNoise = false;
+        const auto all =
+            detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, {}, limits, nullptr);
+        EXPECT_FALSE(all.wasLeftWhole(noise));
+        EXPECT_EQ(all.fineTriangles, surface.fineTriangles);
+        EXPECT_EQ(all.tableTriangles, surface.tableTriangles);
     }
 }
 

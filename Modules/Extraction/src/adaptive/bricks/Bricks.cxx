@@ -125,11 +125,17 @@ BrickMesher::BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid)
       vertexOnEdge_(3 * std::size_t{kPositions} * kPositions * kPositions),
       rows_(std::size_t{kLargestBlock + 1 + 2 * kMargin} * (kLargestBlock + 1 + 2 * kMargin)) {}
 
-void BrickMesher::mesh(const Brick& brick, FineSurface& surface) {
+void BrickMesher::mesh(const Brick& brick, const std::function<bool(const FineSurface&)>& wantsGaps,
+                       FineSurface& surface) {
     findsSheets_ = true;
     meshBrick(brick, isAny, surface);
-    findGaps(brick, surface);
+    if (wantsGaps(surface)) findGaps(brick, surface);
     forget(brick, surface);
+}
+
+void BrickMesher::mesh(const Brick& brick, FineSurface& surface) {
+    mesh(
+        brick, [](const FineSurface&) { return true; }, surface);
 }
 
 void BrickMesher::meshWithoutSheets(const Brick& brick, FineSurface& surface) {

@@ -89,6 +89,12 @@ public:
     explicit BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid);
 
     /// The same brick always gives the same vertices and triangles in the same order.
+    /// \param wantsGaps  asked of the surface with all but FineVertex::gap; these are looked for
+    ///                   where it says so
+    void mesh(const Brick& brick, const std::function<bool(const FineSurface&)>& wantsGaps,
+              FineSurface& surface);
+
+    /// The same with all gaps.
     void mesh(const Brick& brick, FineSurface& surface);
 
     /// The same, when nobody asks for FineVertex::isSingleSheet and FineVertex::gap.

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptive/collapse/PatchSimplifier.h"
@@ -33,6 +35,10 @@ public:
 
     /// In physical coordinates. Triangles keep their numbers.
     virtual TriangleMesh meshOf(const SimplifiedSurface& surface) const = 0;
+
+    /// Of each triangle of meshOf() the cell that it is known to lie in, such that those of
+    /// different cells do not cross; kNoCell where that is not known. Empty: of none it is.
+    virtual std::vector<std::uint64_t> cellsOf(const SimplifiedSurface&) const { return {}; }
 
     /// A point of meshOf(), as a continuous index of the frame.
     virtual Vec3 indexOf(const Vec3& point) const = 0;

@@ -1,9 +1,14 @@
 #include "adaptive/full/VolumeSurface.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptive/Parameters.h"
+#include "adaptive/mesh/WholeBricks.h"
 #include "adaptive/proof/ErrorBound.h"
 #include "adaptive/rounds/BorderMarks.h"
 #include "adaptive/rounds/BrickRound.h"
@@ -109,6 +114,62 @@ std::unique_ptr<DistanceProof> VolumeSurface::proof(double limitMm) const {
 
 TriangleMesh VolumeSurface::meshOf(const SimplifiedSurface& surface) const {
     return toMesh(surface, geometry_, frame(), sampler_);
+}
+
+/// Where bricks are whole each triangle lies in the cell that marching cubes made it in. Triangles
+/// of different cells cannot cross there:
+///   - A cell's triangles lie in the cell. In a face of it they have its iso-lines and the ends of
+///     these, no more: no triangle has a corner off the face nearer to it than kHair / 12 (the
+///     middle of a loop of twelve), none has an edge across the face that is no iso-line, and none
+///     lies in it (BoxCase::hasChordOnFace).
+///   - Both cells at a face have the same iso-lines, with the same ends. Two iso-lines cut off
+///     opposite corners of the face: they are kHair / 1.5 apart, as is an iso-line from the end of
+///     the other. So triangles of two cells have an iso-line or the end of one in common, or are
+///     apart. Cells that have just a lattice edge in common have the one crossing on it.
+///   - What is apart is so by more than kHair / 1.5 * kHair / 12 / 4 = 1e-8 cells, however flat the
+///     triangles lie to the face; and the angle between triangles with a corner in common is more
+///     than kHair / 12 / 2. Rounding by less than kFineRounding changes neither.
+/// Which triangles have a corner in common is the mesh's to say: they have the same number.
+std::vector<std::uint64_t> VolumeSurface::cellsOf(const SimplifiedSurface& surface) const {
+    const WholeBricks whole(surface, bricks_, frame());
+    if (!whole.isAny() || !roundsFinely()) return {};
+    std::vector<std::uint64_t> cells(surface.triangles.size(), kNoCell);
+    const Index3 count{geometry_.size[0] + 1, geometry_.size[1] + 1, geometry_.size[2] + 1};
+    parallelForPieces(std::ssize(cells), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t t = begin; t < end; ++t) {
+            if (!whole.isFine(static_cast<std::uint64_t>(t))) continue;
+            const auto& [a, b, c] = surface.triangles[t];
+            const Vec3 middle = frame().toIndex(
+                (1.0 / 3) * (surface.points[a] + surface.points[b] + surface.points[c]));
+            Index3 cell;  // the first may lie before the first sample
+            for (int axis = 0; axis < 3; ++axis) {
+                cell[axis] = static_cast<std::int64_t>(std::floor(middle[axis])) + 1;
+            }
+            cells[t] =
+                static_cast<std::uint64_t>(cell[0] + count[0] * (cell[1] + count[1] * cell[2]));
+        }
+    });
+    return cells;
+}
+
+/// Points of the surface are rounded by less than kFineRounding, seen in cells: on the way from the
+/// lattice to the metric frame, back, and to physical space.
+bool VolumeSurface::roundsFinely() const {
+    const auto largest = [](const Mat3& m) {
+        double sum = 0;
+        for (const Vec3& column : m.column) sum += norm(column);
+        return sum;
+    };
+    const Mat3& step = geometry_.indexToPhysical;
+    double farthest = 1;  // index
+    for (const std::int64_t samples : geometry_.size) {
+        farthest = std::max(farthest, static_cast<double>(samples));
+    }
+    constexpr double kRoundings = 32;  // to units in the last place, all steps together
+    const double farthestMm = norm(geometry_.originMm) + largest(step) * farthest;
+    return kRoundings * std::numeric_limits<double>::epsilon() * largest(inverse(step)) *
+               farthestMm <
+           kFineRounding;
 }
 
 double VolumeSurface::largestExtentMm() const {

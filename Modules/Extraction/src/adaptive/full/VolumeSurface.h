@@ -24,12 +24,14 @@ public:
                                  CollapseCosts* costs) const override;
     std::unique_ptr<DistanceProof> proof(double limitMm) const override;
     TriangleMesh meshOf(const SimplifiedSurface& surface) const override;
+    std::vector<std::uint64_t> cellsOf(const SimplifiedSurface& surface) const override;
     Vec3 indexOf(const Vec3& point) const override { return geometry_.toIndex(point); }
     void forgiveCrossings(const TriangleMesh&, std::vector<std::int64_t>&) const override {}
     double largestExtentMm() const override;
 
 private:
     std::uint8_t facesAt(const Vec3& point) const;
+    bool roundsFinely() const;
 
     const ImageGeometry& geometry_;
     const LatticeSampler& sampler_;

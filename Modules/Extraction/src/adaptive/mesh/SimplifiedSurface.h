@@ -6,6 +6,7 @@
 
 #include "adaptiso/Core/ReturnMemory.h"
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptive/mesh/BrickPrint.h"
 #include "adaptive/mesh/Patch.h"
 
 namespace adaptiso::detail {
@@ -34,13 +35,18 @@ struct SimplifiedSurface : SurfaceState {
     static constexpr Number kGone = ~Number{0};
     static constexpr std::size_t kMostSamples = ~Number{0};
 
-    /// Of each point, seen from it. Empty once nothing is collapsed or fitted any more.
+    /// Of each point, seen from it. Empty once nothing is collapsed or fitted any more, and where
+    /// nothing ever can be.
     std::vector<StoredQuadric> quadrics;
-    /// Those within bricks, brick by brick in the mesher's order; then those on bricks' walls,
-    /// ordered by their lattice edge.
+    /// Those within bricks, brick by brick in the mesher's order, none of bricks that were left
+    /// whole; then those on bricks' walls, ordered by their lattice edge.
     std::vector<Sample> samples;
     std::vector<std::uint64_t> firstSample;  ///< of each brick; then the first on a wall
     std::vector<std::uint64_t> wallEdges;    ///< EdgeKey of each wall sample, ascending
+
+    /// Of each brick that was left at full resolution the triangles then; of others none. Empty:
+    /// none was.
+    std::vector<BrickPrint> prints;
 
     std::int64_t fineTriangles = 0;   ///< of the full-resolution surface
     std::int64_t tableTriangles = 0;  ///< of it, were no loop filled from its middle
@@ -50,6 +56,9 @@ struct SimplifiedSurface : SurfaceState {
     std::vector<Number> heirs;
 
     SurfaceState& state() { return *this; }
+    bool wasLeftWhole(std::int64_t brick) const {
+        return !prints.empty() && prints[brick].triangles > 0;
+    }
 
     /// To be called between steps; small surfaces are not worth the time.
     void returnFreedMemory() const {

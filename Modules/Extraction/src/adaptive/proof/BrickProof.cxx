@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 #include "adaptive/Parameters.h"
 
@@ -44,10 +45,12 @@ bool ProofScope::isNearWanted(std::uint32_t block, const BlockGrid& grid) const 
 }
 
 BrickProof::BrickProof(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
-                       const LatticeSampler& sampler, const ProofScope& scope,
-                       SampleNumbers& numbers, double enoughMm, double limitMm)
+                       const WholeBricks& whole, const LatticeSampler& sampler,
+                       const ProofScope& scope, SampleNumbers& numbers, double enoughMm,
+                       double limitMm)
     : surface_(surface),
       lookup_(lookup),
+      whole_(whole),
       frame_(lookup.frame()),
       scope_(scope),
       numbers_(numbers),
@@ -62,6 +65,7 @@ BrickBound BrickProof::prove(std::int64_t brick) {
     brick_ = brick;
     if (isIdle()) return {};
     low_ = lookup_.bricks()[brick].low;
+    if (const auto bound = boundOfWhole()) return *bound;
     const BlockGrid& grid = lookup_.bricks().grid();
     mesher_.meshWithHalo(
         lookup_.bricks(), brick,
@@ -88,6 +92,24 @@ bool BrickProof::isIdle() const {
                         [&](std::uint32_t block) { return scope_.isWanted(block); }) &&
            std::all_of(triangles.begin(), triangles.end(),
                        [&](Number t) { return scope_.isProved(t); });
+}
+
+/// Of a brick in which both surfaces are the same, if it does not answer for triangles that come
+/// from elsewhere.
+std::optional<BrickBound> BrickProof::boundOfWhole() {
+    if (!whole_.isWhole(brick_)) return {};
+    BrickBound bound;
+    bool isAll = true;
+    for (const Number t : lookup_.ofBrick(brick_)) {
+        if (scope_.isProved(t)) continue;
+        const Corners corners = lookup_.cornersOf(t);
+        forEachPieceHere(corners, norm(areaVector2(corners[0], corners[1], corners[2])),
+                         [&](const Corners&, double area2) {
+                             isAll = isAll && whole_.isFine(t);
+                             bound.provedArea += 0.5 * area2;
+                         });
+    }
+    return isAll ? std::optional(bound) : std::nullopt;
 }
 
 /// The full-resolution surface in the brick's own cells.
@@ -126,13 +148,48 @@ void BrickProof::proveTriangles() {
         triangle_ = triangles[i];
         if (scope_.isProved(triangle_)) continue;
         const Corners corners = lookup_.cornersOf(triangle_);
-        provePiece(corners, startAt_[i], norm(areaVector2(corners[0], corners[1], corners[2])));
+        forEachPieceHere(
+            corners, norm(areaVector2(corners[0], corners[1], corners[2])),
+            [&](const Corners& piece, double area2) {
+                result_.provedArea += 0.5 * area2;
+                if (!cover_.covers(triangle_) &&
+                    !std::binary_search(unchanged_.begin(), unchanged_.end(), triangle_)) {
+                    proveWhole(piece, startAt_[i], area2);
+                }
+            });
     }
     forgetCells();
     cover_.clear();
 }
 
+/// Triangles that stand for vertices, by their places: of a brick that was left whole there are no
+/// samples. Where a vertex has gone, the nearest of the brick's.
+void BrickProof::findStandInsByPlace() {
+    std::unordered_map<std::uint64_t, Number> at;
+    for (const Number t : lookup_.ofBrick(brick_)) {
+        for (const Vec3& corner : lookup_.cornersOf(t)) {
+            at.try_emplace(BrickPrint::printOf(corner), t);
+        }
+    }
+    const auto nearest = [&](const Vec3& p) {
+        std::pair best{kInfinity, kNone};
+        for (const Number t : lookup_.ofBrick(brick_)) {
+            best = std::min(best, {squaredDistanceToTriangle(p, lookup_.cornersOf(t)), t});
+        }
+        return best.second;
+    };
+    standIn_.resize(fine_.ownVertices);
+    for (std::size_t v = 0; v < fine_.ownVertices; ++v) {
+        const auto found = at.find(BrickPrint::printOf(points_[v]));
+        standIn_[v] = found != at.end() ? found->second : nearest(points_[v]);
+    }
+}
+
 void BrickProof::findStandIns() {
+    if (surface_.wasLeftWhole(brick_)) {
+        findStandInsByPlace();
+        return;
+    }
     if (scope_.blocks.empty()) {
         numbers_.ofWhole(brick_, fine_, numberOf_);
     } else {
@@ -323,9 +380,11 @@ void BrickProof::collectWithin(double distanceMm, const Corners& piece) {
     boxes_.forEachOverlap(box, [&](std::size_t i) { add(triangles[i]); });
 }
 
-/// Goes over the pieces of a triangle of the simplified surface that this brick answers for.
+/// Calls f(piece, area2) for the pieces of a triangle of the simplified surface that this brick
+/// answers for.
 /// \param area2  twice the piece's area
-void BrickProof::provePiece(const Corners& piece, std::uint32_t start, double area2) {
+template <class F>
+void BrickProof::forEachPieceHere(const Corners& piece, double area2, const F& f) const {
     const BoundingBox box = latticeBox(piece);
     constexpr double kRoom = BrickMesher::kHalo / 2.0;
     for (int a = 0; a < 3; ++a) {
@@ -334,15 +393,10 @@ void BrickProof::provePiece(const Corners& piece, std::uint32_t start, double ar
     const Vec3 middle = (1.0 / 3) * (piece[0] + piece[1] + piece[2]);
     const std::int64_t brick = lookup_.brickFor(lookup_.latticeOf(middle));
     if (lookup_.isSmall(piece) || (brick != Bricks::kNone && lookup_.isWithinReach(brick, piece))) {
-        if (brick != brick_) return;
-        result_.provedArea += 0.5 * area2;
-        if (!cover_.covers(triangle_) &&
-            !std::binary_search(unchanged_.begin(), unchanged_.end(), triangle_)) {
-            proveWhole(piece, start, area2);
-        }
+        if (brick == brick_) f(piece, area2);
         return;
     }
-    for (const Corners& part : quarter(piece)) provePiece(part, start, area2 / 4);
+    for (const Corners& part : quarter(piece)) forEachPieceHere(part, area2 / 4, f);
 }
 
 void BrickProof::proveWhole(const Corners& piece, std::uint32_t start, double area2) {

@@ -10,6 +10,7 @@
 #include "adaptive/bricks/SampleNumbers.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
+#include "adaptive/mesh/WholeBricks.h"
 #include "adaptive/mesh/ZeroedTable.h"
 #include "adaptive/proof/BoxList.h"
 #include "adaptive/proof/DistanceProof.h"
@@ -48,12 +49,13 @@ struct ProofScope {
 /// can't settle is left to PieceBound.
 class BrickProof {
 public:
+    /// \param whole    bricks in which both surfaces are the same: there nothing is to be proved
     /// \param numbers  learnt where all is to be proved, used else
     /// \param enoughMm  no bound need be tighter
     /// \param limitMm   pieces farther off are noted, and do not loosen the bound of the rest
     BrickProof(const SimplifiedSurface& surface, const SurfaceLookup& lookup,
-               const LatticeSampler& sampler, const ProofScope& scope, SampleNumbers& numbers,
-               double enoughMm, double limitMm);
+               const WholeBricks& whole, const LatticeSampler& sampler, const ProofScope& scope,
+               SampleNumbers& numbers, double enoughMm, double limitMm);
 
     BrickBound prove(std::int64_t brick);
 
@@ -63,6 +65,7 @@ private:
     static constexpr Number kNone = Walkable::kNone;
 
     void findStandIns();
+    void findStandInsByPlace();
     void findUnmoved();
     bool isUnchanged(const std::array<std::uint32_t, 3>& fine);
     void findStarts(std::span<const Number> triangles);
@@ -70,6 +73,7 @@ private:
     void forgetCells();
 
     bool isIdle() const;
+    std::optional<BrickBound> boundOfWhole();
     void proveOwnCells();
     void proveTriangles();
     std::uint64_t blockOf(const FineSurface::Cell& cell) const;
@@ -84,7 +88,8 @@ private:
     void proveFinePart(const Corners& piece, const std::array<std::uint32_t, 3>& of);
     void collectWithin(double distanceMm, const Corners& piece);
     void collectAround(const std::array<std::uint32_t, 3>& fine);
-    void provePiece(const Corners& piece, std::uint32_t start, double area2);
+    template <class F>
+    void forEachPieceHere(const Corners& piece, double area2, const F& f) const;
     void proveWhole(const Corners& piece, std::uint32_t start, double area2);
     template <class Index>
     void cover(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
@@ -99,6 +104,7 @@ private:
 
     const SimplifiedSurface& surface_;
     const SurfaceLookup& lookup_;
+    const WholeBricks& whole_;
     const MetricFrame& frame_;
     const ProofScope& scope_;
     SampleNumbers& numbers_;

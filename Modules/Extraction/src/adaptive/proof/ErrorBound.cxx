@@ -63,6 +63,11 @@ ErrorProof::ErrorProof(const LatticeSampler& sampler, const Bricks& bricks,
     : sampler_(sampler), bricks_(bricks), frame_(frame), limitMm_(limitMm), numbers_(bricks) {}
 
 ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
+    whole_ = WholeBricks(surface, bricks_, frame_);
+    if (whole_.areAll()) {
+        lookup_.reset();
+        return {};
+    }
     lookup_ = std::make_unique<SurfaceLookup>(surface, bricks_, frame_);
     // bounds are as tight as the largest sample's distance, or as a hundredth of a voxel
     enoughMm_ = std::min(
@@ -74,13 +79,15 @@ ErrorBound ErrorProof::prove(const SimplifiedSurface& surface) {
 ErrorBound ErrorProof::proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes) {
     if (!lookup_) return prove(surface);
     lookup_->update(changes.triangles);
+    whole_ = WholeBricks(surface, bricks_, frame_);
     return prove(surface, scopeOf(*lookup_, changes));
 }
 
 ErrorBound ErrorProof::prove(const SimplifiedSurface& surface, const ProofScope& scope) {
     std::vector<BrickBound> results(bricks_.count());
     tbb::enumerable_thread_specific<BrickProof> proofs([&] {
-        return BrickProof(surface, *lookup_, sampler_, scope, numbers_, enoughMm_, limitMm_);
+        return BrickProof(surface, *lookup_, whole_, sampler_, scope, numbers_, enoughMm_,
+                          limitMm_);
     });
     parallelForPieces(bricks_.count(), 1,
                       [&](std::int64_t b, std::int64_t) { results[b] = proofs.local().prove(b); });

@@ -6,6 +6,7 @@
 #include "adaptive/bricks/Bricks.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
+#include "adaptive/mesh/WholeBricks.h"
 #include "adaptive/proof/BrickProof.h"
 #include "adaptive/proof/DistanceProof.h"
 #include "adaptive/proof/SurfaceLookup.h"
@@ -38,6 +39,7 @@ private:
     double limitMm_;
     double enoughMm_ = 0;  ///< no bound need be tighter
     double provedMm_ = 0;  ///< so far, of what lies within the limit
+    WholeBricks whole_;    ///< of the surface as it is
     // of the last surface; none where not all of it was proved
     std::unique_ptr<SurfaceLookup> lookup_;
     std::vector<std::uint8_t> isWithin_;  ///< the limit, each triangle

@@ -71,7 +71,7 @@ void markBorders(std::span<const std::uint64_t> halfEdges, SimplifiedSurface& su
         const Quadric q = borderQuadric(surface.points[a], surface.points[b], area2);
         for (const std::uint64_t v : {a, b}) {
             if (surface.marks[v] == Patch::kPlain) surface.marks[v] = Patch::kBorder;
-            addTo(surface.quadrics[v], q, surface.points[v]);
+            if (!surface.quadrics.empty()) addTo(surface.quadrics[v], q, surface.points[v]);
         }
     }
     markSamples(surface);

@@ -51,6 +51,9 @@ struct BrickSurface {
     };
     std::vector<WallVertex> walls;
     std::int64_t fineTriangles = 0, tableTriangles = 0;
+    BrickPrint print;  ///< where it was left whole; then it has no quadrics and no samples
+
+    bool isWhole() const { return print.triangles > 0; }
 };
 
 /// Takes over what is not gone of the patch.
@@ -134,15 +137,20 @@ Nearness nearnessOf(const FineSurface& fine, const std::vector<Vec3>& points,
     return near;
 }
 
+/// The normals at a triangle's corners, by the area vectors around them, are far apart.
+bool bends(const std::array<std::uint32_t, 3>& triangle, const std::vector<Vec3>& areas) {
+    const Vec3 a = normalized(areas[triangle[0]]), b = normalized(areas[triangle[1]]),
+               c = normalized(areas[triangle[2]]);
+    return !(std::min({dot(a, b), dot(b, c), dot(c, a)}) > kBentCosine);
+}
+
 /// Where the surface bends within a triangle its middle is a sample too: between corners a ridge
 /// could pass unseen.
 void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, const Nearness& near,
                 Patch& patch) {
     for (std::uint32_t t = 0; t < fine.triangles.size(); ++t) {
         const auto& v = fine.triangles[t];
-        const Vec3 a = normalized(areas[v[0]]), b = normalized(areas[v[1]]),
-                   c = normalized(areas[v[2]]);
-        if (std::min({dot(a, b), dot(b, c), dot(c, a)}) > kBentCosine) continue;
+        if (!bends(v, areas)) continue;
         const Vec3 &p = patch.points[v[0]], &q = patch.points[v[1]], &r = patch.points[v[2]];
         Sample& middle = patch.samples.emplace_back();
         middle.setPoint((1.0 / 3) * (p + q + r));
@@ -152,22 +160,6 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, const N
                            Sample::kMostHalvings;
         patch.sampleTriangle.push_back(t);
     }
-}
-
-/// Half of the cells are crossed, nearly all of the surface has other parts of it near, and most of
-/// it bends: there is nothing flat to simplify, and each change would take long to prove.
-/// \param middles  samples in the middle of triangles
-bool isNoise(const FineSurface& fine, std::size_t middles) {
-    const auto isPart = [](double part, std::size_t of, std::size_t all) {
-        return static_cast<double>(of) >= part * static_cast<double>(all);
-    };
-    if (!isPart(kNoiseCrossed, fine.cells.size(), static_cast<std::size_t>(fine.cellsSeen)) ||
-        !isPart(kNoiseBent, middles, fine.triangles.size())) {
-        return false;
-    }
-    const auto single = std::count_if(fine.vertices.begin(), fine.vertices.end(),
-                                      [](const FineVertex& v) { return v.isSingleSheet; });
-    return !isPart(kNoiseSingle, static_cast<std::size_t>(single), fine.vertices.size());
 }
 
 /// Vertices whose triangles all lie in one plane: their area vectors add up to their area.
@@ -184,14 +176,81 @@ std::vector<std::uint8_t> flatVertices(const Patch& patch, const std::vector<Vec
     return isFlat;
 }
 
+/// The brick's full-resolution surface as it is made, metric frame.
+struct FineBrick {
+    FineSurface surface;
+    std::vector<Vec3> points;
+    std::vector<Vec3> areas;  ///< the sum of the area vectors around each point; if asked for
+    bool isNoise = false;
+
+    void setPoints(const MetricFrame& frame);
+    void addAreas();
+    bool findNoise();
+};
+
+void FineBrick::setPoints(const MetricFrame& frame) {
+    points.clear();
+    points.reserve(surface.vertices.size());
+    for (const FineVertex& v : surface.vertices) points.push_back(frame.fromIndex(v.index));
+}
+
+void FineBrick::addAreas() {
+    areas.assign(points.size(), {});
+    for (const auto& t : surface.triangles) {
+        const Vec3 area2 = areaVector2(points[t[0]], points[t[1]], points[t[2]]);
+        for (const std::uint32_t v : t) areas[v] += area2;
+    }
+}
+
+/// Half of the cells are crossed, nearly all of the surface has other parts of it near, and most of
+/// it bends: there is nothing flat to simplify, and each change would take long to prove.
+bool FineBrick::findNoise() {
+    const auto isPart = [](double part, std::int64_t of, std::size_t all) {
+        return static_cast<double>(of) >= part * static_cast<double>(all);
+    };
+    if (!isPart(kNoiseCrossed, std::ssize(surface.cells),
+                static_cast<std::size_t>(surface.cellsSeen))) {
+        return false;
+    }
+    const auto single = std::count_if(surface.vertices.begin(), surface.vertices.end(),
+                                      [](const FineVertex& v) { return v.isSingleSheet; });
+    if (isPart(kNoiseSingle, single, surface.vertices.size())) return false;
+    addAreas();
+    const auto bent = std::count_if(surface.triangles.begin(), surface.triangles.end(),
+                                    [&](const auto& t) { return bends(t, areas); });
+    return isPart(kNoiseBent, bent, surface.triangles.size());
+}
+
+/// The brick as it is. Nothing of it is simplified later: it takes no quadrics, and no samples but
+/// those on walls, which other bricks have too.
+BrickSurface wholeBrick(const FineBrick& fine) {
+    BrickSurface brick;
+    brick.points = fine.points;
+    brick.states.assign(brick.points.size(), Patch::State::Final);
+    brick.triangles = fine.surface.triangles;
+    std::vector<std::uint32_t> triangleAt(brick.points.size());
+    for (std::uint32_t t = 0; t < brick.triangles.size(); ++t) {
+        const auto& [a, b, c] = brick.triangles[t];
+        triangleAt[a] = triangleAt[b] = triangleAt[c] = t;
+        brick.print.add({brick.points[a], brick.points[b], brick.points[c]});
+    }
+    for (std::uint32_t v = 0; v < brick.points.size(); ++v) {
+        const FineVertex& vertex = fine.surface.vertices[v];
+        if (!vertex.isOnWall) continue;
+        brick.walls.push_back({vertex.edge.word, v, triangleAt[v], normalized(fine.areas[v]),
+                               vertex.isSingleSheet ? SheetRoom::kAlone : std::uint8_t{0}});
+    }
+    return brick;
+}
+
 /// The brick's full-resolution surface as a patch; vertices on walls go to the brick's list.
 /// \param webMm   see PatchLimits
 /// \param isFlat  gets what flatVertices() says
-Patch patchOf(const FineSurface& fine, const MetricFrame& frame, double webMm, BrickSurface& brick,
+Patch patchOf(const FineBrick& made, const MetricFrame& frame, double webMm, BrickSurface& brick,
               std::vector<std::uint8_t>& isFlat) {
+    const FineSurface& fine = made.surface;
     Patch patch;
-    patch.points.reserve(fine.vertices.size());
-    for (const FineVertex& v : fine.vertices) patch.points.push_back(frame.fromIndex(v.index));
+    patch.points = made.points;
     patch.states.assign(patch.points.size(), Patch::State::Open);
     patch.triangles = fine.triangles;
     patch.ownTriangles = static_cast<std::uint32_t>(fine.triangles.size());
@@ -220,32 +279,24 @@ Patch patchOf(const FineSurface& fine, const MetricFrame& frame, double webMm, B
 }
 
 /// \param lowIndex  sample index of the brick's first lattice position
-BrickSurface simplifyBrick(const FineSurface& fine, const Index3& lowIndex,
-                           const MetricFrame& frame, const TightPlaces& tight,
-                           const PatchLimits& limits, const BoundingBox* moving,
-                           std::vector<double>* costs) {
+BrickSurface simplifyBrick(const FineBrick& made, const Index3& lowIndex, const MetricFrame& frame,
+                           const TightPlaces& tight, const PatchLimits& limits,
+                           const BoundingBox* moving, std::vector<double>* costs) {
     BrickSurface result;
     std::vector<std::uint8_t> isFlat;
-    Patch patch = patchOf(fine, frame, limits.webMm, result, isFlat);
+    Patch patch = patchOf(made, frame, limits.webMm, result, isFlat);
     patch.setBox(lowIndex, Brick::kSide);
-    result.fineTriangles = patch.ownTriangles;
-    result.tableTriangles = result.fineTriangles - 2 * static_cast<std::int64_t>(fine.ownMiddles);
     tight.apply(frame, patch.samples);
     for (std::size_t v = 0; v < patch.points.size(); ++v) {
-        const Vec3& index = fine.vertices[v].index;
+        const Vec3& index = made.surface.vertices[v].index;
         const bool isOutside = moving != nullptr && !moving->contains(index);
         if (isOutside || tight.isFrozen(index)) patch.states[v] = Patch::State::Final;
     }
-    const std::size_t middles = patch.samples.size() - (fine.vertices.size() - result.walls.size());
-    if (limits.leavesNoise && isNoise(fine, middles)) {
-        patch.states.assign(patch.points.size(), Patch::State::Final);
-    } else {
-        PatchSimplifier simplifier(patch, frame, limits);
-        if (limits.maxCost > 0 && !isFlat.empty()) {
-            simplifier.settleFlatBoxes(isFlat, Brick::kSide / 2, costs);
-        }
-        simplifier.collapseEdges(patch.ownTriangles, costs);
+    PatchSimplifier simplifier(patch, frame, limits);
+    if (limits.maxCost > 0 && !isFlat.empty()) {
+        simplifier.settleFlatBoxes(isFlat, Brick::kSide / 2, costs);
     }
+    simplifier.collapseEdges(patch.ownTriangles, costs);
     takeOver(patch, result);
     return result;
 }
@@ -273,6 +324,10 @@ public:
         for (const std::uint32_t t : brick.sampleTriangle) {
             whole_.sampleTriangle.push_back(firstTriangle + t);
         }
+        if (brick.isWhole()) {
+            whole_.prints.resize(static_cast<std::size_t>(bricks_.count()));
+            whole_.prints[whole_.firstSample.size() - 1] = brick.print;
+        }
         whole_.fineTriangles += brick.fineTriangles;
         whole_.tableTriangles += brick.tableTriangles;
     }
@@ -283,6 +338,7 @@ public:
         std::sort(walls_.begin(), walls_.end(),
                   [](const WallVertex& a, const WallVertex& b) { return a.edge < b.edge; });
         for (const WallVertex& wall : walls_) addWallSample(wall);
+        if (!whole_.quadrics.empty()) whole_.quadrics.resize(whole_.points.size());
         return std::move(whole_);
     }
 
@@ -328,7 +384,7 @@ private:
         };
         grow(whole_.points, brick.points.size());
         grow(whole_.states, brick.points.size());
-        grow(whole_.quadrics, brick.points.size());
+        if (!brick.isWhole()) grow(whole_.quadrics, brick.points.size());
         grow(whole_.triangles, brick.triangles.size());
         // those on walls come last
         const std::size_t samples = brick.samples.size() + walls_.size() + brick.walls.size();
@@ -340,6 +396,7 @@ private:
     /// wall the first brick keeps the vertex, the others add their quadrics to it.
     void numberVertices(const BrickSurface& brick, Number firstTriangle) {
         constexpr Number kNew = ~Number{0};
+        if (!brick.isWhole()) whole_.quadrics.resize(whole_.points.size());
         number_.assign(brick.points.size(), kNew);
         for (const auto& wall : brick.walls) {
             const auto known = wallAt_.find(wall.edge);
@@ -350,8 +407,14 @@ private:
                 number_[v] = static_cast<Number>(whole_.points.size());
                 whole_.points.push_back(brick.points[v]);
                 whole_.states.push_back(brick.states[v]);
-                whole_.quadrics.push_back(brick.quadrics[v]);
-            } else {
+                if (!brick.isWhole()) whole_.quadrics.push_back(brick.quadrics[v]);
+                continue;
+            }
+            // a brick that is left whole keeps its walls, too
+            if (brick.states[v] == Patch::State::Final) {
+                whole_.states[number_[v]] = Patch::State::Final;
+            }
+            if (!brick.isWhole()) {
                 StoredQuadric& sum = whole_.quadrics[number_[v]];
                 for (std::size_t n = 0; n < sum.number.size(); ++n) {
                     sum.number[n] += brick.quadrics[v].number[n];
@@ -399,7 +462,7 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
                                  const BoundingBox* moving) {
     struct Tools {
         BrickMesher mesher;
-        FineSurface fine;
+        FineBrick fine;
     };
     if (costs != nullptr) costs->assign(static_cast<std::size_t>(bricks.count()), {});
     tbb::enumerable_thread_specific<Tools> tools([&] {
@@ -408,11 +471,25 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
     const auto simplified = [&](std::int64_t b) {
         InterruptionCheck::ask();
         Tools& mine = tools.local();
-        mine.mesher.mesh(bricks[b], mine.fine);
+        FineBrick& fine = mine.fine;
+        mine.mesher.mesh(
+            bricks[b],
+            [&](const FineSurface&) {
+                fine.setPoints(frame);
+                fine.isNoise = limits.leavesNoise && fine.findNoise();
+                return !fine.isNoise;
+            },
+            fine.surface);
         Index3 lowIndex = bricks[b].low;
         for (std::int64_t& along : lowIndex) along -= bricks.grid().offset;
-        return simplifyBrick(mine.fine, lowIndex, frame, tight, limits, moving,
-                             costs != nullptr ? &(*costs)[b] : nullptr);
+        BrickSurface brick = fine.isNoise
+                                 ? wholeBrick(fine)
+                                 : simplifyBrick(fine, lowIndex, frame, tight, limits, moving,
+                                                 costs != nullptr ? &(*costs)[b] : nullptr);
+        brick.fineTriangles = std::ssize(fine.surface.triangles);
+        brick.tableTriangles =
+            brick.fineTriangles - 2 * static_cast<std::int64_t>(fine.surface.ownMiddles);
+        return brick;
     };
     Joiner joiner(bricks, frame, tight);
     std::int64_t next = 0;

@@ -120,6 +120,7 @@ SimplifiedSurface Simplification::toHalfway() {
 
 SimplifiedSurface Simplification::toLimits(SurfaceState& halfway) {
     SimplifiedSurface surface = toHalfway();
+    if (surface.quadrics.empty()) return surface;  // all was left whole
     halfway = surface.state();
     keepHeirs(surface);
     for (const double cost : kBoundCosts) {
