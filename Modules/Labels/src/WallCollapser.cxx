@@ -55,15 +55,30 @@ WallCollapser::WallCollapser(const WallPatch& patch, const ImageGeometry& geomet
         for (const Id v : patch.fullTriangles[t].v) fullAround_[fullBegin_[v + 1]++] = t;
     }
     fullBegin_.pop_back();
-    fullPlanes_.reserve(patch.fullTriangles.size());
-    for (const WallTriangle& t : patch.fullTriangles) {
-        fullPlanes_.emplace_back(std::array<Vec3, 3>{
-            patch.fullPoints[t.v[0]], patch.fullPoints[t.v[1]], patch.fullPoints[t.v[2]]});
-    }
+    findFans();
     if (patch.isFull()) {
         beginFull();
     } else {
         beginAsIs();
+    }
+}
+
+/// The triangles round each sample, ready for isNearFull().
+void WallCollapser::findFans() {
+    const auto single = [](const Vec3& a) {
+        return std::array{static_cast<float>(a.x), static_cast<float>(a.y),
+                          static_cast<float>(a.z)};
+    };
+    fans_.resize(fullAround_.size());
+    std::vector<std::uint64_t> next(fullBegin_.begin(), fullBegin_.end() - 1);
+    for (const WallTriangle& t : patch_.fullTriangles) {
+        const Plane plane({samples_[t.v[0]].point, samples_[t.v[1]].point, samples_[t.v[2]].point});
+        const std::array<float, 3> normal = single(plane.normal);
+        const std::array slopes{single(-plane.toFirst - plane.toSecond), single(plane.toFirst),
+                                single(plane.toSecond)};
+        for (int c = 0; c < 3; ++c) {
+            fans_[next[t.v[c]]++] = {slopes[(c + 1) % 3], slopes[(c + 2) % 3], normal};
+        }
     }
 }
 
@@ -263,9 +278,16 @@ bool WallCollapser::keepsShape(Id u, Id v, const Vec3& point) const {
            });
 }
 
-bool WallCollapser::sweepsCentre(const Vec3& point) const {
-    return std::any_of(star_.begin(), star_.end(),
-                       [&](Id t) { return centres_.isCentreIn(mesh_.cornersOf(t), point); });
+bool WallCollapser::sweepsCentre(Id u, Id v, const Vec3& point) const {
+    const Vec3 atU = centres_.toIndex(mesh_.point(u)), atV = centres_.toIndex(mesh_.point(v)),
+               to = centres_.toIndex(point);
+    const auto at = [&](Id x) {
+        return x == u ? atU : x == v ? atV : centres_.toIndex(mesh_.point(x));
+    };
+    return std::any_of(star_.begin(), star_.end(), [&](Id t) {
+        const auto& c = mesh_.triangle(t).v;
+        return SweptCentres::isCentreIn({at(c[0]), at(c[1]), at(c[2]), to});
+    });
 }
 
 bool WallCollapser::isInRoom(const Vec3& point) const {
@@ -281,14 +303,12 @@ bool WallCollapser::tryCollapse(Id u, Id v, Plan plan, double limitMm) {
     if (isMoved && plan.kind == Kind::Wall) keepVolume(u, v, plan);
     if (!isInRoom(plan.point) || !keepsShape(u, v, plan.point)) return false;
     if (!findHomes(u, v, plan, limitMm)) return false;
-    if (isMoved && !isNearFull(plan.point, limitMm)) return false;
-    const Id nearest = nearestSample_;
+    if (isMoved && !isNearFull(plan.point, nearestSample_, limitMm)) return false;
     if (mark_.size() < mesh_.pointCount()) mark_.resize(mesh_.pointCount(), 0);
     ++stamp_;
     mark_[u] = mark_[v] = stamp_;
     if (!spokesAreNear(plan, limitMm)) return false;
-    nearestSample_ = nearest;
-    if (sweepsCentre(plan.point)) return false;
+    if (sweepsCentre(u, v, plan.point)) return false;
 
     const Id n = mesh_.collapse(u, v, plan.point, plan.kind, star_, kept_);
     const auto& change = mesh_.change(n);
@@ -308,6 +328,26 @@ bool WallCollapser::tryCollapse(Id u, Id v, Plan plan, double limitMm) {
     return true;
 }
 
+/// Calls f(vertex at the other end) once for each edge of a vertex that may move.
+template <class F>
+void WallCollapser::forEachNeighbour(Id u, const F& f) {
+    if (mesh_.kind(u) == Kind::Wall) {  // its triangles go round it once
+        for (const Id t : mesh_.around(u)) {
+            const auto& c = mesh_.triangle(t).v;
+            f(c[0] == u ? c[1] : c[1] == u ? c[2] : c[0]);
+        }
+        return;
+    }
+    const std::uint32_t seen = ++stamp_;
+    for (const Id t : mesh_.around(u)) {
+        for (const Id x : mesh_.triangle(t).v) {
+            if (x == u || mark_[x] == seen) continue;
+            mark_[x] = seen;
+            f(x);
+        }
+    }
+}
+
 void WallCollapser::round(double maxCost, double limitMm, std::int64_t enough) {
     struct Edge {
         double cost;
@@ -315,32 +355,25 @@ void WallCollapser::round(double maxCost, double limitMm, std::int64_t enough) {
         Plan plan;
     };
     std::vector<Edge> edges;
+    const double mostMean2 = kMostMean2 * limitMm * limitMm;
     for (Id u = mesh_.firstPoint(); u < mesh_.pointCount(); ++u) {
         if (!mesh_.isAlive(u) || leastCost_[u] > maxCost || isFrozen(u)) continue;
         if (mesh_.aliveTriangles() <= enough) return;
         edges.clear();
         double least = kInfinity;
         if (leastCost_[u] == 0) tried_[u] = -1;
-        const std::uint32_t seen = ++stamp_;
-        for (const Id t : mesh_.around(u)) {
-            for (const Id x : mesh_.triangle(t).v) {
-                if (x <= u || mark_[x] == seen) continue;
-                mark_[x] = seen;
-                if (isFrozen(x)) continue;
-                const Plan plan = planFor(u, x);
-                if (plan.cost <= tried_[u]) continue;
-                // as far from the planes in the mean, samples rarely all lie within the limit
-                if (plan.cost >
-                    kMostMean2 * limitMm * limitMm * (quadrics_[u] + quadrics_[x]).weight()) {
-                    continue;
-                }
-                if (plan.cost <= maxCost) {
-                    edges.push_back({plan.cost, x, plan});
-                } else {
-                    least = std::min(least, plan.cost);
-                }
+        forEachNeighbour(u, [&](Id x) {
+            if (x <= u || isFrozen(x)) return;
+            const Plan plan = planFor(u, x);
+            if (plan.cost <= tried_[u]) return;
+            // as far from the planes in the mean, samples rarely all lie within the limit
+            if (plan.cost > mostMean2 * (quadrics_[u].weight() + quadrics_[x].weight())) return;
+            if (plan.cost <= maxCost) {
+                edges.push_back({plan.cost, x, plan});
+            } else {
+                least = std::min(least, plan.cost);
             }
-        }
+        });
         std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
             return a.cost != b.cost ? a.cost < b.cost : a.to < b.to;
         });

@@ -84,30 +84,31 @@ private:
     struct NewHome {
         Id sample, star;
         std::uint8_t slot;
-        Vec3 point;
     };
     static constexpr float kTighter = 0.6F;
     static constexpr std::uint8_t kOnWall = SampleHome::kOnWall;
 
+    void findFans();
     void beginFull();
     void beginAsIs();
     void linkVertex(Id v);
     void addQuadrics();
     Plan planFor(Id u, Id v) const;
+    template <class F>
+    void forEachNeighbour(Id u, const F& f);
     bool tryCollapse(Id u, Id v, Plan plan, double limitMm);
     void collectStar(Id u, Id v);
     bool keepsTopology(Id u, Id v);
     void keepVolume(Id u, Id v, Plan& plan) const;
     bool keepsShape(Id u, Id v, const Vec3& point) const;
-    bool sweepsCentre(const Vec3& point) const;
+    bool sweepsCentre(Id u, Id v, const Vec3& point) const;
     bool isInRoom(const Vec3& point) const;
     void findParts(Id u, Id v, const Plan& plan);
     bool findHomes(Id u, Id v, const Plan& plan, double limitMm);
     double homeOnWall(const Vec3& p, Id wall, std::size_t first, double limit2, NewHome& home);
     double homeOnCurve(const Vec3& p, Id u, Id v, const Plan& plan, std::size_t i, NewHome& home);
-    bool isNearFull(const Vec3& point, double limitMm);
+    bool isNearFull(const Vec3& point, Id sample, double limitMm) const;
     void link(Id sample, Id triangle, std::uint8_t slot);
-    bool isNearSamples(const Vec3& point, double limitMm);
     bool spokesAreNear(const Plan& plan, double limitMm);
 
     const WallPatch& patch_;
@@ -140,7 +141,6 @@ private:
         }
         double heightOf(const Vec3& p) const { return dot(normal, p - corner); }
     };
-    std::vector<Plane> fullPlanes_;  ///< of the triangles of the full walls
     // of one collapse
     struct Part {
         std::array<Vec3, 3> corners;
@@ -152,14 +152,47 @@ private:
         Id star;
         std::uint8_t slot;
     };
+    /// Points that are asked for the nearest to others.
+    class SamplePoints {
+    public:
+        void clear() { x_.clear(), y_.clear(), z_.clear(); }
+        void add(const Vec3& p) { x_.push_back(p.x), y_.push_back(p.y), z_.push_back(p.z); }
+        bool isEmpty() const { return x_.empty(); }
+        /// The first of the nearest ones. \pre not empty
+        std::size_t nearestTo(const Vec3& p);
+
+    private:
+        std::vector<double> x_, y_, z_, squared_;
+    };
     std::vector<Part> parts_;
     std::vector<CurvePart> curveParts_;
+    /// A triangle of the full walls as seen from a sample that is its corner: single precision is
+    /// ample for a quick test.
+    struct FanPlane {
+        std::array<float, 3> toFirst, toSecond, normal;  ///< as Plane has them
+
+        static float product(const std::array<float, 3>& a, const std::array<float, 3>& b) {
+            return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        }
+        float heightOf(const std::array<float, 3>& way) const { return product(normal, way); }
+        bool isUnder(const std::array<float, 3>& way) const {
+            const float a = product(toFirst, way), b = product(toSecond, way);
+            return a >= 0 && b >= 0 && a + b <= 1;
+        }
+    };
+    std::vector<FanPlane> fans_;  ///< of each sample's triangles, as fullAround_
     std::vector<Id> star_;
     std::size_t kept_ = 0;
     std::vector<std::uint32_t> mark_;
     std::uint32_t stamp_ = 0;
     std::vector<Id> common_;
     std::vector<NewHome> newHomes_;
+    struct OnSpoke {
+        Vec3 point;
+        Id nearest;  ///< sample
+    };
+    std::vector<OnSpoke> onSpokes_;
+    SamplePoints samplePoints_;  ///< of the new homes, in their order
     Id nearestSample_ = kNone;
 };
 

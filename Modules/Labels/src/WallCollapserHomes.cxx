@@ -16,6 +16,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Edges longer than this are looked at in three places, else in the middle alone.
 constexpr double kLongVoxels = 1.5, kAside = 0.25;
 
+/// Triangles of a fan from here on share a bit: hardly any has as many.
+constexpr std::size_t kMostBits = 31;
+
 double squaredDistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
     const Vec3 e = b - a;
     const double length2 = squaredNorm(e);
@@ -112,6 +115,7 @@ double WallCollapser::homeOnCurve(const Vec3& p, Id u, Id v, const Plan& plan, s
 bool WallCollapser::findHomes(Id u, Id v, const Plan& plan, double limitMm) {
     findParts(u, v, plan);
     newHomes_.clear();
+    samplePoints_.clear();
     double nearest2 = kInfinity;
     nearestSample_ = kNone;
     for (std::size_t i = 0; i < star_.size(); ++i) {
@@ -119,7 +123,7 @@ bool WallCollapser::findHomes(Id u, Id v, const Plan& plan, double limitMm) {
         for (Id s = firstSample_[star_[i]]; s != kNone; s = samples_[s].next) {
             const Sample& sample = samples_[s];
             const Vec3& p = sample.point;
-            NewHome home{s, kNone, sample.slot, p};
+            NewHome home{s, kNone, sample.slot};
             const double allowed = limitMm * sample.tightness, limit2 = allowed * allowed;
             const double squared = sample.slot == kOnWall
                                        ? homeOnWall(p, wall, i < kept_ ? i : 0, limit2, home)
@@ -130,65 +134,78 @@ bool WallCollapser::findHomes(Id u, Id v, const Plan& plan, double limitMm) {
                 nearestSample_ = s;
             }
             newHomes_.push_back(home);
+            samplePoints_.add(p);
         }
     }
     if (nearestSample_ == kNone) nearestSample_ = origin_[u];
     return true;
 }
 
-/// The full walls come near the point, as far as those round the nearest sample show.
-bool WallCollapser::isNearFull(const Vec3& point, double limitMm) {
-    limitMm *= samples_[nearestSample_].tightness;
+std::size_t WallCollapser::SamplePoints::nearestTo(const Vec3& p) {
+    squared_.resize(x_.size());
+    for (std::size_t n = 0; n < x_.size(); ++n) {
+        const double dx = x_[n] - p.x, dy = y_[n] - p.y, dz = z_[n] - p.z;
+        squared_[n] = dx * dx + dy * dy + dz * dz;
+    }
+    return static_cast<std::size_t>(std::min_element(squared_.begin(), squared_.end()) -
+                                    squared_.begin());
+}
+
+/// The full walls come near the point, as far as those round a sample show.
+bool WallCollapser::isNearFull(const Vec3& point, Id sample, double limitMm) const {
+    const Sample& nearest = samples_[sample];
+    limitMm *= nearest.tightness;
+    const Vec3 to = point - nearest.point;
+    const std::array way{static_cast<float>(to.x), static_cast<float>(to.y),
+                         static_cast<float>(to.z)};
+    const auto most = static_cast<float>(limitMm);
+    const std::span<const FanPlane> fan{fans_.data() + fullBegin_[sample],
+                                        fullAround(sample).size()};
+    unsigned level = 0;  // a bit for each whose plane passes near
+    for (std::size_t n = 0; n < fan.size(); ++n) {
+        if (std::abs(fan[n].heightOf(way)) > most) continue;
+        // one without a plane lies over nothing
+        if (fan[n].isUnder(way) && fan[n].normal != std::array<float, 3>{}) return true;
+        level |= 1U << std::min<std::size_t>(n, kMostBits);
+    }
     const double limit2 = limitMm * limitMm;
-    const auto isLevel = [&](const Plane& plane) {
-        const double height = plane.heightOf(point);
-        return height * height <= limit2;
-    };
-    const std::span<const Id> around = fullAround(nearestSample_);
-    for (const Id t : around) {
-        const Plane& plane = fullPlanes_[t];
-        if (!plane.isFlat() && isLevel(plane) && plane.isUnder(point)) return true;
+    for (std::size_t n = 0; n < fan.size(); ++n) {
+        if ((level >> std::min<std::size_t>(n, kMostBits) & 1U) == 0) continue;
+        const auto& v = patch_.fullTriangles[fullAround(sample)[n]].v;
+        const std::array<Vec3, 3> corners{samples_[v[0]].point, samples_[v[1]].point,
+                                          samples_[v[2]].point};
+        if (NearTriangle(corners, limit2).has(point)) return true;
     }
-    return std::any_of(around.begin(), around.end(), [&](Id t) {
-        if (!isLevel(fullPlanes_[t])) return false;
-        const auto& v = patch_.fullTriangles[t].v;
-        const std::array<Vec3, 3> corners{patch_.fullPoints[v[0]], patch_.fullPoints[v[1]],
-                                          patch_.fullPoints[v[2]]};
-        return NearTriangle(corners, limit2).has(point);
-    });
+    return false;
 }
 
-/// The full walls round the sample nearest to the point come near it.
-bool WallCollapser::isNearSamples(const Vec3& point, double limitMm) {
-    double nearest2 = kInfinity;
-    for (const NewHome& home : newHomes_) {
-        const double d2 = squaredNorm(home.point - point);
-        if (d2 >= nearest2) continue;
-        nearest2 = d2;
-        nearestSample_ = home.sample;
-    }
-    return nearest2 == kInfinity || isNearFull(point, limitMm);
-}
-
-/// Points on the edges at the new vertex are near the full walls: a ridge may pass between
-/// samples.
+/// Points on the edges at the new vertex are near the full walls, as those round the nearest
+/// samples show: a ridge may pass between samples.
 bool WallCollapser::spokesAreNear(const Plan& plan, double limitMm) {
+    if (samplePoints_.isEmpty()) return true;
     const double long2 = kLongVoxels * kLongVoxels * voxelMm_ * voxelMm_;
+    onSpokes_.clear();
+    const auto ask = [&](const Vec3& point) {
+        const Id nearest = newHomes_[samplePoints_.nearestTo(point)].sample;
+        // what lies there is asked for soon
+        __builtin_prefetch(fans_.data() + fullBegin_[nearest]);
+        __builtin_prefetch(fans_.data() + fullBegin_[nearest] + 2);
+        onSpokes_.push_back({point, nearest});
+    };
     for (std::size_t i = 0; i < kept_; ++i) {
-        const auto& t = mesh_.triangle(star_[i]).v;
-        for (const Id x : t) {
+        for (const Id x : mesh_.triangle(star_[i]).v) {
             if (mark_[x] == stamp_) continue;
             mark_[x] = stamp_;
             const Vec3 way = mesh_.point(x) - plan.point;
-            if (!isNearSamples(plan.point + 0.5 * way, limitMm)) return false;
+            ask(plan.point + 0.5 * way);
             if (squaredNorm(way) < long2) continue;
-            if (!isNearSamples(plan.point + kAside * way, limitMm) ||
-                !isNearSamples(plan.point + (1 - kAside) * way, limitMm)) {
-                return false;
-            }
+            ask(plan.point + kAside * way);
+            ask(plan.point + (1 - kAside) * way);
         }
     }
-    return true;
+    return std::all_of(onSpokes_.begin(), onSpokes_.end(), [&](const OnSpoke& at) {
+        return isNearFull(at.point, at.nearest, limitMm);
+    });
 }
 
 }  // namespace adaptiso::detail

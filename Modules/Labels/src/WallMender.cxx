@@ -145,15 +145,13 @@ void WallMender::forgetChanged() {
             if (witnessesOf_[f].count == 0 && mesh_.triangle(f).wall == wall) isFullProved_[f] = 0;
         });
     }
-    for (Id f = 0; f < mesh_.fullTriangles(); ++f) {
-        const auto& [begin, count] = witnessesOf_[f];
-        for (Id n = begin; n < begin + count; ++n) {
-            if (!mesh_.isTriangleAlive(witnesses_[n])) isFullProved_[f] = 0;
-        }
-    }
     isProved_.resize(mesh_.triangleCount(), 0);
     isLast_.resize(mesh_.triangleCount(), 0);
     for (Id t = 0; t < isLast_.size(); ++t) isLast_[t] = mesh_.isTriangleAlive(t) ? 1 : 0;
+    for (Id f = 0; f < mesh_.fullTriangles(); ++f) {
+        const auto& [begin, count] = witnessesOf_[f];
+        for (Id n = begin; n < begin + count; ++n) isFullProved_[f] &= isLast_[witnesses_[n]];
+    }
 }
 
 void WallMender::keepWitnesses(const std::vector<Id>& full, const WallBound& bound) {
