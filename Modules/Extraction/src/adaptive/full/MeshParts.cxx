@@ -3,6 +3,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -11,6 +12,7 @@
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/FreeMemory.h"
+#include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/MortonOrder.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
@@ -81,6 +83,7 @@ public:
         takeTriangles();
         halfEdges_.assign(parts_.points.size(), parts_.triangles);
         if (dropDuplicates()) halfEdges_.assign(parts_.points.size(), parts_.triangles);
+
         halfEdges_.match(twin_);
         const std::vector<std::int64_t> crossing = crossingTriangles(parts_.view());
         cutEdges();
@@ -110,29 +113,40 @@ private:
         AreaTriangles withArea = withoutFlatTriangles(mesh_, mayMoveMm_);
         parts_.degenerate = withArea.flat;
         parts_.movedMm = withArea.movedMm;
-        const bool isWhole = withArea.flat == 0;
-        const std::vector<Triangle>& triangles = isWhole ? mesh_.triangles : withArea.triangles;
-        std::vector<std::uint32_t> number(mesh_.points.size(), kNone);
-        parts_.triangles.reserve(triangles.size());
-        for (std::size_t t = 0; t < triangles.size(); ++t) {
-            if (!isWhole && withArea.isLeftOut[t] != 0) continue;
-            const auto& [a, b, c] = triangles[t];
-            parts_.triangles.push_back({static_cast<std::uint32_t>(a),
-                                        static_cast<std::uint32_t>(b),
-                                        static_cast<std::uint32_t>(c)});
-            if (!isWhole) parts_.inputTriangle.push_back(static_cast<std::uint32_t>(t));
-            number[a] = number[b] = number[c] = 0;
+        if (withArea.flat == 0) {
+            takeAll(mesh_.triangles);
+        } else {
+            takeSome(withArea);
+            freeMemory(withArea.triangles, withArea.isLeftOut);
         }
-        freeMemory(withArea.triangles, withArea.isLeftOut);
         if (parts_.triangles.empty()) {
             throw InvalidInput("simplify: the mesh has no triangle with an area");
         }
         const bool isScattered = comeScattered();
-        takePoints(number, isScattered);
+        const std::vector<std::uint32_t> number = takePoints(isScattered);
         forEach(parts_.triangles.size(), [&](std::size_t t) {
             for (std::uint32_t& v : parts_.triangles[t]) v = number[v];
         });
         if (isScattered) sortTriangles();
+    }
+
+    void takeAll(const std::vector<Triangle>& triangles) {
+        assignInHugePages(parts_.triangles, triangles.size());
+        forEach(triangles.size(),
+                [&](std::size_t t) { parts_.triangles[t] = narrowed(triangles[t]); });
+    }
+
+    void takeSome(const AreaTriangles& from) {
+        for (std::size_t t = 0; t < from.triangles.size(); ++t) {
+            if (from.isLeftOut[t] != 0) continue;
+            parts_.triangles.push_back(narrowed(from.triangles[t]));
+            parts_.inputTriangle.push_back(static_cast<std::uint32_t>(t));
+        }
+    }
+
+    static MeshParts::Triangle narrowed(const Triangle& t) {
+        return {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
+                static_cast<std::uint32_t>(t[2])};
     }
 
     /// Many triangles whose corners mostly lie far apart in the list of points: all that is done
@@ -145,19 +159,26 @@ private:
                apart > kScattered * triangles * static_cast<double>(mesh_.points.size());
     }
 
-    /// \param number  kNone for points that no triangle uses; gets the numbers of the others
-    void takePoints(std::vector<std::uint32_t>& number, bool sorts) {
+    /// \return the numbers of the points that triangles use; kNone for others
+    std::vector<std::uint32_t> takePoints(bool sorts) {
+        std::vector<std::uint32_t> number(mesh_.points.size(), kNone);
+        forEach(parts_.triangles.size(), [&](std::size_t t) {
+            for (const std::uint32_t v : parts_.triangles[t]) {
+                std::atomic_ref(number[v]).store(0, std::memory_order_relaxed);
+            }
+        });
         const std::size_t count = number.size() - std::count(number.begin(), number.end(), kNone);
         inputPoint_.reserve(count);
         for (std::size_t v = 0; v < number.size(); ++v) {
             if (number[v] != kNone) inputPoint_.push_back(static_cast<std::uint32_t>(v));
         }
         if (sorts) sortPoints();
-        parts_.points.resize(count);
+        assignInHugePages(parts_.points, count);
         forEach(count, [&](std::size_t i) {
             number[inputPoint_[i]] = static_cast<std::uint32_t>(i);
             parts_.points[i] = mesh_.points[inputPoint_[i]] - parts_.origin;
         });
+        return number;
     }
 
     void sortPoints() {
