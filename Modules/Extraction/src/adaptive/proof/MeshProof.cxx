@@ -33,6 +33,7 @@ struct PartBound {
     double provedMm = 0;    ///< of all that lies within the limit
     double farthestMm = 0;  ///< of the rest
     std::vector<PlaceBeyond> beyond;
+    bool hasSearched = false;  ///< walks alone did not do
 };
 
 /// A surface that the distance to is proved: for walks, and for searches where walks fail.
@@ -106,6 +107,7 @@ private:
     /// all that can be nearer than what the corners are known to be.
     template <class MakePlace>
     void search(const Corners& piece, const MakePlace& makePlace) {
+        result_.hasSearched = true;
         collectWithin(bound_.boundMm(), piece);
         if (!near_.empty() && bound_.isWithin(piece)) return;
         double reachMm = bound_.boundMm();
@@ -379,6 +381,12 @@ ErrorBound MeshProof::prove(const SimplifiedSurface& surface, const Scope& scope
     parallelForPieces(finePieces, 1, [&](std::int64_t piece, std::int64_t) {
         addBorders(task, fine_, simplified.walkable, piece, isMapped, cover);
     });
+    // walks on the full surface will fail as well then: its tree is made by all threads, where each
+    // would wait for the one that asks first
+    if (std::any_of(results.begin(), results.end(),
+                    [](const PartBound& result) { return result.hasSearched; })) {
+        fineTree_.get();
+    }
     parallelForPieces(pieces, 1, [&](std::int64_t piece, std::int64_t) {
         results[finePieces + piece] =
             proveSimplified(task, fine, scope.isKnown, starts, piece, cover);
