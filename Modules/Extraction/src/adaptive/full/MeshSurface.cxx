@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "adaptiso/Core/Buckets.h"
+#include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/Parameters.h"
@@ -28,7 +29,8 @@ constexpr std::int64_t kPiece = 1 << 12;
 /// The side of a voxel of the volume that such triangles would come from: marching cubes makes
 /// about three triangles for each voxel's face that the surface covers.
 double voxelOf(const MeshParts& parts, std::optional<double> boundMm) {
-    std::vector<double> areas(parts.triangles.size());
+    std::vector<double> areas;
+    assignInHugePages(areas, parts.triangles.size());
     parallelForPieces(std::ssize(areas), kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t t = begin; t < end; ++t) {
             const Corners c = parts.view().cornersOf(t);
@@ -81,10 +83,11 @@ SimplifiedSurface MeshSurface::firstRound(const TightPlaces& tight, const PatchL
 /// The mesh as it is.
 SimplifiedSurface MeshSurface::whole(const TightPlaces& tight) const {
     SimplifiedSurface surface;
+    reserveInHugePages(surface.points, parts_.points.size());
     surface.points = parts_.points;
     surface.marks = parts_.marks;
-    surface.triangles.reserve(parts_.triangles.size());
-    for (const auto& [a, b, c] : parts_.triangles) surface.triangles.push_back({a, b, c});
+    reserveInHugePages(surface.triangles, parts_.triangles.size());
+    surface.triangles = parts_.triangles;
     surface.fineTriangles = surface.tableTriangles = std::ssize(surface.triangles);
     {
         Around around;
@@ -111,8 +114,9 @@ SimplifiedSurface MeshSurface::whole(const TightPlaces& tight) const {
 /// Quadrics and states. \return the sum of the area vectors around each point
 std::vector<Vec3> MeshSurface::addPoints(const Around& around, SimplifiedSurface& surface) const {
     const std::size_t count = parts_.points.size();
-    std::vector<Vec3> areas(count);
-    surface.quadrics.resize(count);
+    std::vector<Vec3> areas;
+    assignInHugePages(areas, count);
+    assignInHugePages(surface.quadrics, count);
     surface.states.assign(count, Patch::State::Open);
     parallelForPieces(static_cast<std::int64_t>(count), kPiece,
                       [&](std::int64_t begin, std::int64_t end) {
@@ -199,8 +203,8 @@ void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& area
     // to the sample: noise bends all triangles
     const std::size_t count =
         parts_.points.size() + std::count(isBent.begin(), isBent.end(), std::uint8_t{1});
-    surface.samples.reserve(count);
-    surface.sampleTriangle.reserve(count);
+    reserveInHugePages(surface.samples, count);
+    reserveInHugePages(surface.sampleTriangle, count);
     surface.samples.resize(parts_.points.size());
     surface.sampleTriangle.resize(parts_.points.size());
     parallelForPieces(std::ssize(surface.samples), kPiece,
