@@ -12,8 +12,6 @@ namespace adaptiso::detail {
 namespace {
 
 constexpr std::uint32_t kNoEntry = 0xFFFFFFFF;
-/// About what a patch's triangles take in the end, so that the list rarely grows.
-constexpr std::size_t kEntriesPerTriangle = 3;
 
 }  // namespace
 

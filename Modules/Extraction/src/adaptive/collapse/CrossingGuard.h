@@ -48,7 +48,7 @@ private:
     };
     static Box rounded(const BoundingBox& box);
 
-    /// The cubes that a box overlaps; first the lowest along each axis.
+    /// The cubes that a box overlaps, from the first to the last along each axis; by default none.
     struct Cubes {
         std::array<std::int32_t, 3> first{0, 0, 0}, last{-1, -1, -1};
         bool hasRow(std::int32_t y, std::int32_t z) const {
