@@ -1,8 +1,10 @@
 #include "CommandLine.h"
 #include "Common/RunApp.h"
 #include "Pipeline.h"
+#include "adaptiso/Core/ReturnMemory.h"
 
 int main(int argc, char** argv) {
+    adaptiso::keepFreedMemory();
     return adaptiso::runApp(argc, argv, adaptiso::simplifyProgram(),
                             adaptiso::declareSimplifyOptions, adaptiso::runSimplify);
 }

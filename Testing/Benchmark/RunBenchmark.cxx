@@ -5,6 +5,7 @@
 
 #include "Common/ExitCodes.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/ReturnMemory.h"
 
 namespace adaptiso::benchmarks {
 namespace {
@@ -18,6 +19,7 @@ int fail(const CLI::App& app, const std::exception& error, ExitCode code) {
 
 int runBenchmark(CLI::App& app, int argc, const char* const* argv,
                  const std::function<void()>& work) {
+    keepFreedMemory();  // as the programs do; for the peers as well
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -14,4 +14,12 @@ void returnFreedMemory() {
 #endif
 }
 
+void keepFreedMemory() {
+#ifdef __GLIBC__
+    constexpr int kLargestKept = 1 << 30;  // bytes
+    mallopt(M_MMAP_THRESHOLD, kLargestKept);
+    mallopt(M_TRIM_THRESHOLD, kLargestKept);
+#endif
+}
+
 }  // namespace adaptiso
