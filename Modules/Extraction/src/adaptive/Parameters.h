@@ -166,9 +166,6 @@ inline constexpr int kRidgeMostSteps = 16;
 /// Side of the cubes by which near triangles are found, voxels: about the size of triangles of the
 /// simplified surface.
 inline constexpr double kNearCube = 2;
-/// The list of triangles by cubes gets room for so many entries a triangle, about what it has in
-/// the end, so that it rarely grows.
-inline constexpr std::size_t kEntriesPerTriangle = 3;
 /// Voxels that proofs leave between triangles.
 inline constexpr double kProofGap = 1e-4;
 /// A fan of triangles is proved clear by one direction if each is more upright to it than this

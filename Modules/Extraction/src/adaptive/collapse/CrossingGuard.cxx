@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "adaptiso/MeshQuality/Certificate.h"
@@ -11,7 +10,7 @@
 namespace adaptiso::detail {
 namespace {
 
-constexpr std::uint32_t kNoEntry = 0xFFFFFFFF;
+constexpr std::uint32_t kNoEntries = 0xFFFFFFFF;
 
 }  // namespace
 
@@ -54,7 +53,7 @@ std::vector<std::uint8_t> CrossingGuard::trianglesInSingleSheets() const {
 void CrossingGuard::buildGrid() {
     known_.resize(patch_.triangles.size());
     entered_.resize(patch_.triangles.size());
-    entries_.reserve(kEntriesPerTriangle * patch_.triangles.size());
+    entries_.reserve(patch_.triangles.size() / 2);  // a triangle is in three cubes in the mean
     // no star reaches beyond the patch's own triangles; what lies outside is in the outermost cubes
     std::optional<BoundingBox> own;
     for (std::uint32_t t = 0; t < patch_.ownTriangles; ++t) {
@@ -70,7 +69,7 @@ void CrossingGuard::buildGrid() {
         count_[a] = 1 + static_cast<std::int32_t>(extent[a] / cubeMm_);
         cubes *= static_cast<std::size_t>(count_[a]);
     }
-    firstEntry_.assign(cubes, kNoEntry);
+    entriesAt_.assign(cubes, kNoEntries);
     const std::vector<std::uint8_t> isSingle =
         looksEverywhere_ ? std::vector<std::uint8_t>(patch_.triangles.size(), 0)
                          : trianglesInSingleSheets();
@@ -114,8 +113,12 @@ void CrossingGuard::enter(std::uint32_t triangle) {
         const bool hadRow = before.hasRow(y, z);
         for (std::int32_t x = cubes.first[0]; x <= cubes.last[0]; ++x) {
             if (hadRow && before.first[0] <= x && x <= before.last[0]) continue;
-            entries_.push_back({triangle, firstEntry_[row + x]});
-            firstEntry_[row + x] = static_cast<std::uint32_t>(entries_.size() - 1);
+            std::uint32_t& at = entriesAt_[row + x];
+            if (at == kNoEntries || entries_[at].count == Entries::kMost) {
+                entries_.push_back({at});
+                at = static_cast<std::uint32_t>(entries_.size() - 1);
+            }
+            entries_[at].triangle[entries_[at].count++] = triangle;
         }
     });
 }
@@ -155,12 +158,7 @@ void CrossingGuard::commit(const ChangedStar& changed, bool isSingleSheet) {
         known_[t].hasBox = true;
         enter(t);
     }
-    constexpr float kFar = std::numeric_limits<float>::max();
-    for (int i = 0; i < star.removedCount; ++i) {  // some cubes still list them
-        Known& gone = known_[star.removed[i]];
-        gone.box = {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
-        gone.hasBox = true;
-    }
+    for (int i = 0; i < star.removedCount; ++i) known_[star.removed[i]].isGone = true;
 }
 
 bool CrossingGuard::crossesNothing(const ChangedStar& changed) {
@@ -334,8 +332,15 @@ void CrossingGuard::collectFromGrid() {
     const Cubes cubes = cubesOf(starBox_);
     forEachRow(cubes, [&](std::size_t row, std::int32_t, std::int32_t) {
         for (std::int32_t x = cubes.first[0]; x <= cubes.last[0]; ++x) {
-            for (std::uint32_t e = firstEntry_[row + x]; e != kNoEntry; e = entries_[e].next) {
-                addNear(entries_[e].triangle);
+            for (std::uint32_t at = entriesAt_[row + x]; at != kNoEntries; at = entries_[at].next) {
+                Entries& some = entries_[at];
+                for (std::uint32_t e = 0; e < some.count;) {
+                    if (known_[some.triangle[e]].isGone) {
+                        some.triangle[e] = some.triangle[--some.count];
+                    } else {
+                        addNear(some.triangle[e++]);
+                    }
+                }
             }
         }
     });

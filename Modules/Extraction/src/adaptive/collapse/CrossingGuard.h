@@ -58,11 +58,15 @@ private:
     /// What is kept of a triangle, side by side: a search looks at all of it.
     struct Known {
         Box box;
-        bool hasBox = false;      ///< it is known
+        bool hasBox = false;  ///< it is known
+        bool isGone = false;
         std::uint32_t stamp = 0;  ///< of the last search that has seen it
     };
-    struct Entry {
-        std::uint32_t triangle, next;
+    /// Some triangles of a cube: side by side, so that one need not wait for the one before.
+    struct Entries {
+        static constexpr std::uint32_t kMost = 6;
+        std::uint32_t next, count = 0;  ///< next: those that the cube has besides
+        std::array<std::uint32_t, kMost> triangle;
     };
     bool isSeen(std::uint32_t triangle) const { return known_[triangle].stamp == now_; }
     void buildGrid();
@@ -86,13 +90,13 @@ private:
     const PatchTopology& topology_;
     bool looksEverywhere_;
     double gapMm_, cubeMm_;
-    Vec3 low_;                               ///< of the grid
-    std::array<std::int32_t, 3> count_{};    ///< of its cubes, by axis
-    std::vector<std::uint32_t> firstEntry_;  ///< of each cube: a list
-    std::vector<Entry> entries_;             ///< some are of triangles that have changed since
-    std::vector<Cubes> entered_;  ///< of each triangle: those that it was last entered in
-    std::vector<Known> known_;    ///< of each triangle; empty until the grid is built
-    std::uint32_t now_ = 0;       ///< the search
+    Vec3 low_;                              ///< of the grid
+    std::array<std::int32_t, 3> count_{};   ///< of its cubes, by axis
+    std::vector<std::uint32_t> entriesAt_;  ///< of each cube
+    std::vector<Entries> entries_;          ///< some are of triangles that have changed since
+    std::vector<Cubes> entered_;            ///< of each triangle: those that it was last entered in
+    std::vector<Known> known_;              ///< of each triangle; empty until the grid is built
+    std::uint32_t now_ = 0;                 ///< the search
     std::vector<std::uint32_t> near_;
     Box starBox_{};
     std::array<std::array<float, Star::kMost>, 3> wedgeLow_{}, wedgeHigh_{};  ///< by axis
