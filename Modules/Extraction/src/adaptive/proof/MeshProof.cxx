@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -151,52 +152,6 @@ private:
     std::vector<Corners> around_;     ///< where walks start
     std::vector<std::int64_t> near_;  ///< as bound_.nearby()
     PartBound result_;
-};
-
-/// Cubes of space, some of them marked: by a hash, so that now and then another one counts as
-/// marked, too.
-class MarkedCubes {
-public:
-    explicit MarkedCubes(double sideMm) : sideMm_(sideMm), isMarked_(kSlots) {}
-
-    void mark(const BoundingBox& box) {
-        isAll_ = isAll_ || !forEachSlot(box, [&](std::size_t slot) { isMarked_[slot] = 1; });
-    }
-    bool has(const BoundingBox& box) const {
-        bool isFound = false;
-        const auto look = [&](std::size_t slot) { isFound = isFound || isMarked_[slot] != 0; };
-        return isAll_ || !forEachSlot(box, look) || isFound;
-    }
-
-private:
-    static constexpr std::size_t kSlots = std::size_t{1} << 22;
-    static constexpr double kMostCubes = 4096;
-
-    /// \return false where the box overlaps too many
-    template <class F>
-    bool forEachSlot(const BoundingBox& box, const F& f) const {
-        const auto at = [&](double mm) {
-            return static_cast<std::int64_t>(std::floor(mm / sideMm_));
-        };
-        const Vec3 extent = (1 / sideMm_) * box.size();
-        if ((extent.x + 1) * (extent.y + 1) * (extent.z + 1) > kMostCubes) return false;
-        for (std::int64_t z = at(box.minimum.z); z <= at(box.maximum.z); ++z) {
-            for (std::int64_t y = at(box.minimum.y); y <= at(box.maximum.y); ++y) {
-                for (std::int64_t x = at(box.minimum.x); x <= at(box.maximum.x); ++x) {
-                    f(slotOf({x, y, z}));
-                }
-            }
-        }
-        return true;
-    }
-    static std::size_t slotOf(const Index3& cube) {
-        const auto part = [&](int a) { return static_cast<std::size_t>(cube[a]); };
-        return (part(0) * 73856093 ^ part(1) * 19349663 ^ part(2) * 83492791) % kSlots;
-    }
-
-    double sideMm_;
-    bool isAll_ = false;
-    std::vector<std::uint8_t> isMarked_;
 };
 
 /// What is proved, but for which triangles.
@@ -417,7 +372,7 @@ void MeshProof::remember(std::size_t triangles, std::vector<PlaceBeyond> beyond)
 /// What is to be proved: the new triangles, and the full surface near those that came or went and
 /// where it lay beyond the limit.
 MeshProof::Scope MeshProof::scopeOf(const SimplifiedSurface& surface,
-                                    const SurfaceChanges& changes) const {
+                                    const SurfaceChanges& changes) {
     Scope scope;
     scope.isKnown = isWithin_;
     scope.isKnown.resize(surface.triangles.size(), 0);
@@ -433,28 +388,27 @@ MeshProof::Scope MeshProof::scopeOf(const SimplifiedSurface& surface,
 }
 
 /// Finds the triangles of the full surface near some triangles, and near the last places beyond the
-/// limit: by cubes that those reach into.
-void MeshProof::markFine(const std::vector<Corners>& changed, Scope& scope) const {
+/// limit.
+void MeshProof::markFine(const std::vector<Corners>& changed, Scope& scope) {
     // where much has changed nearly all is near it
     if (changed.size() > scope.isKnown.size() / 4) return;
-    MarkedCubes cubes(std::max(kNearCube * frame_.voxelMm(), limitMm_));
-    const auto mark = [&](const Corners& corners) {
+    const TriangleTree& tree = fineTree_.get();
+    scope.isFineKnown.assign(parts_.triangles.size(), 1);
+    const auto markNear = [&](const Corners& corners) {
         constexpr double kRounding = 1 + 1e-9;
         BoundingBox box = boxOf(corners);
         box.widen(kRounding * limitMm_);
-        cubes.mark(box);
-    };
-    for (const Corners& corners : changed) mark(corners);
-    for (const PlaceBeyond& place : beyond_) mark({place.point(), place.point(), place.point()});
-    scope.isFineKnown.assign(parts_.triangles.size(), 0);
-    constexpr std::int64_t kTriangles = 1 << 12;
-    parallelForPieces(
-        std::ssize(scope.isFineKnown), kTriangles, [&](std::int64_t begin, std::int64_t end) {
-            for (std::int64_t t = begin; t < end; ++t) {
-                scope.isFineKnown[t] =
-                    static_cast<std::uint8_t>(!cubes.has(boxOf(cornersOf(parts_, t))));
-            }
+        tree.forEachOverlap(box, parts_.view(), [&](std::uint32_t t) {
+            std::atomic_ref(scope.isFineKnown[t]).store(0, std::memory_order_relaxed);
         });
+    };
+    constexpr std::int64_t kTriangles = 64;
+    parallelForPieces(std::ssize(changed), kTriangles, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) markNear(changed[n]);
+    });
+    for (const PlaceBeyond& place : beyond_) {
+        markNear({place.point(), place.point(), place.point()});
+    }
 }
 
 }  // namespace adaptiso::detail

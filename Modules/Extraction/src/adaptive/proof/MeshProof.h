@@ -27,9 +27,9 @@ private:
         std::vector<std::uint8_t> isKnown;      ///< of each triangle of the simplified surface
         std::vector<std::uint8_t> isFineKnown;  ///< of each one of the full surface
     };
-    Scope scopeOf(const SimplifiedSurface& surface, const SurfaceChanges& changes) const;
+    Scope scopeOf(const SimplifiedSurface& surface, const SurfaceChanges& changes);
     void remember(std::size_t triangles, std::vector<PlaceBeyond> beyond);
-    void markFine(const std::vector<Corners>& changed, Scope& scope) const;
+    void markFine(const std::vector<Corners>& changed, Scope& scope);
     ErrorBound prove(const SimplifiedSurface& surface, const Scope& scope);
     double largestSampleDistance(const SimplifiedSurface& surface) const;
 
