@@ -90,6 +90,12 @@ inline constexpr double kCoarseCost = 0.13;
 /// wall of every cut. A cube of a scan's last rounds holds as many.
 inline constexpr std::int64_t kOnePatch = 8192;
 inline constexpr double kOnePatchSide = 128;
+/// Part of the vertices: where fewer are final, triangles between final ones stay in the patches,
+/// as to find them would take more time than it saves.
+inline constexpr double kFewFinal = 0.05;
+/// Cells that a patch's new vertices may lie beyond its own triangles, where others of the patch's
+/// cube are settled: vertices of a round part lie outside what they replace, by less.
+inline constexpr double kBeyondOwn = 1;
 /// Side of the cubes that a place is made tighter in, voxels, and how often the square of the
 /// allowed distance is halved there, by how often the place has failed.
 inline constexpr double kTightCube = 1.5;

@@ -97,6 +97,53 @@ TEST(PatchGroups, GiveSamplesToTheirTriangles) {
     EXPECT_EQ(own, expected);
 }
 
+// Most of the ball is final. Its triangles are no patch's own; in a patch that has own triangles,
+// they are obstacles wherever a new vertex may come to lie.
+TEST(PatchGroups, KeepSettledTrianglesAsObstaclesNearOwnOnes) {
+    PatchedBall ball;
+    for (std::size_t v = 0; v < ball.surface.points.size(); ++v) {
+        if (ball.surface.points[v].z > kBallMiddle.z - 4) {
+            ball.surface.states[v] = Patch::State::Final;
+        }
+    }
+    const auto isSettled = [&](std::uint32_t t) {
+        const auto& c = ball.surface.triangles[t];
+        return std::all_of(c.begin(), c.end(), [&](std::uint32_t v) {
+            return ball.surface.states[v] == Patch::State::Final;
+        });
+    };
+    const detail::PatchGroups groups(ball.surface, kCut, ball.scene.frame);
+    std::map<Key, int> owners;
+    std::size_t settledObstacles = 0;
+    for (std::size_t n = 0; n < groups.count(); ++n) {
+        const Patch patch = groups.take(n, ball.scratch);
+        std::map<Key, int> here;
+        for (std::uint32_t t = 0; t < patch.triangles.size(); ++t) ++here[keyOf(patch, t)];
+        for (std::uint32_t t = 0; t < patch.ownTriangles; ++t) ++owners[keyOf(patch, t)];
+        if (patch.ownTriangles == 0) {
+            EXPECT_TRUE(patch.triangles.empty());
+            EXPECT_TRUE(groups.isIdle(n));
+            continue;
+        }
+        const BoundingBox room{patch.lowIndex, patch.highIndex};  // voxels are 1 mm
+        for (std::uint32_t t = 0; t < ball.surface.triangles.size(); ++t) {
+            const auto& [a, b, c] = ball.surface.triangles[t];
+            const BoundingBox box =
+                boxOf({ball.surface.points[a], ball.surface.points[b], ball.surface.points[c]});
+            if (!isSettled(t) || !box.overlaps(room)) continue;
+            EXPECT_EQ(here[ball.key(t)], 1);
+            ++settledObstacles;
+        }
+    }
+    std::size_t settled = 0;
+    for (std::uint32_t t = 0; t < ball.surface.triangles.size(); ++t) {
+        settled += isSettled(t) ? 1 : 0;
+        EXPECT_EQ(owners[ball.key(t)], isSettled(t) || ball.straddles(t) ? 0 : 1);
+    }
+    EXPECT_GT(settledObstacles, 50U);
+    EXPECT_LT(settledObstacles, settled / 2);
+}
+
 TEST(PatchGroups, ShareOutBySize) {
     const PatchedBall ball;
     for (const std::int64_t total : {0, 1, 100, 777}) {

@@ -8,6 +8,7 @@
 
 #include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -91,9 +92,11 @@ PatchGroups::PatchGroups(const SimplifiedSurface& surface, const PatchCut& cut,
                          const MetricFrame& frame)
     : surface_(surface),
       cubes_(surface, cut, frame),
+      hasSettled_(!isOne() && manyAreFinal()),
       cubeOfVertex_(cubesOfVertices()),
       cubeOfTriangle_(cubesOfTriangles()),
       obstacles_(cubes_.count()) {
+    if (hasSettled_) leaveOutSettled();
     tbb::parallel_invoke([&] { groupVertices(); }, [&] { groupTriangles(); },
                          [&] {
                              if (isOne()) return;  // it has them all
@@ -124,10 +127,43 @@ std::vector<std::uint32_t> PatchGroups::cubesOfTriangles() const {
                 const auto& c = surface_.triangles[t];
                 const std::uint32_t cube = cubeOfVertex_[c[0]];
                 const bool isWithin = cubeOfVertex_[c[1]] == cube && cubeOfVertex_[c[2]] == cube;
-                cubes[t] = isWithin ? cube : kStraddles;
+                cubes[t] = isWithin && !(hasSettled_ && isSettled(t)) ? cube : kNone;
             }
         });
     return cubes;
+}
+
+bool PatchGroups::manyAreFinal() const {
+    const auto count =
+        std::count(surface_.states.begin(), surface_.states.end(), Patch::State::Final);
+    return static_cast<double>(count) > kFewFinal * static_cast<double>(surface_.states.size());
+}
+
+bool PatchGroups::isSettled(std::size_t triangle) const {
+    const auto& corners = surface_.triangles[triangle];
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](std::uint32_t v) { return surface_.states[v] == Patch::State::Final; });
+}
+
+/// Vertices of settled triangles alone belong to no cube.
+void PatchGroups::leaveOutSettled() {
+    std::vector<std::uint8_t> isNeeded(surface_.states.size(), 0);
+    reach_.assign(count(), BoundingBox::empty());
+    for (std::size_t t = 0; t < cubeOfTriangle_.size(); ++t) {
+        if (isSettled(t)) continue;
+        const SurfaceState::Triangle& corners = surface_.triangles[t];
+        for (const std::uint32_t v : corners) isNeeded[v] = 1;
+        if (cubeOfTriangle_[t] != kNone) reach_[cubeOfTriangle_[t]].add(indexBoxOf(corners));
+    }
+    for (BoundingBox& reach : reach_) reach.widen(kBeyondOwn);
+    for (std::size_t v = 0; v < isNeeded.size(); ++v) {
+        if (isNeeded[v] == 0) cubeOfVertex_[v] = kNone;
+    }
+}
+
+BoundingBox PatchGroups::indexBoxOf(const SurfaceState::Triangle& triangle) const {
+    const auto at = [&](int c) { return cubes_.frame().toIndex(surface_.points[triangle[c]]); };
+    return boxOf({at(0), at(1), at(2)});
 }
 
 void PatchGroups::groupVertices() {
@@ -143,32 +179,29 @@ void PatchGroups::groupTriangles() {
     assignInHugePages(placeOfTriangle_, surface_.triangles.size());
     triangles_.number(placeOfTriangle_);
     if (isOne()) return;
-    for (std::uint32_t t = 0; t < cubeOfTriangle_.size(); ++t) {
-        if (cubeOfTriangle_[t] != kStraddles) continue;
-        placeOfTriangle_[t] = static_cast<std::uint32_t>(straddling_.size());
-        straddling_.push_back(t);
-    }
-    strayedSamples_ = Groups(straddling_.size(), surface_.samples.size(), [&](std::size_t s) {
-        const std::uint32_t t = surface_.sampleTriangle[s];
-        return cubeOfTriangle_[t] == kStraddles ? placeOfTriangle_[t] : kStraddles;
-    });
-    collectObstacles();
+    listObstacles();
+    strayedSamples_ =
+        Groups(obstacleTriangles_.size(), surface_.samples.size(), [&](std::size_t s) {
+            const std::uint32_t t = surface_.sampleTriangle[s];
+            return cubeOfTriangle_[t] == kNone ? placeOfTriangle_[t] : kNone;
+        });
 }
 
-/// Triangles that straddle cubes are obstacles in all the cubes that they may reach into.
-void PatchGroups::collectObstacles() {
-    for (std::uint32_t i = 0; i < straddling_.size(); ++i) {
-        Index3 low{}, high{};
-        for (int c = 0; c < 3; ++c) {
-            const Index3 cube =
-                cubes_.cubeAt(surface_.points[surface_.triangles[straddling_[i]][c]]);
-            for (int a = 0; a < 3; ++a) {
-                low[a] = c == 0 ? cube[a] : std::min(low[a], cube[a]);
-                high[a] = c == 0 ? cube[a] : std::max(high[a], cube[a]);
-            }
-        }
-        cubes_.forEachBetween(low, high,
-                              [&](std::uint32_t cube) { obstacles_[cube].push_back(i); });
+/// Triangles that straddle cubes, and settled ones, are obstacles in all the cubes that they may
+/// reach into.
+void PatchGroups::listObstacles() {
+    for (std::uint32_t t = 0; t < cubeOfTriangle_.size(); ++t) {
+        if (cubeOfTriangle_[t] != kNone) continue;
+        const BoundingBox box = indexBoxOf(surface_.triangles[t]);
+        const auto place = static_cast<std::uint32_t>(obstacleTriangles_.size());
+        placeOfTriangle_[t] = kNone;
+        cubes_.forEachBetween(cubes_.cubeAtIndex(box.minimum), cubes_.cubeAtIndex(box.maximum),
+                              [&](std::uint32_t cube) {
+                                  if (hasSettled_ && !reach_[cube].overlaps(box)) return;
+                                  obstacles_[cube].push_back(place);
+                                  placeOfTriangle_[t] = place;
+                              });
+        if (placeOfTriangle_[t] == place) obstacleTriangles_.push_back(t);
     }
 }
 
@@ -210,6 +243,12 @@ void PatchGroups::sortSamples(std::size_t n, std::vector<std::uint32_t>& sorted)
 Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
     Patch patch;
     cubes_.setBounds(n, patch);
+    if (hasSettled_) {
+        for (int a = 0; a < 3; ++a) {
+            patch.lowIndex[a] = std::max(patch.lowIndex[a], reach_[n].minimum[a]);
+            patch.highIndex[a] = std::min(patch.highIndex[a], reach_[n].maximum[a]);
+        }
+    }
     const auto members = vertices_.of(n);
     patch.points.reserve(members.size());
     patch.quadrics.reserve(members.size());
@@ -272,7 +311,7 @@ void PatchGroups::addObstacles(std::size_t n, Patch& patch, PatchScratch& scratc
             patch.samples.push_back(surface_.samples[s]);
             patch.sampleTriangle.push_back(static_cast<std::uint32_t>(patch.triangles.size()));
         }
-        const SurfaceState::Triangle& c = surface_.triangles[straddling_[obstacle]];
+        const SurfaceState::Triangle& c = surface_.triangles[obstacleTriangles_[obstacle]];
         patch.triangles.push_back({localVertex(c[0]), localVertex(c[1]), localVertex(c[2])});
     }
     for (const std::uint32_t v : scratch.outsideVertices) scratch.outsideNumber[v] = 0;

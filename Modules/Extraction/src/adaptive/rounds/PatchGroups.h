@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "adaptiso/Core/BoundingBox.h"
 #include "adaptiso/Core/Buckets.h"
 #include "adaptive/bricks/Bricks.h"
 #include "adaptive/mesh/MetricFrame.h"
@@ -27,6 +28,7 @@ public:
 
     std::size_t count() const { return total_; }
     Index3 cubeAt(const Vec3& p) const { return cubeAtIndex(frame_.toIndex(p)); }
+    Index3 cubeAtIndex(const Vec3& index) const;
     /// Of a cube, if it is one of them.
     std::optional<std::uint32_t> find(const Index3& cube) const;
     /// \pre it is one of them
@@ -37,11 +39,11 @@ public:
     template <class F>
     void forEachBetween(const Index3& first, const Index3& last, const F& f) const;
     void setBounds(std::size_t number, Patch& patch) const;
+    const MetricFrame& frame() const { return frame_; }
 
 private:
     using Place = std::array<std::int64_t, 3>;  ///< of a cube: z, y, x
 
-    Index3 cubeAtIndex(const Vec3& index) const;
     std::uint32_t placeOf(const Index3& cube) const {
         return static_cast<std::uint32_t>(
             cube[0] - low_[0] + count_[0] * (cube[1] - low_[1] + count_[1] * (cube[2] - low_[2])));
@@ -117,6 +119,9 @@ struct PatchScratch {
 };
 
 /// The patches of a cut: who belongs to which.
+///
+/// Where many vertices are final, a triangle between three of them is settled: it is no patch's
+/// own, but an obstacle where own triangles are near it.
 class PatchGroups {
 public:
     PatchGroups(const SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame);
@@ -146,27 +151,34 @@ public:
                     std::vector<std::uint32_t>& mergedInto) const;
 
 private:
-    static constexpr std::uint32_t kStraddles = 0xFFFFFFFF;
+    static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
     std::vector<std::uint32_t> cubesOfVertices() const;
     std::vector<std::uint32_t> cubesOfTriangles() const;
+    bool manyAreFinal() const;
+    bool isSettled(std::size_t triangle) const;
+    void leaveOutSettled();
     void groupVertices();
     void groupTriangles();
-    void collectObstacles();
+    void listObstacles();
+    BoundingBox indexBoxOf(const SurfaceState::Triangle& triangle) const;
     void sortSamples(std::size_t n, std::vector<std::uint32_t>& sorted) const;
     void addSamples(std::size_t n, Patch& patch, PatchScratch& scratch) const;
     void addObstacles(std::size_t n, Patch& patch, PatchScratch& scratch) const;
 
     const SimplifiedSurface& surface_;
     PatchCubes cubes_;
+    bool hasSettled_;  ///< triangles
     std::vector<std::uint32_t> cubeOfVertex_, cubeOfTriangle_;
     std::vector<std::uint32_t> placeOfVertex_;    ///< in its cube
-    std::vector<std::uint32_t> placeOfTriangle_;  ///< in its cube, or among those that straddle
-    std::vector<std::uint32_t> straddling_;
+    std::vector<std::uint32_t> placeOfTriangle_;  ///< in its cube, or among the obstacles
+    std::vector<std::uint32_t> obstacleTriangles_;
     Groups vertices_, triangles_;
+    /// Of each cube, if some triangles are settled: the index box that its own ones stay in.
+    std::vector<BoundingBox> reach_;
     Groups samples_;                                     ///< of the cubes' triangles
-    Groups strayedSamples_;                              ///< of each triangle that straddles
-    std::vector<std::vector<std::uint32_t>> obstacles_;  ///< straddling ones, of each cube
+    Groups strayedSamples_;                              ///< of each obstacle
+    std::vector<std::vector<std::uint32_t>> obstacles_;  ///< of each cube, their places
 };
 
 }  // namespace adaptiso::detail
