@@ -21,7 +21,10 @@ TriangleMesh ballMesh(double radiusMm, int subdivisions) {
 /// Everything that a map of one mesh to another has.
 struct Mapped {
     Mapped(const TriangleMesh& fine, const TriangleMesh& coarse, double distanceMm)
-        : from(fine), to(coarse), cover(onto, coarse.triangles.size()) {
+        : from(fine),
+          to(coarse),
+          cover(onto, coarse.triangles.size()),
+          shared(coarse.triangles.size()) {
         source.assign(from.points, from.triangles);
         onto.assign(to.points, to.triangles);
         Map map(onto, 0.25 * distanceMm * distanceMm);
@@ -29,7 +32,10 @@ struct Mapped {
         for (VertexId t = 0; t < std::ssize(from.triangles); ++t) {
             isMapped.push_back(mapOne(map, t, distanceMm * distanceMm) ? 1 : 0);
         }
-        const auto passes = [&](VertexId t) { cover.addBorder(t); };
+        const auto passes = [&](VertexId t) {
+            cover.addBorder(t);
+            shared.addBorder(static_cast<std::uint64_t>(t));
+        };
         for (VertexId h = 0; h < 3 * std::ssize(from.triangles); ++h) {
             const VertexId twin = source.twin(h);
             if (isMapped[h / 3] == 0 || (twin != Walkable::kNone && isMapped[twin / 3] != 0)) {
@@ -46,6 +52,7 @@ struct Mapped {
     std::vector<VertexId> covered() const {
         std::vector<VertexId> result;
         for (VertexId t = 0; t < std::ssize(to.triangles); ++t) {
+            EXPECT_EQ(shared.covers(static_cast<std::uint64_t>(t)), cover.covers(t));
             if (cover.covers(t)) result.push_back(t);
         }
         return result;
@@ -54,6 +61,7 @@ struct Mapped {
     TriangleMesh from, to;
     Walkable source, onto;
     Cover cover;
+    detail::SharedCover shared;  ///< the same, as maps side by side take it
     std::vector<Map::Vertex> vertices;
     std::vector<std::uint8_t> isMapped;
 
@@ -87,7 +95,11 @@ private:
             sides[i].way = &ways[i];
         }
         if (!map.map(corners, sides, squaredDistance)) return false;
-        for (const Map::Part& part : map.parts()) cover.add(part);
+        for (const Map::Part& part : map.parts()) {
+            cover.add(part);
+            shared.add(static_cast<std::uint64_t>(part.triangle),
+                       detail::shareOf(part.area2, onto.cornersOf(part.triangle)));
+        }
         return true;
     }
 };
