@@ -71,16 +71,25 @@ private:
         mendDistances(attempt);
         if (isBeyond(attempt.error)) return false;
         findCrossings(attempt);
+        const std::int64_t triangles = attempt.surface.triangleCount();
         for (int mend = 0; mend < kMostMends && !attempt.crossing.empty(); ++mend) {
-            if (wanted_.isGiven()) break;
             auto changes = mendCrossings(attempt);
             if (!changes) changes = undoCrossings(attempt);
-            if (!changes) break;
+            if (!changes || !keepsCount(attempt.surface, triangles)) return false;
             attempt.error = proof_->proveAgain(attempt.surface, *changes);
             mendDistances(attempt);
             findCrossings(attempt);
         }
         return attempt.crossing.empty() && !isBeyond(attempt.error);
+    }
+
+    /// After mending as many triangles are left as are wanted, or as were before.
+    bool keepsCount(const SimplifiedSurface& surface, std::int64_t before) const {
+        if (!wanted_.isGiven()) return true;
+        const std::int64_t now = surface.triangleCount(),
+                           wanted = std::max(before, wanted_.of(surface.fineTriangles));
+        return now <= wanted &&
+               static_cast<double>(now) >= (1 - kCountMissed) * static_cast<double>(before);
     }
 
     /// Where promises were not kept the next run takes more care.
@@ -210,8 +219,9 @@ private:
     }
 
     std::optional<SurfaceChanges> mendCrossings(Attempt& attempt) {
-        SurfaceMender mender(attempt.surface, frame_, *boundMm_, full_.box());
-        const std::size_t mended = mender.mendCrossings(attempt.crossing);
+        SurfaceMender mender(attempt.surface, frame_, boundMm_.value_or(attempt.error.largestMm),
+                             full_.box());
+        const std::size_t mended = mender.mendCrossings(attempt.crossing, wanted_.isGiven());
         work_.placesMended += static_cast<std::int64_t>(mended);
         keepChanged(mender);
         if (mended == 0) return {};

@@ -27,6 +27,9 @@ inline constexpr double kSheetDistance = 0.5;
 inline constexpr int kMostRuns = 16, kMostCrossedRuns = 3;
 /// Rounds of mending crossings in one run; rounds of mending distances that may gain little.
 inline constexpr int kMostMends = 6, kMostIdleMends = 1;
+/// Part of the triangles that mending crossings may leave below a wanted count, which is to be met
+/// to as much; else the run is made again.
+inline constexpr double kCountMissed = 0.001;
 /// A round of mending gains little when it leaves more than this part of the triangles with places
 /// beyond the bound.
 inline constexpr double kMended = 0.5;

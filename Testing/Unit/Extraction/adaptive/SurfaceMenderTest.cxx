@@ -139,9 +139,14 @@ TEST(SurfaceMender, PartsTrianglesThatCross) {
     surface.points[at - mesh.points.begin()] = {4, 4, 1.2};
     const std::vector<std::int64_t> crossing = crossingTriangles(meshOf(surface));
     ASSERT_FALSE(crossing.empty());
-    detail::SurfaceMender mender(surface, unitFrame(), kLimitMm);
-    EXPECT_GT(mender.mendCrossings(crossing), 0U);
-    EXPECT_TRUE(crossingTriangles(meshOf(surface)).empty());
+    const std::size_t before = surface.triangles.size();
+    for (const bool mergesFirst : {false, true}) {
+        detail::SimplifiedSurface mended = surface;
+        detail::SurfaceMender mender(mended, unitFrame(), kLimitMm);
+        EXPECT_GT(mender.mendCrossings(crossing, mergesFirst), 0U);
+        EXPECT_TRUE(crossingTriangles(meshOf(mended)).empty());
+        EXPECT_TRUE(!mergesFirst || mended.triangles.size() < before);
+    }
 }
 
 // Places all over a sphere, inside and outside, more than one in many of its triangles.

@@ -115,7 +115,7 @@ void CrossingGuard::enter(std::uint32_t triangle) {
             if (hadRow && before.first[0] <= x && x <= before.last[0]) continue;
             std::uint32_t& at = entriesAt_[row + x];
             if (at == kNoEntries || entries_[at].count == Entries::kMost) {
-                entries_.push_back({at});
+                entries_.push_back({at, 0, {}});
                 at = static_cast<std::uint32_t>(entries_.size() - 1);
             }
             entries_[at].triangle[entries_[at].count++] = triangle;

@@ -80,7 +80,8 @@ std::size_t SurfaceMender::mendDistances(std::vector<PlaceBeyond> places) {
     return mended;
 }
 
-std::size_t SurfaceMender::mendCrossings(const std::vector<std::int64_t>& triangles) {
+std::size_t SurfaceMender::mendCrossings(const std::vector<std::int64_t>& triangles,
+                                         bool mergesFirst) {
     std::vector<PlaceBeyond> places;
     for (const std::int64_t t : triangles) {
         PlaceBeyond& place = places.emplace_back();
@@ -89,14 +90,14 @@ std::size_t SurfaceMender::mendCrossings(const std::vector<std::int64_t>& triang
     prepare(places);
     const auto mended = static_cast<std::size_t>(
         std::count_if(places.begin(), places.end(), [&](const PlaceBeyond& place) {
-            return !contains(gone_, place.triangle) && mendCrossing(place.triangle);
+            return !contains(gone_, place.triangle) && mendCrossing(place.triangle, mergesFirst);
         }));
     removeTriangles(std::exchange(gone_, {}), surface_, changes_);
     return mended;
 }
 
 /// Brings the triangle to one of its samples, or merges two of its corners.
-bool SurfaceMender::mendCrossing(Number triangle) {
+bool SurfaceMender::mendCrossing(Number triangle, bool mergesFirst) {
     const Corners corners = cornersOf(triangle);
     if (crossesNothing({corners}, around_.at(surface_.triangles[triangle][0]))) return false;
     std::vector<PlaceBeyond> places;
@@ -108,15 +109,26 @@ bool SurfaceMender::mendCrossing(Number triangle) {
                 {closestPointOnTriangle(p, corners[0], corners[1], corners[2]), p, triangle, true});
         }
     }
-    for (const double leastCosine : kMendCosines) {
-        leastCosine_ = leastCosine;
+    const auto anyCosine = [&](const auto& change) {
+        return std::any_of(kMendCosines.begin(), kMendCosines.end(), [&](double leastCosine) {
+            leastCosine_ = leastCosine;
+            return change();
+        });
+    };
+    if (mergesFirst && anyCosine([&] { return mergeCorners(triangle); })) return true;
+    return anyCosine([&] {
         for (const PlaceBeyond& place : places) {
             if (insert(place, triangle, barycentric(place.onSimplified, corners))) return true;
         }
-        const Vec3 middle = (1.0 / 3) * (corners[0] + corners[1] + corners[2]);
-        for (int corner = 0; corner < 3; ++corner) {
-            if (collapseEdge(triangle, corner, {middle, middle, triangle, false})) return true;
-        }
+        return mergeCorners(triangle);
+    });
+}
+
+bool SurfaceMender::mergeCorners(Number triangle) {
+    const Corners corners = cornersOf(triangle);
+    const Vec3 middle = (1.0 / 3) * (corners[0] + corners[1] + corners[2]);
+    for (int corner = 0; corner < 3; ++corner) {
+        if (collapseEdge(triangle, corner, {middle, middle, triangle, false})) return true;
     }
     return false;
 }

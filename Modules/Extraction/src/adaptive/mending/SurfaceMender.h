@@ -35,8 +35,10 @@ public:
     std::size_t mendDistances(std::vector<PlaceBeyond> places);
 
     /// Changes triangles that cross others until they don't, where that can be done.
+    /// \param mergesFirst  new vertices only where no merging of two helps: a wanted count of
+    ///                     triangles is not passed then but in few places
     /// \return how many were changed
-    std::size_t mendCrossings(const std::vector<std::int64_t>& triangles);
+    std::size_t mendCrossings(const std::vector<std::int64_t>& triangles, bool mergesFirst);
 
     /// Since the last call of this function.
     SurfaceChanges takeChanges() { return std::exchange(changes_, {}); }
@@ -60,7 +62,8 @@ private:
 
     void prepare(const std::vector<PlaceBeyond>& places);
     bool mendPlace(const PlaceBeyond& place);
-    bool mendCrossing(Number triangle);
+    bool mendCrossing(Number triangle, bool mergesFirst);
+    bool mergeCorners(Number triangle);
     bool insert(const PlaceBeyond& place, Number triangle, const std::array<double, 3>& at);
     Number partAt(const PlaceBeyond& place) const;
     bool moveVertex(Number vertex, const Vec3& step);
