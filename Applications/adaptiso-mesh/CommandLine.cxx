@@ -130,8 +130,8 @@ void declareAdaptive(CLI::App& app, AdaptiveOptions& options) {
         ->type_name("F")
         ->group(kSurface);
     addNumber(app, "--min-angle", options.minAngleDeg, {.least = 0, .most = 40, .unit = "degrees"},
-              "Method adaptive: make no angle below DEG, 0 to 40, at the price of more triangles "
-              "(default: 0)")
+              "Method adaptive: make no angle below DEG, 0 to 40, where there is none, at the "
+              "price of more triangles (default: 0)")
         ->type_name("DEG")
         ->group(kSurface);
 }

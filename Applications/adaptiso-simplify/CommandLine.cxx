@@ -111,7 +111,8 @@ void declareAim(CLI::App& app, SimplifyOptions& aim) {
 void declareKept(CLI::App& app, SimplifyCommand& command) {
     addNumber(app, "--min-angle", command.aim.minAngleDeg,
               {.least = 0, .most = 40, .unit = "degrees"},
-              "Make no angle below DEG, 0 to 40, at the price of more triangles (default: 0)")
+              "Make no angle below DEG, 0 to 40, where there is none, at the price of more "
+              "triangles (default: 0)")
         ->type_name("DEG")
         ->group(kKept);
     app.add_flag("--keep-borders", command.aim.keepBorders,

@@ -44,7 +44,8 @@ def surface(image: Any, level: Union[float, str], *, max_error: Optional[float] 
     reduction : float, optional
         Share of marching cubes' triangles to drop, 0 to 1.
     min_angle : float, optional
-        Make no angle below this, 0 to 40 degrees, at the price of more triangles.
+        Make no angle below this, 0 to 40 degrees, where there is none, at the price of more
+        triangles.
     method : {"adaptive", "boxes", "dmc", "asc", "mc"}
         "mc" is marching cubes at full resolution. The four options above are for "adaptive".
     affine : array_like of shape (4, 4), optional

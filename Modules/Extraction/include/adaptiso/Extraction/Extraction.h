@@ -36,7 +36,9 @@ struct AdaptiveOptions {
     std::optional<std::int64_t> maxTriangles;  ///< as accurate as can be at this count. \pre >= 0
     /// Share of the triangles of MarchingCubes to drop, 0 to 1: a count by another name.
     std::optional<double> reduction;
-    /// Angles below this are not made, at the price of more triangles. \pre 0 to 40
+    /// Angles below this are not made where there was none, and where there was, none smaller
+    /// still; but where single places are mended in the end. Takes more triangles. \pre 0 to 40,
+    /// degrees
     double minAngleDeg = 0;
 
     friend bool operator==(const AdaptiveOptions&, const AdaptiveOptions&) = default;

@@ -22,7 +22,7 @@ struct SimplifyOptions {
     std::optional<std::int64_t> maxTriangles;  ///< as accurate as can be at this count. \pre >= 0
     /// Share of the triangles to drop, 0 to 1: a count by another name.
     std::optional<double> reduction;
-    /// Angles below this are not made, at the price of more triangles. \pre 0 to 40
+    /// As AdaptiveOptions::minAngleDeg. \pre 0 to 40, degrees
     double minAngleDeg = 0;
     /// Vertices on open borders stay, bit by bit.
     bool keepBorders = false;
