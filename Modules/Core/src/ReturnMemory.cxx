@@ -16,9 +16,11 @@ void returnFreedMemory() {
 
 void keepFreedMemory() {
 #ifdef __GLIBC__
-    constexpr int kLargestKept = 1 << 30;  // bytes
+    // bytes of a list, and in all: with a GB of both there were no fewer page faults, and a label
+    // map of 256^3 took 18 % more memory instead of 4
+    constexpr int kLargestKept = 32 << 20, kMostKept = 128 << 20;
     mallopt(M_MMAP_THRESHOLD, kLargestKept);
-    mallopt(M_TRIM_THRESHOLD, kLargestKept);
+    mallopt(M_TRIM_THRESHOLD, kMostKept);
 #endif
 }
 

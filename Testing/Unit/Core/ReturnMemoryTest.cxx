@@ -9,7 +9,7 @@
 namespace adaptiso {
 namespace {
 
-constexpr std::size_t kBytes = std::size_t{48} << 20, kPage = 4096;
+constexpr std::size_t kBytes = std::size_t{24} << 20, kPage = 4096;
 
 /// Writes to every page of a list. \return page faults meanwhile
 long faultsOfAList() {

@@ -7,10 +7,11 @@ namespace adaptiso {
 /// for 10 MB; so it is for between the steps of long work. Does nothing with other C libraries.
 void returnFreedMemory();
 
-/// For the start of a program whose work is lists that come and go: freed memory stays with the
-/// process until returnFreedMemory(), so that the next list need not have it from the system again,
-/// page by page (a tenth of the time of simplification). It is for the whole process, so no library
-/// may ask for it. Does nothing with other C libraries.
+/// For the start of a program whose work is lists that come and go: freed memory of lists up to
+/// 32 MB, 128 MB in all, stays with the process until returnFreedMemory(), so that the next list
+/// need not have it from the system again, page by page (a tenth of the time of simplification
+/// where page faults are dear). It is for the whole process, so no library may ask for it. Does
+/// nothing with other C libraries.
 void keepFreedMemory();
 
 }  // namespace adaptiso
