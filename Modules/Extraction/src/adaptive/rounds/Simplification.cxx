@@ -215,9 +215,10 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
     };
     for (int helpless = 0; helpless < kMostHelpless;) {
         const std::int64_t above = surface.triangleCount() - target;
-        const double worthwhile =
-            limits_.maxDistanceMm < farthestMm ? kWorthwhileAsFar : kWorthwhile;
-        for (int idle = 0; !isWithin(1) && idle < 2;) {
+        const bool mayGoFarther = limits_.maxDistanceMm < farthestMm;
+        const double worthwhile = mayGoFarther ? kWorthwhileAsFar : kWorthwhile;
+        const int mostIdle = mayGoFarther ? 1 : 2;  // both cuts have their turn
+        for (int idle = 0; !isWithin(1) && idle < mostIdle;) {
             const std::int64_t before = surface.triangleCount();
             cost *= costStep(before, target, collapsed_);
             if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
@@ -226,7 +227,7 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
                 leavesLess(worthwhile, surface.triangleCount() - target, before - target);
             if (cost > kLastCost) idle = helped ? 0 : idle + 1;
         }
-        if (isWithin(kMet) || limits_.maxDistanceMm >= farthestMm) break;
+        if (isWithin(kMet) || !mayGoFarther) break;
         const bool helped = leavesLess(kHelped, surface.triangleCount() - target, above);
         helpless = helped ? 0 : helpless + 1;
         goFarther(surface);
