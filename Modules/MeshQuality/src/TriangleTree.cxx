@@ -140,6 +140,7 @@ double TriangleTree::squaredDistance(const Vec3& p, const TriangleView& of, doub
         if (at.subtree.isLeaf()) {
             for (const std::uint32_t t : leaf(at.subtree.firstLeaf)) {
                 const Corners c = of.cornersOf(t);
+                if (adaptiso::squaredDistance(p, boxOf(c)) >= best) continue;
                 best = std::min(best, squaredNorm(p - closestPointOnTriangle(p, c[0], c[1], c[2])));
             }
             continue;

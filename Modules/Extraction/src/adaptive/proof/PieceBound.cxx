@@ -107,6 +107,7 @@ void PieceBound::includeUncut(const Corners& piece) {
 PieceBound::Corner PieceBound::cornerAt(const Vec3& point) const {
     Corner corner{point, 0, kInfinity};
     for (std::size_t i = 0; i < nearby_.size(); ++i) {
+        if (squaredDistance(point, boxOf(nearby_[i])) >= corner.squared) continue;
         const double squared = squaredDistanceToTriangle(point, nearby_[i]);
         if (squared < corner.squared) corner = {point, i, squared};
     }

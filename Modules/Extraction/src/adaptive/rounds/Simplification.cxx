@@ -75,15 +75,25 @@ Simplification::Simplification(const FullSurface& full, const TightPlaces& tight
 }
 
 /// Cuts in turn, so that what straddles one cut lies within the next, also where their cubes grow;
-/// one cube for few triangles.
+/// one cube for few triangles. No two sizes have a wall in common.
 PatchCut Simplification::nextCut(const SimplifiedSurface& surface) {
     ++rounds_;
     if (surface.triangleCount() <= kOnePatch) {
         if (const auto cut = cutAround(surface, frame_)) return *cut;
     }
-    const bool isFine = limits_.maxCost <= kCoarseCost * costUnit_;
-    const std::int64_t side = isFine ? Brick::kSide : std::int64_t{2} * Brick::kSide,
-                       shift = (isFine ? 0 : Brick::kSide / 4) + (rounds_ % 2 == 1 ? side / 2 : 0);
+    struct Cubes {
+        double mostCost;
+        std::int64_t side, shift;
+    };
+    constexpr std::int64_t kSide = Brick::kSide;
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    constexpr std::array<Cubes, 3> kSizes{{{kFineCost, kSide, 0},
+                                           {kMiddleCost, 3 * kSide / 2, kSide / 8},
+                                           {kAny, 2 * kSide, kSide / 4}}};
+    const auto size = std::find_if(kSizes.begin(), kSizes.end(), [&](const Cubes& cubes) {
+        return limits_.maxCost <= cubes.mostCost * costUnit_;
+    });
+    const std::int64_t side = size->side, shift = size->shift + (rounds_ % 2 == 1 ? side / 2 : 0);
     return {side, {shift, shift, shift}};
 }
 
@@ -205,9 +215,10 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
     };
     for (int helpless = 0; helpless < kMostHelpless;) {
         const std::int64_t above = surface.triangleCount() - target;
-        const double worthwhile =
-            limits_.maxDistanceMm < farthestMm ? kWorthwhileAsFar : kWorthwhile;
-        for (int idle = 0; !isWithin(1) && idle < 2;) {
+        const bool mayGoFarther = limits_.maxDistanceMm < farthestMm;
+        const double worthwhile = mayGoFarther ? kWorthwhileAsFar : kWorthwhile;
+        const int mostIdle = mayGoFarther ? 1 : 2;  // both cuts have their turn
+        for (int idle = 0; !isWithin(1) && idle < mostIdle;) {
             const std::int64_t before = surface.triangleCount();
             cost *= costStep(before, target, collapsed_);
             if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
@@ -216,7 +227,7 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
                 leavesLess(worthwhile, surface.triangleCount() - target, before - target);
             if (cost > kLastCost) idle = helped ? 0 : idle + 1;
         }
-        if (isWithin(kMet) || limits_.maxDistanceMm >= farthestMm) break;
+        if (isWithin(kMet) || !mayGoFarther) break;
         const bool helped = leavesLess(kHelped, surface.triangleCount() - target, above);
         helpless = helped ? 0 : helpless + 1;
         goFarther(surface);

@@ -49,8 +49,8 @@ public:
     double squaredDistance(const Vec3& p, const TriangleView& of,
                            double most = std::numeric_limits<double>::infinity()) const;
 
-    /// Calls visit(triangle) for every triangle whose box, rounded outward, overlaps `box`; in an
-    /// order that is always the same.
+    /// Calls visit(triangle) for every triangle whose box overlaps `box`, in an order that is
+    /// always the same.
     template <class Visit>
     void forEachOverlap(const BoundingBox& box, const TriangleView& of, const Visit& visit) const;
 
@@ -124,7 +124,7 @@ void TriangleTree::forEachOverlap(const BoundingBox& box, const TriangleView& of
     const Box rounded = Box::around(box);
     forEachLeaf(rounded, 0, [&](std::int64_t number, const Box&) {
         for (const std::uint32_t t : leaf(number)) {
-            if (boxAround(of, t).overlaps(rounded)) visit(t);
+            if (boxOf(of.cornersOf(t)).overlaps(box)) visit(t);
         }
     });
 }
