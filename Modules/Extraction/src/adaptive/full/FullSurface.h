@@ -21,6 +21,8 @@ public:
     explicit FullSurface(const MetricFrame& frame) : frame_(frame) {}
     FullSurface(const FullSurface&) = delete;
     FullSurface& operator=(const FullSurface&) = delete;
+    FullSurface(FullSurface&&) = delete;
+    FullSurface& operator=(FullSurface&&) = delete;
     virtual ~FullSurface() = default;
 
     const MetricFrame& frame() const { return frame_; }

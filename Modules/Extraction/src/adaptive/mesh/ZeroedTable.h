@@ -12,7 +12,8 @@ namespace adaptiso::detail {
 class ZeroedTable {
 public:
     explicit ZeroedTable(std::size_t count)
-        : numbers_(static_cast<std::uint32_t*>(std::calloc(count, sizeof(std::uint32_t)))) {
+        : numbers_(static_cast<std::uint32_t*>(
+              std::calloc(count, sizeof(std::uint32_t)))) {  // NOLINT: leaves pages untouched
         if (!numbers_) throw std::bad_alloc();
     }
     std::uint32_t& operator[](std::size_t i) { return numbers_.get()[i]; }
@@ -20,7 +21,7 @@ public:
 
 private:
     struct Free {
-        void operator()(std::uint32_t* p) const { std::free(p); }
+        void operator()(std::uint32_t* p) const { std::free(p); }  // NOLINT: as above
     };
     std::unique_ptr<std::uint32_t, Free> numbers_;
 };

@@ -16,7 +16,7 @@
 namespace adaptiso::detail {
 
 /// A convex part of a triangle. Copies what there is of it alone: walks copy a lot.
-class ConvexPiece {
+class ConvexPiece {  // NOLINT: to move it is to copy it
 public:
     static constexpr int kMost = 12;
 
@@ -34,12 +34,12 @@ public:
 
     int count() const { return count_; }
     Vec3 corner(int i) const {
-        const auto at = static_cast<std::size_t>(3 * i);
+        const auto at = 3 * static_cast<std::size_t>(i);
         return {number_[at], number_[at + 1], number_[at + 2]};
     }
     /// \pre count() < kMost
     void add(const Vec3& p) {
-        const auto at = static_cast<std::size_t>(3 * count_++);
+        const auto at = 3 * static_cast<std::size_t>(count_++);
         number_[at] = p.x, number_[at + 1] = p.y, number_[at + 2] = p.z;
     }
 
