@@ -56,11 +56,17 @@ void CrossingGuard::buildGrid() {
     entries_.reserve(patch_.triangles.size() / 2);  // a triangle is in three cubes in the mean
     // no star reaches beyond the patch's own triangles; what lies outside is in the outermost cubes
     std::optional<BoundingBox> own;
+    double sides = 0, triangles = 0;
     for (std::uint32_t t = 0; t < patch_.ownTriangles; ++t) {
         if (patch_.triangles[t][0] == Patch::kGone) continue;
-        if (!own) own = boxOf(cornersOf(t));
-        for (const Vec3& p : cornersOf(t)) own->add(p);
+        const BoundingBox box = boxOf(cornersOf(t));
+        if (!own) own = box;
+        own->add(box);
+        const Vec3 size = box.size();
+        sides += std::max({size.x, size.y, size.z});
+        ++triangles;
     }
+    cubeMm_ = std::max(cubeMm_, kNearSides * sides / std::max(1.0, triangles));
     const BoundingBox all = own.value_or(BoundingBox{});
     low_ = all.minimum;
     const Vec3 extent = all.size();

@@ -227,6 +227,7 @@ bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, const SampleAssignm
                                  double maxDistanceMm) const {
     const int n = changed.star.count;
     const int first = changed.star.isOpen ? 1 : 0;  // the spoke between two triangles
+    const double spacingMm = kRidgeSpacing * std::max(sampleSpacingMm_, maxDistanceMm);
     for (int i = first; i < n; ++i) {
         const ChangedStar::Wedge &before = changed.wedge[i == 0 ? n - 1 : i - 1],
                                  &after = changed.wedge[i];
@@ -234,9 +235,7 @@ bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, const SampleAssignm
             dot(before.area2, after.area2) < kRidgeCosine * before.length * after.length;
         if (!isSharp) continue;
         const Vec3& spoke = changed.wedge[i].e1;
-        const int steps =
-            std::min(kRidgeMostSteps,
-                     1 + static_cast<int>(norm(spoke) / (kRidgeSpacing * sampleSpacingMm_)));
+        const int steps = std::min(kRidgeMostSteps, 1 + static_cast<int>(norm(spoke) / spacingMm));
         for (int k = 1; k < steps; ++k) {
             const Vec3 p = changed.vertex + static_cast<double>(k) / steps * spoke;
             const Sample& nearest = sampleNearest(p, assignment);
