@@ -147,9 +147,10 @@ TEST(KdTree, VisitsWithinItsGrantWhereFewBlocksAnswer) {
     // sqrt(n) nodes along the ground and the brightest tissue
     const ImageGeometry geometry = centredGeometry({96, 96, 96});
     std::vector<std::uint8_t> samples(96 * 96 * 96, 0);
+    const auto fromMiddle = [](std::size_t n) { return static_cast<double>(n % 96) - 47.5; };
     std::uint64_t state = 5;
     for (std::size_t n = 0; n < samples.size(); ++n) {
-        const Vec3 p{n % 96 - 47.5, n / 96 % 96 - 47.5, n / 9216 - 47.5};
+        const Vec3 p{fromMiddle(n), fromMiddle(n / 96), fromMiddle(n / 9216)};
         if (dot(p, p) < 40 * 40) samples[n] = static_cast<std::uint8_t>(nextRandom(state) % 120);
     }
     samples[48 * (1 + 96 + 9216)] = 200;  // a corner of blocks of every size
