@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 #include <set>
 #include <tuple>
@@ -50,6 +51,26 @@ TEST(ErrorProof, SaysAgainWhatProvingAnewSays) {
         EXPECT_NEAR(again.largestMm, anew.largestMm, 0.1) << n;
         const ErrorBound back = kept.proveAgain(surface, pull(surface, vertex, -1.5));
         EXPECT_TRUE(back.beyondLimit.empty()) << n;
+    }
+}
+
+// Nothing is beyond no limit; the bound is what was proved of all that is still there.
+TEST(ErrorProof, BoundsAgainWithoutALimit) {
+    const ProvedBall ball;
+    SimplifiedSurface surface = ball.full;
+    constexpr double kNoLimit = std::numeric_limits<double>::max();
+    ErrorProof kept = ball.proof(kNoLimit);
+    double largestMm = kept.prove(surface).largestMm;
+    EXPECT_LT(largestMm, 0.05);
+    std::mt19937 random(5);
+    for (const double mm : {0.2, 0.6, 1.5}) {
+        const auto vertex = static_cast<std::uint32_t>(random() % surface.points.size());
+        const ErrorBound again = kept.proveAgain(surface, pull(surface, vertex, mm));
+        const ErrorBound anew = ball.proof(kNoLimit).prove(surface);
+        EXPECT_GT(anew.largestMm, 0.5 * mm);
+        EXPECT_NEAR(again.largestMm, std::max(anew.largestMm, largestMm), 0.05);
+        EXPECT_TRUE(again.beyondLimit.empty());
+        largestMm = again.largestMm;
     }
 }
 

@@ -105,10 +105,8 @@ ErrorBound ErrorProof::prove(const SimplifiedSurface& surface, const ProofScope&
     if (!(provedArea >= (1 - 1e-9) * areaOf(*lookup_, scope))) {
         includeFarPieces(surface, *lookup_, bound);
         lookup_.reset();
-    } else if (limitMm_ < std::numeric_limits<double>::max()) {
-        remember(std::move(beyond));
     } else {
-        lookup_.reset();
+        remember(std::move(beyond));
     }
     return bound;
 }
@@ -154,8 +152,10 @@ void ErrorProof::remember(std::vector<PlaceBeyond> beyond) {
 }
 
 /// What is to be proved: the new triangles, and the full-resolution surface near those that came or
-/// went and where it lay beyond the limit.
+/// went and where it lay beyond the limit. What was farther from these than the proved distance lies
+/// as near another triangle.
 ProofScope ErrorProof::scopeOf(const SurfaceLookup& lookup, const SurfaceChanges& changes) const {
+    const double reachMm = std::min(limitMm_, provedMm_);
     ProofScope scope;
     scope.isKnown = isWithin_;
     scope.isKnown.resize(lookup.triangleCount(), 0);
@@ -164,9 +164,9 @@ ProofScope ErrorProof::scopeOf(const SurfaceLookup& lookup, const SurfaceChanges
         if (t < scope.isKnown.size()) scope.isKnown[t] = 0;
     }
     for (std::uint64_t t = 0; t < scope.isKnown.size(); ++t) {
-        if (scope.isKnown[t] == 0) markAround(lookup.cornersOf(t), limitMm_, scope);
+        if (scope.isKnown[t] == 0) markAround(lookup.cornersOf(t), reachMm, scope);
     }
-    for (const Corners& corners : changes.before) markAround(corners, limitMm_, scope);
+    for (const Corners& corners : changes.before) markAround(corners, reachMm, scope);
     markBeyond(scope);
     return scope;
 }

@@ -85,13 +85,13 @@ void PatchRound::lendSamples(Patch& patch) const {
     if (groups_->isOne()) patch.samples.swap(surface_.samples);
 }
 
-PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
+std::optional<PatchTrial> PatchRound::tryOut(const PatchLimits& limits) const {
     std::vector<std::size_t> all, some;
     for (std::size_t n = 0; n < groups_->count(); ++n) {
         if (!groups_->isIdle(n)) all.push_back(n);
     }
-    const std::size_t every =
-        triesAll ? 1 : std::clamp<std::size_t>(all.size() / kTrialFewest, 1, kTrialEvery);
+    const std::size_t every = std::min(all.size() / kTrialFewest, kTrialEvery);
+    if (every < 2) return {};
     double triangles = 0, tried = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const auto count = static_cast<double>(groups_->triangleCount(all[i]));
@@ -102,13 +102,11 @@ PatchTrial PatchRound::tryOut(const PatchLimits& limits, bool triesAll) const {
     }
     PatchTrial trial;
     trial.costs.resize(some.size());
-    if (every > 1) trial.share = tried / triangles;
+    trial.share = tried / triangles;
     tbb::enumerable_thread_specific<PatchScratch> scratches;
     parallelForPieces(std::ssize(some), 1, [&](std::int64_t i, std::int64_t) {
         Patch patch = groups_->take(some[i], scratches.local());
-        lendSamples(patch);
         PatchSimplifier(patch, frame_, limits).collapseEdges(patch.ownTriangles, &trial.costs[i]);
-        lendSamples(patch);
     });
     return trial;
 }

@@ -34,8 +34,9 @@ class PatchRound {
 public:
     PatchRound(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame);
 
-    /// Collapses edges in copies of some patches, spread over the surface, or of all.
-    PatchTrial tryOut(const PatchLimits& limits, bool triesAll) const;
+    /// Collapses edges in copies of some patches, spread over the surface; none where they are so
+    /// few that it would be all of them.
+    std::optional<PatchTrial> tryOut(const PatchLimits& limits) const;
 
     /// Once.
     /// \param costs  gets those of the collapses, patch by patch; may be null

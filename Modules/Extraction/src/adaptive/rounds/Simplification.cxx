@@ -145,9 +145,9 @@ SimplifiedSurface Simplification::toLimits(SurfaceState& halfway) {
     return surface;
 }
 
-/// A round up to a cost that does not lead below the target: where it may, by a trial, up to the
-/// cost that makes as many collapses as wanted. Where it did all the same it is made again, by a
-/// trial of all patches.
+/// A round up to a cost that does not lead below the target: where it may, some patches tell by a
+/// trial up to which cost it makes as many collapses as wanted. Where it did all the same it is made
+/// again, up to the cost that its own collapses tell.
 void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
     limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
     const std::int64_t before = surface.triangleCount(), wanted = (before - target + 1) / 2;
@@ -155,31 +155,37 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
     const PatchCut cut = nextCut(surface);
     const bool dealsOut = times < kNearCount || isTied_;
     const bool isNear = times <= kFarFromCount;  // from afar not reached but by a cost far too high
+    const bool maySurpass = isNear && !dealsOut;
     bool isLanding = false;
     PatchWork work{limits_};
-    SurfaceState kept;
-    std::vector<StoredQuadric> keptQuadrics;
-    const auto run = [&](bool tries, bool triesAll) {
-        PatchRound round(surface, cut, frame_);
-        if (tries) isLanding = landOn(wanted, round.tryOut(limits_, triesAll), work);
-        round.run(work);
-    };
-    if (dealsOut || !isNear) {
+    if (!maySurpass) {
         work.mostCollapses = wanted;
         work.fits = dealsOut;
-    } else {
+    }
+    SurfaceState kept;
+    std::vector<StoredQuadric> keptQuadrics;
+    CollapseCosts costs;
+    if (maySurpass) {
         kept = surface.state();
         keptQuadrics = surface.quadrics;
     }
-    const bool isLikely =
-        static_cast<double>(collapsed_) >= kLikely * static_cast<double>(wanted) ||
-        (cost > kLastCost && limits_.triedCost <= kLastCost * costUnit_);
-    run(isNear && !dealsOut && isLikely, false);
-    if (!kept.triangles.empty() && surface.triangleCount() + 1 < target) {
+    {
+        PatchRound round(surface, cut, frame_);
+        const bool isLikely =
+            static_cast<double>(collapsed_) >= kLikely * static_cast<double>(wanted) ||
+            (cost > kLastCost && limits_.triedCost <= kLastCost * costUnit_);
+        if (maySurpass && isLikely) {
+            const auto trial = round.tryOut(limits_);
+            isLanding = trial && landOn(wanted, *trial, work);
+        }
+        round.run(work, maySurpass ? &costs : nullptr);
+    }
+    if (maySurpass && surface.triangleCount() + 1 < target) {
         surface.state() = std::move(kept);
         surface.quadrics = std::move(keptQuadrics);
         work = PatchWork{limits_};
-        run(true, true);
+        isLanding = landOn(wanted, {std::move(costs)}, work);
+        PatchRound(surface, cut, frame_).run(work);
     }
     fits_ = work.fits ? fits_ + 1 : 0;
     limits_.triedCost = work.limits.maxCost;
