@@ -85,7 +85,8 @@ inline constexpr double kHardly = 0.05;
 /// to make: it is tried out first. Else a trial is half of the round's time for nothing.
 inline constexpr double kLikely = 0.5;
 /// A trial takes every eighth patch, or as many as to have 16 of them. With fewer than 32 patches
-/// there is none: the round itself takes no longer, and is taken back where it leads below the count.
+/// there is none: the round itself takes no longer, and is taken back where it leads below the
+/// count.
 inline constexpr std::size_t kTrialFewest = 16, kTrialEvery = 8;
 /// Up to the first cost cubes are as large as bricks, up to the second half as large again, above
 /// twice as large: else too much would straddle them. Small ones stay in a processor's cache. With

@@ -8,6 +8,7 @@
 
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
+#include "Surfaces.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptive/full/FlatTriangles.h"
 #include "adaptive/full/MeshParts.h"
@@ -236,16 +237,30 @@ TEST(MeshProof, FindsAVertexThatWasPulledOutAndForgetsItWhenItIsBack) {
     for (const detail::PlaceBeyond& place : pulled.beyondLimit) {
         EXPECT_LT(norm(place.point() - before), 2);
     }
-    detail::SurfaceChanges changes;
-    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
-        const auto& c = surface.triangles[t];
-        if (std::find(c.begin(), c.end(), 7U) == c.end()) continue;
-        changes.triangles.push_back(t);
-        changes.before.push_back(
-            {surface.points[c[0]], surface.points[c[1]], surface.points[c[2]]});
+    EXPECT_TRUE(proof->proveAgain(surface, moveVertex(surface, 7, before)).beyondLimit.empty());
+}
+
+// Nothing is beyond no limit; the bound is what was proved of all that is still there.
+TEST(MeshProof, BoundsAgainWithoutALimit) {
+    const TriangleMesh sphere = bare(icosphere(4, {}, 10));
+    const MeshParts parts = takeApart(sphere, false);
+    const detail::MeshSurface full(sphere, parts, {});
+    constexpr double kNoLimit = std::numeric_limits<double>::max();
+    const auto proof = full.proof(kNoLimit);
+    SimplifiedSurface surface = whole(full);
+    double largestMm = proof->prove(surface).largestMm;
+    EXPECT_LT(largestMm, 0.05);
+    for (const double mm : {0.2, 0.6, 1.5}) {
+        const auto vertex = static_cast<std::uint32_t>(100 * mm);
+        const Vec3 moved = (1 + mm / 10) * surface.points[vertex];
+        const detail::ErrorBound again =
+            proof->proveAgain(surface, moveVertex(surface, vertex, moved));
+        const detail::ErrorBound anew = full.proof(kNoLimit)->prove(surface);
+        EXPECT_GT(anew.largestMm, 0.5 * mm);
+        EXPECT_NEAR(again.largestMm, std::max(anew.largestMm, largestMm), 0.05);
+        EXPECT_TRUE(again.beyondLimit.empty());
+        largestMm = again.largestMm;
     }
-    surface.points[7] = before;
-    EXPECT_TRUE(proof->proveAgain(surface, changes).beyondLimit.empty());
 }
 
 TEST(MeshProof, FindsWhatTheSimplifiedSurfaceLacks) {

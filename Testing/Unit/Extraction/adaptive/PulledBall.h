@@ -34,16 +34,8 @@ struct ProvedBall {
 /// Pulls a vertex away from the ball's middle.
 inline detail::SurfaceChanges pull(detail::SimplifiedSurface& surface, std::uint32_t vertex,
                                    double mm) {
-    detail::SurfaceChanges changes;
-    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
-        const auto& c = surface.triangles[t];
-        if (std::find(c.begin(), c.end(), vertex) == c.end()) continue;
-        changes.triangles.push_back(t);
-        changes.before.push_back(
-            {surface.points[c[0]], surface.points[c[1]], surface.points[c[2]]});
-    }
-    surface.points[vertex] += mm * normalized(surface.points[vertex] - kBallMiddle);
-    return changes;
+    const Vec3& p = surface.points[vertex];
+    return moveVertex(surface, vertex, p + mm * normalized(p - kBallMiddle));
 }
 
 }  // namespace adaptiso::testing

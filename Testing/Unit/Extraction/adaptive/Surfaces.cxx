@@ -123,6 +123,20 @@ Scene ballScene() {
     return Scene({38, 38, 38}, [](const Vec3& p) { return kBallRadius - norm(p - kBallMiddle); });
 }
 
+detail::SurfaceChanges moveVertex(detail::SimplifiedSurface& surface, std::uint32_t vertex,
+                                  const Vec3& place) {
+    detail::SurfaceChanges changes;
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+        const auto& c = surface.triangles[t];
+        if (std::find(c.begin(), c.end(), vertex) == c.end()) continue;
+        changes.triangles.push_back(t);
+        changes.before.push_back(
+            {surface.points[c[0]], surface.points[c[1]], surface.points[c[2]]});
+    }
+    surface.points[vertex] = place;
+    return changes;
+}
+
 double distanceTo(const TriangleMesh& mesh, const Vec3& p) {
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [a, b, c] : mesh.triangles) {

@@ -69,6 +69,10 @@ inline constexpr double kBallRadius = 7;
 inline constexpr Vec3 kBallMiddle{28.3, 27.9, 28.1};
 Scene ballScene();
 
+/// Moves a vertex, and tells which triangles that changes.
+detail::SurfaceChanges moveVertex(detail::SimplifiedSurface& surface, std::uint32_t vertex,
+                                  const Vec3& place);
+
 /// The distance from a point to the nearest of a mesh's triangles, by a look at all of them.
 double distanceTo(const TriangleMesh& mesh, const Vec3& p);
 

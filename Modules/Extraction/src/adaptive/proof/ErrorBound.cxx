@@ -152,8 +152,8 @@ void ErrorProof::remember(std::vector<PlaceBeyond> beyond) {
 }
 
 /// What is to be proved: the new triangles, and the full-resolution surface near those that came or
-/// went and where it lay beyond the limit. What was farther from these than the proved distance lies
-/// as near another triangle.
+/// went and where it lay beyond the limit. What was farther from these than the proved distance
+/// lies as near another triangle.
 ProofScope ErrorProof::scopeOf(const SurfaceLookup& lookup, const SurfaceChanges& changes) const {
     const double reachMm = std::min(limitMm_, provedMm_);
     ProofScope scope;

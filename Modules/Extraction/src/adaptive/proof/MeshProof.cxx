@@ -355,9 +355,7 @@ ErrorBound MeshProof::prove(const SimplifiedSurface& surface, const Scope& scope
                                  result.beyond.end());
     }
     bound.largestMm = std::max(provedMm_, farthestMm);
-    if (limitMm_ < std::numeric_limits<double>::max()) {
-        remember(surface.triangles.size(), bound.beyondLimit);
-    }
+    remember(surface.triangles.size(), bound.beyondLimit);
     return bound;
 }
 
@@ -388,16 +386,17 @@ MeshProof::Scope MeshProof::scopeOf(const SimplifiedSurface& surface,
 }
 
 /// Finds the triangles of the full surface near some triangles, and near the last places beyond the
-/// limit.
+/// limit. What is farther than the proved distance lies as near another triangle.
 void MeshProof::markFine(const std::vector<Corners>& changed, Scope& scope) {
     // where much has changed nearly all is near it
     if (changed.size() > scope.isKnown.size() / 4) return;
+    const double reachMm = std::min(limitMm_, provedMm_);
     const TriangleTree& tree = fineTree_.get();
     scope.isFineKnown.assign(parts_.triangles.size(), 1);
     const auto markNear = [&](const Corners& corners) {
         constexpr double kRounding = 1 + 1e-9;
         BoundingBox box = boxOf(corners);
-        box.widen(kRounding * limitMm_);
+        box.widen(kRounding * reachMm);
         tree.forEachOverlap(box, parts_.view(), [&](std::uint32_t t) {
             std::atomic_ref(scope.isFineKnown[t]).store(0, std::memory_order_relaxed);
         });

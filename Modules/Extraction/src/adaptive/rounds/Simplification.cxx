@@ -146,8 +146,8 @@ SimplifiedSurface Simplification::toLimits(SurfaceState& halfway) {
 }
 
 /// A round up to a cost that does not lead below the target: where it may, some patches tell by a
-/// trial up to which cost it makes as many collapses as wanted. Where it did all the same it is made
-/// again, up to the cost that its own collapses tell.
+/// trial up to which cost it makes as many collapses as wanted. Where it did all the same it is
+/// made again, up to the cost that its own collapses tell.
 void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
     limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
     const std::int64_t before = surface.triangleCount(), wanted = (before - target + 1) / 2;
