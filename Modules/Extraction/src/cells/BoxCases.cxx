@@ -22,12 +22,18 @@ int dotProduct(const IntVec& a, const IntVec& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Midpoint of a box edge in half box sides.
-IntVec midpoint(int edge) {
-    const int corner = lowCorner(edge);
-    IntVec p{2 * (corner & 1), corner & 2, (corner & 4) / 2};
-    p[edgeAxis(edge)] = 1;
-    return p;
+/// Midpoints of the box edges in half box sides.
+constexpr auto kMidpoints = [] {
+    std::array<IntVec, kBoxEdges> points{};
+    for (int edge = 0; edge < kBoxEdges; ++edge) {
+        const int corner = lowCorner(edge);
+        points[edge] = {2 * (corner & 1), corner & 2, (corner & 4) / 2};
+        points[edge][edgeAxis(edge)] = 1;
+    }
+    return points;
+}();
+const IntVec& midpoint(int edge) {
+    return kMidpoints[edge];
 }
 
 /// Bit f: the box edge borders face f.
@@ -136,9 +142,11 @@ private:
         return best;
     }
 
-    /// Tries every facet at the chord whose first `count` corners are `chosen`.
+    /// Tries every facet at the chord whose first `count` corners are `chosen`. Of four corners and
+    /// more only those in one plane: others are no facets.
     void extend(std::array<int, kLargestFacet>& chosen, int count, int j, int cost, Plan& best) {
         for (int k = chosen[count - 1] + 1; k < j; ++k) {
+            if (count > 1 && !isInPlane(chosen[0], chosen[1], k, j)) continue;
             const int sideCost = cost + costOfSide(chosen[count - 1], k);
             if (sideCost >= best.cost) continue;
             chosen[count] = k;
@@ -152,6 +160,12 @@ private:
                 extend(chosen, count + 1, j, sideCost, best);
             }
         }
+    }
+
+    bool isInPlane(int a, int b, int c, int d) const {
+        const IntVec p = midpoint(loop_[a]);
+        const auto from = [&](int corner) { return subtract(midpoint(loop_[corner]), p); };
+        return dotProduct(crossProduct(from(b), from(c)), from(d)) == 0;
     }
 
     int costOfSide(int a, int b) {
