@@ -465,6 +465,8 @@ TEST(Simplify, GivesAMeshBackThatHasNothingToDrop) {
     const Simplified result = simplify(cube, downTo(1'000'000));
     EXPECT_EQ(result.mesh.triangles.size(), 12U);
     EXPECT_EQ(placesOf(result.mesh), placesOf(cube));
+    const TriangleMesh torus = torusMesh(120, 60, 30, 10);
+    EXPECT_EQ(placesOf(simplify(torus, downTo(1'000'000)).mesh), placesOf(torus));
 }
 
 namespace {

@@ -252,13 +252,16 @@ void Simplification::goFarther(SimplifiedSurface& surface) {
 }
 
 /// Moves vertices to where they lie closest to their samples: twice, so that what straddles the cut
-/// has its turn as well. The last step: the quadrics are given up.
+/// has its turn as well. Where no triangle was dropped they stay. The last step: the quadrics are
+/// given up.
 void Simplification::fit(SimplifiedSurface& surface) {
     PatchWork work{limits_};
     work.collapses = false;
     work.fits = true;
-    for (; fits_ < 2 && !isSettled(surface); ++fits_)
+    const bool isWhole = surface.triangleCount() == surface.fineTriangles;
+    for (; !isWhole && fits_ < 2 && !isSettled(surface); ++fits_) {
         PatchRound(surface, nextCut(surface), frame_).run(work);
+    }
     freeMemory(surface.quadrics);
 }
 
