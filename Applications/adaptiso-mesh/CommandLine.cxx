@@ -99,6 +99,9 @@ void checkCombinations(const MeshOptions& options) {
             "--max-error, --triangles, --reduction, --min-angle and --verify are for --method "
             "adaptive");
     }
+    if (options.adaptive.maxTriangles && options.adaptive.reduction) {
+        throw UsageError("--triangles and --reduction: are two ways to ask for one count");
+    }
     if (options.mergeWithinBlocks && options.method != Method::DiscretizedMarchingCubes) {
         throw UsageError(
             "--merge-within-blocks: is for --method dmc; no other method can merge within blocks");

@@ -65,6 +65,10 @@ class WrongUsage(ApplicationTest):
                 self.refused("--adjust-vertices: .*dmc", "ball.nii", "--iso", "100",
                              "--adjust-vertices", *method)
 
+    def test_two_counts(self):
+        self.refused("--triangles and --reduction: are two ways to ask for one count", "ball.nii",
+                     "--iso", "100", "--triangles", "100", "--reduction", "0.5")
+
     def test_merging_within_blocks_of_another_method(self):
         for method in ([], ["--method", "boxes"], ["--method", "asc"], ["--method", "mc"]):
             with self.subTest(method):
