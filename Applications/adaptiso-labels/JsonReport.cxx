@@ -48,6 +48,7 @@ Json wallsJson(const LabelsRun& run) {
     const LabelStatistics& statistics = run.statistics;
     return {{"points", run.points},
             {"triangles", run.triangles},
+            {"mapTriangles", statistics.mapTriangles},
             {"fullTriangles", statistics.fullTriangles},
             {"wantedTriangles", orNull(statistics.wantedTriangles)},
             {"errorBoundMm", number(statistics.errorBoundMm)},

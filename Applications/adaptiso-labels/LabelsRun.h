@@ -90,6 +90,8 @@ struct LabelsRun {
         }
         return true;
     }
+    /// --labels chose regions: the walls are not all of the map's.
+    bool isPart() const { return !options.labels.empty(); }
     /// --strict makes the warnings failures: the folder is not written.
     bool failsStrict() const { return adaptiso::failsStrict(options.common, warnings); }
     bool writesFolder() const { return holdsPromises() && !failsStrict(); }

@@ -92,6 +92,26 @@ void checkOutputs(const LabelsRun& run) {
     AtomicFolder::check(run.folder, replaceable(options));
 }
 
+/// Labels of a merge that the map has not.
+void warnOfMissing(const LabelMerge& merge, const LabelCensus& census, const std::string& name,
+                   LabelsRun& run) {
+    std::string missing;
+    bool isThere = false;
+    for (const LabelRange& range : merge.labels) {
+        const auto first = census.voxels.lower_bound(range.first);
+        if (first != census.voxels.end() && first->first <= range.last) {
+            isThere = true;
+        } else {
+            missing += (missing.empty() ? "" : ", ") + toText(range);
+        }
+    }
+    if (!isThere) {
+        run.warnings.push_back(name + ": has none of the labels of --merge " + merge.name);
+    } else if (!missing.empty()) {
+        run.warnings.push_back(name + ": has no label " + missing + " of --merge " + merge.name);
+    }
+}
+
 /// Reads the map and learns what it holds.
 /// \throws InvalidInput  it is no label map, or holds nothing but 0
 Volume readMap(LabelsRun& run, LabelCensus& census) {
@@ -112,13 +132,7 @@ Volume readMap(LabelsRun& run, LabelCensus& census) {
             " values, which change nearly from voxel to voxel (" +
             formatFixed(census.medianRun, 2) + " in a row); --any-map takes it all the same");
     }
-    for (const LabelMerge& merge : options.merges) {
-        const bool isThere = std::ranges::any_of(
-            census.voxels, [&](const auto& each) { return merge.contains(each.first); });
-        if (!isThere) {
-            run.warnings.push_back(name + ": has none of the labels of --merge " + merge.name);
-        }
-    }
+    for (const LabelMerge& merge : options.merges) warnOfMissing(merge, census, name, run);
     census = mergeCounts(std::move(census), options.merges);
     return mergeLabels(std::move(read.volume), options.merges);
 }
@@ -177,11 +191,14 @@ void measure(const LabelComplex& complex, LabelsRun& run) {
 /// asked for.
 void warnOfCount(LabelsRun& run) {
     const std::optional<std::int64_t>& wanted = run.statistics.wantedTriangles;
-    if (!wanted || run.triangles <= *wanted || run.options.maxErrorMm) return;
-    run.warnings.push_back(baseName(run.options.input) + ": has " + formatCount(run.triangles) +
-                           " triangles in its walls, not " + formatCount(*wanted) +
-                           " as asked for: these are the fewest reached with all regions, pieces "
-                           "and junctions");
+    const std::int64_t triangles = run.statistics.mapTriangles;
+    if (!wanted || triangles <= *wanted || run.options.maxErrorMm) return;
+    run.warnings.push_back(
+        baseName(run.options.input) + ": has " + formatCount(triangles) +
+        " triangles in its walls, not " + formatCount(*wanted) +
+        " as asked for: these are the fewest reached with all regions, pieces "
+        "and junctions" +
+        (run.isPart() ? " of the whole map, which --labels takes its part of" : ""));
 }
 
 std::string failureText(const LabelsRun& run) {

@@ -68,7 +68,10 @@ void tellOptions(const LabelsRun& run, Report& report) {
         add("Merged", merge.name + " = " + list);
     }
     const LabelStatistics& statistics = run.statistics;
-    add("Triangles", formatCount(run.triangles) + " in walls stored once; full resolution " +
+    add("Triangles", formatCount(run.triangles) + " in walls stored once; " +
+                         (run.isPart() ? "whole map " + formatCount(statistics.mapTriangles) +
+                                             ", at full resolution "
+                                       : "full resolution ") +
                          formatCount(statistics.fullTriangles));
     add("Distance to the full resolution",
         statistics.errorBoundMm > 0

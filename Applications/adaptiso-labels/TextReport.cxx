@@ -18,16 +18,19 @@ std::string counted(std::int64_t count, const std::string& what) {
 void printWalls(std::ostream& out, const LabelsRun& run) {
     const LabelStatistics& statistics = run.statistics;
     out << "  " << counted(run.triangles, "triangle") << ", " << formatCount(run.points)
-        << " vertices in walls that are stored once; the full resolution has "
+        << " vertices in walls that are stored once; "
+        << (run.isPart() ? "the whole map has " + formatCount(statistics.mapTriangles) +
+                               ", at full resolution "
+                         : "the full resolution has ")
         << formatCount(statistics.fullTriangles) << '\n';
     if (statistics.errorBoundMm > 0) {
         out << "  no wall farther than " << formatFixed(statistics.errorBoundMm, 4)
             << " mm from that of the full resolution, nor that from it (proved)\n";
     }
-    if (statistics.wantedTriangles && run.triangles > *statistics.wantedTriangles) {
-        out << "  " << formatCount(*statistics.wantedTriangles)
-            << " triangles were asked for; the walls, with all their pieces and junctions, do not "
-               "allow as few\n";
+    if (statistics.wantedTriangles && statistics.mapTriangles > *statistics.wantedTriangles) {
+        out << "  " << formatCount(*statistics.wantedTriangles) << " triangles were asked for"
+            << (run.isPart() ? " in the whole map" : "")
+            << "; the walls, with all their pieces and junctions, do not allow as few\n";
     }
 }
 

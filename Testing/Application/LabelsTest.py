@@ -274,6 +274,22 @@ class ChoiceTest(LabelsTest):
         done = self.labels("boxes.nii", "-o", "out", "-q", "--merge", "x=50,51")
         self.assertIn("has none of the labels of --merge x", done.stderr)
 
+    def test_a_label_of_a_merge_that_is_not_there_is_told(self):
+        done = self.labels("boxes.nii", "-o", "out", "-q", "--merge", "x=1,2,50,60-70")
+        self.assertIn("boxes.nii: has no label 50, 60-70 of --merge x", done.stderr)
+        done = self.labels("boxes.nii", "-o", "all", "-q", "--merge", "x=1-50")
+        self.assertEqual(done.stderr, "")
+
+    def test_a_count_is_of_the_whole_map_where_regions_are_chosen(self):
+        whole = json.loads(self.labels("boxes.nii", "-o", "a", "--triangles", "9", "--json",
+                                       "-").stdout)["walls"]
+        self.assertEqual(whole["mapTriangles"], whole["triangles"])
+        done = self.labels("boxes.nii", "-o", "b", "--triangles", "9", "--labels", "1")
+        self.assertIn(f"has {whole['triangles']:,} triangles in its walls, not 9", done.stderr)
+        self.assertIn("of the whole map, which --labels takes its part of", done.stderr)
+        self.assertIn(f"the whole map has {whole['triangles']:,}, at full resolution "
+                      f"{whole['fullTriangles']:,}", done.stdout)
+
     def test_counts(self):
         full = json.loads(self.labels("boxes.nii", "-o", "a", "--max-error", "0", "--json",
                                       "-").stdout)["walls"]

@@ -173,6 +173,7 @@ LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options)
         result.statistics.errorBoundMm = walls.errorBoundMm;
         result.statistics.wantedTriangles = wanted->maxTriangles;
     }
+    result.statistics.mapTriangles = std::ssize(result.complex.triangles);
     if (!chosen.empty()) keepRegions(result.complex, chosen);
     return result;
 }

@@ -35,6 +35,7 @@ Json reportJson(const LabelResult& result, const std::vector<Label>& labels) {
     return {{"walls",
              {{"points", result.complex.points.size()},
               {"triangles", result.complex.triangles.size()},
+              {"mapTriangles", statistics.mapTriangles},
               {"fullTriangles", statistics.fullTriangles},
               {"wantedTriangles", orNull(statistics.wantedTriangles)},
               {"errorBoundMm", number(statistics.errorBoundMm)},

@@ -49,6 +49,7 @@ struct LabelOptions {
 
 struct LabelStatistics {
     std::int64_t fullTriangles = 0;  ///< of the full-resolution walls of the whole map
+    std::int64_t mapTriangles = 0;   ///< of the whole map's walls as they were made
     std::int64_t cells = 0;          ///< cubes between eight voxel centres that a wall runs through
     /// Of these: kept in several parts, as one vertex would pinch a region.
     std::int64_t dividedCells = 0;
