@@ -14,6 +14,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/VoxelShape.h"
+#include "adaptive/proof/PieceBound.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -32,6 +33,18 @@ void collapseAll(WallCollapser& collapser, double limitMm, std::int64_t enough) 
     }
 }
 
+/// Of the vertices of the full walls, to the triangles that they are assigned to.
+double largestSampleDistance(const WallCollapser& collapser) {
+    const WallMesh& mesh = collapser.mesh();
+    double largest = 0;
+    for (Id s = 0; s < mesh.fullPoints(); ++s) {
+        const Id home = collapser.homeOf(s).triangle;
+        if (home == kNone) continue;
+        largest = std::max(largest, squaredDistanceToTriangle(mesh.point(s), mesh.cornersOf(home)));
+    }
+    return std::sqrt(largest);
+}
+
 /// \return  the bound reached, mm
 double simplifyPatch(WallCollapser& collapser, const WallAim& aim) {
     double limitMm = aim.limitMm;
@@ -45,7 +58,9 @@ double simplifyPatch(WallCollapser& collapser, const WallAim& aim) {
     }
     // what is taken back collapses again, held tighter; in the end it stays
     constexpr int kMostTries = 3;
-    WallMender mender(collapser, limitMm, aim.mayGrow);
+    const double startMm =
+        aim.mayGrow ? std::clamp(largestSampleDistance(collapser), aim.limitMm, limitMm) : limitMm;
+    WallMender mender(collapser, startMm, aim.mayGrow);
     for (int n = 0; mender.mend(); ++n) {
         if (n < kMostTries) collapseAll(collapser, limitMm, aim.enough);
     }

@@ -183,6 +183,23 @@ TEST(ExtractLabels, KeepsEveryWallWithinTheStatedDistanceOfItself) {
     }
 }
 
+// The allowed distance doubles in vain then: it is not what is stated.
+TEST(ExtractLabels, StatesTheDistanceItHasWhereACountCannotBeMet) {
+    const Map map = halfBalls(20);
+    const LabelComplex full = extractLabels(map.view(), fullResolution()).complex;
+    LabelOptions options;
+    options.maxTriangles = 1;
+    const LabelResult few = extractLabels(map.view(), options);
+    EXPECT_EQ(few.statistics.mapTriangles, std::ssize(few.complex.triangles));
+    double farthestMm = 0;
+    for (const auto& labels : std::set(full.labels.begin(), full.labels.end())) {
+        const TriangleMesh a = wallOf(full, labels), b = wallOf(few.complex, labels);
+        farthestMm = std::max({farthestMm, sampledDistance(a, b), sampledDistance(b, a)});
+    }
+    EXPECT_GE(few.statistics.errorBoundMm, farthestMm);
+    EXPECT_LE(few.statistics.errorBoundMm, 1.5 * farthestMm);
+}
+
 TEST(ExtractLabels, ReachesAWantedCountAndStatesItsDistance) {
     const Map map = halfBalls(20);
     const LabelResult full = extractLabels(map.view(), fullResolution());
