@@ -198,7 +198,7 @@ void warnOfCount(LabelsRun& run) {
         " triangles in its walls, not " + formatCount(*wanted) +
         " as asked for: these are the fewest reached with all regions, pieces "
         "and junctions" +
-        (run.isPart() ? " of the whole map, which --labels takes its part of" : ""));
+        (run.isPart() ? " of the whole map (a count is of all of it, also with --labels)" : ""));
 }
 
 std::string failureText(const LabelsRun& run) {

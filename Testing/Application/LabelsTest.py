@@ -286,7 +286,7 @@ class ChoiceTest(LabelsTest):
         self.assertEqual(whole["mapTriangles"], whole["triangles"])
         done = self.labels("boxes.nii", "-o", "b", "--triangles", "9", "--labels", "1")
         self.assertIn(f"has {whole['triangles']:,} triangles in its walls, not 9", done.stderr)
-        self.assertIn("of the whole map, which --labels takes its part of", done.stderr)
+        self.assertIn("of the whole map (a count is of all of it, also with --labels)", done.stderr)
         self.assertIn(f"the whole map has {whole['triangles']:,}, at full resolution "
                       f"{whole['fullTriangles']:,}", done.stdout)
 
