@@ -94,7 +94,9 @@ inline constexpr std::size_t kTrialFewest = 16, kTrialEvery = 8;
 /// triangles, but a mean distance 2 % larger on ch2bet.
 inline constexpr double kFineCost = 0.13, kMiddleCost = 0.5;
 /// Up to so many triangles are one patch, if they span no more cells: long ones would straddle a
-/// wall of every cut. A cube of a scan's last rounds holds as many.
+/// wall of every cut. A cube of a scan's last rounds holds as many. With 2,048 a scan of 28,000
+/// triangles to 3 % takes 15 % less time (two threads), but a ball and a torus of 1,500 triangles
+/// have a mean distance 20 % larger, and a gyroid by a bound of .4 mm has 8 % more triangles.
 inline constexpr std::int64_t kOnePatch = 8192;
 inline constexpr double kOnePatchSide = 128;
 /// Part of the vertices: where fewer are final, triangles between final ones stay in the patches,
