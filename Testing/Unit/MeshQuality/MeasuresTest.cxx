@@ -17,6 +17,7 @@ namespace {
 using testing::cubeMesh;
 using testing::icosphere;
 using testing::merged;
+using testing::translated;
 
 TriangleMesh oneTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
     return {{a, b, c}, {}, {{0, 1, 2}}};
@@ -161,6 +162,26 @@ TEST(Winding, CavitiesAreTheOtherWayRound) {
     EXPECT_EQ(insideOut(merged({ball, core})), Pieces{1});
     EXPECT_EQ(insideOut(merged({wall, other})), Pieces{0});
     EXPECT_THROW(insideOut(testing::withHole(ball)), InvalidInput);
+}
+
+TEST(Winding, PiecesThatCrossLieInNoneOfEachOther) {
+    const auto insideOut = [](const TriangleMesh& mesh) {
+        return findInsideOutPieces(mesh, checkTopology(mesh));
+    };
+    const TriangleMesh ball = icosphere(2, {}, 10);
+    TriangleMesh shell = icosphere(3, {}, 40), turned = ball;
+    flipOrientation(turned);
+    using Pieces = std::vector<std::int64_t>;
+    for (const Vec3& aside : {Vec3{11, 0, 0}, Vec3{-11, 3, 2}, Vec3{1, 0.5, 0.25}}) {
+        const TriangleMesh other = translated(ball, aside), wrong = translated(turned, aside);
+        EXPECT_EQ(insideOut(merged({ball, other})), Pieces{});
+        EXPECT_EQ(insideOut(merged({other, ball})), Pieces{});
+        EXPECT_EQ(insideOut(merged({ball, wrong})), Pieces{1});
+        EXPECT_EQ(insideOut(merged({turned, wrong})), (Pieces{0, 1}));
+        // walls of one cavity that cross
+        EXPECT_EQ(insideOut(merged({shell, turned, wrong})), Pieces{});
+        EXPECT_EQ(insideOut(merged({shell, ball, wrong})), Pieces{1});
+    }
 }
 
 }  // namespace
