@@ -32,6 +32,15 @@ fs::path resolved(const fs::path& target) {
 
 }  // namespace
 
+void makeFolders(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) {
+        throw FileError(folder.string() + ": the folder can't be made (" + error.message() +
+                        "); choose another");
+    }
+}
+
 void checkOutput(const fs::path& target) {
     const fs::path file = resolved(target);
     const fs::path folder = folderOf(file);

@@ -57,6 +57,10 @@ private:
 /// \throws FileError
 void checkOutput(const std::filesystem::path& target);
 
+/// Makes a folder, and those that it lies in, where they are not there.
+/// \throws FileError  it can't be made
+void makeFolders(const std::filesystem::path& folder);
+
 /// Throws when writing `target` would overwrite `input`. \throws FileError
 void checkNotInput(const std::filesystem::path& target, const std::filesystem::path& input);
 

@@ -102,7 +102,7 @@ private:
     void announce(const std::vector<std::size_t>& waiting) {
         if (!plan_.keepsRecords()) return;
         for (const std::size_t n : waiting) {
-            if (!items_[n].folder.empty()) fs::create_directories(items_[n].folder);
+            if (!items_[n].folder.empty()) makeFolders(items_[n].folder);
             for (const PlannedRecord& planned : plan_.records(items_[n])) {
                 if (fs::exists(planned.file)) continue;
                 writeRecord(planned.file, newRecord(n, planned));
@@ -137,7 +137,7 @@ private:
     std::vector<std::string> start(std::size_t n) {
         const BatchItem& item = items_[n];
         if (batch_.skipsExisting && isMadeMeanwhile(n)) return {};
-        if (!item.folder.empty()) fs::create_directories(item.folder);
+        if (!item.folder.empty()) makeFolders(item.folder);
         earlier_.forgetInputs(n);  // they may have changed since they were looked at
         if (program_.removesFormer) removeFormerOutputs(n);
         earlier_.inputs(n);

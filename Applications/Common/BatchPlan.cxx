@@ -124,13 +124,13 @@ void BatchPlan::findItems() {
 
 void BatchPlan::prepareOutputs() {
     if (program_.isPartOfApp) {
-        fs::create_directories(base_);
+        makeFolders(base_);
         return;
     }
     if (!batch_.bids.empty()) {
         makeDerivatives(batch_.bids, base_, program_.name);
     } else if (!base_.empty()) {
-        fs::create_directories(base_);
+        makeFolders(base_);
     }
     summary_ = batch_.summary;
     if (summary_.empty() && !base_.empty()) summary_ = base_ / "summary.html";

@@ -198,7 +198,7 @@ Json bidsDescription(const fs::path& root, const fs::path& derivatives,
 
 void makeDerivatives(const fs::path& root, const fs::path& derivatives,
                      const std::string& program) {
-    fs::create_directories(derivatives);
+    makeFolders(derivatives);
     if (fs::exists(derivatives / kDescription)) return;
     std::vector<AtomicOutput> outputs;
     outputs.emplace_back(derivatives / kDescription)

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -12,6 +13,28 @@
 
 namespace adaptiso {
 namespace {
+
+/// "10,000", "-1,234,567": commas after each three digits.
+bool hasThousands(std::string_view text) {
+    if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+    const std::size_t comma = text.find(',');
+    if (comma == std::string_view::npos || comma == 0 || comma > 3 || text[0] == '0') return false;
+    for (std::size_t n = 0; n < text.size(); ++n) {
+        const bool isComma = n >= comma && (n - comma) % 4 == 0;
+        if (isComma ? text[n] != ',' : text[n] < '0' || text[n] > '9') return false;
+    }
+    return (text.size() - comma) % 4 == 0;
+}
+
+/// \pre hasThousands(text)
+std::string causeOfThousands(const std::string& text) {
+    std::string without = text, withPoint = text;
+    const auto commas = std::erase(without, ',');
+    std::replace(withPoint.begin(), withPoint.end(), ',', '.');
+    return (commas == 1 ? "has a comma" : "has commas") +
+           (": thousands are written without (" + without + ")") +
+           (commas == 1 ? ", decimals with a point (" + withPoint + ")" : "");
+}
 
 /// Why `text` is no finite number where that is not plain to see; else empty.
 std::string causeOf(const std::string& text) {
@@ -24,6 +47,7 @@ std::string causeOf(const std::string& text) {
         return isTiny ? "is too close to 0 to be told from it"
                       : "is larger than the largest number there is here, 1.8e308";
     }
+    if (hasThousands(text)) return causeOfThousands(text);
     std::string withPoint = text;
     std::replace(withPoint.begin(), withPoint.end(), ',', '.');
     if (withPoint != text && parseFiniteNumber(withPoint)) {

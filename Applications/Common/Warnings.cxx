@@ -2,6 +2,7 @@
 
 #include "Common/ExitCodes.h"
 #include "Common/RunApp.h"
+#include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
 
@@ -9,6 +10,13 @@ void printWarnings(const std::string& program, const CommonOptions& common,
                    std::span<const std::string> warnings) {
     if (common.hidesWarnings) return;
     for (const std::string& warning : warnings) printError(program, "warning: " + warning);
+}
+
+std::string countMissed(const std::string& what, std::int64_t written, std::int64_t wanted,
+                        const std::string& kept, double errorBoundMm) {
+    return "has " + formatCount(written) + " " + what + ", not " + formatCount(wanted) +
+           " as asked for: these are the fewest reached with " + kept + ", and lie up to " +
+           formatShort(errorBoundMm) + " mm off; more triangles lie closer";
 }
 
 bool failsStrict(const CommonOptions& common, std::span<const std::string> warnings) {

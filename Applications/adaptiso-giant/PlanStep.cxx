@@ -100,14 +100,7 @@ std::string textOf(const fs::path& file) {
 
 int runPlanStep(const GiantOptions& options) {
     const GiantPlan plan = planOf(options);
-    for (const char* folder : {"tiles", "seams"}) {
-        std::error_code error;
-        fs::create_directories(options.work / folder, error);
-        if (error) {
-            throw FileError((options.work / folder).string() + ": can't be made (" +
-                            error.message() + "); choose another folder");
-        }
-    }
+    for (const char* folder : {"tiles", "seams"}) makeFolders(options.work / folder);
     std::vector<std::string> warnings;
     for (const std::string& warning : plan.warnings) {
         warnings.push_back(baseName(plan.input) + ": " + warning);

@@ -194,11 +194,13 @@ void warnOfCount(LabelsRun& run) {
     const std::int64_t triangles = run.statistics.mapTriangles;
     if (!wanted || triangles <= *wanted || run.options.maxErrorMm) return;
     run.warnings.push_back(
-        baseName(run.options.input) + ": has " + formatCount(triangles) +
-        " triangles in its walls, not " + formatCount(*wanted) +
-        " as asked for: these are the fewest reached with all regions, pieces "
-        "and junctions" +
-        (run.isPart() ? " of the whole map (a count is of all of it, also with --labels)" : ""));
+        baseName(run.options.input) + ": " +
+        countMissed(
+            "triangles in its walls", triangles, *wanted,
+            std::string("all regions, pieces and junctions") +
+                (run.isPart() ? " of the whole map (a count is of all of it, also with --labels)"
+                              : ""),
+            run.statistics.errorBoundMm));
 }
 
 std::string failureText(const LabelsRun& run) {

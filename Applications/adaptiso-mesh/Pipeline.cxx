@@ -278,12 +278,12 @@ void warnOfCounts(MeshRun& run) {
     for (const SurfaceSummary& surface : run.surfaces) {
         if (surface.countMet().value_or(true) || run.options.adaptive.maxErrorMm) continue;
         const bool isOpen = run.options.index.border == Border::Open;
-        run.warnings.push_back(
-            surface.file.filename().string() + ": has " + formatCount(surface.extractedTriangles) +
-            " triangles, not " + formatCount(*surface.statistics.wantedTriangles) +
-            " as asked for: these are the fewest reached with all its pieces and "
-            "holes" +
-            (isOpen ? " and its open border" : ""));
+        run.warnings.push_back(surface.file.filename().string() + ": " +
+                               countMissed("triangles", surface.extractedTriangles,
+                                           *surface.statistics.wantedTriangles,
+                                           std::string("all its pieces and holes") +
+                                               (isOpen ? " and its open border" : ""),
+                                           *surface.statistics.errorBoundMm));
     }
     printWarnings(kProgram, run.options.common, std::span(run.warnings).subspan(told));
 }

@@ -130,11 +130,10 @@ void check(const TriangleMesh& mesh, SimplifyRun& run) {
 /// asked for.
 void warnOfCount(SimplifyRun& run) {
     if (run.countMet().value_or(true) || run.command.aim.maxErrorMm) return;
-    run.warnings.push_back(baseName(run.output.file) + ": has " +
-                           formatCount(run.output.triangles) + " triangles, not " +
-                           formatCount(*run.statistics.wantedTriangles) +
-                           " as asked for: these are the fewest reached with all its pieces, "
-                           "holes and borders");
+    run.warnings.push_back(
+        baseName(run.output.file) + ": " +
+        countMissed("triangles", run.output.triangles, *run.statistics.wantedTriangles,
+                    "all its pieces, holes and borders", run.statistics.errorBoundMm));
 }
 
 /// Every triangle has its corners for itself.

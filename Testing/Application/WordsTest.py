@@ -88,6 +88,10 @@ WRONG = [
     (USAGE, r"--iso 1e-999: is too close to 0", MESH, ("ball.nii", "--iso", "1e-999")),
     (USAGE, r"--iso 0,5: decimals follow a point \(0.5\); must be a finite number", MESH,
      ("ball.nii", "--iso", "0,5")),
+    (USAGE, r"--triangles 10,000: has a comma: thousands are written without \(10000\), decimals with "
+            r"a point \(10.000\); must be a whole number", MESH, (*BALL, "--triangles", "10,000")),
+    (USAGE, r"--iso 1,234,567: has commas: thousands are written without \(1234567\); must be",
+     MESH, ("ball.nii", "--iso", "1,234,567")),
     (USAGE, "--iso ' 5': must be a finite number", MESH, ("ball.nii", "--iso", " 5")),
     (USAGE, "--iso １００: must be", MESH, ("ball.nii", "--iso", "１００")),
     (USAGE, "--iso nan: must be a finite number", CHECK, ("a.off", "--volume", "ball.nii", "--iso",
@@ -100,6 +104,8 @@ WRONG = [
      ("a.off", "--volume", "ball.nii", "--iso", "7000")),
     (BAD_INPUT, "--iso auto: flat.nii: all its finite values are equal.*give an isovalue", MESH,
      ("flat.nii", "--iso", "auto")),
+    (BAD_INPUT, r"/dev/null/out: the folder can't be made \(Not a directory\); choose another$", MESH,
+     (*BALL, "--output-dir", "/dev/null/out")),
     # numbers of other options
     (USAGE, "--max-error 0: must be a number above 0, in mm", MESH, (*BALL, "--max-error", "0")),
     (USAGE, "--max-error inf: must be a number above 0, in mm", MESH,
