@@ -429,7 +429,7 @@ void WallCollapser::tightenNear(Id triangle) {
     }
 }
 
-WallCollapser::Id WallCollapser::standInOf(Id full) const {
+WallCollapser::Id WallCollapser::meshNear(Id full) const {
     const auto& t = patch_.fullTriangles[full];
     for (const Id v : t.v) {
         if (samples_[v].home != kNone && samples_[v].slot == kOnWall) return samples_[v].home;

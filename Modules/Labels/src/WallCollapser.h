@@ -65,7 +65,7 @@ public:
     void tightenNear(Id triangle);
 
     /// A triangle of the mesh, of a wall, near a triangle of the full walls; and the reverse.
-    Id standInOf(Id full) const;
+    Id meshNear(Id full) const;
     Id fullNear(Id triangle) const;
 
 private:

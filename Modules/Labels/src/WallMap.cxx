@@ -58,8 +58,8 @@ public:
     /// Of the last triangle: calls f(place) for those that the image of a side passes.
     template <class F>
     void forEachAlong(int side, const F& f) const {
-        if (hasFoot_[side]) f(foot_[side].vertex.standIn);
-        if (hasFoot_[(side + 1) % 3]) f(foot_[(side + 1) % 3].vertex.standIn);
+        if (hasFoot_[side]) f(foot_[side].vertex.imageTriangle);
+        if (hasFoot_[(side + 1) % 3]) f(foot_[(side + 1) % 3].vertex.imageTriangle);
         if (hasWay_[side]) map_.forEachAlong(way_[side], f);
     }
 
@@ -161,7 +161,7 @@ private:
             foot.vertex = {point, image, placeAtEdge(foot.p, foot.q, wall),
                            squaredNorm(point - image)};
         }
-        return foot.vertex.standIn != kNone;
+        return foot.vertex.imageTriangle != kNone;
     }
 
     bool findWay(const WallTriangle& t, int side) {
@@ -174,13 +174,14 @@ private:
             if (along) way = *along;
             return along.has_value();
         }
-        if (a.vertex.standIn != b.vertex.standIn) way = map_.wayAlong(a.vertex, b.vertex);
+        if (a.vertex.imageTriangle != b.vertex.imageTriangle)
+            way = map_.wayAlong(a.vertex, b.vertex);
         return way.squared <= limit2_;
     }
 
     /// Along the edges that end the wall.
     std::optional<Map::Way> wayAlongCurve(const Foot& a, const Foot& b, Id wall) {
-        const Id from = a.vertex.standIn, to = b.vertex.standIn;
+        const Id from = a.vertex.imageTriangle, to = b.vertex.imageTriangle;
         if (a.isVertex() && b.isVertex()) {
             const Id place = placeAtEdge(a.p, b.p, wall);
             if (place == kNone) return {};

@@ -169,7 +169,7 @@ void WallMender::blameNear(const std::vector<WallPlace>& places) {
     std::vector<Id> unexplained;
     for (const WallPlace& place : places) {
         const std::size_t before = changes_.size();
-        blame(collapser_.standInOf(place.triangle));
+        blame(collapser_.meshNear(place.triangle));
         if (changes_.size() > before) continue;
         for (const Id t : place.near) blame(t);
         if (changes_.size() == before) unexplained.push_back(place.triangle);
@@ -328,7 +328,7 @@ void WallMender::findBeyondOfFull() {
     const std::vector<Id> full = unprovedFull();
     if (full.empty()) return;
     std::vector<Id> starts;
-    for (const Id t : full) starts.push_back(collapser_.standInOf(t));
+    for (const Id t : full) starts.push_back(collapser_.meshNear(t));
     const WallSurface simple(
         mesh_, aliveTriangles(mayGrow_ || kFew * full.size() > mesh_.fullTriangles(), full));
     const WallBound bound = proveNear(mesh_, full, starts, simple, limitMm_, mayGrow_, true);

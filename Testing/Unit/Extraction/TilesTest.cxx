@@ -249,7 +249,7 @@ TEST(Tiles, SimplifiedAreSoundAndWithinTheBound) {
 }
 
 TEST(Tiles, AFlatCapAtTheVolumesBorderIsSimplified) {
-    // the cap's triangles that touch a wall between tiles stand for no vertex of their own: the
+    // the cap's triangles that touch a wall between tiles have no vertex of the full surface: the
     // proof of where they lie once began elsewhere, and found no way there past the border
     const AnalyticVolume ball =
         sampled<float>(sphere({45, 1, 3}, 40), obliqueGeometry({100, 90, 90}, {1, 1, 1}));

@@ -58,7 +58,7 @@ private:
 
     /// What later runs know of the ones before.
     struct Lessons {
-        TightPlaces tight;
+        LocalTolerances tolerances;
         int crossedRuns = 0;     ///< that left triangles that cross
         bool provesAll = false;  ///< every star, everywhere
     };
@@ -95,14 +95,14 @@ private:
     /// Where promises were not kept the next run takes more care.
     void learnFrom(const Attempt& attempt, int run) {
         const std::vector<Vec3> beyond = indicesOf(attempt.error), crossings = placesOf(attempt);
-        lessons_.tight.add(beyond);
-        lessons_.tight.addCrossings(crossings);
+        lessons_.tolerances.add(beyond);
+        lessons_.tolerances.addCrossings(crossings);
         if (!crossings.empty() && ++lessons_.crossedRuns == kMostCrossedRuns) {
             lessons_.provesAll = true;
         }
         if (run < kFirstFreeze) return;
-        lessons_.tight.freeze(beyond, run - kFirstFreeze);
-        lessons_.tight.freeze(crossings, run - kFirstFreeze);
+        lessons_.tolerances.freeze(beyond, run - kFirstFreeze);
+        lessons_.tolerances.freeze(crossings, run - kFirstFreeze);
     }
 
     AdaptiveResult resultOf(Attempt& attempt) const {
@@ -179,9 +179,9 @@ private:
     std::optional<SurfaceChanges> undoAround(SimplifiedSurface& surface,
                                              const std::vector<SurfaceState::Number>& triangles,
                                              const std::vector<Vec3>& places, double reachMm) {
-        if (halfway_.points.empty()) return {};
+        if (checkpoint_.points.empty()) return {};
         const std::ptrdiff_t points = std::ssize(surface.points);
-        auto changes = LocalUndo(halfway_, surface).around(mended_, triangles, places, reachMm);
+        auto changes = LocalUndo(checkpoint_, surface).around(mended_, triangles, places, reachMm);
         work_.verticesUndone += std::ssize(surface.points) - points;
         return changes;
     }
@@ -229,7 +229,7 @@ private:
     }
 
     /// Takes triangles that cross others back: where the simplification was taken back, its surface
-    /// can cross that of halfway.
+    /// can cross that of the checkpoint.
     std::optional<SurfaceChanges> undoCrossings(Attempt& attempt) {
         const std::vector<SurfaceState::Number> triangles(attempt.crossing.begin(),
                                                           attempt.crossing.end());
@@ -262,11 +262,11 @@ private:
     }
 
     SimplifiedSurface simplify() {
-        halfway_ = {};
-        Simplification simplification(full_, lessons_.tight, limits());
+        checkpoint_ = {};
+        Simplification simplification(full_, lessons_.tolerances, limits());
         if (!wanted_.isGiven()) {
             mended_.clear();
-            return simplification.toLimits(halfway_);
+            return simplification.toLimits(checkpoint_);
         }
         if (boundMm_) return simplification.toCount(wanted_, 0);
         // without a bound the count goes before closeness
@@ -280,7 +280,7 @@ private:
     std::optional<double> boundMm_;
     StarLimits shape_;
     Lessons lessons_;
-    SurfaceState halfway_;  ///< of this run; empty with a count
+    SurfaceState checkpoint_;  ///< of this run; empty with a count
     AdaptiveWork work_;
     std::unique_ptr<DistanceProof> proof_;        ///< remembers what it proved last, to prove less
     std::vector<SurfaceState::Triangle> mended_;  ///< of this run, before and after

@@ -44,7 +44,7 @@ inline constexpr double kWeb = 0.5;
 /// few places come to lie beyond the bound.
 inline constexpr double kFitDistance = 0.75;
 
-// ---- Rounds (Simplification, PatchRound, TightPlaces) ----
+// ---- Rounds (Simplification, PatchRound, LocalTolerances) ----
 
 /// Limits of cost: of the bricks' round, and above which there is none.
 inline constexpr double kFirstCost = 1e-3, kLastCost = 10;
@@ -54,7 +54,7 @@ inline constexpr double kFirstCost = 1e-3, kLastCost = 10;
 inline constexpr std::array kBoundCosts{1.8e-2, 0.108, 0.648};
 /// The surface that single places are taken back to: costs below this part of the square of the
 /// allowed distance, distances below this part of it.
-inline constexpr double kHalfwayCost = 2, kHalfwayDistance = 0.25;
+inline constexpr double kCheckpointCost = 2, kCheckpointDistance = 0.25;
 /// A larger distance helped towards a count when it leaves less than this part of the triangles
 /// that are still too many; after so many in a row that did not, the count is given up.
 inline constexpr double kHelped = 0.95;
@@ -107,10 +107,10 @@ inline constexpr double kFewFinal = 0.05;
 inline constexpr double kBeyondOwn = 1;
 /// Side of the cubes that a place is made tighter in, voxels, and how often the square of the
 /// allowed distance is halved there, by how often the place has failed.
-inline constexpr double kTightCube = 1.5;
+inline constexpr double kToleranceCube = 1.5;
 inline constexpr std::array<std::uint8_t, 4> kHalvings{0, 5, 14, 40};
 
-// ---- Bricks (BrickRound, SheetRoom, SheetTest) ----
+// ---- Bricks (BrickRound, SheetClearance, SheetTest) ----
 
 /// The middle of a full-resolution triangle is a sample where normals at its corners are farther
 /// apart: between corners a ridge could pass unseen. Cosine of 20 degrees.
@@ -175,7 +175,7 @@ inline constexpr double kFlatTriangle = 1e-5;
 /// stars that come towards each other still pass, and what lies between samples strays little more
 /// than they. To prove all that are nearer than 0.6 voxel to others as well takes twice the proofs
 /// on ch2bet, 2 to 10 % more time, and refuses 18 changes of 670,000 instead of 17.
-inline constexpr double kUsableRoom = 0.4;
+inline constexpr double kUsableClearance = 0.4;
 /// Along edges sharper than this cosine points are looked at, this far apart (of the samples'
 /// spacing, or of the allowed distance where that is larger), so many at most: a ridge may pass
 /// between the samples of a rounder surface. By the spacing alone a brain with noise to 3 % takes 7
@@ -215,7 +215,7 @@ inline constexpr int kFewCuts = 3, kManyCuts = 8, kCutHalvings = 10;
 /// A bound that must grow grows by 1 % more (of the distance, here squared), so that it need not
 /// grow often.
 inline constexpr double kBoundGrowth = 1.0201;
-/// Samples that stand for the full-resolution surface where pieces are too far from every brick.
+/// Samples taken in place of the full-resolution surface where pieces are too far from every brick.
 inline constexpr std::size_t kFarSamples = 4096;
 
 // ---- Mending (SurfaceMender) ----
@@ -235,7 +235,7 @@ inline constexpr std::array kMendCosines{0.3, -0.3};
 inline constexpr double kMoveWeight = 0.4;
 inline constexpr std::array kMoveSteps{0.6, 0.35, 0.15};
 /// Around places that mending does not help vertices come apart again, voxels: in the first
-/// attempt; four attempts, each twice as far. At most this part of halfway's vertices.
+/// attempt; four attempts, each twice as far. At most this part of the checkpoint's vertices.
 inline constexpr double kUndoReach = 1, kMostUndone = 0.05;
 inline constexpr int kMostUndos = 4;
 /// So many times more comes apart to keep the surface a manifold.

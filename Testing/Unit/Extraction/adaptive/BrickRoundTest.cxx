@@ -61,17 +61,17 @@ TEST(BrickRound, LeavesFrozenPlacesAtFullResolution) {
     detail::PatchLimits limits;
     limits.maxCost = 10;
     limits.maxDistanceMm = 0.5;
-    detail::TightPlaces tight;
+    detail::LocalTolerances tolerances;
     const auto simplified = [&] {
-        return detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, tight, limits,
+        return detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, tolerances, limits,
                                       nullptr);
     };
     const std::int64_t without = simplified().triangleCount();
-    tight.freeze({kBallMiddle + Vec3{0, 0, kBallRadius}}, 0);
+    tolerances.freeze({kBallMiddle + Vec3{0, 0, kBallRadius}}, 0);
     const detail::SimplifiedSurface surface = simplified();
     EXPECT_GT(surface.triangleCount(), without + 20);
     EXPECT_LT(surface.triangleCount(), surface.fineTriangles / 2);
-    tight.freeze({kBallMiddle}, 6);  // all of it
+    tolerances.freeze({kBallMiddle}, 6);  // all of it
     EXPECT_EQ(simplified().triangleCount(), surface.fineTriangles);
 }
 
@@ -87,15 +87,15 @@ TEST(BrickRound, KeepsWebsCloser) {
         limits.webMm = webMm;
         const detail::SimplifiedSurface surface =
             detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, {}, limits, nullptr);
-        std::size_t tight = 0;
+        std::size_t closer = 0;
         for (const detail::Sample& sample : surface.samples) {
             const bool isOfBall = sample.point().x > 20;
             if (isOfBall) {
-                ASSERT_EQ(sample.tightness, 0);
+                ASSERT_EQ(sample.halvings, 0);
             }
-            tight += sample.tightness > 0 ? 1 : 0;
+            closer += sample.halvings > 0 ? 1 : 0;
         }
-        EXPECT_EQ(tight > 1000, webMm == 0.11) << webMm;
+        EXPECT_EQ(closer > 1000, webMm == 0.11) << webMm;
     }
 }
 

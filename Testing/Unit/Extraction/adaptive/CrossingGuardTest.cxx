@@ -46,7 +46,7 @@ Patch sheetUnderTriangle() {
         Sample& sample = patch.samples.emplace_back();
         sample.setPoint(patch.points[patch.triangles[t][0]]);
         sample.setNormal({0, 0, 1});
-        sample.room = 0;
+        sample.clearance = 0;
         patch.sampleTriangle.push_back(t);
     }
     return patch;
@@ -101,7 +101,7 @@ TEST(CrossingGuard, SeesTrianglesWhereACommitPutThem) {
 // A sheet whose last column is folded back over it: no sample knows of another sheet.
 TEST(CrossingGuard, AsksForAProofBesideAFold) {
     Patch patch = sheetUnderTriangle();
-    for (Sample& sample : patch.samples) sample.room = detail::SheetRoom::kAlone;
+    for (Sample& sample : patch.samples) sample.clearance = detail::SheetClearance::kAlone;
     const MetricFrame frame = millimetres();
     for (const bool isFolded : {false, true}) {
         for (std::uint32_t y = 0; isFolded && y < kSide; ++y) {

@@ -139,7 +139,7 @@ TEST(ErrorProof, SaysOfPartlyNoiseWhatALookAtAllOfItSays) {
     }
 }
 
-// What was left whole has no samples: what stands for its vertices is found by their places.
+// What was left whole has no samples: the triangles of its vertices are found by their places.
 TEST(ErrorProof, FindsAVertexOfNoiseThatWasPulledOut) {
     PartlyNoise partly;
     const Vec3 far{0, 0, 30};  // out of the volume

@@ -8,7 +8,7 @@ namespace {
 
 using detail::ErrorTracker;
 using detail::SampleAssignment;
-using detail::SheetRoom;
+using detail::SheetClearance;
 
 constexpr double kRounding = 1e-5;  // samples are kept in single precision
 
@@ -43,10 +43,10 @@ TEST(ErrorTracker, RefusesASampleLeftBeyondTheDistance) {
     EXPECT_NEAR(result.largestSquare, 0.36, kRounding);
 }
 
-TEST(ErrorTracker, HalvesTheSquareOfTheDistanceWhereItIsTight) {
+TEST(ErrorTracker, HalvesTheSquareOfTheDistance) {
     SampledSquare square;
     const std::size_t s = square.addSample(0.3);
-    square.patch.samples[s].tightness = 2;  // half the distance
+    square.patch.samples[s].halvings = 2;  // half the distance
     ErrorTracker errors(square.patch, unitFrame());
     SampleAssignment result;
     EXPECT_FALSE(errors.assign(square.changed, 0.59, result));
@@ -57,17 +57,17 @@ TEST(ErrorTracker, HalvesTheSquareOfTheDistanceWhereItIsTight) {
 TEST(ErrorTracker, KnowsWhereOtherSheetsAreNear) {
     SampledSquare square;
     const std::size_t s = square.addSample(0);
-    for (const int room : {0, SheetRoom::kParts - 1, int{SheetRoom::kAlone}}) {
-        square.patch.samples[s].room = static_cast<std::uint8_t>(room);
+    for (const int clearance : {0, SheetClearance::kParts - 1, int{SheetClearance::kAlone}}) {
+        square.patch.samples[s].clearance = static_cast<std::uint8_t>(clearance);
         const ErrorTracker errors(square.patch, unitFrame());
         SampleAssignment result;
         square.shape({2.4, 2.2, 0.02});
         EXPECT_TRUE(errors.assign(square.changed, 1, result));
-        EXPECT_EQ(result.isCrowded, room == 0) << room;
-        EXPECT_EQ(result.isInSingleSheet(), room == SheetRoom::kAlone) << room;
+        EXPECT_EQ(result.isCrowded, clearance == 0) << clearance;
+        EXPECT_EQ(result.isInSingleSheet(), clearance == SheetClearance::kAlone) << clearance;
         square.shape({2.4, 2.2, 0.9});  // nearly as far as the other sheet
         EXPECT_TRUE(errors.assign(square.changed, 1, result));
-        EXPECT_EQ(result.isCrowded, room != SheetRoom::kAlone) << room;
+        EXPECT_EQ(result.isCrowded, clearance != SheetClearance::kAlone) << clearance;
     }
 }
 

@@ -20,11 +20,11 @@ constexpr double kDistanceMm = 0.2, kRounding = 1e-5;  // samples are kept in si
 struct Ball {
     Scene scene = ballScene();
     detail::VolumeSurface full{scene.volume.view().geometry(), *scene.sampler, scene.bricks};
-    detail::TightPlaces tight;
+    detail::LocalTolerances tolerances;
     detail::PatchLimits limits;
 
     Ball() { limits.maxDistanceMm = kDistanceMm; }
-    Simplification simplification() const { return {full, tight, limits}; }
+    Simplification simplification() const { return {full, tolerances, limits}; }
 };
 
 double largestDistance(const SimplifiedSurface& surface) {
@@ -52,27 +52,27 @@ TEST(WantedCount, IsTheLeastOfWhatIsAskedFor) {
 
 TEST(Simplification, StaysWithinItsLimits) {
     const Ball ball;
-    detail::SurfaceState halfway;
-    const SimplifiedSurface surface = ball.simplification().toLimits(halfway);
+    detail::SurfaceState checkpoint;
+    const SimplifiedSurface surface = ball.simplification().toLimits(checkpoint);
     EXPECT_LE(largestDistance(surface), kDistanceMm + kRounding);
     EXPECT_LT(surface.triangleCount(), surface.fineTriangles / 8);
     expectSound(meshOf(surface));
-    EXPECT_EQ(surface.heirs.size(), halfway.points.size());
-    EXPECT_GT(halfway.triangleCount(), surface.triangleCount());
-    EXPECT_LT(halfway.triangleCount(), surface.fineTriangles);
+    EXPECT_EQ(surface.heirs.size(), checkpoint.points.size());
+    EXPECT_GT(checkpoint.triangleCount(), surface.triangleCount());
+    EXPECT_LT(checkpoint.triangleCount(), surface.fineTriangles);
 }
 
-TEST(Simplification, StaysCloserWherePlacesAreTight) {
+TEST(Simplification, StaysCloserWhereTolerancesAreSmaller) {
     Ball ball;
-    detail::SurfaceState halfway;
-    const std::int64_t before = ball.simplification().toLimits(halfway).triangleCount();
+    detail::SurfaceState checkpoint;
+    const std::int64_t before = ball.simplification().toLimits(checkpoint).triangleCount();
     const Vec3 pole = kBallMiddle + Vec3{0, 0, kBallRadius};
-    for (int times = 0; times < 2; ++times) ball.tight.add({pole});
-    const SimplifiedSurface surface = ball.simplification().toLimits(halfway);
+    for (int times = 0; times < 2; ++times) ball.tolerances.add({pole});
+    const SimplifiedSurface surface = ball.simplification().toLimits(checkpoint);
     EXPECT_GT(surface.triangleCount(), before);
     for (std::size_t s = 0; s < surface.samples.size(); ++s) {
         if (norm(surface.samples[s].point() - pole) > 1) continue;
-        EXPECT_GT(surface.samples[s].tightness, 0);
+        EXPECT_GT(surface.samples[s].halvings, 0);
         const auto& [a, b, c] = surface.triangles[surface.sampleTriangle[s]];
         EXPECT_LE(std::sqrt(detail::squaredDistanceToTriangle(
                       surface.samples[s].point(),
@@ -107,11 +107,11 @@ TEST(Simplification, NoCountIsPassed) {
 
 TEST(Simplification, ASettledSurfaceStaysAsItIs) {
     Ball ball;
-    ball.tight.freeze({kBallMiddle}, 8);  // all of it
-    detail::SurfaceState halfway;
-    const SimplifiedSurface surface = ball.simplification().toLimits(halfway);
+    ball.tolerances.freeze({kBallMiddle}, 8);  // all of it
+    detail::SurfaceState checkpoint;
+    const SimplifiedSurface surface = ball.simplification().toLimits(checkpoint);
     EXPECT_EQ(surface.triangleCount(), surface.fineTriangles);
-    EXPECT_EQ(surface.points, halfway.points);
+    EXPECT_EQ(surface.points, checkpoint.points);
     EXPECT_EQ(surface.heirs.size(), surface.points.size());
 }
 
@@ -128,8 +128,8 @@ TEST(Simplification, GoesFartherForACountWhereItMay) {
 
 TEST(Simplification, FitsEveryVertexInTheEnd) {
     const Ball ball;
-    detail::SurfaceState halfway;
-    const SimplifiedSurface surface = ball.simplification().toLimits(halfway);
+    detail::SurfaceState checkpoint;
+    const SimplifiedSurface surface = ball.simplification().toLimits(checkpoint);
     EXPECT_EQ(
         std::count(surface.states.begin(), surface.states.end(), detail::Patch::State::Fitted),
         std::ssize(surface.states));

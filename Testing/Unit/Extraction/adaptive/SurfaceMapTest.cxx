@@ -43,8 +43,8 @@ struct Mapped {
             }
             const Map::Vertex &a = vertices[from.triangles[h / 3][h % 3]],
                               &b = vertices[from.triangles[h / 3][(h + 1) % 3]];
-            passes(a.standIn);
-            if (a.standIn != b.standIn) map.forEachAlong(wayOf(map, h), passes);
+            passes(a.imageTriangle);
+            if (a.imageTriangle != b.imageTriangle) map.forEachAlong(wayOf(map, h), passes);
         }
     }
 
@@ -90,7 +90,7 @@ private:
         for (int i = 0; i < 3; ++i) {
             const VertexId h = 3 * t + i;
             sides[i] = {nullptr, h < source.twin(h)};
-            if (corners[i]->standIn == corners[(i + 1) % 3]->standIn) continue;
+            if (corners[i]->imageTriangle == corners[(i + 1) % 3]->imageTriangle) continue;
             ways[i] = wayOf(map, h);
             sides[i].way = &ways[i];
         }

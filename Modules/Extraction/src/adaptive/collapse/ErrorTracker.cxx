@@ -50,8 +50,8 @@ double heightOver(const Sample& sample, const Vec3& p) {
 }
 
 /// A distance, larger where it must be small.
-double tightened(double distanceMm, const Sample& sample) {
-    return sample.tightness == 0 ? distanceMm : distanceMm * std::exp2(0.5 * sample.tightness);
+double scaled(double distanceMm, const Sample& sample) {
+    return sample.halvings == 0 ? distanceMm : distanceMm * std::exp2(0.5 * sample.halvings);
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ void SampleAssignment::clear() {
     moves.clear();
     for (auto& along : position) along.clear();
     sumOfSquares = largestSquare = 0;
-    leastRoom = roomUnseen = SheetRoom::kAlone;
+    leastClearance = clearanceUnseen = SheetClearance::kAlone;
     isCrowded = false;
 }
 
@@ -69,13 +69,13 @@ ErrorTracker::ErrorTracker(Patch& patch, const MetricFrame& frame)
       sampleSpacingMm_(frame.voxelMm()),
       firstSample_(patch.triangles.size(), kNone),
       nextSample_(patch.samples.size(), kNone),
-      triangleRoom_(patch.triangles.size(), SheetRoom::kAlone) {
-    for (int room = 0; room < kRooms; ++room) {
-        const double voxels = static_cast<double>(room) / SheetRoom::kParts,
-                     mm = kUsableRoom * voxels * frame.narrowestMm();
-        squaredRoom_[room] = room == 0 ? -1 : mm * mm;
+      triangleClearance_(patch.triangles.size(), SheetClearance::kAlone) {
+    for (int clearance = 0; clearance < kClearances; ++clearance) {
+        const double voxels = static_cast<double>(clearance) / SheetClearance::kParts,
+                     mm = kUsableClearance * voxels * frame.narrowestMm();
+        squaredClearance_[clearance] = clearance == 0 ? -1 : mm * mm;
     }
-    squaredRoom_[SheetRoom::kAlone] = kInfinity;
+    squaredClearance_[SheetClearance::kAlone] = kInfinity;
     for (auto s = static_cast<std::uint32_t>(patch.samples.size()); s-- > 0;) {
         const std::uint32_t t = patch.sampleTriangle[s];
         nextSample_[s] = firstSample_[t];
@@ -118,7 +118,7 @@ std::optional<StarFit> ErrorTracker::measure(const ChangedStar& unchanged) const
     forEachTriangle(unchanged.star, [&](std::uint32_t triangle, int wedge) {
         for (std::uint32_t s = firstSample_[triangle]; s != kNone && isLoose; s = nextSample_[s]) {
             const Sample& sample = patch_.samples[s];
-            isLoose = sample.tightness == 0;
+            isLoose = sample.halvings == 0;
             const double squared =
                 distanceTo(unchanged.wedge[wedge], sample.point() - unchanged.vertex).squared;
             fit.sumOfSquares += squared;
@@ -140,15 +140,15 @@ bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm,
 void ErrorTracker::collect(const Star& star, SampleAssignment& result) const {
     result.clear();
     forEachTriangle(star, [&](std::uint32_t triangle, int wedge) {
-        result.roomUnseen = std::min(result.roomUnseen, triangleRoom_[triangle]);
+        result.clearanceUnseen = std::min(result.clearanceUnseen, triangleClearance_[triangle]);
         for (std::uint32_t s = firstSample_[triangle]; s != kNone; s = nextSample_[s]) {
             const Sample& sample = patch_.samples[s];
-            result.leastRoom = std::min(result.leastRoom, sample.room);
+            result.leastClearance = std::min(result.leastClearance, sample.clearance);
             result.moves.push_back({s, wedge});
             for (int a = 0; a < 3; ++a) result.position[a].push_back(sample.position[a]);
         }
     });
-    result.leastRoom = std::min(result.leastRoom, result.roomUnseen);
+    result.leastClearance = std::min(result.leastClearance, result.clearanceUnseen);
 }
 
 /// The new vertex and points of sharp edges are near the full-resolution surface, as the nearest
@@ -156,13 +156,14 @@ void ErrorTracker::collect(const Star& star, SampleAssignment& result) const {
 bool ErrorTracker::starIsNear(const ChangedStar& changed, double maxDistanceMm,
                               SampleAssignment& result) const {
     if (result.moves.empty()) {
-        result.isCrowded = result.leastRoom != SheetRoom::kAlone;
+        result.isCrowded = result.leastClearance != SheetClearance::kAlone;
         return true;
     }
     const Sample& nearest = sampleNearest(changed.vertex, result);
     const double height = heightOver(nearest, changed.vertex);
-    result.isCrowded = height * height > squaredRoom_[std::min(nearest.room, result.roomUnseen)];
-    return tightened(height, nearest) <= maxDistanceMm &&
+    result.isCrowded =
+        height * height > squaredClearance_[std::min(nearest.clearance, result.clearanceUnseen)];
+    return scaled(height, nearest) <= maxDistanceMm &&
            ridgesAreNear(changed, result, maxDistanceMm);
 }
 
@@ -173,11 +174,11 @@ bool ErrorTracker::samplesAreNear(const ChangedStar& changed, double most,
         double squared = 0;
         move = nearest(changed, move.sample, move.wedge, squared);
         const Sample& sample = patch_.samples[move.sample];
-        if (!(squared <= (sample.tightness == 0 ? most : std::ldexp(most, -sample.tightness))) ||
+        if (!(squared <= (sample.halvings == 0 ? most : std::ldexp(most, -sample.halvings))) ||
             (sample.isOnBorder && !borderIsNear(changed, move, most))) {
             return false;
         }
-        if (squared > squaredRoom_[sample.room]) result.isCrowded = true;
+        if (squared > squaredClearance_[sample.clearance]) result.isCrowded = true;
         result.sumOfSquares += squared;
         result.largestSquare = std::max(result.largestSquare, squared);
     }
@@ -239,7 +240,7 @@ bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, const SampleAssignm
         for (int k = 1; k < steps; ++k) {
             const Vec3 p = changed.vertex + static_cast<double>(k) / steps * spoke;
             const Sample& nearest = sampleNearest(p, assignment);
-            if (tightened(heightOver(nearest, p), nearest) > maxDistanceMm) {
+            if (scaled(heightOver(nearest, p), nearest) > maxDistanceMm) {
                 return false;
             }
         }
@@ -256,10 +257,10 @@ void ErrorTracker::commit(const ChangedStar& changed, const SampleAssignment& as
         firstSample_[t] = move.sample;
         patch_.sampleTriangle[move.sample] = t;
     }
-    // a triangle without samples has the room of those around it
+    // a triangle without samples has the clearance of those around it
     for (int i = 0; i < changed.star.count; ++i) {
         const std::uint32_t t = changed.star.triangle[i];
-        if (firstSample_[t] == kNone) triangleRoom_[t] = assignment.leastRoom;
+        if (firstSample_[t] == kNone) triangleClearance_[t] = assignment.leastClearance;
     }
 }
 

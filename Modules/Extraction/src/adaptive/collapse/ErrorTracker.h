@@ -18,16 +18,18 @@ struct SampleAssignment {
         int wedge;
     };
     std::vector<Move> moves;
-    std::array<std::vector<float>, 3> position;   ///< of the moves' samples, by axis
-    double sumOfSquares = 0;                      ///< of distances, mm2
-    double largestSquare = 0;                     ///< of distances, mm2
-    std::uint8_t leastRoom = SheetRoom::kAlone;   ///< of all samples, see Sample
-    std::uint8_t roomUnseen = SheetRoom::kAlone;  ///< of triangles without samples
+    std::array<std::vector<float>, 3> position;             ///< of the moves' samples, by axis
+    double sumOfSquares = 0;                                ///< of distances, mm2
+    double largestSquare = 0;                               ///< of distances, mm2
+    std::uint8_t leastClearance = SheetClearance::kAlone;   ///< of all samples, see Sample
+    std::uint8_t clearanceUnseen = SheetClearance::kAlone;  ///< of triangles without samples
     /// The star comes so far towards other sheets that it could meet them.
     bool isCrowded = false;
 
     /// All samples, one or more, know of no other sheet near them.
-    bool isInSingleSheet() const { return !moves.empty() && leastRoom == SheetRoom::kAlone; }
+    bool isInSingleSheet() const {
+        return !moves.empty() && leastClearance == SheetClearance::kAlone;
+    }
     void clear();
 };
 
@@ -37,7 +39,7 @@ struct StarFit {
     double largestSquare = 0;  ///< mm2
 };
 
-/// Which triangle of a patch stands for each sample of the full-resolution surface, and how far
+/// Which triangle of a patch each sample of the full-resolution surface is assigned to, and how far
 /// off it is: the samples of the triangles that a change takes away are handed to the new ones.
 class ErrorTracker {
 public:
@@ -45,7 +47,7 @@ public:
 
     ErrorTracker(Patch& patch, const MetricFrame& frame);
 
-    /// \return nothing when the star touches places that must be tight
+    /// \return nothing when the star touches samples whose tolerance is smaller
     std::optional<StarFit> measure(const ChangedStar& unchanged) const;
 
     /// Finds for every sample of the star's triangles the near one of the changed triangles.
@@ -78,10 +80,11 @@ private:
 
     Patch& patch_;
     double sampleSpacingMm_;
-    static constexpr int kRooms = SheetRoom::kAlone + 1;
-    std::array<double, kRooms> squaredRoom_{};  ///< that may be used, by Sample::room
+    static constexpr int kClearances = SheetClearance::kAlone + 1;
+    std::array<double, kClearances>
+        squaredClearance_{};  ///< that may be used, by Sample::clearance
     std::vector<std::uint32_t> firstSample_, nextSample_;
-    std::vector<std::uint8_t> triangleRoom_;  ///< where there are no samples, see Sample
+    std::vector<std::uint8_t> triangleClearance_;  ///< where there are no samples, see Sample
 };
 
 }  // namespace adaptiso::detail

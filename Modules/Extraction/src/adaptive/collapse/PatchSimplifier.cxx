@@ -226,7 +226,7 @@ void PatchSimplifier::fitVertices() {
 /// \param star  a vertex's, shaped for its present place \param own  the vertex's quadric
 Vec3 PatchSimplifier::fittedPlace(const ChangedStar& star, const Quadric& own) const {
     // a sample's distance is linear in the vertex's step d: n . (s - q) - w n . d, w the weight of
-    // the vertex at the sample's foot q; a sample stands for a voxel's face of surface
+    // the vertex at the sample's foot q; a sample counts as a voxel's face of surface
     const double scale = kQuadricWeight / (frame_.voxelMm() * frame_.voxelMm());
     Quadric sum;
     sum.xx = scale * own.xx, sum.xy = scale * own.xy, sum.xz = scale * own.xz;

@@ -17,7 +17,7 @@ namespace adaptiso::detail {
 struct PatchLimits {
     double maxCost = 0;        ///< of a collapse, mm2 x mm2
     double triedCost = -1;     ///< maxCost when the points that are tried were
-    double maxDistanceMm = 0;  ///< of a sample from the triangle that stands for it
+    double maxDistanceMm = 0;  ///< of a sample from the triangle that it is assigned to
     /// Of a sample from the triangles of a fitted vertex, unless some sample was as far before.
     double maxFittedMm = std::numeric_limits<double>::max();
     /// Parts of the surface that are thinner keep nearer to their samples.
@@ -45,7 +45,7 @@ public:
     /// \param costs  gets the cost of each, in order; may be null
     void collapseEdges(std::int64_t most, std::vector<double>* costs);
 
-    /// Moves vertices to where their triangles lie closest to the samples that they stand for
+    /// Moves vertices to where their triangles lie closest to the samples that are theirs
     /// (least squares, held by the vertex's quadric): those that are not fitted yet.
     void fitVertices();
 

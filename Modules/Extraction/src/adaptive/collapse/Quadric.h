@@ -33,7 +33,7 @@ struct Quadric {
         return *this;
     }
 
-    /// Sum of the weights: the area of the triangles that it stands for, mm2.
+    /// Sum of the weights: the area of the triangles that are in it, mm2.
     double weight() const { return xx + yy + zz; }
 
     Vec3 timesA(const Vec3& v) const {

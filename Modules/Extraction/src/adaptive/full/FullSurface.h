@@ -10,7 +10,7 @@
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
 #include "adaptive/proof/DistanceProof.h"
-#include "adaptive/rounds/TightPlaces.h"
+#include "adaptive/rounds/LocalTolerances.h"
 
 namespace adaptiso::detail {
 
@@ -29,8 +29,8 @@ public:
 
     /// The surface after a first round within the limits.
     /// \param costs  gets those of the collapses, patch by patch; may be null
-    virtual SimplifiedSurface firstRound(const TightPlaces& tight, const PatchLimits& limits,
-                                         CollapseCosts* costs) const = 0;
+    virtual SimplifiedSurface firstRound(const LocalTolerances& tolerances,
+                                         const PatchLimits& limits, CollapseCosts* costs) const = 0;
 
     /// \param limitMm  what is farther than that is noted in ErrorBound::beyondLimit
     virtual std::unique_ptr<DistanceProof> proof(double limitMm) const = 0;

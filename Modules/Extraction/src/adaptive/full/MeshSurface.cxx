@@ -73,15 +73,15 @@ MeshSurface::MeshSurface(const TriangleMesh& input, const MeshParts& parts,
     std::sort(crossing_.begin(), crossing_.end(), isBefore);
 }
 
-SimplifiedSurface MeshSurface::firstRound(const TightPlaces& tight, const PatchLimits& limits,
-                                          CollapseCosts* costs) const {
-    SimplifiedSurface surface = whole(tight);
+SimplifiedSurface MeshSurface::firstRound(const LocalTolerances& tolerances,
+                                          const PatchLimits& limits, CollapseCosts* costs) const {
+    SimplifiedSurface surface = whole(tolerances);
     PatchRound(surface, {}, frame()).run({limits}, costs);
     return surface;
 }
 
 /// The mesh as it is.
-SimplifiedSurface MeshSurface::whole(const TightPlaces& tight) const {
+SimplifiedSurface MeshSurface::whole(const LocalTolerances& tolerances) const {
     SimplifiedSurface surface;
     reserveInHugePages(surface.points, parts_.points.size());
     surface.points = parts_.points;
@@ -100,10 +100,10 @@ SimplifiedSurface MeshSurface::whole(const TightPlaces& tight) const {
         const std::vector<Vec3> areas = addPoints(around, surface);
         addSamples(around, areas, surface);
     }
-    tight.apply(frame(), surface.samples);
+    tolerances.apply(frame(), surface.samples);
     for (std::size_t v = 0; v < surface.points.size(); ++v) {
         const bool isKept = !parts_.isKept.empty() && parts_.isKept[v] != 0;
-        if (isKept || tight.isFrozen(frame().toIndex(surface.points[v]))) {
+        if (isKept || tolerances.isFrozen(frame().toIndex(surface.points[v]))) {
             surface.states[v] = Patch::State::Final;
         }
     }
@@ -135,8 +135,8 @@ std::vector<Vec3> MeshSurface::addPoints(const Around& around, SimplifiedSurface
 }
 
 /// To other sheets, of each point.
-std::vector<std::uint8_t> MeshSurface::roomsOf(const SimplifiedSurface& surface,
-                                               const std::vector<Vec3>& areas) const {
+std::vector<std::uint8_t> MeshSurface::clearancesOf(const SimplifiedSurface& surface,
+                                                    const std::vector<Vec3>& areas) const {
     const PatchCubes cubes(surface, {}, frame());
     std::vector<std::uint32_t> cubeOf(surface.points.size());
     parallelForPieces(std::ssize(cubeOf), kPiece, [&](std::int64_t begin, std::int64_t end) {
@@ -147,7 +147,7 @@ std::vector<std::uint8_t> MeshSurface::roomsOf(const SimplifiedSurface& surface,
     const Buckets<std::uint32_t, std::uint32_t> inCube(cubes.count(), [&](const auto& give) {
         for (std::uint32_t v = 0; v < cubeOf.size(); ++v) give(cubeOf[v], v);
     });
-    std::vector<std::uint8_t> rooms(surface.points.size(), SheetRoom::kAlone);
+    std::vector<std::uint8_t> clearances(surface.points.size(), SheetClearance::kAlone);
     parallelForPieces(
         static_cast<std::int64_t>(cubes.count()), 1, [&](std::int64_t number, std::int64_t) {
             const auto own = inCube.of(static_cast<std::size_t>(number));
@@ -171,12 +171,12 @@ std::vector<std::uint8_t> MeshSurface::roomsOf(const SimplifiedSurface& surface,
                     if (box.overlaps({p, p})) add(v);
                 }
             }
-            std::vector<std::uint8_t> room(points.size(), SheetRoom::kAlone);
-            std::fill_n(room.begin(), own.size(), std::uint8_t{0});
-            SheetRoom::fillIn(points, normals, frame(), room);
-            for (std::size_t i = 0; i < own.size(); ++i) rooms[own[i]] = room[i];
+            std::vector<std::uint8_t> clearance(points.size(), SheetClearance::kAlone);
+            std::fill_n(clearance.begin(), own.size(), std::uint8_t{0});
+            SheetClearance::fillIn(points, normals, frame(), clearance);
+            for (std::size_t i = 0; i < own.size(); ++i) clearances[own[i]] = clearance[i];
         });
-    return rooms;
+    return clearances;
 }
 
 /// \param areas  the sums of area vectors around each point \return of each triangle
@@ -198,7 +198,7 @@ std::vector<std::uint8_t> MeshSurface::bentTriangles(const std::vector<Vec3>& ar
 /// unseen there.
 void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& areas,
                              SimplifiedSurface& surface) const {
-    const std::vector<std::uint8_t> rooms = roomsOf(surface, areas);
+    const std::vector<std::uint8_t> clearances = clearancesOf(surface, areas);
     const std::vector<std::uint8_t> isBent = bentTriangles(areas);
     // to the sample: noise bends all triangles
     const std::size_t count =
@@ -213,7 +213,7 @@ void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& area
                               Sample& sample = surface.samples[v];
                               sample.setPoint(parts_.points[v]);
                               sample.setNormal(areas[v]);
-                              sample.room = rooms[v];
+                              sample.clearance = clearances[v];
                               surface.sampleTriangle[v] = around.of(v).front();
                           }
                       });
@@ -224,7 +224,7 @@ void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& area
         Sample& middle = surface.samples.emplace_back();
         middle.setPoint((1.0 / 3) * (c[0] + c[1] + c[2]));
         middle.setNormal(areaVector2(c[0], c[1], c[2]));
-        middle.room = std::min({rooms[v[0]], rooms[v[1]], rooms[v[2]]});
+        middle.clearance = std::min({clearances[v[0]], clearances[v[1]], clearances[v[2]]});
         surface.sampleTriangle.push_back(static_cast<SurfaceState::Number>(t));
     }
 }

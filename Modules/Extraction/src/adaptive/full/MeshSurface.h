@@ -22,7 +22,7 @@ public:
     /// New vertices are to stay in a box. \param box  as seen from parts.origin
     void stayIn(const BoundingBox& box) { keepIn(box); }
 
-    SimplifiedSurface firstRound(const TightPlaces& tight, const PatchLimits& limits,
+    SimplifiedSurface firstRound(const LocalTolerances& tolerances, const PatchLimits& limits,
                                  CollapseCosts* costs) const override;
     std::unique_ptr<DistanceProof> proof(double limitMm) const override;
     /// Without normals.
@@ -37,10 +37,10 @@ public:
 private:
     using Around = OrderedBuckets<std::uint32_t>;
 
-    SimplifiedSurface whole(const TightPlaces& tight) const;
+    SimplifiedSurface whole(const LocalTolerances& tolerances) const;
     std::vector<Vec3> addPoints(const Around& around, SimplifiedSurface& surface) const;
-    std::vector<std::uint8_t> roomsOf(const SimplifiedSurface& surface,
-                                      const std::vector<Vec3>& areas) const;
+    std::vector<std::uint8_t> clearancesOf(const SimplifiedSurface& surface,
+                                           const std::vector<Vec3>& areas) const;
     std::vector<std::uint8_t> bentTriangles(const std::vector<Vec3>& areas) const;
     void addSamples(const Around& around, const std::vector<Vec3>& areas,
                     SimplifiedSurface& surface) const;

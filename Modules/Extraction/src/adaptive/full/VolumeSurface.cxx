@@ -76,10 +76,10 @@ void VolumeSurface::stayIn(const BoundingBox& moving, const BoundingBox& box) {
     keepIn(box);
 }
 
-SimplifiedSurface VolumeSurface::firstRound(const TightPlaces& tight, const PatchLimits& limits,
-                                            CollapseCosts* costs) const {
-    SimplifiedSurface surface = simplifyBricks(sampler_, bricks_, frame(), tight, limits, costs,
-                                               moving_ ? &*moving_ : nullptr);
+SimplifiedSurface VolumeSurface::firstRound(const LocalTolerances& tolerances,
+                                            const PatchLimits& limits, CollapseCosts* costs) const {
+    SimplifiedSurface surface = simplifyBricks(sampler_, bricks_, frame(), tolerances, limits,
+                                               costs, moving_ ? &*moving_ : nullptr);
     if (bricks_.grid().border == Border::Open) {
         std::vector<std::uint8_t> faces(surface.points.size());
         parallelForPieces(std::ssize(faces), kPiece, [&](std::int64_t begin, std::int64_t end) {

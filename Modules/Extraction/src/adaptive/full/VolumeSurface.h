@@ -20,7 +20,7 @@ public:
     /// \param moving  continuous sample indices \param box  metric frame
     void stayIn(const BoundingBox& moving, const BoundingBox& box);
 
-    SimplifiedSurface firstRound(const TightPlaces& tight, const PatchLimits& limits,
+    SimplifiedSurface firstRound(const LocalTolerances& tolerances, const PatchLimits& limits,
                                  CollapseCosts* costs) const override;
     std::unique_ptr<DistanceProof> proof(double limitMm) const override;
     TriangleMesh meshOf(const SimplifiedSurface& surface) const override;

@@ -7,7 +7,7 @@
 
 #include "adaptiso/Core/Geometry.h"
 #include "adaptiso/Core/ImageGeometry.h"
-#include "adaptive/bricks/SheetRoom.h"
+#include "adaptive/bricks/SheetClearance.h"
 #include "adaptive/collapse/Quadric.h"
 
 namespace adaptiso::detail {
@@ -16,16 +16,16 @@ namespace adaptiso::detail {
 /// triangle where the surface bends.
 struct Sample {
     std::array<float, 3> position{};
-    std::array<std::int16_t, 3> direction{};  ///< of the normal, in parts of kUnit
-    std::uint8_t room = SheetRoom::kAlone;    ///< to other sheets, see SheetRoom
-    /// How often the square of the allowed distance is halved, see TightPlaces.
-    std::uint8_t tightness : 7 = 0;  ///< up to kMostHalvings
-    bool isOnBorder : 1 = false;     ///< a vertex of an open border
+    std::array<std::int16_t, 3> direction{};          ///< of the normal, in parts of kUnit
+    std::uint8_t clearance = SheetClearance::kAlone;  ///< to other sheets, see SheetClearance
+    /// How often the square of the allowed distance is halved, see LocalTolerances.
+    std::uint8_t halvings : 7 = 0;  ///< up to kMostHalvings
+    bool isOnBorder : 1 = false;    ///< a vertex of an open border
 
     static constexpr double kUnit = 32767;
     static constexpr std::uint8_t kMostHalvings = 0x7F;
 
-    bool isAlone() const { return room == SheetRoom::kAlone; }
+    bool isAlone() const { return clearance == SheetClearance::kAlone; }
 
     Vec3 point() const { return {position[0], position[1], position[2]}; }
     Vec3 normal() const {
@@ -69,7 +69,7 @@ struct Patch {
     std::uint32_t ownTriangles = 0;
 
     std::vector<Sample> samples;
-    std::vector<std::uint32_t> sampleTriangle;  ///< the triangle that stands for each
+    std::vector<std::uint32_t> sampleTriangle;  ///< the triangle that each is assigned to
 
     static constexpr std::uint32_t kPlain = 0, kBorder = 1;
     bool isBorder(std::uint32_t point) const { return !marks.empty() && marks[point] == kBorder; }

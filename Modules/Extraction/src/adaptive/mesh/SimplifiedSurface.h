@@ -25,7 +25,7 @@ struct SurfaceState {
     /// above, a number of the point's own, by which it is known in the end. Empty: all are plain.
     std::vector<std::uint32_t> marks;
     std::vector<Triangle> triangles;
-    std::vector<Number> sampleTriangle;  ///< the triangle that stands for each sample
+    std::vector<Number> sampleTriangle;  ///< that each sample is assigned to
 
     std::int64_t triangleCount() const { return static_cast<std::int64_t>(triangles.size()); }
 };
@@ -51,8 +51,8 @@ struct SimplifiedSurface : SurfaceState {
     std::int64_t fineTriangles = 0;   ///< of the full-resolution surface
     std::int64_t tableTriangles = 0;  ///< of it, were no loop filled from its middle
 
-    /// Of each vertex at halfway (see Halfway): the vertex that it was merged into since, or
-    /// itself. Empty: not asked for.
+    /// Of each vertex of the checkpoint (see Simplification::toLimits): the vertex that it was
+    /// merged into since, or itself. Empty: not asked for.
     std::vector<Number> heirs;
 
     SurfaceState& state() { return *this; }

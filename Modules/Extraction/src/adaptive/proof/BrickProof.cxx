@@ -114,7 +114,7 @@ std::optional<BrickBound> BrickProof::boundOfWhole() {
 
 /// The full-resolution surface in the brick's own cells.
 void BrickProof::proveOwnCells() {
-    findStandIns();
+    findAssigned();
     findUnmoved();
     unchanged_.clear();
     map_.clear();
@@ -162,9 +162,9 @@ void BrickProof::proveTriangles() {
     cover_.clear();
 }
 
-/// Triangles that stand for vertices, by their places: of a brick that was left whole there are no
-/// samples. Where a vertex has gone, the nearest of the brick's.
-void BrickProof::findStandInsByPlace() {
+/// Triangles that vertices are assigned to, by their places: of a brick that was left whole there
+/// are no samples. Where a vertex has gone, the nearest of the brick's.
+void BrickProof::findAssignedByPlace() {
     std::unordered_map<std::uint64_t, Number> at;
     for (const Number t : lookup_.ofBrick(brick_)) {
         for (const Vec3& corner : lookup_.cornersOf(t)) {
@@ -178,16 +178,16 @@ void BrickProof::findStandInsByPlace() {
         }
         return best.second;
     };
-    standIn_.resize(fine_.ownVertices);
+    assigned_.resize(fine_.ownVertices);
     for (std::size_t v = 0; v < fine_.ownVertices; ++v) {
         const auto found = at.find(BrickPrint::printOf(points_[v]));
-        standIn_[v] = found != at.end() ? found->second : nearest(points_[v]);
+        assigned_[v] = found != at.end() ? found->second : nearest(points_[v]);
     }
 }
 
-void BrickProof::findStandIns() {
+void BrickProof::findAssigned() {
     if (surface_.wasLeftWhole(brick_)) {
-        findStandInsByPlace();
+        findAssignedByPlace();
         return;
     }
     if (scope_.blocks.empty()) {
@@ -195,18 +195,18 @@ void BrickProof::findStandIns() {
     } else {
         numbers_.ofPart(brick_, fine_, numberOf_);
     }
-    const auto standIns = std::span(surface_.sampleTriangle);
-    const auto within = standIns.subspan(surface_.firstSample[brick_]),
-               onWalls = standIns.subspan(surface_.firstSample.back());
+    const auto assigned = std::span(surface_.sampleTriangle);
+    const auto within = assigned.subspan(surface_.firstSample[brick_]),
+               onWalls = assigned.subspan(surface_.firstSample.back());
     const auto& edges = surface_.wallEdges;
-    standIn_.assign(fine_.ownVertices, kNone);
+    assigned_.assign(fine_.ownVertices, kNone);
     for (std::size_t v = 0; v < fine_.ownVertices; ++v) {
         if (fine_.vertices[v].isOnWall) {
             const std::uint64_t edge = fine_.vertices[v].edge.word;
-            standIn_[v] =
+            assigned_[v] =
                 onWalls[std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin()];
         } else if (numberOf_[v] != SampleNumbers::kNone) {
-            standIn_[v] = within[numberOf_[v]];
+            assigned_[v] = within[numberOf_[v]];
         }
     }
 }
@@ -214,8 +214,8 @@ void BrickProof::findStandIns() {
 void BrickProof::findUnmoved() {
     unmoved_.assign(fine_.ownVertices, kNone);
     for (std::size_t v = 0; v < fine_.ownVertices; ++v) {
-        if (standIn_[v] == kNone) continue;
-        for (const Number corner : lookup_.triangle(standIn_[v])) {
+        if (assigned_[v] == kNone) continue;
+        for (const Number corner : lookup_.triangle(assigned_[v])) {
             if (lookup_.point(corner) == points_[v]) unmoved_[v] = corner;
         }
     }
@@ -231,13 +231,13 @@ bool BrickProof::isUnchanged(const std::array<std::uint32_t, 3>& fine) {
     return true;
 }
 
-/// For every triangle of the simplified surface a fine one that it stands for, or none.
+/// For every triangle of the simplified surface a fine one with a corner assigned to it, or none.
 void BrickProof::findStarts(std::span<const Number> triangles) {
     startAt_.assign(triangles.size(), Walkable::kNone);
     for (std::uint32_t v = 0; v < fine_.ownVertices; ++v) {
-        if (standIn_[v] == kNone) continue;
-        const auto at = std::lower_bound(triangles.begin(), triangles.end(), standIn_[v]);
-        if (at != triangles.end() && *at == standIn_[v]) {
+        if (assigned_[v] == kNone) continue;
+        const auto at = std::lower_bound(triangles.begin(), triangles.end(), assigned_[v]);
+        if (at != triangles.end() && *at == assigned_[v]) {
             startAt_[at - triangles.begin()] = walkable_.triangleAt(v);
         }
     }
@@ -274,7 +274,7 @@ bool BrickProof::mapFine(std::uint32_t t) {
 
 const BrickProof::Map::Vertex* BrickProof::mappedVertex(std::uint32_t v) {
     if (mapped_[v].squared < 0) {
-        mapped_[v] = map_.vertexAt(points_[v], standIn_[v]);
+        mapped_[v] = map_.vertexAt(points_[v], assigned_[v]);
     }
     return &mapped_[v];
 }
@@ -287,7 +287,7 @@ std::uint32_t BrickProof::edgeOf(std::uint32_t halfEdge) const {
 /// \param a  where the half-edge begins \param b  where it ends
 BrickProof::Map::Side BrickProof::sideOf(std::uint32_t halfEdge, const Map::Vertex& a,
                                          const Map::Vertex& b) {
-    if (a.standIn == b.standIn) return {nullptr, true};
+    if (a.imageTriangle == b.imageTriangle) return {nullptr, true};
     const std::uint32_t edge = edgeOf(halfEdge);
     const bool isForward = edge == halfEdge;
     Map::Way& way = ways_[edge];
@@ -302,7 +302,7 @@ void BrickProof::findCovered() {
         const std::uint32_t beside = walkable_.twin(h) / 3;
         if (isMapped_[h / 3] == 0 || (beside < isMapped_.size() && isMapped_[beside] != 0))
             continue;
-        passes(mapped_[fine_.triangles[h / 3][h % 3]].standIn);
+        passes(mapped_[fine_.triangles[h / 3][h % 3]].imageTriangle);
         map_.forEachAlong(ways_[edgeOf(h)], passes);
     }
 }
@@ -311,7 +311,7 @@ void BrickProof::proveFine(std::size_t t) {
     const auto& v = fine_.triangles[t];
     if (isUnchanged(v) || mapFine(static_cast<std::uint32_t>(t))) return;
     const Corners piece{points_[v[0]], points_[v[1]], points_[v[2]]};
-    cover(piece, lookup_.walkable(), standIn_[v[0]], fromFine_.squaredBound(), kStepsOfFine);
+    cover(piece, lookup_.walkable(), assigned_[v[0]], fromFine_.squaredBound(), kStepsOfFine);
     for (const ConvexPiece& left : walk_.left()) {
         for (int i = 2; i < left.count(); ++i) {
             proveFinePart({left.corner(0), left.corner(i - 1), left.corner(i)}, v);
@@ -323,7 +323,7 @@ void BrickProof::proveFine(std::size_t t) {
 void BrickProof::proveFinePart(const Corners& piece, const std::array<std::uint32_t, 3>& of) {
     std::vector<Corners>& nearby = fromFine_.nearby();
     nearby.clear();
-    for (const std::uint32_t corner : of) nearby.push_back(lookup_.cornersOf(standIn_[corner]));
+    for (const std::uint32_t corner : of) nearby.push_back(lookup_.cornersOf(assigned_[corner]));
     if (fromFine_.isWithin(piece)) return;
     collectAround(of);
     if (fromFine_.isWithin(piece)) return;
@@ -344,11 +344,11 @@ void BrickProof::proveFinePart(const Corners& piece, const std::array<std::uint3
     result_.beyondLimit.push_back({far->onOther, far->point, t, true});
 }
 
-/// The triangles that share corners with those that stand for a fine triangle's corners.
+/// The triangles that share corners with those that a fine triangle's corners are assigned to.
 void BrickProof::collectAround(const std::array<std::uint32_t, 3>& fine) {
     around_.clear();
     for (const std::uint32_t corner : fine) {
-        for (const Number v : lookup_.triangle(standIn_[corner])) {
+        for (const Number v : lookup_.triangle(assigned_[corner])) {
             lookup_.walkable().forEachAt(v, [&](Number t) { around_.push_back(t); });
         }
     }
@@ -386,9 +386,9 @@ void BrickProof::collectWithin(double distanceMm, const Corners& piece) {
 template <class F>
 void BrickProof::forEachPieceHere(const Corners& piece, double area2, const F& f) const {
     const BoundingBox box = latticeBox(piece);
-    constexpr double kRoom = BrickMesher::kHalo / 2.0;
+    constexpr double kMargin = BrickMesher::kHalo / 2.0;
     for (int a = 0; a < 3; ++a) {
-        if (box.maximum[a] < -kRoom || box.minimum[a] > Brick::kSide + kRoom) return;
+        if (box.maximum[a] < -kMargin || box.minimum[a] > Brick::kSide + kMargin) return;
     }
     const Vec3 middle = (1.0 / 3) * (piece[0] + piece[1] + piece[2]);
     const std::int64_t brick = lookup_.brickFor(lookup_.latticeOf(middle));

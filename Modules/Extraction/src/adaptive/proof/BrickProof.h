@@ -64,8 +64,8 @@ private:
     using Walkable = WalkableSurface<Number>;
     static constexpr Number kNone = Walkable::kNone;
 
-    void findStandIns();
-    void findStandInsByPlace();
+    void findAssigned();
+    void findAssignedByPlace();
     void findUnmoved();
     bool isUnchanged(const std::array<std::uint32_t, 3>& fine);
     void findStarts(std::span<const Number> triangles);
@@ -119,7 +119,7 @@ private:
     std::vector<std::uint32_t> numberOf_;  ///< of each of the brick's own fine vertices, the sample
     /// Of each of the brick's own fine vertices; kNone where the block that it comes with is not
     /// meshed.
-    std::vector<Number> standIn_;
+    std::vector<Number> assigned_;
     /// For each of the brick's own fine vertices the vertex of the simplified surface in its place.
     std::vector<Number> unmoved_;
     std::vector<Number> unchanged_;       ///< triangles that are fine ones too, ascending

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kPiece = 1 << 14;
 
-/// The largest distance of a sample to the triangle that stands for it: no bound can be less.
+/// The largest distance of a sample to the triangle that it is assigned to: no bound can be less.
 double largestSampleDistance(const SimplifiedSurface& surface, const SurfaceLookup& lookup) {
     const auto count = static_cast<std::int64_t>(surface.samples.size());
     std::vector<double> largest((count + kPiece - 1) / kPiece, 0);

@@ -37,7 +37,7 @@ public:
             const bool isForward = 3 * t + i < fine_.twin(3 * t + i);
             const Map::Vertex &a = vertex_[i], &b = vertex_[(i + 1) % 3];
             sides[i] = {nullptr, isForward};
-            if (a.standIn == b.standIn) continue;
+            if (a.imageTriangle == b.imageTriangle) continue;
             way_[i] = isForward ? map_.wayAlong(a, b) : map_.wayAlong(b, a);
             sides[i].way = &way_[i];
         }
@@ -51,8 +51,8 @@ public:
         const std::uint32_t h = std::min(halfEdge, fine_.twin(halfEdge));
         const auto& v = parts_.triangles[h / 3];
         const Map::Vertex a = vertexAt(v[h % 3]), b = vertexAt(v[(h + 1) % 3]);
-        f(a.standIn);
-        if (a.standIn == b.standIn) return;
+        f(a.imageTriangle);
+        if (a.imageTriangle == b.imageTriangle) return;
         map_.clear();
         map_.forEachAlong(map_.wayAlong(a, b), f);
     }

@@ -239,7 +239,7 @@ PartBound proveSimplified(const Task& task, const Target<std::uint32_t>& to,
 
 constexpr std::uint32_t kNoStart = 0xFFFFFFFF;
 
-/// Triangles that stand for no point begin where one beside them does: on a surface with open
+/// Triangles that no point is assigned to begin where one beside them does: on a surface with open
 /// borders a walk from elsewhere may not arrive.
 void startBeside(const SimplifiedSurface& surface, std::vector<std::uint32_t>& starts) {
     std::vector<std::uint32_t> atVertex(surface.points.size(), kNoStart);
@@ -268,7 +268,7 @@ void startBeside(const SimplifiedSurface& surface, std::vector<std::uint32_t>& s
     for (const std::size_t t : left) starts[t] = 0;
 }
 
-/// For each triangle of the simplified surface one of the full surface that it stands for.
+/// For each triangle of the simplified surface one of the full surface with a point assigned to it.
 /// \param points  of the full surface, which are the first samples
 std::vector<std::uint32_t> startsOf(const SimplifiedSurface& surface,
                                     const WalkableSurface<std::uint32_t>& fine,

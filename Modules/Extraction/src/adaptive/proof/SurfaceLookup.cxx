@@ -21,8 +21,8 @@ std::pair<Index3, Index3> SurfaceLookup::placesNear(std::uint64_t t) const {
         boxOf({latticeOf(corners[0]), latticeOf(corners[1]), latticeOf(corners[2])});
     std::pair<Index3, Index3> places;
     for (int a = 0; a < 3; ++a) {
-        places.first[a] = floorOf((box.minimum[a] - kRoom) / Brick::kSide);
-        places.second[a] = floorOf((box.maximum[a] + kRoom) / Brick::kSide);
+        places.first[a] = floorOf((box.minimum[a] - kMargin) / Brick::kSide);
+        places.second[a] = floorOf((box.maximum[a] + kMargin) / Brick::kSide);
     }
     return places;
 }
@@ -98,7 +98,7 @@ std::int64_t SurfaceLookup::brickFor(const Vec3& lattice) const {
 bool SurfaceLookup::isNear(const Brick& brick, const Vec3& lattice) {
     for (int a = 0; a < 3; ++a) {
         const double p = lattice[a] - static_cast<double>(brick.low[a]);
-        if (p < -kRoom || p > Brick::kSide + kRoom) return false;
+        if (p < -kMargin || p > Brick::kSide + kMargin) return false;
     }
     return true;
 }

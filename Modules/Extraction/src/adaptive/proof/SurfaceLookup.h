@@ -54,7 +54,7 @@ public:
     }
     /// ofBrick() has all triangles within a distance of the brick.
     bool ofBrickHasAllWithin(double distanceMm) const {
-        return distanceMm <= kRoom * frame_.narrowestMm();
+        return distanceMm <= kMargin * frame_.narrowestMm();
     }
 
     /// Calls f(brick) for the bricks whose neighbourhood a triangle reaches into.
@@ -78,21 +78,21 @@ public:
     }
 
     /// The brick that answers for a point: the one that it lies in, or else the first one that has
-    /// it in its halo with room around; kNone where there is none.
+    /// it in its halo with a margin around; kNone where there is none.
     std::int64_t brickFor(const Vec3& lattice) const;
 
     /// A piece is not cut further: its box is no larger than a cell.
     bool isSmall(const Corners& piece) const;
 
-    /// All of a piece lies in the brick or in its halo with room around.
+    /// All of a piece lies in the brick or in its halo with a margin around.
     bool isWithinReach(std::int64_t brick, const Corners& piece) const;
 
 private:
-    static constexpr double kRoom = BrickMesher::kHalo / 2.0;
+    static constexpr double kMargin = BrickMesher::kHalo / 2.0;
 
     static bool isNear(const Brick& brick, const Vec3& lattice);
 
-    /// First and last of the bricks' places that a triangle reaches into, with room around.
+    /// First and last of the bricks' places that a triangle reaches into, with a margin around.
     std::pair<Index3, Index3> placesNear(std::uint64_t t) const;
 
     TriangleView view() const { return {surface_.points, surface_.triangles}; }

@@ -42,19 +42,19 @@ inline SegmentPair nearestOnSegments(const Vec3& p, const Vec3& q, const Vec3& r
 template <class Index>
 struct MappedVertex {
     Vec3 point, image;
-    Index standIn;   ///< the other surface's triangle that the image lies on
-    double squared;  ///< distance to the image
+    Index imageTriangle;  ///< the other surface's triangle that the image lies on
+    double squared;       ///< distance to the image
 };
 
 /// Maps a surface continuously to another one, triangle by triangle, so that no point goes farther
 /// than a distance. Then the first surface lies within that distance of the second, and so does
 /// each triangle of the second that the map covers: see MapCover.
 ///
-/// A vertex goes to the nearest point of its stand-in. An edge between vertices of different
-/// stand-ins is cut where it passes from one triangle to the next, and the cut goes to a point that
-/// both have in common. The triangle is cut so that the corners of each part go to one triangle of
-/// the other surface, and the part is mapped linearly: its points go no farther than its corners
-/// do, as |x - f(x)| is a convex function of x.
+/// A vertex goes to the nearest point of the triangle that it is assigned to. An edge between
+/// vertices of different ones is cut where it passes from one triangle to the next, and the cut
+/// goes to a point that both have in common. The triangle is cut so that the corners of each part
+/// go to one triangle of the other surface, and the part is mapped linearly: its points go no
+/// farther than its corners do, as |x - f(x)| is a convex function of x.
 template <class Index>
 class SurfaceMap {
 public:
@@ -86,10 +86,10 @@ public:
     /// Forgets all ways.
     void clear() { cuts_.clear(); }
 
-    Vertex vertexAt(const Vec3& point, Index standIn) const {
-        const Corners t = onto_->cornersOf(standIn);
+    Vertex vertexAt(const Vec3& point, Index imageTriangle) const {
+        const Corners t = onto_->cornersOf(imageTriangle);
         const Vec3 image = closestPointOnTriangle(point, t[0], t[1], t[2]);
-        return {point, image, standIn, squaredNorm(point - image)};
+        return {point, image, imageTriangle, squaredNorm(point - image)};
     }
 
     /// Cuts the edge from a to b.
@@ -120,7 +120,7 @@ public:
 
     /// A side of a triangle: the way along its edge, and whether it goes in the side's direction.
     struct Side {
-        const Way* way;  ///< null where both ends have the same stand-in
+        const Way* way;  ///< null where both ends go to the same triangle
         bool isForward;
     };
 
@@ -140,7 +140,7 @@ public:
         for (int i = first; i < first + 3; ++i) {
             if (sides[i % 3].way != nullptr) addCuts(*sides[i % 3].way, sides[i % 3].isForward);
             const Vertex& end = *corners[(i + 1) % 3];
-            loop_[count_++] = {end.image, end.standIn};
+            loop_[count_++] = {end.image, end.imageTriangle};
         }
         return takeApart(corners, squaredDistance);
     }
@@ -188,7 +188,7 @@ private:
     bool stepAlong(const Vertex& a, const Vertex& b, Way& way) {
         const double most = std::max({a.squared, b.squared, enough_});
         Index last = kNone;
-        for (Index t = a.standIn; t != b.standIn;) {
+        for (Index t = a.imageTriangle; t != b.imageTriangle;) {
             SegmentPair nearest;
             double least = std::numeric_limits<double>::max();
             Index next = kNone;
@@ -224,11 +224,11 @@ private:
     /// sum]. Where there is none its distance is infinite.
     void search(const Vertex& a, const Vertex& b, Way& way) {
         way.squared = std::numeric_limits<double>::infinity();
-        stops_[0] = {a.standIn, 0, 0, 0, {}};
+        stops_[0] = {a.imageTriangle, 0, 0, 0, {}};
         stopCount_ = 1;
         for (std::size_t at = 0; at < stopCount_; at = nextStop()) {
             stops_[at].isDone = true;
-            if (stops_[at].triangle == b.standIn) {
+            if (stops_[at].triangle == b.imageTriangle) {
                 takeCuts(at, way);
                 return;
             }

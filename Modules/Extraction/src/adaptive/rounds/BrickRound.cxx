@@ -47,7 +47,7 @@ struct BrickSurface {
         std::uint64_t edge;
         std::uint32_t vertex, triangle;  ///< and one of its triangles
         Vec3 normal;
-        std::uint8_t room;
+        std::uint8_t clearance;
     };
     std::vector<WallVertex> walls;
     std::int64_t fineTriangles = 0, tableTriangles = 0;
@@ -104,11 +104,11 @@ constexpr double kHairGap = 3 * kHair;
 
 /// What lies near a brick's vertices.
 struct Nearness {
-    std::vector<std::uint8_t> room;     ///< see SheetRoom
-    std::vector<std::uint8_t> isInWeb;  ///< see PatchLimits::webMm
+    std::vector<std::uint8_t> clearance;  ///< see SheetClearance
+    std::vector<std::uint8_t> isInWeb;    ///< see PatchLimits::webMm
 
     /// See Sample.
-    std::uint8_t tightness(std::uint32_t vertex) const {
+    std::uint8_t halvings(std::uint32_t vertex) const {
         return isInWeb[vertex] != 0 ? kHalvings[1] : 0;
     }
 };
@@ -118,11 +118,11 @@ Nearness nearnessOf(const FineSurface& fine, const std::vector<Vec3>& points,
                     const std::vector<Vec3>& areas, const MetricFrame& frame, double webMm) {
     Nearness near;
     near.isInWeb.resize(points.size());
-    near.room.reserve(points.size());
+    near.clearance.reserve(points.size());
     for (const FineVertex& v : fine.vertices) {
-        near.room.push_back(v.isSingleSheet ? SheetRoom::kAlone : 0);
+        near.clearance.push_back(v.isSingleSheet ? SheetClearance::kAlone : 0);
     }
-    SheetRoom::fillIn(points, areas, frame, near.room);
+    SheetClearance::fillIn(points, areas, frame, near.clearance);
     const std::array stepMm{norm(frame.fromIndex({1, 0, 0})), norm(frame.fromIndex({0, 1, 0})),
                             norm(frame.fromIndex({0, 0, 1}))};
     for (std::size_t v = 0; v < points.size(); ++v) {
@@ -130,7 +130,7 @@ Nearness nearnessOf(const FineSurface& fine, const std::vector<Vec3>& points,
         if (vertex.gap == FineVertex::kNoGap) continue;
         const double gapMm = vertex.gap * stepMm[vertex.edge.axis()];
         if (gapMm < kNarrowGap * frame.narrowestMm()) {
-            near.room[v] = std::min(near.room[v], SheetRoom::of(gapMm, frame));
+            near.clearance[v] = std::min(near.clearance[v], SheetClearance::of(gapMm, frame));
         }
         near.isInWeb[v] = static_cast<std::uint8_t>(gapMm < webMm && vertex.gap > kHairGap);
     }
@@ -155,9 +155,10 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, const N
         Sample& middle = patch.samples.emplace_back();
         middle.setPoint((1.0 / 3) * (p + q + r));
         middle.setNormal(areaVector2(p, q, r));
-        middle.room = std::min({near.room[v[0]], near.room[v[1]], near.room[v[2]]});
-        middle.tightness = (near.tightness(v[0]) | near.tightness(v[1]) | near.tightness(v[2])) &
-                           Sample::kMostHalvings;
+        middle.clearance =
+            std::min({near.clearance[v[0]], near.clearance[v[1]], near.clearance[v[2]]});
+        middle.halvings = (near.halvings(v[0]) | near.halvings(v[1]) | near.halvings(v[2])) &
+                          Sample::kMostHalvings;
         patch.sampleTriangle.push_back(t);
     }
 }
@@ -238,7 +239,7 @@ BrickSurface wholeBrick(const FineBrick& fine) {
         const FineVertex& vertex = fine.surface.vertices[v];
         if (!vertex.isOnWall) continue;
         brick.walls.push_back({vertex.edge.word, v, triangleAt[v], normalized(fine.areas[v]),
-                               vertex.isSingleSheet ? SheetRoom::kAlone : std::uint8_t{0}});
+                               vertex.isSingleSheet ? SheetClearance::kAlone : std::uint8_t{0}});
     }
     return brick;
 }
@@ -264,14 +265,15 @@ Patch patchOf(const FineBrick& made, const MetricFrame& frame, double webMm, Bri
     for (std::uint32_t v = 0; v < fine.vertices.size(); ++v) {
         const FineVertex& vertex = fine.vertices[v];
         if (vertex.isOnWall) {
-            brick.walls.push_back({vertex.edge.word, v, 0, normalized(areas[v]), near.room[v]});
+            brick.walls.push_back(
+                {vertex.edge.word, v, 0, normalized(areas[v]), near.clearance[v]});
             continue;
         }
         Sample& sample = patch.samples.emplace_back();
         sample.setPoint(patch.points[v]);
         sample.setNormal(areas[v]);
-        sample.room = near.room[v];
-        sample.tightness = near.tightness(v) & Sample::kMostHalvings;
+        sample.clearance = near.clearance[v];
+        sample.halvings = near.halvings(v) & Sample::kMostHalvings;
         patch.sampleTriangle.push_back(triangleAt[v]);
     }
     addMiddles(fine, areas, near, patch);
@@ -280,17 +282,17 @@ Patch patchOf(const FineBrick& made, const MetricFrame& frame, double webMm, Bri
 
 /// \param lowIndex  sample index of the brick's first lattice position
 BrickSurface simplifyBrick(const FineBrick& made, const Index3& lowIndex, const MetricFrame& frame,
-                           const TightPlaces& tight, const PatchLimits& limits,
+                           const LocalTolerances& tolerances, const PatchLimits& limits,
                            const BoundingBox* moving, std::vector<double>* costs) {
     BrickSurface result;
     std::vector<std::uint8_t> isFlat;
     Patch patch = patchOf(made, frame, limits.webMm, result, isFlat);
     patch.setBox(lowIndex, Brick::kSide);
-    tight.apply(frame, patch.samples);
+    tolerances.apply(frame, patch.samples);
     for (std::size_t v = 0; v < patch.points.size(); ++v) {
         const Vec3& index = made.surface.vertices[v].index;
         const bool isOutside = moving != nullptr && !moving->contains(index);
-        if (isOutside || tight.isFrozen(index)) patch.states[v] = Patch::State::Final;
+        if (isOutside || tolerances.isFrozen(index)) patch.states[v] = Patch::State::Final;
     }
     PatchSimplifier simplifier(patch, frame, limits);
     if (limits.maxCost > 0 && !isFlat.empty()) {
@@ -305,8 +307,8 @@ BrickSurface simplifyBrick(const FineBrick& made, const Index3& lowIndex, const 
 /// Vertices of the whole are numbered in the order in which bricks first have them.
 class Joiner {
 public:
-    Joiner(const Bricks& bricks, const MetricFrame& frame, const TightPlaces& tight)
-        : bricks_(bricks), frame_(frame), tight_(tight) {
+    Joiner(const Bricks& bricks, const MetricFrame& frame, const LocalTolerances& tolerances)
+        : bricks_(bricks), frame_(frame), tolerances_(tolerances) {
         for (std::int64_t b = 0; b < bricks.count(); ++b) blocks_ += bricks[b].blocks.size();
     }
 
@@ -350,7 +352,7 @@ private:
         std::uint64_t edge;
         Number vertex, triangle;
         Vec3 normal;  ///< sum of the bricks'
-        std::uint8_t room;
+        std::uint8_t clearance;
     };
 
     void requireRoomFor(const BrickSurface& brick) const {
@@ -378,9 +380,9 @@ private:
             const std::size_t least = list.size() + more;
             if (least <= list.capacity()) return;
             const double needed = static_cast<double>(least);
-            const double room = std::clamp(kRoomToGrow * needed / share, kLeastGrowth * needed,
-                                           kMostGrowth * needed);
-            reserveInHugePages(list, static_cast<std::size_t>(room));
+            const double space = std::clamp(kRoomToGrow * needed / share, kLeastGrowth * needed,
+                                            kMostGrowth * needed);
+            reserveInHugePages(list, static_cast<std::size_t>(space));
         };
         grow(whole_.points, brick.points.size());
         grow(whole_.states, brick.points.size());
@@ -425,20 +427,20 @@ private:
             const auto [at, isNew] = wallAt_.try_emplace(wall.edge, walls_.size());
             if (isNew) {
                 walls_.push_back({wall.edge, number_[wall.vertex], firstTriangle + wall.triangle,
-                                  Vec3{}, SheetRoom::kAlone});
+                                  Vec3{}, SheetClearance::kAlone});
             }
             WallVertex& whole = walls_[at->second];
             whole.normal += wall.normal;
-            whole.room = std::min(whole.room, wall.room);
+            whole.clearance = std::min(whole.clearance, wall.clearance);
         }
     }
 
     void addWallSample(const WallVertex& wall) {
         Sample sample;
-        sample.room = wall.room;
+        sample.clearance = wall.clearance;
         sample.setPoint(whole_.points[wall.vertex]);
         sample.setNormal(wall.normal);
-        tight_.apply(frame_, sample);
+        tolerances_.apply(frame_, sample);
         whole_.samples.push_back(sample);
         whole_.sampleTriangle.push_back(wall.triangle);
         whole_.wallEdges.push_back(wall.edge);
@@ -446,7 +448,7 @@ private:
 
     const Bricks& bricks_;
     const MetricFrame& frame_;
-    const TightPlaces& tight_;
+    const LocalTolerances& tolerances_;
     std::size_t blocks_ = 0, blocksJoined_ = 0;  ///< of all bricks; of those that were added
     std::vector<Number> number_;                 ///< in the whole, of a brick's vertices
     std::vector<WallVertex> walls_;
@@ -457,7 +459,7 @@ private:
 }  // namespace
 
 SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& bricks,
-                                 const MetricFrame& frame, const TightPlaces& tight,
+                                 const MetricFrame& frame, const LocalTolerances& tolerances,
                                  const PatchLimits& limits, CollapseCosts* costs,
                                  const BoundingBox* moving) {
     struct Tools {
@@ -484,14 +486,14 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
         for (std::int64_t& along : lowIndex) along -= bricks.grid().offset;
         BrickSurface brick = fine.isNoise
                                  ? wholeBrick(fine)
-                                 : simplifyBrick(fine, lowIndex, frame, tight, limits, moving,
+                                 : simplifyBrick(fine, lowIndex, frame, tolerances, limits, moving,
                                                  costs != nullptr ? &(*costs)[b] : nullptr);
         brick.fineTriangles = std::ssize(fine.surface.triangles);
         brick.tableTriangles =
             brick.fineTriangles - 2 * static_cast<std::int64_t>(fine.surface.ownMiddles);
         return brick;
     };
-    Joiner joiner(bricks, frame, tight);
+    Joiner joiner(bricks, frame, tolerances);
     std::int64_t next = 0;
     // bricks differ in what they take: some wait for the ones before them, so that none waits for
     // work

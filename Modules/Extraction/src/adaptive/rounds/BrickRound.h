@@ -4,7 +4,7 @@
 #include "adaptive/collapse/PatchSimplifier.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
-#include "adaptive/rounds/TightPlaces.h"
+#include "adaptive/rounds/LocalTolerances.h"
 
 namespace adaptiso::detail {
 
@@ -13,7 +13,7 @@ namespace adaptiso::detail {
 /// \param costs   gets those of each brick's collapses; may be null
 /// \param moving  continuous sample indices: what lies outside stays too; null: nothing does
 SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& bricks,
-                                 const MetricFrame& frame, const TightPlaces& tight,
+                                 const MetricFrame& frame, const LocalTolerances& tolerances,
                                  const PatchLimits& limits, CollapseCosts* costs,
                                  const BoundingBox* moving = nullptr);
 

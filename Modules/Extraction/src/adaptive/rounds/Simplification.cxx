@@ -67,9 +67,9 @@ bool landOn(std::int64_t wanted, const PatchTrial& trial, PatchWork& work) {
 
 }  // namespace
 
-Simplification::Simplification(const FullSurface& full, const TightPlaces& tight,
+Simplification::Simplification(const FullSurface& full, const LocalTolerances& tolerances,
                                const PatchLimits& limits)
-    : full_(full), frame_(full.frame()), tight_(tight), limits_(limits) {
+    : full_(full), frame_(full.frame()), tolerances_(tolerances), limits_(limits) {
     const double voxel = frame_.voxelMm();
     costUnit_ = voxel * voxel * voxel * voxel;
 }
@@ -109,12 +109,12 @@ void Simplification::roundUpTo(double cost, SimplifiedSurface& surface, bool fit
 }
 
 /// Rounds with changes that are small in every way.
-SimplifiedSurface Simplification::toHalfway() {
+SimplifiedSurface Simplification::toCheckpoint() {
     const double distanceMm = limits_.maxDistanceMm, voxel = frame_.voxelMm();
-    const double mostCost = kHalfwayCost * voxel * voxel * distanceMm * distanceMm;
-    limits_.maxDistanceMm *= kHalfwayDistance;
+    const double mostCost = kCheckpointCost * voxel * voxel * distanceMm * distanceMm;
+    limits_.maxDistanceMm *= kCheckpointDistance;
     limits_.maxCost = kFirstCost * costUnit_;
-    SimplifiedSurface surface = full_.firstRound(tight_, limits_, nullptr);
+    SimplifiedSurface surface = full_.firstRound(tolerances_, limits_, nullptr);
     surface.returnFreedMemory();
     for (const double cost : kBoundCosts) {
         if (cost * costUnit_ > mostCost) break;
@@ -128,10 +128,10 @@ SimplifiedSurface Simplification::toHalfway() {
     return surface;
 }
 
-SimplifiedSurface Simplification::toLimits(SurfaceState& halfway) {
-    SimplifiedSurface surface = toHalfway();
+SimplifiedSurface Simplification::toLimits(SurfaceState& checkpoint) {
+    SimplifiedSurface surface = toCheckpoint();
     if (surface.quadrics.empty()) return surface;  // all was left whole
-    halfway = surface.state();
+    checkpoint = surface.state();
     keepHeirs(surface);
     for (const double cost : kBoundCosts) {
         if (cost * costUnit_ > limits_.maxCost) roundUpTo(cost * costUnit_, surface);
@@ -208,12 +208,12 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
     limits_.triedCost = -1;
     rounds_ = fits_ = 0;
     isTied_ = false;
-    SimplifiedSurface surface = full_.firstRound(tight_, limits_, &costs);
+    SimplifiedSurface surface = full_.firstRound(tolerances_, limits_, &costs);
     collapsed_ = (surface.fineTriangles - surface.triangleCount()) / 2;
     const std::int64_t target = wanted.of(surface.fineTriangles);
     if (surface.triangleCount() < target) {
         limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
-        surface = full_.firstRound(tight_, limits_, nullptr);
+        surface = full_.firstRound(tolerances_, limits_, nullptr);
     }
     limits_.triedCost = limits_.maxCost;
     const auto isWithin = [&](double times) {  // of the target

@@ -29,12 +29,13 @@ struct WantedCount {
 /// surface get coarser together.
 class Simplification {
 public:
-    Simplification(const FullSurface& full, const TightPlaces& tight, const PatchLimits& limits);
+    Simplification(const FullSurface& full, const LocalTolerances& tolerances,
+                   const PatchLimits& limits);
 
     /// As few triangles as the limits allow.
-    /// \param halfway  gets the surface after its first rounds, whose changes are small in every
+    /// \param checkpoint  gets the surface after its first rounds, whose changes are small in every
     ///                 way: the heirs are of its vertices
-    SimplifiedSurface toLimits(SurfaceState& halfway);
+    SimplifiedSurface toLimits(SurfaceState& checkpoint);
 
     /// The wanted number of triangles, or as few as the limits allow.
     /// \param farthestMm  where they don't, the allowed distance of samples is doubled on the way
@@ -45,14 +46,14 @@ private:
     void fit(SimplifiedSurface& surface);
     PatchCut nextCut(const SimplifiedSurface& surface);
     void roundUpTo(double cost, SimplifiedSurface& surface, bool fits = false);
-    SimplifiedSurface toHalfway();
+    SimplifiedSurface toCheckpoint();
     SimplifiedSurface towards(const WantedCount& wanted, double farthestMm);
     void goFarther(SimplifiedSurface& surface);
     void roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost);
 
     const FullSurface& full_;
     const MetricFrame& frame_;
-    const TightPlaces& tight_;
+    const LocalTolerances& tolerances_;
     PatchLimits limits_;
     double costUnit_;
     int rounds_ = 0;

@@ -1,4 +1,4 @@
-#include "adaptive/bricks/SheetRoom.h"
+#include "adaptive/bricks/SheetClearance.h"
 
 #include <algorithm>
 #include <array>
@@ -93,14 +93,15 @@ private:
 
 }  // namespace
 
-void SheetRoom::fillIn(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
-                       const MetricFrame& frame, std::vector<std::uint8_t>& room) {
-    if (std::all_of(room.begin(), room.end(), [](std::uint8_t r) { return r == kAlone; })) return;
+void SheetClearance::fillIn(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
+                            const MetricFrame& frame, std::vector<std::uint8_t>& clearance) {
+    if (std::all_of(clearance.begin(), clearance.end(), [](std::uint8_t r) { return r == kAlone; }))
+        return;
     const Cubes cubes(points, normals, frame);
     const auto unit = static_cast<float>(frame.narrowestMm());
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (room[i] == kAlone) continue;
-        room[i] = of(std::sqrt(cubes.nearestOther(points[i], normals[i], unit * unit)), frame);
+        if (clearance[i] == kAlone) continue;
+        clearance[i] = of(std::sqrt(cubes.nearestOther(points[i], normals[i], unit * unit)), frame);
     }
 }
 

@@ -3,12 +3,12 @@
 #include <vector>
 
 #include "Surfaces.h"
-#include "adaptive/rounds/TightPlaces.h"
+#include "adaptive/rounds/LocalTolerances.h"
 
 namespace adaptiso::testing {
 namespace {
 
-using detail::TightPlaces;
+using detail::LocalTolerances;
 
 detail::Sample sampleAt(const Vec3& p) {
     detail::Sample sample;
@@ -18,59 +18,59 @@ detail::Sample sampleAt(const Vec3& p) {
 
 }  // namespace
 
-TEST(TightPlaces, GrowTighterWheneverTheyAreAdded) {
-    TightPlaces places;
+TEST(LocalTolerances, ShrinkWheneverPlacesAreAdded) {
+    LocalTolerances places;
     int last = 0;
     for (int times = 1; times <= 3; ++times) {
         places.add({{10, 10, 10}});
         std::vector<detail::Sample> samples{sampleAt({11, 10, 9}), sampleAt({20, 10, 10})};
         places.apply(unitFrame(), samples);
-        EXPECT_GT(samples[0].tightness, last);
-        EXPECT_EQ(samples[1].tightness, 0);
+        EXPECT_GT(samples[0].halvings, last);
+        EXPECT_EQ(samples[1].halvings, 0);
         EXPECT_TRUE(samples[0].isAlone());
-        last = samples[0].tightness;
+        last = samples[0].halvings;
     }
     places.add({{10, 10, 10}});  // and stay so
     detail::Sample sample = sampleAt({10, 10, 10});
     places.apply(unitFrame(), sample);
-    EXPECT_EQ(sample.tightness, last);
+    EXPECT_EQ(sample.halvings, last);
 }
 
-TEST(TightPlaces, LoosenNoSample) {
-    TightPlaces places;
+TEST(LocalTolerances, LoosenNoSample) {
+    LocalTolerances places;
     places.add({{10, 10, 10}});
     detail::Sample elsewhere = sampleAt({30, 30, 30}), there = sampleAt({10, 10, 10});
-    elsewhere.tightness = there.tightness = 9;  // in a web
+    elsewhere.halvings = there.halvings = 9;  // in a web
     places.apply(unitFrame(), elsewhere);
     places.apply(unitFrame(), there);
-    EXPECT_EQ(elsewhere.tightness, 9);
-    EXPECT_EQ(there.tightness, 9);
+    EXPECT_EQ(elsewhere.halvings, 9);
+    EXPECT_EQ(there.halvings, 9);
 }
 
-TEST(TightPlaces, AskForProofsWhereTrianglesCrossed) {
-    TightPlaces places;
+TEST(LocalTolerances, AskForProofsWhereTrianglesCrossed) {
+    LocalTolerances places;
     places.addCrossings({{10, 10, 10}});
     std::vector<detail::Sample> samples{sampleAt({11, 10, 9}), sampleAt({20, 10, 10})};
     places.apply(unitFrame(), samples);
-    EXPECT_EQ(samples[0].room, 0);
+    EXPECT_EQ(samples[0].clearance, 0);
     EXPECT_TRUE(samples[1].isAlone());
 }
 
 // Places are sample indices, samples lie in millimetres.
-TEST(TightPlaces, LieInTheLattice) {
+TEST(LocalTolerances, LieInTheLattice) {
     ImageGeometry geometry;
     geometry.indexToPhysical = Mat3::diagonal(0.5, 1, 4);
     const detail::MetricFrame frame(geometry);
-    TightPlaces places;
+    LocalTolerances places;
     places.add({{10, 10, 10}});
     std::vector<detail::Sample> samples{sampleAt({5, 10, 40}), sampleAt({10, 10, 10})};
     places.apply(frame, samples);
-    EXPECT_GT(samples[0].tightness, 0);
-    EXPECT_EQ(samples[1].tightness, 0);
+    EXPECT_GT(samples[0].halvings, 0);
+    EXPECT_EQ(samples[1].halvings, 0);
 }
 
-TEST(TightPlaces, FreezeWhatIsAroundThem) {
-    TightPlaces places;
+TEST(LocalTolerances, FreezeWhatIsAroundThem) {
+    LocalTolerances places;
     EXPECT_FALSE(places.isFrozen({10, 10, 10}));
     places.freeze({{10, 10, 10}}, 0);
     EXPECT_TRUE(places.isFrozen({10, 10, 11.5}));
@@ -80,12 +80,12 @@ TEST(TightPlaces, FreezeWhatIsAroundThem) {
     EXPECT_FALSE(places.isFrozen({10, 10, 40}));
 }
 
-TEST(TightPlaces, FreezeAtLeastTheirDistance) {
+TEST(LocalTolerances, FreezeAtLeastTheirDistance) {
     std::mt19937 random(8);
     for (int level = 0; level < 4; ++level) {
         const double around = 1.5 * (1 << level);
         const Vec3 place = randomPoint(random, 50);
-        TightPlaces places;
+        LocalTolerances places;
         places.freeze({place}, level);
         for (int n = 0; n < 200; ++n) {
             EXPECT_TRUE(places.isFrozen(place + randomPoint(random, around)));

@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "Surfaces.h"
-#include "adaptive/bricks/SheetRoom.h"
+#include "adaptive/bricks/SheetClearance.h"
 
 namespace adaptiso::testing {
 namespace {
 
-using detail::SheetRoom;
+using detail::SheetClearance;
 
 }  // namespace
 
-TEST(SheetRoom, IsTheDistanceToASheetThatFacesElsewhere) {
+TEST(SheetClearance, IsTheDistanceToASheetThatFacesElsewhere) {
     // two sheets 0.5 apart that face away from each other, and a third 0.9 over them
     std::vector<Vec3> points, normals;
     for (int i = 0; i < 300; ++i) {
@@ -23,28 +23,28 @@ TEST(SheetRoom, IsTheDistanceToASheetThatFacesElsewhere) {
         points.push_back({0.25 * (i / 3 % 10), 0.25 * (i / 30), layer == 2 ? 1.4 : 0.5 * layer});
         normals.push_back({0, 0, layer == 1 ? 3.0 : -3.0});
     }
-    std::vector<std::uint8_t> room(points.size(), 0);
-    room.front() = SheetRoom::kAlone;
-    SheetRoom::fillIn(points, normals, unitFrame(), room);
-    EXPECT_EQ(room.front(), SheetRoom::kAlone);
-    for (std::size_t i = 1; i < room.size(); ++i) {
-        EXPECT_NEAR(room[i], (i % 3 == 2 ? 0.9 : 0.5) * SheetRoom::kParts, 1) << i;
+    std::vector<std::uint8_t> clearance(points.size(), 0);
+    clearance.front() = SheetClearance::kAlone;
+    SheetClearance::fillIn(points, normals, unitFrame(), clearance);
+    EXPECT_EQ(clearance.front(), SheetClearance::kAlone);
+    for (std::size_t i = 1; i < clearance.size(); ++i) {
+        EXPECT_NEAR(clearance[i], (i % 3 == 2 ? 0.9 : 0.5) * SheetClearance::kParts, 1) << i;
     }
 }
 
-TEST(SheetRoom, IsNotLimitedByItsOwnSheet) {
+TEST(SheetClearance, IsNotLimitedByItsOwnSheet) {
     std::vector<Vec3> points, normals;
     for (int i = 0; i < 100; ++i) {
         points.push_back({0.1 * (i % 10), 0.1 * (i / 10), 0});
         normals.push_back({0, 0.5 * std::sin(0.1 * i), 1});  // bent by half a right angle at most
     }
-    std::vector<std::uint8_t> room(points.size(), 0);
-    SheetRoom::fillIn(points, normals, unitFrame(), room);
-    EXPECT_EQ(std::count(room.begin(), room.end(), SheetRoom::kAlone), 100);
+    std::vector<std::uint8_t> clearance(points.size(), 0);
+    SheetClearance::fillIn(points, normals, unitFrame(), clearance);
+    EXPECT_EQ(std::count(clearance.begin(), clearance.end(), SheetClearance::kAlone), 100);
 }
 
 // In a lattice whose planes are 0.5, 1 and 2 mm apart a sheet counts up to 0.5 mm.
-TEST(SheetRoom, IsTheNearestOfAllPoints) {
+TEST(SheetClearance, IsTheNearestOfAllPoints) {
     ImageGeometry geometry;
     geometry.indexToPhysical = Mat3::diagonal(1, 0.5, 2);
     const detail::MetricFrame frame(geometry);
@@ -54,8 +54,8 @@ TEST(SheetRoom, IsTheNearestOfAllPoints) {
         points.push_back(randomPoint(random, 2));
         normals.push_back({0, 0, i % 2 == 0 ? 1.0 : -1.0});
     }
-    std::vector<std::uint8_t> room(points.size(), 0);
-    SheetRoom::fillIn(points, normals, frame, room);
+    std::vector<std::uint8_t> clearance(points.size(), 0);
+    SheetClearance::fillIn(points, normals, frame, clearance);
     int alone = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         double least = 0.5;
@@ -63,10 +63,10 @@ TEST(SheetRoom, IsTheNearestOfAllPoints) {
             least = std::min(least, norm(points[i] - points[j]));
         }
         if (std::abs(least - 0.5) < 1e-6) {
-            EXPECT_EQ(room[i], SheetRoom::kAlone) << i;
+            EXPECT_EQ(clearance[i], SheetClearance::kAlone) << i;
             ++alone;
         } else {
-            EXPECT_NEAR(room[i], SheetRoom::kParts * least / 0.5, 1) << i;
+            EXPECT_NEAR(clearance[i], SheetClearance::kParts * least / 0.5, 1) << i;
         }
     }
     EXPECT_GT(alone, 20);

@@ -17,7 +17,7 @@ namespace adaptiso::detail {
 /// Where the allowed distance was not small enough to keep all points between the samples within
 /// the bound, its square is halved, and more and more often when a place is added again. Where
 /// triangles crossed, every star is proved. What neither mends stays at full resolution.
-class TightPlaces {
+class LocalTolerances {
 public:
     /// \param places  continuous sample indices
     void add(const std::vector<Vec3>& places);
@@ -30,16 +30,16 @@ public:
     /// \param index  continuous sample index
     bool isFrozen(const Vec3& index) const;
 
-    /// A sample never gets less tight.
+    /// A sample's tolerance never grows.
     void apply(const MetricFrame& frame, Sample& sample) const;
     void apply(const MetricFrame& frame, std::vector<Sample>& samples) const;
 
 private:
     static Index3 cubeAt(const Vec3& place, int level = 0);
     static std::set<Index3> cubesAround(const std::vector<Vec3>& places, int level = 0);
-    std::uint8_t tightnessAt(const Index3& cube) const;
+    std::uint8_t halvingsAt(const Index3& cube) const;
 
-    std::map<Index3, std::size_t> tightness_;  ///< of cubes of the lattice: how often added
+    std::map<Index3, std::size_t> added_;  ///< of cubes of the lattice: how often they were added
     std::set<Index3> crossings_;
     std::map<int, std::set<Index3>> frozen_;  ///< cubes of each level
 };
