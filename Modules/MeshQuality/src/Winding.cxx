@@ -60,13 +60,15 @@ private:
         return around;
     }
 
-    /// \param others  then without those that have a point in common with the piece
+    /// \param others  then without those that cross the piece
     void dropCrossed(std::int64_t piece, std::vector<VertexId>& others) const {
         for (const std::int64_t t : triangles_.of(topology_.components[piece].firstVertex)) {
+            if (others.empty()) return;
             tree_.forEachOverlap(tree_.triangleBox(t), [&](std::int64_t with) {
                 const auto other = std::find(others.begin(), others.end(), rootOf(with));
                 if (other == others.end()) return;
-                if (trianglesMeet(cornersOf(mesh_, t), cornersOf(mesh_, with))) others.erase(other);
+                if (trianglesCross(cornersOf(mesh_, t), cornersOf(mesh_, with)))
+                    others.erase(other);
             });
         }
     }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -162,6 +163,20 @@ TEST(Winding, CavitiesAreTheOtherWayRound) {
     EXPECT_EQ(insideOut(merged({ball, core})), Pieces{1});
     EXPECT_EQ(insideOut(merged({wall, other})), Pieces{0});
     EXPECT_THROW(insideOut(testing::withHole(ball)), InvalidInput);
+}
+
+TEST(Winding, ACavityMayTouchTheSurfaceAtAVertex) {
+    const TriangleMesh cube = cubeMesh({0, 0, 0}, {8, 8, 8});
+    TriangleMesh wall = icosphere(2, {3, 3, 3}, 2);
+    flipOrientation(wall);
+    const auto nearest = std::min_element(
+        wall.points.begin(), wall.points.end(),
+        [](const Vec3& a, const Vec3& b) { return squaredNorm(a) < squaredNorm(b); });
+    ASSERT_NE(nearest, wall.points.begin());
+    *nearest = {0, 0, 0};  // a corner of the cube
+    wall.normals.clear();
+    const TriangleMesh both = merged({cube, wall});
+    EXPECT_TRUE(findInsideOutPieces(both, checkTopology(both)).empty());
 }
 
 TEST(Winding, PiecesThatCrossLieInNoneOfEachOther) {

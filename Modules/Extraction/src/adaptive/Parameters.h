@@ -105,8 +105,8 @@ inline constexpr double kFewFinal = 0.05;
 /// Cells that a patch's new vertices may lie beyond its own triangles, where others of the patch's
 /// cube are settled: vertices of a round part lie outside what they replace, by less.
 inline constexpr double kBeyondOwn = 1;
-/// Side of the cubes that a place is made tighter in, voxels, and how often the square of the
-/// allowed distance is halved there, by how often the place has failed.
+/// Side of the cubes in which tolerances are lowered around a place, voxels, and how often the
+/// square of the allowed distance is halved there, by how often the place has failed.
 inline constexpr double kToleranceCube = 1.5;
 inline constexpr std::array<std::uint8_t, 4> kHalvings{0, 5, 14, 40};
 

@@ -49,7 +49,8 @@ double heightOver(const Sample& sample, const Vec3& p) {
     return std::abs(dot(sample.normal(), p - sample.point()));
 }
 
-/// A distance, larger where it must be small.
+/// A distance from a sample, in proportion to the sample's tolerance: to be compared with the
+/// allowed distance of samples without halvings.
 double scaled(double distanceMm, const Sample& sample) {
     return sample.halvings == 0 ? distanceMm : distanceMm * std::exp2(0.5 * sample.halvings);
 }

@@ -81,8 +81,8 @@ private:
     Patch& patch_;
     double sampleSpacingMm_;
     static constexpr int kClearances = SheetClearance::kAlone + 1;
-    std::array<double, kClearances>
-        squaredClearance_{};  ///< that may be used, by Sample::clearance
+    /// That may be used, mm2, by Sample::clearance.
+    std::array<double, kClearances> squaredClearance_{};
     std::vector<std::uint32_t> firstSample_, nextSample_;
     std::vector<std::uint8_t> triangleClearance_;  ///< where there are no samples, see Sample
 };

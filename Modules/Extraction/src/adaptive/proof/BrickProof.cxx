@@ -195,9 +195,9 @@ void BrickProof::findAssigned() {
     } else {
         numbers_.ofPart(brick_, fine_, numberOf_);
     }
-    const auto assigned = std::span(surface_.sampleTriangle);
-    const auto within = assigned.subspan(surface_.firstSample[brick_]),
-               onWalls = assigned.subspan(surface_.firstSample.back());
+    const auto triangles = std::span(surface_.sampleTriangle);
+    const auto within = triangles.subspan(surface_.firstSample[brick_]),
+               onWalls = triangles.subspan(surface_.firstSample.back());
     const auto& edges = surface_.wallEdges;
     assigned_.assign(fine_.ownVertices, kNone);
     for (std::size_t v = 0; v < fine_.ownVertices; ++v) {

@@ -117,8 +117,8 @@ private:
     std::vector<Vec3> points_;  ///< of the fine surface, metric frame
     Walkable walkable_;
     std::vector<std::uint32_t> numberOf_;  ///< of each of the brick's own fine vertices, the sample
-    /// Of each of the brick's own fine vertices; kNone where the block that it comes with is not
-    /// meshed.
+    /// Of each of the brick's own fine vertices the triangle that it is assigned to; kNone where
+    /// the block that it comes with is not meshed.
     std::vector<Number> assigned_;
     /// For each of the brick's own fine vertices the vertex of the simplified surface in its place.
     std::vector<Number> unmoved_;

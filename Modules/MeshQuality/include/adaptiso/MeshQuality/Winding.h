@@ -13,9 +13,10 @@ namespace adaptiso {
 ///
 /// A piece that lies in an even number of others bounds material from outside: its triangles are to
 /// be counter-clockwise seen from outside it. One that lies in an odd number is the wall of a
-/// cavity and is to be the other way round. A piece lies in another if one of its vertices does and
-/// the two have no point in common, exactly: of two that cross each other neither lies in the
-/// other. \param topology  checkTopology(mesh) \pre  topology.isWatertight(), finite coordinates,
+/// cavity and is to be the other way round. A piece lies in another if one of its
+/// vertices does and no two of their triangles cross (trianglesCross): of two that cross neither
+/// lies in the other.
+/// \param topology  checkTopology(mesh) \pre  topology.isWatertight(), finite coordinates,
 /// triangles name points that are there
 ///       \throws InvalidInput otherwise
 /// Cost: O(T log T) for several pieces, O(1) for one.
