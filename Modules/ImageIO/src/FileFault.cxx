@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/ForeignContent.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -62,10 +63,16 @@ void refuse(const fs::path& file, std::string_view fault, std::string_view remed
     throw FileError(fmt::format("{}: {}; {}", displayName(file), fault, remedy));
 }
 
+void refuseForeignContent(const fs::path& file) {
+    if (const auto foreign = findForeignContent(file))
+        refuse(file, foreign->fault, foreign->remedy);
+}
+
 std::uint64_t requireRegularFile(const fs::path& file) {
     std::error_code error;
     const fs::file_status status = fs::status(file, error);
     if (status.type() == fs::file_type::not_found) {
+        refuseForeignContent(file);  // a link of git-annex
         const bool isLink = fs::is_symlink(fs::symlink_status(file, error));
         refuse(file, isLink ? "the link points to no existing file" : "no such file",
                "check the path");

@@ -12,6 +12,7 @@
 #include "HeaderText.h"
 #include "Readers.h"
 #include "ZarrScene.h"
+#include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso {
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kHeadBytes = 548;  // NIfTI-1's magic ends at 348, NIfTI-2's header at 540
+constexpr std::size_t kHeadBytes = kForeignHeadBytes;  // NIfTI-1's magic ends at 348
 
 /// The first bytes, inflated where the file is gzip.
 std::string inflatedHead(const fs::path& file) {
@@ -74,6 +75,13 @@ void warnOfOddSamples(ReadVolume& read) {
     });
 }
 
+void refuseForeign(const fs::path& input, std::string_view inflated) {
+    detail::refuseForeignContent(input);
+    if (detail::looksLikeDicom(inflated)) return;
+    const auto foreign = foreignContentOf(inflated, input, true);
+    if (foreign) detail::refuse(input, foreign->fault, foreign->remedy);
+}
+
 ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
     std::error_code error;
     if (fs::is_directory(input, error)) {
@@ -83,11 +91,12 @@ ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
     detail::requireRegularFile(input);
 
     const std::string head = detail::readHead(input, kHeadBytes);
-    if (head.empty()) detail::refuse(input, "is an empty file", "get the file again");
     if (detail::looksLikeNrrd(head)) return detail::readNrrd(input, options);
     if (detail::looksLikeMetaImage(head)) return detail::readMetaImage(input, options);
     const std::string inflated = inflatedHead(input);
     if (detail::looksLikeNifti(inflated)) return detail::readNifti(input, options);
+
+    if (!detail::looksLikeDicom(head)) refuseForeign(input, inflated);
 
     // content that only its name explains, or a damaged file whose reader says best what is wrong
     const std::string ending = formatEnding(input);

@@ -16,7 +16,7 @@ ReadVolume readDicomFile(const std::filesystem::path& file, const ReadOptions& o
 ReadVolume readZarr(const std::filesystem::path& folder, const ReadOptions& options);
 ReadVolume readDicomFolder(const std::filesystem::path& folder, const ReadOptions& options);
 
-/// What the first bytes of a file (inflated, at most 548) say.
+/// What the first bytes of a file (inflated, 1024 or all of them) say.
 bool looksLikeNifti(std::string_view head);
 bool looksLikeNrrd(std::string_view head);
 bool looksLikeMetaImage(std::string_view head);

@@ -35,6 +35,32 @@ TEST(InputKinds, RefusesUnknownFormats) {
                   "not a format that is read here");
 }
 
+TEST(InputKinds, NamesContentThatStandsInThePlaceOfAnImage) {
+    const TempFolder folder;
+    const std::string pointer =
+        "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 1234\n";
+    for (const char* const name : {"x.nii.gz", "x.nii", "x.nrrd", "x.mha", "x.mgz", "x.dcm", "x"}) {
+        expectRefusal(writeFile(folder / name, pointer),
+                      "is a git-lfs pointer, its 1234 bytes of data are not here; fetch them: git "
+                      "lfs pull");
+        expectRefusal(writeFile(folder / name, "<!DOCTYPE html><html>"), "is a web page");
+        expectRefusal(writeFile(folder / name, "BZh91AY&SY"), "unpack it: bunzip2 -k x");
+        expectRefusal(writeFile(folder / name, std::string(2000, '\0')), "holds zeros alone");
+        expectRefusal(writeFile(folder / name, ""), "is an empty file");
+        expectRefusal(writeFile(folder / name, gzipped("PK\3\4 and more")),
+                      "is packed with gzip, and what is inside is a zip archive");
+    }
+    std::filesystem::create_symlink("../.git/annex/objects/a/MD5E-s12--c.nii", folder / "link.nii");
+    expectRefusal(folder / "link.nii", "git annex get link.nii");
+}
+
+TEST(InputKinds, TakesDicomWhosePreambleIsATiffHeaderForDicom) {
+    const TempFolder folder;
+    std::string bytes = DicomSlice().bytes();
+    bytes.replace(0, 4, std::string("II*\0", 4));
+    expectRefusal(writeFile(folder / "x.dcm", bytes), "is a single DICOM slice");
+}
+
 TEST(InputKinds, EscapesControlCharactersOfPaths) {
     const TempFolder folder;
     const std::string message = refusalOf(folder / "a\x1b[31m\nb.nii");
