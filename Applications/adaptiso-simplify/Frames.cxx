@@ -19,7 +19,7 @@ FrameChange changeFrame(const MeshFile& input, std::optional<CoordinateFrame> wa
     change.isSaid = input.frame || wanted;
     const CoordinateFrame from = input.frame.value_or(CoordinateFrame::Ras);
     change.frame = wanted.value_or(from);
-    const bool isTakenForRas = !input.frame && (wanted || output.holdsVolumeGeometry);
+    const bool isTakenForRas = !input.frame && (wanted || output.id == MeshFormatId::FreeSurfer);
     if (isTakenForRas) change.assumed = "does not say its coordinate frame; taken for RAS mm";
     if (change.frame == from) return change;
     for (const CoordinateFrame frame : {from, change.frame}) {

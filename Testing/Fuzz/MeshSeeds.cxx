@@ -46,6 +46,20 @@ void addOwnFiles(Seeds& seeds) {
     }
 }
 
+/// A surface that a matrix leads to scanner space.
+void addGiftiWithMatrix(Seeds& seeds) {
+    seeds.add("gii",
+              "<GIFTI><DataArray Intent=\"NIFTI_INTENT_POINTSET\" DataType=\"NIFTI_TYPE_FLOAT32\" "
+              "Dimensionality=\"2\" Dim0=\"3\" Dim1=\"3\" "
+              "Encoding=\"ASCII\"><CoordinateSystemTransformMatrix>"
+              "<DataSpace>NIFTI_XFORM_UNKNOWN</DataSpace><TransformedSpace>NIFTI_XFORM_SCANNER_ANAT"
+              "</TransformedSpace><MatrixData>0 2 0 1 1 0 0 2 0 0 1 3 0 0 0 1</MatrixData>"
+              "</CoordinateSystemTransformMatrix><Data>0 0 0 1 0 0 0 1 0</Data></DataArray>"
+              "<DataArray Intent=\"NIFTI_INTENT_TRIANGLE\" DataType=\"NIFTI_TYPE_INT32\" "
+              "Dimensionality=\"2\" Dim0=\"1\" Dim1=\"3\" Encoding=\"ASCII\"><Data>0 1 2</Data>"
+              "</DataArray></GIFTI>");
+}
+
 /// Meshes with values at their points, and such values in files of their own.
 void addValues(Seeds& seeds) {
     const InputFolder folder;
@@ -189,6 +203,7 @@ void addForeignTexts(Seeds& seeds) {
 
 void addMeshSeeds(Seeds& seeds) {
     addOwnFiles(seeds);
+    addGiftiWithMatrix(seeds);
     addValues(seeds);
     addSurfaceLists(seeds);
     addVtkFiles(seeds);

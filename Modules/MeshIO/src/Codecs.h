@@ -31,16 +31,36 @@ void encodeOpenMeeg(const MeshRecord& record, ByteSink& sink);
 MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options);
 MeshFile decodeVtkLegacy(std::string_view bytes, const MeshReadOptions& options);
 MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options);
-MeshFile decodeStl(std::string_view bytes);
+MeshFile decodeStl(std::string_view bytes, const MeshReadOptions& options);
 MeshFile decodeObj(std::string_view bytes, const MeshReadOptions& options);
 MeshFile decodeOff(std::string_view bytes, const MeshReadOptions& options);
-MeshFile decodeGifti(std::string_view bytes);
-MeshFile decodeFreeSurfer(std::string_view bytes);
+MeshFile decodeGifti(std::string_view bytes, const MeshReadOptions& options);
+MeshFile decodeFreeSurfer(std::string_view bytes, const MeshReadOptions& options);
 MeshFile decodeOpenMeeg(std::string_view bytes);
 
 /// Who wrote the file and, unless it is not to say so, in which frame, on one line:
 /// "adaptiso surface, CoordinateFrame: RAS mm".
 std::string headerLine(const MeshWriteOptions& options);
+/// The same with 3D Slicer's mark, in formats that Slicer reads: "..., SPACE=RAS".
+std::string slicerHeaderLine(const MeshWriteOptions& options);
+
+/// Collects what a file says of its frame. Marks that contradict each other are refused; none is
+/// looked at where options.inputCoordinates states the frame.
+class FrameMarks {
+public:
+    explicit FrameMarks(const MeshReadOptions& options)
+        : isStated_(options.inputCoordinates.has_value()), frame_(options.inputCoordinates) {}
+
+    void add(std::optional<CoordinateFrame> frame);
+    /// Our mark and 3D Slicer's in a header line or comment.
+    void addText(std::string_view text);
+    const std::optional<CoordinateFrame>& frame() const { return frame_; }
+    bool isStated() const { return isStated_; }
+
+private:
+    bool isStated_;
+    std::optional<CoordinateFrame> frame_;
+};
 
 /// A name from a file as messages and other files can have it: control characters are '?', and it
 /// is cut at 200 bytes.

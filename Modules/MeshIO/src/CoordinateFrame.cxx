@@ -46,4 +46,13 @@ std::optional<CoordinateFrame> parseCoordinateFrame(std::string_view name) {
     return std::nullopt;
 }
 
+std::string_view slicerName(CoordinateFrame frame) {
+    return frame == CoordinateFrame::Ras ? "RAS" : frame == CoordinateFrame::Lps ? "LPS" : "";
+}
+
+std::string slicerMarker(CoordinateFrame frame) {
+    const std::string_view name = slicerName(frame);
+    return name.empty() ? std::string() : "SPACE=" + std::string(name);
+}
+
 }  // namespace adaptiso

@@ -41,7 +41,7 @@ constexpr std::array<MeshFormat, 9> kFormats{{
     {MeshFormatId::Stl,        "STL (binary)",     kStl,        F32,   no,     yes,  yes,  no,      no,     no,     no,       kInt32},
     {MeshFormatId::Obj,        "Wavefront OBJ",    kObj,        Text,  yes,    yes,  yes,  no,      no,     yes,    yes,      kInt64},
     {MeshFormatId::Off,        "OFF",              kOff,        Text,  no,     yes,  yes,  no,      no,     yes,    yes,      kInt64},
-    {MeshFormatId::Gifti,      "GIFTI",            kGifti,      F32,   no,     yes,  yes,  no,      no,     no,     yes,      kInt32},
+    {MeshFormatId::Gifti,      "GIFTI",            kGifti,      F32,   no,     yes,  yes,  yes,     no,     no,     yes,      kInt32},
     {MeshFormatId::FreeSurfer, "FreeSurfer",       kFreeSurfer, F32,   no,     yes,  no,   yes,     no,     no,     yes,      kInt32},
     {MeshFormatId::OpenMeeg,   "OpenMEEG",         kOpenMeeg,   Text,  yes,    no,   yes,  no,      no,     no,     yes,      kInt32},
 }};

@@ -146,7 +146,7 @@ void encodeFreeSurfer(const MeshRecord& record, ByteSink& sink) {
                  isValid, isTkRas ? options.volumeName : std::string(), sink);
 }
 
-MeshFile decodeFreeSurfer(std::string_view bytes) {
+MeshFile decodeFreeSurfer(std::string_view bytes, const MeshReadOptions& options) {
     ByteSource source(bytes);
     const std::string_view magic = source.take(kTriangleMagic.size());
     if (magic == "\xFF\xFF\xFF" || magic == "\xFF\xFF\xFD") {
@@ -155,7 +155,8 @@ MeshFile decodeFreeSurfer(std::string_view bytes) {
     }
     if (magic != kTriangleMagic) damaged("it does not begin with FF FF FE");
     MeshFile file;
-    const std::optional<CoordinateFrame> said = findFrameMarker(source.line());
+    FrameMarks marks(options);
+    marks.addText(source.line());
     if (source.rest().starts_with('\n')) source.take(1);
     const std::int64_t points = source.number<std::int32_t>(std::endian::big);
     const std::int64_t triangles = source.number<std::int32_t>(std::endian::big);
@@ -170,7 +171,8 @@ MeshFile decodeFreeSurfer(std::string_view bytes) {
         for (VertexId& vertex : t) vertex = source.number<std::int32_t>(std::endian::big);
     }
     const Footer footer = decodeFooter(source);
-    file.frame = said ? *said : footer.usesRealRas ? CoordinateFrame::Ras : CoordinateFrame::TkRas;
+    file.frame =
+        marks.frame().value_or(footer.usesRealRas ? CoordinateFrame::Ras : CoordinateFrame::TkRas);
     if (file.frame == CoordinateFrame::TkRas) file.volume = footer.volume;
     return file;
 }

@@ -2,8 +2,14 @@
 // GZipBase64Binary. No third array for normals: Connectome Workbench takes surface files of
 // exactly two (SurfaceFile::validateDataArraysAfterReading).
 //
+// FreeSurfer's surfaces are in tkRAS unless DataSpace is the scanner's, and say the volume in
+// metadata VolGeom... of the points (utils/gifti.cpp: MRISwriteGIFTISurface, mrisReadGIFTIdanum).
+//
 // Debian's libgiftiio allocates what a header claims before it looks at the data, so it is not
 // for files from outside; expat and zlib, which it rests on too, are used directly.
+#include <array>
+#include <cmath>
+#include <map>
 #include <vector>
 
 #include "Codecs.h"
@@ -16,6 +22,49 @@ namespace {
 constexpr std::string_view kScannerSpace = "NIFTI_XFORM_SCANNER_ANAT";
 constexpr std::string_view kUnknownSpace = "NIFTI_XFORM_UNKNOWN";
 constexpr std::string_view kFrameKey = "CoordinateFrame";
+constexpr std::string_view kVolumeKey = "VolGeom";
+constexpr std::string_view kProgramKey = "ProgramProvenance";  ///< of Connectome Workbench
+
+constexpr AffineTransform kFlip{Mat3::diagonal(-1, -1, 1), {}};  ///< LPS <-> RAS
+
+AffineTransform toRas(CoordinateFrame frame, const std::optional<ImageGeometry>& volume) {
+    return kFlip * inverse(lpsToFrame(frame, volume));
+}
+
+/// Metadata of the points: the volume whose tkRAS they are in, with all that FreeSurfer asks for.
+void encodeVolume(const MeshWriteOptions& options, ByteSink& sink) {
+    if (!options.saysFrame || options.frame != CoordinateFrame::TkRas || !options.volume) {
+        sink << "<MetaData/>\n";
+        return;
+    }
+    const ImageGeometry& volume = *options.volume;
+    const auto begin = [&](std::string_view key) -> ByteSink& {
+        return sink << "<MD><Name><![CDATA[" << kVolumeKey << key << "]]></Name><Value><![CDATA[";
+    };
+    constexpr std::string_view kEnd = "]]></Value></MD>\n";
+    const auto encodeVec = [&](const std::string& key, const Vec3& lps) {
+        const Vec3 ras = kFlip(lps);
+        begin(key + "_R") << ras.x << kEnd;
+        begin(key + "_A") << ras.y << kEnd;
+        begin(key + "_S") << ras.z << kEnd;
+    };
+    sink << "<MetaData>\n";
+    begin("Fname") << (options.volumeName.empty() ? "unknown" : options.volumeName) << kEnd;
+    begin("Width") << volume.size[0] << kEnd;
+    begin("Height") << volume.size[1] << kEnd;
+    begin("Depth") << volume.size[2] << kEnd;
+    const Vec3 spacing = volume.spacingMm();
+    begin("Xsize") << spacing.x << kEnd;
+    begin("Ysize") << spacing.y << kEnd;
+    begin("Zsize") << spacing.z << kEnd;
+    const auto& axes = volume.indexToPhysical.column;
+    encodeVec("X", normalized(axes[0]));
+    encodeVec("Y", normalized(axes[1]));
+    encodeVec("Z", normalized(axes[2]));
+    const auto half = [&](int axis) { return static_cast<double>(volume.size[axis]) / 2; };
+    encodeVec("C", volume.toPhysical({half(0), half(1), half(2)}));
+    sink << "</MetaData>\n";
+}
 
 void encodeMatrixRow(const AffineTransform& transform, int row, ByteSink& sink) {
     for (const Vec3& column : transform.linear.column) sink << column[row] << " ";
@@ -29,18 +78,28 @@ void encodeCoordinateSystem(const MeshWriteOptions& options, ByteSink& sink) {
     const bool needsVolume =
         options.frame == CoordinateFrame::TkRas || options.frame == CoordinateFrame::Voxel;
     if (!options.saysFrame || (needsVolume && !options.volume)) return;
-    const AffineTransform toRas = isRas ? AffineTransform{}
-                                        : lpsToFrame(CoordinateFrame::Ras, std::nullopt) *
-                                              inverse(lpsToFrame(options.frame, options.volume));
+    const AffineTransform matrix = toRas(options.frame, options.volume);
     sink << "<CoordinateSystemTransformMatrix>\n<DataSpace><![CDATA["
          << (isRas ? kScannerSpace : kUnknownSpace)
          << "]]></DataSpace>\n<TransformedSpace><![CDATA[" << kScannerSpace
          << "]]></TransformedSpace>\n<MatrixData>\n";
-    for (int row = 0; row < 3; ++row) encodeMatrixRow(toRas, row, sink);
+    for (int row = 0; row < 3; ++row) encodeMatrixRow(matrix, row, sink);
     sink << "0 0 0 1\n</MatrixData>\n</CoordinateSystemTransformMatrix>\n";
 }
 
-/// Collects the POINTSET, the TRIANGLE array and what the file says of its frame.
+/// A CoordinateSystemTransformMatrix of the points.
+struct GiftiSpace {
+    std::string dataSpace, transformedSpace, matrix;
+};
+
+using Metadata = std::map<std::string, std::string, std::less<>>;
+
+bool isAskedFor(std::string_view key) {
+    return key == kFrameKey || key == kProgramKey || key.starts_with(kVolumeKey);
+}
+
+/// Collects the POINTSET, the TRIANGLE array and what the file says of its frame: metadata of the
+/// file and of its points.
 class GiftiHandler : public XmlHandler {
 public:
     void onStart(const std::string& element, const XmlAttributes& attributes) override {
@@ -50,6 +109,7 @@ public:
         text_ = nullptr;
         if (element == "DataArray") {
             array_ = nullptr;
+            isInArray_ = true;
             const std::string& intent = requireAttribute(attributes, "Intent");
             if (intent == "NIFTI_INTENT_POINTSET") array_ = &points;
             if (intent == "NIFTI_INTENT_TRIANGLE") array_ = &triangles;
@@ -64,30 +124,146 @@ public:
         } else if (element == "Name") {
             name_.clear();
             text_ = &name_;
-        } else if (element == "Value" && trimmed(name_) == kFrameKey) {
-            text_ = &frameName;
-        } else if (element == "DataSpace" && array_ == &points) {
-            text_ = &dataSpace;
+        } else if (element == "Value" && (!isInArray_ || array_ == &points)) {
+            const std::string key(trimmed(name_));
+            if (isAskedFor(key)) text_ = &(metadata[key] = {});
+        } else if (array_ == &points) {
+            startSpace(element);
         }
     }
     void onEnd(const std::string& element) override {
         --depth_;
         text_ = nullptr;
-        if (element == "DataArray") array_ = nullptr;
+        if (element == "DataArray") {
+            array_ = nullptr;
+            isInArray_ = false;
+        }
     }
     void onText(std::string_view text) override {
         if (text_ != nullptr) text_->append(text);
     }
 
     GiftiArray points, triangles;
-    std::string frameName, dataSpace;
+    Metadata metadata;
+    std::vector<GiftiSpace> spaces;
 
 private:
+    void startSpace(const std::string& element) {
+        if (element == "CoordinateSystemTransformMatrix") spaces.emplace_back();
+        if (spaces.empty()) return;
+        if (element == "DataSpace") text_ = &spaces.back().dataSpace;
+        if (element == "TransformedSpace") text_ = &spaces.back().transformedSpace;
+        if (element == "MatrixData") text_ = &spaces.back().matrix;
+    }
+
     int depth_ = 0;
+    bool isInArray_ = false;
     GiftiArray* array_ = nullptr;  ///< the wanted array around this place
     std::string* text_ = nullptr;  ///< where text at this place goes
     std::string name_;
 };
+
+/// The volume that VolGeom tells of; nothing where that is not all there. Where the volume lies
+/// depends on its axes and centre alone: without a size it is FreeSurfer's, 256 voxels of 1 mm, and
+/// without axes they are those of FreeSurfer's volumes, as niivue and fMRIPrep have it.
+std::optional<ImageGeometry> volumeOf(const Metadata& metadata) {
+    const auto number = [&](std::string_view key, double otherwise) {
+        const auto found = metadata.find(std::string(kVolumeKey).append(key));
+        return found == metadata.end() ? otherwise : toReal(trimmed(found->second), found->first);
+    };
+    const auto vector = [&](const std::string& key, const Vec3& otherwise) {
+        const Vec3 lps = kFlip(otherwise);
+        return kFlip(
+            {number(key + "_R", lps.x), number(key + "_A", lps.y), number(key + "_S", lps.z)});
+    };
+    const double missing = std::nan("");
+    ImageGeometry volume = conformedGeometry({{256, 256, 256}, {-128, -128, -128}, {}});
+    const Vec3 centre = vector("C", {missing, missing, missing});
+    const std::array<std::string_view, 3> extents{"Width", "Height", "Depth"},
+        steps{"Xsize", "Ysize", "Zsize"}, axes{"X", "Y", "Z"};
+    Vec3 half;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double extent = number(extents[a], 256), step = number(steps[a], 1);
+        constexpr double kMostVoxels = 1 << 20;  // along an axis
+        if (!(extent >= 1 && extent <= kMostVoxels)) return std::nullopt;
+        volume.size[a] = static_cast<std::int64_t>(extent);
+        half[static_cast<int>(a)] = static_cast<double>(volume.size[a]) / 2;
+        Vec3& axis = volume.indexToPhysical.column[a];
+        axis = step * vector(std::string(axes[a]), axis);
+    }
+    volume.originMm = centre - volume.indexToPhysical * half;
+    const bool isThere = volume.voxelVolumeMm3() > 0 && std::isfinite(volume.voxelVolumeMm3()) &&
+                         std::isfinite(squaredNorm(volume.originMm));
+    return isThere ? std::optional(volume) : std::nullopt;
+}
+
+AffineTransform matrixOf(const GiftiSpace& space) {
+    ByteSource numbers(space.matrix);
+    AffineTransform matrix;
+    for (int row = 0; row < 3; ++row) {
+        for (Vec3& column : matrix.linear.column) column[row] = numbers.realWord("its matrix");
+        matrix.offset[row] = numbers.realWord("its matrix");
+    }
+    const double size = determinant(matrix.linear);
+    if (!std::isfinite(size) || size == 0 || !std::isfinite(squaredNorm(matrix.offset))) {
+        damaged("its matrix to scanner space can't be inverted");
+    }
+    return matrix;
+}
+
+/// One of the spaces whose axes point right, anterior and superior: the scanner's, or an atlas's.
+bool isWorld(std::string_view space) {
+    return space.starts_with("NIFTI_XFORM_") && space != kUnknownSpace;
+}
+
+/// As FreeSurfer writes both: to a tenth of a millimetre in a head.
+bool areAlike(const AffineTransform& a, const AffineTransform& b) {
+    constexpr double kHeadMm = 200, kSlackMm = 0.1;
+    double apart = norm(a.offset - b.offset);
+    for (std::size_t i = 0; i < 3; ++i) {
+        apart = std::max(apart, kHeadMm * norm(a.linear.column[i] - b.linear.column[i]));
+    }
+    return apart <= kSlackMm;
+}
+
+/// Finds the frame of the points, and what leads from it to scanner space.
+void place(const GiftiHandler& found, const MeshReadOptions& options, MeshFile& file) {
+    const auto value = [&](std::string_view key) {
+        const auto entry = found.metadata.find(key);
+        return entry == found.metadata.end() ? std::string_view() : trimmed(entry->second);
+    };
+    FrameMarks marks(options);
+    marks.add(parseCoordinateFrame(value(kFrameKey)));
+    std::optional<AffineTransform> toScanner;
+    for (const GiftiSpace& space : found.spaces) {
+        if (isWorld(trimmed(space.dataSpace))) {
+            marks.add(CoordinateFrame::Ras);
+        } else if (trimmed(space.transformedSpace) == kScannerSpace && !marks.isStated()) {
+            toScanner = matrixOf(space);
+        }
+    }
+    file.frame = marks.frame();
+    const auto first = found.metadata.lower_bound(kVolumeKey);
+    const bool hasVolume = first != found.metadata.end() && first->first.starts_with(kVolumeKey);
+    if (file.frame == CoordinateFrame::TkRas && hasVolume) {
+        file.volume = volumeOf(found.metadata);
+    } else if (file.frame == CoordinateFrame::Voxel && toScanner) {
+        const AffineTransform toLps = kFlip * *toScanner;
+        file.volume = ImageGeometry{{}, toLps.offset, toLps.linear};
+    }
+    if (file.frame) return;
+    if (!hasVolume) {
+        if (!toScanner) return;
+        file.mesh = transformed(file.mesh, *toScanner);
+        file.frame = CoordinateFrame::Ras;
+        return;
+    }
+    if (value(kProgramKey).starts_with("Workbench")) return;
+    const std::optional<ImageGeometry> volume = volumeOf(found.metadata);
+    if (volume && toScanner && !areAlike(*toScanner, toRas(CoordinateFrame::TkRas, volume))) return;
+    file.frame = CoordinateFrame::TkRas;
+    file.volume = volume;
+}
 
 /// The numbers of an array that must be N x 3, row by row.
 template <class Stored, class T>
@@ -120,7 +296,7 @@ void encodeGifti(const MeshRecord& record, ByteSink& sink) {
     }
     beginGiftiArray("NIFTI_INTENT_POINTSET", "NIFTI_TYPE_FLOAT32", {std::ssize(mesh.points), 3},
                     sink);
-    sink << "<MetaData/>\n";
+    encodeVolume(record.options, sink);
     encodeCoordinateSystem(record.options, sink);
     endGiftiArray(bytes, sink);
 
@@ -136,7 +312,7 @@ void encodeGifti(const MeshRecord& record, ByteSink& sink) {
     sink << "</GIFTI>\n";
 }
 
-MeshFile decodeGifti(std::string_view bytes) {
+MeshFile decodeGifti(std::string_view bytes, const MeshReadOptions& options) {
     GiftiHandler found;
     parseXml(bytes, found);
     requireGiftiType(found.points, "NIFTI_TYPE_FLOAT32", "points");
@@ -151,8 +327,7 @@ MeshFile decodeGifti(std::string_view bytes) {
     for (std::size_t i = 0; i < corners.size(); i += 3) {
         file.mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
     }
-    file.frame = parseCoordinateFrame(trimmed(found.frameName));
-    if (!file.frame && trimmed(found.dataSpace) == kScannerSpace) file.frame = CoordinateFrame::Ras;
+    place(found, options, file);
     return file;
 }
 

@@ -23,10 +23,11 @@ struct Codec {
     Decoder decode;
 };
 
-/// Of a format that holds no arrays: there is nothing to choose.
-template <MeshFile (*decode)(std::string_view)>
-MeshFile decodePlain(std::string_view bytes, const MeshReadOptions&) {
-    return decode(bytes);
+/// Of a format that says no frame.
+MeshFile decodeOpenMeeg(std::string_view bytes, const MeshReadOptions& options) {
+    MeshFile file = meshio::decodeOpenMeeg(bytes);
+    file.frame = options.inputCoordinates;
+    return file;
 }
 
 Codec codecOf(MeshFormatId id) {
@@ -38,17 +39,17 @@ Codec codecOf(MeshFormatId id) {
         case MeshFormatId::Ply:
             return {meshio::encodePly, meshio::decodePly};
         case MeshFormatId::Stl:
-            return {meshio::encodeStl, decodePlain<meshio::decodeStl>};
+            return {meshio::encodeStl, meshio::decodeStl};
         case MeshFormatId::Obj:
             return {meshio::encodeObj, meshio::decodeObj};
         case MeshFormatId::Off:
             return {meshio::encodeOff, meshio::decodeOff};
         case MeshFormatId::Gifti:
-            return {meshio::encodeGifti, decodePlain<meshio::decodeGifti>};
+            return {meshio::encodeGifti, meshio::decodeGifti};
         case MeshFormatId::FreeSurfer:
-            return {meshio::encodeFreeSurfer, decodePlain<meshio::decodeFreeSurfer>};
+            return {meshio::encodeFreeSurfer, meshio::decodeFreeSurfer};
         case MeshFormatId::OpenMeeg:
-            return {meshio::encodeOpenMeeg, decodePlain<meshio::decodeOpenMeeg>};
+            return {meshio::encodeOpenMeeg, decodeOpenMeeg};
     }
     throw InternalError("codecOf: unknown mesh format");
 }
@@ -162,7 +163,7 @@ void requireWritable(const TriangleMesh& mesh, const MeshFormat& format,
         throw InvalidInput(file + ": " + std::string(format.name) +
                            " files hold mm, not voxel indices; write RAS, LPS or tkRAS");
     }
-    if (format.holdsVolumeGeometry) requireNeutralName(options.volumeName);
+    requireNeutralName(options.volumeName);
     requireArrays(options, mesh, format, file);
 }
 
@@ -192,6 +193,28 @@ namespace meshio {
 std::string headerLine(const MeshWriteOptions& options) {
     const std::string line = "adaptiso surface";
     return options.saysFrame ? line + ", " + frameMarker(options.frame) : line;
+}
+
+std::string slicerHeaderLine(const MeshWriteOptions& options) {
+    const std::string mark = options.saysFrame ? slicerMarker(options.frame) : std::string();
+    return headerLine(options) + (mark.empty() ? "" : ", " + mark);
+}
+
+void FrameMarks::add(std::optional<CoordinateFrame> frame) {
+    if (isStated_ || !frame) return;
+    if (frame_ && *frame_ != *frame) {
+        unsupported("it says two coordinate frames, " + std::string(toString(*frame_)) + " and " +
+                        std::string(toString(*frame)),
+                    "state the right one by --input-coordinates (input_coordinates in Python)");
+    }
+    frame_ = frame;
+}
+
+void FrameMarks::addText(std::string_view text) {
+    add(findFrameMarker(text));
+    for (const CoordinateFrame frame : {CoordinateFrame::Ras, CoordinateFrame::Lps}) {
+        if (text.find(slicerMarker(frame)) != std::string_view::npos) add(frame);
+    }
 }
 
 std::string storedName(std::string_view name) {

@@ -25,7 +25,8 @@ std::int64_t resolved(std::string_view word, std::size_t count, std::string_view
 
 class ObjDecoder {
 public:
-    explicit ObjDecoder(bool keepsColors) : colors_(keepsColors) {}
+    explicit ObjDecoder(const MeshReadOptions& options)
+        : colors_(options.keepsPointArrays), marks_(options) {}
 
     void decodeLine(std::string_view text) {
         ByteSource line(text);
@@ -37,14 +38,14 @@ public:
             normals_.push_back(storedNormal(readVec(line, "a normal")));
         } else if (kind == "f") {
             decodeFace(line);
-        } else if (kind.starts_with('#') && !frame_) {
-            frame_ = findFrameMarker(text);
+        } else if (kind.starts_with('#')) {
+            marks_.addText(text);
         }
     }
 
     MeshFile finish() && {
         finishNormals();
-        MeshFile file{std::move(mesh_), frame_, std::nullopt};
+        MeshFile file{std::move(mesh_), marks_.frame(), std::nullopt};
         file.pointArrays = colors_.take(file.mesh.points.size());
         return file;
     }
@@ -114,7 +115,7 @@ private:
 
     TriangleMesh mesh_;
     PointColors colors_;
-    std::optional<CoordinateFrame> frame_;
+    FrameMarks marks_;
     std::vector<Normal> normals_;         ///< as listed in the file
     std::vector<std::int64_t> normalOf_;  ///< of each vertex; kNone where no face gave one yet
     bool oneNormalEach_ = true;
@@ -124,7 +125,7 @@ private:
 
 void encodeObj(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
-    sink << "# " << headerLine(record.options) << "\n";
+    sink << "# " << slicerHeaderLine(record.options) << "\n";
     const std::vector<Color>* const colors = colorsOf(record.options);
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
         const Vec3& p = mesh.points[i];
@@ -149,7 +150,7 @@ void encodeObj(const MeshRecord& record, ByteSink& sink) {
 
 MeshFile decodeObj(std::string_view bytes, const MeshReadOptions& options) {
     ByteSource source(bytes);
-    ObjDecoder decoder(options.keepsPointArrays);
+    ObjDecoder decoder(options);
     while (!source.atEnd()) decoder.decodeLine(source.line());
     return std::move(decoder).finish();
 }

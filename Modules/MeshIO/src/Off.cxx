@@ -10,15 +10,14 @@ namespace {
 /// Lines without their comments, empty ones left out; keeps the frame that a comment names.
 class OffLines {
 public:
-    explicit OffLines(std::string_view bytes) : source_(bytes) {}
+    OffLines(std::string_view bytes, const MeshReadOptions& options)
+        : marks(options), source_(bytes) {}
 
     ByteSource next(std::string_view what) {
         while (!source_.atEnd()) {
             const std::string_view line = source_.line();
             const std::size_t comment = line.find('#');
-            if (comment != std::string_view::npos && !frame) {
-                frame = findFrameMarker(line.substr(comment));
-            }
+            if (comment != std::string_view::npos) marks.addText(line.substr(comment));
             const std::string_view content = trimmed(line.substr(0, comment));
             if (!content.empty()) return ByteSource(content);
         }
@@ -26,7 +25,7 @@ public:
     }
     std::size_t left() const { return source_.left(); }
 
-    std::optional<CoordinateFrame> frame;
+    FrameMarks marks;
 
 private:
     ByteSource source_;
@@ -55,7 +54,7 @@ void encodeOff(const MeshRecord& record, ByteSink& sink) {
 }
 
 MeshFile decodeOff(std::string_view bytes, const MeshReadOptions& options) {
-    OffLines lines(bytes);
+    OffLines lines(bytes, options);
     ByteSource line = lines.next("the word OFF");
     const std::string_view magic = line.word();
     if (magic != "OFF" && magic != "COFF") {
@@ -85,7 +84,7 @@ MeshFile decodeOff(std::string_view bytes, const MeshReadOptions& options) {
         if (corners != 3) refusePolygon(corners);
         for (VertexId& vertex : t) vertex = line.integerWord("a face's vertex");
     }
-    file.frame = lines.frame;
+    file.frame = lines.marks.frame();
     return file;
 }
 

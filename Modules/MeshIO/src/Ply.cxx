@@ -38,7 +38,7 @@ struct Element {
 struct Header {
     Encoding encoding{};
     std::vector<Element> elements;
-    std::optional<CoordinateFrame> frame;
+    FrameMarks marks;
 };
 
 Scalar parseScalar(std::string_view name) {
@@ -100,8 +100,8 @@ Property parseProperty(ByteSource& line) {
     return property;
 }
 
-Header parseHeader(ByteSource& source) {
-    Header header;
+Header parseHeader(ByteSource& source, const MeshReadOptions& options) {
+    Header header{{}, {}, FrameMarks(options)};
     if (source.line() != "ply") damaged("its first line is not 'ply'");
     bool hasFormat = false;
     while (!source.atEnd()) {
@@ -112,7 +112,7 @@ Header parseHeader(ByteSource& source) {
             header.encoding = parseEncoding(line.requireWord("the encoding"));
             hasFormat = true;
         } else if (kind == "comment") {
-            if (!header.frame) header.frame = findFrameMarker(text);
+            header.marks.addText(text);
         } else if (kind == "element") {
             Element element;
             element.name = line.requireWord("an element's name");
@@ -383,7 +383,7 @@ void encodeValue(const Column& column, std::size_t point, ByteSink& sink) {
 
 void encodeHeader(const MeshWriteOptions& options, std::int64_t points, bool hasNormals,
                   const std::vector<Column>& columns, std::int64_t triangles, ByteSink& sink) {
-    sink << "ply\nformat binary_little_endian 1.0\ncomment " << headerLine(options)
+    sink << "ply\nformat binary_little_endian 1.0\ncomment " << slicerHeaderLine(options)
          << "\nelement vertex " << points
          << "\nproperty double x\nproperty double y\nproperty double z\n";
     if (hasNormals) sink << "property float nx\nproperty float ny\nproperty float nz\n";
@@ -424,10 +424,10 @@ void encodePly(const MeshRecord& record, ByteSink& sink) {
 
 MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options) {
     ByteSource source(bytes);
-    const Header header = parseHeader(source);
+    const Header header = parseHeader(source, options);
     ValueReader values(source, header.encoding);
     MeshFile file;
-    file.frame = header.frame;
+    file.frame = header.marks.frame();
     for (const Element& element : header.elements) {
         if (element.count == 0) continue;
         requireElementRoom(element, values, source.left());

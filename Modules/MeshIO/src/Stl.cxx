@@ -73,9 +73,10 @@ void encodeVec(const Vec3& v, ByteSink& sink) {
     for (int axis = 0; axis < 3; ++axis) sink.littleEndian(static_cast<float>(v[axis]));
 }
 
-MeshFile decodeBinary(ByteSource source) {
+MeshFile decodeBinary(ByteSource source, FrameMarks marks) {
     MeshFile file;
-    file.frame = findFrameMarker(source.take(kHeaderBytes));
+    marks.addText(source.take(kHeaderBytes));
+    file.frame = marks.frame();
     const std::int64_t count = source.number<std::uint32_t>(std::endian::little);
     requireRoom("triangles", count, kTriangleBytes, source.left());
     std::vector<Corner> corners(3 * count);
@@ -92,7 +93,7 @@ MeshFile decodeBinary(ByteSource source) {
     return file;
 }
 
-MeshFile decodeText(ByteSource source) {
+MeshFile decodeText(ByteSource source, FrameMarks marks) {
     MeshFile file;
     std::vector<Corner> corners;
     std::size_t loop = 0;  // corners of the facet at this place
@@ -101,8 +102,7 @@ MeshFile decodeText(ByteSource source) {
          word = lowerCase(source.word())) {
         if (word == "solid" || word == "endsolid") {
             isOpen = word == "solid";
-            const std::string_view name = source.line();
-            if (!file.frame) file.frame = findFrameMarker(name);
+            marks.addText(source.line());
         } else if (word == "vertex") {
             if (loop++ == 3) refusePolygon(4);
             for (std::uint32_t& bits : corners.emplace_back()) {
@@ -115,6 +115,7 @@ MeshFile decodeText(ByteSource source) {
     }
     if (loop != 0) damaged("it ends inside a facet");
     if (isOpen) damaged("it ends without the word 'endsolid'");
+    file.frame = marks.frame();
     file.mesh = welded(corners);
     return file;
 }
@@ -135,7 +136,7 @@ bool looksBinary(std::string_view bytes) {
 
 void encodeStl(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
-    std::string header = headerLine(record.options);
+    std::string header = slicerHeaderLine(record.options);
     header.resize(kHeaderBytes, ' ');
     sink << header;
     sink.littleEndian(static_cast<std::uint32_t>(mesh.triangles.size()));
@@ -148,8 +149,10 @@ void encodeStl(const MeshRecord& record, ByteSink& sink) {
     }
 }
 
-MeshFile decodeStl(std::string_view bytes) {
-    return looksBinary(bytes) ? decodeBinary(ByteSource(bytes)) : decodeText(ByteSource(bytes));
+MeshFile decodeStl(std::string_view bytes, const MeshReadOptions& options) {
+    const FrameMarks marks(options);
+    return looksBinary(bytes) ? decodeBinary(ByteSource(bytes), marks)
+                              : decodeText(ByteSource(bytes), marks);
 }
 
 }  // namespace adaptiso::meshio

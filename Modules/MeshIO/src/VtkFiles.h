@@ -15,6 +15,7 @@
 namespace adaptiso::meshio {
 
 inline constexpr std::string_view kFrameFieldName = "CoordinateFrame";
+inline constexpr std::string_view kSlicerFieldName = "SPACE";
 inline constexpr std::string_view kNormalsName = "Normals";
 
 /// Names and texts of field data: the frame, unless the file is not to say it, and the version of
@@ -25,6 +26,15 @@ inline std::vector<std::pair<std::string_view, std::string_view>> fieldsOf(
     if (options.saysFrame) fields.emplace_back(kFrameFieldName, toString(options.frame));
     fields.emplace_back("AdaptisoSurfaceVersion", "1");
     return fields;
+}
+
+/// Adds what a string array of field data says of the frame.
+inline void addField(std::string_view name, std::string_view text, FrameMarks& marks) {
+    if (name == kFrameFieldName) marks.add(parseCoordinateFrame(text));
+    if (name != kSlicerFieldName) return;
+    for (const CoordinateFrame frame : {CoordinateFrame::Ras, CoordinateFrame::Lps}) {
+        if (text == slicerName(frame)) marks.add(frame);
+    }
 }
 
 /// The names of arrays in a file that holds each name once, and the normals under theirs.

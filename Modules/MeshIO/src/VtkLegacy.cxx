@@ -60,13 +60,18 @@ std::int64_t bytesOf(Stored type) {
 /// Walks through the sections of a file; keeps the surface and passes over the rest.
 class LegacyDecoder {
 public:
-    LegacyDecoder(std::string_view bytes, bool keepsArrays)
-        : source_(bytes), keepsArrays_(keepsArrays) {}
+    LegacyDecoder(std::string_view bytes, const MeshReadOptions& options)
+        : source_(bytes),
+          keepsArrays_(options.keepsPointArrays),
+          marks_(options),
+          fieldMarks_(options) {}
 
     MeshFile decode() {
         decodeHead();
         while (decodeSection()) {
         }
+        // 3D Slicer names the frame in the header, and takes fields of the file it read along
+        file_.frame = marks_.frame() ? marks_.frame() : fieldMarks_.frame();
         return std::move(file_);
     }
 
@@ -76,7 +81,7 @@ private:
         const std::string_view first = source_.line();
         if (!first.starts_with(kMagic)) damaged("it does not begin with '# vtk DataFile Version'");
         hasOffsets_ = toReal(trimmed(first.substr(kMagic.size())), "the version") >= 5;
-        file_.frame = findFrameMarker(source_.line());
+        marks_.addText(source_.line());
         const std::string encoding = lowerCase(trimmed(source_.line()));
         if (encoding != "ascii" && encoding != "binary") {
             damaged("its third line is " + printable(encoding) + ", must be ASCII or BINARY");
@@ -279,31 +284,37 @@ private:
             const std::int64_t tuples = array.integerWord("tuples");
             const std::string_view type = array.requireWord("a type");
             if (lowerCase(type) == "string") {
-                skipStrings(tuples, components);
+                const std::string text = takeStrings(tuples, components);
+                if (!marks_.frame()) addField(name, text, fieldMarks_);
             } else {
                 decodeArray(name, tuples, components, parseType(type));
             }
         }
     }
 
-    /// Strings are a line each in text; in binary files, the two highest bits of the first byte
-    /// tell how many bytes hold the length: 3: 1, 2: 2, 1: 4, 0: 8 (vtkDataWriter).
-    void skipStrings(std::int64_t tuples, std::int64_t components) {
+    /// Passes over strings: a line each in text, coded as arrayName(); in binary files, the two
+    /// highest bits of the first byte tell how many bytes hold the length: 3: 1, 2: 2, 1: 4, 0: 8
+    /// (vtkDataWriter). \return the first
+    std::string takeStrings(std::int64_t tuples, std::int64_t components) {
+        std::string first;
         requireRoom("components", components, 1, source_.left());
-        if (components == 0) return;
+        if (components == 0) return first;
         requireRoom("strings", tuples, components, source_.left());
         for (std::int64_t i = 0; i < tuples * components; ++i) {
             if (!isBinary_) {
-                source_.line();
+                const std::string_view line = source_.line();
+                if (i == 0) first = arrayName(trimmed(line));
                 continue;
             }
-            const auto first = source_.number<std::uint8_t>(std::endian::big);
-            std::uint64_t length = first & 0x3F;
-            for (int more = (1 << (3 - first / 64)) - 1; more > 0; --more) {
+            const auto head = source_.number<std::uint8_t>(std::endian::big);
+            std::uint64_t length = head & 0x3F;
+            for (int more = (1 << (3 - head / 64)) - 1; more > 0; --more) {
                 length = length << 8 | source_.number<std::uint8_t>(std::endian::big);
             }
-            source_.take(length);
+            const std::string_view text = source_.take(length);
+            if (i == 0) first = storedName(text);
         }
+        return first;
     }
 
     void skipMetadata() {
@@ -384,6 +395,7 @@ private:
     ByteSource source_;
     MeshFile file_;
     bool keepsArrays_;
+    FrameMarks marks_, fieldMarks_;  ///< of the header, and of field data
     bool isBinary_ = false;
     bool hasOffsets_ = false;   ///< cells as offsets and connectivity (version 5)
     bool isPointData_ = false;  ///< the attributes at this place are of points
@@ -486,7 +498,7 @@ void encodeVtkLegacy(const MeshRecord& record, ByteSink& sink) {
     const bool fits32Bits =
         mesh.triangles.size() <= kMost32BitTriangles && mesh.points.size() <= kMost32BitTriangles;
     sink << "# vtk DataFile Version " << (fits32Bits ? "4.2" : "5.1") << "\n"
-         << headerLine(record.options) << "\nBINARY\nDATASET POLYDATA\n";
+         << slicerHeaderLine(record.options) << "\nBINARY\nDATASET POLYDATA\n";
     encodeFields(record.options, sink);
     sink << "POINTS " << std::ssize(mesh.points) << " double\n";
     encodeNumbers(mesh.points, sink);
@@ -495,7 +507,7 @@ void encodeVtkLegacy(const MeshRecord& record, ByteSink& sink) {
 }
 
 MeshFile decodeVtkLegacy(std::string_view bytes, const MeshReadOptions& options) {
-    return LegacyDecoder(bytes, options.keepsPointArrays).decode();
+    return LegacyDecoder(bytes, options).decode();
 }
 
 }  // namespace adaptiso::meshio

@@ -47,7 +47,7 @@ public:
     bool isDone() const override { return !appended.empty(); }
 
     XmlAttributes file, piece, appended;
-    DataArray points, normals, connectivity, offsets, frame;
+    DataArray points, normals, connectivity, offsets, frame, slicerSpace;
     std::deque<DataArray> values;  ///< at points, where they are kept
 
 private:
@@ -80,7 +80,10 @@ private:
                    attributeOr(attributes, "type", "String") != "String") {
             array_ = &values.emplace_back();
         }
-        if (parent == "FieldData" && name == kFrameFieldName) array_ = &frame;
+        if (parent == "FieldData" && attributeOr(attributes, "type", "") == "String") {
+            if (name == kFrameFieldName) array_ = &frame;
+            if (name == kSlicerFieldName) array_ = &slicerSpace;
+        }
         if (array_ == nullptr) return;
         *array_ = {attributes, {}};
         arrayDepth_ = path_.size() + 1;
@@ -372,6 +375,8 @@ public:
             "byte_order=\"LittleEndian\" header_type=\"UInt64\" "
             "compressor=\"vtkZLibDataCompressor\">\n<PolyData>\n<FieldData>\n";
         for (const auto& [name, text] : fieldsOf(record.options)) addText(name, text);
+        const std::string_view space = slicerName(record.options.frame);
+        if (record.options.saysFrame && !space.empty()) addText(kSlicerFieldName, space);
         elements_ += "</FieldData>\n<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) +
                      "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
                      "NumberOfPolys=\"" +
@@ -492,9 +497,12 @@ MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options) {
         }
     }
     decodeTriangles(handler, reader, file.mesh);
-    if (!handler.frame.attributes.empty()) {
-        file.frame = parseCoordinateFrame(reader.firstString(handler.frame));
+    FrameMarks marks(options);
+    for (const DataArray* const field : {&handler.frame, &handler.slicerSpace}) {
+        if (field->attributes.empty()) continue;
+        addField(requireAttribute(field->attributes, "Name"), reader.firstString(*field), marks);
     }
+    file.frame = marks.frame();
     return file;
 }
 

@@ -20,12 +20,12 @@ const MeshWriteOptions kLps{CoordinateFrame::Lps, std::nullopt, ""};
 TEST(ObjFile, IsThisText) {
     TriangleMesh mesh = tetrahedron();
     EXPECT_EQ(written(mesh, "a.obj", kLps),
-              "# adaptiso surface, CoordinateFrame: LPS mm\n"
+              "# adaptiso surface, CoordinateFrame: LPS mm, SPACE=LPS\n"
               "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n"
               "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
     mesh.normals.assign(4, {0, 0, 1});
     EXPECT_EQ(written(mesh, "n.obj", kLps),
-              "# adaptiso surface, CoordinateFrame: LPS mm\n"
+              "# adaptiso surface, CoordinateFrame: LPS mm, SPACE=LPS\n"
               "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n"
               "vn 0 0 1\nvn 0 0 1\nvn 0 0 1\nvn 0 0 1\n"
               "f 1//1 3//3 2//2\nf 1//1 2//2 4//4\nf 1//1 4//4 3//3\nf 2//2 3//3 4//4\n");
@@ -57,7 +57,7 @@ TEST(StlFile, HasHeaderCountAndFiftyBytesATriangle) {
     const std::string bytes = written(tetrahedron(), "a.stl", kLps);
     ASSERT_EQ(bytes.size(), 84u + 50u * 4u);
     EXPECT_FALSE(bytes.starts_with("solid"));
-    EXPECT_TRUE(bytes.starts_with("adaptiso surface, CoordinateFrame: LPS mm "));
+    EXPECT_TRUE(bytes.starts_with("adaptiso surface, CoordinateFrame: LPS mm, SPACE=LPS "));
     EXPECT_EQ(bytes.substr(80, 4), std::string("\x04\0\0\0", 4));
     // triangle 0: points 0, 2, 1 in the plane z = 0, seen from below
     const float expected[12] = {0, 0, -1, 0, 0, 0, 0, 2, 0, 1, 0, 0};
@@ -71,7 +71,7 @@ TEST(PlyFile, HasDoublesFloatNormalsAndInt32Triangles) {
     TriangleMesh mesh = tetrahedron();
     const std::string header =
         "ply\nformat binary_little_endian 1.0\n"
-        "comment adaptiso surface, CoordinateFrame: LPS mm\n"
+        "comment adaptiso surface, CoordinateFrame: LPS mm, SPACE=LPS\n"
         "element vertex 4\nproperty double x\nproperty double y\nproperty double z\n";
     const std::string faces =
         "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
@@ -152,7 +152,46 @@ TEST(VtkFiles, SayFrameAndVersion) {
     const std::string legacy = written(icosphere(1), "a.vtk", {});
     EXPECT_TRUE(
         legacy.starts_with("# vtk DataFile Version 4.2\n"
-                           "adaptiso surface, CoordinateFrame: RAS mm\nBINARY\n"));
+                           "adaptiso surface, CoordinateFrame: RAS mm, SPACE=RAS\nBINARY\n"));
+}
+
+TEST(GiftiFile, TkRasSaysItsVolumeAsFreeSurferDoes) {
+    const std::string text =
+        written(tetrahedron(), "t.gii", {CoordinateFrame::TkRas, straightVolume(), "T1.mgz"});
+    const std::pair<const char*, const char*> expected[] = {
+        {"Fname", "T1.mgz"}, {"Width", "10"}, {"Height", "20"}, {"Depth", "30"}, {"Xsize", "1"},
+        {"Ysize", "2"},      {"Zsize", "3"},  {"X_R", "-1"},    {"X_A", "0"},    {"X_S", "0"},
+        {"Y_R", "0"},        {"Y_A", "-1"},   {"Y_S", "0"},     {"Z_R", "0"},    {"Z_A", "0"},
+        {"Z_S", "1"},        {"C_R", "0"},    {"C_A", "0"},     {"C_S", "0"}};
+    for (const auto& [key, value] : expected) {
+        const std::string entry = std::string("<MD><Name><![CDATA[VolGeom") + key +
+                                  "]]></Name><Value><![CDATA[" + value + "]]></Value></MD>";
+        EXPECT_NE(text.find(entry), std::string::npos) << entry;
+    }
+    for (const CoordinateFrame frame : {CoordinateFrame::Ras, CoordinateFrame::Voxel}) {
+        const std::string other = written(tetrahedron(), "r.gii", {frame, straightVolume(), ""});
+        EXPECT_EQ(other.find("VolGeom"), std::string::npos) << toString(frame);
+    }
+}
+
+/// 3D Slicer takes a surface without its mark for LPS, and one with it for what it says.
+TEST(SlicerMark, IsThereForRasAndLpsAlone) {
+    for (const std::string name : {"a.stl", "a.ply", "a.obj", "a.vtk", "a.vtp"}) {
+        for (const CoordinateFrame frame : {CoordinateFrame::Ras, CoordinateFrame::Lps,
+                                            CoordinateFrame::TkRas, CoordinateFrame::Voxel}) {
+            MeshWriteOptions options{frame, straightVolume(), ""};
+            const std::string mark =
+                name == "a.vtp" ? "Name=\"SPACE\"" : "SPACE=" + std::string(slicerName(frame));
+            const bool isKnown = !slicerName(frame).empty();
+            const std::string bytes = written(tetrahedron(), name, options);
+            EXPECT_EQ(bytes.find(mark) != std::string::npos, isKnown) << name << toString(frame);
+            EXPECT_EQ(bytes.find("SPACE") != std::string::npos, isKnown) << name << toString(frame);
+            options.saysFrame = false;
+            EXPECT_EQ(written(tetrahedron(), name, options).find("SPACE"), std::string::npos);
+        }
+    }
+    EXPECT_EQ(slicerMarker(CoordinateFrame::Ras), "SPACE=RAS");
+    EXPECT_EQ(slicerMarker(CoordinateFrame::Lps), "SPACE=LPS");
 }
 
 TEST(VtkFiles, HoldValuesAtPoints) {

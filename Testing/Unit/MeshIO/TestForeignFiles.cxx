@@ -16,6 +16,7 @@
 
 #include "MeshIOTestSupport.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/VtkAdaptor/VtkAdaptor.h"
 
 namespace adaptiso {
@@ -222,6 +223,184 @@ TEST(GiftiFile, TextArraysAndColumnOrderAreRead) {
     EXPECT_EQ(file.frame, CoordinateFrame::Ras);
 }
 
+/// A triangle in GIFTI: what is said of its points before their data.
+std::string giftiWith(const std::string& metadata, const std::string& ofPoints) {
+    const auto array = [](const std::string& head, const std::string& inside) {
+        return "<DataArray " + head +
+               " ArrayIndexingOrder=\"RowMajorOrder\" Dimensionality=\"2\" Dim1=\"3\" "
+               "Encoding=\"ASCII\">" +
+               inside + "</Data></DataArray>";
+    };
+    return "<?xml version=\"1.0\"?><GIFTI Version=\"1.0\" NumberOfDataArrays=\"2\"><MetaData>" +
+           metadata + "</MetaData>" +
+           array("Intent=\"NIFTI_INTENT_POINTSET\" DataType=\"NIFTI_TYPE_FLOAT32\" Dim0=\"3\"",
+                 ofPoints + "<Data>1 0 0 0 2 0 0 0 3") +
+           array("Intent=\"NIFTI_INTENT_TRIANGLE\" DataType=\"NIFTI_TYPE_INT32\" Dim0=\"1\"",
+                 "<Data>0 1 2") +
+           "</GIFTI>";
+}
+
+std::string entry(const std::string& name, const std::string& value) {
+    return "<MD><Name><![CDATA[" + name + "]]></Name><Value><![CDATA[" + value + "]]></Value></MD>";
+}
+
+std::string space(const std::string& data, const std::string& transformed,
+                  const std::string& matrix = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1") {
+    return "<CoordinateSystemTransformMatrix><DataSpace><![CDATA[NIFTI_XFORM_" + data +
+           "]]></DataSpace><TransformedSpace><![CDATA[NIFTI_XFORM_" + transformed +
+           "]]></TransformedSpace><MatrixData>" + matrix +
+           "</MatrixData></CoordinateSystemTransformMatrix>";
+}
+
+/// c_ras (5, -12, 7.5) of a volume stored as FreeSurfer stores volumes.
+const std::string kCentre =
+    entry("VolGeomC_R", "5") + entry("VolGeomC_A", "-12") + entry("VolGeomC_S", "7.5");
+const std::string kAxes =
+    entry("VolGeomX_R", "-1") + entry("VolGeomX_A", "0") + entry("VolGeomX_S", "0") +
+    entry("VolGeomY_R", "0") + entry("VolGeomY_A", "0") + entry("VolGeomY_S", "-1") +
+    entry("VolGeomZ_R", "0") + entry("VolGeomZ_A", "1") + entry("VolGeomZ_S", "0");
+
+std::string metadataOf(const std::string& entries) {
+    return "<MetaData>" + entries + "</MetaData>";
+}
+
+/// The points in scanner RAS.
+std::vector<Vec3> rasPoints(const MeshFile& file) {
+    return toFrame(fromFrame(file.mesh, *file.frame, file.volume), CoordinateFrame::Ras).points;
+}
+
+void expectNear(const std::vector<Vec3>& found, const std::vector<Vec3>& expected) {
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_LE(norm(found[i] - expected[i]), 1e-9) << i;  // sums at 100 mm
+    }
+}
+
+TEST(GiftiFile, FreeSurfersPointsAreInTkRasOfVolGeom) {
+    const std::vector<Vec3> expected{{6, -12, 7.5}, {5, -10, 7.5}, {5, -12, 10.5}};
+    const std::string toScanner = "1 0 0 5 0 1 0 -12 0 0 1 7.5 0 0 0 1";
+    for (const std::string& said :
+         {metadataOf(kAxes + kCentre) +
+              space("UNKNOWN", "TALAIRACH", "2 0 0 9 0 1 0 0 0 0 1 0 0 0 0 1"),
+          metadataOf(kCentre),
+          metadataOf(kAxes + kCentre) + space("UNKNOWN", "SCANNER_ANAT", toScanner)}) {
+        const MeshFile file = decoded(giftiWith("", said), "lh.pial.gii");
+        EXPECT_EQ(file.frame, CoordinateFrame::TkRas);
+        ASSERT_TRUE(file.volume);
+        expectNear(rasPoints(file), expected);
+    }
+    EXPECT_EQ(rasPoints(decoded(giftiWith(kAxes + kCentre, ""), "a.gii")).size(), 3u);
+}
+
+TEST(GiftiFile, VolGeomsAxesTurnThePoints) {
+    // axes along R, A, S: tkRAS (x, y, z) is -x along R, -z along A, y along S
+    const std::string axes =
+        entry("VolGeomX_R", "1") + entry("VolGeomX_A", "0") + entry("VolGeomX_S", "0") +
+        entry("VolGeomY_R", "0") + entry("VolGeomY_A", "1") + entry("VolGeomY_S", "0") +
+        entry("VolGeomZ_R", "0") + entry("VolGeomZ_A", "0") + entry("VolGeomZ_S", "1") +
+        entry("VolGeomWidth", "100") + entry("VolGeomXsize", "0.7");
+    const MeshFile file = decoded(giftiWith("", metadataOf(axes + kCentre)), "a.gii");
+    ASSERT_TRUE(file.volume);
+    expectNear(rasPoints(file), {{4, -12, 7.5}, {5, -12, 9.5}, {5, -15, 7.5}});
+}
+
+TEST(GiftiFile, ScannerSpaceOutdoesVolGeom) {
+    const MeshFile file = decoded(
+        giftiWith("", metadataOf(kAxes + kCentre) + space("SCANNER_ANAT", "UNKNOWN")), "a.gii");
+    EXPECT_EQ(file.frame, CoordinateFrame::Ras);
+    EXPECT_EQ(file.mesh.points[0], (Vec3{1, 0, 0}));
+}
+
+TEST(GiftiFile, PointsOfNiftisSpacesAreInRas) {
+    for (const char* data : {"SCANNER_ANAT", "ALIGNED_ANAT", "TALAIRACH", "MNI_152"}) {
+        EXPECT_EQ(decoded(giftiWith("", space(data, data)), "a.gii").frame, CoordinateFrame::Ras);
+    }
+    EXPECT_EQ(decoded(giftiWith("", space("UNKNOWN", "UNKNOWN")), "a.gii").frame, std::nullopt);
+    EXPECT_EQ(decoded(giftiWith("", space("UNKNOWN", "TALAIRACH")), "a.gii").frame, std::nullopt);
+    EXPECT_EQ(decoded(giftiWith("", ""), "a.gii").frame, std::nullopt);
+}
+
+TEST(GiftiFile, MatrixToScannerSpaceIsApplied) {
+    const std::string matrix = "0 2 0 10\n1 0 0 20\n0 0 1 30\n0 0 0 1";  // mirrors, and stretches
+    const MeshFile file = decoded(giftiWith("", space("UNKNOWN", "SCANNER_ANAT", matrix)), "a.gii");
+    EXPECT_EQ(file.frame, CoordinateFrame::Ras);
+    EXPECT_EQ(file.mesh.points, (std::vector<Vec3>{{10, 21, 30}, {14, 20, 30}, {10, 20, 33}}));
+    EXPECT_EQ(file.mesh.triangles, (std::vector<Triangle>{{0, 2, 1}}));
+    const std::string flat = "0 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
+    EXPECT_THROW(decoded(giftiWith("", space("UNKNOWN", "SCANNER_ANAT", flat)), "a.gii"),
+                 FileError);
+}
+
+TEST(GiftiFile, FrameIsUnknownWhereVolGeomMayNotHold) {
+    const std::string volume = metadataOf(kAxes + kCentre);
+    // Connectome Workbench moves points and keeps metadata
+    const std::string workbench = entry("ProgramProvenance", "Workbench\nVersion: 1.5.0");
+    EXPECT_EQ(decoded(giftiWith(workbench, volume), "a.gii").frame, std::nullopt);
+    const std::string elsewhere = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
+    EXPECT_EQ(
+        decoded(giftiWith("", volume + space("UNKNOWN", "SCANNER_ANAT", elsewhere)), "a.gii").frame,
+        std::nullopt);
+    const MeshFile noCentre = decoded(giftiWith("", metadataOf(kAxes)), "a.gii");
+    EXPECT_EQ(noCentre.frame, CoordinateFrame::TkRas);
+    EXPECT_FALSE(noCentre.volume);
+}
+
+/// `bytes` with `mark` in place of ours, as long as it.
+std::string withMark(std::string bytes, std::string mark) {
+    const std::string own = "CoordinateFrame: RAS mm, SPACE=RAS";
+    mark.resize(own.size(), ' ');
+    return bytes.replace(bytes.find(own), own.size(), mark);
+}
+
+TEST(SlicerMark, IsReadWithAndWithoutOurs) {
+    for (const std::string name : {"a.stl", "a.ply", "a.obj", "a.vtk"}) {
+        const std::string bytes = written(tetrahedron(), name);
+        EXPECT_EQ(decoded(bytes, name).frame, CoordinateFrame::Ras) << name;
+        EXPECT_EQ(decoded(withMark(bytes, "3D Slicer output. SPACE=LPS"), name).frame,
+                  CoordinateFrame::Lps)
+            << name;
+        EXPECT_EQ(decoded(withMark(bytes, "SPACE=RAS"), name).frame, CoordinateFrame::Ras) << name;
+        EXPECT_EQ(decoded(withMark(bytes, "CoordinateFrame: LPS mm"), name).frame,
+                  CoordinateFrame::Lps)
+            << name;
+    }
+    EXPECT_EQ(decoded("solid 3D Slicer output. SPACE=LPS\nfacet normal 0 0 1\nouter loop\n"
+                      "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n",
+                      "a.stl")
+                  .frame,
+              CoordinateFrame::Lps);
+}
+
+TEST(SlicerMark, ThatContradictsOursIsRefusedUnlessTheFrameIsStated) {
+    for (const std::string name : {"a.stl", "a.ply", "a.obj", "a.vtk"}) {
+        for (const char* mark : {"CoordinateFrame: RAS mm, SPACE=LPS", "SPACE=RAS SPACE=LPS",
+                                 "CoordinateFrame: tkRAS mmSPACE=RAS"}) {
+            const std::string bytes = withMark(written(tetrahedron(), name), mark);
+            const std::string message = messageOf<FileError>([&] { decoded(bytes, name); });
+            EXPECT_NE(message.find("two coordinate frames"), std::string::npos) << message;
+            EXPECT_NE(message.find("--input-coordinates"), std::string::npos) << message;
+            const MeshReadOptions stated{.inputCoordinates = CoordinateFrame::Voxel};
+            EXPECT_EQ(decodeMesh(bytes, findMeshFormat(name), name, stated).frame,
+                      CoordinateFrame::Voxel);
+        }
+    }
+}
+
+TEST(EveryFormat, TakesTheFrameThatIsStated) {
+    for (const MeshFormat& format : meshFormats()) {
+        const std::string name = testing::exampleName(format);
+        for (const CoordinateFrame frame : {CoordinateFrame::Ras, CoordinateFrame::Lps}) {
+            const std::string bytes = written(tetrahedron(), name, {frame, std::nullopt, ""});
+            for (const CoordinateFrame stated :
+                 {CoordinateFrame::Ras, CoordinateFrame::Lps, CoordinateFrame::TkRas}) {
+                const MeshFile file = decodeMesh(bytes, format, name, {.inputCoordinates = stated});
+                EXPECT_EQ(file.frame, stated) << name;
+                EXPECT_EQ(file.mesh.points, decoded(bytes, name).mesh.points) << name;
+            }
+        }
+    }
+}
+
 TEST(GiftiFile, ExternalFilesAreNeverOpened) {
     std::string bytes = written(tetrahedron(), "a.gii");
     const std::string packed = "GZipBase64Binary";
@@ -291,6 +470,61 @@ TEST(VtkLegacyFile, EveryVariantThatVtkWritesIsRead) {
             }
             EXPECT_EQ(file.frame, std::nullopt);
         }
+    }
+}
+
+/// A surface with field data as VTK's programs have them.
+vtkSmartPointer<vtkPolyData> withFields(
+    const std::vector<std::pair<const char*, const char*>>& fields) {
+    auto data = toVtkPolyData(tetrahedron());
+    for (const auto& [name, text] : fields) {
+        vtkNew<vtkStringArray> array;
+        array->SetName(name);
+        array->InsertNextValue(text);
+        data->GetFieldData()->AddArray(array);
+    }
+    return data;
+}
+
+TEST(VtkXmlFile, FrameIsThatOfItsFields) {
+    for (const int mode : {vtkXMLWriter::Ascii, vtkXMLWriter::Appended}) {
+        const auto bytes = [&](const std::vector<std::pair<const char*, const char*>>& fields) {
+            vtkNew<vtkXMLPolyDataWriter> writer;
+            writer->SetInputData(withFields(fields));
+            writer->SetDataMode(mode);
+            writer->WriteToOutputStringOn();
+            writer->Write();
+            return writer->GetOutputString();
+        };
+        const auto frameOf = [&](const auto& fields) {
+            return decoded(bytes(fields), "a.vtp").frame;
+        };
+        using Fields = std::vector<std::pair<const char*, const char*>>;
+        EXPECT_EQ(frameOf(Fields{{"SPACE", "LPS"}}), CoordinateFrame::Lps);
+        EXPECT_EQ(frameOf(Fields{{"SPACE", "RAS"}}), CoordinateFrame::Ras);
+        EXPECT_EQ(frameOf(Fields{{"SPACE", "outer"}}), std::nullopt);
+        EXPECT_EQ(frameOf(Fields{{"SPACE", "LPS"}, {"CoordinateFrame", "LPS mm"}}),
+                  CoordinateFrame::Lps);
+        EXPECT_THROW(frameOf(Fields{{"SPACE", "LPS"}, {"CoordinateFrame", "RAS mm"}}), FileError);
+    }
+}
+
+TEST(VtkLegacyFile, FrameIsThatOfItsHeaderElseOfItsFields) {
+    for (const bool isBinary : {false, true}) {
+        const auto frameOf = [&](const char* header, const char* field, const char* name) {
+            vtkNew<vtkPolyDataWriter> writer;
+            writer->SetInputData(withFields({{field, name}}));
+            writer->SetHeader(header);
+            isBinary ? writer->SetFileTypeToBinary() : writer->SetFileTypeToASCII();
+            writer->WriteToOutputStringOn();
+            writer->Write();
+            return decoded(writer->GetOutputStdString(), "a.vtk").frame;
+        };
+        EXPECT_EQ(frameOf("vtk output", "CoordinateFrame", "LPS mm"), CoordinateFrame::Lps);
+        EXPECT_EQ(frameOf("vtk output", "SPACE", "RAS"), CoordinateFrame::Ras);
+        // 3D Slicer keeps the fields of a file that it has turned to LPS
+        EXPECT_EQ(frameOf("3D Slicer output. SPACE=LPS", "CoordinateFrame", "RAS mm"),
+                  CoordinateFrame::Lps);
     }
 }
 

@@ -137,6 +137,7 @@ TEST(VtkXmlFile, IsToVtkWhatWasWritten) {
         ASSERT_EQ(reader->GetErrorCode(), 0u);
         vtkPolyData* const found = reader->GetOutput();
         const auto expected = asVtk(mesh, options);
+        if (options.saysFrame) addText(expected->GetFieldData(), "SPACE", "RAS");
         EXPECT_EQ(found->GetPoints()->GetDataType(), VTK_DOUBLE);
         EXPECT_EQ(fromVtkPolyData(found), fromVtkPolyData(expected));
         EXPECT_EQ(found->GetNumberOfCells(), std::ssize(mesh.triangles));
@@ -161,7 +162,7 @@ TEST(VtkLegacyFile, HasTheVeryBytesThatVtkWrites) {
         options.cellArrays.clear();
         const auto writer = vtkSmartPointer<vtkPolyDataWriter>::New();
         writer->SetInputData(asVtk(mesh, options));
-        const std::string frame = ", CoordinateFrame: RAS mm";
+        const std::string frame = ", CoordinateFrame: RAS mm, SPACE=RAS";
         writer->SetHeader(("adaptiso surface" + (options.saysFrame ? frame : "")).c_str());
         writer->SetFileTypeToBinary();
         writer->SetFileVersion(vtkDataWriter::VTK_LEGACY_READER_VERSION_4_2);

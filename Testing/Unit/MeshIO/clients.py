@@ -39,6 +39,18 @@ def signed_volume(points, triangles):
     return np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
 
 
+def slicer_mark(reader):
+    """The text in which 3D Slicer looks for its mark (vtkMRMLModelStorageNode::ReadDataInternal)."""
+    if isinstance(reader, vtkXMLPolyDataReader):
+        return "SPACE=" + reader.GetOutput().GetFieldData().GetAbstractArray("SPACE").GetValue(0)
+    if isinstance(reader, vtkOBJReader):
+        return reader.GetComment()
+    if isinstance(reader, vtkPLYReader):
+        comments = reader.GetComments()
+        return "\n".join(comments.GetValue(i) for i in range(comments.GetNumberOfValues()))
+    return reader.GetHeader()
+
+
 class ClientTest(unittest.TestCase):
     folder = None
 
@@ -115,6 +127,7 @@ class ClientTest(unittest.TestCase):
                 reader.Update()
                 self.assertEqual(reader.GetErrorCode(), 0)
                 data = reader.GetOutput()
+                self.assertIn("SPACE=RAS", slicer_mark(reader))
                 points = vtk_to_numpy(data.GetPoints().GetData()).astype(float)
                 triangles = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
                 self.assert_sphere(points, triangles)

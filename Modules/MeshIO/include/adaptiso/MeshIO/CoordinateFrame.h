@@ -27,4 +27,12 @@ std::optional<CoordinateFrame> findFrameMarker(std::string_view text);
 /// The frame of this name (as toString() gives it), if it is one.
 std::optional<CoordinateFrame> parseCoordinateFrame(std::string_view name);
 
+/// 3D Slicer's name of a frame, "RAS" or "LPS": the value of the field data array SPACE in its VTK
+/// XML files. Empty for the other frames, which Slicer does not know.
+std::string_view slicerName(CoordinateFrame frame);
+
+/// 3D Slicer's mark in header lines and comments, "SPACE=RAS" or "SPACE=LPS"; empty for the other
+/// frames. Slicer takes surfaces without a mark for LPS.
+std::string slicerMarker(CoordinateFrame frame);
+
 }  // namespace adaptiso

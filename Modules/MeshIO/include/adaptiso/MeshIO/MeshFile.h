@@ -92,14 +92,19 @@ struct MeshReadOptions {
     /// not finite, are then left out.
     bool keepsFaults = false;
     bool keepsPointArrays = false;  ///< else they are passed over
+    /// The frame of the points, whatever the file says of it; empty: as the file says.
+    std::optional<CoordinateFrame> inputCoordinates{};
 };
 
-/// What a file holds, as stored: nothing is moved to another frame.
+/// What a file holds, as stored: nothing is moved to another frame, but by GIFTI's matrix to
+/// scanner space where the frame that it leads from has no name.
 struct MeshFile {
     /// At least 1 triangle; indices in range and all finite unless options.keepsFaults.
     TriangleMesh mesh;
     std::optional<CoordinateFrame> frame;  ///< if the file says so
-    std::optional<ImageGeometry> volume;   ///< from a FreeSurfer surface's footer (frame TkRas)
+    /// Of frame TkRas: from a FreeSurfer surface's footer, or FreeSurfer's VolGeom in GIFTI. Of
+    /// frame Voxel: by GIFTI's matrix to scanner space (without a size).
+    std::optional<ImageGeometry> volume;
     /// One value a point each; names hold no control characters. PLY's red, green and blue are one
     /// array of colours, "RGB", and so are those of OBJ and OFF. Arrays of text are passed over.
     std::vector<PointArray> pointArrays{};
@@ -112,6 +117,11 @@ struct MeshFile {
 /// more than three corners and triangle strips are refused, not cut up. STL corners with equal
 /// coordinates become one vertex, numbered by first use. OBJ normals are kept if no vertex has
 /// two. GIFTI and FreeSurfer files hold no normals.
+///
+/// A frame is read from our own marks and from 3D Slicer's; a file whose marks contradict each
+/// other is refused unless options.inputCoordinates states its frame. GIFTI: points are in RAS
+/// where DataSpace is one of NIfTI's spaces; else in tkRAS where there is FreeSurfer's VolGeom, but
+/// for files that Connectome Workbench has changed, which may keep a VolGeom that no longer holds.
 ///
 /// \throws InvalidInput  unknown extension
 /// \throws FileError     "<file>: what is wrong; what to do"
