@@ -302,9 +302,9 @@ private:
         return strictFailure(warningsOf(record), "");
     }
 
-    static std::vector<std::string> warningsOf(const BatchRecord& record) {
+    static std::vector<Warning> warningsOf(const BatchRecord& record) {
         if (!record.report.is_object()) return {};
-        return record.report.value("warnings", std::vector<std::string>{});
+        return record.report.value("warnings", std::vector<Warning>{});
     }
 
     /// Tells of the items whose turn has come: in the order of the inputs, whatever ended first.

@@ -40,9 +40,11 @@ void assumeRas(std::span<NamedMesh> meshes, CommonFrame& common) {
     for (NamedMesh& mesh : meshes) mesh.file.frame = CoordinateFrame::Ras;
     const std::size_t count = meshes.size();
     common.warnings.push_back(
-        count == 1 ? nameOf(meshes[0]) + " does not say its coordinate frame; taken for RAS mm"
-                   : namesOf(meshes) + " don't say their coordinate frame; " +
-                         (count == 2 ? "both" : "all") + " are taken for RAS mm");
+        count == 1 ? Warning{"guessed-frame", "does not say its coordinate frame; taken for RAS mm",
+                             nameOf(meshes[0])}
+                   : Warning{"guessed-frame",
+                             namesOf(meshes) + " don't say their coordinate frame; " +
+                                 (count == 2 ? "both" : "all") + " are taken for RAS mm"});
 }
 
 void assumeUnknownFrames(std::span<NamedMesh> meshes, CommonFrame& common) {
@@ -53,9 +55,10 @@ void assumeUnknownFrames(std::span<NamedMesh> meshes, CommonFrame& common) {
         if (mesh.file.frame) continue;
         mesh.file.frame = known->file.frame;
         mesh.file.volume = known->file.volume;
-        common.warnings.push_back(nameOf(mesh) +
-                                  " does not say its coordinate frame; taken for that of " +
-                                  frameText(*known));
+        common.warnings.push_back(
+            {"guessed-frame",
+             "does not say its coordinate frame; taken for that of " + frameText(*known),
+             nameOf(mesh)});
     }
 }
 
@@ -89,8 +92,9 @@ void placeLooseTkRas(std::span<NamedMesh> meshes, CommonFrame& common) {
         if (!mesh.file.volume) mesh.file.volume = volume;
     }
     if (meshes.size() == 1) return;
-    common.warnings.push_back(namesOf(meshes) + (meshes.size() == 2 ? " are both" : " are all") +
-                              " in tkRAS mm; taken for surfaces of one volume");
+    common.warnings.push_back(
+        {"guessed-frame", namesOf(meshes) + (meshes.size() == 2 ? " are both" : " are all") +
+                              " in tkRAS mm; taken for surfaces of one volume"});
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso {
@@ -16,7 +17,7 @@ struct CommonFrame {
     /// Ras; or TkRas where nothing says where its volume lies in the scanner.
     CoordinateFrame frame = CoordinateFrame::Ras;
     std::optional<ImageGeometry> volume;  ///< for TkRas, as lpsToFrame() needs it
-    std::vector<std::string> warnings;    ///< what had to be assumed
+    std::vector<Warning> warnings;        ///< what had to be assumed
 };
 
 /// A surface as read, and the name it goes by in messages.

@@ -118,7 +118,7 @@ int tellReportFailure(const std::string& program, const std::string& written,
     return code == kExitOk ? kExitCheckFailed : code;
 }
 
-void tellStrict(Report& report, const CommonOptions& common, std::span<const std::string> warnings,
+void tellStrict(Report& report, const CommonOptions& common, std::span<const Warning> warnings,
                 const std::string& consequence) {
     if (!failsStrict(common, warnings)) return;
     const std::string text = strictFailure(warnings, consequence) + ".";

@@ -11,6 +11,7 @@
 #include "Common/CliNames.h"
 #include "Common/CommonOptions.h"
 #include "Common/Resources.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/Pipeline/ImageFacts.h"  // IWYU pragma: export
 #include "adaptiso/Report/Pictures.h"
 #include "adaptiso/Report/Report.h"
@@ -72,7 +73,7 @@ int tellReportFailure(const std::string& program, const std::string& written,
 
 /// Where --strict and warnings make a run fail, the page says so.
 /// \param consequence  as strictFailure() takes it
-void tellStrict(Report& report, const CommonOptions& common, std::span<const std::string> warnings,
+void tellStrict(Report& report, const CommonOptions& common, std::span<const Warning> warnings,
                 const std::string& consequence);
 
 }  // namespace adaptiso

@@ -31,7 +31,7 @@ void printSeries(std::ostream& out, const DicomSeries& series, bool showsPhi) {
             << oneLine(series.description) << "'\n";
     }
     if (!series.isReadable()) out << "     can't be read: " << series.fault << '\n';
-    for (const std::string& warning : series.warnings) out << "     " << warning << '\n';
+    for (const Warning& warning : series.warnings) out << "     " << warning.line() << '\n';
 }
 
 void printList(std::ostream& out, const std::string& name, const DicomListing& listing,
@@ -42,7 +42,7 @@ void printList(std::ostream& out, const std::string& name, const DicomListing& l
         out << "  " << counted(static_cast<std::int64_t>(listing.otherFiles), "DICOM file")
             << " without an image\n";
     }
-    for (const std::string& warning : listing.warnings) out << "  " << warning << '\n';
+    for (const Warning& warning : listing.warnings) out << "  " << warning.line() << '\n';
     for (const DicomFault& damaged : listing.damaged) {
         out << "  damaged file" << (showsPhi ? " " + oneLine(damaged.file.string()) : std::string())
             << ": " << damaged.fault << '\n';
@@ -89,11 +89,12 @@ std::string listJson(const std::string& program, const std::string& name,
 }
 
 /// All that the list tells as warnings.
-std::vector<std::string> warningsOf(const DicomListing& listing) {
-    std::vector<std::string> warnings = listing.warnings;
+std::vector<Warning> warningsOf(const DicomListing& listing) {
+    std::vector<Warning> warnings = listing.warnings;
     for (const DicomSeries& series : listing.series) {
-        for (const std::string& warning : series.warnings) {
-            warnings.push_back("series " + std::to_string(series.number) + ": " + warning);
+        for (Warning warning : series.warnings) {
+            warning.text = "series " + std::to_string(series.number) + ": " + warning.text;
+            warnings.push_back(std::move(warning));
         }
     }
     return warnings;

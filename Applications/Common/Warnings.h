@@ -5,34 +5,33 @@
 #include <string>
 
 #include "Common/CommonOptions.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso {
 
 /// Each warning as a line on stderr, "adaptiso-mesh: warning: ball.nii: ...", unless
 /// --no-warnings is given. --quiet does not silence them.
 void printWarnings(const std::string& program, const CommonOptions& common,
-                   std::span<const std::string> warnings);
+                   std::span<const Warning> warnings);
 
-/// Of a surface whose count could not be met, what is written, wanted and kept, and how far off it
-/// is: "has 108 triangles, not 3 as asked for: these are the fewest reached with all its pieces,
-/// and lie up to 0.25 mm off; more triangles lie closer".
-/// \param what  "triangles"
+/// "count-missed", of a surface whose count could not be met: what is written, wanted and kept, and
+/// how far off it is: "has 108 triangles, not 3 as asked for: these are the fewest reached with all
+/// its pieces, and lie up to 0.25 mm off; more triangles lie closer". \param what  "triangles"
 /// \param kept  "all its pieces"
-std::string countMissed(const std::string& what, std::int64_t written, std::int64_t wanted,
-                        const std::string& kept, double errorBoundMm);
+Warning countMissed(const std::string& file, const std::string& what, std::int64_t written,
+                    std::int64_t wanted, const std::string& kept, double errorBoundMm);
 
 /// --strict is given and there are warnings: the run is to end with kExitCheckFailed.
-bool failsStrict(const CommonOptions& common, std::span<const std::string> warnings);
+bool failsStrict(const CommonOptions& common, std::span<const Warning> warnings);
 
 /// What --strict says of warnings, in one line: "--strict: 2 warnings, so no surface was written:
 /// ball.nii: ...; ball.nii: ...".
 /// \param consequence  "so no surface was written"; empty: none
-std::string strictFailure(std::span<const std::string> warnings, const std::string& consequence);
+std::string strictFailure(std::span<const Warning> warnings, const std::string& consequence);
 
 /// Prints strictFailure() on stderr when failsStrict().
 /// \return kExitCheckFailed then, else `exitCode`
 int strictVerdict(const std::string& program, const CommonOptions& common,
-                  std::span<const std::string> warnings, const std::string& consequence,
-                  int exitCode);
+                  std::span<const Warning> warnings, const std::string& consequence, int exitCode);
 
 }  // namespace adaptiso

@@ -21,9 +21,7 @@ ReadVolume readImage(const fs::path& path, const std::string& role, BemRun& run,
                      const ReadOptions& options = {}) {
     ReadVolume read = readVolume(path, options);
     run.model.inputs.push_back({baseName(path), role, read.format});
-    for (const std::string& warning : read.warnings) {
-        run.model.warnings.push_back(path.filename().string() + ": " + warning);
-    }
+    addWarnings(run.model.warnings, read.warnings, path.filename().string());
     return read;
 }
 
@@ -67,8 +65,7 @@ std::vector<TriangleMesh> readPial(BemRun& run) {
     }
     const CommonFrame common =
         naming("--pial", [&] { return bringToOneFrame(files, run.model.image); });
-    run.model.warnings.insert(run.model.warnings.end(), common.warnings.begin(),
-                              common.warnings.end());
+    addWarnings(run.model.warnings, common.warnings);
     std::vector<TriangleMesh> surfaces;
     for (NamedMesh& named : files) surfaces.push_back(std::move(named.file.mesh));
     return surfaces;
@@ -154,8 +151,7 @@ std::vector<TriangleMesh> readSurfaces(BemRun& run) {
     }
     const CommonFrame common = bringToOneFrame(files, run.model.image);
     if (common.frame == CoordinateFrame::TkRas) run.model.tkRasVolume = common.volume;
-    run.model.warnings.insert(run.model.warnings.end(), common.warnings.begin(),
-                              common.warnings.end());
+    addWarnings(run.model.warnings, common.warnings);
     std::vector<TriangleMesh> surfaces;
     for (NamedMesh& named : files) {
         surfaces.push_back(std::move(named.file.mesh));
@@ -174,7 +170,8 @@ void chooseTkRas(BemRun& run) {
             run.model.tkRasName = "orig.mgz";
             return;
         }
-        run.model.warnings.push_back("the subject has no mri/orig.mgz; tkRAS is that of the input");
+        run.model.warnings.push_back(
+            {"guessed-frame", "the subject has no mri/orig.mgz; tkRAS is that of the input"});
     }
     if (run.model.image)
         run.model.tkRasVolume = frameVolume(CoordinateFrame::TkRas, *run.model.image);

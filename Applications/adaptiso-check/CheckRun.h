@@ -8,6 +8,7 @@
 #include "Common/Resources.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
@@ -57,7 +58,7 @@ struct CheckRun {
     std::optional<CoordinateFrame> nestingFrame;  ///< of the points in nesting; none: not known
     AffineTransform toNestingFrame;               ///< from that in which it was measured
     std::vector<ToldNote> notes;  ///< of head models: what is unusual, asked by the profile bem
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     StageTimer timer;
     std::string reportFailure;  ///< why there is no page; empty: nothing failed
 

@@ -115,10 +115,8 @@ private:
         });
     }
 
-    void warnOfVolume(const std::vector<std::string>& warnings) {
-        for (const std::string& warning : warnings) {
-            run_.warnings.push_back(volumeName() + ": " + warning);
-        }
+    void warnOfVolume(const std::vector<Warning>& warnings) {
+        addWarnings(run_.warnings, warnings, volumeName());
     }
 
     std::string volumeName() const { return baseName(options_.volume); }
@@ -186,7 +184,7 @@ private:
             meshes_[n].mesh.file.frame = CoordinateFrame::Lps;
             meshes_[n].mesh.file.volume.reset();
         }
-        run_.warnings.insert(run_.warnings.end(), common.warnings.begin(), common.warnings.end());
+        addWarnings(run_.warnings, common.warnings);
         return common;
     }
 
@@ -268,7 +266,7 @@ private:
         for (Loaded& loaded : meshes_) meshes.push_back(std::move(loaded.mesh));
         const CommonFrame common = bringToOneFrame(meshes, image_);
         shown_.frame = common.frame;
-        shown_.notes.insert(shown_.notes.end(), common.warnings.begin(), common.warnings.end());
+        for (std::string& line : linesOf(common.warnings)) shown_.notes.push_back(std::move(line));
         for (std::size_t n = 0; n < meshes.size(); ++n) {
             shown_.surfaces.push_back({meshes_[n].number, std::move(meshes[n].file.mesh)});
         }

@@ -187,7 +187,7 @@ Report makeReport(const CheckRun& run, ShownSurfaces& shown) {
     if (!run.nesting.empty()) report.tables.push_back(nestingTable(run));
     tellSpots(run, shown, report);
     tellStrict(report, run.options.common, run.warnings, "");
-    report.warnings = run.warnings;
+    report.warnings = linesOf(run.warnings);
     for (const SurfaceRun& surface : run.surfaces) {
         if (!surface.points || surface.points == CoordinateFrame::Ras) continue;
         report.notes.push_back(
@@ -195,7 +195,8 @@ Report makeReport(const CheckRun& run, ShownSurfaces& shown) {
             baseName(surface.file) + " in " + std::string(toString(*surface.points)) + ".");
     }
     for (const std::string& note : shown.notes) {
-        if (std::find(run.warnings.begin(), run.warnings.end(), note) == run.warnings.end()) {
+        if (std::find(report.warnings.begin(), report.warnings.end(), note) ==
+            report.warnings.end()) {
             report.notes.push_back(note);
         }
     }

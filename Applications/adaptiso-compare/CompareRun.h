@@ -11,6 +11,7 @@
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
@@ -72,7 +73,7 @@ struct CompareRun {
     std::optional<OverlapSummary> overlap;
     std::optional<ColoredSummary> colored;
     std::vector<Check> checks;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     StageTimer timer;
     std::optional<Volume> image;  ///< for the page; none unless one is wanted
     std::string reportFailure;    ///< why there is no page; empty: nothing failed

@@ -113,9 +113,7 @@ void readImage(CompareRun& run) {
     run.volume = VolumeSummary{read.format, read.volume.view().geometry()};
     run.voxelMm = meanVoxelSideMm(run.volume->geometry);
     if (run.options.report.isWanted()) run.image = read.volume;
-    for (const std::string& warning : read.warnings) {
-        run.warnings.push_back(baseName(run.options.volume) + ": " + warning);
-    }
+    addWarnings(run.warnings, read.warnings, baseName(run.options.volume));
 }
 
 /// Reads all inputs; afterwards both meshes are in the frame that the program works in.
@@ -132,7 +130,7 @@ CommonFrame readInputs(CompareRun& run, std::array<NamedMesh, 2>& surfaces) {
     run.b = summarize(b, frameB);
     run.frame = common.frame;
     run.toFrame = lpsToFrame(common.frame, common.volume);
-    run.warnings.insert(run.warnings.end(), common.warnings.begin(), common.warnings.end());
+    addWarnings(run.warnings, common.warnings);
     return common;
 }
 
@@ -142,9 +140,10 @@ void measureOverlap(CompareRun& run, const TriangleMesh& a, const TriangleMesh& 
     if (!run.a.volumeMm3 || !run.b.volumeMm3) {
         const bool isAOpen = !run.a.volumeMm3, isBOpen = !run.b.volumeMm3;
         run.warnings.push_back(
-            (isAOpen ? baseName(run.options.a) : "") + (isAOpen && isBOpen ? " and " : "") +
-            (isBOpen ? baseName(run.options.b) : "") + (isAOpen && isBOpen ? " are" : " is") +
-            " not closed, so the overlap (Dice) is not measured");
+            {"overlap-unmeasured",
+             (isAOpen ? baseName(run.options.a) : "") + (isAOpen && isBOpen ? " and " : "") +
+                 (isBOpen ? baseName(run.options.b) : "") + (isAOpen && isBOpen ? " are" : " is") +
+                 " not closed, so the overlap (Dice) is not measured"});
         return;
     }
     const ImageGeometry& image = run.volume->geometry;
@@ -154,8 +153,9 @@ void measureOverlap(CompareRun& run, const TriangleMesh& a, const TriangleMesh& 
     overlap.meanBoundaryOffsetMm =
         static_cast<double>(inOne) * image.voxelVolumeMm3() / ((run.a.areaMm2 + run.b.areaMm2) / 2);
     if (overlap.voxels.voxelsEither() == 0) {
-        run.warnings.push_back(baseName(run.options.volume) +
-                               ": no voxel's centre lies inside either surface");
+        run.warnings.push_back({"overlap-unmeasured",
+                                "no voxel's centre lies inside either surface",
+                                baseName(run.options.volume)});
     }
     run.overlap = overlap;
 }

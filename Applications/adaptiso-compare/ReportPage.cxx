@@ -105,7 +105,7 @@ Report makeReport(const CompareRun& run, ShownSurfaces& shown) {
     tellInputs(run, report);
     tellOptions(run, report);
     report.tables = {distanceTable(run), surfaceTable(run)};
-    report.warnings = run.warnings;
+    report.warnings = linesOf(run.warnings);
     tellStrict(report, run.options.common, run.warnings, "");
     if (run.overlap) {
         report.notes.push_back("As solids: Dice " + formatFixed(run.overlap->voxels.dice(), 4) +

@@ -83,8 +83,7 @@ public:
         plan.side = whole(member(json_, "side"), 1, TileCut::kLargestSide);
         readTiles(plan);
         for (const Json& warning : member(json_, "warnings")) {
-            if (!warning.is_string()) refusePlan(name_, "warnings");
-            plan.warnings.push_back(warning.get<std::string>());
+            plan.warnings.push_back({text(warning, "code"), text(warning, "text")});
         }
         return plan;
     }
@@ -221,7 +220,10 @@ std::filesystem::path GiantPlan::fileIn(const std::filesystem::path& work) {
 
 std::string encodePlan(const GiantPlan& plan) {
     Json json = identityJson(plan);
-    json["warnings"] = plan.warnings;
+    json["warnings"] = Json::array();
+    for (const Warning& warning : plan.warnings) {
+        json["warnings"].push_back({{"code", warning.code}, {"text", warning.text}});
+    }
     json["tiles"] = ids(plan.tiles);
     json["seams"] = ids(plan.seams());
     return json.dump(1) + "\n";

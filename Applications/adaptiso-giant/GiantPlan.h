@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -28,7 +29,7 @@ struct GiantPlan {
     double maxErrorMm = 0;      ///< of Method::Adaptive
     std::int64_t side = 0;      ///< of a tile, cells
     std::vector<Index3> tiles;  ///< that may hold surface, ascending as orderOf() has it
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 
     TileCut cut() const { return {geometry.size, side}; }
     bool isAdaptive() const { return method == Method::Adaptive; }

@@ -77,7 +77,7 @@ Report giantReport(const GiantPlan& plan, const GiantSurface& surface, const Jso
     report.options = optionsOf(plan);
     report.checks = checksOf(plan, surface);
     report.tables = {totalsOf(surface, json), componentsOf(surface)};
-    report.warnings = plan.warnings;
+    report.warnings = linesOf(plan.warnings);
     report.notes.push_back("shown is a coarse copy of " +
                            formatCount(std::ssize(coarse.triangles)) +
                            " triangles, which may cross; all numbers are those of the surface");

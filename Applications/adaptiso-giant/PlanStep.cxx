@@ -83,7 +83,8 @@ GiantPlan planOf(const GiantOptions& options) {
     const Index3 tiles = plan.cut().tiles();
     if (!image.readsParts() && tiles[0] * tiles[1] * tiles[2] > 1) {
         plan.warnings.push_back(
-            "is no Zarr: a step that makes tiles reads or maps the whole image");
+            {"whole-image-read",
+             "is no Zarr: a step that makes tiles reads or maps the whole image"});
     }
     plan.tiles = tilesOf(image, plan.cut(), plan.isovalue);
     return plan;
@@ -101,10 +102,8 @@ std::string textOf(const fs::path& file) {
 int runPlanStep(const GiantOptions& options) {
     const GiantPlan plan = planOf(options);
     for (const char* folder : {"tiles", "seams"}) makeFolders(options.work / folder);
-    std::vector<std::string> warnings;
-    for (const std::string& warning : plan.warnings) {
-        warnings.push_back(baseName(plan.input) + ": " + warning);
-    }
+    std::vector<Warning> warnings;
+    addWarnings(warnings, plan.warnings, baseName(plan.input));
     printWarnings(kGiantProgram, options.common, warnings);
     const fs::path file = GiantPlan::fileIn(options.work);
     const std::string text = encodePlan(plan);

@@ -49,7 +49,7 @@ void fitToFiles(LabelComplex& complex, LabelsRun& run) {
             const std::string text = kind.files + ": " + textOf(harm, *kind.format);
             if (kind.isAskedFor) throw InvalidInput(input + ": " + text);
             run.leavesGiftiOut = true;
-            run.warnings.push_back(input + ": all.surf.gii is left out; " + text);
+            run.warnings.push_back({"file-left-out", "all.surf.gii is left out; " + text, input});
         }
         if (moved == 0 || precisions < 2) break;
     }

@@ -12,6 +12,7 @@
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/LabelNames/LabelTable.h"
 #include "adaptiso/Labels/Labels.h"
 #include "adaptiso/MeshIO/Formats.h"
@@ -51,7 +52,7 @@ struct MapSummary {
     ImageGeometry geometry;
     PixelType pixelType{};
     ValueRange range{};
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     std::int64_t labels = 0;  ///< other than 0, before any are merged
 };
 
@@ -81,8 +82,8 @@ struct LabelsRun {
     std::vector<std::pair<std::string, std::uintmax_t>> files{};  ///< of the folder
     bool leavesGiftiOut = false;                                  ///< its digits do not do
     StageTimer timer{};
-    std::vector<std::string> warnings{};  ///< all; each names its file
-    std::string reportFailure{};          ///< why there is no page; empty: nothing failed
+    std::vector<Warning> warnings{};  ///< all; each names its file
+    std::string reportFailure{};      ///< why there is no page; empty: nothing failed
 
     bool holdsPromises() const {
         for (const LabelsCheck& check : checks) {

@@ -106,9 +106,11 @@ void warnOfMissing(const LabelMerge& merge, const LabelCensus& census, const std
         }
     }
     if (!isThere) {
-        run.warnings.push_back(name + ": has none of the labels of --merge " + merge.name);
+        run.warnings.push_back(
+            {"label-missing", "has none of the labels of --merge " + merge.name, name});
     } else if (!missing.empty()) {
-        run.warnings.push_back(name + ": has no label " + missing + " of --merge " + merge.name);
+        run.warnings.push_back(
+            {"label-missing", "has no label " + missing + " of --merge " + merge.name, name});
     }
 }
 
@@ -120,7 +122,7 @@ Volume readMap(LabelsRun& run, LabelCensus& census) {
     ReadVolume read = readImage(options.input, options.read);
     const VolumeView& view = read.volume.view();
     run.map = {read.format, view.geometry(), view.pixelType(), valueRange(view), read.warnings, 0};
-    for (const std::string& warning : read.warnings) run.warnings.push_back(name + ": " + warning);
+    addWarnings(run.warnings, read.warnings, name);
     census = naming(name, [&] { return countLabels(view); });
     run.map.labels = std::ssize(census.voxels);
     if (census.voxels.empty()) {
@@ -193,14 +195,11 @@ void warnOfCount(LabelsRun& run) {
     const std::optional<std::int64_t>& wanted = run.statistics.wantedTriangles;
     const std::int64_t triangles = run.statistics.mapTriangles;
     if (!wanted || triangles <= *wanted || run.options.maxErrorMm) return;
-    run.warnings.push_back(
-        baseName(run.options.input) + ": " +
-        countMissed(
-            "triangles in its walls", triangles, *wanted,
-            std::string("all regions, pieces and junctions") +
-                (run.isPart() ? " of the whole map (a count is of all of it, also with --labels)"
-                              : ""),
-            run.statistics.errorBoundMm));
+    run.warnings.push_back(countMissed(
+        baseName(run.options.input), "triangles in its walls", triangles, *wanted,
+        std::string("all regions, pieces and junctions") +
+            (run.isPart() ? " of the whole map (a count is of all of it, also with --labels)" : ""),
+        run.statistics.errorBoundMm));
 }
 
 std::string failureText(const LabelsRun& run) {
@@ -264,9 +263,10 @@ int runLabels(const LabelsOptions& options) {
     }
     warnOfCount(run);
     if (!run.leavesGiftiOut && !fitsGifti(run)) {
-        run.warnings.push_back(baseName(options.input) +
-                               ": all.surf.gii is left out, as the surfaces have more points or "
-                               "triangles than GIFTI counts");
+        run.warnings.push_back({"file-left-out",
+                                "all.surf.gii is left out, as the surfaces have more points or "
+                                "triangles than GIFTI counts",
+                                baseName(options.input)});
     }
 
     ReportResult page;  // its folder goes, if empty, after what lies in it

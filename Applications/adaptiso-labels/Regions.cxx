@@ -18,16 +18,12 @@ LabelTable readNames(LabelsRun& run) {
     if (!options.names.empty()) {
         table = readLabelTable(options.names);
         run.names.files = {baseName(options.names)};
-        for (const std::string& warning : table.warnings) {
-            run.warnings.push_back(baseName(options.names) + ": " + warning);
-        }
+        addWarnings(run.warnings, table.warnings, baseName(options.names));
     } else {
         FoundLabelTables found = findLabelTables(options.input);
         table = std::move(found.table);
         for (const fs::path& file : found.files) run.names.files.push_back(baseName(file));
-        for (const std::string& warning : table.warnings) {
-            run.warnings.push_back(baseName(options.input) + ": " + warning);
-        }
+        addWarnings(run.warnings, table.warnings, baseName(options.input));
     }
     run.names.format = table.format;
     return table;
@@ -50,13 +46,14 @@ void warnOfNameless(LabelsRun& run) {
     }
     // a table of colours alone names nothing, and need not
     if (nameless.empty() || run.names.format == "MRIcron colours") return;
-    const std::string file = run.names.files.empty() ? "" : run.names.files.front() + ": ";
-    run.warnings.push_back(file + "names " +
-                           (nameless.size() == run.regions.size()
-                                ? "none of the regions"
-                                : "all but " + formatCount(std::ssize(nameless)) + " of the " +
-                                      formatCount(std::ssize(run.regions)) + " regions, not") +
-                           " " + listed(nameless));
+    run.warnings.push_back({"label-nameless",
+                            "names " +
+                                (nameless.size() == run.regions.size()
+                                     ? "none of the regions"
+                                     : "all but " + formatCount(std::ssize(nameless)) + " of the " +
+                                           formatCount(std::ssize(run.regions)) + " regions, not") +
+                                " " + listed(nameless),
+                            run.names.files.empty() ? "" : run.names.files.front()});
 }
 
 }  // namespace

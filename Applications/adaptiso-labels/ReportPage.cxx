@@ -148,7 +148,7 @@ Report makeReport(const LabelsRun& run, const RegionSurfaces& surfaces,
     tellInputs(run, report);
     tellOptions(run, report);
     tellChecks(run, report);
-    report.warnings = run.warnings;
+    report.warnings = linesOf(run.warnings);
     const std::vector<std::size_t> shown = chooseShown(run, report);
     for (const std::size_t n : shown) {
         ReportSurface surface{run.nameOf(run.regions[n].label), surfaces.surface(n)};

@@ -100,7 +100,7 @@ ImageInfo gather(const MeshOptions& options, ProgressLine& progress) {
     if (!options.preprocessing.changesNothing()) progress.show("preprocess");
     const Preprocessed prepared =
         preprocessImage(std::move(read.volume), options.preprocessing, options.input);
-    info.warnings.insert(info.warnings.end(), prepared.warnings.begin(), prepared.warnings.end());
+    addWarnings(info.warnings, prepared.warnings);
     const VolumeView& volume = prepared.volume.view();
     info.geometry = volume.geometry();
     info.pixelType = volume.pixelType();
@@ -146,11 +146,9 @@ ValueSummary summarizeValues(const VolumeView& volume) {
     return values;
 }
 
-std::vector<std::string> namedWarnings(const MeshOptions& options, const ImageInfo& info) {
-    std::vector<std::string> warnings;
-    for (const std::string& warning : info.warnings) {
-        warnings.push_back(baseName(options.input) + ": " + warning);
-    }
+std::vector<Warning> namedWarnings(const MeshOptions& options, const ImageInfo& info) {
+    std::vector<Warning> warnings;
+    addWarnings(warnings, info.warnings, baseName(options.input));
     return warnings;
 }
 
@@ -170,7 +168,7 @@ int runInfo(const MeshOptions& options) {
         throw;
     }
     progress.clear();
-    const std::vector<std::string> warnings = namedWarnings(options, info);
+    const std::vector<Warning> warnings = namedWarnings(options, info);
     printWarnings("adaptiso-mesh", options.common, warnings);
     deliverReport(options.common, options.input, infoJson(options, info),
                   [&](std::ostream& out) { printInfo(out, options, info); });

@@ -7,6 +7,7 @@
 
 #include "Pipeline.h"
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 #include "adaptiso/ImageIO/SampleStatistics.h"
 
@@ -41,7 +42,7 @@ ValueSummary summarizeValues(const VolumeView& volume);
 struct ImageInfo {
     std::string fault;  ///< why the image is refused, its path left out; the rest is empty then
     std::string format;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     Index3 sizeAsRead{};
     ImageGeometry geometry;  ///< as preprocessed, like all that follows
     PixelType pixelType{};
@@ -50,8 +51,8 @@ struct ImageInfo {
     std::optional<DicomSeries> series;  ///< with --show-phi, of DICOM
 };
 
-/// The warnings, each with the image's name before it.
-std::vector<std::string> namedWarnings(const MeshOptions& options, const ImageInfo& info);
+/// The warnings, each with the image's name.
+std::vector<Warning> namedWarnings(const MeshOptions& options, const ImageInfo& info);
 
 /// Tells what adaptiso-mesh would read: geometry, values, thresholds.
 /// \return kExitOk; kExitCheckFailed with --strict and warnings

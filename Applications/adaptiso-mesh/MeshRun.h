@@ -11,6 +11,7 @@
 #include "Pipeline.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/Pipeline/FinishSurface.h"
@@ -30,7 +31,7 @@ struct InputSummary {
     ImageGeometry geometry;
     PixelType pixelType{};
     ValueRange range{};
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 };
 
 /// What is known of the index over the blocks.
@@ -68,9 +69,9 @@ struct MeshRun {
     IndexSummary index;
     std::vector<SurfaceSummary> surfaces;
     StageTimer timer;
-    std::vector<ShownSurface> shown{};    ///< for the page; empty unless one is wanted
-    std::vector<std::string> warnings{};  ///< all; each names its file
-    std::string reportFailure{};          ///< why there is no page; empty: nothing failed
+    std::vector<ShownSurface> shown{};  ///< for the page; empty unless one is wanted
+    std::vector<Warning> warnings{};    ///< all; each names its file
+    std::string reportFailure{};        ///< why there is no page; empty: nothing failed
 
     /// --strict makes the warnings failures: neither surfaces nor index are written.
     bool failsStrict() const { return adaptiso::failsStrict(options.common, warnings); }

@@ -163,8 +163,7 @@ Volume prepare(Volume read, MeshRun& run, ProgressLine& progress) {
             preprocessImage(std::move(read), run.options.preprocessing, run.options.input);
         const VolumeView& view = done.volume.view();
         run.preprocessed = {view.geometry(), view.pixelType(), valueRange(view)};
-        run.input.warnings.insert(run.input.warnings.end(), done.warnings.begin(),
-                                  done.warnings.end());
+        addWarnings(run.input.warnings, done.warnings);
         return std::move(done.volume);
     });
 }
@@ -278,12 +277,11 @@ void warnOfCounts(MeshRun& run) {
     for (const SurfaceSummary& surface : run.surfaces) {
         if (surface.countMet().value_or(true) || run.options.adaptive.maxErrorMm) continue;
         const bool isOpen = run.options.index.border == Border::Open;
-        run.warnings.push_back(surface.file.filename().string() + ": " +
-                               countMissed("triangles", surface.extractedTriangles,
-                                           *surface.statistics.wantedTriangles,
-                                           std::string("all its pieces and holes") +
-                                               (isOpen ? " and its open border" : ""),
-                                           *surface.statistics.errorBoundMm));
+        run.warnings.push_back(countMissed(
+            surface.file.filename().string(), "triangles", surface.extractedTriangles,
+            *surface.statistics.wantedTriangles,
+            std::string("all its pieces and holes") + (isOpen ? " and its open border" : ""),
+            *surface.statistics.errorBoundMm));
     }
     printWarnings(kProgram, run.options.common, std::span(run.warnings).subspan(told));
 }
@@ -320,9 +318,7 @@ int runMesh(const MeshOptions& asked) {
     const Volume prepared = prepare(std::move(read.volume), run, progress);
     const VolumeView& volume = prepared.view();
     progress.clear();
-    for (const std::string& warning : run.input.warnings) {
-        run.warnings.push_back(inputName(options) + ": " + warning);
-    }
+    addWarnings(run.warnings, run.input.warnings, inputName(options));
     printWarnings(kProgram, options.common, run.warnings);
     const std::vector<double> isovalues =
         run.timer.time(kRead, [&] { return chooseIsovalues(volume, run); });

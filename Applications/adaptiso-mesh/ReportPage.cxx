@@ -129,7 +129,7 @@ Report makeReport(MeshRun& run, const VolumeView& volume) {
         report.surfaces.push_back({nameOf(surface), std::move(shown.mesh)});
     }
     report.tables.push_back(surfaceTable(run));
-    report.warnings = run.warnings;
+    report.warnings = linesOf(run.warnings);
     tellStrict(report, run.options.common, run.warnings, kNotWritten);
     report.volume = ReportVolume{baseName(run.options.input), volume};
     report.stageSeconds = run.timer.stages();

@@ -130,10 +130,10 @@ void check(const TriangleMesh& mesh, SimplifyRun& run) {
 /// asked for.
 void warnOfCount(SimplifyRun& run) {
     if (run.countMet().value_or(true) || run.command.aim.maxErrorMm) return;
-    run.warnings.push_back(
-        baseName(run.output.file) + ": " +
-        countMissed("triangles", run.output.triangles, *run.statistics.wantedTriangles,
-                    "all its pieces, holes and borders", run.statistics.errorBoundMm));
+    run.warnings.push_back(countMissed(baseName(run.output.file), "triangles", run.output.triangles,
+                                       *run.statistics.wantedTriangles,
+                                       "all its pieces, holes and borders",
+                                       run.statistics.errorBoundMm));
 }
 
 /// Every triangle has its corners for itself.
@@ -145,13 +145,14 @@ bool isSoup(const TopologyReport& topology) {
 /// Open borders are what some surfaces have; all else is worth a warning.
 void warnOfFindings(SimplifyRun& run) {
     if (isSoup(run.input.topology)) {
-        run.warnings.push_back(baseName(run.input.file) +
-                               ": no two triangles share a point, so that none can go; weld the "
-                               "points first (an .stl is welded when it is read)");
+        run.warnings.push_back({"surface-unsound",
+                                "no two triangles share a point, so that none can go; weld the "
+                                "points first (an .stl is welded when it is read)",
+                                baseName(run.input.file)});
     }
     for (const Finding& finding : run.findings) {
         if (!finding.isFault || finding.key == "borderEdges") continue;
-        run.warnings.push_back(baseName(run.input.file) + ": " + finding.text());
+        run.warnings.push_back({"surface-unsound", finding.text(), baseName(run.input.file)});
     }
 }
 
@@ -187,10 +188,11 @@ std::vector<const PointArray*> heldArrays(const MeshFile& input, SimplifyRun& ru
         }
     }
     if (!others.empty()) {
-        run.warnings.push_back(baseName(run.output.file) + ": " + std::string(format.name) +
-                               " holds no values at points" +
-                               (format.holdsColors ? " but colours" : "") +
-                               "; left out: " + others);
+        run.warnings.push_back({"array-left-out",
+                                std::string(format.name) + " holds no values at points" +
+                                    (format.holdsColors ? " but colours" : "") +
+                                    "; left out: " + others,
+                                baseName(run.output.file)});
     }
     return held;
 }
@@ -308,7 +310,7 @@ FrameChange chooseFrame(const MeshFile& input, SimplifyRun& run) {
                          " holds points in mm only, not voxel indices");
     }
     if (!change.assumed.empty()) {
-        run.warnings.push_back(baseName(run.input.file) + " " + change.assumed);
+        run.warnings.push_back({"guessed-frame", change.assumed, baseName(run.input.file)});
     }
     if (change.isSaid) run.output.frame = change.frame;
     return change;

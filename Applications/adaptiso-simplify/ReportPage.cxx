@@ -136,7 +136,7 @@ Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh sh
             {baseName(run.output.file), std::move(after), std::move(distances)});
     }
     report.tables.push_back(surfaceTable(run));
-    report.warnings = run.warnings;
+    report.warnings = linesOf(run.warnings);
     tellStrict(report, run.command.common, run.warnings, kNotWritten);
     report.stageSeconds = run.timer.stages();
     return report;

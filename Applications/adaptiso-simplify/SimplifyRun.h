@@ -10,6 +10,7 @@
 #include "Common/Warnings.h"
 #include "Findings.h"
 #include "Pipeline.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshIO/PointData.h"
@@ -53,8 +54,8 @@ struct SimplifyRun {
     std::vector<std::string> keptArrays{};       ///< values at points in the surface's own file
     std::vector<DataSummary> data{};
     StageTimer timer{};
-    std::vector<std::string> warnings{};  ///< all; each names its file
-    std::string reportFailure{};          ///< why there is no page; empty: nothing failed
+    std::vector<Warning> warnings{};  ///< all; each names its file
+    std::string reportFailure{};      ///< why there is no page; empty: nothing failed
 
     /// --require-sound, and it is not.
     bool failsSoundness() const { return command.requiresSound && !isSound(findings); }

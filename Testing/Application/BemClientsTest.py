@@ -8,7 +8,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from support import BIN, SOURCE, ApplicationTest
+from support import BIN, SOURCE, ApplicationTest, lines
 
 try:
     import mne
@@ -424,7 +424,7 @@ class RealHead(SharedFolderTest):
         self.make_alone()
         self.bem("--t1", "bad.nii", "--meg", "-o", "bad")
         report = json.loads((self.path("bad") / "report.json").read_text())
-        self.assertFalse([text for text in report["input"]["warnings"] if "as bright as brain" in text])
+        self.assertFalse([line for line in lines(report["input"]["warnings"]) if "as bright as brain" in line])
         voxels = np.argwhere(np.ones((kept - 5, *t1.shape[1:]), bool))[::971]  # its skull ends at the cut
         points = voxels @ image.affine[:3, :3].T + image.affine[:3, 3]
         good, bad = (windings(points, *scanner_points(self.path(name) / "inner_skull.surf")) > 0

@@ -3,7 +3,7 @@
 import json
 import math
 
-from support import BAD_INPUT, USAGE, Image, ball, main, write_nifti
+from support import BAD_INPUT, USAGE, Image, ball, lines, main, write_nifti
 from checkSupport import NAMES, CheckTest, write_ply, write_stl, write_surf
 from headDefects import NAN, add_repeated_index, flipped, good, icosphere, moved, soup, write_off
 
@@ -84,7 +84,7 @@ class Input(CheckTest):
         self.assertAlmostEqual(math.dist(point, (10, 20, 30)), 80, delta=1)  # 1: facets' depth
         self.write("inner.off", inner, None)
         report = self.check("--nested", "inner.off", "outer.off")
-        self.assertRegex(report["warnings"][0], "inner.off does not say its coordinate frame")
+        self.assertRegex(lines(report["warnings"])[0], "inner.off: does not say its coordinate frame")
         self.write("inner.off", inner, "tkRAS mm")
         self.refused(BAD_INPUT, "inner.off is in tkRAS mm and outer.off is in RAS mm.*--volume",
                      "--nested", "inner.off", "outer.off")

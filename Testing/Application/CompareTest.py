@@ -207,7 +207,7 @@ class Volumes(CompareTest):
         self.write("a.off", plane(0))
         report = self.compare("a.off", "a.off", "--volume", "image.nii")
         self.assertIsNone(report["overlap"])
-        self.assertRegex(report["warnings"][0], "not closed, so the overlap")
+        self.assertRegex(report["warnings"][0]["text"], "not closed, so the overlap")
 
     def test_of_a_4d_image_one_is_chosen(self):
         self.write("a.off", cube((3.5, 3.5, 5), (9.5, 9.5, 11)))

@@ -109,7 +109,7 @@ class Preprocessing(ApplicationTest):
         self.assertEqual(done["pixelType"], "float32")
         self.assertLessEqual(done["maximum"], RADIUS)
         self.assertEqual(len(report["input"]["warnings"]), 1)
-        self.assertRegex(report["input"]["warnings"][0], "right angles.*smallest value")
+        self.assertRegex(report["input"]["warnings"][0]["text"], "right angles.*smallest value")
 
     def test_the_order_is_fixed_and_threads_change_nothing(self):
         write_sphere(self.path("in.nrrd"), AXES["oblique"])

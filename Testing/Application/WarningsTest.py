@@ -1,10 +1,13 @@
 """Warnings: on stderr and in the reports unless --no-warnings is given; failures with --strict."""
 
 import json
+import re
 import struct
 import subprocess
+import unittest
 
-from support import (BAD_INPUT, BIN, CHECK_FAILED, OK, ApplicationTest, ball, main, write_nifti)
+from support import (BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, ApplicationTest, ball, lines, main,
+                     write_nifti)
 from bemSupport import QUICK, LABELS
 from headDefects import icosphere, write_off
 
@@ -41,7 +44,7 @@ class Warnings(WithWarnings):
              "bare.off and bare.off don't say their coordinate frame"),
             ("adaptiso-simplify", ("bare.off", "--max-error", "1", "--coordinates", "ras", "-o",
                                    "small.vtp"),
-             "bare.off does not say its coordinate frame"))
+             "bare.off: does not say its coordinate frame"))
 
     def test_are_told_with_the_files_name_also_when_quiet(self):
         for program, arguments, pattern in self.RUNS:
@@ -59,7 +62,7 @@ class Warnings(WithWarnings):
                 done = self.run_program(program, *arguments, "--no-warnings", "--json", "-")
                 self.assertEqual((done.returncode, done.stderr), (OK, ""))
                 report = json.loads(done.stdout)
-                self.assertRegex("\n".join(report["warnings"]), pattern)
+                self.assertRegex("\n".join(lines(report["warnings"])), pattern)
                 self.assertEqual(report["failedByWarnings"], False)
 
     def test_fail_a_strict_run_in_one_line_that_says_which(self):
@@ -72,7 +75,7 @@ class Warnings(WithWarnings):
                 self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
                 report = json.loads(self.path("r.json").read_text())
                 self.assertEqual(report["failedByWarnings"], True)
-                self.assertRegex("\n".join(report["warnings"]), pattern)
+                self.assertRegex("\n".join(lines(report["warnings"])), pattern)
 
     def test_strict_without_warnings_changes_nothing(self):
         self.mesh("good.nii", "--iso", "100", "-o", "a.vtp")
@@ -117,6 +120,35 @@ class Warnings(WithWarnings):
         self.assertEqual([p.name for p in self.path("model").iterdir()], ["report.json"])
         report = json.loads((self.path("model") / "report.json").read_text())
         self.assertEqual((report["model"], report["failedByWarnings"]), (False, True))
+
+
+class Codes(unittest.TestCase):
+    """Of Modules/Core/src/Warning.cxx, of Documentation/Warnings.md, and of all sources."""
+
+    def setUp(self):
+        table = (SOURCE / "Modules/Core/src/Warning.cxx").read_text()
+        self.codes = dict(re.findall(r'\{"([^"]+)",\s*"([^"]+)"\}', table))
+
+    def test_are_short_hyphenated_and_in_order(self):
+        self.assertGreater(len(self.codes), 30)
+        self.assertEqual(list(self.codes), sorted(self.codes))
+        for code in self.codes:
+            self.assertRegex(code, "^(?=.{5,24}$)[a-z0-9]+(-[a-z0-9]+)+$")
+
+    def test_are_documented_in_the_same_words(self):
+        page = (SOURCE / "Documentation/Warnings.md").read_text()
+        self.assertEqual(dict(re.findall(r"(?m)^\| `([^`]+)` \| (.+) \|$", page)), self.codes)
+
+    def test_that_are_used_are_those_of_the_table(self):
+        used = set()
+        for folder in ("Modules", "Applications", "Wrapping"):
+            for path in (SOURCE / folder).rglob("*"):
+                if path.suffix in (".cxx", ".h", ".py") and path.name != "Warning.cxx":
+                    used.update(re.findall(
+                        r'(?:warnings\.push_back\(\s*\{|Warning ?\{|return \{|Warned\(.*)\s*'
+                        r'"([a-z0-9]+(?:-[a-z0-9]+)+)",?', path.read_text()))
+        self.assertEqual({code for code in used if not code.startswith("adaptiso-")},  # programs
+                         set(self.codes))
 
 
 class Batches(WithWarnings):

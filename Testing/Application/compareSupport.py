@@ -4,7 +4,7 @@ import json
 import math
 import subprocess
 
-from support import BIN, OK, SOURCE, ApplicationTest
+from support import BIN, OK, SOURCE, ApplicationTest, lines
 from headDefects import write_off
 
 COMPARE = str(BIN / "adaptiso-compare")
@@ -61,7 +61,7 @@ class CompareTest(ApplicationTest):
         self.assertEqual(done.returncode, OK, done.stderr)
         report = json.loads(done.stdout)
         self.assertEqual(done.stderr, "".join(f"adaptiso-compare: warning: {warning}\n"
-                                              for warning in report["warnings"]))
+                                              for warning in lines(report["warnings"])))
         return report
 
     def refused(self, code, pattern, *arguments):

@@ -5,7 +5,7 @@ import math
 import struct
 import subprocess
 
-from support import BIN, OK, SOURCE, ApplicationTest
+from support import BIN, OK, SOURCE, ApplicationTest, lines
 from compareSupport import RAS
 from headDefects import write_off
 
@@ -123,7 +123,7 @@ class SimplifyTest(ApplicationTest):
         self.assertEqual(done.returncode, OK, done.stderr)
         report = json.loads(done.stdout)
         self.assertEqual(done.stderr, "".join(f"adaptiso-simplify: warning: {warning}\n"
-                                              for warning in report["warnings"]))
+                                              for warning in lines(report["warnings"])))
         return report
 
     def refused(self, code, pattern, *arguments):

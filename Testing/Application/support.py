@@ -112,6 +112,11 @@ def write_nrrd(path, image):
     Path(path).write_bytes(header.encode() + image.packed())
 
 
+def lines(warnings):
+    """The warnings of a report, each as stderr has it."""
+    return [f"{w['file']}: {w['text']}" if w["file"] else w["text"] for w in warnings]
+
+
 class ApplicationTest(unittest.TestCase):
     """Each test runs in a new folder, `self.folder`, that goes when it ends."""
 

@@ -27,8 +27,8 @@ void requireSound(const LabelTable& table) {
         if (!isPlain(entry.name) || !isPlain(entry.abbreviation)) std::abort();
         if (table.find(entry.value) != &entry) std::abort();
     }
-    for (const std::string& warning : table.warnings) {
-        if (!isPlain(warning)) std::abort();
+    for (const Warning& warning : table.warnings) {
+        if (!isPlain(warning.line())) std::abort();
     }
 }
 

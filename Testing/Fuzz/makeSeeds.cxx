@@ -45,7 +45,7 @@ void addFenceSeeds(Seeds& seeds) {
     answer.geometry = smallVolume(0).view().geometry();
     answer.byteCount = 2 * 7 * 6 * 5;
     answer.format = "DICOM";
-    answer.warnings = {"one", "and another"};
+    answer.warnings = {{"gantry-tilt", "one"}, {"stray-bits", "and another"}};
     seeds.add("fence", detail::packFenceAnswer(answer));
     answer.kind = detail::FenceAnswer::Kind::FileError;
     answer.message = "x.dcm: is damaged";

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ImageSteps.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
 
 namespace adaptiso::headmodel {
@@ -22,7 +23,7 @@ struct RawBoundaries {
     std::vector<Vec3> brainSeenMm{};
     std::vector<float> brain{};  ///< within the first of them; empty: not wanted
     std::vector<std::string> notes;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 };
 
 /// One raw solid of what belongs to it: its largest piece, closed, with its holes filled (those too

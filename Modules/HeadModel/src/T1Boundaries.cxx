@@ -500,7 +500,7 @@ std::string percentOf(double share) {
 
 /// What lies around the inner skull tells whether it is in its place. Right ones have 2 to 8 % of
 /// rays that begin in tissue (at the temples and the base), brains that lost a part 13 to 60 %.
-void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<std::string>& warnings) {
+void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<Warning>& warnings) {
     constexpr double kUsuallySeen = 0.6, kUsuallyInTissue = 0.12, kMostInTissue = 0.3;
     if (isGuess && band.tissueFraction > kMostInTissue) {
         throw InvalidInput("a part of the brain is lost by thresholds: outside what was found, " +
@@ -509,15 +509,19 @@ void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<std::st
                            "give a brain mask");
     }
     if (band.tissueFraction > kUsuallyInTissue) {
-        warnings.push_back(percentOf(band.tissueFraction) +
-                           " of the rays to the scalp begin in 4 mm of tissue as bright as brain, "
-                           "2 to 8 % are usual: a part of the brain may be lost, or muscle taken "
-                           "for it; look at the result, or give a better brain mask");
+        warnings.push_back(
+            {"brain-doubtful",
+             percentOf(band.tissueFraction) +
+                 " of the rays to the scalp begin in 4 mm of tissue as bright as brain, "
+                 "2 to 8 % are usual: a part of the brain may be lost, or muscle taken "
+                 "for it; look at the result, or give a better brain mask"});
     }
     if (band.seenFraction < kUsuallySeen) {
-        warnings.push_back("the skull shows on only " + shortNumber(100 * band.seenFraction) +
-                           " % of the rays to the scalp: the brain or its mask may lie wrong, or "
-                           "the image be too noisy; look at the result");
+        warnings.push_back(
+            {"skull-unseen",
+             "the skull shows on only " + shortNumber(100 * band.seenFraction) +
+                 " % of the rays to the scalp: the brain or its mask may lie wrong, or "
+                 "the image be too noisy; look at the result"});
     }
 }
 

@@ -36,15 +36,15 @@ bool isMoreImage(std::uint64_t extraBytes, const ImageExtent& extent) {
 }
 
 void checkTail(const fs::path& file, const ByteTail& tail, const ImageExtent& extent,
-               bool isChosenPart, std::vector<std::string>& warnings) {
+               bool isChosenPart, std::vector<Warning>& warnings) {
     if (tail.hasSecondStream) {
         refuse(file, "holds more compressed data behind the image that its header describes",
                kRemedy);
     }
     if (tail.hasStray) {
-        warnings.emplace_back(
-            "something that is no compressed data follows the compressed image; "
-            "it was left out");
+        warnings.push_back({"trailing-bytes",
+                            "something that is no compressed data follows the compressed image; "
+                            "it was left out"});
     }
     if (tail.byteCount == 0) return;
     const bool isMore = !tail.isZeros && isMoreImage(tail.byteCount, extent);
@@ -55,8 +55,9 @@ void checkTail(const fs::path& file, const ByteTail& tail, const ImageExtent& ex
                kRemedy);
     }
     warnings.push_back(
-        fmt::format("{} bytes{} follow the image that its header describes; they were left out",
-                    tail.byteCount, tail.isZeros ? ", all 0," : ""));
+        {"trailing-bytes",
+         fmt::format("{} bytes{} follow the image that its header describes; they were left out",
+                     tail.byteCount, tail.isZeros ? ", all 0," : "")});
 }
 
 void checkBytesBefore(const fs::path& file, std::uint64_t byteCount, const ImageExtent& extent) {

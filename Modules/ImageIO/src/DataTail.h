@@ -7,6 +7,7 @@
 
 #include "ByteSource.h"
 #include "Samples.h"
+#include "adaptiso/Core/Warning.h"
 
 /// Files that hold more than their header says: another image behind the first, more slices than
 /// the header's size, samples of a wider type than it names.
@@ -32,7 +33,7 @@ bool isMoreImage(std::uint64_t extraBytes, const ImageExtent& extent);
 /// \throws FileError  another image or more of this one follows, compressed or not
 /// A warning is added for anything else but padding with zeros behind compressed data.
 void checkTail(const std::filesystem::path& file, const ByteTail& tail, const ImageExtent& extent,
-               bool isChosenPart, std::vector<std::string>& warnings);
+               bool isChosenPart, std::vector<Warning>& warnings);
 
 /// The same for samples that a header says are a file's last bytes, whatever is before them.
 /// \throws FileError  so much is before them that it is another image

@@ -46,7 +46,7 @@ bool isRescaled(const DicomPlane& plane) {
 }  // namespace
 
 void requireAgreement(const fs::path& input, const std::vector<DicomFile>& files,
-                      const std::vector<DicomPlane>& planes, std::vector<std::string>& warnings) {
+                      const std::vector<DicomPlane>& planes, std::vector<Warning>& warnings) {
     const auto votesOf = [&](DicomTag tag) {
         return count(planes, [&](const DicomPlane& plane) {
             return files[plane.file].header.dataset.text(tag).value_or("");
@@ -80,9 +80,9 @@ void requireAgreement(const fs::path& input, const std::vector<DicomFile>& files
     }
     const Votes signs = votesOf(tag::kPixelRepresentation);
     if (signs.size() > 1) {
-        warnings.emplace_back(
-            "some slices hold signed samples and some unsigned ones; each was read "
-            "as its own header says");
+        warnings.push_back({"mixed-signedness",
+                            "some slices hold signed samples and some unsigned ones; each was read "
+                            "as its own header says"});
     }
 }
 

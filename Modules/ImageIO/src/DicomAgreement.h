@@ -6,6 +6,7 @@
 
 #include "DicomFile.h"
 #include "DicomPlanes.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso::detail {
 
@@ -15,6 +16,6 @@ namespace adaptiso::detail {
 ///         (RescaleType, Units), or some are rescaled while others do not say
 /// A warning is added where some hold signed samples and some unsigned ones, each read as it says.
 void requireAgreement(const std::filesystem::path& input, const std::vector<DicomFile>& files,
-                      const std::vector<DicomPlane>& planes, std::vector<std::string>& warnings);
+                      const std::vector<DicomPlane>& planes, std::vector<Warning>& warnings);
 
 }  // namespace adaptiso::detail

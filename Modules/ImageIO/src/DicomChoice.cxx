@@ -65,7 +65,7 @@ std::size_t namedGroup(const fs::path& input, const std::vector<DicomGroup>& gro
 
 std::size_t chooseDicomGroup(const fs::path& input, const std::vector<DicomGroup>& groups,
                              const std::optional<std::string>& series,
-                             std::vector<std::string>& warnings) {
+                             std::vector<Warning>& warnings) {
     if (series) return namedGroup(input, groups, *series);
     if (groups.size() == 1) return 0;
     const auto first = std::ranges::find_if(groups, isVolumeLike);
@@ -76,7 +76,7 @@ std::size_t chooseDicomGroup(const fs::path& input, const std::vector<DicomGroup
         if (n == chosen) continue;
         const DicomGroup& group = groups[n];
         if (isOnly && isStray(group, groups[chosen])) {
-            warnings.push_back("left aside: " + describeDicomGroup(group));
+            warnings.push_back({"series-left-aside", "left aside: " + describeDicomGroup(group)});
             continue;
         }
         if (isOnly && !group.fault.empty()) throw FileError(group.fault);

@@ -135,7 +135,7 @@ struct SliceStore {
 
 /// The planes of a stack, as they are.
 Volume decodePlanes(const fs::path& input, const std::vector<DicomFile>& files,
-                    const DicomStack& stack, std::vector<std::string>& warnings) {
+                    const DicomStack& stack, std::vector<Warning>& warnings) {
     std::vector<DicomPixelFormat> formats(files.size());
     std::vector<std::vector<std::size_t>> slicesOfFile(files.size());
     for (std::size_t slice = 0; slice < stack.planes.size(); ++slice) {
@@ -173,15 +173,17 @@ Volume decodePlanes(const fs::path& input, const std::vector<DicomFile>& files,
     }
     if (filesWithPadding > 0) {
         warnings.push_back(
-            fmt::format("{} files hold a few bytes more of pixel data than their header describes: "
-                        "left out",
-                        filesWithPadding));
+            {"trailing-bytes",
+             fmt::format(
+                 "{} files hold a few bytes more of pixel data than their header describes: "
+                 "left out",
+                 filesWithPadding)});
     }
     if (filesWithStrayBits > 0) {
         warnings.push_back(
-            fmt::format("{} files have bits set above HighBit, which are no part of "
-                        "their samples: left out",
-                        filesWithStrayBits));
+            {"stray-bits", fmt::format("{} files have bits set above HighBit, which are no part of "
+                                       "their samples: left out",
+                                       filesWithStrayBits)});
     }
     return makeVolume(std::move(samples), type, geometry);
 }
@@ -217,7 +219,7 @@ Volume blend(const fs::path& input, const Volume& planes, const DicomStack& stac
 }  // namespace
 
 Volume decodeDicomStack(const fs::path& input, const std::vector<DicomFile>& files,
-                        const DicomStack& stack, std::vector<std::string>& warnings) {
+                        const DicomStack& stack, std::vector<Warning>& warnings) {
     const Volume planes = decodePlanes(input, files, stack, warnings);
     return stack.blends.empty() ? planes : blend(input, planes, stack);
 }

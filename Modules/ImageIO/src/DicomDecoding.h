@@ -7,6 +7,7 @@
 #include "DicomFile.h"
 #include "DicomStack.h"
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso::detail {
 
@@ -17,6 +18,6 @@ namespace adaptiso::detail {
 /// smallest integer type that holds all values; all else, and blending, gives a float type.
 /// \throws FileError when a file can't be decoded or memory is short
 Volume decodeDicomStack(const std::filesystem::path& input, const std::vector<DicomFile>& files,
-                        const DicomStack& stack, std::vector<std::string>& warnings);
+                        const DicomStack& stack, std::vector<Warning>& warnings);
 
 }  // namespace adaptiso::detail

@@ -258,14 +258,18 @@ DicomInput readDicomHeaders(const fs::path& folder, DamagedFiles damaged, bool k
     requireImages(folder, input, "this folder");
     if (walk.oddEntries() > 0) {
         input.warnings.push_back(
-            fmt::format("left out {} entries of the folder that are no regular files (pipes, "
-                        "links to folders, link loops)",
-                        walk.oddEntries()));
+            {"entries-left-out",
+
+             fmt::format("left out {} entries of the folder that are no regular files (pipes, "
+                         "links to folders, link loops)",
+                         walk.oddEntries())});
     }
     if (walk.compressedCopies() > 0) {
         input.warnings.push_back(
-            fmt::format("left out {} compressed files that lie beside files of the same name",
-                        walk.compressedCopies()));
+            {"copies-left-out",
+
+             fmt::format("left out {} compressed files that lie beside files of the same name",
+                         walk.compressedCopies())});
     }
     return input;
 }

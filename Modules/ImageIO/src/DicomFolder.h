@@ -5,16 +5,17 @@
 #include <vector>
 
 #include "DicomFile.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 
 namespace adaptiso::detail {
 
 /// The images that an input holds.
 struct DicomInput {
-    std::vector<DicomFile> files;       ///< with pixel data, by path
-    std::size_t otherFiles = 0;         ///< DICOM, but no images: reports, plans, DICOMDIR
-    std::vector<std::string> warnings;  ///< entries that were left out, without names
-    std::vector<DicomFault> damaged;    ///< when damaged files are to be listed
+    std::vector<DicomFile> files;     ///< with pixel data, by path
+    std::size_t otherFiles = 0;       ///< DICOM, but no images: reports, plans, DICOMDIR
+    std::vector<Warning> warnings;    ///< entries that were left out, without names
+    std::vector<DicomFault> damaged;  ///< when damaged files are to be listed
 };
 
 /// \return a FileError's message without the file's name that it begins with

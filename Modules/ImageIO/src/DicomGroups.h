@@ -7,6 +7,7 @@
 
 #include "DicomFile.h"
 #include "DicomPlanes.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso::detail {
 
@@ -48,6 +49,6 @@ std::string describeDicomGroup(const DicomGroup& group);
 std::size_t chooseDicomGroup(const std::filesystem::path& input,
                              const std::vector<DicomGroup>& groups,
                              const std::optional<std::string>& series,
-                             std::vector<std::string>& warnings);
+                             std::vector<Warning>& warnings);
 
 }  // namespace adaptiso::detail

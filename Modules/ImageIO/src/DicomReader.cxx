@@ -75,7 +75,7 @@ DicomStack stackOf(const fs::path& input, const std::vector<DicomFile>& files,
     }
     requirePlacedPlanes(files, group);
     std::vector<DicomPlane> planes = chooseVolume(input, files, group, options.volumeIndex);
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     requireAgreement(input, files, planes, warnings);
     DicomStack stack = stackDicomPlanes(input, group, std::move(planes), options.resampleSlices);
     stack.warnings.insert(stack.warnings.end(), warnings.begin(), warnings.end());
@@ -90,14 +90,14 @@ bool needsGdcm(const std::vector<DicomFile>& files, const DicomStack& stack) {
 }
 
 ReadVolume readImages(const fs::path& input, DicomInput images, const ReadOptions& options) {
-    std::vector<std::string> warnings = std::move(images.warnings);
+    std::vector<Warning> warnings = std::move(images.warnings);
     const std::vector<DicomGroup> groups = groupDicomPlanes(images.files);
     const DicomGroup& group = groups[chooseDicomGroup(input, groups, options.series, warnings)];
     const DicomStack stack = stackOf(input, images.files, group, options);
     requireUsableGeometry(input, stack.geometry);
     warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());
     const auto decode = [&] {
-        std::vector<std::string> all = warnings;
+        std::vector<Warning> all = warnings;
         Volume volume = decodeDicomStack(input, images.files, stack, all);
         return ReadVolume{std::move(volume), "DICOM", std::move(all)};
     };

@@ -79,11 +79,12 @@ std::vector<SliceBlend> blendsOf(const std::vector<double>& along, const EvenSte
     return blends;
 }
 
-std::string tiltWarning(double tiltRad) {
-    return fmt::format(
-        "the slices are tilted by {:.2f} degrees against their stack (gantry tilt): "
-        "kept as shear",
-        tiltRad * 180 / std::numbers::pi);
+Warning tiltWarning(double tiltRad) {
+    return {
+        "gantry-tilt",
+        fmt::format("the slices are tilted by {:.2f} degrees against their stack (gantry tilt): "
+                    "kept as shear",
+                    tiltRad * 180 / std::numbers::pi)};
 }
 
 }  // namespace
@@ -143,9 +144,10 @@ DicomStack stackDicomPlanes(const fs::path& input, const DicomGroup& group,
     if (!isEven) {
         even = evenSteps(input, along);
         stack.blends = blendsOf(along, even);
-        stack.warnings.push_back(fmt::format("{}: {} slices resampled to {}, {} mm apart",
-                                             describeGap(along), planes.size(), even.count,
-                                             number(even.stepMm)));
+        stack.warnings.push_back(
+            {"slices-resampled",
+             fmt::format("{}: {} slices resampled to {}, {} mm apart", describeGap(along),
+                         planes.size(), even.count, number(even.stepMm))});
     }
     const double tilt = std::acos(std::min(1.0, dot(line, normal)));
     if (std::sin(tilt) * norm(span) > kLargestMisplacementMm) {

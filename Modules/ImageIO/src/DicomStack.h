@@ -8,6 +8,7 @@
 #include "DicomFile.h"
 #include "DicomGroups.h"
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso::detail {
 
@@ -24,7 +25,7 @@ struct DicomStack {
     /// How each of the geometry's slices is made where the planes are uneven; else empty, and the
     /// planes are the slices.
     std::vector<SliceBlend> blends;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 };
 
 /// \throws FileError unless all planes of the group have a position, an orientation and a spacing

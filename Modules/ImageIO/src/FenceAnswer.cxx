@@ -45,7 +45,9 @@ std::optional<std::string> takeText(std::string_view& bytes) {
 
 std::string packFenceAnswer(const FenceAnswer& answer) {
     std::vector<std::string_view> texts{answer.message, answer.format};
-    texts.insert(texts.end(), answer.warnings.begin(), answer.warnings.end());
+    for (const Warning& warning : answer.warnings) {
+        texts.insert(texts.end(), {warning.code, warning.text});
+    }
     std::string tail;
     for (const std::string_view text : texts) appendText(tail, text);
 
@@ -73,7 +75,8 @@ std::optional<FenceAnswer> parseFenceAnswer(std::string_view bytes) {
     std::memcpy(&fixed, bytes.data(), sizeof fixed);
     if (fixed.magic != kMagic || fixed.wholeBytes != bytes.size() ||
         fixed.kind > static_cast<std::uint32_t>(FenceAnswer::Kind::UnknownError) ||
-        fixed.pixelType > static_cast<std::uint32_t>(PixelType::Float64) || fixed.textCount < 2) {
+        fixed.pixelType > static_cast<std::uint32_t>(PixelType::Float64) || fixed.textCount < 2 ||
+        fixed.textCount % 2 != 0) {
         return std::nullopt;
     }
     FenceAnswer answer;
@@ -97,8 +100,10 @@ std::optional<FenceAnswer> parseFenceAnswer(std::string_view bytes) {
             answer.message = std::move(*text);
         } else if (n == 1) {
             answer.format = std::move(*text);
+        } else if (n % 2 == 0) {
+            answer.warnings.push_back({std::move(*text), {}});
         } else {
-            answer.warnings.push_back(std::move(*text));
+            answer.warnings.back().text = std::move(*text);
         }
     }
     if (!bytes.empty()) return std::nullopt;

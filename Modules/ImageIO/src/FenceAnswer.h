@@ -8,6 +8,7 @@
 
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso::detail {
 
@@ -28,7 +29,7 @@ struct FenceAnswer {
     ImageGeometry geometry;
     std::uint64_t offset = 0, byteCount = 0;  ///< of the samples in the shared memory
     std::string format;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 };
 
 /// No longer answer is believed.

@@ -27,7 +27,7 @@ public:
     ImageGeometry geometry;
     PixelType type{};
     std::string format;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 };
 
 namespace {
@@ -171,7 +171,7 @@ PixelType ImageRegions::pixelType() const {
 const std::string& ImageRegions::format() const {
     return impl_->format;
 }
-const std::vector<std::string>& ImageRegions::warnings() const {
+const std::vector<Warning>& ImageRegions::warnings() const {
     return impl_->warnings;
 }
 bool ImageRegions::readsParts() const {

@@ -150,7 +150,7 @@ void requireImage(const fs::path& file, const MetaHeader& header) {
 
 /// intensity = slope * element + offset.
 void parseScaling(const fs::path& file, const MetaHeader& header, SampleLayout& layout,
-                  std::vector<std::string>& warnings) {
+                  std::vector<Warning>& warnings) {
     const auto slope = parseNumbers(file, header, {"ElementToIntensityFunctionSlope"}, 1);
     const auto offset = parseNumbers(file, header, {"ElementToIntensityFunctionOffset"}, 1);
     if (slope) layout.slope = slope->front();
@@ -161,10 +161,12 @@ void parseScaling(const fs::path& file, const MetaHeader& header, SampleLayout& 
     }
     layout.isScaled = layout.slope != 1 || layout.intercept != 0;
     if (!layout.isScaled) return;
-    warnings.push_back(fmt::format(
-        "values are {} x stored value + {}, as its ElementToIntensityFunction says; ITK "
-        "and programs that rest on it show the stored values",
-        number(layout.slope), number(layout.intercept)));
+    warnings.push_back(
+        {"values-scaled",
+         fmt::format(
+             "values are {} x stored value + {}, as its ElementToIntensityFunction says; ITK "
+             "and programs that rest on it show the stored values",
+             number(layout.slope), number(layout.intercept))});
 }
 
 struct Extents {
@@ -222,7 +224,7 @@ void requireScalar(const fs::path& file, const MetaHeader& header) {
 
 /// Row a of TransformMatrix is the direction of axis a; LPS mm, as ITK writes it.
 ImageGeometry geometryOf(const fs::path& file, const MetaHeader& header, const Extents& extents,
-                         std::vector<std::string>& warnings) {
+                         std::vector<Warning>& warnings) {
     const std::size_t n = extents.dimensions;
     const std::string units = lowerCase(header.find({"DistanceUnits"}).value_or("mm"));
     if (units != "mm" && units != "?") {
@@ -231,14 +233,17 @@ ImageGeometry geometryOf(const fs::path& file, const MetaHeader& header, const E
     auto spacing = parseNumbers(file, header, {"ElementSpacing"}, n);
     if (!spacing) spacing = parseNumbers(file, header, {"ElementSize"}, n);
     if (!spacing) {
-        warnings.emplace_back("no ElementSpacing: a spacing of 1 mm was used");
+        warnings.push_back({"guessed-spacing", "no ElementSpacing: a spacing of 1 mm was used"});
         spacing.emplace(n, 1.0);
     }
     const auto matrix =
         parseNumbers(file, header, {"TransformMatrix", "Rotation", "Orientation"}, n * n);
-    if (!matrix) warnings.emplace_back("no TransformMatrix: the axes were taken as LPS");
+    if (!matrix)
+        warnings.push_back(
+            {"guessed-orientation", "no TransformMatrix: the axes were taken as LPS"});
     const auto origin = parseNumbers(file, header, {"Offset", "Origin", "Position"}, n);
-    if (!origin) warnings.emplace_back("no Offset: the first voxel was put at 0, 0, 0");
+    if (!origin)
+        warnings.push_back({"guessed-position", "no Offset: the first voxel was put at 0, 0, 0"});
 
     ImageGeometry geometry{extents.size, {}, {}};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -349,7 +354,7 @@ ReadVolume readMetaImage(const fs::path& file, const ReadOptions& options) {
     const Extents extents = parseExtents(file, header);
     requireScalar(file, header);
     const std::string_view type = header.require(file, "ElementType");
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     SampleLayout layout{parseType(file, type)};
     layout.volumeCount = extents.volumeCount;
     layout.volumeIndex = chooseVolume(file, extents.volumeCount, options);

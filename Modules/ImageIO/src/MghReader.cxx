@@ -38,7 +38,7 @@ PixelType pixelTypeOfCode(const fs::path& file, std::int32_t code) {
 
 /// vox2ras: Mdc times spacing; c_ras is the centre, voxel size / 2 (mghRead).
 ImageGeometry geometryOf(const HeaderBytes& bytes, const Index3& size,
-                         std::vector<std::string>& warnings) {
+                         std::vector<Warning>& warnings) {
     Mat3 ras{{{{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}}}};  // FreeSurfer's default: coronal, 1 mm
     Vec3 centre;
     if (bytes.at<std::int16_t>(28) > 0) {
@@ -50,9 +50,9 @@ ImageGeometry geometryOf(const HeaderBytes& bytes, const Index3& size,
             centre[axis] = bytes.at<float>(78 + 4 * axis);
         }
     } else {
-        warnings.emplace_back(
-            "the file says that its orientation is not known; FreeSurfer's "
-            "default (coronal, 1 mm) was taken");
+        warnings.push_back({"guessed-orientation",
+                            "the file says that its orientation is not known; FreeSurfer's "
+                            "default (coronal, 1 mm) was taken"});
     }
     const Vec3 half{static_cast<double>(size[0]) / 2, static_cast<double>(size[1]) / 2,
                     static_cast<double>(size[2]) / 2};
@@ -120,7 +120,7 @@ ReadVolume readMgh(const fs::path& file, const ReadOptions& options) {
     SampleLayout layout{pixelTypeOfCode(file, bytes.at<std::int32_t>(20)), std::endian::big};
     layout.volumeCount = frames;
     layout.volumeIndex = chooseVolume(file, frames, options);
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     const ImageGeometry geometry = geometryOf(bytes, size, warnings);
     Volume volume = readSamples(file, source, layout, geometry, options);
 
@@ -131,7 +131,8 @@ ReadVolume readMgh(const fs::path& file, const ReadOptions& options) {
     if (footer == Footer::None || mayBeImage) {
         checkTail(file, tail, extent, false, warnings);
     } else if (footer == Footer::CutOff) {
-        warnings.emplace_back("the notes that follow its image (MGH footer) are cut off");
+        warnings.push_back(
+            {"footer-cut-off", "the notes that follow its image (MGH footer) are cut off"});
     }
     return {std::move(volume), "MGH", std::move(warnings)};
 }

@@ -300,7 +300,7 @@ double largestCornerDistance(const ImageGeometry& a, const ImageGeometry& b) {
 
 /// The sform's voxel size is taken, as nibabel and FreeSurfer do; ANALYZE's heirs take pixdim's.
 void compareVoxelSizes(const fs::path& file, const NiftiHeader& h, const ImageGeometry& geometry,
-                       double scale, std::vector<std::string>& warnings) {
+                       double scale, std::vector<Warning>& warnings) {
     constexpr double kSame = 0.01;   // registered images may be stretched; less is rounding
     constexpr double kAbsurd = 100;  // another unit, no brain's
     std::array<double, 3> steps{}, said{};
@@ -320,15 +320,15 @@ void compareVoxelSizes(const fs::path& file, const NiftiHeader& h, const ImageGe
         refuse(file, "its header contradicts itself: " + sizes,
                "correct the sform or pixdim; one may be in another unit");
     }
-    warnings.push_back(sizes + "; the sform was taken");
+    warnings.push_back({"pixdim-sform-differ", sizes + "; the sform was taken"});
 }
 
 ImageGeometry geometryOf(const fs::path& file, const NiftiHeader& h, const Index3& size,
-                         std::vector<std::string>& warnings) {
+                         std::vector<Warning>& warnings) {
     const double scale = millimetresPerUnit(file, h.units);
     if (scale != 1) {
-        warnings.push_back(
-            fmt::format("lengths are in {}, turned into mm", scale > 1 ? "metres" : "microns"));
+        warnings.push_back({"unit-converted", fmt::format("lengths are in {}, turned into mm",
+                                                          scale > 1 ? "metres" : "microns")});
     }
     if (h.sformCode > 0) {
         const ImageGeometry geometry = toLpsMm(sformAffine(h), scale, size);
@@ -338,19 +338,19 @@ ImageGeometry geometryOf(const fs::path& file, const NiftiHeader& h, const Index
             const double apart =
                 largestCornerDistance(geometry, toLpsMm(qformAffine(file, h), scale, size));
             if (!(apart <= 0.05)) {
-                warnings.push_back(
-                    fmt::format("qform and sform differ by up to {} mm; the sform "
-                                "was taken",
-                                number(apart)));
+                warnings.push_back({"qform-sform-differ",
+                                    fmt::format("qform and sform differ by up to {} mm; the sform "
+                                                "was taken",
+                                                number(apart))});
             }
         }
         return geometry;
     }
     if (h.qformCode > 0) return toLpsMm(qformAffine(file, h), scale, size);
-    warnings.emplace_back(
-        "neither sform nor qform: orientation and position are unknown, "
-        "left-posterior-superior order was NOT checked; the voxel size alone was "
-        "used");
+    warnings.push_back({"guessed-orientation",
+                        "neither sform nor qform: orientation and position are unknown, "
+                        "left-posterior-superior order was NOT checked; the voxel size alone was "
+                        "used"});
     return toLpsMm(spacingAffine(file, h, size), scale, size);
 }
 
@@ -392,16 +392,16 @@ std::uint64_t requireDataOffset(const fs::path& file, const NiftiHeader& h) {
     return static_cast<std::uint64_t>(h.dataOffset);
 }
 
-SampleLayout layoutOf(const fs::path& file, const NiftiHeader& h,
-                      std::vector<std::string>& warnings) {
+SampleLayout layoutOf(const fs::path& file, const NiftiHeader& h, std::vector<Warning>& warnings) {
     SampleLayout layout{pixelTypeOfCode(file, h), h.byteOrder};
     // slope 0 or NaN means "no scaling": nifti1.h and, for NaN, what nibabel and SPM write
     if (h.slope == 0 || std::isnan(h.slope)) {
         if (std::isfinite(h.intercept) && h.intercept != 0) {
             warnings.push_back(
-                fmt::format("scl_inter is {} but scl_slope {}, which means no scaling: the stored "
-                            "values were taken",
-                            number(h.intercept), number(h.slope)));
+                {"scaling-ignored",
+                 fmt::format("scl_inter is {} but scl_slope {}, which means no scaling: the stored "
+                             "values were taken",
+                             number(h.intercept), number(h.slope))});
         }
         return layout;
     }
@@ -428,7 +428,7 @@ ReadVolume readNifti(const fs::path& input, const ReadOptions& options) {
         isImgName(input) ? partner(input, {".hdr", ".HDR", ".hdr.gz"}) : input;
     const NiftiHeader header = readHeader(headerFile);
     const Extents extents = extentsOf(headerFile, header);
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     SampleLayout layout = layoutOf(headerFile, header, warnings);
     layout.volumeCount = extents.volumeCount;
     layout.volumeIndex = chooseVolume(headerFile, extents.volumeCount, options);

@@ -155,12 +155,13 @@ Vec3 parseSpacings(const fs::path& file, const NrrdHeader& header, const NrrdAxe
 }
 
 ImageGeometry spacedGeometry(const fs::path& file, const NrrdHeader& header, const NrrdAxes& axes,
-                             std::vector<std::string>& warnings) {
+                             std::vector<Warning>& warnings) {
     const Vec3 spacing = parseSpacings(file, header, axes);
-    warnings.push_back(
-        fmt::format("no space field: orientation and position are unknown; {} "
-                    "used along left, posterior, superior",
-                    header.find("spacings") ? "the spacings alone were" : "a spacing of 1 mm was"));
+    warnings.push_back({"guessed-orientation",
+                        fmt::format("no space field: orientation and position are unknown; {} "
+                                    "used along left, posterior, superior",
+                                    header.find("spacings") ? "the spacings alone were"
+                                                            : "a spacing of 1 mm was")});
     return {axes.size, {}, Mat3::diagonal(spacing.x, spacing.y, spacing.z)};
 }
 
@@ -296,7 +297,7 @@ NrrdAxes axesOf(const fs::path& file, const NrrdHeader& header) {
 }
 
 ImageGeometry geometryOf(const fs::path& file, const NrrdHeader& header, const NrrdAxes& axes,
-                         std::vector<std::string>& warnings) {
+                         std::vector<Warning>& warnings) {
     const auto space = header.find("space");
     if (!space) {
         if (header.find("spacedirections") || header.find("spacedimension")) {
@@ -309,7 +310,7 @@ ImageGeometry geometryOf(const fs::path& file, const NrrdHeader& header, const N
     }
     const Mat3 toLps = spaceToLps(file, *space);
     const double scale = millimetresPerUnit(file, header.find("spaceunits").value_or(""));
-    if (scale != 1) warnings.emplace_back("space units were turned into mm");
+    if (scale != 1) warnings.push_back({"unit-converted", "space units were turned into mm"});
 
     const auto directions =
         parseVectors(file, "space directions", header.require(file, "spacedirections"));
@@ -327,7 +328,8 @@ ImageGeometry geometryOf(const fs::path& file, const NrrdHeader& header, const N
     }
     const auto text = header.find("spaceorigin");
     if (!text) {
-        warnings.emplace_back("no space origin: the first voxel was put at 0, 0, 0");
+        warnings.push_back(
+            {"guessed-position", "no space origin: the first voxel was put at 0, 0, 0"});
         return geometry;
     }
     const auto origin = parseVectors(file, "space origin", *text);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 
 /// A NRRD file's text header, after teem.sourceforge.net/nrrd/format.html.
 namespace adaptiso::detail {
@@ -41,6 +42,6 @@ NrrdHeader readNrrdHeader(const std::filesystem::path& file);
 PixelType pixelTypeOf(const std::filesystem::path& file, const NrrdHeader& header);
 NrrdAxes axesOf(const std::filesystem::path& file, const NrrdHeader& header);
 ImageGeometry geometryOf(const std::filesystem::path& file, const NrrdHeader& header,
-                         const NrrdAxes& axes, std::vector<std::string>& warnings);
+                         const NrrdAxes& axes, std::vector<Warning>& warnings);
 
 }  // namespace adaptiso::detail

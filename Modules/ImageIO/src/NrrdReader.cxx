@@ -106,7 +106,7 @@ ReadVolume readNrrd(const fs::path& file, const ReadOptions& options) {
     layout.volumeIndex = chooseVolume(file, axes.volumeCount, options);
     layout.isInterleaved = axes.volumeAxis == 0U;
     const std::uint64_t volumeBytes = requireImageBytes(file, axes.size, layout.stored);
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     const ImageGeometry geometry = geometryOf(file, header, axes, warnings);
     requireUsableGeometry(file, geometry);
 

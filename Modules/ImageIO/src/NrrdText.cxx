@@ -99,7 +99,7 @@ void readWords(const fs::path& file, WordStream& stream, std::int64_t count, T* 
 }  // namespace
 
 Volume readNrrdText(const fs::path& file, ByteSource& source, PixelType type,
-                    const ImageGeometry& geometry, std::vector<std::string>& warnings) {
+                    const ImageGeometry& geometry, std::vector<Warning>& warnings) {
     requireUsableGeometry(file, geometry);
     const std::int64_t count = geometry.voxelCount();
     const std::uint64_t byteCount = requireImageBytes(file, geometry.size, type);
@@ -122,8 +122,10 @@ Volume readNrrdText(const fs::path& file, ByteSource& source, PixelType type,
                "correct the header's sizes, or cut the file to one image");
     }
     if (more > 0) {
-        warnings.push_back(fmt::format(
-            "{} words follow the image that its header describes; they were left out", more));
+        warnings.push_back(
+            {"trailing-bytes",
+             fmt::format("{} words follow the image that its header describes; they were left out",
+                         more)});
     }
     return makeVolume(std::move(samples), type, geometry);
 }

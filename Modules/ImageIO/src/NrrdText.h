@@ -6,6 +6,7 @@
 
 #include "ByteSource.h"
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso::detail {
 
@@ -16,6 +17,6 @@ namespace adaptiso::detail {
 /// \throws FileError  numbers are missing, one is no number or none of this type (300 for 8 bits,
 ///         1.5 for integers, 1e99 for float), or as many more follow as more slices would have
 Volume readNrrdText(const std::filesystem::path& file, ByteSource& source, PixelType type,
-                    const ImageGeometry& geometry, std::vector<std::string>& warnings);
+                    const ImageGeometry& geometry, std::vector<Warning>& warnings);
 
 }  // namespace adaptiso::detail

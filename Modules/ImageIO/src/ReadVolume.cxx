@@ -56,9 +56,10 @@ void warnOfOddSamples(ReadVolume& read) {
             // where no voxel is a number there is no isovalue either, and the caller says so
             if (count > 0 && count < view.geometry.voxelCount()) {
                 read.warnings.push_back(
-                    fmt::format("{} of its voxels hold no finite number (NaN or infinity); NaN "
-                                "counts as outside",
-                                count));
+                    {"not-finite",
+                     fmt::format("{} of its voxels hold no finite number (NaN or infinity); NaN "
+                                 "counts as outside",
+                                 count)});
             }
         } else if constexpr (sizeof(T) == 8) {
             const auto count = countVoxels(view, [](T value) {
@@ -67,9 +68,11 @@ void warnOfOddSamples(ReadVolume& read) {
             });
             if (count > 0) {
                 read.warnings.push_back(
-                    fmt::format("{} of its voxels hold integers beyond 2^53, which isovalues can't "
-                                "tell apart",
-                                count));
+                    {"large-integers",
+                     fmt::format(
+                         "{} of its voxels hold integers beyond 2^53, which isovalues can't "
+                         "tell apart",
+                         count)});
             }
         }
     });

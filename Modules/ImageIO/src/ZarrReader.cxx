@@ -118,15 +118,17 @@ ImageGeometry geometryOf(const fs::path& root, const ZarrArray& array, const Zar
         geometry.originMm[of] = toMm * scene.shift[n];
     }
     if (scene.axes.empty()) {
-        scene.warnings.emplace_back(
-            "an array says neither the size of its voxels nor where they lie; 1 mm was taken");
+        scene.warnings.push_back({"guessed-spacing",
+                                  "an array says neither the size of its voxels nor where "
+                                  "they lie; 1 mm was taken"});
     } else if (!hasUnits && hasUnit) {
         refuse(root, "some of its axes in space have a unit, others none", "repair the metadata");
     } else if (!hasUnits) {
-        scene.warnings.emplace_back("its axes have no unit; millimetres were taken");
+        scene.warnings.push_back({"guessed-unit", "its axes have no unit; millimetres were taken"});
     }
-    scene.warnings.emplace_back(
-        "the format names no anatomical directions: x, y and z were taken for LPS");
+    scene.warnings.push_back(
+        {"guessed-orientation",
+         "the format names no anatomical directions: x, y and z were taken for LPS"});
     return geometry;
 }
 
@@ -481,7 +483,8 @@ ReadVolume readZarr(const fs::path& folder, const ReadOptions& options) {
         if (options.refusesMissingChunks) {
             refuse(folder, text, "get the whole dataset, or leave --refuse-missing-chunks out");
         }
-        image.scene.warnings.push_back(text + "; the fill value stands for them");
+        image.scene.warnings.push_back(
+            {"missing-chunks", text + "; the fill value stands for them"});
     }
     return {std::move(part.volume), image.format(), std::move(image.scene.warnings)};
 }

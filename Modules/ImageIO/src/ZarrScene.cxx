@@ -108,7 +108,8 @@ ZarrScene sceneOf(const fs::path& file, const ZarrJson& multiscales, const std::
     scene.format = "OME-Zarr " + version;
     if (multiscales.size() > 1) {
         scene.warnings.push_back(
-            fmt::format("it holds {} images; the first was taken", multiscales.size()));
+            {"first-image-taken",
+             fmt::format("it holds {} images; the first was taken", multiscales.size())});
     }
     for (const ZarrJson& axis : memberOf(image, "axes")) scene.axes.push_back(axisOf(file, axis));
     if (scene.axes.empty()) refuseMetadata(file, "multiscales has no axes");

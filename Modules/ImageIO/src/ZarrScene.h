@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ZarrStore.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso::detail {
 
@@ -26,7 +27,7 @@ struct ZarrScene {
     std::vector<ZarrAxis> axes;        ///< of its dimensions; empty: nothing says what they are
     std::vector<double> scale, shift;  ///< of each dimension, in its units: scale * index + shift
     std::int64_t levels = 1;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 };
 
 /// What lies at the root of a store: an array, the multiscales of an OME-Zarr of version 0.4 or

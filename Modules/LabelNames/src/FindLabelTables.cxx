@@ -132,7 +132,7 @@ bool hasAllColors(const LabelTable& table) {
 
 FoundLabelTables findLabelTables(const fs::path& image) {
     FoundLabelTables found;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     std::vector<fs::path> candidates = ownNames(image);
     for (fs::path& path : inheritedTables(image)) candidates.push_back(std::move(path));
     for (const fs::path& path : candidates) {
@@ -144,9 +144,7 @@ FoundLabelTables findLabelTables(const fs::path& image) {
                                       ? !hasNames(found.table)
                                       : found.table.entries.empty() || !hasAllColors(found.table);
             if (!isUseful) continue;
-            for (const std::string& warning : table.warnings) {
-                warnings.push_back(path.filename().string() + ": " + warning);
-            }
+            addWarnings(warnings, table.warnings, path.filename().string());
             addTo(found.table, std::move(table));
             found.files.push_back(path);
         } catch (const NoLabelTable&) {
@@ -154,10 +152,11 @@ FoundLabelTables findLabelTables(const fs::path& image) {
         } catch (const FileError& fault) {
             // the file's own name, without folders: what is told may be passed on
             const std::string said = fault.what(), whole = path.string();
-            warnings.push_back("its names are not used: " +
-                               (said.starts_with(whole)
-                                    ? path.filename().string() + said.substr(whole.size())
-                                    : said));
+            warnings.push_back(
+                {"names-not-used",
+                 "its names are not used: " +
+                     (said.starts_with(whole) ? path.filename().string() + said.substr(whole.size())
+                                              : said)});
         }
         if (hasNames(found.table) && hasAllColors(found.table)) break;
     }

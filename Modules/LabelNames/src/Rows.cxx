@@ -136,10 +136,11 @@ LabelTable Collector::finish() {
     if (table_.entries.empty()) damaged("it lists no label");
     if (repeats_ > 0) {
         table_.warnings.push_back(
-            (repeats_ == 1 ? "label " + std::to_string(firstRepeat_) + " is listed twice"
-                           : std::to_string(repeats_) + " labels are listed twice, " +
-                                 std::to_string(firstRepeat_) + " among them") +
-            " with different names or colours; the first counts");
+            {"label-listed-twice",
+             (repeats_ == 1 ? "label " + std::to_string(firstRepeat_) + " is listed twice"
+                            : std::to_string(repeats_) + " labels are listed twice, " +
+                                  std::to_string(firstRepeat_) + " among them") +
+                 " with different names or colours; the first counts"});
     }
     std::ranges::sort(table_.entries, {}, &LabelEntry::value);
     return std::move(table_);

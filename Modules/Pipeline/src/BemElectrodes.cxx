@@ -42,10 +42,11 @@ void guessUnit(PointFile& file, const std::string& name, BemModel& model) {
     const double mm = radius <= kMostMetres ? 1000 : radius <= kMostCentimetres ? 10 : 1;
     for (NamedPoint& p : file.points) p.point = mm * p.point;
     file.saysUnit = true;
-    model.warnings.push_back(name + " does not say its unit; taken for " +
-                             (mm == 1000 ? "m"
-                              : mm == 10 ? "cm"
-                                         : "mm"));
+    model.warnings.push_back({"guessed-unit",
+                              "does not say its unit; taken for " + (mm == 1000 ? "m"
+                                                                     : mm == 10 ? "cm"
+                                                                                : "mm"),
+                              name});
 }
 
 /// Of tkRAS the volume whose FreeSurfer files are written; without one these are in scanner RAS.
@@ -64,14 +65,17 @@ void guess(BemModel& model, BemElectrodes& placed) {
     const GuessedLandmarks guessed = guessLandmarks(model.meshes[innerSkull], model.meshes.back());
     placed.landmarks = guessed.landmarks;
     if (!placed.landmarks) {
-        model.warnings.push_back("nasion and ears can't be guessed: " + guessed.reason);
+        model.warnings.push_back(
+            {"landmarks-unknown", "nasion and ears can't be guessed: " + guessed.reason});
         return;
     }
     placed.landmarkOrigin = "guessed";
-    model.warnings.push_back("nasion and ears were guessed by the shape of the head: nasion to " +
-                             formatShort(placed.landmarks->nasionUncertaintyMm) + " mm, ears to " +
-                             formatShort(placed.landmarks->earUncertaintyMm) +
-                             " mm; give them where that matters");
+    model.warnings.push_back(
+        {"guessed-landmarks", "nasion and ears were guessed by the shape of the head: nasion to " +
+                                  formatShort(placed.landmarks->nasionUncertaintyMm) +
+                                  " mm, ears to " +
+                                  formatShort(placed.landmarks->earUncertaintyMm) +
+                                  " mm; give them where that matters"});
 }
 
 /// The file's points in the model's space.
@@ -100,8 +104,9 @@ std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
                               (file.frameName.empty() ? "" : " (frame " + file.frameName + ")"));
     } else {
         move = toLps(CoordinateFrame::Ras, model);
-        model.warnings.push_back(options.fileName +
-                                 " does not say its coordinate frame; taken for RAS mm");
+        model.warnings.push_back({"guessed-frame",
+                                  "does not say its coordinate frame; taken for RAS mm",
+                                  options.fileName});
     }
     for (NamedPoint& p : file.points) p.point = move(p.point);
     return file.points;

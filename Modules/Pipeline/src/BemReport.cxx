@@ -206,7 +206,7 @@ Report bemReport(const BemModel& model,
     addNotes(model.plausibility, report);
     if (!model.checks.empty()) report.tables.push_back(surfaceTable(model));
     if (!files.empty()) report.tables.push_back(fileTable(files));
-    report.warnings = model.warnings;
+    report.warnings = linesOf(model.warnings);
     report.notes = model.notes;
     if (!model.hasModel() && !model.meshes.empty()) {
         report.notes.push_back(

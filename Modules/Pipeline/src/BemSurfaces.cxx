@@ -148,8 +148,9 @@ void warnOfMany(BemModel& model) {
     std::int64_t vertices = 0;
     for (const TriangleMesh& surface : model.meshes) vertices += std::ssize(surface.points);
     if (vertices <= kManyVertices) return;
-    model.warnings.push_back(formatCount(vertices) +
-                             " vertices in all; MNE warns above 10,000; ask for fewer");
+    model.warnings.push_back(
+        {"many-vertices",
+         formatCount(vertices) + " vertices in all; MNE warns above 10,000; ask for fewer"});
 }
 
 /// The skin as it was found, and the model's with few triangles.

@@ -61,7 +61,7 @@ Json soundnessJson(const SurfaceRecord& surface) {
 }  // namespace
 
 Json imageJson(const std::string& format, const ImageGeometry& geometry, PixelType pixelType,
-               const ValueRange& range, const std::vector<std::string>& warnings) {
+               const ValueRange& range, const std::vector<Warning>& warnings) {
     Json json{{"format", format}};
     json.update(geometryJson(geometry));
     json["pixelType"] = toString(pixelType);

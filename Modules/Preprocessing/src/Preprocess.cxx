@@ -31,16 +31,18 @@ std::size_t countDistinct(const VolumeView& volume, std::size_t most) {
 }
 
 void warnOfBlendedLabels(const VolumeView& volume, const PreprocessOptions& options,
-                         std::vector<std::string>& warnings) {
+                         std::vector<Warning>& warnings) {
     constexpr std::size_t kFewest = 3, kMost = 100;  // two are a mask, which blends well
     const bool resamplesBlending =
         options.resampleMm && options.interpolation != Interpolation::Nearest;
     if (!options.smoothSigmaMm && !resamplesBlending) return;
     const std::size_t count = countDistinct(volume, kMost);
     if (count < kFewest || count > kMost) return;
-    warnings.push_back("the image holds " + std::to_string(count) +
-                       " different whole numbers only: if they are labels, blending them gives "
-                       "others in between; resample labels with nearest interpolation, unsmoothed");
+    warnings.push_back(
+        {"blended-labels",
+         "the image holds " + std::to_string(count) +
+             " different whole numbers only: if they are labels, blending them gives "
+             "others in between; resample labels with nearest interpolation, unsmoothed"});
 }
 
 /// Some of the grid lies beyond the outermost voxels of the image, which is convex.
@@ -72,7 +74,7 @@ Volume take(PreprocessStep step, Work&& work) {
 }  // namespace
 
 Preprocessed preprocess(Volume volume, const PreprocessOptions& options) {
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     if (options.crop) {
         volume = take(PreprocessStep::Crop, [&] { return cropVolume(volume, *options.crop); });
     }
@@ -87,9 +89,10 @@ Preprocessed preprocess(Volume volume, const PreprocessOptions& options) {
             return resampleVolume(volume, *options.resampleMm, options.interpolation);
         });
         if (leavesImage(volume.view().geometry(), before)) {
-            warnings.push_back(
-                "the image's axes are not at right angles; resampling made them so, and filled "
-                "what lies around the image with its smallest value");
+            warnings.push_back({"resample-filled",
+                                "the image's axes are not at right angles; resampling made "
+                                "them so, and filled "
+                                "what lies around the image with its smallest value"});
         }
     }
     return {std::move(volume), std::move(warnings)};

@@ -130,8 +130,8 @@ TEST(BoundariesFromT1, WarnsWhereABrainLacksAPart) {
     const HeadBoundaries found = boundariesFromT1({t1.data(), head.geometry},
                                                   VolumeView{mask.data(), head.geometry}, options);
     EXPECT_TRUE(
-        std::any_of(found.warnings.begin(), found.warnings.end(), [](const std::string& text) {
-            return text.find("as bright as brain") != std::string::npos;
+        std::any_of(found.warnings.begin(), found.warnings.end(), [](const Warning& warning) {
+            return warning.text.find("as bright as brain") != std::string::npos;
         }));
 }
 
@@ -359,8 +359,8 @@ TEST(BoundariesFromT1, TellWhenTheSkullIsHardlySeen) {
     const HeadBoundaries found = boundariesFromT1({t1.data(), head.geometry},
                                                   VolumeView(mask.data(), head.geometry), options);
     ASSERT_EQ(found.warnings.size(), 2u);
-    EXPECT_NE(found.warnings[0].find("as bright as brain"), std::string::npos);
-    EXPECT_NE(found.warnings[1].find("skull shows on only"), std::string::npos);
+    EXPECT_NE(found.warnings[0].text.find("as bright as brain"), std::string::npos);
+    EXPECT_NE(found.warnings[1].text.find("skull shows on only"), std::string::npos);
 }
 
 TEST(BoundariesFromT1, SinglePointsThatAreNoTissueChangeLittle) {

@@ -88,7 +88,7 @@ const std::vector<Format>& formats() {
 }
 
 bool mentions(const ReadVolume& read, std::string_view text) {
-    return std::ranges::any_of(read.warnings, [&](const std::string& line) {
+    return std::ranges::any_of(linesOf(read.warnings), [&](const std::string& line) {
         return line.find(text) != std::string::npos;
     });
 }
@@ -97,7 +97,7 @@ void expectRead(const fs::path& file, std::string_view warning = "") {
     const ReadVolume read = readVolume(file);
     EXPECT_EQ(samplesIn<std::int16_t>(read.volume), samples()) << file;
     if (warning.empty()) {
-        EXPECT_TRUE(read.warnings.empty()) << file << ": " << read.warnings.front();
+        EXPECT_TRUE(read.warnings.empty()) << file << ": " << read.warnings.front().text;
     } else {
         EXPECT_TRUE(mentions(read, warning)) << file << " without '" << warning << "'";
     }

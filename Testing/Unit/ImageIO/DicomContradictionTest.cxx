@@ -42,8 +42,7 @@ void expectFault(std::string_view fault, const Change& change,
 }
 
 /// Reads the series as the field it is; the warnings.
-std::vector<std::string> warningsOf(const Change& change,
-                                    const char* syntax = kExplicitLittleEndian) {
+std::vector<Warning> warningsOf(const Change& change, const char* syntax = kExplicitLittleEndian) {
     const TempFolder folder;
     writeSeries(folder, change, syntax);
     const ReadVolume read = readVolume(folder.path());
@@ -87,7 +86,8 @@ TEST(DicomMorePixels, PaddingIsNone) {
     EXPECT_TRUE(warningsOf(kUnchanged).empty());
     const auto padded = warningsOf([](DicomBuilder& image, int k) { append(image, k, "\7\7"); });
     ASSERT_EQ(padded.size(), 1U);
-    EXPECT_NE(padded[0].find("5 files hold a few bytes more of pixel data"), std::string::npos);
+    EXPECT_NE(padded[0].text.find("5 files hold a few bytes more of pixel data"),
+              std::string::npos);
     const auto block =
         warningsOf([](DicomBuilder& image, int k) { append(image, k, std::string(2048, '\0')); });
     EXPECT_EQ(block.size(), 1U);
@@ -219,7 +219,7 @@ TEST(DicomAgreement, SignedAndUnsignedSlicesAreReadAsTheySayWithAWarning) {
         if (k == 1) image.us(0x00280103, 1);
     });
     ASSERT_EQ(warnings.size(), 1U);
-    EXPECT_NE(warnings[0].find("signed samples and some unsigned"), std::string::npos);
+    EXPECT_NE(warnings[0].text.find("signed samples and some unsigned"), std::string::npos);
 }
 
 TEST(DicomAgreement, ARescaleThatMakesValuesInfiniteIsRefused) {
@@ -258,7 +258,7 @@ TEST(DicomCompressedSlice, ACopyBesideItsSliceIsLeftOutWithAWarning) {
     const ReadVolume read = readVolume(folder.path());
     expectField(read.volume, tellTale);
     ASSERT_EQ(read.warnings.size(), 1U);
-    EXPECT_NE(read.warnings[0].find("left out 1 compressed file"), std::string::npos);
+    EXPECT_NE(read.warnings[0].text.find("left out 1 compressed file"), std::string::npos);
 }
 
 TEST(DicomCompressedSlice, OtherCompressedFilesAreNone) {

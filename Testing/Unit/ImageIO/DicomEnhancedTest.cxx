@@ -94,7 +94,8 @@ TEST(DicomEnhanced, TiltedFramesKeepTheirShear) {
     const ReadVolume read = readVolume(writeFile(folder / "x", image.file()));
     expectField(read.volume, tellTale, 0.5);  // samples are rounded
     ASSERT_EQ(read.warnings.size(), 1U);
-    EXPECT_NE(read.warnings[0].find("36.87 degrees"), std::string::npos) << read.warnings[0];
+    EXPECT_NE(read.warnings[0].text.find("36.87 degrees"), std::string::npos)
+        << read.warnings[0].text;
 }
 
 TEST(DicomEnhanced, RescaleIsTakenFromEveryFrameElseFromTheSharedGroupElseFromTheTop) {

@@ -35,9 +35,10 @@ std::int64_t slicesOf(const ReadVolume& read) {
     return read.volume.view().geometry().size[2];
 }
 
-bool mentions(const std::vector<std::string>& lines, std::string_view text) {
-    return std::ranges::any_of(
-        lines, [&](const std::string& line) { return line.find(text) != std::string::npos; });
+bool mentions(const std::vector<Warning>& warnings, std::string_view text) {
+    return std::ranges::any_of(warnings, [&](const Warning& warning) {
+        return warning.text.find(text) != std::string::npos;
+    });
 }
 
 TEST(DicomFolders, AreSearchedInTheirSubfolders) {

@@ -101,7 +101,7 @@ TEST(DicomBits, WhatElseIsAboveIsTakenOffWithAWarning) {
     const ReadVolume read = readVolume(folder.path());
     EXPECT_EQ(firstSlice<std::uint16_t>(read)[0], 0x0FFF);
     ASSERT_EQ(read.warnings.size(), 1U);
-    EXPECT_NE(read.warnings[0].find("2 files have bits set above HighBit"), std::string::npos);
+    EXPECT_NE(read.warnings[0].text.find("2 files have bits set above HighBit"), std::string::npos);
 }
 
 TEST(DicomBits, EightBitsAreReadInEveryByteOrder) {

@@ -47,7 +47,8 @@ TEST(ResampleSlices, ALinearFieldComesBackExactly) {
                    {1, 2, 3 + heights.back()}, 1e-9);
         expectField(volume, tellTale, 0.01);  // float32 of values near 3e4: 0.002
         ASSERT_EQ(read.warnings.size(), 1U);
-        EXPECT_NE(read.warnings[0].find("resampled to"), std::string::npos) << read.warnings[0];
+        EXPECT_NE(read.warnings[0].text.find("resampled to"), std::string::npos)
+            << read.warnings[0].text;
     }
 }
 

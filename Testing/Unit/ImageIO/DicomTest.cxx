@@ -53,7 +53,8 @@ TEST(DicomSeries, KeepsGantryTiltAsShear) {
     expectNear(g.indexToPhysical.column[2], {0, 0, 5}, 1e-15);
     ASSERT_EQ(result.warnings.size(), 1U);
     // normal (0, -0.6, 0.8), step along z: acos(0.8) = 36.87 degrees
-    EXPECT_NE(result.warnings[0].find("36.87 degrees"), std::string::npos) << result.warnings[0];
+    EXPECT_NE(result.warnings[0].text.find("36.87 degrees"), std::string::npos)
+        << result.warnings[0].text;
 }
 
 TEST(DicomSeries, RefusesAMissingSliceAndNamesTheGap) {
@@ -268,7 +269,7 @@ TEST(DicomFolder, PipesAreLeftOutAndBrokenLinksRefused) {
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
     const ReadVolume result = readVolume(folder.path());
     ASSERT_EQ(result.warnings.size(), 1U);
-    EXPECT_NE(result.warnings[0].find("1 entries"), std::string::npos);
+    EXPECT_NE(result.warnings[0].text.find("1 entries"), std::string::npos);
     std::filesystem::create_symlink("nowhere", folder / "annexed.dcm");
     EXPECT_NE(refusalOf(folder.path()).find("no existing file"), std::string::npos);
 }

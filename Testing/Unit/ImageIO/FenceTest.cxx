@@ -39,7 +39,9 @@ const ImageGeometry kGeometry{{4, 3, 2}, {1, 2, 3}, Mat3{{{{2, 0, 0}, {0.5, 3, 0
 ReadVolume made(const std::shared_ptr<std::byte[]>& samples) {
     const auto values = countingSamples<std::int16_t>(24);
     std::memcpy(samples.get(), values.data(), 48);
-    return {detail::makeVolume(samples, PixelType::Int16, kGeometry), "DICOM", {"one", "two"}};
+    return {detail::makeVolume(samples, PixelType::Int16, kGeometry),
+            "DICOM",
+            {{"odd-one", "one"}, {"odd-two", "two"}}};
 }
 
 /// The message of the FileError; fails the test when there is none.
@@ -70,7 +72,7 @@ TEST(Fence, HandsTheVolumeBackWhole) {
     EXPECT_EQ(samplesIn<std::int16_t>(result.volume), countingSamples<std::int16_t>(24));
     EXPECT_EQ(result.volume.view().geometry(), kGeometry);
     EXPECT_EQ(result.format, "DICOM");
-    EXPECT_EQ(result.warnings, (std::vector<std::string>{"one", "two"}));
+    EXPECT_EQ(result.warnings, (std::vector<Warning>{{"odd-one", "one"}, {"odd-two", "two"}}));
     expectNoChildLeft();
 }
 
@@ -254,9 +256,14 @@ TEST(Fence, BelievesNoGarbage) {
 }
 
 TEST(FenceAnswer, ParsesOnlyWholeAnswers) {
-    const FenceAnswer told{
-        FenceAnswer::Kind::Volume, "", PixelType::Float64, kGeometry, 4096, 192, "DICOM",
-        {"tilted", "odd"}};
+    const FenceAnswer told{FenceAnswer::Kind::Volume,
+                           "",
+                           PixelType::Float64,
+                           kGeometry,
+                           4096,
+                           192,
+                           "DICOM",
+                           {{"gantry-tilt", "tilted"}, {"stray-bits", "odd"}}};
     const std::string bytes = packFenceAnswer(told);
     const auto parsed = detail::parseFenceAnswer(bytes);
     ASSERT_TRUE(parsed);

@@ -40,7 +40,7 @@ TEST(Mgh, UnknownOrientationIsWarned) {
     const TempFolder folder;
     const ReadVolume result = readVolume(writeFile(folder / "x.mgh", mghFile(0)));
     ASSERT_EQ(result.warnings.size(), 1U);
-    EXPECT_NE(result.warnings[0].find("orientation is not known"), std::string::npos);
+    EXPECT_NE(result.warnings[0].text.find("orientation is not known"), std::string::npos);
 }
 
 TEST(Mgh, RefusesTruncatedAndFourDimensionalFiles) {

@@ -121,7 +121,7 @@ TEST_F(N5Test, BlocksMayBeWholeAtTheEndAndMissingOnesAreZero) {
     const ReadVolume read = readVolume(root_);
     EXPECT_EQ(read.volume.view().as<std::int16_t>().at(5, 5, 4), 0);
     EXPECT_EQ(read.volume.view().as<std::int16_t>().at(3, 5, 4), valueAt(3, 5, 4));
-    EXPECT_NE(read.warnings.back().find("1 of its 8 chunks are not there"), std::string::npos);
+    EXPECT_NE(read.warnings.back().text.find("1 of its 8 chunks are not there"), std::string::npos);
     EXPECT_EQ(ImageRegions::open(root_, {}).constantIn({4, 4, 4}, {2, 2, 1}), 0);
 }
 
@@ -179,7 +179,7 @@ TEST_F(N5Test, UnitsOfPixelsAreNone) {
     putArray("", R"(, "pixelResolution": {"unit": "pixel", "dimensions": [1, 1, 2]})");
     const ReadVolume read = readVolume(root_);
     EXPECT_EQ(read.volume.view().geometry().spacingMm()[2], 2);
-    EXPECT_NE(read.warnings.front().find("have no unit"), std::string::npos);
+    EXPECT_NE(read.warnings.front().text.find("have no unit"), std::string::npos);
 }
 
 TEST_F(N5Test, DamagedBlocksAreRefused) {

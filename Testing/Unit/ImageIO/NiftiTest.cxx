@@ -135,7 +135,7 @@ TEST(NiftiGeometry, SformWinsOverQformWithAWarning) {
     const ReadVolume result = read(file);
     expectNear(result.volume.view().geometry().originMm, {-10, -20, 30}, 0);
     ASSERT_EQ(result.warnings.size(), 1U);
-    EXPECT_NE(result.warnings[0].find("differ by up to 5 mm"), std::string::npos);
+    EXPECT_NE(result.warnings[0].text.find("differ by up to 5 mm"), std::string::npos);
 
     file.qoffset = {10, 20, 30};  // now both agree
     EXPECT_TRUE(read(file).warnings.empty());
@@ -180,7 +180,7 @@ TEST(NiftiGeometry, WithoutFormsIsCentredAsNibabelDoesAndWarned) {
     expectNear(result.volume.view().geometry().originMm, {-3, 3, -2}, 0);
     EXPECT_EQ(result.volume.view().geometry().indexToPhysical, Mat3::diagonal(2, -3, 4));
     ASSERT_EQ(result.warnings.size(), 1U);
-    EXPECT_NE(result.warnings[0].find("neither sform nor qform"), std::string::npos);
+    EXPECT_NE(result.warnings[0].text.find("neither sform nor qform"), std::string::npos);
 }
 
 TEST(NiftiGeometry, TurnsMetresAndMicronsIntoMillimetres) {

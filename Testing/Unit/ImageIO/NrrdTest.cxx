@@ -76,7 +76,7 @@ TEST(NrrdGeometry, WithoutSpaceTakesSpacingsAndWarns) {
     const ReadVolume result = read(file);
     EXPECT_EQ(result.volume.view().geometry().indexToPhysical, Mat3::diagonal(2, 3, 4));
     ASSERT_EQ(result.warnings.size(), 1U);
-    EXPECT_NE(result.warnings[0].find("no space field"), std::string::npos);
+    EXPECT_NE(result.warnings[0].text.find("no space field"), std::string::npos);
     file.extra = "spacings: 2 nan 4\n";
     expectRefusedNrrd(file, "spacing 'nan'");
 }

@@ -10,7 +10,7 @@ namespace adaptiso::testing {
 namespace {
 
 template <class T>
-std::vector<std::string> warningsOf(std::int16_t datatype, std::vector<T> samples) {
+std::vector<Warning> warningsOf(std::int16_t datatype, std::vector<T> samples) {
     NiftiFile file;
     file.sformCode = 1;
     file.sform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -27,7 +27,7 @@ TEST(SampleWarnings, CountVoxelsThatAreNotFinite) {
     const auto found = warningsOf<float>(
         16, {1, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()});
     ASSERT_EQ(found.size(), 1U);
-    EXPECT_NE(found[0].find("2 of its voxels hold no finite number"), std::string::npos);
+    EXPECT_NE(found[0].text.find("2 of its voxels hold no finite number"), std::string::npos);
     EXPECT_EQ(warningsOf<double>(64, {-std::numeric_limits<double>::infinity()}).size(), 1U);
 }
 
@@ -36,7 +36,7 @@ TEST(SampleWarnings, CountIntegersThatNoDoubleHolds) {
     EXPECT_TRUE(warningsOf<std::int64_t>(1024, {kExact, -kExact}).empty());
     const auto found = warningsOf<std::int64_t>(1024, {kExact + 1, -kExact - 1, 5});
     ASSERT_EQ(found.size(), 1U);
-    EXPECT_NE(found[0].find("2 of its voxels hold integers beyond 2^53"), std::string::npos);
+    EXPECT_NE(found[0].text.find("2 of its voxels hold integers beyond 2^53"), std::string::npos);
     EXPECT_EQ(warningsOf<std::uint64_t>(1280, {~std::uint64_t{0}}).size(), 1U);
 }
 

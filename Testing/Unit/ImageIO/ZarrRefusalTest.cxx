@@ -23,7 +23,7 @@ TEST_F(ZarrRefusalTest, OnlyAChunkThatIsNotThereIsFill) {
     fs::remove(root_ / "1.0.1");
     const ReadVolume read = readVolume(root_);
     EXPECT_EQ(read.volume.view().as<std::int16_t>().at(4, 0, 4), -9);
-    EXPECT_NE(read.warnings.back().find("1 of its 8 chunks are not there"), std::string::npos);
+    EXPECT_NE(read.warnings.back().text.find("1 of its 8 chunks are not there"), std::string::npos);
     expectRefused("1 of its 8 chunks are not there", {.refusesMissingChunks = true});
 
     put("1.0.1", "");

@@ -158,8 +158,8 @@ TEST_F(ZarrTest, ShardsAreReadWithTheirIndexAtEitherEndAndHoles) {
             }
         }
         // 4 x 3 x 3 inner chunks of 2 hold 7 x 6 x 5 samples
-        EXPECT_NE(read.warnings.back().find("1 of its 36 chunks"), std::string::npos)
-            << read.warnings.back();
+        EXPECT_NE(read.warnings.back().text.find("1 of its 36 chunks"), std::string::npos)
+            << read.warnings.back().text;
         expectRefused("1 of its 36 chunks are not there", {.refusesMissingChunks = true});
     }
 }

@@ -63,8 +63,8 @@ TEST_F(FindLabelTables, PassesOverWhatIsNoTableAndTellsOfFaults) {
     write("x.tsv", "index\tname\nnine\tb\n");
     const FoundLabelTables found = findLabelTables(folder_ / "x.nii");
     ASSERT_EQ(found.table.warnings.size(), 1U);
-    EXPECT_NE(found.table.warnings[0].find("x.tsv: line 2"), std::string::npos);
-    EXPECT_EQ(found.table.warnings[0].find('/'), std::string::npos);
+    EXPECT_NE(found.table.warnings[0].text.find("x.tsv: line 2"), std::string::npos);
+    EXPECT_EQ(found.table.warnings[0].text.find('/'), std::string::npos);
     EXPECT_TRUE(found.table.entries.empty());
 }
 

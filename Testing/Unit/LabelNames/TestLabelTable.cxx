@@ -157,7 +157,7 @@ TEST(LabelTable, TellsOfValuesListedTwice) {
     const LabelTable table = decoded("1 a\n1 b\n2 c\n2 c\n");
     EXPECT_EQ(entryOf(table, 1).name, "a");
     ASSERT_EQ(table.warnings.size(), 1U);
-    EXPECT_NE(table.warnings[0].find("label 1 is listed twice"), std::string::npos);
+    EXPECT_NE(table.warnings[0].text.find("label 1 is listed twice"), std::string::npos);
 }
 
 TEST(LabelTable, NamesTheLineThatIsWrong) {

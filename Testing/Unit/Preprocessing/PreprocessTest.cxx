@@ -112,7 +112,7 @@ TEST(Preprocess, WarnsOfBlendedLabelsOnly) {
     nearest.interpolation = Interpolation::Nearest;
     crop.crop = CropRanges{};
     ASSERT_EQ(warningsOf(7, smooth).size(), 1U);
-    EXPECT_NE(warningsOf(7, smooth)[0].find("7 different whole numbers"), std::string::npos);
+    EXPECT_NE(warningsOf(7, smooth)[0].text.find("7 different whole numbers"), std::string::npos);
     EXPECT_EQ(warningsOf(7, resample).size(), 1U);
     EXPECT_EQ(warningsOf(100, resample).size(), 1U);
     EXPECT_TRUE(warningsOf(7, nearest).empty());

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import os
-from typing import Any, Callable, List, Optional, Sequence, TypeVar
+from typing import Any, Callable, List, Optional, Sequence, Tuple, TypeVar
 
 from ._adaptiso import Error
 
@@ -13,6 +13,36 @@ Result = TypeVar("Result")
 Progress = Callable[[str, float], object]
 
 _LARGEST_COUNT = 2**53
+
+
+class Warned(str):
+    """A warning: the line that the programs print, as a str.
+
+    Attributes
+    ----------
+    code : str
+        What it is about, as Documentation/Warnings.md lists; never changes.
+    file : str
+        The file's name; empty where it concerns none, or several.
+    text : str
+        The line without the file's name.
+    """
+
+    code: str
+    file: str
+    text: str
+
+    def __new__(cls, text: str, code: str = "", file: str = "") -> Warned:
+        self = super().__new__(cls, f"{file}: {text}" if file else text)
+        self.text, self.code, self.file = text, code, file
+        return self
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        return Warned, (self.text, self.code, self.file)
+
+    def of(self, file: str) -> Warned:
+        """The warning, of `file` where it names none."""
+        return self if self.file else Warned(self.text, self.code, file)
 
 
 def shown(value: Any) -> str:

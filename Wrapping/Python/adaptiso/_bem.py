@@ -14,8 +14,9 @@ import numpy as np
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, count, flag, is_path, listed, number, path as checked_path,
-                         progress as checked_progress, shown, threads as checked_threads, word)
+from ._arguments import (Progress, Warned, count, flag, is_path, listed, number,
+                         path as checked_path, progress as checked_progress, shown,
+                         threads as checked_threads, word)
 from ._images import Samples, base_name, read_only, samples_of
 from ._mesh import Mesh, load
 from ._quality import Check
@@ -292,7 +293,7 @@ class _Source(NamedTuple):
     pial: List[Mesh]
     surfaces: List[Mesh]
     inputs: List[List[str]]
-    warnings: List[str]
+    warnings: List[Warned]
 
     def as_dict(self, preset: str, tissues: Dict[str, List[int]]) -> Dict[str, Any]:
         """What C++ takes."""
@@ -530,7 +531,7 @@ def _image(name: str, image: Any, affine: Any, source: _Source) -> Samples:
         raise Error(name + told[5:] if told.startswith("image") else f"{name}: {told}") from None
     role = name.replace("_", " ")
     source.inputs.append([samples.file, role, samples.format])
-    source.warnings.extend(f"{samples.file or role}: {warning}" for warning in samples.warnings)
+    source.warnings.extend(warning.of(samples.file or role) for warning in samples.warnings)
     return samples
 
 

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import count, flag, is_path, path, shown
+from ._arguments import Warned, count, flag, is_path, path, shown
 
 logger = logging.getLogger("adaptiso")
 
@@ -42,14 +42,15 @@ class Image(NamedTuple):
     affine : ndarray, shape (4, 4)
         Takes voxel indices (i, j, k, 1) to scanner RAS millimetres.
     warnings : list of str
-        What one should know about the reading, one line each.
+        What one should know about the reading, one line each; each has a `code` as well
+        (Documentation/Warnings.md).
     format : str
         "NIfTI-1", "NRRD", "MetaImage", "MGH", "DICOM", ...
     """
 
     array: Array
     affine: Affine
-    warnings: List[str]
+    warnings: List[Warned]
     format: str
 
     def __repr__(self) -> str:
@@ -137,7 +138,7 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
     if is_of_zarr and "Zarr" not in kind:
         raise Error(no_zarr)
     for warning in warnings:
-        logger.warning("%s: %s", base_name(name), warning)
+        logger.warning("%s", warning.of(base_name(name)))
     return Image(array, affine, warnings, kind)
 
 
@@ -196,7 +197,7 @@ class Samples(NamedTuple):
     affine: Affine
     file: str
     format: str
-    warnings: List[str]
+    warnings: List[Warned]
 
 
 def samples_of(image: Any, affine: Any, in_file_order: bool = False) -> Samples:
@@ -311,7 +312,7 @@ def _fortran_axes(array: Array) -> Optional[List[int]]:
     return axes + single
 
 
-def prepared(array: Array, affine: Any, file: str, kind: str, warnings: List[str]) -> Samples:
+def prepared(array: Array, affine: Any, file: str, kind: str, warnings: List[Warned]) -> Samples:
     usable = _usable(array)
     matrix = affine_of(affine)
     axes = _fortran_axes(usable)
@@ -323,11 +324,11 @@ def prepared(array: Array, affine: Any, file: str, kind: str, warnings: List[str
     own = matrix[:, axes + [3]]
     volume = _adaptiso.ArrayVolume(np.asarray(turned), np.ascontiguousarray(own),
                                    list(usable.shape), matrix)
-    told = list(warnings)
+    told = [Warned(w) if type(w) is str else w for w in warnings]
     if not file and usable.dtype.kind == "f":
         bad = volume.count_not_finite()
         if bad:
-            told.append(f"{bad} voxels are NaN or infinite; NaN counts as outside")
+            told.append(Warned(f"{bad} voxels are NaN or infinite; NaN counts as outside", "not-finite"))
             logger.warning("image: %s", told[-1])
     return Samples(array, volume, matrix, file, kind, told)
 

@@ -324,7 +324,7 @@ def _names(names: Any, image: Any) -> _Names:
     else:
         return _Names({})
     for warning in warnings:
-        logger.warning("%s: %s", base_name(file), warning)
+        logger.warning("%s", warning.of(base_name(file)))
     return _Names({value: (name, None if color is None else (color[0], color[1], color[2]))
                    for value, name, _, color in entries})
 

@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Optional, Tuple, Union
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, count, flag, number, optional_number, progress as checked_progress,
+from ._arguments import (Progress, Warned, count, flag, number, optional_number, progress as checked_progress,
                          threads as checked_threads, word)
 from ._images import Samples, keep_read_only, prepared, read_only, samples_of
 from ._mesh import Mesh
@@ -149,7 +149,7 @@ class Index:
                 f"{self._index.blocks} blocks, border {self._border}>")
 
 
-def _unpickled(array: Any, affine: Any, file: str, kind: str, warnings: List[str],
+def _unpickled(array: Any, affine: Any, file: str, kind: str, warnings: List[Warned],
                border: str) -> Index:
     index = Index.__new__(Index)
     index._build(prepared(array, affine, file, kind, warnings), border, 0)

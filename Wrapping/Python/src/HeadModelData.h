@@ -11,6 +11,7 @@
 
 #include "Arrays.h"
 #include "MeshData.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
 #include "adaptiso/Pipeline/BemFiles.h"
 #include "adaptiso/Pipeline/BemModel.h"
@@ -29,7 +30,7 @@ struct HeadSources {
     TissueLabels tissues;
     std::vector<std::shared_ptr<MeshData>> surfaces;  ///< inside out, in one frame
     std::vector<BemInput> inputs;                     ///< one for each of them
-    std::vector<std::string> warnings;                ///< of reading
+    std::vector<Warning> warnings;                    ///< of reading
 };
 
 /// A head model, or why there is none.

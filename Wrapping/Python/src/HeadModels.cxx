@@ -12,6 +12,7 @@
 #include "Declarations.h"
 #include "HeadModelData.h"
 #include "MeshData.h"
+#include "WarningCaster.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/HeadModel/ConductivityModel.h"
@@ -151,7 +152,7 @@ HeadSources sourcesOf(const py::dict& from) {
          take<std::vector<std::array<std::string, 3>>>(from, "inputs")) {
         sources.inputs.push_back({file, role, format});
     }
-    sources.warnings = take<std::vector<std::string>>(from, "warnings");
+    sources.warnings = take<std::vector<Warning>>(from, "warnings");
     return sources;
 }
 

@@ -12,6 +12,7 @@
 #include "Calls.h"
 #include "Declarations.h"
 #include "LabelData.h"
+#include "WarningCaster.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/LabelNames/LabelTable.h"

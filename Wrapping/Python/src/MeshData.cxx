@@ -61,11 +61,9 @@ Json timesJson(const SurfaceHistory& history) {
 std::string reportOf(const SurfaceHistory& history, const ImageGeometry& image) {
     Json surface = surfaceJson(history.record, history.extraction.method, history.index.blockSize);
     surface["output"] = nullptr;
-    std::vector<std::string> warnings;
-    for (const std::string& warning : history.origin.warnings) {
-        warnings.push_back((history.origin.file.empty() ? "the image" : history.origin.file) +
-                           ": " + warning);
-    }
+    std::vector<Warning> warnings;
+    addWarnings(warnings, history.origin.warnings,
+                history.origin.file.empty() ? "the image" : history.origin.file);
     const Json report{{"schema", "adaptiso-mesh/1"},
                       {"program", {{"name", kProgramName}, {"version", ADAPTISO_VERSION}}},
                       {"input", originJson(history, image)},

@@ -11,6 +11,7 @@
 
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -25,7 +26,7 @@ namespace py = pybind11;
 struct ImageOrigin {
     std::string file;    ///< without folders; empty: an array
     std::string format;  ///< "NIfTI-1", "array", ...
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 };
 
 /// How a surface was made: what the program's JSON report is written from.

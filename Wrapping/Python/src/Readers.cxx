@@ -7,6 +7,7 @@
 #include "Arrays.h"
 #include "Calls.h"
 #include "Declarations.h"
+#include "WarningCaster.h"
 #ifdef ADAPTISO_PYTHON_READERS
 #include "adaptiso/ImageIO/ReadVolume.h"
 #endif

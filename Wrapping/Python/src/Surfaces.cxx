@@ -14,6 +14,7 @@
 #include "Declarations.h"
 #include "MeshData.h"
 #include "Resources.h"
+#include "WarningCaster.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Numbers.h"
@@ -230,7 +231,7 @@ void declareSurfaces(py::module_& module) {
            std::optional<std::int64_t> triangles, std::optional<double> reduction, double minAngle,
            bool largest, double minVolume, bool fillCavities, int threads, py::object progress,
            const std::string& file, const std::string& format,
-           const std::vector<std::string>& warnings) {
+           const std::vector<Warning>& warnings) {
             return makeSurface(volume, index.get(), border,
                                {level, method, maxError, triangles, reduction, minAngle, largest,
                                 minVolume, fillCavities, threads},

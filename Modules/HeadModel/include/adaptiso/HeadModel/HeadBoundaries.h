@@ -10,6 +10,7 @@
 
 #include "adaptiso/Core/Progress.h"
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/HeadModel/FractionField.h"
 
 namespace adaptiso {
@@ -67,7 +68,7 @@ struct BoundaryOptions {
 struct HeadBoundaries {
     std::vector<FractionField> solids;  ///< by headSurface()
     std::vector<std::string> notes;     ///< what was guessed or changed, one line each
-    std::vector<std::string> warnings;  ///< what makes the result doubtful
+    std::vector<Warning> warnings;      ///< what makes the result doubtful
     /// For each solid the places (LPS mm) where the image itself shows its surface: sides of
     /// labels, levels that are passed, ends of the skull's dark band. The rest was closed, filled,
     /// cut, grown or taken as usual. Empty where nobody looked (surfaces).

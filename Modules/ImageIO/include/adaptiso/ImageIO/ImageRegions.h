@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso {
@@ -28,7 +29,7 @@ public:
     const ImageGeometry& geometry() const;
     PixelType pixelType() const;
     const std::string& format() const;
-    const std::vector<std::string>& warnings() const;
+    const std::vector<Warning>& warnings() const;
     bool readsParts() const;  ///< no more is in memory than what is asked for
 
     /// What all samples of a part are, where that is known without reading: no chunk of it is

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso {
 
@@ -22,7 +23,7 @@ struct DicomSeries {
     Vec3 spacingMm;            ///< between columns, rows, slices; 0: unknown
     bool isLocalizer = false;
     std::string fault;  ///< why it can't be read (a file's name may be in it); empty: it can
-    std::vector<std::string> warnings;  ///< what reading it would warn of
+    std::vector<Warning> warnings;  ///< what reading it would warn of
 
     bool isReadable() const { return fault.empty(); }
 };
@@ -34,9 +35,9 @@ struct DicomFault {
 
 struct DicomListing {
     std::vector<DicomSeries> series;
-    std::size_t otherFiles = 0;         ///< DICOM files that hold no image: reports, plans, ...
-    std::vector<std::string> warnings;  ///< of entries that were left out
-    std::vector<DicomFault> damaged;    ///< files that can't be understood
+    std::size_t otherFiles = 0;       ///< DICOM files that hold no image: reports, plans, ...
+    std::vector<Warning> warnings;    ///< of entries that were left out
+    std::vector<DicomFault> damaged;  ///< files that can't be understood
 };
 
 /// Says what a DICOM folder, file or DICOMDIR holds. Reads headers alone; decodes nothing.

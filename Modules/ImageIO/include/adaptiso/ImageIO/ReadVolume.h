@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso {
 
@@ -49,7 +50,7 @@ struct ReadVolume {
     Volume volume;
     std::string format;  ///< "NIfTI-1", "NIfTI-2", "NRRD", "MetaImage", "MGH", "DICOM", "Zarr 3",
                          ///< "OME-Zarr 0.4"
-    std::vector<std::string> warnings;  ///< one line each, without the file's name
+    std::vector<Warning> warnings;  ///< one line each, without the file's name
 };
 
 /// Reads one scalar 3-D image: NIfTI (.nii, .nii.gz, .hdr/.img; versions 1 and 2), NRRD (.nrrd,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso {
 
@@ -27,9 +28,9 @@ struct LabelEntry {
 
 /// Names and colours of the values of a label image.
 struct LabelTable {
-    std::string format;                 ///< for people: "BIDS", "FreeSurfer", "ITK-SNAP", ...
-    std::vector<LabelEntry> entries;    ///< by value, each once
-    std::vector<std::string> warnings;  ///< one line each, without the file's name
+    std::string format;               ///< for people: "BIDS", "FreeSurfer", "ITK-SNAP", ...
+    std::vector<LabelEntry> entries;  ///< by value, each once
+    std::vector<Warning> warnings;    ///< one line each, without the file's name
 
     /// \return nullptr when the table does not list the value
     const LabelEntry* find(std::int32_t value) const;

@@ -10,6 +10,7 @@
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Progress.h"
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/HeadModel/ConductivityModel.h"
 #include "adaptiso/HeadModel/Finding.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
@@ -128,7 +129,7 @@ struct BemModel {
     BemModelOptions options;
     std::string source;  ///< "t1", "labels", "probabilities", "ct", "surfaces"
     std::vector<BemInput> inputs;
-    std::vector<std::string> warnings;         ///< what makes the result doubtful
+    std::vector<Warning> warnings;             ///< what makes the result doubtful
     std::vector<std::string> notes;            ///< what was guessed, found or changed
     std::optional<ImageGeometry> image;        ///< the main image's
     std::optional<ImageGeometry> tkRasVolume;  ///< whose tkRAS the FreeSurfer files are in

@@ -8,6 +8,7 @@
 
 #include "adaptiso/Core/Geometry.h"
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso {
@@ -33,6 +34,20 @@ Json orNull(const std::optional<T>& value) {
 /// need not be, becomes U+FFFD.
 inline std::string jsonText(const Json& json, int indent = 2) {
     return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+/// {code, file, text}; `file` is null where the warning names none.
+inline void to_json(Json& json, const Warning& warning) {
+    json = {{"code", warning.code},
+            {"file", warning.file.empty() ? Json(nullptr) : Json(warning.file)},
+            {"text", warning.text}};
+}
+
+/// As to_json() wrote it. \throws Json::exception  it did not
+inline void from_json(const Json& json, Warning& warning) {
+    json.at("code").get_to(warning.code);
+    json.at("text").get_to(warning.text);
+    if (const Json& file = json.at("file"); !file.is_null()) file.get_to(warning.file);
 }
 
 /// "ras", "lps", "tkras", "voxel": as --coordinates and the Python module take it.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/Pipeline/FinishSurface.h"
@@ -17,7 +18,7 @@ namespace adaptiso {
 
 /// `input` from the format on: format, geometryJson(), pixelType, minimum, maximum, warnings.
 Json imageJson(const std::string& format, const ImageGeometry& geometry, PixelType pixelType,
-               const ValueRange& range, const std::vector<std::string>& warnings);
+               const ValueRange& range, const std::vector<Warning>& warnings);
 
 /// `options` as far as they concern the surface.
 Json surfaceOptionsJson(const ExtractionOptions& extraction, const IndexOptions& index,

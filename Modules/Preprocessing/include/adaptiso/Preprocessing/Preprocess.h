@@ -6,6 +6,7 @@
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/Preprocessing/Crop.h"
 #include "adaptiso/Preprocessing/Resample.h"
 
@@ -38,7 +39,7 @@ private:
 
 struct Preprocessed {
     Volume volume;
-    std::vector<std::string> warnings;  ///< one line each
+    std::vector<Warning> warnings;  ///< one line each
 };
 
 /// Crops, then smooths, then resamples: cropVolume(), smoothVolume(), resampleVolume(). Smoothing

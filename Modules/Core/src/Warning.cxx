@@ -1,0 +1,71 @@
+#include "adaptiso/Core/Warning.h"
+
+namespace adaptiso {
+namespace {
+
+/// A line for each code, in alphabetical order; a test compares it with Documentation/Warnings.md.
+constexpr WarningCode kCodes[] = {
+    {"array-left-out", "the output's format cannot hold values at points that the input has"},
+    {"blended-labels", "an image that may hold labels was smoothed or resampled with blending"},
+    {"brain-doubtful", "a part of the brain may be missing, or muscle was taken for brain"},
+    {"copies-left-out", "compressed copies beside files of the same name were left out"},
+    {"count-missed", "the number of triangles asked for was not reached"},
+    {"entries-left-out", "pipes, links to folders and link loops of a folder were left out"},
+    {"file-left-out", "a file that is written by default was left out"},
+    {"first-image-taken", "the input holds several images; the first was taken"},
+    {"footer-cut-off", "the notes behind an MGH image are cut off"},
+    {"gantry-tilt", "the slices are tilted against their stack; the shear was kept"},
+    {"guessed-frame", "a file does not say its coordinate frame; one was assumed"},
+    {"guessed-landmarks", "nasion and ears were guessed by the shape of the head"},
+    {"guessed-orientation", "the image does not say its orientation; one was assumed"},
+    {"guessed-position", "the image does not say its position; one was assumed"},
+    {"guessed-spacing", "the image does not say its voxel size; 1 mm was assumed"},
+    {"guessed-unit", "a file does not say its unit of length; one was assumed"},
+    {"label-listed-twice", "a table of names lists a label twice; the first entry counts"},
+    {"label-missing", "the map holds no voxel of a label that was asked for"},
+    {"label-nameless", "the table of names lacks labels of the map"},
+    {"landmarks-unknown", "nasion and ears are neither given nor can be guessed"},
+    {"large-integers", "voxels hold integers beyond 2^53, which isovalues cannot tell apart"},
+    {"many-vertices", "the head model has more vertices than solvers can usually handle"},
+    {"missing-chunks", "chunks of a Zarr are missing; the fill value stands for them"},
+    {"mixed-signedness", "some slices hold signed samples and some unsigned ones"},
+    {"names-not-used", "a table of names beside the map cannot be read"},
+    {"not-finite", "voxels hold NaN or infinity"},
+    {"overlap-unmeasured", "the overlap (Dice) could not be measured"},
+    {"pixdim-sform-differ",
+     "the voxel sizes by pixdim and by the sform differ; the sform was taken"},
+    {"qform-sform-differ", "qform and sform place the image differently; the sform was taken"},
+    {"resample-filled", "resampling filled what lies around the image with its smallest value"},
+    {"scaling-ignored", "the header's scaling is incomplete; the stored values were taken"},
+    {"series-left-aside", "images of other series in the folder were left aside"},
+    {"skull-unseen", "the skull shows on too few of the rays to the scalp"},
+    {"slices-resampled", "uneven slices were resampled to even ones"},
+    {"stray-bits", "bits that are no part of the samples were left out"},
+    {"surface-unsound", "the surface has faults (holes aside)"},
+    {"trailing-bytes", "bytes follow the image that the header describes; they were left out"},
+    {"unit-converted", "lengths were converted to millimetres"},
+    {"values-scaled", "values are scaled as the header says, which some programs ignore"},
+    {"whole-image-read", "the image is no Zarr, so each step reads all of it"},
+};
+
+}  // namespace
+
+std::span<const WarningCode> warningCodes() {
+    return kCodes;
+}
+
+void addWarnings(std::vector<Warning>& warnings, std::span<const Warning> more,
+                 const std::string& file) {
+    for (const Warning& warning : more) {
+        warnings.push_back(warning);
+        if (warning.file.empty()) warnings.back().file = file;
+    }
+}
+
+std::vector<std::string> linesOf(std::span<const Warning> warnings) {
+    std::vector<std::string> lines;
+    for (const Warning& warning : warnings) lines.push_back(warning.line());
+    return lines;
+}
+
+}  // namespace adaptiso
