@@ -42,11 +42,8 @@ void guessUnit(PointFile& file, const std::string& name, BemModel& model) {
     const double mm = radius <= kMostMetres ? 1000 : radius <= kMostCentimetres ? 10 : 1;
     for (NamedPoint& p : file.points) p.point = mm * p.point;
     file.saysUnit = true;
-    model.warnings.push_back({"guessed-unit",
-                              "does not say its unit; taken for " + (mm == 1000 ? "m"
-                                                                     : mm == 10 ? "cm"
-                                                                                : "mm"),
-                              name});
+    const std::string unit = mm == 1000 ? "m" : mm == 10 ? "cm" : "mm";
+    model.warnings.push_back({"guessed-unit", "does not say its unit; taken for " + unit, name});
 }
 
 /// Of tkRAS the volume whose FreeSurfer files are written; without one these are in scanner RAS.
