@@ -102,9 +102,16 @@ TEST(Preprocess, WithoutOptionsGivesTheVolumeBack) {
 }
 
 TEST(Preprocess, WarnsOfBlendedLabelsOnly) {
+    // regions of 4 x 1 x 1 voxels at least, beside a background that fills half of the image
     const auto warningsOf = [](int distinctValues, const PreprocessOptions& options) {
-        return preprocess(randomVolume<std::uint8_t>({12, 12, 12}, distinctValues, 1), options)
-            .warnings;
+        const ImageGeometry geometry = centredGeometry({24, 24, 24}, {1, 1, 1});
+        const auto label = [&](const Vec3& p) {
+            const Vec3 index = geometry.toIndex(p);
+            const auto at = [&](int axis) { return static_cast<int>(std::round(index[axis])); };
+            if (at(2) < 12) return 0;
+            return (at(0) / 4 + 6 * at(1) + 144 * (at(2) - 12)) % distinctValues;
+        };
+        return preprocess(sampledFrom<std::uint8_t>(geometry, label), options).warnings;
     };
     PreprocessOptions smooth, resample, nearest, crop;
     smooth.smoothSigmaMm = 1;
@@ -119,6 +126,20 @@ TEST(Preprocess, WarnsOfBlendedLabelsOnly) {
     EXPECT_TRUE(warningsOf(7, crop).empty());
     EXPECT_TRUE(warningsOf(2, smooth).empty());    // a mask
     EXPECT_TRUE(warningsOf(200, smooth).empty());  // a scan
+}
+
+TEST(Preprocess, FewGreyValuesOfAScanAreNoLabels) {
+    PreprocessOptions smooth;
+    smooth.smoothSigmaMm = 1;
+    for (const int greyValues : {20, 81, 100}) {
+        // a head in air: half of the image is 0, the rest changes from voxel to voxel
+        const Volume noise = randomVolume<std::uint8_t>({24, 24, 24}, greyValues, 1);
+        const std::uint8_t* const first = noise.view().as<std::uint8_t>().samples;
+        std::vector<std::uint8_t> samples(first, first + noise.view().geometry().voxelCount());
+        std::fill_n(samples.begin(), samples.size() / 2, std::uint8_t{0});
+        const Volume head = Volume::fromSamples(samples, noise.view().geometry());
+        EXPECT_TRUE(preprocess(head, smooth).warnings.empty()) << greyValues;
+    }
 }
 
 TEST(Preprocess, WarnsWhenResamplingStraightensAShear) {

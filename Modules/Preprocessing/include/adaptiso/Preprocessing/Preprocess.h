@@ -45,8 +45,8 @@ struct Preprocessed {
 /// Crops, then smooths, then resamples: cropVolume(), smoothVolume(), resampleVolume(). Smoothing
 /// sees the image as cropped. Without options the volume comes back as it is, uncopied.
 ///
-/// Warns where blending looks wrong (3 to 100 different whole numbers are labels, most likely), and
-/// of what resampling a sheared image adds around it.
+/// Warns where blending looks wrong (3 to 100 different whole numbers that fill regions are labels,
+/// most likely), and of what resampling a sheared image adds around it.
 /// \param volume  given up: its samples go as soon as they are not needed
 /// \throws PreprocessError where one of the three throws InvalidInput
 Preprocessed preprocess(Volume volume, const PreprocessOptions& options);
