@@ -286,16 +286,44 @@ ImageGeometry toLpsMm(const Affine& ras, double scale, const Index3& size) {
     return {size, toLps * ras.origin, toLps * ras.axes};
 }
 
-double largestCornerDistance(const ImageGeometry& a, const ImageGeometry& b) {
-    double largest = 0;
+/// Which sides of the head `b` has where `a` has the opposite ones, as text to append.
+std::string exchangedSides(const ImageGeometry& a, const ImageGeometry& b) {
+    constexpr std::array<std::string_view, 3> kSides = {"left and right", "front and back",
+                                                        "top and bottom"};
+    std::string text;
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3 step;
+        step[axis] = 1;
+        const Vec3 there = b.toPhysical(a.toIndex(a.originMm + step)) - b.originMm;
+        if (there[axis] < -0.5 * norm(there)) {  // within 60 degrees of the opposite side
+            text += fmt::format("; {} are exchanged between them",
+                                kSides[static_cast<std::size_t>(axis)]);
+        }
+    }
+    return text;
+}
+
+void compareForms(const ImageGeometry& sform, const ImageGeometry& qform,
+                  std::vector<Warning>& warnings) {
+    constexpr double kSameVoxels = 0.1;
+    double apartMm = 0;
+    bool isSame = true;
     for (int corner = 0; corner < 8; ++corner) {
         Vec3 index;
         for (int axis = 0; axis < 3; ++axis) {
-            index[axis] = (corner >> axis & 1) ? static_cast<double>(a.size[axis] - 1) : 0;
+            index[axis] = (corner >> axis & 1) ? static_cast<double>(sform.size[axis] - 1) : 0;
         }
-        largest = std::max(largest, norm(a.toPhysical(index) - b.toPhysical(index)));
+        const Vec3 place = qform.toPhysical(index);
+        const Vec3 moved = sform.toIndex(place) - index;
+        for (int axis = 0; axis < 3; ++axis) {
+            isSame = isSame && std::abs(moved[axis]) <= kSameVoxels;
+        }
+        apartMm = std::max(apartMm, norm(place - sform.toPhysical(index)));
     }
-    return largest;
+    if (isSame) return;
+    warnings.push_back({"qform-sform-differ",
+                        fmt::format("qform and sform differ by up to {} mm{}; the sform was taken",
+                                    number(apartMm), exchangedSides(sform, qform))});
 }
 
 /// The sform's voxel size is taken, as nibabel and FreeSurfer do; ANALYZE's heirs take pixdim's.
@@ -335,14 +363,7 @@ ImageGeometry geometryOf(const fs::path& file, const NiftiHeader& h, const Index
         requireUsableGeometry(file, geometry);
         compareVoxelSizes(file, h, geometry, scale, warnings);
         if (h.qformCode > 0) {
-            const double apart =
-                largestCornerDistance(geometry, toLpsMm(qformAffine(file, h), scale, size));
-            if (!(apart <= 0.05)) {
-                warnings.push_back({"qform-sform-differ",
-                                    fmt::format("qform and sform differ by up to {} mm; the sform "
-                                                "was taken",
-                                                number(apart))});
-            }
+            compareForms(geometry, toLpsMm(qformAffine(file, h), scale, size), warnings);
         }
         return geometry;
     }

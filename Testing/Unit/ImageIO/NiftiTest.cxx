@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -139,6 +140,50 @@ TEST(NiftiGeometry, SformWinsOverQformWithAWarning) {
 
     file.qoffset = {10, 20, 30};  // now both agree
     EXPECT_TRUE(read(file).warnings.empty());
+}
+
+TEST(NiftiGeometry, FormsAreComparedToATenthOfAVoxel) {
+    NiftiFile file = withSform();
+    file.qformCode = 1;
+    file.pixdim = {1, 2, 3, 4, 0, 0, 0, 0};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float spacing = file.pixdim[axis + 1];
+        file.qoffset = {10, 20, 30};
+        file.qoffset[axis] += 0.09F * spacing;
+        EXPECT_TRUE(read(file).warnings.empty()) << axis;
+        file.qoffset[axis] += 0.02F * spacing;
+        EXPECT_EQ(read(file).warnings.size(), 1U) << axis;
+    }
+    // the origins agree, the far corners do not: 3 voxels are 6.75 mm and 6 mm long
+    file.qoffset = {10, 20, 30};
+    file.pixdim[1] = 2.25F;
+    EXPECT_NE(read(file).warnings.back().text.find("differ by up to 0.75 mm; the sform"),
+              std::string::npos);
+}
+
+TEST(NiftiGeometry, SidesThatFormsExchangeAreNamed) {
+    struct Case {
+        std::array<float, 3> quaternion;  ///< about x, y or z by half a turn
+        float qfac;
+        std::vector<std::string> exchanged;
+    };
+    const std::string sides[] = {"left and right", "front and back", "top and bottom"};
+    for (const Case& c :
+         {Case{{0, 0, 0}, 1, {}}, Case{{0, 0, 0}, -1, {sides[2]}}, Case{{1, 0, 0}, -1, {sides[1]}},
+          Case{{0, 1, 0}, -1, {sides[0]}}, Case{{0, 0, 1}, 1, {sides[0], sides[1]}}}) {
+        NiftiFile file = withSform();
+        file.qformCode = 1;
+        file.pixdim = {c.qfac, 2, 3, 4, 0, 0, 0, 0};
+        file.quaternion = c.quaternion;
+        file.qoffset = {15, 20, 30};
+        const std::vector<Warning> warnings = read(file).warnings;
+        ASSERT_EQ(warnings.size(), 1U);
+        for (const std::string& side : sides) {
+            const bool isNamed =
+                warnings[0].text.find(side + " are exchanged") != std::string::npos;
+            EXPECT_EQ(isNamed, std::ranges::count(c.exchanged, side) == 1) << warnings[0].text;
+        }
+    }
 }
 
 TEST(NiftiGeometry, TakesObliqueQform) {
