@@ -73,7 +73,7 @@ ByteSource::ByteSource(std::filesystem::path file, std::uint64_t offset, Encodin
     if (position_ > end_) {
         refuse(file_,
                fmt::format("truncated: its data would begin at byte {} of {}", position_, end_),
-               "get the whole file");
+               "get the whole file, in binary mode");
     }
     rawBytes_ = end_ - position_;
 
@@ -87,12 +87,14 @@ ByteSource::ByteSource(std::filesystem::path file, std::uint64_t offset, Encodin
     }
 }
 
-ByteSource ByteSource::openPlainOrGzip(const std::filesystem::path& file) {
+ByteSource::Encoding ByteSource::encodingOf(const std::filesystem::path& file) {
     unsigned char magic[2] = {0, 0};
-    ByteSource plain(file, 0, Encoding::Raw);
-    plain.readSome(magic, sizeof magic);
-    const bool isGzip = magic[0] == 0x1f && magic[1] == 0x8b;
-    return ByteSource(file, 0, isGzip ? Encoding::Deflate : Encoding::Raw);
+    ByteSource(file, 0, Encoding::Raw).readSome(magic, sizeof magic);
+    return magic[0] == 0x1f && magic[1] == 0x8b ? Encoding::Deflate : Encoding::Raw;
+}
+
+ByteSource ByteSource::openPlainOrGzip(const std::filesystem::path& file) {
+    return ByteSource(file, 0, encodingOf(file));
 }
 
 void ByteSource::requireRoomFor(std::uint64_t byteCount) const {
@@ -221,7 +223,8 @@ std::size_t ByteSource::readInflated(void* out, std::size_t byteCount) {
     std::size_t done = 0;
     while (done < byteCount && !inflateDone_) {
         if (inflater_->avail_in == 0 && !refillInput()) {
-            refuse(file_, "truncated: its compressed data end in the middle", "get the whole file");
+            refuse(file_, "truncated: its compressed data end in the middle",
+                   "get the whole file, in binary mode");
         }
         const std::size_t piece =
             std::min<std::size_t>(byteCount - done, std::numeric_limits<uInt>::max());
@@ -236,9 +239,16 @@ std::size_t ByteSource::readInflated(void* out, std::size_t byteCount) {
                 throw InternalError("ByteSource: zlib can't be restarted");
             }
         } else if (status != Z_OK && status != Z_BUF_ERROR) {
+            constexpr uLong kMagicBytes = 2;
+            if (inflater_->total_in <= kMagicBytes && !hasInflated_) {
+                refuse(file_,
+                       "its data are not compressed (gzip or zlib), or damaged at their begin",
+                       "correct the header, or get the file again");
+            }
             refuse(file_, "its compressed data are damaged (zlib or gzip check failed)",
-                   "get the file again");
+                   "get the file again, in binary mode");
         }
+        hasInflated_ = hasInflated_ || done > 0;
     }
     return done;
 }
@@ -267,7 +277,7 @@ void ByteSource::refuseTruncated(std::uint64_t missing) const {
     refuse(file_,
            fmt::format("truncated: at least {} bytes of the data its header needs are missing",
                        missing),
-           "get the whole file");
+           "get the whole file, in binary mode");
 }
 
 }  // namespace adaptiso::detail

@@ -29,6 +29,7 @@ public:
     ByteSource(std::filesystem::path file, std::uint64_t offset, Encoding encoding);
 
     /// Raw, or Deflate where the file begins with gzip's magic.
+    static Encoding encodingOf(const std::filesystem::path& file);
     static ByteSource openPlainOrGzip(const std::filesystem::path& file);
 
     /// Of the next byte in the file. \pre Raw
@@ -86,7 +87,7 @@ private:
     std::uint64_t rawBytes_ = 0;  ///< from the offset given to the end of the file
     std::unique_ptr<z_stream, InflateEnd> inflater_;
     std::vector<unsigned char> input_;
-    bool inflateDone_ = false;
+    bool hasInflated_ = false, inflateDone_ = false;
 };
 
 }  // namespace adaptiso::detail

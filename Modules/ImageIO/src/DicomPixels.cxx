@@ -8,7 +8,7 @@
 #include <set>
 #include <string_view>
 
-#include "DataTail.h"
+#include "DataPlace.h"
 #include "FileFault.h"
 #include "HeaderBytes.h"
 #include "HeaderText.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "DataFile.h"
-#include "DataTail.h"
+#include "DataPlace.h"
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "Readers.h"
@@ -291,15 +291,7 @@ std::endian byteOrderOf(const fs::path& file, const MetaHeader& header, PixelTyp
     return isBig ? std::endian::big : std::endian::little;
 }
 
-/// The file that holds the samples, at the first of them.
-struct MetaData {
-    fs::path file;
-    ByteSource source;
-    bool isChosenPart = false;  ///< the header points into a larger file
-};
-
-MetaData openData(const fs::path& file, const MetaHeader& header, std::uint64_t byteCount,
-                  const ImageExtent& extent) {
+DataPlace placeOf(const fs::path& file, const MetaHeader& header) {
     const std::string_view name = header.require(file, "ElementDataFile");
     const bool isLocal = lowerCase(name) == "local";
     if (name.starts_with("LIST") || words(name).size() > 1) {
@@ -309,19 +301,16 @@ MetaData openData(const fs::path& file, const MetaHeader& header, std::uint64_t 
     if (!parseFlag(file, header, {"BinaryData"})) {
         refuse(file, "its data are text (BinaryData is not True)", "save it as binary");
     }
-    const fs::path dataFile = isLocal ? file : requireDataFile(file, name);
+    DataPlace place{file, isLocal ? file : requireDataFile(file, name)};
     const bool isCompressed = parseFlag(file, header, {"CompressedData"});
-    const std::uint64_t begin = isLocal ? header.byteCount : 0;
-    const std::int64_t headerSize =
-        parseHeaderSize(file, header, isCompressed, isLocal ? begin : 0);
-    const auto encoding = isCompressed ? ByteSource::Encoding::Deflate : ByteSource::Encoding::Raw;
-    const std::uint64_t from = headerSize > 0 ? static_cast<std::uint64_t>(headerSize) : begin;
-    MetaData data{dataFile, ByteSource(dataFile, from, encoding), from - begin >= extent.piece};
-    if (headerSize == -1) {
-        data.source.skipToLast(byteCount);
-        checkBytesBefore(dataFile, data.source.position() - begin, extent);
-    }
-    return data;
+    if (isCompressed) place.encoding = ByteSource::Encoding::Deflate;
+    if (isLocal) place.begin = header.byteCount;
+    const std::int64_t headerSize = parseHeaderSize(file, header, isCompressed, place.begin);
+    place.countsFromEnd = headerSize == -1;
+    if (headerSize > 0) place.bytes = static_cast<std::uint64_t>(headerSize) - place.begin;
+    place.skipName = "HeaderSize";
+    place.gzipField = "CompressedData = True";
+    return place;
 }
 
 /// MetaIO's MET_LONG has 4 bytes on every machine; other writers take their own long of 8.
@@ -365,13 +354,11 @@ ReadVolume readMetaImage(const fs::path& file, const ReadOptions& options) {
                        static_cast<std::uint64_t>(extents.volumeCount));
     const ImageGeometry geometry = geometryOf(file, header, extents, warnings);
     requireUsableGeometry(file, geometry);
-    const ImageExtent extent = ImageExtent::of(layout, extents.size);
-    MetaData data = openData(file, header, byteCount, extent);
-    Volume volume = readSamples(file, data.source, layout, geometry, options);
-    const ByteTail tail = data.source.readTail(byteCount + 1);
-    requireFourByteLong(file, type, tail, byteCount);
-    checkTail(data.file, tail, extent, data.isChosenPart, warnings);
-    return {std::move(volume), "MetaImage", std::move(warnings)};
+    const DataPlace place = placeOf(file, header);
+    PlacedVolume read = readPlaced(place, layout, geometry, options);
+    requireFourByteLong(file, type, read.tail, byteCount);
+    checkTail(place, read.tail, layout, extents.size, warnings);
+    return {std::move(read.volume), "MetaImage", std::move(warnings)};
 }
 
 }  // namespace adaptiso::detail

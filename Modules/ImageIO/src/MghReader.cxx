@@ -3,7 +3,7 @@
 #include <array>
 #include <bit>
 
-#include "DataTail.h"
+#include "DataPlace.h"
 #include "FileFault.h"
 #include "HeaderBytes.h"
 #include "Readers.h"
@@ -98,6 +98,20 @@ Footer footerOf(const ByteTail& tail) {
 
 }  // namespace
 
+std::optional<std::uint64_t> mghSamplesAt(std::string_view head) {
+    if (head.size() < kHeaderBytes) return std::nullopt;
+    const HeaderBytes bytes(head, std::endian::big);
+    const auto isSpacing = [](float mm) { return mm > 1e-3F && mm < 100; };
+    const auto code = bytes.at<std::int32_t>(20);
+    bool isMgh = bytes.at<std::int32_t>(0) == 1 && bytes.at<std::int16_t>(28) == 1 &&
+                 (code == 0 || code == 1 || code == 3 || code == 4 || code == 10);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        isMgh = isMgh && bytes.at<std::int32_t>(4 + 4 * axis) > 0 &&
+                isSpacing(bytes.at<float>(30 + 4 * axis));
+    }
+    return isMgh ? std::optional<std::uint64_t>(kHeaderBytes) : std::nullopt;
+}
+
 ReadVolume readMgh(const fs::path& file, const ReadOptions& options) {
     std::array<char, kHeaderBytes> buffer{};
     ByteSource source = ByteSource::openPlainOrGzip(file);
@@ -122,19 +136,22 @@ ReadVolume readMgh(const fs::path& file, const ReadOptions& options) {
     layout.volumeIndex = chooseVolume(file, frames, options);
     std::vector<Warning> warnings;
     const ImageGeometry geometry = geometryOf(bytes, size, warnings);
-    Volume volume = readSamples(file, source, layout, geometry, options);
-
+    DataPlace place{file, file, ByteSource::encodingOf(file)};
+    place.bytes = kHeaderBytes;
+    PlacedVolume read = readPlaced(place, layout, geometry, options);
     const ImageExtent extent = ImageExtent::of(layout, size);
-    const ByteTail tail = source.readTail(extent.whole + 1);
-    const Footer footer = footerOf(tail);
-    const bool mayBeImage = footer != Footer::Whole && isMoreImage(tail.byteCount, extent);
+    const Footer footer = footerOf(read.tail);
+    const bool mayBeImage = footer != Footer::Whole && isMoreImage(read.tail.byteCount, extent);
     if (footer == Footer::None || mayBeImage) {
-        checkTail(file, tail, extent, false, warnings);
-    } else if (footer == Footer::CutOff) {
+        checkTail(place, read.tail, layout, size, warnings);
+    } else if (read.tail.byteCount > 0 && place.encoding == ByteSource::Encoding::Raw) {
+        requireBinaryTransfer(place, layout, size);
+    }
+    if (footer == Footer::CutOff && !mayBeImage) {
         warnings.push_back(
             {"footer-cut-off", "the notes that follow its image (MGH footer) are cut off"});
     }
-    return {std::move(volume), "MGH", std::move(warnings)};
+    return {std::move(read.volume), "MGH", std::move(warnings)};
 }
 
 }  // namespace adaptiso::detail

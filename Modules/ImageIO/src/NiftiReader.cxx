@@ -7,7 +7,7 @@
 #include <string>
 
 #include "DataFile.h"
-#include "DataTail.h"
+#include "DataPlace.h"
 #include "FileFault.h"
 #include "HeaderBytes.h"
 #include "Readers.h"
@@ -34,6 +34,7 @@ struct NiftiHeader {
     double dataOffset = 0;
     double slope = 0, intercept = 0;
     int units = 0;
+    int intent = 0;
     int qformCode = 0, sformCode = 0;
     Vec3 quaternion, qoffset;
     std::array<std::array<double, 4>, 3> sform{};
@@ -49,6 +50,7 @@ NiftiHeader parseVersion1(const HeaderBytes& bytes) {
         h.dim[i] = bytes.at<std::int16_t>(40 + 2 * i);
         h.pixdim[i] = bytes.at<float>(76 + 4 * i);
     }
+    h.intent = bytes.at<std::int16_t>(68);
     h.datatype = bytes.at<std::int16_t>(70);
     h.bitpix = bytes.at<std::int16_t>(72);
     h.dataOffset = bytes.at<float>(108);
@@ -85,6 +87,7 @@ NiftiHeader parseVersion2(const HeaderBytes& bytes) {
         for (int j = 0; j < 4; ++j) h.sform[i][j] = bytes.at<double>(400 + 32 * i + 8 * j);
     }
     h.units = bytes.at<std::int32_t>(500);
+    h.intent = bytes.at<std::int32_t>(504);
     return h;
 }
 
@@ -99,6 +102,21 @@ void requireLineEnds(const fs::path& file, std::string_view head) {
         "its NIfTI-2 magic is damaged, as by a transfer in text mode that turns line ends: so are "
         "its header and voxels",
         "transfer it again in binary mode");
+}
+
+/// xyzt_units of mm and s is 10, a line feed: a transfer in text mode puts a byte before it.
+void requireMagicAtItsPlace(const fs::path& file, std::string_view head) {
+    constexpr std::size_t kAt = 344, kMost = 16;
+    for (const std::string_view magic :
+         {std::string_view("n+1\0", 4), std::string_view("ni1\0", 4)}) {
+        const std::size_t found = head.find(magic, kAt - kMost);
+        if (found == std::string_view::npos || found == kAt || found > kAt + kMost) continue;
+        refuse(file,
+               fmt::format("its NIfTI magic is at byte {}, not 344: a transfer in text mode has "
+                           "displaced its header and voxels",
+                           found),
+               "transfer the file again in binary mode");
+    }
 }
 
 NiftiHeader readHeader(const fs::path& file) {
@@ -117,6 +135,7 @@ NiftiHeader readHeader(const fs::path& file) {
             h = parseVersion1(bytes);
             h.hasDataInside = isMagic(head, 344, std::string_view("n+1\0", 4));
             if (!h.hasDataInside && !isMagic(head, 344, std::string_view("ni1\0", 4))) {
+                requireMagicAtItsPlace(file, head);
                 refuse(file,
                        "not a NIfTI file: the magic is missing (ANALYZE 7.5 headers do not "
                        "say which way is left)",
@@ -173,6 +192,36 @@ PixelType pixelTypeOfCode(const fs::path& file, const NiftiHeader& h) {
            "convert it to a scalar integer or float type");
 }
 
+/// Connectome Workbench's matrices of NIfTI-2 (cifti-2, table 1): dimensions 5 and 6 hold them.
+void refuseCifti(const fs::path& file, const NiftiHeader& h) {
+    if (h.version != 2 || h.intent < 3000 || h.intent > 3099) return;
+    refuse(file, "is CIFTI: values on surfaces and in voxels, not a volume",
+           fmt::format("write its voxels: wb_command -cifti-separate {} COLUMN -volume-all "
+                       "volume.nii.gz",
+                       displayName(file.filename())));
+}
+
+/// Whose dimension beyond the third counts parts of one value; empty for other intents.
+std::string_view componentsOf(int intent) {
+    switch (intent) {
+        case 1004:
+        case 1005:
+            return "matrices";
+        case 1006:
+        case 2006:  // FSL's fnirt
+            return "displacements";
+        case 1007:
+            return "vectors";
+        case 1010:
+            return "quaternions";
+        case 2003:
+        case 2004:
+            return "colours";
+        default:
+            return "";
+    }
+}
+
 struct Extents {
     Index3 size{1, 1, 1};
     std::int64_t volumeCount = 1;
@@ -197,8 +246,11 @@ Extents extentsOf(const fs::path& file, const NiftiHeader& h) {
         } else if (i == 4) {
             extents.volumeCount = h.dim[i];
         } else if (h.dim[i] > 1) {
-            refuse(file, fmt::format("holds vectors of {} components (dimension {})", h.dim[i], i),
-                   "extract one volume first");
+            const std::string_view name = componentsOf(h.intent);
+            refuse(file,
+                   fmt::format("holds {} of {} components (dimension {})",
+                               name.empty() ? "vectors" : name, h.dim[i], i),
+                   "save one component as a 3-D image");
         }
     }
     return extents;
@@ -437,6 +489,23 @@ SampleLayout layoutOf(const fs::path& file, const NiftiHeader& h, std::vector<Wa
 
 }  // namespace
 
+std::optional<std::uint64_t> niftiSamplesAt(std::string_view head) {
+    for (const std::endian order : {std::endian::little, std::endian::big}) {
+        if (head.size() < kHeader1Bytes) break;
+        const HeaderBytes bytes(head, order);
+        const auto headerBytes = bytes.at<std::int32_t>(0);
+        const bool isFirst = headerBytes == kHeader1Bytes;
+        if (!isFirst && (headerBytes != kHeader2Bytes || head.size() < kHeader2Bytes)) continue;
+        const std::size_t magicAt = isFirst ? 344 : 4;
+        if (isMagic(head, magicAt, isFirst ? "ni1" : "ni2")) return 0;
+        if (!isMagic(head, magicAt, isFirst ? "n+1" : "n+2")) continue;
+        const double offset =
+            isFirst ? bytes.at<float>(108) : static_cast<double>(bytes.at<std::int64_t>(168));
+        return offset >= kHeader1Bytes && offset < 1e15 ? static_cast<std::uint64_t>(offset) : 0;
+    }
+    return std::nullopt;
+}
+
 bool looksLikeNifti(std::string_view head) {
     const auto hasMagic = [&](std::string_view magic) {
         return isMagic(head, 344, magic) || isMagic(head, 4, magic);
@@ -448,26 +517,27 @@ ReadVolume readNifti(const fs::path& input, const ReadOptions& options) {
     const fs::path headerFile =
         isImgName(input) ? partner(input, {".hdr", ".HDR", ".hdr.gz"}) : input;
     const NiftiHeader header = readHeader(headerFile);
+    refuseCifti(headerFile, header);
     const Extents extents = extentsOf(headerFile, header);
     std::vector<Warning> warnings;
     SampleLayout layout = layoutOf(headerFile, header, warnings);
     layout.volumeCount = extents.volumeCount;
-    layout.volumeIndex = chooseVolume(headerFile, extents.volumeCount, options);
-    const std::uint64_t byteCount =
-        requireProduct(headerFile, requireImageBytes(headerFile, extents.size, layout.stored),
-                       static_cast<std::uint64_t>(extents.volumeCount));
+    const std::string_view components = componentsOf(header.intent);
+    layout.volumeIndex =
+        chooseVolume(headerFile, extents.volumeCount, options,
+                     components.empty() ? "volumes" : fmt::format("components of {}", components));
+    requireImageBytes(headerFile, extents.size, layout.stored);
     const ImageGeometry geometry = geometryOf(headerFile, header, extents.size, warnings);
 
     const fs::path dataFile =
         header.hasDataInside ? headerFile : partner(headerFile, {".img", ".IMG", ".img.gz"});
-    ByteSource source = ByteSource::openPlainOrGzip(dataFile);
-    const std::uint64_t offset = requireDataOffset(headerFile, header);
-    source.requireRoomFor(offset);
-    source.skip(offset);
-    Volume volume = readSamples(dataFile, source, layout, geometry, options);
-    checkTail(dataFile, source.readTail(byteCount + 1), ImageExtent::of(layout, extents.size),
-              false, warnings);
-    return {std::move(volume), header.version == 1 ? "NIfTI-1" : "NIfTI-2", std::move(warnings)};
+    DataPlace place{headerFile, dataFile, ByteSource::encodingOf(dataFile)};
+    place.bytes = requireDataOffset(headerFile, header);
+    if (!header.hasDataInside) place.skipName = "vox_offset";
+    PlacedVolume read = readPlaced(place, layout, geometry, options);
+    checkTail(place, read.tail, layout, extents.size, warnings);
+    return {std::move(read.volume), header.version == 1 ? "NIfTI-1" : "NIfTI-2",
+            std::move(warnings)};
 }
 
 }  // namespace adaptiso::detail

@@ -184,7 +184,11 @@ NrrdHeader readNrrdHeader(const fs::path& file) {
         if (line.empty()) return header;
         const bool isMagicOrComment = isFirst || line.starts_with('#');
         isFirst = false;
-        if (isMagicOrComment || line.find(":=") != std::string_view::npos) continue;
+        if (isMagicOrComment) continue;
+        if (const std::size_t sign = line.find(":="); sign != std::string_view::npos) {
+            header.pairs.emplace(line.substr(0, sign), line.substr(sign + 2));
+            continue;
+        }
         const std::size_t colon = line.find(": ");
         const bool hasColon = colon != std::string_view::npos || line.ends_with(':');
         if (!hasColon) {
@@ -204,6 +208,24 @@ NrrdHeader readNrrdHeader(const fs::path& file) {
         refuse(file, "its NRRD header is longer than 1 MiB", "remove key/value pairs from it");
     }
     return header;
+}
+
+std::string volumesNameOf(const NrrdHeader& header) {
+    std::map<std::int64_t, std::string> layers;
+    for (int segment = 0;; ++segment) {
+        const std::string prefix = fmt::format("Segment{}_", segment);
+        const auto name = header.pairs.find(prefix + "Name");
+        const auto layer = header.pairs.find(prefix + "Layer");
+        if (name == header.pairs.end() || layer == header.pairs.end()) break;
+        std::string& names = layers[parseInteger(layer->second).value_or(0)];
+        names += (names.empty() ? "" : ", ") + printable(name->second);
+    }
+    if (layers.empty()) return "volumes";
+    std::string text = "layers of segments that overlap (";
+    for (const auto& [layer, names] : layers) {
+        text += fmt::format("{}{}: {}", text.back() == '(' ? "" : "; ", layer, names);
+    }
+    return text + ")";
 }
 
 PixelType pixelTypeOf(const fs::path& file, const NrrdHeader& header) {

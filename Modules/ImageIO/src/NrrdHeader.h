@@ -16,6 +16,7 @@ namespace adaptiso::detail {
 
 struct NrrdHeader {
     std::map<std::string, std::string, std::less<>> fields;  ///< names without blanks, lower case
+    std::map<std::string, std::string, std::less<>> pairs;   ///< key:=value, keys as they are
     std::uint64_t byteCount = 0;                             ///< up to and with the blank line
 
     std::optional<std::string_view> find(std::string_view name) const {
@@ -41,6 +42,9 @@ struct NrrdAxes {
 NrrdHeader readNrrdHeader(const std::filesystem::path& file);
 PixelType pixelTypeOf(const std::filesystem::path& file, const NrrdHeader& header);
 NrrdAxes axesOf(const std::filesystem::path& file, const NrrdHeader& header);
+/// What an axis of volumes counts: "volumes", or the layers of 3D Slicer's segments that overlap,
+/// with their names.
+std::string volumesNameOf(const NrrdHeader& header);
 ImageGeometry geometryOf(const std::filesystem::path& file, const NrrdHeader& header,
                          const NrrdAxes& axes, std::vector<Warning>& warnings);
 

@@ -1,11 +1,12 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <bit>
 #include <optional>
 #include <string>
 
 #include "DataFile.h"
-#include "DataTail.h"
+#include "DataPlace.h"
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "NrrdHeader.h"
@@ -43,53 +44,35 @@ std::endian byteOrderOf(const fs::path& file, const NrrdHeader& header, PixelTyp
            "it must be little or big");
 }
 
-std::uint64_t parseSkip(const fs::path& file, const NrrdHeader& header, std::string_view name,
-                        bool mayCountFromEnd, bool& countsFromEnd) {
+/// At least 0; or -1 for the last bytes of the data, where those are binary.
+std::int64_t parseSkip(const fs::path& file, const NrrdHeader& header, std::string_view field,
+                       std::int64_t least) {
+    std::string name(field);
+    std::erase(name, ' ');
     const auto text = header.find(name);
     if (!text) return 0;
     const auto skip = parseInteger(*text);
-    countsFromEnd = mayCountFromEnd && skip && *skip == -1;
-    if (!skip || (*skip < 0 && !countsFromEnd)) {
-        refuse(file,
-               fmt::format("its NRRD header is damaged: {} '{}'",
-                           name == "byteskip" ? "byte skip" : "line skip", printable(*text)),
-               mayCountFromEnd ? "it must be at least 0, or -1 for raw data at the file's end"
-                               : "it must be at least 0");
+    if (!skip || *skip < least) {
+        refuse(file, fmt::format("its NRRD header is damaged: {} '{}'", field, printable(*text)),
+               least == 0 ? "it must be at least 0"
+                          : "it must be at least 0, or -1 for data at the file's end");
     }
-    return countsFromEnd ? 0 : static_cast<std::uint64_t>(*skip);
+    return *skip;
 }
 
-/// Samples begin after `lines` lines of the file, then `bytes` bytes of what is decoded; or, for
-/// raw data, they are the last bytes of the file.
-struct Skip {
-    std::uint64_t lines = 0, bytes = 0;
-    bool countsFromEnd = false;
-};
-
-Skip skipOf(const fs::path& file, const NrrdHeader& header, NrrdEncoding encoding) {
-    Skip skip;
-    skip.lines = parseSkip(file, header, "lineskip", false, skip.countsFromEnd);
-    skip.bytes =
-        parseSkip(file, header, "byteskip", encoding == NrrdEncoding::Raw, skip.countsFromEnd);
-    return skip;
-}
-
-ByteSource openData(const fs::path& dataFile, std::uint64_t begin, NrrdEncoding encoding,
-                    const Skip& skip, std::uint64_t allBytes) {
-    ByteSource plain(dataFile, begin, ByteSource::Encoding::Raw);
-    for (std::uint64_t line = 0; line < skip.lines; ++line) plain.skipLine();
-    if (encoding == NrrdEncoding::Gzip) {
-        ByteSource inflated(dataFile, plain.position(), ByteSource::Encoding::Deflate);
-        inflated.requireRoomFor(skip.bytes);
-        inflated.skip(skip.bytes);
-        return inflated;
-    }
-    if (skip.countsFromEnd) {
-        plain.skipToLast(allBytes);
-    } else {
-        plain.skip(skip.bytes);
-    }
-    return plain;
+DataPlace placeOf(const fs::path& file, const NrrdHeader& header, NrrdEncoding encoding) {
+    const auto dataFile = header.find("datafile");
+    DataPlace place{file, dataFile ? requireDataFile(file, *dataFile) : file};
+    if (encoding == NrrdEncoding::Gzip) place.encoding = ByteSource::Encoding::Deflate;
+    if (!dataFile) place.begin = header.byteCount;
+    place.lines = static_cast<std::uint64_t>(parseSkip(file, header, "line skip", 0));
+    const std::int64_t bytes =
+        parseSkip(file, header, "byte skip", encoding == NrrdEncoding::Text ? 0 : -1);
+    place.countsFromEnd = bytes == -1;
+    place.bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(bytes, 0));
+    place.skipName = "byte skip";
+    place.gzipField = "encoding: gzip";
+    return place;
 }
 
 }  // namespace
@@ -103,36 +86,30 @@ ReadVolume readNrrd(const fs::path& file, const ReadOptions& options) {
     const NrrdAxes axes = axesOf(file, header);
     SampleLayout layout{pixelTypeOf(file, header)};
     layout.volumeCount = axes.volumeCount;
-    layout.volumeIndex = chooseVolume(file, axes.volumeCount, options);
+    layout.volumeIndex = chooseVolume(file, axes.volumeCount, options, volumesNameOf(header));
     layout.isInterleaved = axes.volumeAxis == 0U;
-    const std::uint64_t volumeBytes = requireImageBytes(file, axes.size, layout.stored);
+    requireImageBytes(file, axes.size, layout.stored);
     std::vector<Warning> warnings;
     const ImageGeometry geometry = geometryOf(file, header, axes, warnings);
     requireUsableGeometry(file, geometry);
 
     const NrrdEncoding encoding = encodingOf(file, header);
-    const Skip skip = skipOf(file, header, encoding);
-    const auto detached = header.find("datafile");
-    const fs::path dataFile = detached ? requireDataFile(file, *detached) : file;
-    const std::uint64_t begin = detached ? 0 : header.byteCount;
-    const std::uint64_t byteCount =
-        requireProduct(file, volumeBytes, static_cast<std::uint64_t>(axes.volumeCount));
-    const ImageExtent extent = ImageExtent::of(layout, axes.size);
-    ByteSource source = openData(dataFile, begin, encoding, skip, byteCount);
+    const DataPlace place = placeOf(file, header, encoding);
     if (encoding == NrrdEncoding::Text) {
         if (axes.volumeAxis) {
             refuse(file, "has 4 dimensions and its data are text",
                    "save it with encoding raw or gzip");
         }
-        Volume volume = readNrrdText(dataFile, source, layout.stored, geometry, warnings);
+        Volume volume = readingData(place, [&] {
+            ByteSource source = openData(place, 0, ImageExtent::of(layout, axes.size));
+            return readNrrdText(place.file, source, layout.stored, geometry, warnings);
+        });
         return {std::move(volume), "NRRD", std::move(warnings)};
     }
-    if (skip.countsFromEnd) checkBytesBefore(dataFile, source.position() - begin, extent);
     layout.byteOrder = byteOrderOf(file, header, layout.stored);
-    Volume volume = readSamples(file, source, layout, geometry, options);
-    checkTail(dataFile, source.readTail(byteCount + 1), extent, skip.bytes >= extent.piece,
-              warnings);
-    return {std::move(volume), "NRRD", std::move(warnings)};
+    PlacedVolume read = readPlaced(place, layout, geometry, options);
+    checkTail(place, read.tail, layout, axes.size, warnings);
+    return {std::move(read.volume), "NRRD", std::move(warnings)};
 }
 
 }  // namespace adaptiso::detail

@@ -7,7 +7,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "DataTail.h"
+#include "DataPlace.h"
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "Samples.h"

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -21,5 +23,10 @@ bool looksLikeNifti(std::string_view head);
 bool looksLikeNrrd(std::string_view head);
 bool looksLikeMetaImage(std::string_view head);
 bool looksLikeDicom(std::string_view head);
+
+/// Where the samples of a NIfTI or MGH file begin, by its first bytes; 0 for a .hdr, which holds no
+/// samples. Empty if it is no such file.
+std::optional<std::uint64_t> niftiSamplesAt(std::string_view head);
+std::optional<std::uint64_t> mghSamplesAt(std::string_view head);
 
 }  // namespace adaptiso::detail

@@ -171,16 +171,17 @@ void swapBytes(std::byte* samples, std::uint64_t byteCount, std::size_t bytesPer
 }
 
 std::int64_t chooseVolume(const std::filesystem::path& file, std::int64_t volumeCount,
-                          const ReadOptions& options) {
+                          const ReadOptions& options, std::string_view name) {
+    const auto refused = [&](const std::string& fault) {
+        refuse(file, fault, fmt::format("choose one: --volume-index 0 to {}", volumeCount - 1));
+    };
     if (!options.volumeIndex) {
-        if (volumeCount == 1) return 0;
-        refuse(file, fmt::format("is 4-D: it holds {} volumes", volumeCount),
-               fmt::format("choose one, 0 to {} (--volume-index)", volumeCount - 1));
+        if (volumeCount > 1) refused(fmt::format("is 4-D: it holds {} {}", volumeCount, name));
+        return 0;
     }
     if (*options.volumeIndex < 0 || *options.volumeIndex >= volumeCount) {
-        refuse(file,
-               fmt::format("there is no volume {}: it holds {}", *options.volumeIndex, volumeCount),
-               fmt::format("choose one, 0 to {} (--volume-index)", volumeCount - 1));
+        refused(
+            fmt::format("there is no volume {}: it holds {}", *options.volumeIndex, volumeCount));
     }
     return *options.volumeIndex;
 }

@@ -98,8 +98,9 @@ struct SampleLayout {
 
 /// The volume to read of a file that holds `volumeCount`.
 /// \throws FileError when there are several and none is asked for, or one that is not there
+/// \param name  for the message
 std::int64_t chooseVolume(const std::filesystem::path& file, std::int64_t volumeCount,
-                          const ReadOptions& options);
+                          const ReadOptions& options, std::string_view name = "volumes");
 
 /// Reads exactly the geometry's voxels, checks that the file holds the other volumes too, and wraps
 /// the samples up. Maps them instead where the options and the layout allow it. What follows in the

@@ -221,6 +221,275 @@ TEST(MoreThanTheHeaderSays, ALargerDataFileIsFineWhereTheHeaderPointsIntoIt) {
     expectRead(meta("-1"));
 }
 
+std::string pairHeader(float dataOffset) {
+    return niftiHeader([&](NiftiFile& f) {
+               f.magic = std::string("ni1\0", 4);
+               f.dataOffset = dataOffset;
+           })
+        .substr(0, 348);
+}
+
+/// Headers over a data file `x.raw` (`x.img`): by a skip of bytes, and -1 where it may count from
+/// the end.
+struct DetachedHeader {
+    const char* headerName;
+    const char* dataName;
+    bool countsFromEnd;
+    std::function<std::string(int skip)> text;
+};
+
+const std::vector<DetachedHeader>& detachedHeaders() {
+    static const auto nrrd = [](const std::string& encoding, int skip) {
+        const std::string line = skip == 0 ? "" : "byte skip: " + std::to_string(skip) + "\n";
+        return nrrdHeader("encoding: " + encoding + "\n" + line + "data file: x.raw\n");
+    };
+    static const std::vector<DetachedHeader> all = {
+        {"x.nhdr", "x.raw", true, [](int skip) { return nrrd("raw", skip); }},
+        {"gzip.nhdr", "x.raw", true, [](int skip) { return nrrd("gzip", skip); }},
+        {"x.mhd", "x.raw", true,
+         [](int skip) {
+             const std::string line = "HeaderSize = " + std::to_string(skip) + "\n";
+             return metaHeader(skip == 0 ? "" : line, "x.raw");
+         }},
+        {"x.hdr", "x.img", false, [](int skip) { return pairHeader(static_cast<float>(skip)); }}};
+    return all;
+}
+
+std::string packedFor(const DetachedHeader& header, const std::string& bytes) {
+    return std::string_view(header.headerName) == "gzip.nhdr" ? gzipped(bytes) : bytes;
+}
+
+/// Expects a refusal in one line that begins with the header's name.
+void expectRefusedOver(const DetachedHeader& header, int skip, const std::string& content,
+                       std::string_view fault) {
+    const TempFolder folder;
+    writeFile(folder / header.dataName, content);
+    expectRefusal(writeFile(folder / header.headerName, header.text(skip)), fault);
+}
+
+struct OtherImage {
+    std::string name;
+    std::string bytes;  ///< its samples are the last kVolumeBytes
+};
+
+std::vector<OtherImage> otherImages() {
+    DicomSlice slice;
+    slice.columns = kColumns, slice.rows = kRows * kSlices, slice.pixels = data();
+    return {{"a NIfTI file", niftiHeader() + data()},
+            {"an MGH file", mghHeader() + data()},
+            {"a NRRD file", kRawNrrd + data()},
+            {"a MetaImage file", metaHeader() + data()},
+            {"a DICOM file", slice.bytes()}};
+}
+
+TEST(OtherImagesAsData, AreReadWhereTheirSamplesBeginOnly) {
+    for (const DetachedHeader& header : detachedHeaders()) {
+        for (const OtherImage& other : otherImages()) {
+            const int at = static_cast<int>(other.bytes.size() - kVolumeBytes);
+            const std::string content = packedFor(header, other.bytes);
+            for (const int skip : {0, 4, at - 4, at - 1}) {
+                expectRefusedOver(header, skip, content, "is " + other.name);
+            }
+            if (other.name != "a DICOM file") {
+                expectRefusedOver(header, 0, content,
+                                  "voxels begin at byte " + std::to_string(at) + ", not 0");
+            }
+            const TempFolder folder;
+            writeFile(folder / header.dataName, content);
+            expectRead(writeFile(folder / header.headerName, header.text(at)));
+            if (!header.countsFromEnd) continue;
+            expectRead(writeFile(folder / header.headerName, header.text(-1)));
+            // a byte behind the samples moves what are the last bytes
+            expectRefusedOver(header, -1, packedFor(header, other.bytes + "\n"),
+                              "is " + other.name);
+        }
+    }
+}
+
+TEST(OtherImagesAsData, LinesMayBeSkippedToTheirSamples) {
+    const TempFolder folder;
+    const auto header = [&](const std::string& encoding, std::ptrdiff_t lines) {
+        return writeFile(folder / "x.nhdr", nrrdHeader("encoding: " + encoding +
+                                                       "\nline skip: " + std::to_string(lines) +
+                                                       "\ndata file: x.raw\n"));
+    };
+    const auto lines = std::ranges::count(kRawNrrd, '\n');
+    writeFile(folder / "x.raw", kRawNrrd + data());
+    expectRead(header("raw", lines));
+    EXPECT_NE(refusalOf(header("raw", lines - 1)).find("a NRRD file"), std::string::npos);
+    const std::string packed = nrrdHeader("encoding: gzip\n");
+    writeFile(folder / "x.raw", packed + gzipped(data()));
+    expectRead(header("gzip", lines));
+    EXPECT_NE(refusalOf(header("raw", lines)).find("a NRRD file"), std::string::npos);
+}
+
+TEST(OtherImagesAsData, AHeaderWithoutSamplesIsNoData) {
+    for (const DetachedHeader& header : detachedHeaders()) {
+        for (const std::string& text : {pairHeader(0) + data(), metaHeader("", "y.raw") + data(),
+                                        nrrdHeader("encoding: raw\ndata file: y.raw\n") + data()}) {
+            expectRefusedOver(header, 0, packedFor(header, text), "would be read as voxels");
+        }
+    }
+}
+
+TEST(OtherImagesAsData, AreRefusedBehindATextHeaderToo) {
+    const TempFolder folder;
+    const std::string nifti = niftiHeader() + data();
+    for (const auto& [name, header] : {std::pair{"x.nrrd", kRawNrrd}, {"x.mha", metaHeader()}}) {
+        expectRefusal(writeFile(folder / name, header + nifti),
+                      "the data behind its header are a NIfTI file");
+    }
+    expectRefusal(writeFile(folder / "x.nrrd", nrrdHeader("encoding: gzip\n") + gzipped(nifti)),
+                  "set byte skip to 352");
+}
+
+TEST(OtherKindsOfData, AreNamed) {
+    using namespace std::string_literals;
+    const std::string pad(3 * kVolumeBytes, '#');
+    const std::pair<std::string, const char*> kinds[] = {
+        {"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 1024\n",
+         "git-lfs pointer"},
+        {"<!DOCTYPE html><html><body>Log in</body></html>", "a web page"},
+        {"\x89PNG\r\n\x1a\n"s, "a PNG picture"},
+        {"PK\3\4"s, "a zip archive"},
+        {"BZh91AY&SY"s, "bzip2"},
+        {""s, "an empty file"}};
+    for (const DetachedHeader& header : detachedHeaders()) {
+        for (const auto& [bytes, name] : kinds) {
+            expectRefusedOver(header, 0, bytes, name);
+            if (!bytes.empty()) {
+                expectRefusedOver(header, 0, bytes + pad, name);
+                expectRefusedOver(header, 0, packedFor(header, bytes + pad), name);
+            }
+        }
+    }
+}
+
+TEST(OtherKindsOfData, PackedDataWithoutAWordInTheHeaderGetIt) {
+    for (const std::size_t index : {0U, 2U}) {
+        expectRefusedOver(detachedHeaders()[index], 0, gzipped(data()),
+                          index == 0 ? "say so in the header: encoding: gzip"
+                                     : "say so in the header: CompressedData = True");
+    }
+    const TempFolder folder;
+    writeFile(folder / "x.raw", data());
+    const auto header = writeFile(folder / "x.nhdr", detachedHeaders()[1].text(0));
+    EXPECT_NE(refusalOf(header).find("x.raw: its data are not compressed"), std::string::npos);
+}
+
+TEST(OtherKindsOfData, AreNoneWhereTheLengthIsRight) {
+    const TempFolder folder;
+    std::vector<std::int16_t> values = samples();
+    values[0] = static_cast<std::int16_t>(0x8b1f);  // gzip's magic
+    writeFile(folder / "x.raw", samplesOf(values));
+    const auto header = writeFile(folder / "x.nhdr", detachedHeaders()[0].text(0));
+    EXPECT_EQ(samplesIn<std::int16_t>(readVolume(header).volume), values);
+}
+
+TEST(OtherKindsOfData, WhatFollowsADataFileMayBeAHeaderBeforeIt) {
+    const TempFolder folder;
+    writeFile(folder / "x.raw", std::string(100, 'h') + data());
+    const auto header = writeFile(folder / "x.nhdr", detachedHeaders()[0].text(0));
+    EXPECT_TRUE(
+        mentions(readVolume(header), "if they are a header before it, set byte skip to 100"));
+    expectRead(writeFile(header, detachedHeaders()[0].text(100)));
+}
+
+/// A CR before every LF, as FTP's text mode does to Windows.
+std::string withWindowsLineEnds(const std::string& bytes) {
+    std::string turned;
+    for (const char c : bytes) turned += c == '\n' ? "\r\n" : std::string(1, c);
+    return turned;
+}
+
+/// As programs do that take the bytes for Latin-1.
+std::string asUtf8(const std::string& bytes) {
+    std::string turned;
+    for (const char c : bytes) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x80) {
+            turned += c;
+        } else {
+            turned +=
+                {static_cast<char>(0xc0 | byte >> 6), static_cast<char>(0x80 | (byte & 0x3f))};
+        }
+    }
+    return turned;
+}
+
+TEST(TextModeTransfer, IsRefusedInEveryFormat) {
+    const TempFolder folder;
+    const auto expectTurned = [&](const char* name, const std::string& bytes) {
+        expectRefusal(writeFile(folder / name, bytes), "a transfer in text mode");
+    };
+    for (const Format& format : formats()) {
+        const std::string file = format.file("");
+        const bool isPacked = file.find("\x1f\x8b") != std::string::npos ||
+                              std::string_view(format.name) == "packed.mha";
+        ASSERT_NE(withWindowsLineEnds(file), file);
+        if (!isPacked) expectTurned(format.name, withWindowsLineEnds(file));
+    }
+    expectTurned("x.nii.gz", gzipped(withWindowsLineEnds(niftiHeader() + data())));
+    expectTurned("x.nrrd", nrrdHeader("encoding: gzip\n") + gzipped(withWindowsLineEnds(data())));
+    // an image's border of zeros is left over, and MGH's footer follows
+    const std::string border = data() + std::string(4 * kVolumeBytes, '\0');
+    const auto wide = [](NiftiFile& f) { f.dim = {3, kColumns, kRows, 5 * kSlices, 1, 1, 1, 1}; };
+    expectTurned("x.nii", withWindowsLineEnds(niftiHeader(wide) + border));
+    expectTurned("x.mgh", withWindowsLineEnds(mghHeader() + data(std::endian::big) +
+                                              std::string(20, '\x41')));
+}
+
+TEST(TextModeTransfer, OfADataFileIsRefused) {
+    for (const DetachedHeader& header : detachedHeaders()) {
+        const TempFolder folder;
+        const auto turned = packedFor(header, withWindowsLineEnds(data()));
+        writeFile(folder / header.dataName, turned);
+        const auto file = writeFile(folder / header.headerName, header.text(0));
+        EXPECT_NE(refusalOf(file).find("a transfer in text mode"), std::string::npos);
+        if (!header.countsFromEnd) continue;
+        writeFile(file, header.text(-1));
+        EXPECT_NE(refusalOf(file).find("a transfer in text mode"), std::string::npos);
+    }
+}
+
+TEST(TextModeTransfer, ToUtf8IsRefused) {
+    const TempFolder folder;
+    std::vector<std::int16_t> values = samples();
+    for (const std::size_t n : {40U, 80U, 81U, 200U}) values[n] = -100;
+    const std::string bytes = samplesOf(values);
+    expectRefusal(writeFile(folder / "x.nrrd", kRawNrrd + asUtf8(bytes)), "text mode");
+    expectRefusal(writeFile(folder / "x.mha", metaHeader() + asUtf8(bytes)), "text mode");
+    writeFile(folder / "x.nrrd", kRawNrrd + bytes + "note");
+    EXPECT_TRUE(mentions(readVolume(folder / "x.nrrd"), "4 bytes follow"));
+}
+
+TEST(TextModeTransfer, ThatMakesFilesShorterIsRefused) {
+    const TempFolder folder;
+    std::vector<std::int16_t> values = samples();
+    values[50] = 0x0a0d;
+    std::string bytes = samplesOf(values);
+    bytes.replace(100, 2, "\n");
+    expectRefusal(writeFile(folder / "x.nrrd", kRawNrrd + bytes), "truncated");
+    EXPECT_NE(refusalOf(folder / "x.nrrd").find("in binary mode"), std::string::npos);
+}
+
+TEST(TextModeTransfer, ThatMovesANiftiHeaderIsRefused) {
+    const TempFolder folder;
+    const std::string header = niftiHeader([](NiftiFile& f) { f.units = 10; });  // mm and s
+    expectRead(writeFile(folder / "x.nii", header + data()));
+    expectRefusal(writeFile(folder / "x.nii", withWindowsLineEnds(header + data())),
+                  "its NIfTI magic is at byte 345, not 344");
+}
+
+TEST(TextModeTransfer, OfATextHeaderAloneHarmsNothing) {
+    const TempFolder folder;
+    expectRead(writeFile(folder / "x.nrrd", withWindowsLineEnds(kRawNrrd) + data()));
+    expectRead(writeFile(folder / "x.mha", withWindowsLineEnds(metaHeader()) + data()));
+    // a note may have the line ends of Windows
+    expectRead(writeFile(folder / "x.mha", metaHeader() + data() + "\r\na note\r\n"),
+               "10 bytes follow");
+}
+
 std::string mghTag(std::int32_t tag, const std::string& content) {
     return bytesOf(tag, std::endian::big) +
            bytesOf(static_cast<std::int64_t>(content.size()), std::endian::big) + content;

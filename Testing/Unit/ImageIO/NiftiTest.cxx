@@ -437,6 +437,42 @@ TEST(Nifti2, IsReadWithItsDoubles) {
     EXPECT_EQ(samplesIn<std::int16_t>(result.volume), countingSamples<std::int16_t>(24));
 }
 
+TEST(Nifti2, CiftiIsCalledByItsName) {
+    std::string h(544, '\0');
+    put<std::int32_t>(h, 0, 540);
+    h.replace(4, 8, std::string("n+2\0\r\n\032\n", 8));
+    put<std::int16_t>(h, 12, 16);
+    put<std::int16_t>(h, 14, 32);
+    const std::int64_t dim[] = {6, 1, 1, 1, 1, 3, 50, 1};
+    for (std::size_t i = 0; i < 8; ++i) put(h, 16 + 8 * i, dim[i]);
+    put<std::int64_t>(h, 168, 544);
+    put<std::int32_t>(h, 504, 3006);  // ConnDenseScalar
+    const TempFolder folder;
+    const auto file = writeFile(folder / "x.dscalar.nii", h + std::string(600, '\1'));
+    expectRefusal(file, "is CIFTI");
+    expectRefusal(file, "wb_command -cifti-separate x.dscalar.nii COLUMN -volume-all");
+}
+
+TEST(NiftiIntent, NamesComponents) {
+    NiftiFile file = withSform();
+    file.dim = {5, 4, 3, 2, 1, 3, 1, 1};
+    const auto header = [&](std::int16_t intent) {
+        std::string bytes = file.header();
+        put<std::int16_t>(bytes, 68, intent);
+        return bytes + file.data + file.data + file.data;
+    };
+    const TempFolder folder;
+    const auto path = folder / "x.nii";
+    expectRefusal(writeFile(path, header(0)), "vectors of 3 components (dimension 5)");
+    expectRefusal(writeFile(path, header(1006)), "displacements of 3 components (dimension 5)");
+    expectRefusal(path, "save one component as a 3-D image");
+    file.dim = {4, 4, 3, 2, 3, 1, 1, 1};
+    expectRefusal(writeFile(path, header(0)), "holds 3 volumes; choose one: --volume-index 0 to 2");
+    expectRefusal(writeFile(path, header(2006)), "holds 3 components of displacements; choose one");
+    EXPECT_EQ(samplesIn<std::int16_t>(readVolume(path, {.volumeIndex = 2}).volume),
+              countingSamples<std::int16_t>(24));
+}
+
 TEST(NiftiRealData, MniBrainAgreesWithNibabel) {
     const std::filesystem::path file = "/usr/share/mricron/templates/ch2.nii.gz";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "Debian's mricron-data is not installed";

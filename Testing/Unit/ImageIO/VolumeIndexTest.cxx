@@ -129,6 +129,20 @@ TEST(VolumeIndex, MustBeGivenAndBeThere) {
     EXPECT_THROW(readVolume(file, indexed(1)), FileError);
 }
 
+TEST(VolumeIndex, LayersOfSegmentsAreNamed) {
+    std::string bytes = nrrdVolumesFirst();
+    bytes.insert(
+        bytes.find("\n\n") + 1,
+        "Segment0_Layer:=0\nSegment0_Name:=liver\nSegment1_Layer:=2\nSegment1_Name:=vessel\n"
+        "Segment2_Layer:=0\nSegment2_Name:=tumour\n");
+    const TempFolder folder;
+    const auto file = writeFile(folder / "x.seg.nrrd", bytes);
+    expectRefusal(file,
+                  "holds 3 layers of segments that overlap (0: liver, tumour; 2: vessel); choose "
+                  "one: --volume-index 0 to 2");
+    EXPECT_EQ(samplesIn<std::int16_t>(readVolume(file, indexed(2)).volume), volume(2));
+}
+
 TEST(VolumeIndex, RefusesFilesThatMissPartOfAnotherVolume) {
     const TempFolder folder;
     for (const Case& c : allCases()) {

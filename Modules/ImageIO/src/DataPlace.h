@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "ByteSource.h"
+#include "Samples.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Warning.h"
+
+/// Where a header puts its samples, and whether the file holds them there: another format's header
+/// may lie in their place, another image behind them, or a transfer may have changed them.
+namespace adaptiso::detail {
+
+/// Bytes of an image as its header has it.
+struct ImageExtent {
+    std::uint64_t piece = 0;  ///< what a wrong size would be off by a multiple of: a slice, a row
+    std::uint64_t whole = 0;  ///< one volume, one image
+
+    /// Slices and volumes of `layout`.
+    static ImageExtent of(const SampleLayout& layout, const Index3& size);
+};
+
+/// Whether so many bytes too many are whole pieces, or half of an image and more: more of the image
+/// than its header tells of. Less than that is something else, which harms nothing.
+bool isMoreImage(std::uint64_t extraBytes, const ImageExtent& extent);
+
+struct DataPlace {
+    std::filesystem::path header;
+    std::filesystem::path file;  ///< holds the samples; the header itself where they are attached
+    ByteSource::Encoding encoding = ByteSource::Encoding::Raw;
+    std::uint64_t begin = 0;     ///< of the file: behind an attached text header
+    std::uint64_t lines = 0;     ///< lines of the file to skip
+    std::uint64_t bytes = 0;     ///< then bytes to skip, inflated
+    bool countsFromEnd = false;  ///< instead of `bytes`: the samples are the last bytes
+    /// The header's words for `bytes` and for compressed data; both empty in formats that keep
+    /// header and samples in one file.
+    std::string_view skipName{}, gzipField{};
+
+    bool isDetached() const { return file != header; }
+};
+
+/// The samples of `place`, `byteCount` in all volumes.
+///
+/// A data file that is an image file itself must be entered where its own samples begin, or whole
+/// slices behind: elsewhere its header would be read as voxels.
+/// \throws FileError  the samples begin elsewhere; so much is before a file's last bytes that it is
+///                    another image; less than `byteCount` is there
+ByteSource openData(const DataPlace& place, std::uint64_t byteCount, const ImageExtent& extent);
+
+/// A volume, and what is behind it in its file.
+struct PlacedVolume {
+    Volume volume;
+    ByteTail tail;
+};
+
+/// openData() and readSamples(), whose errors this throws.
+PlacedVolume readPlaced(const DataPlace& place, const SampleLayout& layout,
+                        const ImageGeometry& geometry, const ReadOptions& options);
+
+/// Compares what follows the samples with what the header says follows: nothing.
+///
+/// A warning is added for anything but padding with zeros behind compressed data.
+/// \throws FileError  the data file is of another kind (a picture, an archive); the samples were
+///                    changed by a transfer in text mode; another image or more of this one
+///                    follows, unless the header points into a larger file
+void checkTail(const DataPlace& place, const ByteTail& tail, const SampleLayout& layout,
+               const Index3& size, std::vector<Warning>& warnings);
+
+/// \throws FileError  all line ends among the samples are of Windows, or all bytes above 127 are
+///                    UTF-8, as a transfer in text mode leaves them, which moves what follows
+/// \pre the file holds more bytes than its header describes
+void requireBinaryTransfer(const DataPlace& place, const SampleLayout& layout, const Index3& size);
+
+/// \throws FileError  the data file is of another kind: a pointer, a page, an archive, a picture
+void refuseForeignData(const DataPlace& place);
+
+/// Calls `read`. Where it fails and the data file is of another kind, that is the fault reported.
+template <class Read>
+auto readingData(const DataPlace& place, Read&& read) {
+    try {
+        return read();
+    } catch (const FileError&) {
+        refuseForeignData(place);
+        throw;
+    }
+}
+
+}  // namespace adaptiso::detail
