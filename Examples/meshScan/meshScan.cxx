@@ -15,6 +15,9 @@ int main(int argc, char** argv) {
     }
     try {
         const adaptiso::ReadVolume scan = adaptiso::readVolume(argv[1]);
+        for (const adaptiso::Warning& warning : scan.warnings) {
+            std::fprintf(stderr, "meshScan: warning: %s\n", warning.text.c_str());
+        }
         const adaptiso::VolumeView& volume = scan.volume.view();
         adaptiso::ExtractionOptions options;
         options.isovalue = adaptiso::otsuThreshold(volume);

@@ -1,6 +1,6 @@
 """A table of how sound surfaces are, and how good their triangles.
 
-qualityTable.py MESH...: prints the table and writes quality.csv.
+qualityTable.py MESH...: prints the table and writes quality.csv. The exit code is 1 where a mesh fails.
 """
 
 import sys
@@ -22,7 +22,10 @@ def row(file):
             "edge, mean mm": report["shape"]["edgeMm"]["mean"]}
 
 
+if len(sys.argv) < 2:
+    sys.exit("usage: qualityTable.py MESH...")
 table = pandas.DataFrame(map(row, sys.argv[1:])).set_index("mesh")
 table.to_csv("quality.csv")
 print(table.round(2).to_string())
 print(f"{int(table.passed.sum())} of {len(table)} pass")
+sys.exit(0 if table.passed.all() else 1)

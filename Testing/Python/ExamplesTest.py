@@ -13,12 +13,12 @@ EXAMPLES = Path(os.environ["ADAPTISO_SOURCE"]) / "Examples" / "python"
 
 
 class Scripts(InFolder):
-    def run_script(self, name, *arguments):
+    def run_script(self, name, *arguments, code=0):
         """\\return what it prints"""
         environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
         done = subprocess.run([sys.executable, "-B", EXAMPLES / name, *map(str, arguments)], text=True,
                               cwd=self.folder, env=environment, capture_output=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.returncode, code, done.stderr)
         return done.stdout
 
     @needs("vtkmodules")
@@ -47,12 +47,25 @@ class Scripts(InFolder):
             # inside 1, outside -1, so that the level between them is chosen
             scans.append(self.nrrd(name, (ball() + radius).clip(-1, 1).astype("<f4")))
         (self.folder / "broken.nrrd").write_text("no scan")
-        out = self.run_script("cohort.py", "surfaces", *scans, self.folder / "broken.nrrd")
+        self.assertIn("2 of 2 made", self.run_script("cohort.py", "surfaces", *scans))
+        out = self.run_script("cohort.py", "surfaces", *scans, self.folder / "broken.nrrd", code=1)
         self.assertIn("2 of 3 made", out)
         self.assertIn("broken.nrrd: ", out)
         meshes = {name: adaptiso.load(self.folder / "surfaces" / f"{name}.stl")
                   for name in ("small", "large")}
         self.assertLess(meshes["small"].volume, meshes["large"].volume)
+
+    def test_scripts_fail_where_they_make_nothing(self):
+        self.run_script("cohort.py", "surfaces", code=1)
+        self.run_script("cohort.py", "surfaces", "a/T1.nii", "b/T1.nii", code=1)  # both T1.stl
+        self.run_script("qualityTable.py", code=1)
+        self.run_script("qualityTable.py", "missing.ply", code=1)
+
+    @needs("vtkmodules")
+    def test_a_file_that_cannot_be_written_is_a_failure(self):
+        scan = self.nrrd("scan", (ball() + 8).clip(-1, 1).astype("<f4"))
+        (self.folder / "brain.vtp").mkdir()
+        self.run_script("brainSurface.py", scan, 0, code=1)
 
     def nrrd(self, name, volume):
         """A file of a volume, RAS."""
@@ -69,7 +82,8 @@ class Scripts(InFolder):
         mesh = adaptiso.surface(ball(), -8)
         mesh.save(self.folder / "whole.ply")
         adaptiso.Mesh(mesh.vertices, mesh.faces[1:]).save(self.folder / "open.ply")
-        out = self.run_script("qualityTable.py", "whole.ply", "open.ply")
+        self.assertIn("1 of 1 pass", self.run_script("qualityTable.py", "whole.ply"))
+        out = self.run_script("qualityTable.py", "whole.ply", "open.ply", code=1)
         self.assertIn("1 of 2 pass", out)
         table = (self.folder / "quality.csv").read_text().splitlines()
         self.assertTrue(table[0].startswith("mesh,passed,failed,triangles,genus"))
