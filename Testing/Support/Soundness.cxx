@@ -1,6 +1,7 @@
 #include "Support/Soundness.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <ostream>
@@ -231,10 +232,144 @@ void checkVertices(const TriangleMesh& mesh, Findings& findings) {
     }
 }
 
+/// A connected piece, and which others lie around it.
+struct Piece {
+    double volume6 = 0, area2 = 0;
+    bool isOpen = false;
+    Vec3 start;
+    std::vector<std::size_t> around;  ///< ascending
+};
+
+class Pieces {
+public:
+    explicit Pieces(const TriangleMesh& mesh) : mesh_(mesh), pieceOf_(mesh.points.size(), kNone) {
+        std::vector<std::vector<std::size_t>> trianglesAt(mesh.points.size());
+        std::map<std::pair<VertexId, VertexId>, int> sides;
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+            const Triangle& c = mesh.triangles[t];
+            for (int side = 0; side < 3; ++side) {
+                const auto [low, high] = std::minmax(c[side], c[(side + 1) % 3]);
+                ++sides[{low, high}];
+                trianglesAt[c[side]].push_back(t);
+            }
+        }
+        for (const Triangle& t : mesh.triangles) {
+            if (pieceOf_[t[0]] == kNone) flood(t, trianglesAt);
+        }
+        for (const auto& [side, count] : sides) {
+            if (count == 1) pieces[pieceOf_[side.first]].isOpen = true;
+        }
+        for (const Triangle& t : mesh.triangles) addUp(t);
+    }
+
+    /// Finds what lies around what.
+    void nest(bool opensHold) {
+        for (std::size_t n = 0; n < pieces.size(); ++n) {
+            std::map<std::size_t, int> passed;
+            for (const Triangle& t : mesh_.triangles) {
+                const std::size_t piece = pieceOf_[t[0]];
+                if (piece == n || (pieces[piece].isOpen && !opensHold)) continue;
+                if (isAbove(t, pieces[n].start)) ++passed[piece];
+            }
+            for (const auto& [piece, times] : passed) {
+                if (times % 2 == 1) pieces[n].around.push_back(piece);
+            }
+        }
+    }
+
+    std::vector<Piece> pieces;
+
+private:
+    static constexpr std::size_t kNone = ~std::size_t{0};
+
+    void flood(const Triangle& first, const std::vector<std::vector<std::size_t>>& trianglesAt) {
+        const std::size_t number = pieces.size();
+        Piece& piece = pieces.emplace_back();
+        piece.start =
+            (1.0 / 3) * (mesh_.points[first[0]] + mesh_.points[first[1]] + mesh_.points[first[2]]);
+        std::vector<VertexId> open{first[0]};
+        pieceOf_[first[0]] = number;
+        while (!open.empty()) {
+            const VertexId at = open.back();
+            open.pop_back();
+            for (const std::size_t t : trianglesAt[at]) {
+                for (const VertexId v : mesh_.triangles[t]) {
+                    if (pieceOf_[v] != kNone) continue;
+                    pieceOf_[v] = number;
+                    open.push_back(v);
+                }
+            }
+        }
+    }
+    void addUp(const Triangle& t) {
+        Piece& piece = pieces[pieceOf_[t[0]]];
+        const Vec3 a = mesh_.points[t[0]] - piece.start, b = mesh_.points[t[1]] - piece.start,
+                   c = mesh_.points[t[2]] - piece.start;
+        piece.volume6 += dot(a, cross(b, c));
+        piece.area2 += norm(cross(b - a, c - a));
+    }
+    /// The line upwards from `start` passes the triangle.
+    bool isAbove(const Triangle& t, const Vec3& start) const {
+        std::array<Vec3, 3> at;  // seen from the start, sheared so that the line is the z axis
+        for (int c = 0; c < 3; ++c) {
+            const Vec3 p = mesh_.points[t[c]] - start;
+            at[c] = {p.x - 0.0012345 * p.z, p.y + 0.0023456 * p.z, p.z};
+        }
+        const auto side = [&](int c) {
+            const Vec3 &a = at[c], &b = at[(c + 1) % 3];
+            return a.x * b.y - a.y * b.x;
+        };
+        const double u = side(1), v = side(2), w = side(0);
+        if (!((u > 0) == (v > 0) && (v > 0) == (w > 0))) return false;
+        return (u * at[0].z + v * at[1].z + w * at[2].z) / (u + v + w) > 0;
+    }
+
+    const TriangleMesh& mesh_;
+    std::vector<std::size_t> pieceOf_;
+};
+
+std::string bracketsOf(const std::vector<Piece>& pieces, std::size_t n) {
+    const Piece& piece = pieces[n];
+    if (piece.isOpen) return "|";
+    std::vector<std::string> within;
+    for (std::size_t m = 0; m < pieces.size(); ++m) {
+        const std::vector<std::size_t>& around = pieces[m].around;
+        const bool isChild = around.size() == piece.around.size() + 1 &&
+                             std::find(around.begin(), around.end(), n) != around.end();
+        if (isChild) within.push_back(bracketsOf(pieces, m));
+    }
+    std::sort(within.begin(), within.end());
+    const bool isFlat = std::abs(piece.volume6) < 1e-9 * std::pow(piece.area2, 1.5);
+    const char* brackets = isFlat ? "<>" : piece.volume6 > 0 ? "()" : "[]";
+    std::string text(1, brackets[0]);
+    for (const std::string& one : within) text += one;
+    return text + brackets[1];
+}
+
 }  // namespace
 
+std::string nestingOf(const TriangleMesh& mesh, bool opensHold) {
+    Pieces found(mesh);
+    found.nest(opensHold);
+    std::vector<std::string> outermost;
+    for (std::size_t n = 0; n < found.pieces.size(); ++n) {
+        // a sheet holds the piece, and is none of the brackets around it
+        const auto& around = found.pieces[n].around;
+        const auto opens = std::count_if(around.begin(), around.end(),
+                                         [&](std::size_t m) { return found.pieces[m].isOpen; });
+        if (std::ssize(around) == opens) {
+            outermost.push_back(std::string(static_cast<std::size_t>(opens), '_') +
+                                bracketsOf(found.pieces, n));
+        }
+    }
+    std::sort(outermost.begin(), outermost.end());
+    std::string text;
+    for (const std::string& one : outermost) text += one;
+    return text;
+}
+
 SoundnessOptions openOnlyAtBorder(const ImageGeometry& geometry) {
-    return {geometry};
+    return {.openAtBorderOf = geometry};
 }
 
 ::testing::AssertionResult isSound(const TriangleMesh& mesh, const SoundnessOptions& options) {
@@ -244,6 +379,11 @@ SoundnessOptions openOnlyAtBorder(const ImageGeometry& geometry) {
         checkTriangles(mesh, findings);
         checkEdges(mesh, options, findings);
         checkVertices(mesh, findings);
+        if (options.nesting && nestingOf(mesh) != *options.nesting) {
+            findings.add("pieces nest otherwise", [&](std::ostream& out) {
+                out << nestingOf(mesh) << ", not " << *options.nesting;
+            });
+        }
     }
     return findings.result(mesh);
 }

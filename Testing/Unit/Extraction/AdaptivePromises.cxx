@@ -297,6 +297,7 @@ std::string describe(std::uint64_t seed, const AdaptiveCase& adaptive) {
     }
     SoundnessOptions soundness;
     if (adaptive.border == Border::Open) soundness = openOnlyAtBorder(volume.geometry());
+    soundness.nesting = nestingOf(full.mesh);
     if (const auto sound = isSound(ours.mesh, soundness); !sound) return sound;
     if (const auto same = hasTopologyOf(ours.mesh, full.mesh); !same) return same;
     if (const auto pairs = findSelfIntersections(ours.mesh).pairCount; pairs != 0) {

@@ -34,10 +34,11 @@ std::string describe(std::uint64_t seed, const AdaptiveCase& adaptive);
 using CrossingReferee = std::function<bool(const TriangleMesh&)>;
 
 /// Extracts by the adaptive method and by `mc` and checks every promise, with no code of the
-/// method's: sound (isSound); no triangles cross (MeshQuality, and `referee` if given); components
-/// and Euler characteristic of `mc`; the bound that is reported is not above the bound asked for;
-/// and dense samples of each surface (a lattice on every triangle, corners and middles of edges
-/// among it, an eighth of a voxel apart) lie within the reported bound of the other.
+/// method's: sound, its pieces nested as those of `mc` (isSound); no triangles cross (MeshQuality,
+/// and `referee` if given); components and Euler characteristic of `mc`; the bound that is reported
+/// is not above the bound asked for; and dense samples of each surface (a lattice on every
+/// triangle, corners and middles of edges among it, an eighth of a voxel apart) lie within the
+/// reported bound of the other.
 ::testing::AssertionResult keepsAdaptivePromises(const AdaptiveCase& adaptive,
                                                  const CrossingReferee& referee = {});
 

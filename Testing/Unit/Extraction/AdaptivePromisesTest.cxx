@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "AdaptivePromises.h"
 #include "Support/AnalyticVolumes.h"
+#include "Support/Soundness.h"
 
 namespace adaptiso::testing {
 
@@ -99,6 +101,63 @@ TEST(AdaptivePromises, HoldWhereNoiseMeetsASmoothSurface) {
                 adaptive.options.maxErrorMm = bound;
                 EXPECT_TRUE(keepsAdaptivePromises(adaptive)) << describe(0, adaptive);
             }
+        }
+    }
+}
+
+namespace {
+
+/// A sheet of waves across the volume, or a ball with waves, and single voxels on both sides of
+/// it, off the border.
+Volume amongSpecks(std::uint64_t seed, bool isBall) {
+    const ImageGeometry geometry = centredGeometry({20, 21, 22});
+    std::vector<float> samples;
+    for (std::int64_t n = 0; n < geometry.voxelCount(); ++n) {
+        const auto x = static_cast<double>(n % 20) - 9.5, y = static_cast<double>(n / 20 % 21) - 10,
+                   z = static_cast<double>(n / 420) - 10.5;
+        const double waves = std::sin(1.1 * x + 0.4 * z) * std::cos(0.9 * y + 0.3);
+        double value = isBall ? 6 - norm({x, y, z}) + waves : 1.5 * waves - z;
+        const bool isWithin = std::abs(x) < 9 && std::abs(y) < 9 && std::abs(z) < 9;
+        if (isWithin && nextRandom(seed) % 40 == 0) value = value > 0 ? -0.6 : 0.6;
+        samples.push_back(static_cast<float>(value));
+    }
+    return Volume::fromSamples(std::move(samples), geometry);
+}
+
+}  // namespace
+
+TEST(AdaptivePromises, HoldAmongSpecks) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        AdaptiveCase adaptive{amongSpecks(seed, seed % 2 == 0), 0, 4, Border::Closed, {}};
+        for (const Border border : {Border::Closed, Border::Open}) {
+            adaptive.border = border;
+            for (const double reduction : {0.7, 0.8, 0.9, 1.0}) {
+                adaptive.options = {};
+                adaptive.options.reduction = reduction;
+                EXPECT_TRUE(keepsAdaptivePromises(adaptive)) << describe(seed, adaptive);
+            }
+            for (const double bound : {0.7, 1.5, 4.0}) {
+                adaptive.options = {};
+                adaptive.options.maxErrorMm = bound;
+                EXPECT_TRUE(keepsAdaptivePromises(adaptive)) << describe(seed, adaptive);
+            }
+        }
+    }
+}
+
+// The sheet ends at the volume's border on all sides, so that each speck is above or below it.
+TEST(AdaptivePromises, AnOpenSheetSweepsOverNoSpeck) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        const Volume volume = amongSpecks(seed, false);
+        ExtractionOptions options;
+        options.method = Method::MarchingCubes;
+        const std::string nesting =
+            nestingOf(extractSurface(volume.view(), options, Border::Open).mesh, true);
+        options.method = Method::Adaptive;
+        for (const double reduction : {0.7, 0.8, 0.9, 1.0}) {
+            options.adaptive.reduction = reduction;
+            const TriangleMesh mesh = extractSurface(volume.view(), options, Border::Open).mesh;
+            EXPECT_EQ(nestingOf(mesh, true), nesting) << seed << ", " << reduction;
         }
     }
 }

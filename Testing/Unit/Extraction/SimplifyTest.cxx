@@ -170,6 +170,39 @@ TEST(Simplify, TurnsNoSmallPieceInsideOut) {
     }
 }
 
+// A plate with dents and bumps, small balls above, below and in it, some around others.
+TEST(Simplify, KeepsSmallPiecesOnTheirSideOfAWall) {
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> uniform(-1, 1);
+        TriangleMesh plate = icosphere(4, {}, 10);
+        for (Vec3& p : plate.points) {
+            p.z = 0.2 * p.z + 2 * std::sin(0.9 * p.x + 0.1 * seed) * std::cos(1.1 * p.y);
+        }
+        std::vector<TriangleMesh> pieces{plate};
+        while (pieces.size() < 60) {
+            const Vec3 at{8 * uniform(random), 8 * uniform(random), 4 * uniform(random)};
+            TriangleMesh ball = icosphere(1, at, 0.25);
+            pieces.push_back(ball);
+            pieces.push_back(icosphere(0, at, 0.1));
+            if (!crossingOf(merged(pieces)).empty()) pieces.resize(pieces.size() - 2);
+        }
+        TriangleMesh mesh = merged(pieces);
+        mesh.normals = {};
+        SoundnessOptions soundness;
+        soundness.nesting = nestingOf(mesh);
+        ASSERT_NE(soundness.nesting->find("(("), std::string::npos);
+        for (const double part : {0.3, 0.2, 0.1, 0.0}) {
+            const auto count =
+                static_cast<std::int64_t>(part * static_cast<double>(mesh.triangles.size()));
+            expectSound(simplify(mesh, downTo(count)).mesh, soundness);
+        }
+        for (const double bound : {0.5, 2.0, 8.0}) {
+            expectSound(simplify(mesh, within(bound)).mesh, soundness);
+        }
+    }
+}
+
 TEST(Simplify, LeavesTwelveTrianglesOfACubeCutFine) {
     // each face 20 x 20 squares: nothing but the edges bends
     const auto volume = sampled<float>(box({}, {8, 8, 8}), centredGeometry({24, 24, 24}));

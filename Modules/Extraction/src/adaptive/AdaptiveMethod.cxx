@@ -53,7 +53,8 @@ private:
         SimplifiedSurface surface;
         ErrorBound error;
         TriangleMesh mesh;  ///< of the surface; empty where that lies beyond the bound
-        std::vector<std::int64_t> crossing;  ///< its triangles that cross others
+        /// Its triangles that cross others, or whose piece lies on the wrong side of another
+        std::vector<std::int64_t> crossing;
     };
 
     /// What later runs know of the ones before.
@@ -63,8 +64,8 @@ private:
         bool provesAll = false;  ///< every star, everywhere
     };
 
-    /// The surface is proved to lie within the bound and to cross nothing. Single places where it
-    /// does not are mended.
+    /// The surface is proved to lie within the bound, to cross nothing, and to have each piece on
+    /// its side of the others. Single places where it is beyond or crosses are mended.
     bool keepsPromises(Attempt& attempt) {
         attempt.error = proof_->prove(attempt.surface);
         attempt.surface.returnFreedMemory();
@@ -80,7 +81,9 @@ private:
             mendDistances(attempt);
             findCrossings(attempt);
         }
-        return attempt.crossing.empty() && !isBeyond(attempt.error);
+        if (!attempt.crossing.empty() || isBeyond(attempt.error)) return false;
+        attempt.crossing = full_.insideOut(attempt.surface);
+        return attempt.crossing.empty();
     }
 
     /// After mending as many triangles are left as are wanted, or as were before.

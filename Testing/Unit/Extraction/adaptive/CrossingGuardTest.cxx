@@ -98,6 +98,47 @@ TEST(CrossingGuard, SeesTrianglesWhereACommitPutThem) {
     EXPECT_FALSE(guard.crossesNothing(other));
 }
 
+// A tetrahedron of its own above the sheet: a tent high enough crosses nothing, and leaves it
+// below.
+TEST(CrossingGuard, LetsNoStarSweepOverAPiece) {
+    Patch patch = sheetUnderTriangle();
+    patch.triangles.pop_back();  // the large one
+    const auto first = static_cast<std::uint32_t>(patch.points.size());
+    patch.points.insert(patch.points.end(),
+                        {{1.95, 1.95, 0.2}, {2.05, 1.95, 0.2}, {2, 2.05, 0.2}, {2, 2, 0.3}});
+    const auto own = static_cast<std::uint32_t>(patch.triangles.size());
+    for (const auto& [a, b, c] : {std::array{0U, 2U, 1U}, {0U, 1U, 3U}, {1U, 2U, 3U}, {2U, 0U, 3U}})
+        patch.triangles.push_back({first + a, first + b, first + c});
+    patch.ownTriangles = own + 4;
+    patch.quadrics.resize(patch.points.size());
+    patch.states.resize(patch.points.size(), Patch::State::Open);
+    const MetricFrame frame = millimetres();
+    const PatchTopology topology(patch);
+    for (const bool looksEverywhere : {false, true}) {
+        CrossingGuard guard(patch, topology, frame, looksEverywhere);
+        ChangedStar changed;
+        ASSERT_TRUE(topology.starOf(vertexAt(2, 2), changed.star));
+        for (const double height : {-2.0, 0.1, 0.25, 2.0}) {  // below, through and over the piece
+            changed.vertex = {2, 2, height};
+            ASSERT_TRUE(shapeStar(patch, {}, changed));
+            EXPECT_EQ(guard.crossesNothing(changed), height < 0.2) << height;
+        }
+        for (const std::uint32_t corner : {0U, 1U, 2U, 3U}) {  // the piece goes up, and is found
+            ChangedStar moved;
+            ASSERT_TRUE(topology.starOf(first + corner, moved.star));
+            moved.vertex = patch.points[first + corner] + Vec3{0, 0, 1.5};
+            guard.commit(moved, false);
+            patch.points[first + corner] = moved.vertex;
+        }
+        for (const double height : {0.25, 1.0, 2.0}) {
+            changed.vertex = {2, 2, height};
+            ASSERT_TRUE(shapeStar(patch, {}, changed));
+            EXPECT_EQ(guard.crossesNothing(changed), height < 1.7) << height;
+        }
+        for (int corner = 0; corner < 4; ++corner) patch.points[first + corner].z -= 1.5;
+    }
+}
+
 // A sheet whose last column is folded back over it: no sample knows of another sheet.
 TEST(CrossingGuard, AsksForAProofBesideAFold) {
     Patch patch = sheetUnderTriangle();

@@ -58,11 +58,11 @@ struct Simplified {
 /// A mesh with fewer triangles, the adaptive method's on any triangle mesh: quadric edge collapse
 /// [Garland1997], each held by samples of the input, with the distance proved at the end.
 ///
-/// A closed oriented 2-manifold that does not cross itself stays one, with the same components and
-/// genus. Open borders stay open, within the bound. Where the input is no manifold, or crosses
-/// itself, it is kept as it is, and nothing new crosses. Triangles without area and doubled ones
-/// are dropped (the bound is of the others); so are vertices that no triangle uses. Normals are
-/// interpolated where the input has them.
+/// A closed oriented 2-manifold that does not cross itself stays one, with the same components,
+/// nested as they were, and genus. Open borders stay open, within the bound. Where the input is no
+/// manifold, or crosses itself, it is kept as it is, and nothing new crosses. Triangles without
+/// area and doubled ones are dropped (the bound is of the others); so are vertices that no triangle
+/// uses. Normals are interpolated where the input has them.
 ///
 /// \pre  the mesh has a triangle; indices are in range, coordinates finite; one aim at least is
 ///       given, and all are in range   \throws InvalidInput otherwise

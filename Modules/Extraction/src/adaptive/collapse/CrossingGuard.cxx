@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "adaptiso/Core/DisjointSets.h"
+#include "adaptiso/Core/Predicates.h"
 #include "adaptiso/MeshQuality/Certificate.h"
 #include "adaptive/Parameters.h"
 
@@ -11,6 +13,13 @@ namespace adaptiso::detail {
 namespace {
 
 constexpr std::uint32_t kNoEntries = 0xFFFFFFFF;
+
+/// The tetrahedron has a volume, and the point lies in it or on it.
+bool holds(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& p) {
+    const int side = orient3d(a, b, c, d);
+    return side != 0 && side * orient3d(a, b, c, p) >= 0 && side * orient3d(a, b, p, d) >= 0 &&
+           side * orient3d(a, p, c, d) >= 0 && side * orient3d(p, b, c, d) >= 0;
+}
 
 }  // namespace
 
@@ -83,6 +92,56 @@ void CrossingGuard::buildGrid() {
         if (patch_.triangles[t][0] == Patch::kGone) continue;
         if (isSingle[t] == 0) enter(t);
     }
+    markPieces();
+}
+
+/// Where all vertices hang together there is nothing to mark.
+void CrossingGuard::markPieces() {
+    DisjointSets sets(std::ssize(patch_.points));
+    for (const auto& t : patch_.triangles) {
+        if (t[0] == Patch::kGone) continue;
+        sets.join(t[0], t[1]);
+        sets.join(t[0], t[2]);
+    }
+    std::vector<std::uint32_t> numbers(patch_.points.size(), kNoEntries);
+    for (const auto& t : patch_.triangles) {
+        if (t[0] == Patch::kGone) continue;
+        std::uint32_t& number = numbers[sets.find(t[0])];
+        if (number != kNoEntries) continue;
+        number = static_cast<std::uint32_t>(marks_.size());
+        marks_.push_back({t[0], entriesAt_.size()});
+    }
+    if (marks_.size() < 2) return;
+    pieceOf_.resize(patch_.points.size());
+    for (std::size_t v = 0; v < pieceOf_.size(); ++v) {
+        pieceOf_[v] = numbers[sets.find(static_cast<std::int64_t>(v))];
+    }
+    marksAt_.assign(entriesAt_.size(), kNoEntries);
+    for (std::uint32_t piece = 0; piece < marks_.size(); ++piece) enterMark(piece);
+}
+
+void CrossingGuard::enterMark(std::uint32_t piece) {
+    Mark& mark = marks_[piece];
+    const Vec3& p = patch_.points[mark.vertex];
+    const Cubes cubes = cubesOf(rounded({p, p}));
+    std::size_t cube = 0;
+    forEachRow(cubes, [&](std::size_t row, std::int32_t, std::int32_t) {
+        cube = row + static_cast<std::size_t>(cubes.first[0]);
+    });
+    if (cube == mark.cube) return;
+    mark.cube = cube;
+    markEntries_.push_back({piece, marksAt_[cube]});
+    marksAt_[cube] = static_cast<std::uint32_t>(markEntries_.size() - 1);
+}
+
+/// A mark that the change moves goes to the ring, which stays.
+void CrossingGuard::moveMark(const Star& star) {
+    if (pieceOf_.empty()) return;
+    const std::uint32_t piece = pieceOf_[star.ring[0]], vertex = marks_[piece].vertex;
+    const auto end = star.apex.begin() + star.count;
+    if (!star.isOpen && std::find(star.apex.begin(), end, vertex) == end) return;
+    marks_[piece].vertex = star.ring[0];
+    enterMark(piece);
 }
 
 CrossingGuard::Cubes CrossingGuard::cubesOf(const Box& box) const {
@@ -155,6 +214,7 @@ CrossingGuard::Box CrossingGuard::rounded(const BoundingBox& box) {
 void CrossingGuard::commit(const ChangedStar& changed, bool isSingleSheet) {
     if (known_.empty()) return;
     const Star& star = changed.star;
+    moveMark(star);
     for (int i = 0; i < star.count; ++i) {
         const std::uint32_t t = star.triangle[i];
         known_[t].hasBox = false;
@@ -185,7 +245,47 @@ bool CrossingGuard::crossesNothing(const ChangedStar& changed) {
             if (overlaps[i] != 0 && !isClear(changed, i, other)) return false;
         }
     }
-    return true;
+    return !sweepsOver(changed);
+}
+
+bool CrossingGuard::sweepsOver(const ChangedStar& changed) const {
+    if (pieceOf_.empty()) return false;
+    const Star& star = changed.star;
+    BoundingBox swept{changed.vertex, changed.vertex};
+    for (int i = 0; i < star.ringCount(); ++i) swept.add(patch_.points[star.ring[i]]);
+    for (int i = 0; i < star.count; ++i) swept.add(patch_.points[star.apex[i]]);
+    for (int i = 0; i < star.removedCount; ++i) swept.add(boxOf(cornersOf(star.removed[i])));
+    const auto isSwept = [&](const Vec3& p) {
+        if (!swept.contains(p)) return false;
+        const auto isBehind = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+            return holds(a, b, c, changed.vertex, p);
+        };
+        for (int i = 0; i < star.count; ++i) {
+            if (isBehind(patch_.points[star.apex[i]], patch_.points[star.ring[i]],
+                         patch_.points[star.ring[i + 1]])) {
+                return true;
+            }
+        }
+        return std::any_of(star.removed.begin(), star.removed.begin() + star.removedCount,
+                           [&](std::uint32_t t) {
+                               const Corners old = cornersOf(t);
+                               return isBehind(old[0], old[1], old[2]);
+                           });
+    };
+    const std::uint32_t own = pieceOf_[star.ring[0]];
+    const Cubes cubes = cubesOf(rounded(swept));
+    bool found = false;
+    forEachRow(cubes, [&](std::size_t row, std::int32_t, std::int32_t) {
+        for (std::int32_t x = cubes.first[0]; !found && x <= cubes.last[0]; ++x) {
+            for (std::uint32_t at = marksAt_[row + x]; at != kNoEntries;
+                 at = markEntries_[at].next) {
+                const Mark& mark = marks_[markEntries_[at].piece];
+                found = found || (mark.cube == row + x && markEntries_[at].piece != own &&
+                                  isSwept(patch_.points[mark.vertex]));
+            }
+        }
+    });
+    return found;
 }
 
 /// Some triangle across an edge of the ring faces away from the star.

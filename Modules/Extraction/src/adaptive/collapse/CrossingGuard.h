@@ -11,7 +11,8 @@
 
 namespace adaptiso::detail {
 
-/// Proves that a changed star crosses no triangle near it. What can't be proved is refused.
+/// Proves that a changed star crosses no triangle near it, and sweeps over no whole piece of the
+/// surface on its way there. What can't be proved is refused.
 ///
 /// Near triangles are found by their boxes, in a grid of cubes. Those whose samples all lie in a
 /// single sheet are left out, since no other part of the surface comes near them; so most stars
@@ -19,6 +20,10 @@ namespace adaptiso::detail {
 /// of those: nothing else tells what is near it. Triangles that share a vertex of the ring are
 /// proved together, by their common view (see fanIsClear); planes between two triangles are tried
 /// for the others.
+///
+/// A small piece between the old star and the new one crosses neither, and would lie on the other
+/// side of the surface. Of each piece one vertex is marked: a piece that is swept over lies wholly
+/// in the tetrahedra between the new vertex and the old triangles, its mark too.
 class CrossingGuard {
 public:
     /// \param looksEverywhere  all triangles are looked at, and every star is proved
@@ -31,6 +36,7 @@ public:
         return looksEverywhere_ || isCrowded || !changed.isGraph || foldsBack(changed);
     }
 
+    /// \pre the star has not been changed yet
     bool crossesNothing(const ChangedStar& changed);
 
     /// The star was changed.
@@ -85,6 +91,10 @@ private:
     void collectAroundRing(const Star& star);
     void collectFromGrid();
     void addNear(std::uint32_t triangle);
+    void markPieces();
+    void enterMark(std::uint32_t piece);
+    void moveMark(const Star& star);
+    bool sweepsOver(const ChangedStar& changed) const;
 
     const Patch& patch_;
     const PatchTopology& topology_;
@@ -101,6 +111,18 @@ private:
     Box starBox_{};
     std::array<std::array<float, Star::kMost>, 3> wedgeLow_{}, wedgeHigh_{};  ///< by axis
     std::array<bool, Star::kMost + 1> fanIsClear_{};  ///< of each vertex of the ring
+
+    struct Mark {
+        std::uint32_t vertex;
+        std::size_t cube;  ///< that it was last entered in
+    };
+    struct MarkEntry {
+        std::uint32_t piece, next;
+    };
+    std::vector<std::uint32_t> pieceOf_;  ///< of each vertex; empty where all are of one piece
+    std::vector<Mark> marks_;             ///< of each piece
+    std::vector<std::uint32_t> marksAt_;  ///< the first entry of each cube
+    std::vector<MarkEntry> markEntries_;  ///< some are of marks that have moved since
 };
 
 }  // namespace adaptiso::detail

@@ -50,6 +50,10 @@ public:
     virtual void forgiveCrossings(const TriangleMesh& mesh,
                                   std::vector<std::int64_t>& crossing) const = 0;
 
+    /// Triangles of pieces that are inside out, and were not from the beginning. Where the surface
+    /// is open there is no inside: nothing is judged by it.
+    virtual std::vector<std::int64_t> insideOut(const SimplifiedSurface& surface) const = 0;
+
     /// No two points of the surface are farther apart, mm.
     virtual double largestExtentMm() const = 0;
 

@@ -71,6 +71,39 @@ MeshSurface::MeshSurface(const TriangleMesh& input, const MeshParts& parts,
         crossing_.push_back(corners);
     }
     std::sort(crossing_.begin(), crossing_.end(), isBefore);
+    std::vector<std::uint32_t> marks = parts.marks;
+    if (!parts.borderEdges.empty()) marks.resize(parts.points.size(), Patch::kPlain);
+    for (const std::uint64_t h : parts.borderEdges) {
+        marks[parts.triangles[h / 3][h % 3]] = Patch::kBorder;
+    }
+    const InsideOutPieces before = judge(parts.view(), marks);
+    mostInsideOut_ = before.count + before.flat;
+}
+
+/// Leaves out pieces that are open, were cut apart, or cross others.
+InsideOutPieces MeshSurface::judge(const TriangleView& surface,
+                                   std::span<const std::uint32_t> marks) const {
+    std::vector<std::uint8_t> isLeftOut(marks.size());
+    for (std::size_t v = 0; v < marks.size(); ++v) {
+        isLeftOut[v] = static_cast<std::uint8_t>(marks[v] != Patch::kPlain);
+    }
+    if (!crossing_.empty()) {
+        isLeftOut.resize(surface.points.size());
+        for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+            Corners corners = surface.cornersOf(t);
+            for (Vec3& p : corners) p = p + parts_.origin;
+            if (std::binary_search(crossing_.begin(), crossing_.end(), corners, isBefore)) {
+                isLeftOut[surface.triangles[t][0]] = 1;
+            }
+        }
+    }
+    return findInsideOutPieces(surface, isLeftOut);
+}
+
+std::vector<std::int64_t> MeshSurface::insideOut(const SimplifiedSurface& surface) const {
+    InsideOutPieces now = judge({surface.points, surface.triangles}, surface.marks);
+    if (now.count <= mostInsideOut_) return {};
+    return std::move(now.triangles);
 }
 
 SimplifiedSurface MeshSurface::firstRound(const LocalTolerances& tolerances,

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "adaptiso/MeshQuality/Winding.h"
 #include "adaptive/full/FullSurface.h"
 #include "adaptive/full/MeshParts.h"
 #include "adaptive/mesh/OrderedBuckets.h"
@@ -32,6 +34,7 @@ public:
     }
     void forgiveCrossings(const TriangleMesh& mesh,
                           std::vector<std::int64_t>& crossing) const override;
+    std::vector<std::int64_t> insideOut(const SimplifiedSurface& surface) const override;
     double largestExtentMm() const override;
 
 private:
@@ -39,6 +42,7 @@ private:
 
     SimplifiedSurface whole(const LocalTolerances& tolerances) const;
     std::vector<Vec3> addPoints(const Around& around, SimplifiedSurface& surface) const;
+    InsideOutPieces judge(const TriangleView& surface, std::span<const std::uint32_t> marks) const;
     std::vector<std::uint8_t> clearancesOf(const SimplifiedSurface& surface,
                                            const std::vector<Vec3>& areas) const;
     std::vector<std::uint8_t> bentTriangles(const std::vector<Vec3>& areas) const;
@@ -51,7 +55,8 @@ private:
 
     const TriangleMesh& input_;
     const MeshParts& parts_;
-    std::vector<Corners> crossing_;  ///< triangles of the input that cross others, sorted
+    std::vector<Corners> crossing_;   ///< triangles of the input that cross others, sorted
+    std::int64_t mostInsideOut_ = 0;  ///< pieces of the input that are, or have no volume
 };
 
 }  // namespace adaptiso::detail

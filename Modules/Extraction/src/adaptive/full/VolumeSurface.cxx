@@ -7,6 +7,7 @@
 #include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/MeshQuality/Winding.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/mesh/WholeBricks.h"
 #include "adaptive/proof/ErrorBound.h"
@@ -170,6 +171,11 @@ bool VolumeSurface::roundsFinely() const {
     return kRoundings * std::numeric_limits<double>::epsilon() * largest(inverse(step)) *
                farthestMm <
            kFineRounding;
+}
+
+std::vector<std::int64_t> VolumeSurface::insideOut(const SimplifiedSurface& surface) const {
+    if (bricks_.grid().border == Border::Open) return {};
+    return findInsideOutPieces({surface.points, surface.triangles}, {}).triangles;
 }
 
 double VolumeSurface::largestExtentMm() const {

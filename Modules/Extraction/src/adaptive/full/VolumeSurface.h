@@ -27,6 +27,7 @@ public:
     std::vector<std::uint64_t> cellsOf(const SimplifiedSurface& surface) const override;
     Vec3 indexOf(const Vec3& point) const override { return geometry_.toIndex(point); }
     void forgiveCrossings(const TriangleMesh&, std::vector<std::int64_t>&) const override {}
+    std::vector<std::int64_t> insideOut(const SimplifiedSurface& surface) const override;
     double largestExtentMm() const override;
 
 private:

@@ -5,6 +5,7 @@
 
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/MeshQuality/TriangleTree.h"
 
 namespace adaptiso {
 
@@ -22,5 +23,19 @@ namespace adaptiso {
 /// Cost: O(T log T) for several pieces, O(1) for one.
 std::vector<std::int64_t> findInsideOutPieces(const TriangleMesh& mesh,
                                               const TopologyReport& topology);
+
+struct InsideOutPieces {
+    std::int64_t count = 0;
+    std::int64_t flat = 0;                ///< pieces of hardly any volume, which have no inside
+    std::vector<std::int64_t> triangles;  ///< of those inside out, ascending
+};
+
+/// As above, of a surface whose pieces do not cross: how many are inside out.
+/// \param isLeftOut  of each point: the piece that it is of is neither judged nor around others,
+///                   such as an open one. Empty: none is
+/// \pre  the other pieces are closed, oriented and finite, triangles name points that are there
+/// Cost: O(T) and a ray for each piece, which looks at the triangles beside it; in parallel.
+InsideOutPieces findInsideOutPieces(const TriangleView& surface,
+                                    const std::vector<std::uint8_t>& isLeftOut);
 
 }  // namespace adaptiso
