@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "Support/Meshes.h"
 #include "Surfaces.h"
@@ -167,6 +168,24 @@ TEST(SurfaceWalk, CoversNothingBeyondTheDistance) {
     }
     EXPECT_GT(covered, 100);
     EXPECT_LT(covered, 380);
+}
+
+// Above vertices whose half-way planes do not meet in a line some pieces go round and round: with
+// steps for minutes the walk ends at once, and leaves what it left after fewer.
+TEST(SurfaceWalk, EndsWhereAPieceGoesInCircles) {
+    TriangleMesh mesh = planeMesh(8, 8);
+    std::mt19937 random(7);
+    for (Vec3& p : mesh.points) p = p + randomPoint(random, 0.9);
+    const Walkable surface = walkable(mesh);
+    SurfaceWalk few, many;
+    for (int n = 0; n < 2000; ++n) {
+        const Vec3 at = Vec3{4, 4, 0} + randomPoint(random, 4);
+        const ConvexPiece piece(
+            Corners{at, at + randomPoint(random, 0.01), at + randomPoint(random, 0.01)});
+        few.cover(piece, surface, VertexId{0}, 1e-12, kManySteps);
+        many.cover(piece, surface, VertexId{0}, 1e-12, std::numeric_limits<int>::max());
+        ASSERT_EQ(few.left().size(), many.left().size()) << n;
+    }
 }
 
 }  // namespace adaptiso::testing

@@ -220,14 +220,32 @@ private:
               double squaredDistance, int steps) {
         todo_.clear();
         todo_.push_back({piece, static_cast<std::uint64_t>(start)});
+        Circle circle;
         for (; !todo_.empty() && steps > 0; --steps) {
             const Task task = todo_.back();
             todo_.pop_back();
-            step(task.piece, surface, static_cast<Index>(task.triangle), squaredDistance);
+            const bool goesOn =
+                step(task.piece, surface, static_cast<Index>(task.triangle), squaredDistance);
+            if (!goesOn) {
+                circle = {};
+            } else if (circle.isClosedAt(todo_.back().triangle)) {
+                break;
+            }
         }
         for (const Task& task : todo_) left_.push_back(task.piece);
     }
 
+    /// Where a piece that goes on whole has been: it goes in circles once it is there again.
+    struct Circle {
+        std::uint64_t mark = ~std::uint64_t{0};
+        int steps = 0, most = 1;  ///< since the mark; before the next one [Brent1980]
+
+        bool isClosedAt(std::uint64_t triangle) {
+            if (triangle == mark) return true;
+            if (++steps == most) *this = {triangle, 0, 2 * most};
+            return false;
+        }
+    };
     struct Task {
         ConvexPiece piece;
         std::uint64_t triangle;
@@ -239,14 +257,15 @@ private:
         return true;
     }
 
+    /// \return whether all of the piece went on to a neighbour
     template <class Index>
-    void step(ConvexPiece piece, const WalkableSurface<Index>& surface, Index t,
+    bool step(ConvexPiece piece, const WalkableSurface<Index>& surface, Index t,
               double squaredDistance) {
         const Corners corners = surface.cornersOf(t);
         const NearTriangle near(corners, squaredDistance);
         if (has(near, piece)) {
             witnesses_.push_back(t);
-            return;
+            return false;
         }
         const Vec3 normal = surface.normalOf(t);
         bool isCut = false;
@@ -265,11 +284,11 @@ private:
             if (most <= hair) continue;
             if (least >= -hair) {
                 todo_.push_back({piece, static_cast<std::uint64_t>(next)});
-                return;
+                return !isCut;
             }
             if (piece.count() + changesOfSide(piece.count()) > ConvexPiece::kMost) {
                 left_.push_back(piece);
-                return;
+                return false;
             }
             todo_.push_back({ConvexPiece(), static_cast<std::uint64_t>(next)});
             piece = cut(piece, todo_.back().piece);
@@ -280,6 +299,7 @@ private:
         } else {
             left_.push_back(piece);
         }
+        return false;
     }
 
     /// Two where the piece is convex; more where rounding has bent it.
