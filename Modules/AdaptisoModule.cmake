@@ -8,6 +8,8 @@
 # CMakeLists.txt lists the sources. Configuring fails when
 #   - a module rests on one of its own or a higher layer;
 #   - a source includes a header of a module that it does not name under DEPENDS;
+#   - it compiles or sees a source or private header of another module: a file or an include
+#     directory outside Modules/<Name> and the build folder, or an include with "..";
 #   - a source includes ITK, VTK, GDCM or CLI11 without naming it under MAY_INCLUDE.
 # PACKAGES are what a consumer of this module has to find, each as one string with the arguments
 # of find_package(): "VTK 9.1 COMPONENTS CommonCore". What is ON_DEMAND is left out of
@@ -52,9 +54,18 @@ function(adaptiso_check_layers name layer)
         endif()
     endforeach()
     get_target_property(sources adaptiso${name} SOURCES)
-    get_target_property(directory adaptiso${name} SOURCE_DIR)
     file(GLOB_RECURSE headers "${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.h")
     list(TRANSFORM sources PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/${name}/" REGEX "^[^/]")
+    get_target_property(directories adaptiso${name} INCLUDE_DIRECTORIES)
+    foreach(path IN LISTS sources directories)
+        cmake_path(ABSOLUTE_PATH path BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/${name}" NORMALIZE)
+        cmake_path(IS_PREFIX CMAKE_CURRENT_SOURCE_DIR "${path}" isOurs)
+        cmake_path(IS_PREFIX PROJECT_BINARY_DIR "${path}" isMade)
+        string(FIND "${path}/" "${CMAKE_CURRENT_SOURCE_DIR}/${name}/" position)
+        if(isOurs AND NOT isMade AND NOT position EQUAL 0)
+            message(FATAL_ERROR "Module ${name} may not use ${path}, which is private to another module")
+        endif()
+    endforeach()
     foreach(source IN LISTS sources headers)
         if(NOT EXISTS "${source}")
             continue()
@@ -65,6 +76,9 @@ function(adaptiso_check_layers name layer)
                AND NOT CMAKE_MATCH_1 IN_LIST A_DEPENDS)
                 message(FATAL_ERROR "${source} includes module ${CMAKE_MATCH_1}, which "
                                     "Modules/CMakeLists.txt does not list for ${name}: ${line}")
+            endif()
+            if(line MATCHES "\\.\\./")
+                message(FATAL_ERROR "${source}: an include may not lead out of its folder: ${line}")
             endif()
             foreach(library itk vtk gdcm CLI)
                 if(line MATCHES "[<\"]${library}[A-Z/]" AND NOT library IN_LIST A_MAY_INCLUDE)

@@ -5,7 +5,7 @@
 
 #include "Common/Resources.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Pipeline/Json.h"  // IWYU pragma: export
+#include "adaptiso/Json/Json.h"  // IWYU pragma: export
 
 namespace adaptiso {
 

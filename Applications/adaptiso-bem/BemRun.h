@@ -10,7 +10,7 @@
 #include "Common/Resources.h"
 #include "Common/Warnings.h"
 #include "Pipeline.h"
-#include "adaptiso/Pipeline/BemModel.h"
+#include "adaptiso/HeadPipeline/BemModel.h"
 
 namespace adaptiso {
 

@@ -2,7 +2,7 @@
 
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
-#include "adaptiso/Pipeline/BemJson.h"
+#include "adaptiso/HeadPipeline/BemJson.h"
 
 namespace adaptiso {
 namespace {

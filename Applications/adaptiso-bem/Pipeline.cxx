@@ -20,11 +20,11 @@
 #include "JsonReport.h"
 #include "Tetrahedra.h"
 #include "TextReport.h"
+#include "adaptiso/HeadPipeline/BemElectrodes.h"
+#include "adaptiso/HeadPipeline/BemReport.h"
+#include "adaptiso/HeadPipeline/BemSurfaces.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/PointFiles.h"
-#include "adaptiso/Pipeline/BemElectrodes.h"
-#include "adaptiso/Pipeline/BemReport.h"
-#include "adaptiso/Pipeline/BemSurfaces.h"
 
 namespace adaptiso {
 namespace {

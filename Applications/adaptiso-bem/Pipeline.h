@@ -9,9 +9,9 @@
 #include "Common/Mesher.h"
 #include "Common/ReportOutput.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
+#include "adaptiso/HeadPipeline/BemFiles.h"
+#include "adaptiso/HeadPipeline/BemModel.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
-#include "adaptiso/Pipeline/BemFiles.h"
-#include "adaptiso/Pipeline/BemModel.h"
 
 namespace adaptiso {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "BemRun.h"
-#include "adaptiso/Pipeline/BemModel.h"
+#include "adaptiso/HeadPipeline/BemModel.h"
 
 namespace adaptiso {
 

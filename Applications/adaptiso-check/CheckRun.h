@@ -9,14 +9,14 @@
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Warning.h"
+#include "adaptiso/HeadPipeline/HeadNotes.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
-#include "adaptiso/Pipeline/Checks.h"
-#include "adaptiso/Pipeline/HeadNotes.h"
-#include "adaptiso/Pipeline/SurfaceFacts.h"
+#include "adaptiso/SurfacePipeline/Checks.h"
+#include "adaptiso/SurfacePipeline/SurfaceFacts.h"
 
 namespace adaptiso {
 

@@ -4,7 +4,7 @@
 #include "Common/Json.h"
 #include "Common/PreprocessingOptions.h"
 #include "Common/Warnings.h"
-#include "adaptiso/Pipeline/CheckJson.h"
+#include "adaptiso/SurfacePipeline/CheckJson.h"
 
 namespace adaptiso {
 namespace {

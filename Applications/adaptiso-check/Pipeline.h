@@ -9,8 +9,8 @@
 #include "Common/CommonOptions.h"
 #include "Common/ReportOutput.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
-#include "adaptiso/Pipeline/Checks.h"
 #include "adaptiso/Preprocessing/Preprocess.h"
+#include "adaptiso/SurfacePipeline/Checks.h"
 
 namespace adaptiso {
 

@@ -21,9 +21,9 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
-#include "adaptiso/Pipeline/Checks.h"
-#include "adaptiso/Pipeline/SurfaceFacts.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
+#include "adaptiso/SurfacePipeline/Checks.h"
+#include "adaptiso/SurfacePipeline/SurfaceFacts.h"
 
 namespace adaptiso::selftest {
 namespace {

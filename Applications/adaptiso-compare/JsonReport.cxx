@@ -5,7 +5,7 @@
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Common/Warnings.h"
-#include "adaptiso/Pipeline/DistanceJson.h"
+#include "adaptiso/SurfacePipeline/DistanceJson.h"
 
 namespace adaptiso {
 namespace {

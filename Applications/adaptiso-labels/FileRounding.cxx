@@ -7,7 +7,7 @@
 #include "Common/Json.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
-#include "adaptiso/Pipeline/StoredMesh.h"
+#include "adaptiso/SurfacePipeline/StoredMesh.h"
 
 namespace adaptiso {
 namespace {

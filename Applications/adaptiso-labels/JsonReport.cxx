@@ -2,8 +2,8 @@
 
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
-#include "adaptiso/Pipeline/SurfaceJson.h"
-#include "adaptiso/Pipeline/TetrahedraJson.h"
+#include "adaptiso/HeadPipeline/TetrahedraJson.h"
+#include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso {
 namespace {

@@ -3,7 +3,7 @@
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Common/PreprocessingOptions.h"
-#include "adaptiso/Pipeline/SurfaceJson.h"
+#include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso {
 namespace {

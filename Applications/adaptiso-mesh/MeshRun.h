@@ -14,7 +14,7 @@
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
-#include "adaptiso/Pipeline/FinishSurface.h"
+#include "adaptiso/SurfacePipeline/FinishSurface.h"
 
 namespace adaptiso {
 

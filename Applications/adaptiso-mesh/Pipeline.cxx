@@ -31,8 +31,8 @@
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
-#include "adaptiso/Pipeline/StoredMesh.h"
 #include "adaptiso/SpanSpace/IndexFile.h"
+#include "adaptiso/SurfacePipeline/StoredMesh.h"
 
 namespace adaptiso {
 namespace {

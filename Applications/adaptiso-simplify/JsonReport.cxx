@@ -2,7 +2,7 @@
 
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
-#include "adaptiso/Pipeline/SurfaceJson.h"
+#include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso {
 namespace {

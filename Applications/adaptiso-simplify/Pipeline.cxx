@@ -26,7 +26,7 @@
 #include "SimplifyRun.h"
 #include "TextReport.h"
 #include "Verification.h"
-#include "adaptiso/Pipeline/StoredMesh.h"
+#include "adaptiso/SurfacePipeline/StoredMesh.h"
 
 namespace adaptiso {
 namespace {

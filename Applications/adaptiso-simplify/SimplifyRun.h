@@ -15,7 +15,7 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshIO/PointData.h"
 #include "adaptiso/MeshQuality/Topology.h"
-#include "adaptiso/Pipeline/FinishSurface.h"
+#include "adaptiso/SurfacePipeline/FinishSurface.h"
 
 namespace adaptiso {
 

@@ -2,11 +2,12 @@
 # one rule of the architecture is refused with a message that names the rule.
 cmake_minimum_required(VERSION 3.25)
 
-# configureProject(<case> DECLARES <text of Modules/CMakeLists.txt> [INCLUDES <file> <include>...])
+# configureProject(<case> DECLARES <text of Modules/CMakeLists.txt> [INCLUDES <file> <include>...]
+#                  [APPENDS <file> <text>])
 # Modules Low, Peer and High exist, each with a public header and a source; INCLUDES adds a line
-# to a file. Sets exitCode and output in the caller.
+# to a file, APPENDS any text. Sets exitCode and output in the caller.
 function(configureProject case)
-    cmake_parse_arguments(A "" "DECLARES" "INCLUDES" ${ARGN})
+    cmake_parse_arguments(A "" "DECLARES" "INCLUDES;APPENDS" ${ARGN})
     set(top ${WORK}/${case})
     file(WRITE ${top}/CMakeLists.txt
         "cmake_minimum_required(VERSION 3.25)\nproject(${case} LANGUAGES CXX)\n"
@@ -24,6 +25,10 @@ function(configureProject case)
         list(POP_FRONT A_INCLUDES file include)
         file(APPEND ${top}/Modules/${file} "#include ${include}\n")
     endwhile()
+    if(A_APPENDS)
+        list(POP_FRONT A_APPENDS file)
+        file(APPEND ${top}/Modules/${file} "${A_APPENDS}")
+    endif()
     execute_process(
         COMMAND ${CMAKE_COMMAND} -S ${top} -B ${top}/build -G ${GENERATOR}
                 -DCMAKE_CXX_COMPILER=${COMPILER}
@@ -73,6 +78,15 @@ expectRefused(publicHeaderIncludesUnlistedModule "Low.h includes module High" DE
     INCLUDES Low/include/adaptiso/Low/Low.h "\"adaptiso/High/High.h\"")
 expectRefused(privateHeaderIncludesUnlistedModule "Private.h includes module Peer" DECLARES
     "${lawful}" INCLUDES High/src/Private.h "<adaptiso/Peer/Peer.h>")
+
+# the ways around a module's public headers
+expectRefused(includesPrivatesOfAnother "High may not use .*Peer/src" DECLARES "${lawful}"
+    APPENDS High/CMakeLists.txt
+    "target_include_directories(adaptisoHigh PRIVATE ../Peer/src)\n")
+expectRefused(compilesSourceOfAnother "High may not use .*Peer/src/Peer.cxx" DECLARES "${lawful}"
+    APPENDS High/CMakeLists.txt "target_sources(adaptisoHigh PRIVATE ../Peer/src/Peer.cxx)\n")
+expectRefused(includesByPath "High.cxx: an include may not lead out" DECLARES "${lawful}"
+    INCLUDES High/src/High.cxx "\"../../Peer/src/Private.h\"")
 
 expectRefused(includesItk "High may not include itk" DECLARES "${lawful}"
     INCLUDES High/src/High.cxx "<itkImage.h>")

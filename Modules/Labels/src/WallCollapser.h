@@ -8,7 +8,7 @@
 
 #include "SweptCentres.h"
 #include "WallMesh.h"
-#include "adaptive/collapse/Quadric.h"
+#include "adaptiso/SurfaceProof/Quadric.h"
 
 namespace adaptiso::detail {
 

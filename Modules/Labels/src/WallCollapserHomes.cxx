@@ -6,7 +6,7 @@
 
 #include "WallCollapser.h"
 #include "adaptiso/Core/AabbTree.h"
-#include "adaptive/proof/NearTriangle.h"
+#include "adaptiso/SurfaceProof/NearTriangle.h"
 
 namespace adaptiso::detail {
 namespace {

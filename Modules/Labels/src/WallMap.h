@@ -7,7 +7,7 @@
 
 #include "WallCollapser.h"
 #include "WallProof.h"
-#include "adaptive/proof/SurfaceMap.h"
+#include "adaptiso/SurfaceProof/SurfaceMap.h"
 
 namespace adaptiso::detail {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Geometry.h"
-#include "adaptive/collapse/Quadric.h"
+#include "adaptiso/SurfaceProof/Quadric.h"
 
 namespace adaptiso::detail {
 

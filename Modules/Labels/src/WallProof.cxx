@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "adaptiso/Core/Parallel.h"
-#include "adaptive/proof/PieceBound.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 
 namespace adaptiso::detail {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "TriangleGrid.h"
 #include "WallMesh.h"
-#include "adaptive/proof/SurfaceWalk.h"
+#include "adaptiso/SurfaceProof/SurfaceWalk.h"
 
 namespace adaptiso::detail {
 

@@ -14,7 +14,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/VoxelShape.h"
-#include "adaptive/proof/PieceBound.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 
 namespace adaptiso::detail {
 namespace {

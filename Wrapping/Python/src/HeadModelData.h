@@ -13,8 +13,8 @@
 #include "MeshData.h"
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
-#include "adaptiso/Pipeline/BemFiles.h"
-#include "adaptiso/Pipeline/BemModel.h"
+#include "adaptiso/HeadPipeline/BemFiles.h"
+#include "adaptiso/HeadPipeline/BemModel.h"
 
 namespace adaptiso::python {
 

@@ -4,7 +4,7 @@
 
 #include "adaptiso/Core/FreeMemory.h"
 #include "adaptiso/MeshQuality/Nesting.h"
-#include "adaptiso/Pipeline/CheckJson.h"
+#include "adaptiso/SurfacePipeline/CheckJson.h"
 
 namespace adaptiso::python {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "adaptiso/Core/TriangleMesh.h"
-#include "adaptiso/Pipeline/Checks.h"
-#include "adaptiso/Pipeline/Json.h"
+#include "adaptiso/Json/Json.h"
+#include "adaptiso/SurfacePipeline/Checks.h"
 
 namespace adaptiso::python {
 

@@ -4,7 +4,7 @@
 
 #include "Judgements.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Pipeline/SurfaceJson.h"
+#include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::python {
 namespace {

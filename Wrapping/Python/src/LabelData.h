@@ -10,9 +10,9 @@
 
 #include "MeshData.h"
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Json/Json.h"
 #include "adaptiso/Labels/Labels.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
-#include "adaptiso/Pipeline/Json.h"
 
 namespace adaptiso::python {
 

@@ -8,10 +8,10 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
-#include "adaptiso/Pipeline/StoredMesh.h"
-#include "adaptiso/Pipeline/SurfaceJson.h"
 #include "adaptiso/Report/Page.h"
 #include "adaptiso/Report/Pictures.h"
+#include "adaptiso/SurfacePipeline/StoredMesh.h"
+#include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::python {
 

@@ -15,8 +15,8 @@
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/MeshFile.h"
-#include "adaptiso/Pipeline/FinishSurface.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
+#include "adaptiso/SurfacePipeline/FinishSurface.h"
 
 namespace adaptiso::python {
 

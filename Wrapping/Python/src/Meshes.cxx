@@ -13,8 +13,8 @@
 #include "MeshData.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Json/Json.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
-#include "adaptiso/Pipeline/Json.h"
 
 namespace adaptiso::python {
 namespace {

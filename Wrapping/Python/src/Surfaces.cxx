@@ -21,8 +21,8 @@
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/SampleStatistics.h"
-#include "adaptiso/Pipeline/FinishSurface.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
+#include "adaptiso/SurfacePipeline/FinishSurface.h"
 
 namespace adaptiso::python {
 namespace {

@@ -8,7 +8,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
-#include "adaptiso/Pipeline/Checks.h"
+#include "adaptiso/SurfacePipeline/Checks.h"
 
 namespace adaptiso::python {
 

@@ -4,8 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 
-/// Every constant of the adaptive method that was chosen, with its unit and its reason. Numbers
-/// that follow from the data's layout stand where they are used.
+#include "adaptiso/SurfaceProof/Parameters.h"  // IWYU pragma: export
+
+/// Every constant of the adaptive method that was chosen, with its unit and its reason; those of
+/// walks and cuts are in SurfaceProof. Numbers that follow from the data's layout stand where they
+/// are used.
 ///
 /// A voxel is the least distance between planes of samples (MetricFrame::narrowestMm). Costs are
 /// the quadrics' squared distances weighted by areas, in voxels to the fourth. "Chosen by" names
@@ -194,7 +197,7 @@ inline constexpr double kProofGap = 1e-4;
 inline constexpr double kFanCosine = 0.02;
 inline constexpr int kFanMost = 24;
 
-// ---- The proof of the bound (BrickProof, SurfaceWalk, PieceBound, ErrorProof) ----
+// ---- The proof of the bound (BrickProof, ErrorProof) ----
 
 /// How many triangles a walk may visit: from a full-resolution triangle; from one of the simplified
 /// surface, this many and so many for each voxel's face that would cover it.
@@ -202,19 +205,9 @@ inline constexpr int kStepsOfFine = 40, kFewSteps = 100;
 inline constexpr double kStepsPerFace = 20, kManySteps = 1e6;
 /// Voxels: from this bound on few pieces need cuts, and triangles are quartered instead.
 inline constexpr double kLooseBound = 0.2;
-/// Quartered parts whose longest side is less than this many times the bound are cut along the
-/// walk; those above that many times are quartered again without a look at what they lie over.
-inline constexpr double kSmallQuarter = 2, kLargeQuarter = 6;
-/// Steps towards the triangle under a point.
-inline constexpr int kStepsUnder = 16;
 /// So many full-resolution triangles are asked whether a piece lies near them: with those whose
 /// middles are nearest nearly every piece is settled.
 inline constexpr std::size_t kNearestFine = 6;
-/// Cuts of a piece, one after the other: to try, and to be sure; halvings that find where to cut.
-inline constexpr int kFewCuts = 3, kManyCuts = 8, kCutHalvings = 10;
-/// A bound that must grow grows by 1 % more (of the distance, here squared), so that it need not
-/// grow often.
-inline constexpr double kBoundGrowth = 1.0201;
 /// Samples taken in place of the full-resolution surface where pieces are too far from every brick.
 inline constexpr std::size_t kFarSamples = 4096;
 

@@ -7,11 +7,11 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/Tiles.h"
+#include "adaptiso/SurfaceProof/HalfEdges.h"
 #include "adaptive/AdaptiveMethod.h"
 #include "adaptive/full/MeshParts.h"
 #include "adaptive/full/MeshSurface.h"
 #include "adaptive/full/NearestNormals.h"
-#include "adaptive/mesh/HalfEdges.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "tiles/TileGrid.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "Support/Meshes.h"
-#include "adaptive/mesh/HalfEdges.h"
+#include "adaptiso/SurfaceProof/HalfEdges.h"
 
 namespace adaptiso::testing {
 namespace {

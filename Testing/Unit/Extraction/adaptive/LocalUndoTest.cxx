@@ -12,9 +12,9 @@
 #include "Support/Soundness.h"
 #include "Surfaces.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/mending/LocalUndo.h"
 #include "adaptive/mending/SurfaceMender.h"
-#include "adaptive/proof/PieceBound.h"
 #include "adaptive/rounds/PatchRound.h"
 
 namespace adaptiso::testing {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "Surfaces.h"
-#include "adaptive/proof/NearTriangle.h"
+#include "adaptiso/SurfaceProof/NearTriangle.h"
 
 namespace adaptiso::testing {
 

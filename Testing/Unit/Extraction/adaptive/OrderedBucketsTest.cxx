@@ -4,7 +4,7 @@
 #include <random>
 #include <set>
 
-#include "adaptive/mesh/OrderedBuckets.h"
+#include "adaptiso/SurfaceProof/OrderedBuckets.h"
 
 namespace adaptiso {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "PatchedBall.h"
-#include "adaptive/proof/PieceBound.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 
 namespace adaptiso::testing {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "Support/Soundness.h"
 #include "Surfaces.h"
-#include "adaptive/proof/PieceBound.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/rounds/PatchRound.h"
 
 namespace adaptiso::testing {

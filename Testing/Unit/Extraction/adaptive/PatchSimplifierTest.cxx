@@ -6,8 +6,8 @@
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
 #include "Surfaces.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/collapse/PatchSimplifier.h"
-#include "adaptive/proof/PieceBound.h"
 
 namespace adaptiso::testing {
 namespace {

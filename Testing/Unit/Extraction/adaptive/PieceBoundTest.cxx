@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "Surfaces.h"
-#include "adaptive/proof/PieceBound.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 
 namespace adaptiso::testing {
 namespace {

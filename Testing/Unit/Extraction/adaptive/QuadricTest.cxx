@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "Surfaces.h"
-#include "adaptive/collapse/Quadric.h"
+#include "adaptiso/SurfaceProof/Quadric.h"
 
 namespace adaptiso::testing {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "SampledSquare.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/collapse/ErrorTracker.h"
-#include "adaptive/proof/PieceBound.h"
 
 namespace adaptiso::testing {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "Support/Soundness.h"
 #include "Surfaces.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/full/VolumeSurface.h"
-#include "adaptive/proof/PieceBound.h"
 #include "adaptive/rounds/Simplification.h"
 
 namespace adaptiso::testing {

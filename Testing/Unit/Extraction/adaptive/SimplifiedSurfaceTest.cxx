@@ -4,8 +4,8 @@
 #include <limits>
 #include <random>
 
+#include "adaptiso/SurfaceProof/ZeroedTable.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
-#include "adaptive/mesh/ZeroedTable.h"
 
 namespace adaptiso::testing {
 namespace {

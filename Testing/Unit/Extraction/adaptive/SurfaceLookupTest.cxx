@@ -4,7 +4,7 @@
 #include <set>
 
 #include "Surfaces.h"
-#include "adaptive/proof/PieceBound.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/proof/SurfaceLookup.h"
 
 namespace adaptiso::testing {

@@ -5,7 +5,7 @@
 
 #include "Support/Meshes.h"
 #include "Surfaces.h"
-#include "adaptive/proof/SurfaceMap.h"
+#include "adaptiso/SurfaceProof/SurfaceMap.h"
 
 namespace adaptiso::testing {
 namespace {

@@ -8,8 +8,8 @@
 #include "Support/Soundness.h"
 #include "Surfaces.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/mending/SurfaceMender.h"
-#include "adaptive/proof/PieceBound.h"
 
 namespace adaptiso::testing {
 namespace {

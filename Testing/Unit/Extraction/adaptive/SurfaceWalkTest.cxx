@@ -5,7 +5,7 @@
 
 #include "Support/Meshes.h"
 #include "Surfaces.h"
-#include "adaptive/proof/SurfaceWalk.h"
+#include "adaptiso/SurfaceProof/SurfaceWalk.h"
 
 namespace adaptiso::testing {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "adaptive/proof/PieceBound.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/rounds/BrickRound.h"
 
 namespace adaptiso::testing {

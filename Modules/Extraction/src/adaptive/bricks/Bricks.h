@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adaptiso/SpanSpace/BlockGrid.h"
-#include "adaptive/mesh/ZeroedTable.h"
+#include "adaptiso/SurfaceProof/ZeroedTable.h"
 #include "lattice/LatticeSampler.h"
 #include "loops/SurfaceLoops.h"
 

@@ -16,8 +16,8 @@
 #include "adaptiso/Core/MortonOrder.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/SurfaceProof/HalfEdges.h"
 #include "adaptive/full/FlatTriangles.h"
-#include "adaptive/mesh/HalfEdges.h"
 #include "adaptive/mesh/Patch.h"
 
 namespace adaptiso::detail {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "adaptiso/MeshQuality/Winding.h"
+#include "adaptiso/SurfaceProof/OrderedBuckets.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/full/FullSurface.h"
 #include "adaptive/full/MeshParts.h"
-#include "adaptive/mesh/OrderedBuckets.h"
-#include "adaptive/proof/PieceBound.h"
 
 namespace adaptiso::detail {
 

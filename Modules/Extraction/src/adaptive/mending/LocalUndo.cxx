@@ -9,8 +9,8 @@
 #include <tuple>
 
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/Parameters.h"
-#include "adaptive/proof/PieceBound.h"
 
 namespace adaptiso::detail {
 namespace {

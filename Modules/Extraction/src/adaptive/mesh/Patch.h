@@ -7,8 +7,8 @@
 
 #include "adaptiso/Core/Geometry.h"
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/SurfaceProof/Quadric.h"
 #include "adaptive/bricks/SheetClearance.h"
-#include "adaptive/collapse/Quadric.h"
 
 namespace adaptiso::detail {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "adaptive/mesh/HalfEdges.h"
+#include "adaptiso/SurfaceProof/HalfEdges.h"
 
 namespace adaptiso::detail {
 

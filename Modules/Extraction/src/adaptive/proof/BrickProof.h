@@ -6,18 +6,18 @@
 #include <utility>
 #include <vector>
 
+#include "adaptiso/SurfaceProof/PieceBound.h"
+#include "adaptiso/SurfaceProof/SurfaceMap.h"
+#include "adaptiso/SurfaceProof/SurfaceWalk.h"
+#include "adaptiso/SurfaceProof/ZeroedTable.h"
 #include "adaptive/bricks/Bricks.h"
 #include "adaptive/bricks/SampleNumbers.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
 #include "adaptive/mesh/WholeBricks.h"
-#include "adaptive/mesh/ZeroedTable.h"
 #include "adaptive/proof/BoxList.h"
 #include "adaptive/proof/DistanceProof.h"
-#include "adaptive/proof/PieceBound.h"
 #include "adaptive/proof/SurfaceLookup.h"
-#include "adaptive/proof/SurfaceMap.h"
-#include "adaptive/proof/SurfaceWalk.h"
 
 namespace adaptiso::detail {
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "adaptiso/SurfaceProof/SurfaceMap.h"
 #include "adaptive/full/MeshParts.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
-#include "adaptive/proof/SurfaceMap.h"
 
 namespace adaptiso::detail {
 

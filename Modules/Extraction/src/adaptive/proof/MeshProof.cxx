@@ -8,9 +8,9 @@
 #include <span>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/proof/MeshMap.h"
-#include "adaptive/proof/PieceBound.h"
 
 namespace adaptiso::detail {
 namespace {

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "adaptiso/SurfaceProof/SurfaceWalk.h"
 #include "adaptive/full/MeshParts.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/proof/DistanceProof.h"
-#include "adaptive/proof/SurfaceWalk.h"
 
 namespace adaptiso::detail {
 

@@ -9,10 +9,10 @@
 
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/MeshQuality/TriangleTree.h"
+#include "adaptiso/SurfaceProof/SurfaceWalk.h"
 #include "adaptive/bricks/Bricks.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
-#include "adaptive/proof/SurfaceWalk.h"
 
 namespace adaptiso::detail {
 

@@ -1,0 +1,169 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Progress.h"
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Core/Warning.h"
+#include "adaptiso/HeadModel/ConductivityModel.h"
+#include "adaptiso/HeadModel/Finding.h"
+#include "adaptiso/HeadModel/HeadBoundaries.h"
+#include "adaptiso/HeadModel/Landmarks.h"
+#include "adaptiso/HeadModel/NestSurfaces.h"
+#include "adaptiso/HeadModel/Remesh.h"
+#include "adaptiso/HeadModel/Seen.h"
+#include "adaptiso/HeadModel/Tetrahedra.h"
+#include "adaptiso/HeadPipeline/HeadNotes.h"
+#include "adaptiso/MeshIO/PointFiles.h"
+#include "adaptiso/MeshQuality/Shape.h"
+#include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/SurfacePipeline/FinishSurface.h"
+
+namespace adaptiso {
+
+/// What is to be put on the skin of a model.
+struct ElectrodeOptions {
+    std::optional<PointFile> file;         ///< electrodes as read
+    std::string fileName;                  ///< without folders
+    std::optional<CoordinateFrame> frame;  ///< of the file; else what it says, or by its landmarks
+    std::optional<PositionSystem> positions;  ///< computed from landmarks, instead of a file's
+    std::optional<Landmarks> landmarks;       ///< given
+    bool wantsLandmarks = false;              ///< even without electrodes
+
+    bool areWanted() const { return file || positions || landmarks || wantsLandmarks; }
+};
+
+/// What a head model is to be, whatever it is made from.
+struct BemModelOptions {
+    BoundaryOptions boundaries;  ///< layers, gaps, thicknesses, isovalues
+    /// One number for all surfaces or one for each; empty: by edge length or, without that, 2,562
+    /// of each of three surfaces, and of four as many as the layers' thickness asks for, 10,000 in
+    /// all at most.
+    std::vector<std::int64_t> vertices;
+    std::int64_t mostVertices = 10'000;  ///< of four layers in all, where no number is given
+    std::optional<EdgeLengthRange> edgeLengthMm;
+    ConductivityModel conductivities;
+    ElectrodeOptions electrodes{};
+    bool wantsHeadShape = false;  ///< the skin alone as well, for coregistration
+
+    /// Between neighbours, from inside out.
+    std::vector<double> minGapsMm() const;
+    std::optional<std::int64_t> verticesOf(std::size_t surface) const {
+        if (vertices.empty()) return std::nullopt;
+        return vertices.size() == 1 ? vertices.front() : vertices[surface];
+    }
+    std::size_t surfaceCount() const {
+        return boundaries.innerSkullOnly ? 1 : boundaries.withBrain ? kHeadSurfaceCount : 3;
+    }
+    HeadSurface surface(std::size_t n) const { return headSurface(n, surfaceCount()); }
+    bool hasSkin() const { return surfaceCount() > 1; }
+};
+
+/// What the model is made from, for the reports.
+struct BemInput {
+    std::string file;    ///< without folders; empty: no file
+    std::string role;    ///< "t1", "brain mask", "labels", ...
+    std::string format;  ///< "NIfTI-1", "STL (binary)", ...
+};
+
+/// One surface, from dense to final.
+struct BemSurface {
+    std::int64_t denseTriangles = 0;  ///< 0: the surface was taken as it came
+    /// Of a ready surface that only needs other triangles, and as many.
+    std::optional<std::int64_t> ownVertices;
+    std::optional<RemeshStatistics> remesh;
+    SurfaceMove move;  ///< by nesting
+    TopologyReport topology;
+    ShapeReport shape;
+    std::int64_t crossingPairs = 0;
+    double areaMm2 = 0;
+    double volumeMm3 = 0;
+    double solidAngleShare = 0;
+    Vec3 extentMm;
+    std::optional<SeenSurface> seen{};  ///< of the final mesh; none where nobody looked
+};
+
+/// A promise about the model, kept or not.
+struct BemCheck {
+    std::string name;  ///< "inner_skull: one closed surface of genus 0"
+    bool isPassed = false;
+    std::string detail;
+    std::optional<Vec3> pointMm;  ///< LPS, where it is not kept
+};
+
+/// The skin alone, for coregistration.
+struct HeadShape {
+    TriangleMesh dense;   ///< as finely as it was found
+    TriangleMesh sparse;  ///< of the model, with at most 2,500 triangles
+};
+
+/// Electrodes and landmarks on a model's skin.
+struct BemElectrodes {
+    std::optional<Landmarks> landmarks;
+    std::string landmarkOrigin;      ///< "given", "file" or "guessed"
+    std::vector<NamedPoint> points;  ///< electrodes, LPS mm
+    bool areComputed = false;        ///< by a system of positions, not from a file
+    double meanMovedMm = 0, farthestMovedMm = 0;
+    std::string farthestName;
+
+    /// Electrodes, and landmarks as they are.
+    std::vector<NamedPoint> all() const;
+};
+
+/// The layers of a model in tetrahedra.
+struct BemTetrahedra {
+    std::string mesher;    ///< "tetgen" or "gmsh"
+    TetrahedralMesh mesh;  ///< LPS mm
+    TetrahedraReport report;
+};
+
+/// A head model, or what is known of it so far: what it is made from, its surfaces, whether they
+/// keep what is promised of them.
+struct BemModel {
+    BemModelOptions options;
+    std::string source;  ///< "t1", "labels", "probabilities", "ct", "surfaces"
+    std::vector<BemInput> inputs;
+    std::vector<Warning> warnings;             ///< what makes the result doubtful
+    std::vector<std::string> notes;            ///< what was guessed, found or changed
+    std::optional<ImageGeometry> image;        ///< the main image's
+    std::optional<ImageGeometry> tkRasVolume;  ///< whose tkRAS the FreeSurfer files are in
+    std::string tkRasName;                     ///< of that volume, for the footer
+    /// Inside out, LPS mm. Where there is no model: what it was tried from.
+    std::vector<TriangleMesh> meshes;
+    std::vector<BemSurface> surfaces;
+    std::vector<std::vector<Vec3>> seenMm;  ///< as HeadBoundaries has it
+    std::optional<HeadShape> headShape;     ///< LPS mm; if wanted, and there is a model with a skin
+    std::optional<BemTetrahedra> tetrahedra;  ///< if wanted, and there is a model
+    std::optional<BemElectrodes> electrodes;  ///< if wanted, and there is a model
+    std::vector<NestedGap> gaps;
+    std::vector<BemCheck> checks;
+    std::vector<ToldNote> plausibility;  ///< what is unusual of adults' heads
+    std::vector<Finding> findings;       ///< why there is no model; points in LPS mm
+
+    bool hasModel() const { return findings.empty(); }
+
+    /// Why there is no model and where, in one line; the point in scanner RAS, as viewers show it.
+    /// \pre !hasModel()
+    std::string failureText() const;
+};
+
+/// For those who show progress or measure time.
+struct BemHooks {
+    StageRunner runStage{};       ///< "extract", "remesh", ...; empty: work is called, that is all
+    ProgressCallback progress{};  ///< as BoundaryOptions has it
+
+    void stage(std::string_view name, const std::function<void()>& work) const {
+        runStage ? runStage(name, work) : work();
+    }
+};
+
+/// "inner_skull" of surface 0 of three.
+std::string bemSurfaceName(std::size_t surface, std::size_t count);
+
+}  // namespace adaptiso

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <iosfwd>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adaptiso/HeadModel/Plausibility.h"
+#include "adaptiso/Json/Json.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/Report/Report.h"
+
+namespace adaptiso {
+
+/// A question about what is usual of heads, as it is told. Nothing fails by it.
+struct ToldNote {
+    HeadNote note;                                 ///< places in LPS mm
+    std::string subject;                           ///< "inner_skull", "inner_skull in outer_skull"
+    CoordinateFrame frame = CoordinateFrame::Ras;  ///< of the places told
+    std::vector<Vec3> placesMm{};
+};
+
+/// How many are noted.
+std::int64_t notedCount(std::span<const ToldNote> notes);
+
+/// " at 1.0, 2.0, 3.0" of the first place, or nothing.
+std::string placeText(const ToldNote& note);
+
+/// Lines of all notes, in the columns of the checks.
+void printNotes(std::ostream& out, std::span<const ToldNote> notes);
+
+/// List of {name, of, outcome, finding, pointsIn, pointsMm}, points as told.
+Json notesJson(std::span<const ToldNote> notes);
+
+/// Adds what is asked to the checks of a page, and the places of what is noted to its spots.
+void addNotes(std::span<const ToldNote> notes, Report& report);
+
+}  // namespace adaptiso

@@ -1,0 +1,137 @@
+#include "adaptiso/HeadPipeline/BemChecks.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace adaptiso {
+namespace {
+
+CheckRules bemRules(std::optional<double> minGapMm = std::nullopt) {
+    CheckRules rules;
+    rules.profile = Profile::Bem;
+    rules.minGapMm = minGapMm;
+    rules.maxPairs = 1;
+    return rules;
+}
+
+SurfaceFacts factsOf(const TriangleMesh& surface) {
+    TriangleMesh asked = surface;  // what measures may change is not the caller's
+    return measureSurface(asked, sizeLimitsOf(Profile::Bem), 1);
+}
+
+Vec3 middleOf(const TriangleMesh& mesh, std::int64_t triangle) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    return (1.0 / 3) * (mesh.points[a] + mesh.points[b] + mesh.points[c]);
+}
+
+/// Where to look for what a check found.
+Vec3 placeOf(const Check& check, const SurfaceFacts& facts, const TriangleMesh& mesh) {
+    const TopologyReport& topology = facts.topology;
+    if (check.key == "noSelfIntersections" && facts.intersections.pairCount > 0) {
+        return facts.firstCrossingMm;
+    }
+    if (check.key == "minAngle" && facts.shape.triangles > 0) {
+        return middleOf(mesh, facts.shape.minAngleDeg.triangleOfMinimum);
+    }
+    if (check.key == "noDuplicateVertices" && !facts.duplicates.vertices.empty()) {
+        return mesh.points[facts.duplicates.vertices.front()];
+    }
+    if (check.key == "noDuplicateTriangles" && !facts.duplicates.triangles.empty()) {
+        return middleOf(mesh, facts.duplicates.triangles.front());
+    }
+    if (check.key == "oneComponent" && topology.components.size() > 1) {
+        return mesh.points[topology.components[1].firstVertex];
+    }
+    if (!topology.examples.empty()) return topology.examples.front().pointMm;
+    const BoundingBox box = boundingBox(mesh);
+    return box.middle();
+}
+
+/// Coordinates in findings are to be read by people: scanner RAS, as the program prints elsewhere.
+std::vector<TriangleMesh> inScannerRas(const std::vector<TriangleMesh>& surfaces) {
+    std::vector<TriangleMesh> moved;
+    for (const TriangleMesh& surface : surfaces) {
+        moved.push_back(toFrame(surface, CoordinateFrame::Ras));
+    }
+    return moved;
+}
+
+void addToReport(const SurfaceFacts& facts, BemSurface& surface) {
+    surface.topology = facts.topology;
+    surface.shape = facts.shape;
+    surface.crossingPairs = facts.intersections.pairCount;
+    surface.areaMm2 = facts.areaMm2;
+    surface.volumeMm3 = facts.volumeMm3.value_or(0);
+    surface.solidAngleShare = facts.solidAngle.share;
+    surface.extentMm = facts.size.extentMm;
+}
+
+}  // namespace
+
+std::vector<Check> askOfSurface(const TriangleMesh& surface) {
+    return judgeSurface(factsOf(surface), bemRules());
+}
+
+ModelChecks askOfModel(std::span<const TriangleMesh> surfaces, std::span<const double> gapsMm) {
+    ModelChecks asked;
+    for (std::size_t n = 0; n < surfaces.size(); ++n) {
+        asked.facts.push_back(factsOf(surfaces[n]));
+        const SurfaceFacts& facts = asked.facts.back();
+        for (Check& check : judgeSurface(facts, bemRules())) {
+            const Vec3 place = placeOf(check, facts, surfaces[n]);
+            asked.checks.push_back({bemSurfaceName(n, surfaces.size()), std::move(check), place});
+        }
+    }
+    for (std::size_t n = 0; n + 1 < surfaces.size(); ++n) {
+        asked.nesting.push_back(checkNesting(surfaces[n], surfaces[n + 1], {.maxPairs = 1}));
+        const NestingReport& report = asked.nesting.back();
+        for (Check& check :
+             judgeNesting(report, bemSurfaceName(n, surfaces.size()),
+                          bemSurfaceName(n + 1, surfaces.size()), {}, bemRules(gapsMm[n]))) {
+            asked.checks.push_back({bemSurfaceName(n, surfaces.size()) + " in " +
+                                        bemSurfaceName(n + 1, surfaces.size()),
+                                    std::move(check), report.gap.nearest.pointA});
+        }
+    }
+    return asked;
+}
+
+void checkModel(BemModel& model, const BemHooks& hooks) {
+    hooks.stage("check", [&] {
+        const ModelChecks asked = askOfModel(inScannerRas(model.meshes), model.options.minGapsMm());
+        const AffineTransform toLps = inverse(lpsToFrame(CoordinateFrame::Ras, {}));
+        for (std::size_t n = 0; n < model.meshes.size(); ++n) {
+            addToReport(asked.facts[n], model.surfaces[n]);
+        }
+        model.gaps.clear();
+        for (const NestingReport& report : asked.nesting) {
+            const NearestPoints& nearest = report.gap.nearest;
+            model.gaps.push_back(
+                {nearest.distanceMm, toLps(nearest.pointA), toLps(nearest.pointB)});
+        }
+        for (const auto& [subject, check, pointMm] : asked.checks) {
+            const std::string name = subject + ": " + std::string(check.name);
+            const bool isPassed = !check.breaksProfile();
+            model.checks.push_back({name, isPassed, check.finding,
+                                    isPassed ? std::nullopt : std::optional(toLps(pointMm))});
+            if (!isPassed) model.findings.push_back({name + ": " + check.finding, toLps(pointMm)});
+        }
+    });
+}
+
+void askWhatIsUsual(BemModel& model, const BemHooks& hooks) {
+    hooks.stage("check", [&] {
+        PlausibilityOptions asked;
+        asked.image = model.image;
+        const AffineTransform toRas = lpsToFrame(CoordinateFrame::Ras, {});
+        for (HeadNote& note : judgePlausibility(model.meshes, asked)) {
+            std::string subject = bemSurfaceName(note.surface, model.meshes.size());
+            if (note.next) subject += " in " + bemSurfaceName(*note.next, model.meshes.size());
+            ToldNote told{std::move(note), std::move(subject), CoordinateFrame::Ras, {}};
+            for (const Vec3& p : told.note.pointsMm) told.placesMm.push_back(toRas(p));
+            model.plausibility.push_back(std::move(told));
+        }
+    });
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,170 @@
+#include "adaptiso/HeadPipeline/BemElectrodes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr double kMostMovedMm = 60;
+
+/// The three landmarks among a file's points, if it has them all.
+std::optional<Landmarks> landmarksOf(const std::vector<NamedPoint>& points) {
+    Landmarks landmarks;
+    int found = 0;
+    for (const auto& [kind, place] : {std::pair{PointKind::Nasion, &landmarks.nasionMm},
+                                      std::pair{PointKind::LeftEar, &landmarks.leftEarMm},
+                                      std::pair{PointKind::RightEar, &landmarks.rightEarMm}}) {
+        const auto point = std::find_if(points.begin(), points.end(),
+                                        [k = kind](const NamedPoint& p) { return p.kind == k; });
+        if (point == points.end()) continue;
+        *place = point->point;
+        ++found;
+    }
+    return found == 3 ? std::optional(landmarks) : std::nullopt;
+}
+
+/// Heads have a radius of some 90 mm: that tells what unit numbers are in.
+void guessUnit(PointFile& file, const std::string& name, BemModel& model) {
+    if (file.saysUnit) return;
+    Vec3 middle;
+    for (const NamedPoint& p : file.points) {
+        middle += (1 / static_cast<double>(file.points.size())) * p.point;
+    }
+    double radius = 0;
+    for (const NamedPoint& p : file.points) radius = std::max(radius, norm(p.point - middle));
+    constexpr double kMostMetres = 0.5, kMostCentimetres = 30;
+    const double mm = radius <= kMostMetres ? 1000 : radius <= kMostCentimetres ? 10 : 1;
+    for (NamedPoint& p : file.points) p.point = mm * p.point;
+    file.saysUnit = true;
+    const std::string unit = mm == 1000 ? "m" : mm == 10 ? "cm" : "mm";
+    model.warnings.push_back({"guessed-unit", "does not say its unit; taken for " + unit, name});
+}
+
+/// Of tkRAS the volume whose FreeSurfer files are written; without one these are in scanner RAS.
+AffineTransform toLps(CoordinateFrame frame, const BemModel& model) {
+    if (frame == CoordinateFrame::TkRas && !model.tkRasVolume) frame = CoordinateFrame::Ras;
+    return inverse(lpsToFrame(frame, model.tkRasVolume));
+}
+
+/// The file's points in LPS mm; none when landmarks are needed and not there yet.
+std::optional<CoordinateFrame> frameOf(const ElectrodeOptions& options) {
+    return options.frame ? options.frame : options.file->frame;
+}
+
+void guess(BemModel& model, BemElectrodes& placed) {
+    const std::size_t innerSkull = model.options.boundaries.withBrain ? 1 : 0;
+    const GuessedLandmarks guessed = guessLandmarks(model.meshes[innerSkull], model.meshes.back());
+    placed.landmarks = guessed.landmarks;
+    if (!placed.landmarks) {
+        model.warnings.push_back(
+            {"landmarks-unknown", "nasion and ears can't be guessed: " + guessed.reason});
+        return;
+    }
+    placed.landmarkOrigin = "guessed";
+    model.warnings.push_back(
+        {"guessed-landmarks", "nasion and ears were guessed by the shape of the head: nasion to " +
+                                  formatShort(placed.landmarks->nasionUncertaintyMm) +
+                                  " mm, ears to " +
+                                  formatShort(placed.landmarks->earUncertaintyMm) +
+                                  " mm; give them where that matters"});
+}
+
+/// The file's points in the model's space.
+std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
+    const ElectrodeOptions& options = model.options.electrodes;
+    PointFile file = *options.file;
+    guessUnit(file, options.fileName, model);
+    const std::optional<Landmarks> own = landmarksOf(file.points);
+    AffineTransform move;
+    if (const auto frame = frameOf(options)) {
+        move = toLps(*frame, model);
+        if (own && !placed.landmarks) {
+            placed.landmarks =
+                Landmarks{move(own->nasionMm), move(own->leftEarMm), move(own->rightEarMm)};
+            placed.landmarkOrigin = "file";
+        }
+    } else if (own) {
+        if (!placed.landmarks) guess(model, placed);
+        if (!placed.landmarks) {
+            throw InvalidInput(
+                "the file's frame follows from nasion and ears, which are not known; "
+                "give them");
+        }
+        move = byLandmarks(*own, *placed.landmarks);
+        model.notes.push_back("electrodes: brought to the head by nasion and ears" +
+                              (file.frameName.empty() ? "" : " (frame " + file.frameName + ")"));
+    } else {
+        move = toLps(CoordinateFrame::Ras, model);
+        model.warnings.push_back({"guessed-frame",
+                                  "does not say its coordinate frame; taken for RAS mm",
+                                  options.fileName});
+    }
+    for (NamedPoint& p : file.points) p.point = move(p.point);
+    return file.points;
+}
+
+void project(std::vector<NamedPoint> points, BemModel& model, BemElectrodes& placed) {
+    std::erase_if(points, [](const NamedPoint& p) { return p.kind != PointKind::Electrode; });
+    if (points.empty()) throw InvalidInput("the file holds no electrode");
+    std::vector<Vec3> places;
+    for (const NamedPoint& p : points) places.push_back(p.point);
+    const OntoSkin onto = projectedOntoSkin(places, model.meshes.back());
+    placed.meanMovedMm = onto.meanMm;
+    placed.farthestMovedMm = onto.farthestMm;
+    placed.farthestName = points[onto.farthest].name;
+    if (onto.farthestMm > kMostMovedMm) {
+        throw InvalidInput(
+            "the electrode " + placed.farthestName + " lies " + formatFixed(onto.farthestMm, 0) +
+            " mm from the skin, must be at most 60; is it in another frame or unit?");
+    }
+    for (std::size_t n = 0; n < points.size(); ++n) points[n].point = onto.pointsMm[n];
+    placed.points = std::move(points);
+    model.notes.push_back("electrodes: " + formatCount(std::ssize(placed.points)) +
+                          " moved onto the skin, by " + formatFixed(onto.meanMm, 1) +
+                          " mm on average, the farthest (" + placed.farthestName + ") by " +
+                          formatFixed(onto.farthestMm, 1) + " mm");
+}
+
+void place(BemModel& model, BemElectrodes& placed) {
+    const ElectrodeOptions& options = model.options.electrodes;
+    if (options.landmarks) {
+        placed.landmarks = options.landmarks;
+        placed.landmarkOrigin = "given";
+    }
+    if (options.file) project(inModelSpace(model, placed), model, placed);
+    const bool needsLandmarks = options.positions || options.wantsLandmarks;
+    if (!placed.landmarks && needsLandmarks) guess(model, placed);
+    if (!options.positions) return;
+    if (!placed.landmarks) throw InvalidInput("positions need nasion and ears; give them");
+    placed.points = standardPositions(model.meshes.back(), *placed.landmarks, *options.positions);
+    placed.areComputed = true;
+    model.notes.push_back("electrodes: " + formatCount(std::ssize(placed.points)) +
+                          " positions computed on the skin");
+}
+
+}  // namespace
+
+std::vector<NamedPoint> BemElectrodes::all() const {
+    std::vector<NamedPoint> list = points;
+    if (!landmarks) return list;
+    list.push_back({"Nasion", PointKind::Nasion, landmarks->nasionMm});
+    list.push_back({"LPA", PointKind::LeftEar, landmarks->leftEarMm});
+    list.push_back({"RPA", PointKind::RightEar, landmarks->rightEarMm});
+    return list;
+}
+
+void placeElectrodes(BemModel& model, const BemHooks& hooks) {
+    hooks.stage("electrodes", [&] {
+        BemElectrodes placed;
+        place(model, placed);
+        model.electrodes = std::move(placed);
+    });
+}
+
+}  // namespace adaptiso

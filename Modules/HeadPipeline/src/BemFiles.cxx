@@ -1,0 +1,152 @@
+#include "adaptiso/HeadPipeline/BemFiles.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <utility>
+
+#include "BemFileKinds.h"
+#include "BemReadme.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/HeadModel/ExportOpenMeeg.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/PointFiles.h"
+#include "adaptiso/Tetrahedra/TetrahedraFiles.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+void writeText(const fs::path& path, const std::string& text) {
+    errno = 0;
+    std::ofstream file(path, std::ios::binary | std::ios::trunc);
+    file.write(text.data(), static_cast<std::streamsize>(text.size()));
+    file.close();
+    if (file) return;
+    throw FileError(path.string() + ": can't be written" +
+                    (errno == 0 ? std::string() : std::string(": ") + std::strerror(errno)));
+}
+
+std::vector<NamedPoint> pointsIn(CoordinateFrame frame, const BemModel& model) {
+    if (!model.electrodes) return {};
+    std::vector<NamedPoint> points = model.electrodes->all();
+    const AffineTransform move = lpsToFrame(frame, model.tkRasVolume);
+    for (NamedPoint& p : points) p.point = move(p.point);
+    return points;
+}
+
+void writeElectrodes(const BemModel& model, const BemFileOptions& options, const PlaceFile& place) {
+    const std::vector<NamedPoint> points = pointsIn(options.frame, model);
+    if (points.empty()) return;
+    const fs::path tsv = place(kElectrodesTsv);
+    writeBidsElectrodes(points, tsv, place(kElectrodesJson), options.frame);
+    writeElc(points, place(kElectrodesElc));
+    writeSfp(points, place(kElectrodesSfp));
+    const CoordinateFrame mri = model.tkRasVolume ? CoordinateFrame::TkRas : CoordinateFrame::Ras;
+    writeFiffPoints(pointsIn(mri, model), place(kElectrodesFif));
+    if (model.electrodes->points.empty()) return;
+    const double unit = options.unit == OpenMeegUnit::Metres ? 0.001 : 1;
+    std::string lines;
+    for (const NamedPoint& p : points) {
+        if (p.kind != PointKind::Electrode) continue;
+        const Vec3 at = unit * p.point;
+        lines +=
+            formatFixed(at.x, 6) + " " + formatFixed(at.y, 6) + " " + formatFixed(at.z, 6) + "\n";
+    }
+    writeText(place(kElectrodesTxt), lines);
+}
+
+void writeTetrahedra(const BemModel& model, const BemFileOptions& options, const PlaceFile& place) {
+    const AffineTransform move = lpsToFrame(options.frame, model.tkRasVolume);
+    const TetrahedralMesh mesh = transformed(model.tetrahedra->mesh, move.linear, move.offset);
+    const std::vector<TetrahedraRegion> regions = headRegions(model.meshes);
+    writeMsh22(mesh, regions, place(kMsh22File));
+    writeMsh41(mesh, regions, place(kMsh41File));
+    writeVtu(mesh, place(kVtuFile));
+    writeDgf(mesh, allTissues(), place(kDgfFile));
+    const std::vector<double> conductivities = tissueConductivities(model.options.conductivities);
+    std::string list;
+    for (const double value : conductivities) list += formatNumber(value) + "\n";
+    writeText(place(kTissueConductivitiesFile), list);
+    if (std::ssize(mesh.points) > kMostCauchyPoints) return;
+    writeCauchy(mesh, place(kCauchyFile));
+    writeCauchyTensors(mesh, allTissues(), conductivities, place(kCauchyTensorsFile));
+}
+
+/// Landmarks first, as BESA wants them.
+void writeBesa(const BemModel& model, const BemFileOptions& options, const PlaceFile& place) {
+    std::vector<NamedPoint> points = pointsIn(options.frame, model);
+    std::stable_partition(points.begin(), points.end(),
+                          [](const NamedPoint& p) { return p.kind != PointKind::Electrode; });
+    const AffineTransform move = lpsToFrame(options.frame, model.tkRasVolume);
+    std::int64_t number = 0;
+    for (const Vec3& p : model.meshes.back().points) {
+        points.push_back({"S" + std::to_string(++number), PointKind::Other, move(p)});
+    }
+    writeSfp(points, place(kBesaFile));
+}
+
+}  // namespace
+
+std::vector<std::string> bemFileNames() {
+    std::vector<std::string> names{"model.geom",
+                                   "model.cond",
+                                   "report.json",
+                                   "spots.png",
+                                   "README.md",
+                                   kFiffModel,
+                                   kFiffDenseHead,
+                                   kFiffSparseHead,
+                                   kFieldTripFile,
+                                   kElectrodesTsv,
+                                   kElectrodesJson,
+                                   kElectrodesElc,
+                                   kElectrodesSfp,
+                                   kElectrodesFif,
+                                   kElectrodesTxt,
+                                   kBesaFile,
+                                   kMsh22File,
+                                   kMsh41File,
+                                   kVtuFile,
+                                   kDgfFile,
+                                   kCauchyFile,
+                                   kCauchyTensorsFile,
+                                   kTissueConductivitiesFile};
+    for (std::size_t n = 0; n < kHeadSurfaceCount; ++n) {
+        const HeadSurface surface = headSurface(n, kHeadSurfaceCount);
+        for (const char* extension : {".surf", ".tri", ".gii", ".vtp"}) {
+            names.push_back(bemFileName(surface, extension));
+        }
+        for (std::string& name :
+             std::array{simNibsName(surface), brainstormName(surface), curryName(surface)}) {
+            names.push_back(std::move(name));
+        }
+    }
+    return names;
+}
+
+std::string bemFileName(HeadSurface surface, const char* extension) {
+    return std::string(toString(surface)) + extension;
+}
+
+void writeBemFiles(const BemModel& model, const BemFileOptions& options, const std::string& maker,
+                   const std::function<fs::path(const std::string&)>& place) {
+    std::vector<std::string> triangleFiles;
+    for (std::size_t n = 0; n < model.meshes.size(); ++n) {
+        triangleFiles.push_back(bemFileName(headSurface(n, model.meshes.size()), ".tri"));
+    }
+    for (const BemFileKind& kind : bemFileKinds(model, options)) kind.write(place);
+    if (model.electrodes) writeElectrodes(model, options, place);
+    if (options.writesBesa) writeBesa(model, options, place);
+    if (model.tetrahedra) writeTetrahedra(model, options, place);
+    writeText(place("model.geom"), openMeegGeometry(triangleFiles));
+    writeText(place("model.cond"),
+              openMeegConductivities(model.meshes.size(), model.options.conductivities));
+    writeText(place("README.md"), bemReadme(model, options, maker));
+}
+
+}  // namespace adaptiso

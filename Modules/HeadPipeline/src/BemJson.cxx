@@ -1,0 +1,193 @@
+#include "adaptiso/HeadPipeline/BemJson.h"
+
+#include "adaptiso/HeadModel/Tetrahedra.h"
+#include "adaptiso/HeadPipeline/TetrahedraJson.h"
+
+namespace adaptiso {
+namespace {
+
+Json imageJson(const std::optional<ImageGeometry>& image) {
+    if (!image) return nullptr;
+    return {{"sizeVoxels", image->size}, {"spacingMm", vector(image->spacingMm())}};
+}
+
+Json remeshJson(const BemSurface& surface) {
+    if (!surface.remesh) return nullptr;
+    return {{"meanVertexDistanceMm", number(surface.remesh->meanVertexDistanceMm)},
+            {"maximumVertexDistanceMm", number(surface.remesh->maximumVertexDistanceMm)}};
+}
+
+Json surfaceJson(const std::string& name, const BemSurface& surface) {
+    const ShapeReport& shape = surface.shape;
+    return {{"name", name},
+            {"denseTriangles", surface.denseTriangles},
+            {"vertices", surface.topology.vertices},
+            {"triangles", surface.topology.triangles},
+            {"genus", orNull(surface.topology.genus())},
+            {"crossingPairs", surface.crossingPairs},
+            {"areaMm2", number(surface.areaMm2)},
+            {"volumeMm3", number(surface.volumeMm3)},
+            {"extentMm", vector(surface.extentMm)},
+            {"solidAngleShare", number(surface.solidAngleShare)},
+            {"edgeMm",
+             {{"minimum", number(shape.edgeMm.minimum)},
+              {"mean", number(shape.edgeMm.mean)},
+              {"maximum", number(shape.edgeMm.maximum)}}},
+            {"minAngleDeg",
+             {{"minimum", number(shape.minAngleDeg.minimum)},
+              {"p5", number(shape.minAngleDeg.p5)},
+              {"median", number(shape.minAngleDeg.median)}}},
+            {"seenShare", surface.seen ? number(surface.seen->share) : Json(nullptr)},
+            {"remesh", remeshJson(surface)},
+            {"nesting",
+             {{"movedVertices", surface.move.movedVertices},
+              {"maximumMm", number(surface.move.maximumMm)}}}};
+}
+
+/// As all points of this report.
+std::vector<ToldNote> inLps(std::vector<ToldNote> notes) {
+    for (ToldNote& told : notes) {
+        told.frame = CoordinateFrame::Lps;
+        told.placesMm = told.note.pointsMm;
+    }
+    return notes;
+}
+
+Json gapJson(const NestedGap& gap) {
+    return {{"mm", number(gap.mm)},
+            {"innerPointMm", vector(gap.innerPointMm)},
+            {"outerPointMm", vector(gap.outerPointMm)}};
+}
+
+Json pointJson(const std::string& name, const Vec3& p) {
+    return {{"name", name}, {"pointMm", vector(p)}};
+}
+
+Json landmarksJson(const BemModel& model) {
+    if (!model.electrodes || !model.electrodes->landmarks) return nullptr;
+    const Landmarks& l = *model.electrodes->landmarks;
+    return {{"origin", model.electrodes->landmarkOrigin},
+            {"nasionMm", vector(l.nasionMm)},
+            {"leftEarMm", vector(l.leftEarMm)},
+            {"rightEarMm", vector(l.rightEarMm)},
+            {"nasionUncertaintyMm", number(l.nasionUncertaintyMm)},
+            {"earUncertaintyMm", number(l.earUncertaintyMm)}};
+}
+
+Json electrodesJson(const BemModel& model) {
+    if (!model.electrodes || model.electrodes->points.empty()) return nullptr;
+    const BemElectrodes& e = *model.electrodes;
+    Json points = Json::array();
+    for (const NamedPoint& p : e.points) points.push_back(pointJson(p.name, p.point));
+    return {{"computed", e.areComputed},
+            {"meanMovedMm", number(e.meanMovedMm)},
+            {"farthestMovedMm", number(e.farthestMovedMm)},
+            {"farthest", e.areComputed ? Json(nullptr) : Json(e.farthestName)},
+            {"points", points}};
+}
+
+Json tetrahedraJson(const BemModel& model) {
+    if (!model.tetrahedra) return nullptr;
+    const TetrahedraReport& report = model.tetrahedra->report;
+    Json layers = Json::array();
+    for (std::size_t n = 0; n < report.counts.size(); ++n) {
+        const std::int32_t tissue =
+            tissueNumber(headSurface(n, report.counts.size()), report.counts.size());
+        layers.push_back({{"tissue", tissueName(tissue)},
+                          {"number", tissue},
+                          {"tetrahedra", report.counts[n]},
+                          {"volumeMm3", number(report.volumesMm3[n])},
+                          {"betweenSurfacesMm3", number(report.expectedMm3[n])}});
+    }
+    Json json{{"mesher", model.tetrahedra->mesher},
+              {"points", std::ssize(model.tetrahedra->mesh.points)},
+              {"layers", layers}};
+    json.update(elementShapesJson(report));
+    return json;
+}
+
+}  // namespace
+
+Json bemInputJson(const BemModel& model) {
+    Json files = Json::array();
+    for (const BemInput& input : model.inputs) {
+        files.push_back({{"file", input.file.empty() ? Json(nullptr) : Json(input.file)},
+                         {"role", input.role},
+                         {"format", input.format}});
+    }
+    return {{"source", model.source},
+            {"files", files},
+            {"image", imageJson(model.image)},
+            {"warnings", model.warnings}};
+}
+
+Json bemOptionsJson(const BemModelOptions& options) {
+    const BoundaryOptions& b = options.boundaries;
+    Json edges = nullptr;
+    if (options.edgeLengthMm) {
+        edges = {options.edgeLengthMm->minimumMm, options.edgeLengthMm->maximumMm};
+    }
+    return {
+        {"layers", options.surfaceCount()},
+        {"vertices", options.vertices.empty() ? Json(nullptr) : Json(options.vertices)},
+        {"edgeLengthMm", edges},
+        {"minGapMm", {b.minSkullMm, b.minScalpMm}},
+        {"minCsfMm", b.minCsfMm},
+        {"sulciMm", b.sulciMm},
+        {"smoothingMm", b.smoothingMm},
+        {"closingMm", b.closingMm},
+        {"cutNecksMm", b.cutNecksMm},
+        {"voxelMm", b.stepMm > 0 ? Json(b.stepMm) : Json(nullptr)},
+        {"csfMm", b.csfMm},
+        {"skullMm", b.skullMm},
+        {"maxSkullMm", b.maxSkullMm},
+        {"skullHu", b.skullHu},
+        {"skinHu", b.skinHu},
+        {"conductivity",
+         {{"brain", options.conductivities.brain},
+          {"csf", options.boundaries.withBrain ? Json(options.conductivities.csf) : Json(nullptr)},
+          {"skull", options.conductivities.skull},
+          {"scalp", options.conductivities.scalp}}}};
+}
+
+Json bemModelJson(const BemModel& model) {
+    Json surfaces = Json::array(), gaps = Json::array(), checks = Json::array();
+    Json findings = Json::array();
+    for (std::size_t n = 0; n < model.surfaces.size(); ++n) {
+        surfaces.push_back(
+            surfaceJson(bemSurfaceName(n, model.surfaces.size()), model.surfaces[n]));
+    }
+    for (const NestedGap& gap : model.gaps) gaps.push_back(gapJson(gap));
+    for (const BemCheck& check : model.checks) {
+        checks.push_back({{"name", check.name},
+                          {"passed", check.isPassed},
+                          {"detail", check.detail},
+                          {"pointMm", check.pointMm ? vector(*check.pointMm) : Json(nullptr)}});
+    }
+    for (const Finding& finding : model.findings) {
+        findings.push_back({{"what", finding.what}, {"pointMm", vector(finding.pointMm)}});
+    }
+    return {{"notes", model.notes},
+            {"surfaces", surfaces},
+            {"gaps", gaps},
+            {"checks", checks},
+            {"tetrahedra", tetrahedraJson(model)},
+            {"landmarks", landmarksJson(model)},
+            {"electrodes", electrodesJson(model)},
+            {"plausibility", notesJson(inLps(model.plausibility))},
+            {"findings", findings}};
+}
+
+Json bemOutputJson(const BemModel& model, const BemFileOptions& options,
+                   const std::vector<std::pair<std::string, std::uintmax_t>>& files,
+                   const std::vector<std::string>& subjectFiles) {
+    Json list = Json::array();
+    for (const auto& [name, bytes] : files) list.push_back({{"file", name}, {"bytes", bytes}});
+    return {{"files", list},
+            {"subjectFiles", subjectFiles},
+            {"freesurferFrame", model.tkRasVolume ? "tkras" : "ras"},
+            {"coordinates", frameWord(options.frame)},
+            {"openmeegUnit", options.unit == OpenMeegUnit::Metres ? "m" : "mm"}};
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,33 @@
+#include "adaptiso/HeadPipeline/BemModel.h"
+
+#include "adaptiso/Core/Numbers.h"
+
+namespace adaptiso {
+namespace {
+
+std::string rasText(const Vec3& lps) {
+    return "(" + formatFixed(-lps.x, 1) + ", " + formatFixed(-lps.y, 1) + ", " +
+           formatFixed(lps.z, 1) + ") mm RAS";
+}
+
+}  // namespace
+
+std::string BemModel::failureText() const {
+    std::string text = findings.front().what + " at " + rasText(findings.front().pointMm);
+    if (findings.size() > 1) {
+        text += " (and " + formatCount(std::ssize(findings) - 1) + " more)";
+    }
+    return text;
+}
+
+std::vector<double> BemModelOptions::minGapsMm() const {
+    const std::vector<double> all{boundaries.minCsfMm, boundaries.minSkullMm,
+                                  boundaries.minScalpMm};
+    return {all.end() - static_cast<std::ptrdiff_t>(surfaceCount() - 1), all.end()};
+}
+
+std::string bemSurfaceName(std::size_t surface, std::size_t count) {
+    return std::string(toString(headSurface(surface, count)));
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,167 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/HeadPipeline/BemChecks.h"
+#include "adaptiso/HeadPipeline/BemSurfaces.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/MeshQuality/Topology.h"
+
+namespace adaptiso {
+namespace {
+
+enum class Need { Nothing, NewTriangles, NewSolid };
+
+/// Drops triangles that can't be any (a corner that is not finite or not there, or named twice),
+/// and vertices that no triangle uses. \return triangles dropped
+std::int64_t dropUseless(TriangleMesh& mesh) {
+    const auto count = std::ssize(mesh.points);
+    const auto isUseless = [&](const Triangle& t) {
+        return t[0] == t[1] || t[1] == t[2] || t[2] == t[0] ||
+               std::any_of(t.begin(), t.end(), [&](VertexId v) {
+                   return v < 0 || v >= count || !std::isfinite(squaredNorm(mesh.points[v]));
+               });
+    };
+    const auto dropped = static_cast<std::int64_t>(std::erase_if(mesh.triangles, isUseless));
+    std::vector<VertexId> number(mesh.points.size(), -1);
+    for (const Triangle& t : mesh.triangles) {
+        for (const VertexId v : t) number[v] = 0;
+    }
+    VertexId next = 0;
+    for (VertexId v = 0; v < count; ++v) {
+        if (number[v] < 0) continue;
+        number[v] = next;
+        mesh.points[next++] = mesh.points[v];
+    }
+    mesh.points.resize(next);
+    for (Triangle& t : mesh.triangles) {
+        for (VertexId& v : t) v = number[v];
+    }
+    return dropped;
+}
+
+/// Vertices at the same place made one: what a triangle soup lacks.
+TriangleMesh merged(const TriangleMesh& mesh) {
+    std::map<std::tuple<double, double, double>, VertexId> first;
+    TriangleMesh result = mesh;
+    for (Triangle& t : result.triangles) {
+        for (VertexId& v : t) {
+            const auto [x, y, z] = mesh.points[v];
+            v = first.try_emplace({x, y, z}, v).first->second;
+        }
+    }
+    dropUseless(result);
+    return result;
+}
+
+/// Without islands: pieces of less than a tenth of the triangles of all, as segmentations leave
+/// them.
+TriangleMesh withoutIslands(const TriangleMesh& mesh) {
+    constexpr std::size_t kIsland = 10;
+    const std::vector<VertexId> root = findComponentRoots(mesh);
+    std::map<VertexId, std::size_t> triangles;
+    for (const Triangle& t : mesh.triangles) ++triangles[root[t[0]]];
+    TriangleMesh result = mesh;
+    std::erase_if(result.triangles, [&](const Triangle& t) {
+        return kIsland * triangles[root[t[0]]] < mesh.triangles.size();
+    });
+    dropUseless(result);
+    return result;
+}
+
+/// One closed manifold without handles, whatever the shape of its triangles.
+bool isBall(const TriangleMesh& mesh) {
+    const TopologyReport topology = checkTopology(mesh, {.maxExamplesPerDefect = 0});
+    return topology.isWatertight() && topology.components.size() == 1 && topology.genus() == 0 &&
+           topology.count(TopologyDefect::DuplicateTriangle) == 0;
+}
+
+void note(BemModel& model, std::size_t n, const std::string& text) {
+    model.notes.push_back(bemSurfaceName(n, model.options.surfaceCount()) + ": " + text);
+}
+
+/// What is to be done to a surface. Does what leaves the surface where it is: drops what is of no
+/// use, merges vertices, turns it outward.
+Need tidied(std::size_t n, TriangleMesh& mesh, BemModel& model) {
+    const std::size_t vertices = mesh.points.size();
+    const std::int64_t dropped = dropUseless(mesh);
+    if (dropped > 0) note(model, n, formatCount(dropped) + " triangles that are none left out");
+    if (mesh.triangles.empty()) throw InvalidInput("a surface holds no triangle");
+    if (!isBall(mesh)) {
+        TriangleMesh whole = merged(mesh), main = withoutIslands(whole);
+        if (!isBall(main)) return Need::NewSolid;
+        const bool hasIslands = main.triangles.size() < whole.triangles.size();
+        note(model, n,
+             hasIslands ? formatCount(std::ssize(whole.triangles) - std::ssize(main.triangles)) +
+                              " triangles of small pieces left out"
+                        : "vertices at the same place merged");
+        mesh = std::move(main);
+    } else if (mesh.points.size() < vertices) {
+        note(model, n, "unused vertices left out");
+    }
+    if (findSelfIntersections(mesh, {.maxPairs = 0}).pairCount > 0) return Need::NewSolid;
+    if (enclosedVolume(mesh) < 0) {
+        flipOrientation(mesh);
+        note(model, n, "was inside out and has been turned");
+    }
+    for (const Check& check : askOfSurface(mesh)) {
+        if (!check.breaksProfile() || check.key == "plausibleSize") continue;
+        note(model, n, std::string(check.name) + ": " + check.finding + "; remeshed");
+        return Need::NewTriangles;
+    }
+    return Need::Nothing;
+}
+
+/// In metres nothing else that can be said of a surface makes sense.
+void findWrongSizes(const std::vector<TriangleMesh>& surfaces, BemModel& model) {
+    for (std::size_t n = 0; n < surfaces.size(); ++n) {
+        for (const Check& check : askOfSurface(surfaces[n])) {
+            if (check.key != "plausibleSize" || !check.breaksProfile()) continue;
+            model.findings.push_back({bemSurfaceName(n, surfaces.size()) + ": " +
+                                          std::string(check.name) + ": " + check.finding,
+                                      surfaces[n].points[surfaces[n].triangles[0][0]]});
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<TriangleMesh> mendSurfaces(std::vector<TriangleMesh> surfaces, BemModel& model,
+                                       const BemHooks& hooks) {
+    std::vector<Need> needs;
+    hooks.stage("check", [&] {
+        for (std::size_t n = 0; n < surfaces.size(); ++n) {
+            needs.push_back(tidied(n, surfaces[n], model));
+        }
+        findWrongSizes(surfaces, model);
+    });
+    model.surfaces.resize(surfaces.size());
+    if (!model.hasModel()) return surfaces;
+    if (std::find(needs.begin(), needs.end(), Need::NewSolid) == needs.end()) {
+        for (std::size_t n = 0; n < surfaces.size(); ++n) {
+            if (needs[n] != Need::NewTriangles) continue;
+            model.surfaces[n].denseTriangles = std::ssize(surfaces[n].triangles);
+            constexpr std::int64_t kLeast = 42, kMost = 10'000;  // what MNE can work with
+            model.surfaces[n].ownVertices =
+                std::clamp(std::ssize(surfaces[n].points), kLeast, kMost);
+        }
+        return surfaces;
+    }
+    for (std::size_t n = 0; n < surfaces.size(); ++n) {
+        if (needs[n] != Need::NewSolid) continue;
+        note(model, n,
+             "is not one closed surface of genus 0 that does not cross itself: all are "
+             "made anew from the solids that they bound");
+    }
+    model.surfaces.clear();
+    BoundaryOptions boundaries = model.options.boundaries;
+    boundaries.progress = hooks.progress;
+    HeadBoundaries mended;
+    hooks.stage("boundaries", [&] { mended = boundariesFromSurfaces(surfaces, boundaries); });
+    return extractSurfaces(mended, model, hooks);
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,235 @@
+#include "adaptiso/HeadPipeline/BemReport.h"
+
+#include <algorithm>
+#include <array>
+
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/SurfacePipeline/ImageFacts.h"
+
+namespace adaptiso {
+namespace {
+
+std::string pairName(std::size_t inner, std::size_t count) {
+    return bemSurfaceName(inner, count) + " in " + bemSurfaceName(inner + 1, count);
+}
+
+void tellVerdict(const BemModel& model, Report& report) {
+    const std::size_t count = model.options.surfaceCount();
+    const std::string layers = count == 1   ? "one layer"
+                               : count == 3 ? "three layers"
+                                            : "four layers";
+    report.title = "Head model of " + layers;
+    if (model.hasModel()) {
+        report.verdict = ReportVerdict::Passed;
+        report.headline =
+            "All " + formatCount(std::ssize(model.checks)) +
+            " checks hold: every surface is closed, in one piece, of genus 0 and does "
+            "not cross itself" +
+            (model.gaps.empty() ? "."
+                                : "; they lie in each other with the gaps asked "
+                                  "for.");
+        const std::int64_t notes = notedCount(model.plausibility);
+        if (notes > 0) {
+            report.headline += " " + formatCount(notes) +
+                               (notes == 1 ? " thing is" : " things are") +
+                               " unusual of a head model: worth a look.";
+        }
+    } else {
+        report.verdict = ReportVerdict::Failed;
+        report.headline = "No model could be guaranteed: " + model.failureText();
+    }
+}
+
+std::string fileText(const BemInput& input) {
+    return input.file.empty() ? input.format : input.file + " (" + input.format + ")";
+}
+
+void tellInputs(const BemModel& model, Report& report) {
+    for (const BemInput& input : model.inputs) {
+        report.inputs.push_back({input.role, fileText(input)});
+    }
+    if (!model.image) return;
+    const std::vector<ReportFact> facts = imageFacts("", "", *model.image);
+    report.inputs.insert(report.inputs.end(), facts.begin() + 1, facts.end());
+}
+
+void tellOptions(const BemModel& model, Report& report) {
+    const BemModelOptions& options = model.options;
+    const BoundaryOptions& head = options.boundaries;
+    std::string triangles = model.source == "surfaces"
+                                ? "as the surfaces came, where they could stay"
+                            : head.withBrain ? "by the layers' thickness, 10,000 vertices at most"
+                                             : "2,562 vertices a surface (default)";
+    if (options.vertices.size() == 1) {
+        triangles = formatCount(options.vertices.front()) + " vertices a surface";
+    } else if (!options.vertices.empty()) {
+        triangles.clear();
+        for (const std::int64_t count : options.vertices) {
+            triangles += (triangles.empty() ? "" : ", ") + formatCount(count);
+        }
+        triangles += " vertices";
+    }
+    if (options.edgeLengthMm) {
+        triangles = "edges of " + formatNumber(options.edgeLengthMm->minimumMm) + " to " +
+                    formatNumber(options.edgeLengthMm->maximumMm) + " mm";
+    }
+    report.options = {{"Made from", model.source}, {"Triangles", triangles}};
+    if (options.surfaceCount() > 1) {
+        report.options.push_back(
+            {"Skull, scalp at least",
+             formatNumber(head.minSkullMm) + " mm, " + formatNumber(head.minScalpMm) + " mm"});
+    }
+    if (head.withBrain) {
+        report.options.push_back({"CSF at least", formatNumber(head.minCsfMm) + " mm"});
+    }
+    report.options.push_back({"Smoothing", formatNumber(head.smoothingMm) + " mm"});
+    const ConductivityModel& sigma = options.conductivities;
+    report.options.push_back(
+        {"Conductivity", "brain " + formatNumber(sigma.brain) +
+                             (head.withBrain ? ", CSF " + formatNumber(sigma.csf) : "") +
+                             ", skull " + formatNumber(sigma.skull) + ", scalp " +
+                             formatNumber(sigma.scalp) + " S/m"});
+    report.options.push_back(
+        {"FreeSurfer's files in", model.tkRasVolume ? "tkRAS mm" : "scanner RAS mm"});
+}
+
+/// "inner_skull: one closed surface of genus 0" is told in two columns.
+void tellChecks(const BemModel& model, Report& report) {
+    for (const BemCheck& check : model.checks) {
+        const std::size_t colon = check.name.find(": ");
+        report.checks.push_back(
+            {check.name.substr(0, colon),
+             colon == std::string::npos ? check.name : check.name.substr(colon + 2),
+             check.isPassed ? ReportOutcome::Passed : ReportOutcome::Failed, check.detail});
+    }
+}
+
+void tellSpots(const BemModel& model, Report& report) {
+    for (const Finding& finding : model.findings) {
+        report.spots.push_back({finding.what, finding.pointMm});
+    }
+    for (std::size_t n = 0; n < model.gaps.size(); ++n) {
+        const NestedGap& gap = model.gaps[n];
+        report.spots.push_back({"smallest gap, " + formatFixed(gap.mm, 2) + " mm, of " +
+                                    pairName(n, model.meshes.size()),
+                                0.5 * (gap.innerPointMm + gap.outerPointMm), false});
+    }
+}
+
+ReportTable surfaceTable(const BemModel& model) {
+    ReportTable table{"Surfaces",
+                      {"Surface", "Vertices", "Triangles", "Area, cm²", "Volume, cm³", "Edges, mm",
+                       "Smallest angle", "From the dense surface, mm (mean, most)",
+                       "Moved to nest, mm", "Seen in the image"},
+                      {}};
+    for (std::size_t n = 0; n < model.surfaces.size(); ++n) {
+        const BemSurface& surface = model.surfaces[n];
+        const auto& remesh = surface.remesh;
+        table.rows.push_back(
+            {bemSurfaceName(n, model.meshes.size()), formatCount(surface.topology.vertices),
+             formatCount(surface.topology.triangles), formatRounded(surface.areaMm2 / 100),
+             formatRounded(surface.volumeMm3 / 1000),
+             formatFixed(surface.shape.edgeMm.minimum, 1) + " to " +
+                 formatFixed(surface.shape.edgeMm.maximum, 1),
+             formatFixed(surface.shape.minAngleDeg.minimum, 1) + "°",
+             remesh ? formatFixed(remesh->meanVertexDistanceMm, 2) + ", " +
+                          formatFixed(remesh->maximumVertexDistanceMm, 2)
+                    : "as it came",
+             surface.move.movedVertices > 0 ? "up to " + formatFixed(surface.move.maximumMm, 2)
+                                            : "–",
+             surface.seen ? formatRounded(100 * surface.seen->share) + " % of the area" : "–"});
+    }
+    return table;
+}
+
+ReportTable fileTable(const std::vector<std::pair<std::string, std::uintmax_t>>& files) {
+    ReportTable table{"Files written", {"File", "Bytes"}, {}};
+    for (const auto& [name, bytes] : files) {
+        table.rows.push_back({name, formatCount(static_cast<long long>(bytes))});
+    }
+    return table;
+}
+
+/// A small octahedron at every electrode and landmark.
+TriangleMesh electrodeMarks(const std::vector<NamedPoint>& points) {
+    constexpr double kRadiusMm = 3;
+    constexpr std::array<Triangle, 8> kFaces{
+        {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+    TriangleMesh marks;
+    for (const NamedPoint& point : points) {
+        const auto first = static_cast<VertexId>(marks.points.size());
+        for (int corner = 0; corner < 6; ++corner) {
+            Vec3 at = point.point;
+            at[corner / 2] += corner % 2 == 0 ? kRadiusMm : -kRadiusMm;
+            marks.points.push_back(at);
+        }
+        for (const Triangle& t : kFaces) {
+            marks.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        }
+    }
+    return marks;
+}
+
+void tellElectrodes(const BemModel& model, Report& report) {
+    if (!model.electrodes) return;
+    const BemElectrodes& placed = *model.electrodes;
+    const std::vector<NamedPoint> all = placed.all();
+    if (all.empty()) return;
+    ReportTable table{"Electrodes and landmarks", {"Name", "x, mm", "y, mm", "z, mm"}, {}};
+    for (const NamedPoint& p : all) {
+        table.rows.push_back({p.name, formatFixed(-p.point.x, 1), formatFixed(-p.point.y, 1),
+                              formatFixed(p.point.z, 1)});
+    }
+    report.tables.push_back(std::move(table));
+    if (placed.landmarks) {
+        const Landmarks& l = *placed.landmarks;
+        report.options.push_back(
+            {"Nasion and ears",
+             l.areGuessed() ? "guessed, to " + formatShort(l.nasionUncertaintyMm) + " mm and " +
+                                  formatShort(l.earUncertaintyMm) + " mm"
+             : placed.landmarkOrigin == "file" ? "as the electrodes' file has them"
+                                               : "as given"});
+    }
+    report.surfaces.push_back({"electrodes and landmarks", electrodeMarks(all)});
+}
+
+}  // namespace
+
+Report bemReport(const BemModel& model,
+                 const std::vector<std::pair<std::string, std::uintmax_t>>& files) {
+    Report report;
+    tellVerdict(model, report);
+    tellInputs(model, report);
+    tellOptions(model, report);
+    tellChecks(model, report);
+    tellSpots(model, report);
+    addNotes(model.plausibility, report);
+    if (!model.checks.empty()) report.tables.push_back(surfaceTable(model));
+    if (!files.empty()) report.tables.push_back(fileTable(files));
+    report.warnings = linesOf(model.warnings);
+    report.notes = model.notes;
+    if (!model.hasModel() && !model.meshes.empty()) {
+        report.notes.push_back(
+            "The surfaces shown are those that the model was tried from; none was written.");
+    }
+    for (std::size_t n = 0; n < model.meshes.size(); ++n) {
+        report.surfaces.push_back({bemSurfaceName(n, model.meshes.size()), model.meshes[n]});
+        if (n < model.surfaces.size() && model.surfaces[n].seen) {
+            report.surfaces.back().valuesMm = model.surfaces[n].seen->distanceMm;
+        }
+        report.surfaces.back().isWithinSkull =
+            headSurface(n, model.meshes.size()) <= HeadSurface::InnerSkull &&
+            model.source != "surfaces";
+    }
+    if (!model.seenMm.empty() && model.hasModel()) {
+        report.notes.push_back(
+            "Colours: how far a surface lies from the nearest place where the image shows it, up "
+            "to " +
+            formatShort(kFarFromSeenMm) + " mm; beyond " + formatShort(kSeenWithinMm) +
+            " mm it is a guess (closed, filled, cut, or as thick as usual).");
+    }
+    tellElectrodes(model, report);
+    return report;
+}
+
+}  // namespace adaptiso

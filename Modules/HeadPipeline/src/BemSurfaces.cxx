@@ -1,0 +1,223 @@
+#include "adaptiso/HeadPipeline/BemSurfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/HeadPipeline/BemChecks.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr std::int64_t kDefaultVertices = 2562;
+constexpr std::int64_t kMostVertices = 200'000;  // no solver takes as many
+constexpr double kFitMm = 0.5;
+/// Files keep floats: a gap must not fall short by their rounding (3e-5 mm at 500 mm).
+constexpr double kRoundingMm = 1e-4;
+
+/// Of four surfaces the thinnest layer, the CSF, decides how short edges are: adaptive lengths,
+/// scaled until the whole model has no more vertices than solvers take. What flat triangles do to
+/// the layers' thickness cancels in part where surfaces are alike: of limits tried on spheres 4 to
+/// 5 mm lost at no eccentricity, 4 to 8 mm at 0.9 (HeadModel.md).
+constexpr EdgeLengthRange kFourLayerEdgesMm{4, 5};
+constexpr std::int64_t kManyVertices = 10'000;  // MNE warns of more
+
+bool choosesVertices(const BemModel& model) {
+    return model.options.boundaries.withBrain && model.options.vertices.empty() &&
+           !model.options.edgeLengthMm;
+}
+
+RemeshOptions remeshOptions(const BemModel& model, const std::vector<TriangleMesh>& dense,
+                            std::size_t n) {
+    const BemModelOptions& options = model.options;
+    RemeshOptions remesh;
+    // what is left of the voxels' stairs after smoothing; ready surfaces are taken at their word
+    if (model.source != "surfaces") remesh.fitMm = kFitMm;
+    remesh.edgeLengthMm = options.edgeLengthMm;
+    if (choosesVertices(model)) remesh.edgeLengthMm = kFourLayerEdgesMm;
+    const std::int64_t usual = model.surfaces[n].ownVertices.value_or(kDefaultVertices);
+    remesh.vertices = options.verticesOf(n).value_or(options.edgeLengthMm ? 0 : usual);
+    if (n > 0) remesh.neighbours.push_back(&dense[n - 1]);
+    if (n + 1 < dense.size()) remesh.neighbours.push_back(&dense[n + 1]);
+    return remesh;
+}
+
+/// Edges in a wrong unit ask for billions of triangles. \throws InvalidInput
+void requireFewVertices(const TriangleMesh& mesh, const BemModel& model, std::size_t n) {
+    const BemModelOptions& options = model.options;
+    if (!options.edgeLengthMm || options.verticesOf(n)) return;
+    // equilateral triangles, two a vertex, with the longest edges allowed
+    const double longestMm = options.edgeLengthMm->maximumMm;
+    const double least = surfaceArea(mesh) / (std::sqrt(3.0) / 2 * longestMm * longestMm);
+    if (least <= kMostVertices) return;
+    throw InvalidInput("edges of at most " + formatShort(longestMm) + " mm make more than " +
+                       formatCount(kMostVertices) + " vertices of " +
+                       bemSurfaceName(n, model.surfaces.size()) + "; they must be longer");
+}
+
+/// How many vertices each surface gets: by the lengths, or all with the same share of the most.
+/// \return  the lengths, one for each vertex of each surface
+std::vector<std::vector<double>> chooseVertices(const std::vector<TriangleMesh>& dense,
+                                                BemModel& model) {
+    std::vector<std::vector<double>> edgesMm;
+    std::vector<std::int64_t> wanted;
+    for (std::size_t n = 0; n < dense.size(); ++n) {
+        edgesMm.push_back(wantedEdgesMm(dense[n], remeshOptions(model, dense, n)));
+        wanted.push_back(verticesForEdges(dense[n], edgesMm[n]));
+    }
+    const std::int64_t most = model.options.mostVertices;
+    const std::int64_t all = std::accumulate(wanted.begin(), wanted.end(), std::int64_t{0});
+    if (all > most) {
+        model.notes.push_back(
+            "edges as long as the layers beside them are thick (" +
+            formatShort(kFourLayerEdgesMm.minimumMm) + " to " +
+            formatShort(kFourLayerEdgesMm.maximumMm) + " mm) take " + formatCount(all) +
+            " vertices; all edges are " +
+            formatFixed(std::sqrt(static_cast<double>(all) / static_cast<double>(most)), 2) +
+            " times as long, for " + formatCount(most));
+    }
+    for (std::size_t n = 0; n < wanted.size(); ++n) {
+        if (all > most) wanted[n] = std::max<std::int64_t>(42, wanted[n] * most / all);
+        model.surfaces[n].ownVertices = wanted[n];
+    }
+    return edgesMm;
+}
+
+/// Ready surfaces keep their triangles unless others are asked for.
+bool staysAsItCame(const BemSurface& surface, const BemModelOptions& options) {
+    return surface.denseTriangles == 0 && options.vertices.empty() && !options.edgeLengthMm;
+}
+
+/// Near-equilateral triangles. What can't be had becomes a finding.
+std::vector<TriangleMesh> remeshed(const std::vector<TriangleMesh>& dense, BemModel& model,
+                                   const BemHooks& hooks) {
+    const bool comesDense = std::all_of(
+        model.surfaces.begin(), model.surfaces.end(),
+        [&](const BemSurface& surface) { return !staysAsItCame(surface, model.options); });
+    std::vector<std::vector<double>> edgesMm(dense.size());
+    if (choosesVertices(model) && comesDense) {
+        hooks.stage("remesh", [&] { edgesMm = chooseVertices(dense, model); });
+    }
+    std::vector<TriangleMesh> surfaces;
+    for (std::size_t n = 0; n < dense.size(); ++n) {
+        if (staysAsItCame(model.surfaces[n], model.options)) {
+            surfaces.push_back(dense[n]);
+            continue;
+        }
+        hooks.stage("remesh", [&] {
+            if (hooks.progress) {
+                hooks.progress("remesh",
+                               static_cast<double>(n) / static_cast<double>(dense.size()));
+            }
+            requireFewVertices(dense[n], model, n);
+            RemeshOptions options = remeshOptions(model, dense, n);
+            options.wantedEdgesMm = std::move(edgesMm[n]);
+            Remeshed result = remeshForBem(dense[n], options);
+            model.surfaces[n].remesh = result.statistics;
+            for (Finding& finding : result.findings) {
+                finding.what = bemSurfaceName(n, model.surfaces.size()) + ": " + finding.what;
+                model.findings.push_back(std::move(finding));
+            }
+            surfaces.push_back(std::move(result.mesh));
+        });
+    }
+    return surfaces;
+}
+
+/// With the gaps asked for; empty when that can't be had.
+std::vector<TriangleMesh> nested(const std::vector<TriangleMesh>& surfaces, BemModel& model,
+                                 const BemHooks& hooks) {
+    NestOptions nest;
+    // its distance to the sources is what potentials depend on most; the brain gives way
+    nest.fixedSurface = model.options.boundaries.withBrain ? 1 : 0;
+    nest.minGapsMm.clear();
+    for (const double gap : model.options.minGapsMm()) nest.minGapsMm.push_back(gap + kRoundingMm);
+    NestResult result;
+    hooks.stage("nest", [&] { result = nestSurfaces(surfaces, nest); });
+    for (std::size_t n = 0; n < result.moves.size(); ++n) model.surfaces[n].move = result.moves[n];
+    model.findings = result.findings;
+    return std::move(result.surfaces);
+}
+
+/// Solvers take the square of the number of vertices in memory, the cube in time.
+void warnOfMany(BemModel& model) {
+    std::int64_t vertices = 0;
+    for (const TriangleMesh& surface : model.meshes) vertices += std::ssize(surface.points);
+    if (vertices <= kManyVertices) return;
+    model.warnings.push_back(
+        {"many-vertices",
+         formatCount(vertices) + " vertices in all; MNE warns above 10,000; ask for fewer"});
+}
+
+/// The skin as it was found, and the model's with few triangles.
+HeadShape headShapeOf(TriangleMesh dense, BemModel& model) {
+    constexpr std::int64_t kVertices = 1252;  // 2,500 triangles, as MNE's own sparse heads have
+    HeadShape shape{std::move(dense), model.meshes.back()};
+    shape.dense.normals.clear();
+    if (std::ssize(shape.sparse.points) <= kVertices) return shape;
+    RemeshOptions remesh;
+    remesh.vertices = kVertices;
+    Remeshed sparse = remeshForBem(shape.sparse, remesh);
+    if (sparse.findings.empty()) {
+        shape.sparse = std::move(sparse.mesh);
+    } else {
+        model.notes.push_back("the sparse head has the triangles of " +
+                              bemSurfaceName(model.meshes.size() - 1, model.meshes.size()) + ": " +
+                              sparse.findings.front().what);
+    }
+    return shape;
+}
+
+}  // namespace
+
+std::vector<TriangleMesh> extractSurfaces(const HeadBoundaries& boundaries, BemModel& model,
+                                          const BemHooks& hooks) {
+    model.notes.insert(model.notes.end(), boundaries.notes.begin(), boundaries.notes.end());
+    model.warnings.insert(model.warnings.end(), boundaries.warnings.begin(),
+                          boundaries.warnings.end());
+    std::vector<TriangleMesh> surfaces;
+    model.seenMm = boundaries.seenMm;
+    for (const FractionField& solid : boundaries.solids) {
+        hooks.stage("extract", [&] {
+            const SpanSpaceIndex index = SpanSpaceIndex::build(solid.view(), {});
+            ExtractionOptions extract;
+            extract.isovalue = kFractionIsovalue;
+            extract.method = Method::MarchingCubes;
+            extract.computeNormals = false;
+            surfaces.push_back(extractSurface(solid.view(), index, extract).mesh);
+        });
+        BemSurface surface;
+        surface.denseTriangles = std::ssize(surfaces.back().triangles);
+        model.surfaces.push_back(surface);
+    }
+    return surfaces;
+}
+
+void finishBemModel(std::vector<TriangleMesh> dense, BemModel& model, const BemHooks& hooks) {
+    if (model.hasModel()) {
+        std::vector<TriangleMesh> surfaces = remeshed(dense, model, hooks);
+        if (model.hasModel() && surfaces.size() > 1) surfaces = nested(surfaces, model, hooks);
+        if (model.hasModel()) model.meshes = std::move(surfaces);
+    }
+    if (model.hasModel()) checkModel(model, hooks);
+    if (model.hasModel()) askWhatIsUsual(model, hooks);
+    for (std::size_t n = 0; model.hasModel() && n < model.seenMm.size(); ++n) {
+        model.surfaces[n].seen = seenOf(model.meshes[n], model.seenMm[n]);
+        model.notes.push_back(
+            bemSurfaceName(n, model.meshes.size()) + ": " +
+            formatRounded(100 * model.surfaces[n].seen->share) +
+            " % of its area was seen in the image, the rest follows from what is near");
+    }
+    if (model.hasModel() && model.options.wantsHeadShape && model.meshes.size() > 1) {
+        hooks.stage("remesh",
+                    [&] { model.headShape = headShapeOf(std::move(dense.back()), model); });
+    }
+    warnOfMany(model);
+    if (model.meshes.empty()) model.meshes = std::move(dense);
+}
+
+}  // namespace adaptiso

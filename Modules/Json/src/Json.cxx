@@ -1,0 +1,34 @@
+#include "adaptiso/Json/Json.h"
+
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+
+std::string_view frameWord(CoordinateFrame frame) {
+    switch (frame) {
+        case CoordinateFrame::Ras:
+            return "ras";
+        case CoordinateFrame::Lps:
+            return "lps";
+        case CoordinateFrame::TkRas:
+            return "tkras";
+        case CoordinateFrame::Voxel:
+            return "voxel";
+    }
+    throw InternalError("frameWord: unknown coordinate frame");
+}
+
+Json geometryJson(const ImageGeometry& geometry) {
+    Json directions = Json::array();  // rows, as ITK and NRRD users know them
+    Mat3 direction;
+    for (int axis = 0; axis < 3; ++axis) {
+        direction.column[axis] = normalized(geometry.indexToPhysical.column[axis]);
+    }
+    for (const Vec3& row : transpose(direction).column) directions.push_back(vector(row));
+    return {{"sizeVoxels", geometry.size},
+            {"spacingMm", vector(geometry.spacingMm())},
+            {"originMm", vector(geometry.originMm)},
+            {"direction", directions}};
+}
+
+}  // namespace adaptiso

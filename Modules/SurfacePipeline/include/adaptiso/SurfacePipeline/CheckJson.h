@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "adaptiso/Json/Json.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshQuality/Nesting.h"
+#include "adaptiso/SurfacePipeline/Checks.h"
+#include "adaptiso/SurfacePipeline/SurfaceFacts.h"
+
+namespace adaptiso {
+
+/// Parts of the report adaptiso-check/1, as adaptiso-check's README.md
+/// describes it, for the program and for those who ask the same without it. A number that is
+/// not known, or not finite, is null.
+
+/// passed, failed, checks
+Json verdictJson(const std::vector<Check>& checks);
+
+/// An entry of adaptiso-check's `surfaces`: from vertices to shape.
+Json factsJson(const SurfaceFacts& facts);
+
+/// An entry of adaptiso-check's `nesting.pairs`, from passed on.
+/// \param toFrame  takes points of the report to the frame to tell them in
+Json nestingJson(const NestingReport& report, const std::vector<Check>& checks,
+                 const AffineTransform& toFrame);
+
+}  // namespace adaptiso

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshQuality/Nesting.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
+#include "adaptiso/SurfacePipeline/SurfaceFacts.h"
+
+namespace adaptiso {
+
+/// What a surface is for, which says what is required of it.
+enum class Profile {
+    Bem,    ///< a boundary of a head model
+    Print,  ///< a solid to print or to compute with
+    View    ///< to look at
+};
+
+/// "bem", "print", "view"
+std::string_view toString(Profile profile);
+
+/// What sizes are believed of a surface for this use.
+SizeLimits sizeLimitsOf(Profile profile);
+
+/// What is asked of surfaces.
+struct CheckRules {
+    bool isNested = false;              ///< they lie in each other, the innermost first
+    std::optional<Profile> profile;     ///< none: Bem when nested, else Print
+    std::optional<double> minGapMm;     ///< none: kDefaultMinGapMm, required of Bem only
+    std::optional<double> minAngleDeg;  ///< none: kDefaultMinAngleDeg, required of Bem only
+    std::optional<double> maxOffMm;     ///< none: half a voxel on the mean
+    std::int64_t maxPairs = 1000;       ///< of triangles that cross, to list
+
+    static constexpr double kDefaultMinGapMm = 0.5;   // thinner than any bone of the skull
+    static constexpr double kDefaultMinAngleDeg = 1;  // slivers that only bad remeshing leaves
+
+    Profile profileInUse() const {
+        return profile.value_or(isNested ? Profile::Bem : Profile::Print);
+    }
+};
+
+enum class Outcome {
+    Passed,
+    Failed,
+    Undecided  ///< makes no sense of this surface: the genus of an open one
+};
+
+/// One question that was asked of a surface, or of two, and the answer.
+struct Check {
+    std::string_view key;   ///< of the report: "selfIntersections"
+    std::string_view name;  ///< for people: "no self-intersection"
+    bool isRequired = false;
+    Outcome outcome = Outcome::Passed;
+    std::string finding;  ///< what was found, and where; may be empty when passed
+
+    bool hasFailed() const { return outcome == Outcome::Failed; }
+    bool breaksProfile() const { return isRequired && hasFailed(); }
+};
+
+/// None that is required has failed.
+bool allHold(const std::vector<Check>& checks);
+
+/// The questions asked of one surface, in the order of the table in adaptiso-check's README.md.
+std::vector<Check> judgeSurface(const SurfaceFacts& facts, const CheckRules& rules);
+
+/// Whether the surface lies on the isosurface.
+/// \param deviation  none: it has no area to measure
+Check judgeDeviation(const std::optional<DistanceStatistics>& deviation, double voxelMm,
+                     const CheckRules& rules);
+
+/// The questions asked of two surfaces of which one should lie in the other.
+/// \param inner, outer  their names
+/// \param toFrame       takes points of the report to the frame to tell them in
+std::vector<Check> judgeNesting(const NestingReport& report, const std::string& inner,
+                                const std::string& outer, const AffineTransform& toFrame,
+                                const CheckRules& rules);
+
+}  // namespace adaptiso

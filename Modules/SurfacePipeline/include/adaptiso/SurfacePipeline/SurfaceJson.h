@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
+#include "adaptiso/Extraction/Components.h"
+#include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/Json/Json.h"
+#include "adaptiso/SurfacePipeline/FinishSurface.h"
+
+namespace adaptiso {
+
+/// Parts of the report adaptiso-mesh/1, as adaptiso-mesh's README.md describes it, for the program
+/// and for those who make surfaces without it. A number that is not known, or not finite, is null.
+
+/// `input` from the format on: format, geometryJson(), pixelType, minimum, maximum, warnings.
+Json imageJson(const std::string& format, const ImageGeometry& geometry, PixelType pixelType,
+               const ValueRange& range, const std::vector<Warning>& warnings);
+
+/// `options` as far as they concern the surface.
+Json surfaceOptionsJson(const ExtractionOptions& extraction, const IndexOptions& index,
+                        const ComponentSelection& selection);
+
+/// `adaptive` of an entry of `surfaces`; all null for other methods.
+Json workJson(const std::optional<AdaptiveWork>& work);
+
+/// An entry of `surfaces`, without its `output`.
+Json surfaceJson(const SurfaceRecord& surface, Method method, int blockSize);
+
+}  // namespace adaptiso

@@ -1,0 +1,225 @@
+#include "adaptiso/SurfacePipeline/CheckJson.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <string_view>
+
+#include "adaptiso/Core/Errors.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr std::size_t kMaxComponents = 100;
+
+std::string_view outcomeWord(Outcome outcome) {
+    switch (outcome) {
+        case Outcome::Passed:
+            return "passed";
+        case Outcome::Failed:
+            return "failed";
+        case Outcome::Undecided:
+            return "undecided";
+    }
+    throw InternalError("outcomeWord: unknown outcome");
+}
+
+Json checksJson(const std::vector<Check>& checks) {
+    Json list = Json::array();
+    for (const Check& check : checks) {
+        list.push_back({{"name", check.key},
+                        {"required", check.isRequired},
+                        {"outcome", outcomeWord(check.outcome)},
+                        {"finding", check.finding}});
+    }
+    return list;
+}
+
+/// Names of the checks that are required and failed.
+Json failedJson(const std::vector<Check>& checks) {
+    Json list = Json::array();
+    for (const Check& check : checks) {
+        if (check.breaksProfile()) list.push_back(check.key);
+    }
+    return list;
+}
+
+/// "boundary edge" -> "boundaryEdges"
+std::string defectKey(TopologyDefect defect) {
+    std::string key;
+    bool startsWord = false;
+    for (const char c : toString(defect)) {
+        if (c == ' ' || c == '-') {
+            startsWord = true;
+            continue;
+        }
+        key += startsWord && c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+        startsWord = false;
+    }
+    return key;
+}
+
+Json defectsJson(const SurfaceFacts& facts) {
+    Json counts = Json::object();
+    for (int n = 0; n < kTopologyDefectCount; ++n) {
+        const auto defect = static_cast<TopologyDefect>(n);
+        if (defect == TopologyDefect::DuplicateTriangle) continue;  // by place, below
+        counts[defectKey(defect)] = facts.topology.count(defect);
+    }
+    counts["repeatedIndexTriangle"] = facts.repeatedIndexTriangles;
+    counts["duplicateTriangle"] = facts.duplicates.triangleCount;
+    counts["duplicateVertex"] = facts.duplicates.vertexCount;
+    return counts;
+}
+
+Json examplesJson(const SurfaceFacts& facts) {
+    Json list = Json::array();
+    for (const TopologyExample& example : facts.topology.examples) {
+        if (example.defect == TopologyDefect::DuplicateTriangle) continue;
+        Json vertices = Json::array();
+        for (const VertexId v : example.vertices) {
+            if (v != -1) vertices.push_back(v);
+        }
+        list.push_back({{"defect", defectKey(example.defect)},
+                        {"triangle", example.triangle < 0 ? Json(nullptr) : Json(example.triangle)},
+                        {"vertices", vertices},
+                        {"pointMm", vector(example.pointMm)}});
+    }
+    for (const std::int64_t triangle : facts.duplicates.triangles) {
+        list.push_back({{"defect", "duplicateTriangle"},
+                        {"triangle", triangle},
+                        {"vertices", Json::array()},
+                        {"pointMm", nullptr}});
+    }
+    for (const VertexId vertex : facts.duplicates.vertices) {
+        list.push_back({{"defect", "duplicateVertex"},
+                        {"triangle", nullptr},
+                        {"vertices", {vertex}},
+                        {"pointMm", nullptr}});
+    }
+    return list;
+}
+
+/// Those with the most triangles, in the mesh's order.
+Json componentsJson(const SurfaceFacts& facts) {
+    const auto& components = facts.topology.components;
+    std::vector<std::size_t> order(components.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) {
+        return components[l].triangles > components[r].triangles;
+    });
+    if (order.size() > kMaxComponents) order.resize(kMaxComponents);
+    std::sort(order.begin(), order.end());
+    Json list = Json::array();
+    for (const std::size_t n : order) {
+        const SurfaceComponent& component = components[n];
+        list.push_back({{"component", n},
+                        {"firstVertex", component.firstVertex},
+                        {"vertices", component.vertices},
+                        {"triangles", component.triangles},
+                        {"closed", component.isClosed()},
+                        {"manifold", component.isManifold},
+                        {"oriented", component.isOriented},
+                        {"genus", orNull(component.genus())},
+                        {"areaMm2", number(component.areaMm2)},
+                        {"signedVolumeMm3", component.isClosed() ? number(component.signedVolumeMm3)
+                                                                 : Json(nullptr)}});
+    }
+    return list;
+}
+
+Json pairsJson(std::int64_t count, const std::vector<TrianglePair>& pairs) {
+    return {{"pairCount", count}, {"pairs", pairs}};
+}
+
+Json spreadJson(const Spread& spread) {
+    const auto triangle = [](std::int64_t n) { return n < 0 ? Json(nullptr) : Json(n); };
+    return {{"minimum", number(spread.minimum)},
+            {"p1", number(spread.p1)},
+            {"p5", number(spread.p5)},
+            {"median", number(spread.median)},
+            {"mean", number(spread.mean)},
+            {"p99", number(spread.p99)},
+            {"maximum", number(spread.maximum)},
+            {"triangleOfMinimum", triangle(spread.triangleOfMinimum)},
+            {"triangleOfMaximum", triangle(spread.triangleOfMaximum)}};
+}
+
+std::string_view sizeWord(SizeVerdict verdict) {
+    switch (verdict) {
+        case SizeVerdict::Plausible:
+            return "plausible";
+        case SizeVerdict::TooSmall:
+            return "tooSmall";
+        case SizeVerdict::TooLarge:
+            return "tooLarge";
+        case SizeVerdict::Unknown:
+            return "unknown";
+    }
+    throw InternalError("sizeWord: unknown verdict");
+}
+
+Json sizeJson(const SizeReport& size) {
+    return {{"extentMm", vector(size.extentMm)},
+            {"verdict", sizeWord(size.verdict)},
+            {"guessedUnit", size.guess ? Json(toString(*size.guess)) : Json(nullptr)}};
+}
+
+Json gapJson(const NestingReport& report, const AffineTransform& toFrame) {
+    if (report.gap.triangleA < 0) return nullptr;
+    return {{"mm", number(report.gap.nearest.distanceMm)},
+            {"innerTriangle", report.gap.triangleA},
+            {"outerTriangle", report.gap.triangleB},
+            {"innerPointMm", vector(toFrame(report.gap.nearest.pointA))},
+            {"outerPointMm", vector(toFrame(report.gap.nearest.pointB))}};
+}
+
+}  // namespace
+
+Json verdictJson(const std::vector<Check>& checks) {
+    return {{"passed", allHold(checks)},
+            {"failed", failedJson(checks)},
+            {"checks", checksJson(checks)}};
+}
+
+Json factsJson(const SurfaceFacts& facts) {
+    const TopologyReport& topology = facts.topology;
+    return {
+        {"vertices", topology.vertices},
+        {"edges", topology.edges},
+        {"triangles", topology.triangles},
+        {"genus", orNull(topology.genus())},
+        {"areaMm2", number(facts.areaMm2)},
+        {"volumeMm3", facts.volumeMm3 ? number(*facts.volumeMm3) : Json(nullptr)},
+        {"size", sizeJson(facts.size)},
+        {"solidAngleShare", number(facts.solidAngle.share)},
+        {"defects", defectsJson(facts)},
+        {"examples", examplesJson(facts)},
+        {"componentCount", topology.components.size()},
+        {"components", componentsJson(facts)},
+        {"componentsInsideOut", orNull(facts.insideOut)},
+        {"selfIntersections", pairsJson(facts.intersections.pairCount, facts.intersections.pairs)},
+        {"shape",
+         {{"triangles", facts.shape.triangles},
+          {"minAngleDeg", spreadJson(facts.shape.minAngleDeg)},
+          {"aspectRatio", spreadJson(facts.shape.aspectRatio)},
+          {"edgeMm", spreadJson(facts.shape.edgeMm)}}}};
+}
+
+Json nestingJson(const NestingReport& report, const std::vector<Check>& checks,
+                 const AffineTransform& toFrame) {
+    Json json = verdictJson(checks);
+    json["relation"] = toString(report.relation);
+    json["crossings"] = pairsJson(report.crossingPairs, report.pairs);
+    json["innerVertices"] = report.innerVertices;
+    json["innerVerticesNotInside"] = report.innerVerticesNotInside;
+    json["firstNotInside"] =
+        report.firstNotInside < 0 ? Json(nullptr) : Json(report.firstNotInside);
+    json["farthestOutMm"] = number(report.farthestOutMm);
+    json["outerVertices"] = report.outerVertices;
+    json["outerVerticesInside"] = report.outerVerticesInside;
+    json["gap"] = gapJson(report, toFrame);
+    return json;
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,404 @@
+#include "adaptiso/SurfacePipeline/Checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
+
+namespace adaptiso {
+namespace {
+
+/// A question, and the profiles that need it answered with yes.
+struct Rule {
+    std::string_view key;
+    std::string_view name;
+    bool bem, print, view;
+
+    bool isRequiredBy(Profile profile) const {
+        switch (profile) {
+            case Profile::Bem:
+                return bem;
+            case Profile::Print:
+                return print;
+            case Profile::View:
+                return view;
+        }
+        throw InternalError("isRequiredBy: unknown profile");
+    }
+};
+
+// adaptiso-check's README.md and --help say the same in words.
+constexpr Rule kFinite{"finiteCoordinates", "finite coordinates", true, true, true};
+constexpr Rule kIndices{"indicesInRange", "indices in range", true, true, true};
+constexpr Rule kClosed{"closed", "closed", true, true, false};
+constexpr Rule kEdges{"manifoldEdges", "edges manifold", true, true, false};
+constexpr Rule kVertices{"manifoldVertices", "vertices manifold", true, true, false};
+constexpr Rule kOriented{"consistentOrientation", "orientation consistent", true, true, true};
+constexpr Rule kOutward{"outward", "facing outward", true, true, true};
+constexpr Rule kOneComponent{"oneComponent", "one component", true, false, false};
+constexpr Rule kGenus{"genusZero", "genus 0", true, false, false};
+constexpr Rule kDegenerate{"noDegenerateTriangles", "no degenerate triangle", true, true, false};
+constexpr Rule kDuplicateTriangles{"noDuplicateTriangles", "no duplicate triangle", true, true,
+                                   true};
+constexpr Rule kDuplicateVertices{"noDuplicateVertices", "no duplicate vertex", true, false, false};
+constexpr Rule kUnused{"noUnusedVertices", "no unused vertex", true, false, false};
+constexpr Rule kCrossings{"noSelfIntersections", "no self-intersection", true, true, false};
+constexpr Rule kMinAngle{"minAngle", "smallest angle", true, false, false};
+constexpr Rule kSize{"plausibleSize", "size plausible in mm", true, true, false};
+constexpr Rule kSolidAngle{"solidAngle", "MNE's solid angle", true, false, false};
+constexpr Rule kDeviation{"onIsosurface", "on the isosurface", true, true, true};
+constexpr Rule kNoCrossing{"noCrossing", "no crossing", true, true, true};
+constexpr Rule kNested{"strictlyNested", "strictly nested", true, true, true};
+constexpr Rule kMinGap{"minGap", "gap", true, false, false};
+
+std::string at(const Vec3& p) {
+    return formatFixed(p.x, 2) + ", " + formatFixed(p.y, 2) + ", " + formatFixed(p.z, 2);
+}
+
+/// "1 edge", "1,234 edges"
+std::string counted(std::int64_t count, const std::string& one, const std::string& many) {
+    return formatCount(count) + ' ' + (count == 1 ? one : many);
+}
+
+/// "triangle 3", "vertices 4, 5"
+std::string named(const TopologyExample& example) {
+    if (example.triangle >= 0) return "triangle " + std::to_string(example.triangle);
+    std::string text = example.vertices[1] < 0 ? "vertex " : "vertices ";
+    for (std::size_t n = 0; n < 3 && example.vertices[n] >= 0; ++n) {
+        text += (n > 0 ? ", " : "") + std::to_string(example.vertices[n]);
+    }
+    return text;
+}
+
+/// Asks the questions of one surface.
+class SurfaceJudge {
+public:
+    SurfaceJudge(const SurfaceFacts& facts, const CheckRules& rules)
+        : facts_(facts), rules_(rules) {}
+
+    std::vector<Check> judge() && {
+        judgeTopology();
+        judgePieces();
+        judgeTriangles();
+        judgeMeasures();
+        return std::move(checks_);
+    }
+
+private:
+    void add(const Rule& rule, Outcome outcome, std::string finding) {
+        checks_.push_back({rule.key, rule.name, rule.isRequiredBy(rules_.profileInUse()), outcome,
+                           std::move(finding)});
+    }
+    void add(const Rule& rule, bool holds, std::string finding) {
+        add(rule, holds ? Outcome::Passed : Outcome::Failed, std::move(finding));
+    }
+    /// Passes without a finding, or fails with one.
+    void addUnless(const Rule& rule, bool isBad, const std::string& finding) {
+        add(rule, !isBad, isBad ? finding : "");
+    }
+
+    std::string firstOf(TopologyDefect defect) const {
+        const auto& examples = facts_.topology.examples;
+        const auto found = std::find_if(examples.begin(), examples.end(),
+                                        [&](const auto& e) { return e.defect == defect; });
+        if (found == examples.end()) return "";
+        std::string text = "; first: " + named(*found);
+        const bool hasPlace =
+            std::isfinite(squaredNorm(found->pointMm)) && defect != TopologyDefect::IndexOutOfRange;
+        return hasPlace ? text + " at " + at(found->pointMm) : text;
+    }
+
+    void addDefect(const Rule& rule, TopologyDefect defect, const std::string& one,
+                   const std::string& many) {
+        const std::int64_t count = facts_.topology.count(defect);
+        addUnless(rule, count > 0, counted(count, one, many) + firstOf(defect));
+    }
+
+    void judgeTopology() {
+        addDefect(kFinite, TopologyDefect::NonFiniteVertex, "vertex is NaN or infinite",
+                  "vertices are NaN or infinite");
+        addDefect(kIndices, TopologyDefect::IndexOutOfRange,
+                  "triangle names a vertex that is not there",
+                  "triangles name vertices that are not there");
+        if (facts_.isSoup()) {
+            add(kClosed, false,
+                "a triangle soup: no two triangles share a vertex, " +
+                    counted(facts_.duplicates.vertexCount, "vertex repeats", "vertices repeat") +
+                    " the place of another; merge vertices at the same place");
+        } else {
+            addDefect(kClosed, TopologyDefect::BoundaryEdge, "boundary edge (a hole)",
+                      "boundary edges (a hole)");
+        }
+        addDefect(kEdges, TopologyDefect::NonManifoldEdge, "edge in more than two triangles",
+                  "edges in more than two triangles");
+        addDefect(kVertices, TopologyDefect::NonManifoldVertex,
+                  "vertex whose triangles are not one fan",
+                  "vertices whose triangles are not one fan");
+        addDefect(kOriented, TopologyDefect::InconsistentEdge,
+                  "edge whose triangles are wound opposite ways (flipped triangles)",
+                  "edges whose triangles are wound opposite ways (flipped triangles)");
+        judgeOutward();
+    }
+
+    void judgeOutward() {
+        if (!facts_.insideOut) {
+            return add(kOutward, Outcome::Undecided,
+                       "only a closed, manifold, oriented and finite surface has an outside");
+        }
+        const std::size_t pieces = facts_.topology.components.size(),
+                          wrong = facts_.insideOut->size();
+        if (pieces == 1) {
+            return addUnless(kOutward, wrong > 0,
+                             "inside out: all triangles are flipped, facing inward");
+        }
+        const auto count = static_cast<std::int64_t>(wrong);
+        addUnless(kOutward, wrong > 0,
+                  counted(count, "component is", "components are") + " inside out, of " +
+                      formatCount(static_cast<std::int64_t>(pieces)) + "; first: component " +
+                      (wrong > 0 ? std::to_string(facts_.insideOut->front()) : ""));
+    }
+
+    /// " of 1,280, 80, ... triangles", or nothing where there is no component.
+    std::string largestComponents() const {
+        constexpr std::size_t kShown = 5;
+        std::vector<std::int64_t> sizes;
+        for (const SurfaceComponent& component : facts_.topology.components) {
+            sizes.push_back(component.triangles);
+        }
+        std::sort(sizes.begin(), sizes.end(), std::greater<>());
+        std::string text;
+        for (std::size_t n = 0; n < std::min(kShown, sizes.size()); ++n) {
+            text += (n > 0 ? ", " : " of ") + formatCount(sizes[n]);
+        }
+        if (sizes.size() > kShown) text += ", ...";
+        return text.empty() ? text : text + " triangles";
+    }
+
+    void judgePieces() {
+        const std::int64_t components = std::ssize(facts_.topology.components);
+        addUnless(kOneComponent, components != 1,
+                  counted(components, "component", "components") + largestComponents());
+
+        const auto genus = facts_.topology.genus();
+        if (!genus) {
+            add(kGenus, Outcome::Undecided,
+                "only a closed, manifold and oriented surface has a genus");
+        } else {
+            addUnless(
+                kGenus, *genus != 0,
+                "genus " + std::to_string(*genus) + ": " + counted(*genus, "handle", "handles"));
+        }
+    }
+
+    void judgeTriangles() {
+        const TopologyReport& topology = facts_.topology;
+        const std::int64_t degenerate = topology.count(TopologyDefect::DegenerateTriangle);
+        const std::int64_t repeated = std::min(facts_.repeatedIndexTriangles, degenerate);
+        std::string kinds;
+        if (repeated > 0) kinds += counted(repeated, "names", "name") + " a vertex twice";
+        if (degenerate > repeated) {
+            kinds += (kinds.empty() ? "" : ", ") + counted(degenerate - repeated, "has", "have") +
+                     " zero area";
+        }
+        addUnless(kDegenerate, degenerate > 0,
+                  counted(degenerate, "degenerate triangle: ", "degenerate triangles: ") + kinds +
+                      firstOf(TopologyDefect::DegenerateTriangle));
+
+        const DuplicateReport& duplicates = facts_.duplicates;
+        addUnless(kDuplicateTriangles, duplicates.triangleCount > 0,
+                  counted(duplicates.triangleCount, "triangle lies", "triangles lie") +
+                      " on another" +
+                      (duplicates.triangles.empty()
+                           ? ""
+                           : "; first: triangle " + std::to_string(duplicates.triangles[0])));
+        addUnless(kDuplicateVertices, duplicates.vertexCount > 0,
+                  counted(duplicates.vertexCount, "vertex lies", "vertices lie") +
+                      " at the place of another" +
+                      (duplicates.vertices.empty()
+                           ? ""
+                           : "; first: vertex " + std::to_string(duplicates.vertices[0])));
+        addDefect(kUnused, TopologyDefect::UnusedVertex, "vertex that no triangle uses",
+                  "vertices that no triangle uses");
+
+        const SelfIntersections& crossings = facts_.intersections;
+        std::string where;
+        if (!crossings.pairs.empty()) {
+            const auto& [a, b] = crossings.pairs.front();
+            where = "; first: triangles " + std::to_string(a) + " and " + std::to_string(b) +
+                    " near " + at(facts_.firstCrossingMm);
+        }
+        addUnless(kCrossings, crossings.pairCount > 0,
+                  counted(crossings.pairCount, "pair", "pairs") + " of triangles cross" + where);
+    }
+
+    void judgeMeasures() {
+        judgeAngle();
+        judgeSizeInMm();
+        const double share = facts_.solidAngle.share;
+        addUnless(kSolidAngle, !facts_.solidAngle.isMet(),
+                  "the solid angle from the vertices' mean is " + formatFixed(share, 6) +
+                      " of the sphere, must be 1 to within 0.00001");
+    }
+
+    void judgeAngle() {
+        const Spread& angles = facts_.shape.minAngleDeg;
+        if (facts_.shape.triangles == 0) {
+            return add(kMinAngle, Outcome::Undecided, "there is no triangle to measure");
+        }
+        const double limit = rules_.minAngleDeg.value_or(CheckRules::kDefaultMinAngleDeg);
+        const bool holds = angles.minimum >= limit;
+        std::string finding = formatFixed(angles.minimum, 2) + " degrees";
+        if (!holds) {
+            finding += " in triangle " + std::to_string(angles.triangleOfMinimum) +
+                       ", must be at least " + formatNumber(limit);
+        }
+        add(kMinAngle, holds, finding);
+        checks_.back().isRequired |= rules_.minAngleDeg.has_value();
+    }
+
+    void judgeSizeInMm() {
+        const SizeReport& size = facts_.size;
+        if (size.verdict == SizeVerdict::Unknown) {
+            return add(kSize, Outcome::Undecided, "there is no triangle to measure");
+        }
+        const auto mm = [](double value) {
+            return formatNumber(std::stod(formatFixed(value, value < 1 ? 4 : 1)));
+        };
+        std::string finding =
+            mm(size.extentMm.x) + " x " + mm(size.extentMm.y) + " x " + mm(size.extentMm.z) + " mm";
+        if (size.verdict != SizeVerdict::Plausible) {
+            finding += size.verdict == SizeVerdict::TooSmall ? ": too small" : ": too large";
+            if (size.guess) finding += "; in " + std::string(toString(*size.guess)) + "?";
+        }
+        add(kSize, size.verdict == SizeVerdict::Plausible, finding);
+    }
+
+    const SurfaceFacts& facts_;
+    const CheckRules& rules_;
+    std::vector<Check> checks_;
+};
+
+Check makeCheck(const Rule& rule, Outcome outcome, const std::string& finding,
+                const CheckRules& rules) {
+    return {rule.key, rule.name, rule.isRequiredBy(rules.profileInUse()), outcome, finding};
+}
+
+std::string outsideText(const NestingReport& report, const std::string& inner,
+                        const std::string& outer) {
+    return counted(report.innerVerticesNotInside, "vertex", "vertices") + " of " + inner +
+           (report.innerVerticesNotInside == 1 ? " is" : " are") + " not inside " + outer +
+           ": out by up to " + formatFixed(report.farthestOutMm, 2) + " mm";
+}
+
+std::string relationText(const NestingReport& report, const std::string& inner,
+                         const std::string& outer) {
+    switch (report.relation) {
+        case NestingRelation::Nested:
+            return "";
+        case NestingRelation::Crossing:
+            return report.innerVerticesNotInside > 0
+                       ? outsideText(report, inner, outer)
+                       : "all vertices of " + inner + " are inside " + outer +
+                             ": a dent of that, or an edge between vertices, goes through";
+        case NestingRelation::Swapped:
+            return "swapped order: " + outer + " lies inside " + inner;
+        case NestingRelation::Identical:
+            return "identical: " + inner + " and " + outer +
+                   " are the same surface; is one file given twice?";
+        case NestingRelation::Apart:
+            return "apart: " + inner + " lies wholly outside " + outer;
+        case NestingRelation::Mixed:
+            return outsideText(report, inner, outer) + "; " +
+                   counted(report.outerVerticesInside, "vertex", "vertices") + " of " + outer +
+                   (report.outerVerticesInside == 1 ? " lies" : " lie") + " inside " + inner;
+        case NestingRelation::Unknown:
+            return "a surface has no triangle to measure";
+    }
+    throw InternalError("relationText: unknown relation");
+}
+
+}  // namespace
+
+std::string_view toString(Profile profile) {
+    switch (profile) {
+        case Profile::Bem:
+            return "bem";
+        case Profile::Print:
+            return "print";
+        case Profile::View:
+            return "view";
+    }
+    throw InternalError("toString: unknown profile");
+}
+
+SizeLimits sizeLimitsOf(Profile profile) {
+    // MNE refuses heads with a side under 50 mm; no head with its neck is larger than 500 mm
+    if (profile == Profile::Bem) return {50, 50, 500};
+    return {0, 1, 2000};  // from a tooth to a whole body
+}
+
+bool allHold(const std::vector<Check>& checks) {
+    return std::none_of(checks.begin(), checks.end(),
+                        [](const Check& check) { return check.breaksProfile(); });
+}
+
+std::vector<Check> judgeSurface(const SurfaceFacts& facts, const CheckRules& rules) {
+    return SurfaceJudge(facts, rules).judge();
+}
+
+Check judgeDeviation(const std::optional<DistanceStatistics>& deviation, double voxelMm,
+                     const CheckRules& rules) {
+    if (!deviation) {
+        return makeCheck(kDeviation, Outcome::Failed, "there is no area to measure", rules);
+    }
+    const bool holds =
+        rules.maxOffMm ? deviation->maxMm <= *rules.maxOffMm : deviation->meanMm <= voxelMm / 2;
+    std::string finding = "off by " + formatFixed(deviation->meanMm, 3) + " mm on the mean, " +
+                          formatFixed(deviation->maxMm, 3) + " mm at most";
+    if (!holds) {
+        finding += rules.maxOffMm ? ", must be at most " + formatNumber(*rules.maxOffMm) + " mm"
+                                  : ", the mean must be at most half a voxel of " +
+                                        formatFixed(voxelMm, 3) + " mm";
+    }
+    return makeCheck(kDeviation, holds ? Outcome::Passed : Outcome::Failed, finding, rules);
+}
+
+std::vector<Check> judgeNesting(const NestingReport& report, const std::string& inner,
+                                const std::string& outer, const AffineTransform& toFrame,
+                                const CheckRules& rules) {
+    std::vector<Check> checks;
+    const auto add = [&](const Rule& rule, bool holds, const std::string& finding) {
+        checks.push_back(
+            makeCheck(rule, holds ? Outcome::Passed : Outcome::Failed, finding, rules));
+    };
+    const std::string where = " at " + at(toFrame(report.gap.nearest.pointA));
+    const std::string triangles = "triangles " + std::to_string(report.gap.triangleA) + " of " +
+                                  inner + " and " + std::to_string(report.gap.triangleB) + " of " +
+                                  outer;
+    const bool meet = report.crossingPairs > 0;
+    const bool areIdentical = report.relation == NestingRelation::Identical;
+    add(kNoCrossing, !meet,
+        areIdentical ? "they lie on each other everywhere"
+        : meet       ? counted(report.crossingPairs, "pair", "pairs") +
+                     " of triangles cross or touch; first: " + triangles + where
+               : "");
+    add(kNested, report.isStrictlyNested(), relationText(report, inner, outer));
+    if (report.gap.triangleA < 0) {
+        checks.push_back(
+            makeCheck(kMinGap, Outcome::Undecided, "a surface has no triangle to measure", rules));
+    } else {
+        const double limit = rules.minGapMm.value_or(CheckRules::kDefaultMinGapMm);
+        const bool holds = report.gap.nearest.distanceMm >= limit;
+        add(kMinGap, holds,
+            areIdentical
+                ? "none: the two are the same surface"
+                : "smallest " + formatFixed(report.gap.nearest.distanceMm, 3) + " mm" + where +
+                      (holds ? "" : ", must be at least " + formatNumber(limit) + " mm"));
+    }
+    checks.back().isRequired |= rules.minGapMm.has_value();
+    return checks;
+}
+
+}  // namespace adaptiso

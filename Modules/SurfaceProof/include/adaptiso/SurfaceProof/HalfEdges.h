@@ -1,0 +1,134 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "adaptiso/Core/HugePages.h"
+#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/SurfaceProof/OrderedBuckets.h"
+
+namespace adaptiso::detail {
+
+/// The half-edges of triangles by the vertex that they start from. Half-edge 3 t + c runs from
+/// corner c of triangle t to the next corner.
+template <class Index>
+class HalfEdges {
+public:
+    static constexpr Index kNone = std::numeric_limits<Index>::max();
+
+    /// Keeps a reference to the triangles.
+    void assign(std::size_t points, std::span<const std::array<Index, 3>> triangles) {
+        triangles_ = triangles;
+        leaving_.assign(points, triangles.size(), [&](std::size_t t, const auto& put) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                put(triangles[t][c], static_cast<Index>(3 * t + c));
+            }
+        });
+    }
+
+    /// Brings half-edges and their opposites to what the triangles are now.
+    /// \param changed  numbers of the triangles that are new, changed or gone, ascending
+    /// \param twin     what match() gave before; then what it would give
+    void update(std::size_t points, std::span<const std::array<Index, 3>> triangles,
+                std::span<const Index> changed, std::vector<Index>& twin) {
+        std::vector<std::uint8_t> isChanged(std::max(triangles_.size(), triangles.size()), 0);
+        std::vector<std::pair<std::size_t, Index>> added;
+        for (const Index t : changed) {
+            isChanged[t] = 1;
+            if (static_cast<std::size_t>(t) >= triangles.size()) continue;
+            for (std::size_t c = 0; c < 3; ++c) {
+                added.emplace_back(triangles[t][c], static_cast<Index>(3 * t + c));
+            }
+        }
+        std::sort(added.begin(), added.end());
+        triangles_ = triangles;
+        std::vector<std::int64_t> fans;
+        leaving_.update(
+            points, [&](Index h) { return isChanged[h / 3] != 0; },
+            std::span<const std::pair<std::size_t, Index>>(added),
+            [&](std::size_t v) { fans.push_back(static_cast<std::int64_t>(v)); });
+        twin.resize(3 * triangles.size());
+        for (const std::int64_t v : fans) {
+            forEachFanOf(v, v + 1, [&](std::span<const Spoke> spokes) { matchFan(spokes, twin); });
+        }
+    }
+
+    /// In ascending order.
+    std::span<const Index> from(Index vertex) const { return leaving_.of(vertex); }
+    /// The vertex that a half-edge runs to.
+    Index to(Index halfEdge) const { return triangles_[halfEdge / 3][(halfEdge + 1) % 3]; }
+
+    /// A triangle at a vertex: its half-edge that starts there, where that leads, and where its
+    /// half-edge that arrives there comes from.
+    struct Spoke {
+        Index leaving, to, from;
+    };
+
+    /// Calls f(spokes) for each vertex, side by side where there are many: with its triangles in
+    /// ascending order, which are read once.
+    template <class F>
+    void forEachFan(const F& f) const {
+        constexpr std::size_t kMany = 1 << 15;  // below, threads cost more than they save
+        const auto count = static_cast<std::int64_t>(leaving_.count());
+        if (triangles_.size() < kMany) {
+            forEachFanOf(0, count, f);
+            return;
+        }
+        constexpr std::int64_t kPiece = 1 << 13;
+        parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
+            forEachFanOf(begin, end, f);
+        });
+    }
+
+    /// The opposite of each half-edge, or kNone. Where several run along an edge they are matched
+    /// in ascending order.
+    void match(std::vector<Index>& twin) const {
+        assignInHugePages(twin, 3 * triangles_.size());
+        forEachFan([&](std::span<const Spoke> spokes) { matchFan(spokes, twin); });
+    }
+
+private:
+    /// Opposite half-edges leave a vertex and arrive there in the same fan.
+    static void matchFan(std::span<const Spoke> spokes, std::vector<Index>& twin) {
+        for (std::size_t i = 0; i < spokes.size(); ++i) {
+            twin[spokes[i].leaving] = oppositeOf(i, spokes);
+        }
+    }
+
+    template <class F>
+    void forEachFanOf(std::int64_t begin, std::int64_t end, const F& f) const {
+        std::vector<Spoke> spokes;
+        for (std::int64_t v = begin; v < end; ++v) {
+            spokes.clear();
+            for (const Index h : from(static_cast<Index>(v))) {
+                const auto& t = triangles_[h / 3];
+                spokes.push_back({h, t[(h + 1) % 3], t[(h + 2) % 3]});
+            }
+            f(std::span<const Spoke>(spokes));
+        }
+    }
+
+    /// Of several that lead to one vertex the first goes with the first that comes from it, and so
+    /// on.
+    static Index oppositeOf(std::size_t spoke, std::span<const Spoke> spokes) {
+        const Index other = spokes[spoke].to;
+        std::size_t before = 0;
+        for (std::size_t i = 0; i < spoke; ++i) before += spokes[i].to == other ? 1 : 0;
+        for (const Spoke& s : spokes) {
+            if (s.from == other && before-- == 0)
+                return s.leaving % 3 == 0 ? s.leaving + 2 : s.leaving - 1;
+        }
+        return kNone;
+    }
+
+    std::span<const std::array<Index, 3>> triangles_;
+    OrderedBuckets<Index, Index> leaving_;  ///< half-edges, of each vertex
+};
+
+}  // namespace adaptiso::detail
