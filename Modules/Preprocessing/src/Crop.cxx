@@ -1,10 +1,9 @@
 #include "adaptiso/Preprocessing/Crop.h"
 
-#include <itkRegionOfInterestImageFilter.h>
-
+#include <algorithm>
+#include <cstddef>
+#include <memory>
 #include <string>
-
-#include "ItkImages.h"
 
 namespace adaptiso {
 namespace {
@@ -31,38 +30,25 @@ ImageGeometry croppedGeometry(const ImageGeometry& whole, const CropRanges& rang
     return part;
 }
 
-/// \tparam Word  any type of the samples' size: they are moved, not looked at
-template <class Word>
-Volume cropAs(const VolumeView& volume, const CropRanges& ranges, const ImageGeometry& part) {
-    const auto image =
-        detail::asItkImage(static_cast<const Word*>(volume.samples()), volume.geometry());
-    typename detail::ItkImage<Word>::RegionType region;
-    for (int axis = 0; axis < 3; ++axis) {
-        region.SetIndex(axis, ranges[axis].first);
-        region.SetSize(axis, static_cast<itk::SizeValueType>(part.size[axis]));
-    }
-    using Filter = itk::RegionOfInterestImageFilter<detail::ItkImage<Word>, detail::ItkImage<Word>>;
-    const auto filter = Filter::New();
-    filter->SetInput(image);
-    filter->SetRegionOfInterest(region);
-    detail::runFilter(*filter);
-    return detail::toVolume<Word>(filter->GetOutput(), volume.pixelType(), part);
-}
-
 }  // namespace
 
 Volume cropVolume(const VolumeView& volume, const CropRanges& ranges) {
     const ImageGeometry part = croppedGeometry(volume.geometry(), ranges);
-    switch (bytesPerPixel(volume.pixelType())) {
-        case 1:
-            return cropAs<std::uint8_t>(volume, ranges, part);
-        case 2:
-            return cropAs<std::uint16_t>(volume, ranges, part);
-        case 4:
-            return cropAs<std::uint32_t>(volume, ranges, part);
-        default:
-            return cropAs<std::uint64_t>(volume, ranges, part);
+    const std::size_t bytes = bytesPerPixel(volume.pixelType());
+    const Index3& size = volume.geometry().size;
+    const auto* const from = static_cast<const std::byte*>(volume.samples());
+    const auto kept = std::make_shared_for_overwrite<std::byte[]>(
+        bytes * static_cast<std::size_t>(part.voxelCount()));
+    std::byte* to = kept.get();
+    for (std::int64_t k = 0; k < part.size[2]; ++k) {
+        for (std::int64_t j = 0; j < part.size[1]; ++j) {
+            const std::int64_t first =
+                ranges[0].first + size[0] * (ranges[1].first + j + size[1] * (ranges[2].first + k));
+            to = std::copy_n(from + bytes * static_cast<std::size_t>(first),
+                             bytes * static_cast<std::size_t>(part.size[0]), to);
+        }
     }
+    return Volume(VolumeView(kept.get(), volume.pixelType(), part), kept);
 }
 
 }  // namespace adaptiso

@@ -15,14 +15,15 @@ namespace adaptiso::detail {
 template <class T>
 using ItkImage = itk::Image<T, 3>;
 
-/// Gives an ITK image a place in space. ITK takes any direction with a determinant other than 0,
-/// sheared and mirrored ones too.
-template <class ImageOrFilter>
-void placeLike(const ImageGeometry& geometry, ImageOrFilter set) {
-    ItkImage<float>::PointType origin;
-    ItkImage<float>::SpacingType spacing;
-    ItkImage<float>::DirectionType direction;
-    ItkImage<float>::SizeType size;
+/// Samples as an ITK image, uncopied. ITK takes any direction with a determinant other than 0,
+/// sheared and mirrored ones too. \pre they outlive it, and no filter writes to it
+template <class T>
+typename ItkImage<T>::Pointer asItkImage(const T* samples, const ImageGeometry& geometry) {
+    auto image = ItkImage<T>::New();
+    typename ItkImage<T>::PointType origin;
+    typename ItkImage<T>::SpacingType spacing;
+    typename ItkImage<T>::DirectionType direction;
+    typename ItkImage<T>::SizeType size;
     for (int axis = 0; axis < 3; ++axis) {
         const Vec3& step = geometry.indexToPhysical.column[axis];
         size[axis] = static_cast<itk::SizeValueType>(geometry.size[axis]);
@@ -30,20 +31,10 @@ void placeLike(const ImageGeometry& geometry, ImageOrFilter set) {
         spacing[axis] = norm(step);
         for (int row = 0; row < 3; ++row) direction(row, axis) = step[row] / norm(step);
     }
-    set(size, origin, spacing, direction);
-}
-
-/// Samples as an ITK image, uncopied. \pre they outlive it, and no filter writes to it
-template <class T>
-typename ItkImage<T>::Pointer asItkImage(const T* samples, const ImageGeometry& geometry) {
-    auto image = ItkImage<T>::New();
-    placeLike(geometry, [&](const auto& size, const auto& origin, const auto& spacing,
-                            const auto& direction) {
-        image->SetRegions(size);
-        image->SetOrigin(origin);
-        image->SetSpacing(spacing);
-        image->SetDirection(direction);
-    });
+    image->SetRegions(size);
+    image->SetOrigin(origin);
+    image->SetSpacing(spacing);
+    image->SetDirection(direction);
     image->GetPixelContainer()->SetImportPointer(
         const_cast<T*>(samples), static_cast<itk::SizeValueType>(geometry.voxelCount()), false);
     return image;
@@ -57,19 +48,25 @@ Volume toVolume(const typename ItkImage<T>::Pointer& image, PixelType type,
                   std::make_shared<typename ItkImage<T>::Pointer>(image));
 }
 
-/// Runs a filter in as many threads as the rest of the program.
+/// Calls `run`, which runs ITK's `name`.
 /// \throws std::bad_alloc, InternalError for what else ITK throws
+template <class Run>
+void runItk(const std::string& name, const Run& run) {
+    try {
+        run();
+    } catch (const itk::MemoryAllocationError&) {
+        throw std::bad_alloc();
+    } catch (const itk::ExceptionObject& error) {
+        throw InternalError(name + ": " + error.GetDescription());
+    }
+}
+
+/// Runs a filter in as many threads as the rest of the program. \throws  as runItk()
 template <class Filter>
 void runFilter(Filter& filter) {
     filter.SetNumberOfWorkUnits(static_cast<itk::ThreadIdType>(
         tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
-    try {
-        filter.Update();
-    } catch (const itk::MemoryAllocationError&) {
-        throw std::bad_alloc();
-    } catch (const itk::ExceptionObject& error) {
-        throw InternalError(std::string(filter.GetNameOfClass()) + ": " + error.GetDescription());
-    }
+    runItk(filter.GetNameOfClass(), [&] { filter.Update(); });
 }
 
 }  // namespace adaptiso::detail
