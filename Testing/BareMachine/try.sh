@@ -134,8 +134,8 @@ tryPackage() {
 # Makes the package of the clone's programs; its name is then in $deb.
 makePackage() {
     runInside "package: make" ". Applications/quickstart/packages.sh &&
-        installPackages Packaging/packages.txt && cd build/programs && cpack -G DEB"
-    deb=$(find "$root$clone/build/programs" -maxdepth 1 -name 'adaptiso_*.deb')
+        installPackages Packaging/packages.txt && cd build/release && cpack -G DEB"
+    deb=$(find "$root$clone/build/release" -maxdepth 1 -name 'adaptiso_*.deb')
 }
 
 tryAll() {
@@ -147,7 +147,7 @@ tryAll() {
 
     runInside "quickstart" Applications/quickstart/run.sh
     requireFile out/quickstart/brain.vtp
-    requireFile out/quickstart/brain.png
+    requireFile out/quickstart/pictures/surface-1.png
     runInside "quickstart, again" Applications/quickstart/run.sh
     runInside "tests" Testing/run.sh
     runInside "tests, again" Testing/run.sh
