@@ -175,6 +175,7 @@ bool VolumeSurface::roundsFinely() const {
 
 std::vector<std::int64_t> VolumeSurface::insideOut(const SimplifiedSurface& surface) const {
     if (bricks_.grid().border == Border::Open) return {};
+    if (moving_) return {};  // a tile, which is open at its walls
     return findInsideOutPieces({surface.points, surface.triangles}, {}).triangles;
 }
 
