@@ -61,7 +61,7 @@ std::vector<TriangleMesh> readPial(BemRun& run) {
     for (const fs::path& path : run.options.pial) {
         files.push_back({path, readMesh(path)});
         run.model.inputs.push_back(
-            {baseName(path), "pial surface", std::string(findMeshFormat(path).name)});
+            {baseName(path), "pial surface", std::string(files.back().file.format->name)});
     }
     const CommonFrame common =
         naming("--pial", [&] { return bringToOneFrame(files, run.model.image); });
@@ -144,7 +144,7 @@ std::vector<TriangleMesh> readSurfaces(BemRun& run) {
     for (const fs::path& path : options.surfaces) {
         files.push_back({path, readMesh(path, {.keepsFaults = true})});
         run.model.inputs.push_back(
-            {baseName(path), "surface", std::string(findMeshFormat(path).name)});
+            {baseName(path), "surface", std::string(files.back().file.format->name)});
         const MeshFile& file = files.back().file;
         if (file.frame == CoordinateFrame::TkRas && !run.model.tkRasVolume)
             run.model.tkRasVolume = file.volume;

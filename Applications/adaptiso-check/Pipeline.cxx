@@ -12,7 +12,6 @@
 #include "Common/CommonFrame.h"
 #include "Common/ExitCodes.h"
 #include "Common/ImageOptions.h"
-#include "Common/InputKind.h"
 #include "Common/Json.h"
 #include "Common/Naming.h"
 #include "Common/Numbers.h"
@@ -131,8 +130,7 @@ private:
         try {
             stage(kRead, [&] { readSurface(loaded.mesh, surface); });
         } catch (const Error& error) {
-            const std::string hint = imageHint(file);
-            tellUnread(surface, hint.empty() ? error.what() : file.string() + ": " + hint);
+            tellUnread(surface, error.what());
             return;
         } catch (const std::bad_alloc&) {
             tellUnread(surface, file.string() + ": too large for this machine's memory");
@@ -149,7 +147,7 @@ private:
     void readSurface(NamedMesh& mesh, SurfaceRun& surface) {
         mesh.file = readMesh(mesh.path, {.keepsFaults = true});
         freeMemory(mesh.file.mesh.normals);  // not looked at
-        surface.format = &findMeshFormat(mesh.path);
+        surface.format = mesh.file.format;
         surface.frame = mesh.file.frame;
         if (mesh.file.frame == CoordinateFrame::Voxel) {
             bringToOneFrame({&mesh, 1}, image_);

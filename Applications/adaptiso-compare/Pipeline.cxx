@@ -50,7 +50,6 @@ bool areSame(const fs::path& a, const fs::path& b) {
 /// Everything about the files that can be told from their names.
 void checkNames(const CompareOptions& options) {
     std::vector<fs::path> inputs{options.a, options.b};
-    for (const fs::path& mesh : inputs) meshFormatOf(mesh);
     if (!options.volume.empty()) inputs.push_back(options.volume);
     checkReportOutputs(options.report, inputs);
 
@@ -85,7 +84,7 @@ SurfaceSummary summarize(const NamedMesh& surface, std::optional<CoordinateFrame
     const TriangleMesh& mesh = surface.file.mesh;
     SurfaceSummary summary;
     summary.file = surface.path;
-    summary.format = &meshFormatOf(surface.path);
+    summary.format = surface.file.format;
     summary.frame = frame;
     summary.triangles = std::ssize(mesh.triangles);
     summary.vertices = std::ssize(mesh.points);

@@ -49,24 +49,21 @@ constexpr const char* kVerify = "verify";
 constexpr const char* kReport = "report";
 
 /// Values in files of their own belong to points by number.
-void requirePointOrder(const SimplifyRun& run, const fs::path& data) {
-    for (const SurfaceSummary* surface : {&run.input, &run.output}) {
-        if (surface->format->sharesVertices) continue;
-        throw UsageError("--data " + data.string() + ": " + std::string(surface->format->name) +
-                         " keeps no order of points, which its values would go by");
-    }
+void requirePointOrder(const MeshFormat& format, const fs::path& data) {
+    if (format.sharesVertices) return;
+    throw UsageError("--data " + data.string() + ": " + std::string(format.name) +
+                     " keeps no order of points, which its values would go by");
 }
 
 /// Everything about the files that can be told from their names.
 void checkNames(SimplifyRun& run) {
     const SimplifyCommand& command = run.command;
     run.input.file = command.input;
-    run.input.format = &meshFormatOf(command.input);
     run.output.file = surfaceFile(command.output, command.input);
     run.output.format = &meshFormatOf(run.output.file);
     std::vector<fs::path> inputs{command.input}, outputs{run.output.file};
     for (const fs::path& data : command.data) {
-        requirePointOrder(run, data);
+        requirePointOrder(*run.output.format, data);
         run.data.push_back({data, dataFile(data, run.output.file), findPointDataFormat(data)});
         inputs.push_back(data);
         outputs.push_back(run.data.back().output);
@@ -328,6 +325,8 @@ int runSimplify(const SimplifyCommand& command) {
     progress.show(kRead);
     const MeshFile input =
         run.timer.time(kRead, [&] { return readMesh(command.input, {.keepsPointArrays = true}); });
+    run.input.format = input.format;
+    for (const fs::path& data : command.data) requirePointOrder(*input.format, data);
     run.input.frame = input.frame;
     summarize(input.mesh, run.input);
     if (!(run.input.areaMm2 > 0)) {

@@ -97,7 +97,6 @@ class Refusals(CompareTest):
                 ("--voxel", "a.off", "a.off", "--voxel", "1", "--volume", "i.nii"),
                 ("--volume-index.*--volume", "a.off", "a.off", "--volume-index", "0"),
                 ("--one-sided", "a.off", "a.off", "--one-sided", "--symmetric"),
-                ("a.xyz", "a.xyz", "a.off"),
                 (r"--colored out.ply: must be a .vtp", "a.off", "a.off", "--colored", "out.ply"),
                 ("--json", "a.off", "a.off", "--colored", "o.vtp", "--json", "./o.vtp")):
             with self.subTest(arguments):

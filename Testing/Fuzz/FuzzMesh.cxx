@@ -36,10 +36,12 @@ void requireSound(const MeshFile& file) {
     }
 }
 
-void decode(std::string_view bytes, const MeshReadOptions& options) {
+/// \param isKnown  the format is; else content tells
+void decode(std::string_view bytes, const MeshReadOptions& options, bool isKnown = true) {
     static const MeshFormat& format = findMeshFormat("fuzzed" ADAPTISO_FUZZ_ENDING);
     try {
-        const MeshFile file = decodeMesh(bytes, format, "fuzzed", options);
+        const MeshFile file = isKnown ? decodeMesh(bytes, format, "fuzzed", options)
+                                      : decodeMesh(bytes, "fuzzed" ADAPTISO_FUZZ_ENDING, options);
         if (!options.keepsFaults) requireSound(file.mesh);
         requireSound(file);
     } catch (const FileError& refusal) {
@@ -55,5 +57,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     adaptiso::decode(bytes, {});
     adaptiso::decode(bytes, {.keepsFaults = true});
     adaptiso::decode(bytes, {.keepsPointArrays = true});
+    adaptiso::decode(bytes, {}, false);
     return 0;
 }

@@ -184,6 +184,26 @@ void addForeignTexts(Seeds& seeds) {
         "y\nproperty float z\n" +
             faces + zero + zero + zero + one + zero + zero + zero + one + zero +
             std::string("\x03\0\0\0\0\0\0\0\x01\0\0\0\x02\x07", 14));
+    seeds.add("ply",
+              "ply\rformat ascii 1.0\relement vertex 3\rproperty float32 x\rproperty float y\r"
+              "property float z\relement face 1\rproperty list uint8 float32 vertex_index\r"
+              "end_header\r0 0 0 7\r1.0D+00 0 0\r0 1 0\r3 0 1 2.0 6 0 0 1\r");
+    seeds.add("obj",
+              "\xEF\xBB\xBF# a\rv 0 0 0 1 0 0\rv 1 0 0\rv 0 1 0 # b\rvt 0 0\rf 1/1/ 2// \\\r 3/\r");
+    seeds.add("stl",
+              "SOLID a facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 -1.#IND 0 vertex 0 1 0 "
+              "endloop endfacet endsolid a solid b endsolid");
+    seeds.add("off", "STCNOFF\n3 1\n0 0 0 0 0 1\n1 0 0\n0 1 0\n3 0 1 2\n");
+    seeds.add("gii",
+              "<GIFTI><DataArray Intent=\"NIFTI_INTENT_SHAPE\"/><DataArray "
+              "Intent=\"NIFTI_INTENT_POINTSET\" Encoding=\"ExternalFileBinary\" "
+              "ExternalFileName=\"a\" ExternalFileOffset=\"0\"/></GIFTI>");
+    for (const char* const other :
+         {"P 0.3 0.3 0.4 10 1 3\n", "version https://git-lfs.github.com/spec/v1\nsize 7\n",
+          "/annex/objects/MD5E-s7--a\n", "<!DOCTYPE html><html>", "PK\3\4", "BZh91AY&SY",
+          "\xFF\xFF\xFF", "#!ascii", "NRRD0004", "<COLLADA>", "{\"message\": 1}"}) {
+        seeds.add("tri", other);  // content tells
+    }
     const auto array = [](const char* intent, const char* type, const char* order,
                           const char* data) {
         return std::string("<DataArray Intent=\"NIFTI_INTENT_") + intent + "\" DataType=\"" + type +

@@ -180,6 +180,15 @@ std::optional<ForeignContent> placeholder(const fs::path& file) {
     return {};
 }
 
+/// NIfTI-2 with one of CIFTI's intents, 3000 to 3099, in either byte order.
+bool isCifti(std::string_view head) {
+    constexpr std::size_t kIntent = 504;
+    if (head.size() < kIntent + 4 || head.substr(4, 3) != "n+2") return false;
+    const auto byte = [&](std::size_t n) { return static_cast<unsigned char>(head[kIntent + n]); };
+    const int little = byte(0) | byte(1) << 8, big = byte(3) | byte(2) << 8;
+    return (little >= 3000 && little < 3100) || (big >= 3000 && big < 3100);
+}
+
 bool isZeros(std::string_view bytes) {
     return bytes.find_first_not_of('\0') == std::string_view::npos;
 }
@@ -214,6 +223,11 @@ std::optional<ForeignContent> foreignContentOf(std::string_view head, const fs::
             if (content.fault.ends_with("git-lfs pointer"))
                 content.fault += notHere(digitsBehind(head, "\nsize "));
             return content;
+        }
+        if (isCifti(head)) {
+            return ForeignContent{
+                Other, "is CIFTI: values at points of surfaces, no volume and no surface",
+                "take volumes and values out of it with wb_command -cifti-separate"};
         }
         if (namesAnnexObject(head)) return annexed(head, file);
         if (isLinkText(head)) {

@@ -78,9 +78,10 @@ void warnOfOddSamples(ReadVolume& read) {
     });
 }
 
-void refuseForeign(const fs::path& input, std::string_view inflated) {
+/// \param head, inflated  the first bytes as they are and unpacked
+void refuseForeign(const fs::path& input, std::string_view head, std::string_view inflated) {
     detail::refuseForeignContent(input);
-    if (detail::looksLikeDicom(inflated)) return;
+    if (detail::looksLikeDicom(inflated) || head == inflated) return;
     const auto foreign = foreignContentOf(inflated, input, true);
     if (foreign) detail::refuse(input, foreign->fault, foreign->remedy);
 }
@@ -97,9 +98,8 @@ ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
     if (detail::looksLikeNrrd(head)) return detail::readNrrd(input, options);
     if (detail::looksLikeMetaImage(head)) return detail::readMetaImage(input, options);
     const std::string inflated = inflatedHead(input);
+    if (!detail::looksLikeDicom(head)) refuseForeign(input, head, inflated);
     if (detail::looksLikeNifti(inflated)) return detail::readNifti(input, options);
-
-    if (!detail::looksLikeDicom(head)) refuseForeign(input, inflated);
 
     // content that only its name explains, or a damaged file whose reader says best what is wrong
     const std::string ending = formatEnding(input);

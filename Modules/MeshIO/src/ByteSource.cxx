@@ -15,22 +15,61 @@ constexpr bool isSpace(char c) {
 }
 
 template <class T>
-T parsed(std::string_view word, std::string_view what, std::string_view kind) {
-    T value{};
-    std::string_view digits = word;
-    if (digits.starts_with('+')) digits.remove_prefix(1);
-    const char* const end = digits.data() + digits.size();
-    const auto [stop, error] = std::from_chars(digits.data(), end, value);
-    if (error != std::errc() || stop != end) {
-        damaged(std::string(what) + " is " + printable(word) + ", must be " + std::string(kind));
+bool spells(std::string_view word, T& value) {
+    if (word.starts_with('+')) word.remove_prefix(1);
+    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && stop == word.data() + word.size();
+}
+
+/// As from_chars() has it, or with Fortran's exponent ("1.5D+02"), or as Visual C++ writes what is
+/// not finite ("-1.#IND").
+bool spellsReal(std::string_view word, double& value) {
+    if (spells(word, value)) return true;
+    if (word.find('#') != std::string_view::npos) {
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        value = word.find("#INF") == std::string_view::npos ? std::nan("")
+                : word.starts_with('-')                     ? -kInfinity
+                                                            : kInfinity;
+        return word.find("1.#") <= 1;
     }
-    return value;
+    std::string text(word);
+    const std::size_t exponent = text.find_first_of("dD");
+    if (exponent == std::string::npos) return false;
+    text[exponent] = 'e';
+    return spells(text, value);
+}
+
+/// Whole numbers may be written as reals ("3.0", "1e2").
+bool spellsInteger(std::string_view word, std::int64_t& value) {
+    if (spells(word, value)) return true;
+    constexpr double kExact = 9007199254740992;  // 2^53
+    double real = 0;
+    if (!spellsReal(word, real) || !(std::abs(real) <= kExact) || real != std::floor(real)) {
+        return false;
+    }
+    value = static_cast<std::int64_t>(real);
+    return true;
+}
+
+[[noreturn]] void refuseWord(std::string_view word, std::string_view what, std::string_view kind) {
+    const std::string met = std::string(what) + " is " + printable(word);
+    if (word.find(',') != std::string_view::npos) {
+        unsupported(met + ", with a comma",
+                    "save it with decimal points and blanks between numbers");
+    }
+    malformed(met + ", must be " + std::string(kind));
 }
 
 }  // namespace
 
 void damaged(const std::string& what) {
-    throw FileError(what + "; the file is cut off, damaged or not what its name says: replace it");
+    throw FileError(what + "; the file is cut off or damaged: get it again");
+}
+
+void malformed(const std::string& what) {
+    unsupported(what,
+                "the file is damaged or of a dialect that is not read: save it again, e.g. with "
+                "MeshLab or ParaView");
 }
 
 void unsupported(const std::string& what, const std::string& advice) {
@@ -56,10 +95,10 @@ std::string_view ByteSource::take(std::size_t count) {
 }
 
 std::string_view ByteSource::line() {
-    const std::size_t end = std::min(bytes_.find('\n', position_), bytes_.size());
-    std::string_view text = bytes_.substr(position_, end - position_);
-    position_ = std::min(end + 1, bytes_.size());
-    if (text.ends_with('\r')) text.remove_suffix(1);
+    const std::size_t end = std::min(bytes_.find_first_of("\n\r", position_), bytes_.size());
+    const std::string_view text = bytes_.substr(position_, end - position_);
+    const bool isPair = bytes_.substr(end).starts_with("\r\n");
+    position_ = std::min(end + (isPair ? 2 : 1), bytes_.size());
     return text;
 }
 
@@ -84,17 +123,31 @@ double ByteSource::realWord(std::string_view what) {
     return toReal(requireWord(what), what);
 }
 
+std::size_t findComment(std::string_view line) {
+    std::size_t at = line.find('#');
+    while (at != std::string_view::npos && at > 0 && !isSpace(line[at - 1])) {
+        at = line.find('#', at + 1);
+    }
+    return at;
+}
+
 std::int64_t toInteger(std::string_view word, std::string_view what) {
-    return parsed<std::int64_t>(word, what, "a whole number");
+    std::int64_t value = 0;
+    if (!spellsInteger(word, value)) refuseWord(word, what, "a whole number");
+    return value;
 }
 
 double toReal(std::string_view word, std::string_view what) {
-    return parsed<double>(word, what, "a number");
+    double value = 0;
+    if (!spellsReal(word, value)) refuseWord(word, what, "a number");
+    return value;
 }
 
 float toFloat(double value, std::string_view what) {
     if (std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max()) {
-        damaged(std::string(what) + " is " + std::to_string(value) + ", too large for float");
+        unsupported(
+            std::string(what) + " is " + shortText(value) + ", too large for single precision",
+            "repair the mesh");
     }
     return static_cast<float>(value);
 }

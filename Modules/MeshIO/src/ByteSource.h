@@ -11,9 +11,13 @@
 
 namespace adaptiso::meshio {
 
-/// Fails with FileError "<what>; the file is cut off or damaged, ...". decodeMesh() puts the
-/// file's name in front.
+/// Fails with FileError "<what>; the file is cut off or damaged, ...": bytes that are missing or
+/// that no program writes. decodeMesh() puts the file's name in front.
 [[noreturn]] void damaged(const std::string& what);
+
+/// Fails with FileError "<what>; ... save it again ...": text that may be another program's
+/// dialect.
+[[noreturn]] void malformed(const std::string& what);
 
 /// Fails with FileError "<what>; <advice>": a sound file of a kind that is not read.
 [[noreturn]] void unsupported(const std::string& what, const std::string& advice);
@@ -46,7 +50,7 @@ public:
     T number(std::endian order) {
         return loadAs<T>(take(sizeof(T)).data(), order);
     }
-    /// Up to the next line feed, without it and without a carriage return before it.
+    /// Up to the next line feed, carriage return, or pair of both, without these.
     std::string_view line();
     /// The next word (no space inside); empty at the end of the bytes.
     std::string_view word();
@@ -60,7 +64,11 @@ private:
     std::size_t position_ = 0;
 };
 
-/// The number that `word` spells, all of it; damage otherwise. `what` is what it stands for.
+/// Where a comment begins: '#' at the start of a word; npos if there is none.
+std::size_t findComment(std::string_view line);
+
+/// The number that `word` spells, all of it, whatever the locale; fails otherwise. Whole numbers
+/// may be written as reals, exponents with D. `what` is what it stands for.
 std::int64_t toInteger(std::string_view word, std::string_view what);
 double toReal(std::string_view word, std::string_view what);
 

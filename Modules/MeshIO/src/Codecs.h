@@ -74,5 +74,6 @@ Normal storedNormal(const Vec3& v);
 
 /// Refuses a polygon that is not a triangle.
 [[noreturn]] void refusePolygon(std::int64_t corners);
+[[noreturn]] void refuseStrips();
 
 }  // namespace adaptiso::meshio

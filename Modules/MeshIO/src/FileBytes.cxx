@@ -1,11 +1,13 @@
 #include "FileBytes.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <system_error>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/ForeignContent.h"
 
 namespace adaptiso::meshio {
 namespace {
@@ -16,11 +18,14 @@ std::string systemReason() {
 
 }  // namespace
 
-std::string readBytes(const std::filesystem::path& path) {
+std::string readBytes(const std::filesystem::path& path, std::uint64_t most) {
     namespace fs = std::filesystem;
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (!fs::exists(status)) {
+        if (const auto foreign = findForeignContent(path)) {  // a link of git-annex
+            throw FileError(path.string() + ": " + foreign->fault + "; " + foreign->remedy);
+        }
         throw FileError(path.string() + ": no such file; check the name");
     }
     if (!fs::is_regular_file(status)) {
@@ -28,7 +33,7 @@ std::string readBytes(const std::filesystem::path& path) {
     }
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
-    const std::uintmax_t size = fs::file_size(path, error);
+    const std::uintmax_t size = std::min<std::uintmax_t>(most, fs::file_size(path, error));
     if (!stream || error) {
         throw FileError(path.string() + ": can't be opened (" + systemReason() +
                         "); check its permissions");

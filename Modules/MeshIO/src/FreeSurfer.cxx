@@ -153,7 +153,9 @@ MeshFile decodeFreeSurfer(std::string_view bytes, const MeshReadOptions& options
         unsupported("it is a FreeSurfer surface of quadrangles",
                     "only triangles are read: convert it with mris_convert");
     }
-    if (magic != kTriangleMagic) damaged("it does not begin with FF FF FE");
+    if (magic != kTriangleMagic) {
+        unsupported("it does not begin with FF FF FE", "it is no FreeSurfer surface: get it again");
+    }
     MeshFile file;
     FrameMarks marks(options);
     marks.addText(source.line());

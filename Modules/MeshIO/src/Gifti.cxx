@@ -104,7 +104,8 @@ class GiftiHandler : public XmlHandler {
 public:
     void onStart(const std::string& element, const XmlAttributes& attributes) override {
         if (depth_++ == 0 && element != "GIFTI") {
-            damaged("its XML is a " + printable(element) + ", must be GIFTI");
+            unsupported("its XML is a " + printable(element) + ", must be GIFTI",
+                        "it is no GIFTI file: get it again");
         }
         text_ = nullptr;
         if (element == "DataArray") {
@@ -113,6 +114,7 @@ public:
             const std::string& intent = requireAttribute(attributes, "Intent");
             if (intent == "NIFTI_INTENT_POINTSET") array_ = &points;
             if (intent == "NIFTI_INTENT_TRIANGLE") array_ = &triangles;
+            if (array_ == nullptr) otherIntent = intent;
             if (array_ != nullptr) {
                 if (!array_->attributes.empty()) {
                     unsupported("it holds several surfaces", "save each to its own file");
@@ -146,6 +148,7 @@ public:
     GiftiArray points, triangles;
     Metadata metadata;
     std::vector<GiftiSpace> spaces;
+    std::string otherIntent;
 
 private:
     void startSpace(const std::string& element) {
@@ -272,7 +275,7 @@ std::vector<T> decodeTriples(const GiftiArray& array, std::string_view what) {
     attributes.try_emplace("Dimensionality", "2");
     attributes.try_emplace("Dim1", "3");
     const GiftiShape shape = shapeOf(attributes, what);
-    if (shape.columns != 3) damaged("its " + std::string(what) + " are not an array of N x 3");
+    if (shape.columns != 3) malformed("its " + std::string(what) + " are not an array of N x 3");
     return decodeGiftiRows<Stored, T>(array, shape, what);
 }
 
@@ -315,6 +318,18 @@ void encodeGifti(const MeshRecord& record, ByteSink& sink) {
 MeshFile decodeGifti(std::string_view bytes, const MeshReadOptions& options) {
     GiftiHandler found;
     parseXml(bytes, found);
+    if (found.points.attributes.empty() || found.triangles.attributes.empty()) {
+        const bool hasPoints = !found.points.attributes.empty();
+        const bool isEmpty = found.otherIntent.empty();
+        unsupported("it holds " + std::string(hasPoints ? "points but no triangles"
+                                              : isEmpty ? "no data"
+                                                        : "values at points (" +
+                                                              storedName(found.otherIntent) +
+                                                              "), no surface"),
+                    "give the surface with its points and triangles (.surf.gii)");
+    }
+    loadExternal(found.points, options.folder);
+    loadExternal(found.triangles, options.folder);
     requireGiftiType(found.points, "NIFTI_TYPE_FLOAT32", "points");
     requireGiftiType(found.triangles, "NIFTI_TYPE_INT32", "triangles");
 

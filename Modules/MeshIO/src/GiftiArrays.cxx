@@ -1,5 +1,6 @@
 #include "GiftiArrays.h"
 
+#include "FileBytes.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso::meshio {
@@ -15,6 +16,28 @@ GiftiShape shapeOf(const XmlAttributes& attributes, std::string_view what) {
     if (dimensions == "2") shape.columns = toInteger(requireAttribute(attributes, "Dim1"), "Dim1");
     if (shape.rows < 0 || shape.columns < 0) damaged("the size of its arrays is negative");
     return shape;
+}
+
+void loadExternal(GiftiArray& array, const std::filesystem::path& folder) {
+    namespace fs = std::filesystem;
+    if (folder.empty() || attributeOr(array.attributes, "Encoding", "") != kExternalFile) return;
+    const std::string name = attributeOr(array.attributes, "ExternalFileName", "");
+    const fs::path file = folder / name;
+    std::error_code error;
+    const bool isPlain = !name.empty() && name != "." && name != ".." &&
+                         name.find_first_of(std::string_view("/\\\0", 3)) == std::string::npos;
+    if (!isPlain || (fs::is_symlink(fs::symlink_status(file, error)) &&
+                     fs::canonical(file, error).parent_path() != fs::canonical(folder, error))) {
+        unsupported("its data lie in " + printable(name) + ", which is no plain file of its folder",
+                    "save it as GZipBase64Binary, all in one file");
+    }
+    const std::string offset = attributeOr(array.attributes, "ExternalFileOffset", "0");
+    const std::int64_t begin =
+        trimmed(offset).empty() ? 0 : toInteger(offset, "ExternalFileOffset");
+    const std::string bytes = readBytes(file);
+    requireRoom("bytes before the data in " + printable(name), begin, 1, bytes.size());
+    array.text = bytes.substr(begin);
+    array.isExternal = true;
 }
 
 bool isPackedGifti(const std::string& encoding, std::string_view what) {
@@ -40,7 +63,7 @@ void endGiftiArray(const std::string& bytes, ByteSink& sink) {
 }
 
 void requireGiftiType(const GiftiArray& array, std::string_view type, std::string_view what) {
-    if (array.attributes.empty()) damaged("it has no " + std::string(what));
+    if (array.attributes.empty()) malformed("it has no " + std::string(what));
     const std::string& found = requireAttribute(array.attributes, "DataType");
     if (found != type) {
         unsupported("its " + std::string(what) + " are " + printable(found),

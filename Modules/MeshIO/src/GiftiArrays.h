@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -20,11 +21,18 @@ inline constexpr std::string_view kGiftiHead =
     "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
     "<!DOCTYPE GIFTI SYSTEM \"http://www.nitrc.org/frs/download.php/115/gifti.dtd\">\n";
 
+inline constexpr std::string_view kExternalFile = "ExternalFileBinary";
+
 /// A DataArray as the file has it.
 struct GiftiArray {
     XmlAttributes attributes;
     std::string text;
+    bool isExternal = false;  ///< `text` is the bytes of the file that loadExternal() read
 };
+
+/// Reads the data of an array that lie in a file of their own (ExternalFileBinary, as SPM writes):
+/// a plain file in `folder`, nowhere else. Other arrays stay as they are. \throws FileError
+void loadExternal(GiftiArray& array, const std::filesystem::path& folder);
 
 /// Rows and columns of an array of one or two dimensions.
 struct GiftiShape {
@@ -41,6 +49,12 @@ template <class Stored, class T>
 std::vector<T> decodeGiftiNumbers(const GiftiArray& array, const GiftiShape& shape,
                                   std::string_view what) {
     const std::string& encoding = requireAttribute(array.attributes, "Encoding");
+    if (encoding == kExternalFile && !array.isExternal) {
+        const std::string file = attributeOr(array.attributes, "ExternalFileName", "");
+        unsupported("its " + std::string(what) + " lie in another file, " + printable(file) + " (" +
+                        std::string(kExternalFile) + ")",
+                    "save it as GZipBase64Binary, all in one file");
+    }
     requireRoom("columns", shape.columns, 1, array.text.size());  // so that no product overflows
     const std::int64_t columns = shape.columns, count = shape.rows * columns;
     std::vector<T> numbers;
@@ -57,10 +71,10 @@ std::vector<T> decodeGiftiNumbers(const GiftiArray& array, const GiftiShape& sha
         }
         return numbers;
     }
-    const bool isPacked = isPackedGifti(encoding, what);
+    const bool isPacked = !array.isExternal && isPackedGifti(encoding, what);
     const auto rowBytes = columns * static_cast<std::int64_t>(sizeof(Stored));
     constexpr std::int64_t kBestRatio = 1032;  // of deflate
-    const std::string stored = decodeBase64(array.text);
+    const std::string stored = array.isExternal ? array.text : decodeBase64(array.text);
     requireRoom(what, shape.rows, rowBytes, isPacked ? kBestRatio * stored.size() : stored.size());
     if (isPacked) requirePlausibleSize(stored.size(), shape.rows * rowBytes);
     const std::string bytes = isPacked ? inflated(stored, shape.rows * rowBytes) : stored;

@@ -27,7 +27,8 @@ class DataHandler : public XmlHandler {
 public:
     void onStart(const std::string& element, const XmlAttributes& attributes) override {
         if (path_.empty() && element != "GIFTI") {
-            damaged("its XML is a " + printable(element) + ", must be GIFTI");
+            unsupported("its XML is a " + printable(element) + ", must be GIFTI",
+                        "it is no GIFTI file: get it again");
         }
         text_ = nullptr;
         if (element == "DataArray") {

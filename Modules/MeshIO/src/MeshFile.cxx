@@ -8,7 +8,10 @@
 #include "ByteSource.h"
 #include "Codecs.h"
 #include "FileBytes.h"
+#include "Packing.h"
+#include "Recognition.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 
@@ -92,10 +95,16 @@ std::string findFault(const TriangleMesh& mesh, double limit) {
     return findNormalsFault(mesh);
 }
 
+[[noreturn]] void refuseEmpty(const TriangleMesh& mesh) {
+    const std::string points = std::to_string(mesh.points.size());
+    meshio::unsupported(mesh.triangles.empty() ? "it holds " + points + " points and no triangle"
+                                               : "it holds no point",
+                        "give a surface of triangles");
+}
+
 /// What even a mesh that may be broken must have.
 void requireSomething(TriangleMesh& mesh) {
-    if (mesh.triangles.empty()) meshio::damaged("it has no triangle");
-    if (mesh.points.empty()) meshio::damaged("it has no point");
+    if (mesh.triangles.empty() || mesh.points.empty()) refuseEmpty(mesh);
     if (!findNormalsFault(mesh).empty()) mesh.normals.clear();
 }
 
@@ -186,6 +195,35 @@ void scaleToUnitLength(std::vector<Normal>& normals) {
     }
 }
 
+constexpr std::string_view kGzipMagic = "\x1F\x8B";
+
+/// Calls make(); errors get the file's name.
+template <class Make>
+auto naming(std::string_view name, const Make& make) {
+    const std::string prefix = std::string(name) + ": ";
+    try {
+        return make();
+    } catch (const FileError& error) {
+        throw FileError(prefix + error.what());
+    } catch (const std::bad_alloc&) {
+        throw FileError(prefix + "the surface does not fit into memory; use a larger machine");
+    }
+}
+
+/// By content, else by name. \throws FileError  neither says it
+const MeshFormat& formatOf(std::string_view bytes, std::string_view name, bool isPacked) {
+    const std::string_view head = bytes.substr(0, kMeshHeadBytes);
+    if (const MeshFormat* const found = recognizeMeshFormat(head, bytes.size())) return *found;
+    const std::filesystem::path path(name);
+    naming(name, [&] { meshio::refuseOtherContent(head, bytes.size(), path, isPacked); });
+    try {
+        return findMeshFormat(isPacked ? path.parent_path() / path.stem() : path);
+    } catch (const InvalidInput& error) {
+        throw FileError(std::string(error.what()) +
+                        "; its content is of none of these formats either");
+    }
+}
+
 }  // namespace
 
 namespace meshio {
@@ -240,6 +278,10 @@ void refusePolygon(std::int64_t corners) {
                 "only triangles are read: triangulate it first");
 }
 
+void refuseStrips() {
+    unsupported("it holds triangle strips", "only triangles are read: triangulate it first");
+}
+
 }  // namespace meshio
 
 void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
@@ -256,28 +298,53 @@ void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
 
 MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name,
                     const MeshReadOptions& options) {
-    const std::string prefix = std::string(name) + ": ";
-    try {
-        MeshFile file = codecOf(format.id).decode(bytes, options);
+    return naming(name, [&] {
+        MeshFile file = codecOf(format.id).decode(meshio::withoutMark(bytes), options);
+        file.format = &format;
         if (options.keepsFaults) {
             requireSomething(file.mesh);
         } else {
+            if (file.mesh.triangles.empty()) refuseEmpty(file.mesh);
             const std::string fault = findFault(file.mesh, std::numeric_limits<double>::max());
-            if (!fault.empty()) meshio::damaged(fault);
+            if (!fault.empty()) meshio::unsupported(fault, "repair the mesh or get the file again");
         }
         requireOneEach(file);
         scaleToUnitLength(file.mesh.normals);
         return file;
-    } catch (const FileError& error) {
-        throw FileError(prefix + error.what());
-    } catch (const std::bad_alloc&) {
-        throw FileError(prefix + "the surface does not fit into memory; use a larger machine");
-    }
+    });
+}
+
+MeshFile decodeMesh(std::string_view bytes, std::string_view name, const MeshReadOptions& options) {
+    const bool isPacked = bytes.starts_with(kGzipMagic);
+    const std::string unpacked = naming(name, [&] {
+        if (!isPacked) return std::string();
+        const std::string head = meshio::gunzipped(bytes, kMeshHeadBytes);
+        if (!recognizeMeshFormat(head, 0)) meshio::refuseOtherContent(head, 0, name, true);
+        return meshio::gunzipped(bytes, std::string().max_size());
+    });
+    if (isPacked) bytes = unpacked;
+    return decodeMesh(bytes, formatOf(bytes, name, isPacked), name, options);
 }
 
 MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& options) {
-    const MeshFormat& format = findMeshFormat(path);
-    return decodeMesh(meshio::readBytes(path), format, path.string(), options);
+    const std::string name = path.string();
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) {
+        throw FileError(name +
+                        ": this is a folder, not a surface; of the images in one "
+                        "adaptiso-mesh makes surfaces");
+    }
+    // images may be large: the head tells
+    const std::string head = meshio::readBytes(path, kMeshHeadBytes);
+    const std::uint64_t byteCount = std::filesystem::file_size(path, error);
+    if (!head.starts_with(kGzipMagic) && !recognizeMeshFormat(head, byteCount)) {
+        naming(name, [&] { meshio::refuseOtherContent(head, byteCount, path, false); });
+        const auto foreign = findForeignContent(path);  // zeros, whatever their length
+        if (foreign) throw FileError(name + ": " + foreign->fault + "; " + foreign->remedy);
+    }
+    MeshReadOptions beside = options;
+    beside.folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    return decodeMesh(meshio::readBytes(path), name, beside);
 }
 
 }  // namespace adaptiso

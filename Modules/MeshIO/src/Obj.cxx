@@ -1,6 +1,6 @@
 // Wavefront OBJ: "v x y z", "vn x y z", "f a//a b//b c//c", numbered from 1. As many
 // programs have it, "v x y z r g b" is a point with a colour, 0 to 1. Groups, materials and texture
-// coordinates are passed over when read.
+// coordinates are passed over when read; a '\\' at the end of a point or face joins the next line.
 #include "ByteSource.h"
 #include "Codecs.h"
 #include "PointColors.h"
@@ -29,7 +29,7 @@ public:
         : colors_(options.keepsPointArrays), marks_(options) {}
 
     void decodeLine(std::string_view text) {
-        ByteSource line(text);
+        ByteSource line(text.substr(0, findComment(text)));
         const std::string_view kind = line.word();
         if (kind == "v") {
             mesh_.points.push_back(readVec(line, "a coordinate"));
@@ -38,7 +38,7 @@ public:
             normals_.push_back(storedNormal(readVec(line, "a normal")));
         } else if (kind == "f") {
             decodeFace(line);
-        } else if (kind.starts_with('#')) {
+        } else if (trimmed(text).starts_with('#')) {
             marks_.addText(text);
         }
     }
@@ -83,19 +83,19 @@ private:
         for (std::string_view word = line.word(); !word.empty(); word = line.word(), ++corners) {
             if (corners < 3) triangle[corners] = decodeCorner(word);
         }
-        if (corners < 3) damaged("a face has " + std::to_string(corners) + " corners");
+        if (corners < 3) malformed("a face has " + std::to_string(corners) + " corners");
         if (corners > 3) refusePolygon(corners);
         mesh_.triangles.push_back(triangle);
     }
 
-    /// "v", "v/vt", "v//vn" or "v/vt/vn".
+    /// "v", "v/vt", "v//vn" or "v/vt/vn"; "v/", "v//" and "v/vt/" have no normal.
     VertexId decodeCorner(std::string_view word) {
         const std::size_t first = word.find('/');
         const VertexId vertex =
             resolved(word.substr(0, first), mesh_.points.size(), "a face's vertex");
         const std::size_t second =
             first == std::string_view::npos ? first : word.find('/', first + 1);
-        if (second == std::string_view::npos) {
+        if (second == std::string_view::npos || second + 1 == word.size()) {
             oneNormalEach_ = false;
         } else {
             noteNormal(vertex, resolved(word.substr(second + 1), normals_.size(), "a normal"));
@@ -105,7 +105,7 @@ private:
 
     void noteNormal(VertexId vertex, std::int64_t normal) {
         const auto count = static_cast<std::int64_t>(normals_.size());
-        if (normal < 0 || normal >= count) damaged("a face uses a normal that is not there");
+        if (normal < 0 || normal >= count) malformed("a face uses a normal that is not there");
         if (vertex < 0 || vertex >= static_cast<std::int64_t>(mesh_.points.size())) return;
         if (normalOf_.size() < mesh_.points.size()) normalOf_.resize(mesh_.points.size(), kNone);
         std::int64_t& noted = normalOf_[vertex];
@@ -151,7 +151,21 @@ void encodeObj(const MeshRecord& record, ByteSink& sink) {
 MeshFile decodeObj(std::string_view bytes, const MeshReadOptions& options) {
     ByteSource source(bytes);
     ObjDecoder decoder(options);
-    while (!source.atEnd()) decoder.decodeLine(source.line());
+    while (!source.atEnd()) {
+        const std::string_view line = source.line(), content = trimmed(line);
+        const bool isJoined =
+            content.ends_with('\\') && (content.starts_with('v') || content.starts_with('f'));
+        if (!isJoined) {
+            decoder.decodeLine(line);
+            continue;
+        }
+        std::string joined(line);
+        while (trimmed(joined).ends_with('\\')) {
+            joined.resize(joined.rfind('\\'));
+            joined.append(" ").append(source.line());
+        }
+        decoder.decodeLine(joined);
+    }
     return std::move(decoder).finish();
 }
 

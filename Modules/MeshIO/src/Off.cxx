@@ -1,5 +1,6 @@
 // OFF: "OFF", "V T 0", V lines "x y z", T lines "3 a b c" from 0; '#' begins a comment. With "COFF"
 // points have colours, "x y z r g b a": whole numbers to 255, or with a decimal point, 0 to 1.
+// "NOFF", "STOFF", "CNOFF" and "STCNOFF": what follows x y z is passed over.
 #include "ByteSource.h"
 #include "Codecs.h"
 #include "PointColors.h"
@@ -16,7 +17,7 @@ public:
     ByteSource next(std::string_view what) {
         while (!source_.atEnd()) {
             const std::string_view line = source_.line();
-            const std::size_t comment = line.find('#');
+            const std::size_t comment = findComment(line);
             if (comment != std::string_view::npos) marks.addText(line.substr(comment));
             const std::string_view content = trimmed(line.substr(0, comment));
             if (!content.empty()) return ByteSource(content);
@@ -57,8 +58,11 @@ MeshFile decodeOff(std::string_view bytes, const MeshReadOptions& options) {
     OffLines lines(bytes, options);
     ByteSource line = lines.next("the word OFF");
     const std::string_view magic = line.word();
-    if (magic != "OFF" && magic != "COFF") {
-        unsupported("it begins with " + printable(magic) + ", must begin with OFF or COFF",
+    const bool isOff =
+        magic.ends_with("OFF") && magic.find_first_not_of("STCNOF") == std::string_view::npos;
+    if (!isOff || lowerCase(ByteSource(line.rest()).word()) == "binary") {
+        unsupported("it begins with " + printable(std::string(magic) + std::string(line.rest())) +
+                        ", must begin with OFF or COFF",
                     "save it as plain OFF text");
     }
     const bool hasColors = magic == "COFF";

@@ -9,9 +9,15 @@ namespace {
 
 void requireDash(ByteSource& source, std::string_view what) {
     const std::string_view dash = source.requireWord("'-'");
+    if (dash != "-" && what == "points" &&
+        dash.find_first_not_of("0123456789") == std::string_view::npos) {
+        unsupported(
+            "it begins with a number, as FreeSurfer's .tri does, not with '-' as OpenMEEG's",
+            "convert it, e.g. with mris_convert");
+    }
     if (dash != "-") {
-        damaged("the number of " + std::string(what) + " follows " + printable(dash) +
-                ", must follow '-'");
+        malformed("the number of " + std::string(what) + " follows " + printable(dash) +
+                  ", must follow '-'");
     }
 }
 
@@ -55,7 +61,7 @@ MeshFile decodeOpenMeeg(std::string_view bytes) {
     const std::int64_t triangles = source.integerWord("the number of triangles");
     for (int repeat = 0; repeat < 2; ++repeat) {
         if (source.integerWord("the number of triangles") != triangles) {
-            damaged("the three numbers of triangles differ");
+            malformed("the three numbers of triangles differ");
         }
     }
     requireRoom("triangles", triangles, 6, source.left());  // at least "\n0 0 0"

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 #include "ByteSource.h"
 #include "adaptiso/Core/Errors.h"
@@ -81,8 +82,8 @@ std::string deflated(std::string_view bytes) {
 void requirePlausibleSize(std::size_t packedBytes, std::size_t bytes) {
     constexpr std::size_t kBombBytes = std::size_t{1} << 28, kBombExpansion = 100;
     if (bytes > kBombBytes && bytes / kBombExpansion > packedBytes) {
-        damaged("its " + std::to_string(packedBytes) + " compressed bytes claim to hold " +
-                std::to_string(bytes) + ", as only a decompression bomb does");
+        malformed("its " + std::to_string(packedBytes) + " compressed bytes claim to hold " +
+                  std::to_string(bytes) + ", as only a decompression bomb does");
     }
 }
 
@@ -107,6 +108,35 @@ std::string inflated(std::string_view packed, std::size_t expectedBytes) {
         damaged("its compressed data unpacks to " + std::to_string(bytes.size()) +
                 " sound bytes, must be " + std::to_string(expectedBytes));
     }
+    return bytes;
+}
+
+std::string gunzipped(std::string_view file, std::size_t most) {
+    z_stream stream{};
+    constexpr int kGzip = 15 + 16;
+    if (inflateInit2(&stream, kGzip) != Z_OK) {
+        throw InternalError("gunzipped: zlib can't be started");
+    }
+    const std::unique_ptr<z_stream, decltype(&inflateEnd)> end(&stream, &inflateEnd);
+    std::string_view packed = file;
+    std::string bytes;
+    std::array<char, kPiece> piece;
+    while (bytes.size() < most) {
+        if (stream.avail_in == 0) stream.avail_in = nextPiece(packed, stream);
+        stream.next_out = reinterpret_cast<Bytef*>(piece.data());
+        stream.avail_out = static_cast<uInt>(piece.size());
+        const int status = inflate(&stream, Z_NO_FLUSH);
+        bytes.append(piece.data(), piece.size() - stream.avail_out);
+        requirePlausibleSize(file.size(), bytes.size());
+        if (status == Z_OK) continue;
+        if (status != Z_STREAM_END) {
+            damaged("its gzip data break off after " + std::to_string(bytes.size()) +
+                    " unpacked bytes");
+        }
+        const bool hasMore = stream.avail_in > 0 && *stream.next_in == 0x1F;
+        if (!hasMore || inflateReset(&stream) != Z_OK) break;
+    }
+    if (bytes.size() > most) bytes.resize(most);
     return bytes;
 }
 

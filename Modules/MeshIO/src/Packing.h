@@ -2,6 +2,7 @@
 
 // How XML formats pack binary data: base64 and zlib.
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -25,5 +26,10 @@ void requirePlausibleSize(std::size_t packedBytes, std::size_t bytes);
 /// The bytes that a zlib or gzip stream holds. Grows with what comes out, never by what a header
 /// promises; damage unless it is exactly `expectedBytes`.
 std::string inflated(std::string_view stream, std::size_t expectedBytes);
+
+/// What a gzip file holds, all its members one after the other, at most the first `most` bytes.
+/// Damage where it breaks off before that, or unpacks to more than 256 MiB and a hundred times its
+/// size.
+std::string gunzipped(std::string_view file, std::size_t most);
 
 }  // namespace adaptiso::meshio

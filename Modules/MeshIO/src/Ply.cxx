@@ -1,9 +1,12 @@
 // PLY 1.0. Written: binary little endian, double coordinates, float normals, int vertex indices;
 // other values of vertices as double, colours as uchar red, green, blue, whole numbers as uchar or
 // int where they fit.
-// Read: text and binary of either byte order, any property types, other elements passed over.
+// Read: text and binary of either byte order, any property types, other elements passed over. In
+// text, what a line holds beyond its row is passed over (old VCGLIB wrote more numbers than its
+// header names); rows may also be broken over lines, or share one.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <set>
@@ -18,6 +21,8 @@
 
 namespace adaptiso::meshio {
 namespace {
+
+constexpr std::int64_t kMostRows = std::int64_t{1} << 40;  // beyond what memory holds
 
 enum class Scalar { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
 enum class Encoding { Text, LittleEndian, BigEndian };
@@ -57,7 +62,8 @@ Scalar parseScalar(std::string_view name) {
     for (const Entry& entry : kEntries) {
         if (name == entry.name || name == entry.otherName) return entry.type;
     }
-    damaged("a property has the unknown type " + printable(name));
+    unsupported("a property has the unknown type " + printable(name),
+                "save it again with int, float or double");
 }
 
 std::int64_t bytesOf(Scalar type) {
@@ -82,8 +88,8 @@ Encoding parseEncoding(std::string_view word) {
     if (word == "ascii") return Encoding::Text;
     if (word == "binary_little_endian") return Encoding::LittleEndian;
     if (word == "binary_big_endian") return Encoding::BigEndian;
-    damaged("its encoding is " + printable(word) +
-            ", must be ascii, binary_little_endian or binary_big_endian");
+    malformed("its encoding is " + printable(word) +
+              ", must be ascii, binary_little_endian or binary_big_endian");
 }
 
 Property parseProperty(ByteSource& line) {
@@ -100,14 +106,29 @@ Property parseProperty(ByteSource& line) {
     return property;
 }
 
+/// The next line of a header. Where lines end in a carriage return alone, data that begin with a
+/// line feed follow the last.
+std::string_view nextHeaderLine(ByteSource& source, bool isCarriageReturnAlone) {
+    const std::size_t begin = source.position();
+    const std::string_view line = source.line();
+    if (isCarriageReturnAlone) source.seek(std::min(begin + line.size() + 1, source.position()));
+    return line;
+}
+
 Header parseHeader(ByteSource& source, const MeshReadOptions& options) {
     Header header{{}, {}, FrameMarks(options)};
-    if (source.line() != "ply") damaged("its first line is not 'ply'");
+    const std::string_view bytes = source.rest();
+    const std::size_t end = std::min(bytes.find_first_of("\r\n"), bytes.size());
+    const bool isOldMac =
+        bytes.substr(end).starts_with('\r') && !bytes.substr(end).starts_with("\r\n");
+    if (lowerCase(trimmed(nextHeaderLine(source, isOldMac))) != "ply") {
+        unsupported("its first line is not 'ply'", "it is no PLY file: get it again");
+    }
     bool hasFormat = false;
     while (!source.atEnd()) {
-        const std::string_view text = source.line();
+        const std::string_view text = nextHeaderLine(source, isOldMac);
         ByteSource line(text);
-        const std::string_view kind = line.word();
+        const std::string kind = lowerCase(line.word());
         if (kind == "format") {
             header.encoding = parseEncoding(line.requireWord("the encoding"));
             hasFormat = true;
@@ -119,10 +140,10 @@ Header parseHeader(ByteSource& source, const MeshReadOptions& options) {
             element.count = line.integerWord("an element's count");
             header.elements.push_back(std::move(element));
         } else if (kind == "property") {
-            if (header.elements.empty()) damaged("a property stands before any element");
+            if (header.elements.empty()) malformed("a property stands before any element");
             header.elements.back().properties.push_back(parseProperty(line));
         } else if (kind == "end_header") {
-            if (!hasFormat) damaged("its header does not say how it is encoded");
+            if (!hasFormat) malformed("its header does not say how it is encoded");
             return header;
         }
     }
@@ -132,10 +153,18 @@ Header parseHeader(ByteSource& source, const MeshReadOptions& options) {
 /// Reads one value after the other, whatever their type and encoding.
 class ValueReader {
 public:
-    ValueReader(ByteSource& source, Encoding encoding)
+    /// \param rows  of all elements
+    ValueReader(ByteSource& source, Encoding encoding, std::uint64_t rows)
         : source_(source),
           encoding_(encoding),
+          areRowsLines_(encoding == Encoding::Text && lineCount(source.rest()) >= rows),
           order_(encoding == Encoding::BigEndian ? std::endian::big : std::endian::little) {}
+
+    /// Before each row.
+    void beginRow() {
+        if (areRowsLines_ && !isFirst_) source_.line();
+        isFirst_ = false;
+    }
 
     double real(Scalar type) {
         if (encoding_ == Encoding::Text) return source_.realWord("a value");
@@ -151,7 +180,12 @@ public:
 
     std::int64_t integer(Scalar type) {
         if (type == Scalar::Float32 || type == Scalar::Float64) {
-            damaged("a vertex index or a count has a floating-point type");
+            const double value = real(type);
+            constexpr double kExact = 9007199254740992;  // 2^53
+            if (!(std::abs(value) <= kExact) || value != std::floor(value)) {
+                malformed("an index or a count is " + shortText(value));
+            }
+            return static_cast<std::int64_t>(value);
         }
         return encoding_ == Encoding::Text ? source_.integerWord("an index or a count")
                                            : binaryInteger(type);
@@ -163,6 +197,14 @@ public:
     }
 
 private:
+    /// Lines that are not blank.
+    static std::uint64_t lineCount(std::string_view text) {
+        ByteSource lines(text);
+        std::uint64_t count = 0;
+        while (!lines.atEnd()) count += !trimmed(lines.line()).empty();
+        return count;
+    }
+
     std::int64_t binaryInteger(Scalar type) {
         switch (type) {
             case Scalar::Int8:
@@ -182,6 +224,7 @@ private:
 
     ByteSource& source_;
     Encoding encoding_;
+    bool areRowsLines_, isFirst_ = true;
     std::endian order_;
 };
 
@@ -196,7 +239,7 @@ void requireElementRoom(const Element& element, const ValueReader& values, std::
     for (const Property& property : element.properties) {
         least += values.leastBytes(property.isList ? property.countType : property.type);
     }
-    if (least == 0) damaged("its element " + printable(element.name) + " has no property");
+    if (least == 0) malformed("its element " + printable(element.name) + " has no property");
     requireRoom(printable(element.name), element.count, least,
                 left + 1);  // the last value needs no space
 }
@@ -213,7 +256,7 @@ public:
         const auto has = [&](std::size_t first) {
             return found_[first] && found_[first + 1] && found_[first + 2];
         };
-        if (!has(0)) damaged("its vertices lack x, y or z");
+        if (!has(0)) malformed("its vertices lack x, y or z");
         hasNormals_ = has(3);
         hasColors_ = keepsArrays && has(6);
         if (!keepsArrays) return;
@@ -229,6 +272,7 @@ public:
 
     void read(ValueReader& values, TriangleMesh& mesh) {
         std::array<double, kNowhere> row{};
+        values.beginRow();
         for (std::size_t p = 0; p < slots_.size(); ++p) {
             if (slots_[p] < kNowhere) {
                 row[slots_[p]] = values.real(properties_[p].type);
@@ -293,6 +337,7 @@ void readFaces(const Element& element, ValueReader& values, TriangleMesh& mesh) 
     mesh.triangles.resize(element.count);
     for (Triangle& triangle : mesh.triangles) {
         bool found = false;
+        values.beginRow();
         for (const Property& property : element.properties) {
             const bool isVertices = property.isList && (property.name == "vertex_indices" ||
                                                         property.name == "vertex_index");
@@ -305,7 +350,7 @@ void readFaces(const Element& element, ValueReader& values, TriangleMesh& mesh) 
             for (VertexId& vertex : triangle) vertex = values.integer(property.type);
             found = true;
         }
-        if (!found) damaged("its faces have no list vertex_indices");
+        if (!found) malformed("its faces have no list vertex_indices");
     }
 }
 
@@ -425,7 +470,11 @@ void encodePly(const MeshRecord& record, ByteSink& sink) {
 MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options) {
     ByteSource source(bytes);
     const Header header = parseHeader(source, options);
-    ValueReader values(source, header.encoding);
+    std::uint64_t rows = 0;
+    for (const Element& element : header.elements) {
+        rows += static_cast<std::uint64_t>(std::clamp<std::int64_t>(element.count, 0, kMostRows));
+    }
+    ValueReader values(source, header.encoding, rows);
     MeshFile file;
     file.frame = header.marks.frame();
     for (const Element& element : header.elements) {
@@ -436,7 +485,9 @@ MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options) {
         } else if (element.name == "face") {
             readFaces(element, values, file.mesh);
         } else {
+            if (element.name == "tristrips") refuseStrips();
             for (std::int64_t i = 0; i < element.count; ++i) {
+                values.beginRow();
                 for (const Property& property : element.properties) skipProperty(property, values);
             }
         }

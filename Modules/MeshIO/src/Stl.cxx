@@ -102,19 +102,29 @@ MeshFile decodeText(ByteSource source, FrameMarks marks) {
          word = lowerCase(source.word())) {
         if (word == "solid" || word == "endsolid") {
             isOpen = word == "solid";
-            marks.addText(source.line());
+            const std::size_t begin = source.position();
+            std::string_view name = source.line();
+            if (const std::size_t facet = lowerCase(name).find("facet normal");
+                facet != std::string::npos) {  // all in one line
+                name = name.substr(0, facet);
+                source.seek(begin + facet);
+            }
+            marks.addText(name);
         } else if (word == "vertex") {
             if (loop++ == 3) refusePolygon(4);
             for (std::uint32_t& bits : corners.emplace_back()) {
                 bits = coordinateBits(toFloat(source.realWord("a coordinate"), "a coordinate"));
             }
         } else if (word == "endloop") {
-            if (loop != 3) damaged("a facet has " + std::to_string(loop) + " corners");
+            if (loop != 3) malformed("a facet has " + std::to_string(loop) + " corners");
             loop = 0;
         }
     }
     if (loop != 0) damaged("it ends inside a facet");
-    if (isOpen) damaged("it ends without the word 'endsolid'");
+    if (isOpen) {
+        unsupported("it ends without the word 'endsolid'",
+                    "it may be cut off: get it again, or add that line at its end if it is whole");
+    }
     file.frame = marks.frame();
     file.mesh = welded(corners);
     return file;

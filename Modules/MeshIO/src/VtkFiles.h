@@ -17,6 +17,8 @@ namespace adaptiso::meshio {
 inline constexpr std::string_view kFrameFieldName = "CoordinateFrame";
 inline constexpr std::string_view kSlicerFieldName = "SPACE";
 inline constexpr std::string_view kNormalsName = "Normals";
+inline constexpr std::string_view kToPolyData =
+    "save the surface as PolyData, e.g. with ParaView's Extract Surface";
 
 /// Names and texts of field data: the frame, unless the file is not to say it, and the version of
 /// these files.

@@ -79,16 +79,21 @@ private:
     void decodeHead() {
         constexpr std::string_view kMagic = "# vtk DataFile Version ";
         const std::string_view first = source_.line();
-        if (!first.starts_with(kMagic)) damaged("it does not begin with '# vtk DataFile Version'");
+        if (!first.starts_with(kMagic)) {
+            unsupported("it does not begin with '# vtk DataFile Version'",
+                        "it is no file of VTK: get it again");
+        }
         hasOffsets_ = toReal(trimmed(first.substr(kMagic.size())), "the version") >= 5;
         marks_.addText(source_.line());
         const std::string encoding = lowerCase(trimmed(source_.line()));
         if (encoding != "ascii" && encoding != "binary") {
-            damaged("its third line is " + printable(encoding) + ", must be ASCII or BINARY");
+            malformed("its third line is " + printable(encoding) + ", must be ASCII or BINARY");
         }
         isBinary_ = encoding == "binary";
-        if (lowerCase(source_.word()) != "dataset" || lowerCase(source_.word()) != "polydata") {
-            unsupported("it is not a PolyData", "save the surface as PolyData");
+        const bool hasDataset = lowerCase(source_.word()) == "dataset";
+        const std::string_view dataset = source_.word();
+        if (!hasDataset || lowerCase(dataset) != "polydata") {
+            unsupported("it is not a PolyData but " + printable(dataset), std::string(kToPolyData));
         }
     }
 
@@ -103,8 +108,7 @@ private:
         } else if (section == "vertices" || section == "lines") {
             readCells(line);
         } else if (section == "triangle_strips") {
-            unsupported("it holds triangle strips",
-                        "only triangles are read: triangulate it first");
+            refuseStrips();
         } else if (section == "point_data" || section == "cell_data") {
             tuples_ = line.integerWord("the number of tuples");
             isPointData_ = section == "point_data";
@@ -177,7 +181,7 @@ private:
     }
 
     std::vector<std::int64_t> readNamedIntegers(std::string_view name, std::int64_t count) {
-        if (lowerCase(source_.word()) != name) damaged("its cells lack " + std::string(name));
+        if (lowerCase(source_.word()) != name) malformed("its cells lack " + std::string(name));
         ByteSource line(source_.line());
         return readIntegers(count, parseType(line.requireWord("a type")), name);
     }
@@ -186,7 +190,8 @@ private:
         const std::string_view name = line.requireWord("a name");
         const Stored type = parseType(line.requireWord("a type"));
         const std::string_view components = line.word();
-        if (lowerCase(source_.word()) != "lookup_table") damaged("its scalars lack a lookup table");
+        if (lowerCase(source_.word()) != "lookup_table")
+            malformed("its scalars lack a lookup table");
         source_.line();
         decodeArray(name, tuples_, components.empty() ? 1 : toInteger(components, "components"),
                     type);
@@ -370,7 +375,7 @@ private:
             case Stored::UInt64:
                 return source_.number<std::int64_t>(std::endian::big);
             default:
-                damaged("its cells are not whole numbers");
+                malformed("its cells are not whole numbers");
         }
     }
 

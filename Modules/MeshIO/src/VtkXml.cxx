@@ -52,8 +52,13 @@ public:
 
 private:
     void startFile(const std::string& element, const XmlAttributes& attributes) {
-        if (element != "VTKFile" || requireAttribute(attributes, "type") != "PolyData") {
-            damaged("its XML is not a VTKFile of the type PolyData");
+        if (element != "VTKFile") {
+            unsupported("its XML is a " + printable(element) + ", must be VTKFile",
+                        "it is no file of VTK: get it again");
+        }
+        const std::string& type = requireAttribute(attributes, "type");
+        if (type != "PolyData") {
+            unsupported("it is not a PolyData but " + printable(type), std::string(kToPolyData));
         }
         file = attributes;
     }
@@ -62,8 +67,7 @@ private:
         if (!piece.empty()) unsupported("it holds several pieces", "save it as one piece");
         piece = attributes;
         if (attributeOr(attributes, "NumberOfStrips", "0") != "0") {
-            unsupported("it holds triangle strips",
-                        "only triangles are read: triangulate it first");
+            refuseStrips();
         }
     }
 
@@ -117,7 +121,7 @@ public:
     /// Numbers of any stored type, `count` of them.
     template <class T>
     std::vector<T> numbers(const DataArray& array, std::int64_t count, std::string_view what) {
-        if (array.attributes.empty()) damaged("it has no " + std::string(what));
+        if (array.attributes.empty()) malformed("it has no " + std::string(what));
         if (requireAttribute(array.attributes, "format") == "ascii") {
             return textNumbers<T>(array.text, count, what);
         }
@@ -175,7 +179,7 @@ private:
     std::vector<T> binaryNumbers(const DataArray& array, std::int64_t count,
                                  std::string_view what) {
         if (std::is_integral_v<T> != std::is_integral_v<Stored>) {
-            damaged("its " + std::string(what) + " have the wrong type of number");
+            malformed("its " + std::string(what) + " have the wrong type of number");
         }
         constexpr std::int64_t kBestRatio = 1032;  // of deflate
         const std::size_t mostBytes =
@@ -473,7 +477,7 @@ void encodeVtkXml(const MeshRecord& record, ByteSink& sink) {
 MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options) {
     VtpHandler handler(options.keepsPointArrays);
     const std::size_t end = parseXml(bytes, handler);
-    if (handler.piece.empty()) damaged("it has no piece");
+    if (handler.piece.empty()) malformed("it has no piece");
     ArrayReader reader(handler,
                        handler.isDone() ? findAppendedData(bytes, end) : std::string_view());
     MeshFile file;

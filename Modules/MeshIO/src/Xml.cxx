@@ -82,7 +82,7 @@ private:
 
 const std::string& requireAttribute(const XmlAttributes& attributes, std::string_view name) {
     const auto found = attributes.find(name);
-    if (found == attributes.end()) damaged("its XML lacks the attribute " + printable(name));
+    if (found == attributes.end()) malformed("its XML lacks the attribute " + printable(name));
     return found->second;
 }
 

@@ -143,6 +143,11 @@ TEST(Polygons, AreRefusedWithAWayOut) {
     }
 }
 
+void put(const std::filesystem::path& file, const std::string& bytes) {
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary) << bytes;
+}
+
 /// A .surf of the tetrahedron as FreeSurfer writes it, without this library's words.
 std::string freeSurferBytes(const std::string& footer) {
     const std::string ours =
@@ -401,12 +406,75 @@ TEST(EveryFormat, TakesTheFrameThatIsStated) {
     }
 }
 
-TEST(GiftiFile, ExternalFilesAreNeverOpened) {
-    std::string bytes = written(tetrahedron(), "a.gii");
-    const std::string packed = "GZipBase64Binary";
-    bytes.replace(bytes.find(packed), packed.size(), "ExternalFileBinary");
-    const std::string message = messageOf<FileError>([&] { decoded(bytes, "a.gii"); });
-    EXPECT_NE(message.find("ExternalFileBinary"), std::string::npos) << message;
+/// The tetrahedron with its numbers in `name`, as SPM writes.
+std::string externalGifti(const std::string& name) {
+    const auto array = [&](const char* intent, const char* type, const char* rows, int offset) {
+        return std::string("<DataArray Intent=\"NIFTI_INTENT_") + intent +
+               "\" DataType=\"NIFTI_TYPE_" + type +
+               "\" ArrayIndexingOrder=\"RowMajorOrder\" Dimensionality=\"2\" Dim0=\"" + rows +
+               "\" Dim1=\"3\" Encoding=\"ExternalFileBinary\" Endian=\"LittleEndian\" "
+               "ExternalFileName=\"" +
+               name + "\" ExternalFileOffset=\"" + std::to_string(offset) +
+               "\"><Data></Data></DataArray>";
+    };
+    return "<?xml version=\"1.0\"?><GIFTI Version=\"1.0\" NumberOfDataArrays=\"2\">" +
+           array("POINTSET", "FLOAT32", "4", 0) + array("TRIANGLE", "INT32", "4", 48) + "</GIFTI>";
+}
+
+std::string externalBytes() {
+    std::string bytes;
+    const auto add = [&](const auto& value) {
+        bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+    };
+    for (const Vec3& p : tetrahedron().points) {
+        for (int axis = 0; axis < 3; ++axis) add(static_cast<float>(p[axis]));
+    }
+    for (const Triangle& t : tetrahedron().triangles) {
+        for (const VertexId v : t) add(static_cast<std::int32_t>(v));
+    }
+    return bytes;
+}
+
+TEST(GiftiFile, ExternalDataOfItsFolderAreRead) {
+    const auto file = testing::temporaryFile("a.surf.gii");
+    put(file.parent_path() / "a.dat", externalBytes());
+    put(file, externalGifti("a.dat"));
+    const TriangleMesh mesh = readMesh(file).mesh;
+    EXPECT_EQ(mesh.points, tetrahedron().points);
+    EXPECT_EQ(mesh.triangles, tetrahedron().triangles);
+
+    put(file.parent_path() / "a.dat", externalBytes().substr(0, 90));
+    EXPECT_THROW(readMesh(file), FileError);
+}
+
+TEST(GiftiFile, ExternalDataElsewhereAreNeverOpened) {
+    const auto file = testing::temporaryFile("a.surf.gii");
+    const auto folder = file.parent_path();
+    put(folder / "in" / "a.dat", externalBytes());
+    std::filesystem::remove(folder / "link.dat");
+    std::filesystem::create_symlink("in/a.dat", folder / "link.dat");
+    for (const std::string& name :
+         {std::string("../a.dat"), (folder / "in" / "a.dat").string(), std::string("in/a.dat"),
+          std::string("link.dat"), std::string(".."), std::string()}) {
+        put(file, externalGifti(name));
+        const std::string message = messageOf<FileError>([&] { readMesh(file); });
+        EXPECT_NE(message.find("save it as GZipBase64Binary"), std::string::npos) << message;
+    }
+    const std::string message =
+        messageOf<FileError>([&] { decoded(externalGifti("a.dat"), "a.gii"); });
+    EXPECT_EQ(message,
+              "a.gii: its points lie in another file, 'a.dat' (ExternalFileBinary); save it as "
+              "GZipBase64Binary, all in one file");
+}
+
+TEST(GiftiFile, OfValuesAloneIsToldFromASurface) {
+    const std::string message = messageOf<FileError>([] {
+        decoded("<GIFTI Version=\"1.0\"><DataArray Intent=\"NIFTI_INTENT_SHAPE\"/></GIFTI>",
+                "a.gii");
+    });
+    EXPECT_EQ(message,
+              "a.gii: it holds values at points (NIFTI_INTENT_SHAPE), no surface; give the surface "
+              "with its points and triangles (.surf.gii)");
 }
 
 TEST(GiftiFile, EntitiesAreRefused) {

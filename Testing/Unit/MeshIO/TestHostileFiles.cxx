@@ -317,7 +317,7 @@ TEST(ReadMesh, OpensRegularFilesOnly) {
               std::string::npos);
     const auto folder = testing::temporaryFile("folder.stl");
     std::filesystem::create_directories(folder);
-    EXPECT_NE(messageOf<FileError>([&] { readMesh(folder); }).find("regular file"),
+    EXPECT_NE(messageOf<FileError>([&] { readMesh(folder); }).find("this is a folder"),
               std::string::npos);
     const auto device = testing::temporaryFile("zero.stl");
     std::filesystem::create_symlink("/dev/zero", device);

@@ -37,10 +37,20 @@ struct MeshFormat {
 /// All formats, in the order in which help texts list them.
 std::span<const MeshFormat> meshFormats();
 
-/// The format of a file, by its name alone: the extension, whatever its case ("lh.pial" has the
+/// The format to write, by a file's name alone: the extension, whatever its case ("lh.pial" has the
 /// extension ".pial").
 /// \throws InvalidInput  no format has this extension; the message lists those that are known
 const MeshFormat& findMeshFormat(const std::filesystem::path& path);
+
+/// How many first bytes recognizeMeshFormat() looks at.
+inline constexpr std::size_t kMeshHeadBytes = std::size_t{1} << 16;
+
+/// The format of a surface by its content, whatever the file's name.
+///
+/// \param head       the file's first kMeshHeadBytes bytes, all of a shorter file; unpacked
+/// \param byteCount  of the whole file
+/// \return           null where content does not tell: STL that is cut off, OFF without its word
+const MeshFormat* recognizeMeshFormat(std::string_view head, std::uint64_t byteCount);
 
 /// The frame that users of a format expect: tkRAS of FreeSurfer surfaces, scanner RAS otherwise.
 CoordinateFrame defaultFrame(const MeshFormat& format);

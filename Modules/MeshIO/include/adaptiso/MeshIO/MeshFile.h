@@ -94,6 +94,9 @@ struct MeshReadOptions {
     bool keepsPointArrays = false;  ///< else they are passed over
     /// The frame of the points, whatever the file says of it; empty: as the file says.
     std::optional<CoordinateFrame> inputCoordinates{};
+    /// Where the data of a GIFTI file may lie that are in a file of their own; readMesh() takes the
+    /// surface's folder. Empty: such files are refused.
+    std::filesystem::path folder{};
 };
 
 /// What a file holds, as stored: nothing is moved to another frame, but by GIFTI's matrix to
@@ -108,26 +111,33 @@ struct MeshFile {
     /// One value a point each; names hold no control characters. PLY's red, green and blue are one
     /// array of colours, "RGB", and so are those of OBJ and OFF. Arrays of text are passed over.
     std::vector<PointArray> pointArrays{};
+    const MeshFormat* format = nullptr;  ///< as its content says; never null after reading
 };
 
-/// Reads a triangle surface in the format that the file's name says.
+/// Reads a triangle surface, gzipped or not, in the format that its content says, whatever the
+/// file's name; the extension decides where content does not (recognizeMeshFormat()).
 ///
 /// Files are taken for hostile: only regular files are opened, no other file is opened on their
-/// word, and no count in them is believed beyond what the file's size can hold. Polygons with
-/// more than three corners and triangle strips are refused, not cut up. STL corners with equal
-/// coordinates become one vertex, numbered by first use. OBJ normals are kept if no vertex has
-/// two. GIFTI and FreeSurfer files hold no normals.
+/// word but for GIFTI's external data, plain files in the surface's own folder, and no count in
+/// them is believed beyond what the file's size can hold. Polygons with more than three corners and
+/// triangle strips are refused, not cut up. STL corners with equal coordinates become one vertex,
+/// numbered by first use. OBJ normals are kept if no vertex has two. GIFTI and FreeSurfer files
+/// hold no normals.
 ///
 /// A frame is read from our own marks and from 3D Slicer's; a file whose marks contradict each
 /// other is refused unless options.inputCoordinates states its frame. GIFTI: points are in RAS
 /// where DataSpace is one of NIfTI's spaces; else in tkRAS where there is FreeSurfer's VolGeom, but
 /// for files that Connectome Workbench has changed, which may keep a VolGeom that no longer holds.
 ///
-/// \throws InvalidInput  unknown extension
-/// \throws FileError     "<file>: what is wrong; what to do"
+/// \throws FileError  "<file>: what is wrong; what to do"; images, archives, pointers of git-lfs
+///                    and formats that are not read are named
 MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
 /// The same from bytes in memory (pipes, archives, fuzzers).
+MeshFile decodeMesh(std::string_view bytes, std::string_view name,
+                    const MeshReadOptions& options = {});
+
+/// The same in a format that is known.
 /// \throws FileError  "<name>: what is wrong; what to do"
 MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name,
                     const MeshReadOptions& options = {});
