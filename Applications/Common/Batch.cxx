@@ -59,6 +59,7 @@ private:
         announce(waiting);
         writePage();
         tellThoseNext();
+        std::erase_if(waiting, [&](std::size_t n) { return failsUnrun(n); });
         runChildren(
             waiting.size(), batch_.jobs.value_or(1),
             [&](std::size_t n) { return start(waiting[n]); },
@@ -75,10 +76,36 @@ private:
 
     void findEarlierRuns() {
         for (std::size_t n = 0; n < items_.size(); ++n) {
+            if (!items_[n].fault.empty()) continue;
             std::vector<EarlierRecord> found = earlier_.look(n);
-            if (EarlierRuns::areDone(found)) records_[n] = together(found);
+            if (EarlierRuns::areDone(found)) {
+                keepWhatIsAsked(n, found);
+                records_[n] = together(found);
+            }
             reasons_[n] = EarlierRuns::reasonOf(found);
         }
+    }
+
+    /// What an earlier run has made is what this one is asked for, maybe in other words.
+    void keepWhatIsAsked(std::size_t n, const std::vector<EarlierRecord>& found) const {
+        const Planned planned = plan_.records(items_[n]);
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            if (program_.asked.is_null() || found[k].record->asked == program_.asked) continue;
+            KeptRecord record = *found[k].record;
+            record.asked = program_.asked;
+            writeRecord(planned[k].file, record);
+        }
+    }
+
+    /// An item with a fault fails alone. \return whether it has one
+    bool failsUnrun(std::size_t n) {
+        if (items_[n].fault.empty()) return false;
+        start(n);
+        ChildResult result;
+        result.exitCode = kExitBadInput;
+        result.errors = items_[n].fault;
+        finish(n, result);
+        return true;
     }
 
     /// The run that made all of `found`, or would have.
@@ -136,7 +163,7 @@ private:
     /// \return none: there is nothing to do any more
     std::vector<std::string> start(std::size_t n) {
         const BatchItem& item = items_[n];
-        if (batch_.skipsExisting && isMadeMeanwhile(n)) return {};
+        if (item.fault.empty() && batch_.skipsExisting && isMadeMeanwhile(n)) return {};
         if (!item.folder.empty()) makeFolders(item.folder);
         earlier_.forgetInputs(n);  // they may have changed since they were looked at
         if (program_.removesFormer) removeFormerOutputs(n);
@@ -184,6 +211,7 @@ private:
             record.run.files.push_back(baseName(input));
         }
         record.date = recordDate();
+        record.asked = program_.asked;
         record.options = planned.options;
         return record;
     }
@@ -206,7 +234,7 @@ private:
         if (result.signal != 0) {
             detail::removeLeftTemporaries(item.folder.empty() ? "." : item.folder);
         }
-        if (!record.isFinished() && batch_.skipsExisting) {
+        if (!record.isFinished() && item.fault.empty() && batch_.skipsExisting) {
             // of two batches on one folder the slower may fail where the other has all in place
             earlier_.forgetInputs(n);
             std::vector<EarlierRecord> found = earlier_.look(n);
@@ -299,12 +327,7 @@ private:
         if (!record.error.empty()) return record.error;
         if (!record.report.is_object()) return "";
         if (!record.report.value("failedByWarnings", false)) return program_.says(record.report);
-        return strictFailure(warningsOf(record), "");
-    }
-
-    static std::vector<Warning> warningsOf(const BatchRecord& record) {
-        if (!record.report.is_object()) return {};
-        return record.report.value("warnings", std::vector<Warning>{});
+        return strictFailure(common_, record.warnings, "");
     }
 
     /// Tells of the items whose turn has come: in the order of the inputs, whatever ended first.
@@ -319,7 +342,7 @@ private:
 
     void tell(const BatchItem& item, const BatchRecord& record) {
         const std::string name = item.inputs.front().string();
-        printWarnings(program_.name, common_, warningsOf(record));
+        printWarnings(program_.name, common_, record.warnings);
         if (common_.wantsJson()) {
             const std::string line = jsonText(toJson(record, program_.name), -1) + "\n";
             if (common_.wantsJsonOnStdout())

@@ -53,6 +53,8 @@ struct BatchProgram {
     /// file of --json: its lines go to `jsonLines`.
     bool isPartOfApp = false;
     std::string* jsonLines = nullptr;
+    /// What the caller was asked for, kept in every record; null: nothing of its own.
+    Json asked{};
     /// Before an item is made again what it has left goes, where that is still as it was made.
     bool removesFormer = false;
     /// From the report of a run that has passed: what stands in "<name>.json" beside its surface,

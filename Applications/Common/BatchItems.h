@@ -12,6 +12,7 @@ struct BatchItem {
     std::string name;                           ///< stands for {name}, and names the record
     std::vector<std::filesystem::path> inputs;  ///< one, or the surfaces of one head
     std::filesystem::path folder;               ///< outputs and record go there
+    std::string fault{};  ///< why it fails without being run; empty: it is run
 };
 
 /// The inputs that a list names: one a line, with a name after a tab where one is given; empty

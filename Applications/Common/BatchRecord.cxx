@@ -12,6 +12,7 @@
 #include "Common/CommonOptions.h"
 #include "Common/ExitCodes.h"
 #include "Common/Sha256.h"
+#include "Common/Verdict.h"
 
 namespace adaptiso {
 namespace {
@@ -51,6 +52,7 @@ Json recordJson(const KeptRecord& record) {
     json["ended"] = record.hasEnded;
     json["date"] = record.date;
     json["says"] = record.says;
+    if (!record.asked.is_null()) json["asked"] = record.asked;
     Json options = Json::array(), inputs = Json::array(), outputs = Json::array();
     for (const KeptOption& option : record.options) {
         options.push_back({{"name", option.name}, {"sha256", option.sha256}});
@@ -79,12 +81,16 @@ KeptRecord recordFrom(const Json& json) {
     record.hasEnded = json.at("ended").get<bool>();
     record.date = json.at("date").get<std::string>();
     record.says = json.at("says").get<std::string>();
+    if (json.contains("asked")) record.asked = json["asked"];
     BatchRecord& run = record.run;
     run.name = json.at("name").get<std::string>();
     run.files = json.at("files").get<std::vector<std::string>>();
     if (!json.at("exitCode").is_null()) run.exitCode = json.at("exitCode").get<int>();
     if (!json.at("signal").is_null()) run.signal = json.at("signal").get<int>();
-    if (!json.at("error").is_null()) run.error = json.at("error").get<std::string>();
+    if (!run.isFinished() && json.at("error").is_object()) {
+        run.error = json["error"].at("text").get<std::string>();
+    }
+    run.warnings = json.at("warnings").get<std::vector<Warning>>();
     run.outputs = json.at("outputs").get<std::vector<std::string>>();
     run.seconds = json.at("seconds").get<double>();
     run.report = json.at("report");
@@ -101,6 +107,16 @@ KeptRecord recordFrom(const Json& json) {
     return record;
 }
 
+/// {text, file}; of a run that went to its end, that of its own report.
+Json errorJson(const BatchRecord& record) {
+    if (!record.error.empty()) {
+        Json json{{"text", record.error}};
+        if (!record.files.empty()) json["file"] = record.files.front();
+        return json;
+    }
+    return record.report.is_object() ? record.report.value("error", Json()) : Json();
+}
+
 }  // namespace
 
 Json toJson(const BatchRecord& record, const std::string& program) {
@@ -111,7 +127,8 @@ Json toJson(const BatchRecord& record, const std::string& program) {
             {"passed", record.hasPassed()},
             {"exitCode", record.signal == 0 ? Json(record.exitCode) : Json(nullptr)},
             {"signal", record.signal != 0 ? Json(record.signal) : Json(nullptr)},
-            {"error", record.error.empty() ? Json(nullptr) : Json(record.error)},
+            {"error", errorJson(record)},
+            {"warnings", record.warnings},
             {"earlierRun", record.isOfEarlierRun},
             {"madeAgain", record.madeAgain.empty() ? Json(nullptr) : Json(record.madeAgain)},
             {"outputs", record.outputs},
@@ -127,7 +144,14 @@ BatchRecord recordOf(const BatchItem& item, const ChildResult& result, const std
     record.signal = result.signal;
     record.seconds = result.seconds;
     record.report = Json::parse(result.output, nullptr, false);
-    if (record.report.is_discarded()) record.report = nullptr;
+    if (!record.report.is_object()) record.report = nullptr;
+    if (record.report.is_object() && record.report.contains("warnings")) {
+        record.warnings = record.report["warnings"].get<std::vector<Warning>>();
+    }
+    // its error is on stderr, too
+    if (record.report.is_object() && record.report.value("schema", "") == kFailureSchema) {
+        record.report = nullptr;
+    }
     if (result.signal != 0) {
         record.error = std::string("ended by a signal: ") + strsignal(result.signal);
     } else if (!record.isFinished()) {

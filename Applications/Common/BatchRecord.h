@@ -25,6 +25,7 @@ struct BatchRecord {
     std::string
         madeAgain{};  ///< why what an earlier run had made did not do; empty: it was not asked
     Json report{};    ///< the run's own; null when there is none
+    std::vector<Warning> warnings{};
 
     bool hasPassed() const { return exitCode == 0 && signal == 0; }
     /// It ran to its end, well or not: nothing would change if it ran again.
@@ -69,6 +70,7 @@ struct KeptRecord {
     BatchRecord run{};
     std::string says{};  ///< what came of it, in words
     std::string date{};  ///< of the end, or of the beginning when there is none yet: UTC, ISO 8601
+    Json asked{};        ///< BatchProgram::asked
     std::vector<KeptOption> options{};
     std::vector<KeptInput> inputs{};
     std::vector<KeptOutput> outputs{};

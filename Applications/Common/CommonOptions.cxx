@@ -4,11 +4,13 @@
 #include <tbb/version.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
 
 #include "Common/OptionValues.h"
 #include "Common/Threads.h"
+#include "Common/Warnings.h"
 
 namespace adaptiso {
 
@@ -23,9 +25,20 @@ void declareCommonOptions(CLI::App& app, CommonOptions& options, const std::stri
     app.add_flag("--no-warnings", options.hidesWarnings,
                  "Print no warnings; --json and --report hold them all the same")
         ->group(kGroup);
-    app.add_flag(
-           "--strict", options.isStrict,
-           "Fail (exit code 1) when there is any warning, with a line that says which; " + strictly)
+    CLI::Option* const strict = app.add_flag(
+        "--strict", options.isStrict,
+        "Fail (exit code 1) when there is any warning, with a line that says which; " + strictly);
+    strict->group(kGroup);
+    addValue(
+        app, "--allow", "CODE[,CODE...]",
+        [&options](const std::string& text) {
+            for (const std::string& code : CLI::detail::split(text, ',')) {
+                options.allowed.push_back(warningCode("--allow", code));
+            }
+        },
+        "Let warnings of these codes pass --strict (Documentation/Warnings.md lists them)")
+        ->needs(strict)
+        ->join(',')
         ->group(kGroup);
     app.add_option("--json", options.json,
                    "Write a report to FILE, or to stdout when FILE is -, in place of the text")
@@ -52,10 +65,14 @@ struct ThreadLimit::Impl {
 
 ThreadLimit::ThreadLimit(const CommonOptions& options) {
     constexpr auto kParallelism = tbb::global_control::max_allowed_parallelism;
-    const int asked =
-        options.threads.value_or(static_cast<int>(tbb::global_control::active_value(kParallelism)));
-    const int threads = 1 + startableThreads(asked - 1);
-    if (threads < asked) {
+    const int machine = static_cast<int>(tbb::global_control::active_value(kParallelism));
+    const int asked = options.threads.value_or(machine);
+    // oneTBB and ITK start all of the machine's where they can, so that --threads 1 may fail, too
+    const int wanted = std::max({asked, machine, 2}) - 1;
+    const int startable = startableThreads(wanted);
+    const int threads = std::min(asked, 1 + startable);
+    const bool isForWant = startable < wanted;
+    if (isForWant) {
         // ITK's pool of threads, which it makes in any case, can't go without one; its other way
         // of running in parallel starts threads when there is work for several
         setenv("ITK_GLOBAL_DEFAULT_THREADER", "Platform", 1);
@@ -63,7 +80,7 @@ ThreadLimit::ThreadLimit(const CommonOptions& options) {
     } else if (!options.threads) {
         return;
     }
-    impl_.reset(new Impl{{kParallelism, static_cast<std::size_t>(threads)}, threads < asked});
+    impl_.reset(new Impl{{kParallelism, static_cast<std::size_t>(threads)}, isForWant});
 }
 
 ThreadLimit::~ThreadLimit() {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "Common/CliNames.h"
 
@@ -13,14 +14,15 @@ struct CommonOptions {
     std::optional<int> threads;  ///< none: as many as the machine has
     bool isQuiet = false;
     bool hidesWarnings = false;
-    bool isStrict = false;  ///< warnings make the run fail (Common/Warnings.h)
-    std::string json;       ///< a file's name, "-" for stdout, empty for no report
+    bool isStrict = false;             ///< warnings make the run fail (Common/Warnings.h)
+    std::vector<std::string> allowed;  ///< codes of warnings that --strict lets pass
+    std::string json;                  ///< a file's name, "-" for stdout, empty for no report
 
     bool wantsJson() const { return !json.empty(); }
     bool wantsJsonOnStdout() const { return json == "-"; }
 };
 
-/// Adds --threads, --quiet, --no-warnings, --strict, --json and --version.
+/// Adds --threads, --quiet, --no-warnings, --strict, --allow, --json and --version.
 /// \param strictly  what --strict means for what the program writes: "no surface is written"
 void declareCommonOptions(CLI::App& app, CommonOptions& options, const std::string& strictly);
 

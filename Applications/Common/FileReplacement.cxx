@@ -60,6 +60,7 @@ Replacements::~Replacements() {
             case Kind::Exchanged:
                 exchange(done->temporary, done->final);
                 break;
+            case Kind::Aside:
             case Kind::Linked:
                 // the new one gets its name back first; then the old one's two names are one again
                 std::rename(done->final.c_str(), done->temporary.c_str());
@@ -91,6 +92,17 @@ int Replacements::replace(const fs::path& temporary, const fs::path& final) {
         return 0;
     }
     const fs::path kept = newTemporaryName(final);
+    if (S_ISDIR(old.st_mode)) {
+        // for a moment there is neither; a file system without exchange (NFS, 9p, FUSE) has no more
+        if (std::rename(final.c_str(), kept.c_str()) != 0) return errno;
+        if (std::rename(temporary.c_str(), final.c_str()) != 0) {
+            const int why = errno;
+            std::rename(kept.c_str(), final.c_str());
+            return why;
+        }
+        done_.push_back({Kind::Aside, temporary, final, kept});
+        return 0;
+    }
     const bool isLinked = link(final.c_str(), kept.c_str()) == 0;
     if (std::rename(temporary.c_str(), final.c_str()) != 0) {
         const int why = errno;

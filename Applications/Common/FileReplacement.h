@@ -24,9 +24,9 @@ public:
     Replacements(const Replacements&) = delete;
     Replacements& operator=(const Replacements&) = delete;
 
-    /// Renames `temporary` to `final`. What is there is kept beside it, where the file system can
-    /// exchange names or has hard links; where it has neither, a file's replacement can't be
-    /// undone. A folder that is not empty is replaced only where names can be exchanged.
+    /// Renames `temporary` to `final`. What is there is kept beside it: where the file system can
+    /// exchange names it stands there until then, else a file gets a second name (a hard link), and
+    /// a folder is renamed first. Where there are no links a file's replacement can't be undone.
     /// \return 0, or errno; then nothing has changed
     int replace(const std::filesystem::path& temporary, const std::filesystem::path& final);
 
@@ -34,7 +34,7 @@ public:
     void keep();
 
 private:
-    enum class Kind { New, Exchanged, Linked, Overwritten };
+    enum class Kind { New, Exchanged, Aside, Linked, Overwritten };
     struct Done {
         Kind kind;
         std::filesystem::path temporary, final;

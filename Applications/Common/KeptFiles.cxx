@@ -111,6 +111,8 @@ void addTimes(KeptFile& kept, const fs::path& path) {
     if (stat(path.c_str(), &status) != 0) {
         throw FileError(path.string() + ": can't be read: " + detail::reason());
     }
+    // a pipe or a device may have no end
+    if (!S_ISREG(status.st_mode)) throw FileError(path.string() + ": is no regular file");
     kept.bytes += static_cast<std::uint64_t>(status.st_size);
     kept.modifiedNs = std::max(kept.modifiedNs, nanoseconds(status.st_mtim));
     kept.changedNs = std::max(kept.changedNs, nanoseconds(status.st_ctim));
@@ -130,6 +132,7 @@ std::vector<fs::path> filesOfInput(const fs::path& input, const fs::path& output
     std::error_code error;
     if (fs::is_directory(input, error)) return filesIn(input, output, true);
     std::vector<fs::path> files{input};
+    if (!fs::is_regular_file(input, error)) return files;
     for (fs::path& file : belongingTo(input, output)) {
         if (!fs::equivalent(file, input, error)) files.push_back(std::move(file));
     }

@@ -74,7 +74,9 @@ void declareMesherOptions(CLI::App& app, MesherOptions& options, const std::stri
 }
 
 void requireMesher(const MesherOptions& options) {
-    if (!options.isAsked() || isInstalled(options.mesher)) return;
+    if (!options.isAsked()) return;
+    temporaryFolder();  // there must be one
+    if (isInstalled(options.mesher)) return;
     throw FileError("--tetrahedra " + options.mesher + ": " + options.mesher +
                     " is not installed; on Debian: apt install " + options.mesher);
 }

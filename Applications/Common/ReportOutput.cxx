@@ -4,7 +4,6 @@
 #include <exception>
 #include <new>
 
-#include "Common/ExitCodes.h"
 #include "Common/RunApp.h"
 #include "Common/Temporaries.h"
 #include "Common/Warnings.h"
@@ -111,17 +110,10 @@ ReportResult writeReport(const std::function<Report()>& make, const std::string&
     return result;
 }
 
-int tellReportFailure(const std::string& program, const std::string& written,
-                      const std::string& failure, int code) {
-    if (failure.empty()) return code;
-    printError(program, written + "; the report failed: " + failure);
-    return code == kExitOk ? kExitCheckFailed : code;
-}
-
 void tellStrict(Report& report, const CommonOptions& common, std::span<const Warning> warnings,
                 const std::string& consequence) {
     if (!failsStrict(common, warnings)) return;
-    const std::string text = strictFailure(warnings, consequence) + ".";
+    const std::string text = strictFailure(common, warnings, consequence) + ".";
     const bool hasFailed = report.verdict == ReportVerdict::Failed;
     report.headline = hasFailed ? report.headline + " " + text : text;
     report.verdict = ReportVerdict::Failed;

@@ -65,12 +65,6 @@ struct ReportResult {
 ReportResult writeReport(const std::function<Report()>& make, const std::string& program,
                          const ReportOptions& options, std::vector<AtomicOutput>& outputs);
 
-/// Tells on stderr that the report failed, and what is there all the same.
-/// \param written  "brain.ply is written", "the checks are done"
-/// \return `code`, or kExitCheckFailed in place of 0; `code` when nothing failed
-int tellReportFailure(const std::string& program, const std::string& written,
-                      const std::string& failure, int code);
-
 /// Where --strict and warnings make a run fail, the page says so.
 /// \param consequence  as strictFailure() takes it
 void tellStrict(Report& report, const CommonOptions& common, std::span<const Warning> warnings,

@@ -9,6 +9,7 @@
 
 #include "Common/AtomicOutput.h"
 #include "Common/Temporaries.h"
+#include "Common/Verdict.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -37,6 +38,7 @@ void flushResults() {
 void printResults(const CommonOptions& common, const std::string& json,
                   const std::function<void(std::ostream&)>& printText) {
     if (common.wantsJsonOnStdout()) {
+        markReported();
         std::cout << json;
     } else if (!common.isQuiet) {
         printText(std::cout);

@@ -4,24 +4,18 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
-#include <cstring>
 #include <exception>
-#include <filesystem>
 #include <iostream>
 #include <memory>
-#include <new>
 #include <sstream>
 #include <string_view>
-#include <system_error>
 
 #include "Common/AtomicOutput.h"
-#include "Common/Numbers.h"
 #include "Common/OptionsJson.h"
-#include "Common/Resources.h"
 #include "Common/ResultOutput.h"
 #include "Common/Temporaries.h"
 #include "Common/UsageWords.h"
+#include "Common/Verdict.h"
 #include "adaptiso/ImageIO/MappedInput.h"
 
 namespace adaptiso {
@@ -71,37 +65,22 @@ private:
     }
 };
 
-int fail(const Program& program, std::string_view message, ExitCode code) {
-    printError(program.name, message);
-    return code;
+/// Tells why a run has failed, on stderr and to whom --json was asked for.
+int fail(const Program& program, Verdict verdict) {
+    const bool isUsage = verdict.exitCode == kExitUsage;
+    printError(program.name, verdict.error + (isUsage ? " (see " + program.name + " --help)" : ""));
+    writeFailureReport(program.name, verdict);
+    return verdict.exitCode;
 }
-
-int failUsage(const Program& program, std::string_view message) {
-    return fail(program, std::string(message) + " (see " + program.name + " --help)", kExitUsage);
-}
-
-constexpr const char* kNoThreads =
-    "a thread or process could not be started; the limit of processes (ulimit -u) or of memory is "
-    "reached. Raise it, or ask for fewer (--threads, --jobs)";
 
 /// Where threads can't be started any more, oneTBB throws where nothing can catch it.
 void endForWantOfThreads() {
-    try {
-        if (const std::exception_ptr error = std::current_exception())
-            std::rethrow_exception(error);
-    } catch (const std::exception& error) {
-        if (std::strstr(error.what(), "pthread_create") != nullptr) {
-            removeTemporaries();
-            printError(terminatedProgram, kNoThreads);
-            _exit(kExitBadInput);
-        }
-        std::cerr << terminatedProgram << ": internal error (please report it): " << error.what()
-                  << '\n';
-    } catch (...) {
-        printError(terminatedProgram, "internal error (please report it)");
-    }
+    const std::exception_ptr error = std::current_exception();
+    const Verdict verdict =
+        error ? verdictOf(error) : Verdict{kExitInternalError, "internal error (please report it)"};
     removeTemporaries();
-    _exit(kExitInternalError);
+    printError(terminatedProgram, verdict.error);
+    _exit(verdict.exitCode);
 }
 
 /// A program that is started without one of the standard streams must not take a file that it
@@ -117,30 +96,8 @@ void keepStandardStreams() {
 int runParsed(const Program& program, const std::function<int()>& run) {
     try {
         return run();
-    } catch (const UsageError& error) {
-        return failUsage(program, error.what());
-    } catch (const InvalidInput& error) {
-        return fail(program, error.what(), kExitBadInput);
-    } catch (const FileError& error) {
-        return fail(program, error.what(), kExitBadInput);
-    } catch (const std::filesystem::filesystem_error& error) {
-        return fail(program, error.what(), kExitBadInput);
-    } catch (const std::bad_alloc&) {
-        return fail(program,
-                    "not enough memory (" + formatNumber(std::round(peakMemoryMb())) +
-                        " MB were in use); a machine with more of it, or a smaller image, will do",
-                    kExitBadInput);
-    } catch (const std::system_error& error) {
-        if (error.code() == std::errc::resource_unavailable_try_again) {
-            return fail(program, kNoThreads, kExitBadInput);
-        }
-        return fail(program, std::string("internal error (please report it): ") + error.what(),
-                    kExitInternalError);
-    } catch (const std::exception& error) {
-        return fail(program, std::string("internal error (please report it): ") + error.what(),
-                    kExitInternalError);
     } catch (...) {
-        return fail(program, "internal error (please report it)", kExitInternalError);
+        return fail(program, verdictOf(std::current_exception()));
     }
 }
 
@@ -153,6 +110,7 @@ int runApp(int argc, const char* const* argv, const Program& program,
     terminatedProgram = program.name;
     std::set_terminate(endForWantOfThreads);
     endWhenAMappedFileFails(program.name.c_str(), mappedFileAt);
+    rememberReport(argc, argv);
     CLI::App app(program.description, program.name);
     app.formatter(std::make_shared<FoldedHelp>());
     app.footer(program.footer);
@@ -169,9 +127,9 @@ int runApp(int argc, const char* const* argv, const Program& program,
         const int code = app.exit(asked);  // --help, --version
         return runParsed(program, [code] { return flushResults(), code; });
     } catch (const CLI::ParseError& error) {
-        return failUsage(program, inWords(app, error));
+        return fail(program, {kExitUsage, inWords(app, error)});
     } catch (const UsageError& error) {
-        return failUsage(program, error.what());
+        return fail(program, {kExitUsage, error.what()});
     }
     return runParsed(program, run);
 }

@@ -42,6 +42,8 @@ int runApp(int argc, const char* const* argv, const Program& program,
 /// InvalidInput, FileError: 3. Too little memory, too few threads or processes: 3, since a smaller
 /// input or a larger machine mends it. All else: 4.
 ///
+/// A run that fails writes what --json asks for, too (Verdict.h).
+///
 /// --help-json alone prints the options as JSON (optionsJson()), from which manual pages are made.
 ///
 /// Signals that end the program (Ctrl-C among them) first remove temporary files (AtomicOutput);

@@ -1,9 +1,9 @@
-#include "Common/ExitCodes.h"
 #include "Common/ImageOptions.h"
 #include "Common/Json.h"
 #include "Common/Numbers.h"
 #include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
+#include "Common/Verdict.h"
 #include "Common/Warnings.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 
@@ -69,25 +69,6 @@ Json seriesJson(const DicomSeries& series, bool showsPhi) {
     return json;
 }
 
-std::string listJson(const std::string& program, const std::string& name,
-                     const DicomListing& listing, bool showsPhi) {
-    Json series = Json::array(), damaged = Json::array();
-    for (const DicomSeries& one : listing.series) series.push_back(seriesJson(one, showsPhi));
-    for (const DicomFault& one : listing.damaged) {
-        Json json{{"fault", one.fault}};
-        if (showsPhi) json["file"] = one.file.string();
-        damaged.push_back(json);
-    }
-    const Json report{{"schema", "adaptiso-series/1"},
-                      {"program", {{"name", program}, {"version", programVersion()}}},
-                      {"input", {{"file", name}}},
-                      {"series", series},
-                      {"filesWithoutImage", listing.otherFiles},
-                      {"damagedFiles", damaged},
-                      {"warnings", listing.warnings}};
-    return jsonText(report) + "\n";
-}
-
 /// All that the list tells as warnings.
 std::vector<Warning> warningsOf(const DicomListing& listing) {
     std::vector<Warning> warnings = listing.warnings;
@@ -100,6 +81,23 @@ std::vector<Warning> warningsOf(const DicomListing& listing) {
     return warnings;
 }
 
+std::string listJson(const std::string& program, const std::string& name,
+                     const DicomListing& listing, const Verdict& verdict, bool showsPhi) {
+    Json series = Json::array(), damaged = Json::array();
+    for (const DicomSeries& one : listing.series) series.push_back(seriesJson(one, showsPhi));
+    for (const DicomFault& one : listing.damaged) {
+        Json json{{"fault", one.fault}};
+        if (showsPhi) json["file"] = one.file.string();
+        damaged.push_back(json);
+    }
+    Json report = reportHead("adaptiso-series/1", program, verdict, warningsOf(listing));
+    report.update(Json{{"input", {{"file", name}}},
+                       {"series", series},
+                       {"filesWithoutImage", listing.otherFiles},
+                       {"damagedFiles", damaged}});
+    return jsonText(report) + "\n";
+}
+
 }  // namespace
 
 int runSeriesList(const std::filesystem::path& input, const ImageOptions& options,
@@ -107,11 +105,13 @@ int runSeriesList(const std::filesystem::path& input, const ImageOptions& option
     const ThreadLimit threads(common);
     const DicomListing listing = listSeries(input);
     const std::string name = baseName(input);
+    Verdict verdict;
+    verdict.failStrict(common, warningsOf(listing), "");
     const std::string json =
-        common.wantsJson() ? listJson(program, name, listing, options.showsPhi) : "";
+        common.wantsJson() ? listJson(program, name, listing, verdict, options.showsPhi) : "";
     deliverReport(common, input, json,
                   [&](std::ostream& out) { printList(out, name, listing, options.showsPhi); });
-    return strictVerdict(program, common, warningsOf(listing), "", kExitOk);
+    return printVerdict(program, verdict, "");
 }
 
 }  // namespace adaptiso

@@ -99,10 +99,21 @@ ToolResult runTool(const std::string& program, const std::vector<std::string>& a
     return result;
 }
 
-ScratchFolder::ScratchFolder() {
+fs::path temporaryFolder() {
     std::error_code error;
-    const fs::path parent = fs::temp_directory_path(error);
-    if (error) throw FileError("there is no folder for temporary files: " + error.message());
+    const fs::path folder = fs::temp_directory_path(error);
+    if (!error && access(folder.c_str(), W_OK | X_OK) == 0) return folder;
+    for (const char* const name : {"TMPDIR", "TMP", "TEMP", "TEMPDIR"}) {  // as the library looks
+        const char* const value = std::getenv(name);
+        if (value == nullptr) continue;
+        throw FileError(std::string(name) + " (" + value +
+                        "): is no folder that can be written to; set it to one that can");
+    }
+    throw FileError("/tmp: can't be written to; set TMPDIR to a folder that can");
+}
+
+ScratchFolder::ScratchFolder() {
+    const fs::path parent = temporaryFolder();
     constexpr unsigned kOwnersAlone = 0700;
     const detail::SignalsWait untilItIsRemembered;
     const detail::NewTemporary made =

@@ -25,6 +25,10 @@ namespace detail {
 struct Registration;
 }
 
+/// Where temporary files go: TMPDIR, or what stands for it. \throws FileError  no folder that can
+/// be written to
+std::filesystem::path temporaryFolder();
+
 /// A folder of its own for temporary files (in TMPDIR), gone with the object, also when a signal
 /// ends this program; what a killed run has left goes with the next one.
 class ScratchFolder {

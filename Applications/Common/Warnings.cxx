@@ -1,13 +1,36 @@
 #include "Common/Warnings.h"
 
-#include "Common/ExitCodes.h"
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
 #include "Common/RunApp.h"
+#include "Common/UsageWords.h"
 #include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
+namespace {
+
+std::vector<Warning>& printed() {
+    static std::vector<Warning> all;
+    return all;
+}
+
+/// The warnings that --strict does not let pass.
+std::vector<Warning> failing(const CommonOptions& common, std::span<const Warning> warnings) {
+    std::vector<Warning> bad;
+    if (!common.isStrict) return bad;
+    std::ranges::copy_if(warnings, std::back_inserter(bad), [&](const Warning& warning) {
+        return std::ranges::find(common.allowed, warning.code) == common.allowed.end();
+    });
+    return bad;
+}
+
+}  // namespace
 
 void printWarnings(const std::string& program, const CommonOptions& common,
                    std::span<const Warning> warnings) {
+    printed().insert(printed().end(), warnings.begin(), warnings.end());
     if (common.hidesWarnings) return;
     for (const Warning& warning : warnings) printError(program, "warning: " + warning.line());
 }
@@ -21,24 +44,30 @@ Warning countMissed(const std::string& file, const std::string& what, std::int64
             file};
 }
 
+std::span<const Warning> printedWarnings() {
+    return printed();
+}
+
+std::string warningCode(const std::string& option, const std::string& text) {
+    std::vector<std::string> codes;
+    for (const WarningCode& known : warningCodes()) codes.emplace_back(known.code);
+    if (std::ranges::find(codes, text) != codes.end()) return text;
+    throw UsageError(option + " " + shown(text) + ": is no warning's code" +
+                     suggestion(text, codes) + "; Documentation/Warnings.md lists all");
+}
+
 bool failsStrict(const CommonOptions& common, std::span<const Warning> warnings) {
-    return common.isStrict && !warnings.empty();
+    return !failing(common, warnings).empty();
 }
 
-std::string strictFailure(std::span<const Warning> warnings, const std::string& consequence) {
-    std::string text = "--strict: " + std::to_string(warnings.size()) +
-                       (warnings.size() == 1 ? " warning" : " warnings") +
+std::string strictFailure(const CommonOptions& common, std::span<const Warning> warnings,
+                          const std::string& consequence) {
+    const std::vector<Warning> bad = failing(common, warnings);
+    std::string text = "--strict: " + std::to_string(bad.size()) +
+                       (bad.size() == 1 ? " warning" : " warnings") +
                        (consequence.empty() ? "" : ", " + consequence);
-    for (std::size_t n = 0; n < warnings.size(); ++n)
-        text += (n == 0 ? ": " : "; ") + warnings[n].line();
+    for (std::size_t n = 0; n < bad.size(); ++n) text += (n == 0 ? ": " : "; ") + bad[n].line();
     return text;
-}
-
-int strictVerdict(const std::string& program, const CommonOptions& common,
-                  std::span<const Warning> warnings, const std::string& consequence, int exitCode) {
-    if (!failsStrict(common, warnings)) return exitCode;
-    printError(program, strictFailure(warnings, consequence));
-    return kExitCheckFailed;
 }
 
 }  // namespace adaptiso

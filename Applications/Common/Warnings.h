@@ -21,17 +21,20 @@ void printWarnings(const std::string& program, const CommonOptions& common,
 Warning countMissed(const std::string& file, const std::string& what, std::int64_t written,
                     std::int64_t wanted, const std::string& kept, double errorBoundMm);
 
-/// --strict is given and there are warnings: the run is to end with kExitCheckFailed.
+/// Those that printWarnings() has been given so far, hidden or not.
+std::span<const Warning> printedWarnings();
+
+/// `text`, a code of warningCodes(). \throws UsageError  it is not; names the nearest
+std::string warningCode(const std::string& option, const std::string& text);
+
+/// --strict is given and there are warnings that --allow does not let pass: the run is to end with
+/// kExitCheckFailed.
 bool failsStrict(const CommonOptions& common, std::span<const Warning> warnings);
 
 /// What --strict says of warnings, in one line: "--strict: 2 warnings, so no surface was written:
 /// ball.nii: ...; ball.nii: ...".
 /// \param consequence  "so no surface was written"; empty: none
-std::string strictFailure(std::span<const Warning> warnings, const std::string& consequence);
-
-/// Prints strictFailure() on stderr when failsStrict().
-/// \return kExitCheckFailed then, else `exitCode`
-int strictVerdict(const std::string& program, const CommonOptions& common,
-                  std::span<const Warning> warnings, const std::string& consequence, int exitCode);
+std::string strictFailure(const CommonOptions& common, std::span<const Warning> warnings,
+                          const std::string& consequence);
 
 }  // namespace adaptiso

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "Common/Resources.h"
+#include "Common/Verdict.h"
 #include "Common/Warnings.h"
 #include "Pipeline.h"
 #include "adaptiso/HeadPipeline/BemModel.h"
@@ -22,7 +23,7 @@ struct BemRun {
     std::vector<std::filesystem::path> subjectFiles{};
     StageTimer timer{};
     std::optional<ReadVolume> shownImage{};  ///< for the report; none unless one is wanted
-    std::string reportFailure{};             ///< why there is no page; empty: nothing failed
+    Verdict verdict{};  ///< how the run ends, known before the reports are made
 
     /// --strict makes the warnings failures: of the model only the report is written.
     bool failsStrict() const { return adaptiso::failsStrict(options.common, model.warnings); }

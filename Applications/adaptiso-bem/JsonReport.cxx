@@ -23,15 +23,15 @@ Json outputJson(const BemRun& run) {
 }  // namespace
 
 std::string jsonReport(const BemRun& run) {
-    Json report{{"schema", "adaptiso-bem/1"},
-                {"program", {{"name", "adaptiso-bem"}, {"version", programVersion()}}},
-                {"model", run.model.hasModel() && !run.failsStrict() && !run.options.isDryRun},
-                {"failedByWarnings", run.failsStrict()},
-                {"input", bemInputJson(run.model)},
-                {"options", optionsJson(run.options)}};
+    Json report = reportHead("adaptiso-bem/1", "adaptiso-bem", run.verdict, run.model.warnings);
+    report.update(
+        Json{{"model", run.model.hasModel() && !run.failsStrict() && !run.options.isDryRun},
+             {"failedByWarnings", run.failsStrict()},
+             {"input", bemInputJson(run.model)},
+             {"options", optionsJson(run.options)}});
     report.update(bemModelJson(run.model));
     report["output"] = outputJson(run);
-    report["reportFailure"] = reportFailureJson(run.reportFailure);
+    report["reportFailure"] = reportFailureJson(run.verdict.reportFailure);
     report["seconds"] = secondsJson(run.timer);
     report["peakMemoryMb"] = peakMemoryMb();
     return jsonText(report) + "\n";

@@ -247,7 +247,7 @@ std::unique_ptr<PictureFolder> show(BemRun& run, std::vector<AtomicOutput>& outp
             folder->writeText(picture.name, picture.png);
         }
     }
-    run.reportFailure = page.failure;
+    run.verdict.failReport(page.failure);
     return std::move(page.folder);
 }
 
@@ -260,6 +260,11 @@ void write(BemRun& run, ProgressLine& progress) {
     if (!options.isDryRun) {
         fillFolder(run, folder);
         if (run.model.hasModel() && !run.failsStrict()) outputs = writeSubject(run, *folder);
+    }
+    if (run.model.hasModel()) {
+        run.verdict.failStrict(options.common, run.model.warnings, "so no model was written");
+    } else {
+        run.verdict = {kExitCheckFailed, "no model: " + run.model.failureText()};
     }
     const std::unique_ptr<PictureFolder> pictures = show(run, outputs, folder);
     const std::string json = jsonReport(run);
@@ -307,13 +312,7 @@ int runBem(const BemOptions& options) {
     write(run, progress);
     const std::string written =
         options.isDryRun ? "all is done" : options.output.string() + " is written";
-    if (run.model.hasModel()) {
-        const int code = strictVerdict("adaptiso-bem", options.common, run.model.warnings,
-                                       "so no model was written", kExitOk);
-        return tellReportFailure("adaptiso-bem", written, run.reportFailure, code);
-    }
-    printError("adaptiso-bem", "no model: " + run.model.failureText());
-    return tellReportFailure("adaptiso-bem", written, run.reportFailure, kExitCheckFailed);
+    return printVerdict("adaptiso-bem", run.verdict, written);
 }
 
 }  // namespace adaptiso

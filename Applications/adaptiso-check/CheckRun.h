@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "Common/Resources.h"
+#include "Common/Verdict.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Warning.h"
@@ -60,7 +61,7 @@ struct CheckRun {
     std::vector<ToldNote> notes;  ///< of head models: what is unusual, asked by the profile bem
     std::vector<Warning> warnings;
     StageTimer timer;
-    std::string reportFailure;  ///< why there is no page; empty: nothing failed
+    Verdict verdict;  ///< how the run ends, known before the reports are made
 
     bool hasPassed() const;  ///< all that is required holds, of all files
     bool hasUnreadable() const;

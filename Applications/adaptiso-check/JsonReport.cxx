@@ -84,19 +84,16 @@ Json optionsJson(const CheckOptions& options) {
 std::string jsonReport(const CheckRun& run) {
     Json surfaces = Json::array();
     for (const SurfaceRun& surface : run.surfaces) surfaces.push_back(surfaceJson(surface));
-    const Json report{{"schema", "adaptiso-check/1"},
-                      {"program", {{"name", "adaptiso-check"}, {"version", programVersion()}}},
-                      {"passed", run.hasPassed() && !failsStrict(run.options.common, run.warnings)},
-                      {"options", optionsJson(run.options)},
-                      {"volume", volumeJson(run)},
-                      {"surfaces", surfaces},
-                      {"nesting", nestingJson(run)},
-                      {"plausibility", notesJson(run.notes)},
-                      {"warnings", run.warnings},
-                      {"failedByWarnings", failsStrict(run.options.common, run.warnings)},
-                      {"reportFailure", reportFailureJson(run.reportFailure)},
-                      {"seconds", secondsJson(run.timer)},
-                      {"peakMemoryMb", peakMemoryMb()}};
+    Json report = reportHead("adaptiso-check/1", "adaptiso-check", run.verdict, run.warnings);
+    report.update(Json{{"options", optionsJson(run.options)},
+                       {"volume", volumeJson(run)},
+                       {"surfaces", surfaces},
+                       {"nesting", nestingJson(run)},
+                       {"plausibility", notesJson(run.notes)},
+                       {"failedByWarnings", failsStrict(run.options.common, run.warnings)},
+                       {"reportFailure", reportFailureJson(run.verdict.reportFailure)},
+                       {"seconds", secondsJson(run.timer)},
+                       {"peakMemoryMb", peakMemoryMb()}});
     return jsonText(report) + "\n";
 }
 

@@ -299,6 +299,19 @@ void tellFailed(const CheckRun& run) {
     }
 }
 
+Verdict verdictOf(const CheckRun& run, const std::string& reportFailure) {
+    Verdict verdict{run.hasPassed() ? kExitOk : kExitCheckFailed};
+    const auto unread = std::ranges::find_if(
+        run.surfaces, [](const SurfaceRun& surface) { return !surface.error.empty(); });
+    if (unread != run.surfaces.end()) {
+        verdict = {kExitBadInput, unread->error};
+    } else {
+        verdict.failStrict(run.options.common, run.warnings, "");
+    }
+    verdict.failReport(reportFailure);
+    return verdict;
+}
+
 }  // namespace
 
 bool CheckRun::hasUnreadable() const {
@@ -331,8 +344,8 @@ int runCheck(const CheckOptions& options) {
             return writeReport([&] { return makeReport(run, checker.shown()); }, kProgram,
                                options.report, outputs);
         });
-        run.reportFailure = page.failure;
     }
+    run.verdict = verdictOf(run, page.failure);
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
         outputs.emplace_back(options.common.json).writeText(json);
@@ -342,11 +355,8 @@ int runCheck(const CheckOptions& options) {
     printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
     AtomicOutput::commit(outputs);
     if (options.common.isQuiet || options.common.wantsJsonOnStdout()) tellFailed(run);
-    int code = run.hasUnreadable() ? kExitBadInput : run.hasPassed() ? kExitOk : kExitCheckFailed;
-    if (!run.hasUnreadable()) {
-        code = strictVerdict(kProgram, options.common, run.warnings, "", code);
-    }
-    return tellReportFailure(kProgram, "the checks are done", page.failure, code);
+    if (run.hasUnreadable()) run.verdict.error.clear();  // told above
+    return printVerdict(kProgram, run.verdict, "the checks are done");
 }
 
 }  // namespace adaptiso

@@ -9,6 +9,7 @@
 #include "Common/ReportOutput.h"
 #include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
+#include "Common/Verdict.h"
 #include "SelfTestCases.h"
 #include "SelfTestReport.h"
 
@@ -50,15 +51,16 @@ int runSelfTest(const CheckOptions& options) {
                                options.report, outputs);
         });
     }
-    const std::string json = selftest::jsonText(test, machine, date, timer);
+    Verdict verdict{test.hasPassed() ? kExitOk : kExitCheckFailed};
+    verdict.failReport(page.failure);
+    const std::string json = selftest::jsonText(test, verdict, machine, date, timer);
     if (hasJsonFile) outputs.emplace_back(options.common.json).writeText(json);
     progress.clear();
     printResults(options.common, json,
                  [&](std::ostream& out) { selftest::printText(out, test, machine, date, timer); });
     AtomicOutput::commit(outputs);
     if (options.common.isQuiet || options.common.wantsJsonOnStdout()) tellFailures(test);
-    const int code = test.hasPassed() ? kExitOk : kExitCheckFailed;
-    return tellReportFailure(kProgram, "the self-test is done", page.failure, code);
+    return printVerdict(kProgram, verdict, "the self-test is done");
 }
 
 }  // namespace adaptiso

@@ -1,7 +1,5 @@
 #include "SelfTestCases.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -9,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "Common/AtomicFolder.h"
 #include "Common/CommonOptions.h"
 #include "Common/RunApp.h"
+#include "Common/ToolProcess.h"
 #include "SelfTestPhantoms.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
@@ -84,9 +82,7 @@ bool hasFailed(const std::vector<Check>& checks, std::string_view key) {
 class Runner {
 public:
     explicit Runner(const std::function<void(const std::string&)>& progress)
-        : progress_(progress),
-          folder_(fs::temp_directory_path() / ("adaptiso-self-test-" + std::to_string(getpid())),
-                  {}) {}
+        : progress_(progress) {}
 
     SelfTest run() {
         for (const Method method : {Method::Adaptive, Method::MarchingCubes}) {
@@ -366,7 +362,7 @@ private:
     }
 
     const std::function<void(const std::string&)>& progress_;
-    AtomicFolder folder_;  ///< never committed: it goes with what it holds
+    ScratchFolder folder_;
     int files_ = 0;
     std::string subject_;
     SelfTest test_;

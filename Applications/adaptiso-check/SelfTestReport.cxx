@@ -110,8 +110,8 @@ void printText(std::ostream& out, const SelfTest& test, const Machine& machine,
         << "Name ____________________   Date ____________   Signature ____________________\n";
 }
 
-std::string jsonText(const SelfTest& test, const Machine& machine, const std::string& date,
-                     const StageTimer& timer) {
+std::string jsonText(const SelfTest& test, const Verdict& verdict, const Machine& machine,
+                     const std::string& date, const StageTimer& timer) {
     Json ran = Json::object();
     for (const auto& [name, value] : machine) {
         std::string key = name;
@@ -129,15 +129,13 @@ std::string jsonText(const SelfTest& test, const Machine& machine, const std::st
                                 {"error", m.error.empty() ? Json(nullptr) : Json(m.error)},
                                 {"passed", m.hasPassed()}});
     }
-    const Json report{{"schema", "adaptiso-check-self-test/1"},
-                      {"program", {{"name", kProgram}, {"version", programVersion()}}},
-                      {"passed", test.hasPassed()},
-                      {"date", date},
-                      {"machine", ran},
-                      {"measurements", measurements},
-                      {"failures", test.failures()},
-                      {"seconds", secondsJson(timer)},
-                      {"peakMemoryMb", peakMemoryMb()}};
+    Json report = reportHead("adaptiso-check-self-test/1", kProgram, verdict, {});
+    report.update(Json{{"date", date},
+                       {"machine", ran},
+                       {"measurements", measurements},
+                       {"failures", test.failures()},
+                       {"seconds", secondsJson(timer)},
+                       {"peakMemoryMb", peakMemoryMb()}});
     return adaptiso::jsonText(report) + "\n";
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "Common/Resources.h"
+#include "Common/Verdict.h"
 #include "SelfTestCases.h"
 #include "adaptiso/Report/Report.h"
 
@@ -18,8 +19,8 @@ Machine thisMachine();
 void printText(std::ostream& out, const SelfTest& test, const Machine& machine,
                const std::string& date, const StageTimer& timer);
 
-std::string jsonText(const SelfTest& test, const Machine& machine, const std::string& date,
-                     const StageTimer& timer);
+std::string jsonText(const SelfTest& test, const Verdict& verdict, const Machine& machine,
+                     const std::string& date, const StageTimer& timer);
 
 /// The page; takes the surfaces out of `test`.
 Report reportPage(SelfTest& test, const Machine& machine);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Common/Resources.h"
+#include "Common/Verdict.h"
 #include "Overlap.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
@@ -76,7 +77,7 @@ struct CompareRun {
     std::vector<Warning> warnings;
     StageTimer timer;
     std::optional<Volume> image;  ///< for the page; none unless one is wanted
-    std::string reportFailure;    ///< why there is no page; empty: nothing failed
+    Verdict verdict;              ///< how the run ends, known before the reports are made
 };
 
 }  // namespace adaptiso

@@ -92,29 +92,27 @@ Json checksJson(const std::vector<Check>& checks) {
 
 std::string jsonReport(const CompareRun& run) {
     const DistanceReport& distances = run.distances;
-    const Json report{{"schema", "adaptiso-compare/1"},
-                      {"program", {{"name", "adaptiso-compare"}, {"version", programVersion()}}},
-                      {"a", surfaceJson(run.a)},
-                      {"b", surfaceJson(run.b)},
-                      {"volume", volumeJson(run)},
-                      {"options", optionsJson(run.options)},
-                      {"coordinates", frameWord(run.frame)},
-                      {"voxelMm", orNull(run.voxelMm)},
-                      {"distances",
-                       {{"aToB", distancesJson(run, distances.aToB)},
-                        {"bToA", distancesJson(run, distances.bToA)},
-                        {"combined", distancesJson(run, distances.combined)}}},
-                      {"differences",
-                       {{"area", differenceJson(run.a.areaMm2, run.b.areaMm2, "mm2")},
-                        {"volume", differenceJson(run.a.volumeMm3, run.b.volumeMm3, "mm3")}}},
-                      {"overlap", overlapJson(run.overlap)},
-                      {"colored", coloredJson(run)},
-                      {"checks", checksJson(run.checks)},
-                      {"warnings", run.warnings},
-                      {"failedByWarnings", failsStrict(run.options.common, run.warnings)},
-                      {"reportFailure", reportFailureJson(run.reportFailure)},
-                      {"seconds", secondsJson(run.timer)},
-                      {"peakMemoryMb", peakMemoryMb()}};
+    Json report = reportHead("adaptiso-compare/1", "adaptiso-compare", run.verdict, run.warnings);
+    report.update(Json{{"a", surfaceJson(run.a)},
+                       {"b", surfaceJson(run.b)},
+                       {"volume", volumeJson(run)},
+                       {"options", optionsJson(run.options)},
+                       {"coordinates", frameWord(run.frame)},
+                       {"voxelMm", orNull(run.voxelMm)},
+                       {"distances",
+                        {{"aToB", distancesJson(run, distances.aToB)},
+                         {"bToA", distancesJson(run, distances.bToA)},
+                         {"combined", distancesJson(run, distances.combined)}}},
+                       {"differences",
+                        {{"area", differenceJson(run.a.areaMm2, run.b.areaMm2, "mm2")},
+                         {"volume", differenceJson(run.a.volumeMm3, run.b.volumeMm3, "mm3")}}},
+                       {"overlap", overlapJson(run.overlap)},
+                       {"colored", coloredJson(run)},
+                       {"checks", checksJson(run.checks)},
+                       {"failedByWarnings", failsStrict(run.options.common, run.warnings)},
+                       {"reportFailure", reportFailureJson(run.verdict.reportFailure)},
+                       {"seconds", secondsJson(run.timer)},
+                       {"peakMemoryMb", peakMemoryMb()}});
     return jsonText(report) + "\n";
 }
 

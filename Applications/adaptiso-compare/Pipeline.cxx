@@ -213,16 +213,13 @@ std::string digitsApart(const Check& check) {
     return parseFiniteNumber(text) <= check.limitMm ? formatNumber(check.valueMm) : text;
 }
 
-/// Says on stderr which checks failed.
-int verdict(const CompareRun& run) {
-    int code = kExitOk;
+/// Prints on stderr which checks failed.
+void printFailed(const CompareRun& run) {
     for (const Check& check : run.checks) {
         if (check.hasPassed()) continue;
         printError(kProgram, "check failed: " + check.name + " " + digitsApart(check) +
                                  " mm, at most " + formatNumber(check.limitMm) + " mm");
-        code = kExitCheckFailed;
     }
-    return code;
 }
 
 }  // namespace
@@ -263,8 +260,11 @@ int runCompare(const CompareOptions& options) {
                 },
                 kProgram, options.report, outputs);
         });
-        run.reportFailure = page.failure;
     }
+    const bool havePassed = std::ranges::all_of(run.checks, &Check::hasPassed);
+    run.verdict.exitCode = havePassed ? kExitOk : kExitCheckFailed;
+    run.verdict.failStrict(options.common, run.warnings, "");
+    run.verdict.failReport(page.failure);
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
         outputs.emplace_back(options.common.json).writeText(json);
@@ -275,8 +275,8 @@ int runCompare(const CompareOptions& options) {
     AtomicOutput::commit(outputs);
     const std::string written = options.colored.empty() ? "the distances are measured"
                                                         : options.colored.string() + " is written";
-    const int code = strictVerdict(kProgram, options.common, run.warnings, "", verdict(run));
-    return tellReportFailure(kProgram, written, page.failure, code);
+    printFailed(run);
+    return printVerdict(kProgram, run.verdict, written);
 }
 
 }  // namespace adaptiso

@@ -9,6 +9,7 @@
 #include "Common/Progress.h"
 #include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
+#include "Common/Verdict.h"
 #include "GiantReport.h"
 #include "PieceJoiner.h"
 #include "Steps.h"
@@ -225,9 +226,15 @@ int runJoinStep(const GiantOptions& options, const std::string& key) {
     }
     progress.clear();
     AtomicOutput::commit(outputs);
-    deliverReport(options.common, plan.input, report.dump(2) + "\n",
+    Verdict verdict;
+    verdict.failReport(page.failure);
+    std::vector<Warning> warnings;
+    addWarnings(warnings, plan.warnings, baseName(plan.input));
+    Json whole = reportHead("adaptiso-giant/1", kGiantProgram, verdict, warnings);
+    whole.update(report);
+    deliverReport(options.common, plan.input, jsonText(whole) + "\n",
                   [&](std::ostream& out) { printText(report, out); });
-    return tellReportFailure(kGiantProgram, "the surface is joined", page.failure, kExitOk);
+    return printVerdict(kGiantProgram, verdict, "the surface is joined");
 }
 
 }  // namespace adaptiso

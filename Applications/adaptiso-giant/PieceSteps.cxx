@@ -12,6 +12,7 @@
 #include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
+#include "Common/Verdict.h"
 #include "PieceUnion.h"
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
@@ -84,12 +85,12 @@ int runPieces(const GiantOptions& options, const GiantPlan& plan, const std::str
         counts.triangles += piece.summary.triangles;
     }
     progress.clear();
-    const Json json{{"schema", "adaptiso-giant-step/1"},
-                    {"step", stage},
-                    {"made", counts.made},
-                    {"found", counts.found},
-                    {"triangles", counts.triangles},
-                    {"peakMemoryMb", peakMemoryMb()}};
+    Json json = reportHead("adaptiso-giant-step/1", kGiantProgram, {}, {});
+    json.update(Json{{"step", stage},
+                     {"made", counts.made},
+                     {"found", counts.found},
+                     {"triangles", counts.triangles},
+                     {"peakMemoryMb", peakMemoryMb()}});
     deliverReport(options.common, plan.input, json.dump(2) + "\n", [&](std::ostream& out) {
         out << stage << ": " << formatCount(counts.made) << " made, " << formatCount(counts.found)
             << " found, " << formatCount(counts.triangles) << " triangles\n";

@@ -10,6 +10,7 @@
 #include "Common/Json.h"
 #include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
+#include "Common/Verdict.h"
 #include "Common/Warnings.h"
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
@@ -113,11 +114,13 @@ int runPlanStep(const GiantOptions& options) {
         AtomicOutput::commit({&output, 1});
     }
     const Index3 count = plan.cut().tiles();
-    const Json json{{"schema", "adaptiso-giant-step/1"},
-                    {"step", "plan"},
-                    {"tiles", plan.tiles.size()},
-                    {"tilesOfVolume", count[0] * count[1] * count[2]},
-                    {"seams", plan.seams().size()}};
+    Verdict verdict;
+    verdict.failStrict(options.common, warnings, "so no plan was written");
+    Json json = reportHead("adaptiso-giant-step/1", kGiantProgram, verdict, warnings);
+    json.update(Json{{"step", "plan"},
+                     {"tiles", plan.tiles.size()},
+                     {"tilesOfVolume", count[0] * count[1] * count[2]},
+                     {"seams", plan.seams().size()}});
     deliverReport(options.common, options.input, json.dump(2) + "\n", [&](std::ostream& out) {
         out << formatCount(std::ssize(plan.tiles)) << " of "
             << formatCount(count[0] * count[1] * count[2]) << " tiles may hold surface";
@@ -125,8 +128,7 @@ int runPlanStep(const GiantOptions& options) {
             out << ", in " << formatCount(std::ssize(plan.seams())) << " seam boxes";
         out << "\n";
     });
-    return strictVerdict(kGiantProgram, options.common, warnings, "so no plan was written",
-                         kExitOk);
+    return printVerdict(kGiantProgram, verdict, "");
 }
 
 }  // namespace adaptiso

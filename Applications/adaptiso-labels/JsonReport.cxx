@@ -145,7 +145,9 @@ std::string folderReport(const LabelsRun& run) {
 }
 
 std::string jsonReport(const LabelsRun& run) {
-    Json json = sharedJson(run);
+    Json json = reportHead("adaptiso-labels/1", "adaptiso-labels", run.verdict, run.warnings);
+    json.update(sharedJson(run));
+    json["passed"] = run.verdict.exitCode == kExitOk;
     Json& output = json["output"];
     output["folder"] = baseName(run.folder);
     output["written"] = run.writesFolder();
@@ -155,7 +157,7 @@ std::string jsonReport(const LabelsRun& run) {
     }
     json["options"]["threads"] = orNull(run.options.common.threads);
     json["failedByWarnings"] = run.failsStrict();
-    json["reportFailure"] = reportFailureJson(run.reportFailure);
+    json["reportFailure"] = reportFailureJson(run.verdict.reportFailure);
     json["seconds"] = secondsJson(run.timer);
     json["peakMemoryMb"] = peakMemoryMb();
     return textOf(json);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "Common/Resources.h"
+#include "Common/Verdict.h"
 #include "Common/Warnings.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
@@ -83,7 +84,7 @@ struct LabelsRun {
     bool leavesGiftiOut = false;                                  ///< its digits do not do
     StageTimer timer{};
     std::vector<Warning> warnings{};  ///< all; each names its file
-    std::string reportFailure{};      ///< why there is no page; empty: nothing failed
+    Verdict verdict{};                ///< how the run ends, known before the reports are made
 
     bool holdsPromises() const {
         for (const LabelsCheck& check : checks) {

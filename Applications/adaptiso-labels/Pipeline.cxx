@@ -224,7 +224,6 @@ ReportResult show(LabelsRun& run, const RegionSurfaces& surfaces, const VolumeVi
             return makeReport(run, surfaces, baseName(file), behind ? behind->volume.view() : map);
         },
         kProgram, options.report, outputs);
-    run.reportFailure = page.failure;
     return page;
 }
 
@@ -283,6 +282,14 @@ int runLabels(const LabelsOptions& options) {
     }
     if (options.report.isWanted()) progress.show(kReport);
     page = run.timer.time(kReport, [&] { return show(run, surfaces, map, outputs); });
+    run.verdict.failStrict(options.common, run.warnings, kNotWritten);
+    if (!run.holdsPromises()) {
+        run.verdict = {kExitCheckFailed, baseName(options.input) +
+                                             ": its walls do not keep their promises, so nothing "
+                                             "was written: " +
+                                             failureText(run)};
+    }
+    run.verdict.failReport(page.failure);
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (hasJsonFile(options)) outputs.emplace_back(options.common.json).writeText(json);
     progress.clear();
@@ -295,13 +302,7 @@ int runLabels(const LabelsOptions& options) {
     }
     const std::string written =
         run.writesFolder() ? run.folder.string() + " is written" : "no surface is written";
-    int code = strictVerdict(kProgram, options.common, run.warnings, kNotWritten, kExitOk);
-    if (!run.holdsPromises()) {
-        printError(kProgram, baseName(options.input) + ": its walls do not keep their promises, " +
-                                 "so nothing was written: " + failureText(run));
-        code = kExitCheckFailed;
-    }
-    return tellReportFailure(kProgram, written, page.failure, code);
+    return printVerdict(kProgram, run.verdict, written);
 }
 
 }  // namespace adaptiso

@@ -13,6 +13,7 @@
 #include "Common/PreprocessingOptions.h"
 #include "Common/Progress.h"
 #include "Common/ResultOutput.h"
+#include "Common/Verdict.h"
 #include "Common/Warnings.h"
 #include "InfoReport.h"
 #include "adaptiso/ImageIO/Otsu.h"
@@ -164,15 +165,20 @@ int runInfo(const MeshOptions& options) {
     } catch (const Error& error) {
         progress.clear();
         info.fault = withoutPath(error.what(), options.input);
-        deliverReport(options.common, options.input, infoJson(options, info), [](auto&) {});
+        const Verdict verdict = verdictOf(std::current_exception());
+        deliverReport(options.common, options.input, infoJson(options, info, verdict),
+                      [](auto&) {});
+        markReported();
         throw;
     }
     progress.clear();
     const std::vector<Warning> warnings = namedWarnings(options, info);
     printWarnings("adaptiso-mesh", options.common, warnings);
-    deliverReport(options.common, options.input, infoJson(options, info),
+    Verdict verdict;
+    verdict.failStrict(options.common, warnings, "");
+    deliverReport(options.common, options.input, infoJson(options, info, verdict),
                   [&](std::ostream& out) { printInfo(out, options, info); });
-    return strictVerdict("adaptiso-mesh", options.common, warnings, "", kExitOk);
+    return printVerdict("adaptiso-mesh", verdict, "");
 }
 
 }  // namespace adaptiso

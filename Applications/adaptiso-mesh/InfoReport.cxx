@@ -172,24 +172,24 @@ void printInfo(std::ostream& out, const MeshOptions& options, const ImageInfo& i
     for (const std::string& refusal : info.refusals) out << "refused     " << refusal << '\n';
 }
 
-std::string infoJson(const MeshOptions& options, const ImageInfo& info) {
+std::string infoJson(const MeshOptions& options, const ImageInfo& info, const Verdict& verdict) {
     const bool isRead = info.fault.empty();
     const auto ifRead = [&](const auto& make) { return isRead ? Json(make()) : Json(nullptr); };
-    Json report{{"schema", "adaptiso-info/1"},
-                {"program", {{"name", "adaptiso-mesh"}, {"version", programVersion()}}},
-                {"input",
-                 {{"file", baseName(options.input)},
-                  {"format", isRead ? Json(info.format) : Json(nullptr)},
-                  {"readable", isRead},
-                  {"fault", isRead ? Json(nullptr) : Json(info.fault)},
-                  {"warnings", info.warnings}}},
-                {"preprocessing",
-                 ifRead([&] { return preprocessingJson(options.preprocessing, info.sizeAsRead); })},
-                {"image", ifRead([&] { return imageJson(info); })},
-                {"values", ifRead([&] { return valuesJson(info.values); })},
-                {"refusals", info.refusals},
-                {"warnings", namedWarnings(options, info)},
-                {"failedByWarnings", failsStrict(options.common, info.warnings)}};
+    Json report =
+        reportHead("adaptiso-info/1", "adaptiso-mesh", verdict, namedWarnings(options, info));
+    report.update(Json{{"input",
+                        {{"file", baseName(options.input)},
+                         {"format", isRead ? Json(info.format) : Json(nullptr)},
+                         {"readable", isRead},
+                         {"fault", isRead ? Json(nullptr) : Json(info.fault)},
+                         {"warnings", info.warnings}}},
+                       {"preprocessing", ifRead([&] {
+                            return preprocessingJson(options.preprocessing, info.sizeAsRead);
+                        })},
+                       {"image", ifRead([&] { return imageJson(info); })},
+                       {"values", ifRead([&] { return valuesJson(info.values); })},
+                       {"refusals", info.refusals},
+                       {"failedByWarnings", failsStrict(options.common, info.warnings)}});
     if (info.series) report["series"] = seriesJson(*info.series);
     return jsonText(report) + "\n";
 }

@@ -3,6 +3,7 @@
 #include <ostream>
 #include <string>
 
+#include "Common/Verdict.h"
 #include "Info.h"
 
 namespace adaptiso {
@@ -11,6 +12,6 @@ namespace adaptiso {
 void printInfo(std::ostream& out, const MeshOptions& options, const ImageInfo& info);
 
 /// --info for machines, as README.md documents it.
-std::string infoJson(const MeshOptions& options, const ImageInfo& info);
+std::string infoJson(const MeshOptions& options, const ImageInfo& info, const Verdict& verdict);
 
 }  // namespace adaptiso

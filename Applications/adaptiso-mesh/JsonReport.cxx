@@ -59,18 +59,16 @@ std::string jsonReport(const MeshRun& run) {
     for (const SurfaceSummary& surface : run.surfaces) {
         surfaces.push_back(surfaceJson(run, surface));
     }
-    const Json report{{"schema", "adaptiso-mesh/1"},
-                      {"program", {{"name", "adaptiso-mesh"}, {"version", programVersion()}}},
-                      {"input", inputJson(run)},
-                      {"preprocessing", preprocessedJson(run)},
-                      {"options", optionsJson(run.options)},
-                      {"index", indexJson(run.index)},
-                      {"surfaces", surfaces},
-                      {"warnings", run.warnings},
-                      {"failedByWarnings", run.failsStrict()},
-                      {"reportFailure", reportFailureJson(run.reportFailure)},
-                      {"seconds", secondsJson(run.timer)},
-                      {"peakMemoryMb", peakMemoryMb()}};
+    Json report = reportHead("adaptiso-mesh/1", "adaptiso-mesh", run.verdict, run.warnings);
+    report.update(Json{{"input", inputJson(run)},
+                       {"preprocessing", preprocessedJson(run)},
+                       {"options", optionsJson(run.options)},
+                       {"index", indexJson(run.index)},
+                       {"surfaces", surfaces},
+                       {"failedByWarnings", run.failsStrict()},
+                       {"reportFailure", reportFailureJson(run.verdict.reportFailure)},
+                       {"seconds", secondsJson(run.timer)},
+                       {"peakMemoryMb", peakMemoryMb()}});
     return jsonText(report) + "\n";
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Common/Resources.h"
+#include "Common/Verdict.h"
 #include "Common/Warnings.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/TriangleMesh.h"
@@ -71,7 +72,7 @@ struct MeshRun {
     StageTimer timer;
     std::vector<ShownSurface> shown{};  ///< for the page; empty unless one is wanted
     std::vector<Warning> warnings{};    ///< all; each names its file
-    std::string reportFailure{};        ///< why there is no page; empty: nothing failed
+    Verdict verdict{};                  ///< how the run ends, known before the reports are made
 
     /// --strict makes the warnings failures: neither surfaces nor index are written.
     bool failsStrict() const { return adaptiso::failsStrict(options.common, warnings); }

@@ -343,8 +343,9 @@ int runMesh(const MeshOptions& asked) {
             return writeReport([&] { return makeReport(run, volume); }, kProgram, options.report,
                                outputs);
         });
-        run.reportFailure = page.failure;
     }
+    run.verdict.failStrict(options.common, run.warnings, kNotWritten);
+    run.verdict.failReport(page.failure);
     const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
         outputs.emplace_back(options.common.json).writeText(json);
@@ -352,10 +353,8 @@ int runMesh(const MeshOptions& asked) {
     progress.clear();
     printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
     AtomicOutput::commit(outputs);
-    const int code = strictVerdict(kProgram, options.common, run.warnings, kNotWritten, kExitOk);
-    return tellReportFailure(kProgram,
-                             run.failsStrict() ? "no surface is written" : writtenText(run),
-                             page.failure, code);
+    return printVerdict(kProgram, run.verdict,
+                        run.failsStrict() ? "no surface is written" : writtenText(run));
 }
 
 }  // namespace adaptiso

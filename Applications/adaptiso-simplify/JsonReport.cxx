@@ -80,18 +80,16 @@ Json dataJson(const SimplifyRun& run) {
 }  // namespace
 
 std::string jsonReport(const SimplifyRun& run) {
-    const Json report{{"schema", "adaptiso-simplify/1"},
-                      {"program", {{"name", "adaptiso-simplify"}, {"version", programVersion()}}},
-                      {"input", inputJson(run)},
-                      {"options", optionsJson(run.command)},
-                      {"output", outputJson(run)},
-                      {"data", dataJson(run)},
-                      {"warnings", run.warnings},
-                      {"failedBySoundness", run.failsSoundness()},
-                      {"failedByWarnings", run.failsStrict()},
-                      {"reportFailure", reportFailureJson(run.reportFailure)},
-                      {"seconds", secondsJson(run.timer)},
-                      {"peakMemoryMb", peakMemoryMb()}};
+    Json report = reportHead("adaptiso-simplify/1", "adaptiso-simplify", run.verdict, run.warnings);
+    report.update(Json{{"input", inputJson(run)},
+                       {"options", optionsJson(run.command)},
+                       {"output", outputJson(run)},
+                       {"data", dataJson(run)},
+                       {"failedBySoundness", run.failsSoundness()},
+                       {"failedByWarnings", run.failsStrict()},
+                       {"reportFailure", reportFailureJson(run.verdict.reportFailure)},
+                       {"seconds", secondsJson(run.timer)},
+                       {"peakMemoryMb", peakMemoryMb()}});
     return jsonText(report) + "\n";
 }
 

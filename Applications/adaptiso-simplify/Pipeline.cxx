@@ -279,12 +279,12 @@ std::string refusal(const SimplifyRun& run) {
            ": is not sound, as --require-sound asks for, so no surface was written: " + text;
 }
 
-int exitCode(const SimplifyRun& run) {
-    if (!run.failsSoundness()) {
-        return strictVerdict(kProgram, run.command.common, run.warnings, kNotWritten, kExitOk);
-    }
-    printError(kProgram, refusal(run));
-    return kExitCheckFailed;
+Verdict verdictOf(const SimplifyRun& run, const std::string& reportFailure) {
+    Verdict verdict;
+    verdict.failStrict(run.command.common, run.warnings, kNotWritten);
+    if (run.failsSoundness()) verdict = {kExitCheckFailed, refusal(run)};
+    verdict.failReport(reportFailure);
+    return verdict;
 }
 
 /// As simplify() does, in the words of the command line.
@@ -357,8 +357,8 @@ int runSimplify(const SimplifyCommand& command) {
             return writeReport([&] { return makeReport(run, input, std::move(shown)); }, kProgram,
                                command.report, outputs);
         });
-        run.reportFailure = page.failure;
     }
+    run.verdict = verdictOf(run, page.failure);
     const std::string json = command.common.wantsJson() ? jsonReport(run) : "";
     if (command.common.wantsJson() && !command.common.wantsJsonOnStdout()) {
         outputs.emplace_back(command.common.json).writeText(json);
@@ -369,8 +369,7 @@ int runSimplify(const SimplifyCommand& command) {
     AtomicOutput::commit(outputs);
     const std::string written =
         run.writesSurface() ? run.output.file.string() + " is written" : "no surface is written";
-    const int code = exitCode(run);
-    return tellReportFailure(kProgram, written, page.failure, code);
+    return printVerdict(kProgram, run.verdict, written);
 }
 
 }  // namespace adaptiso

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Common/Resources.h"
+#include "Common/Verdict.h"
 #include "Common/Warnings.h"
 #include "Findings.h"
 #include "Pipeline.h"
@@ -55,7 +56,7 @@ struct SimplifyRun {
     std::vector<DataSummary> data{};
     StageTimer timer{};
     std::vector<Warning> warnings{};  ///< all; each names its file
-    std::string reportFailure{};      ///< why there is no page; empty: nothing failed
+    Verdict verdict{};                ///< how the run ends, known before the reports are made
 
     /// --require-sound, and it is not.
     bool failsSoundness() const { return command.requiresSound && !isSound(findings); }

@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <fstream>
 #include <string>
@@ -9,6 +12,18 @@
 
 #include "Common/AtomicFolder.h"
 #include "adaptiso/Core/Errors.h"
+
+static bool canExchange = true;
+
+/// In the C library's place: NFS, 9p and FUSE know no flags.
+extern "C" int renameat2(int from, const char* old, int to, const char* made,
+                         unsigned flags) noexcept {
+    if (flags == 0 || canExchange) {
+        return static_cast<int>(syscall(SYS_renameat2, from, old, to, made, flags));
+    }
+    errno = EINVAL;
+    return -1;
+}
 
 namespace adaptiso {
 namespace {
@@ -121,6 +136,46 @@ TEST_F(AtomicFolderTest, ComesBackWhenAnOutputCanNotBePutInPlace) {
     }
     EXPECT_EQ(names(folder_), Names{"model"});
     EXPECT_EQ(text(target / "a.txt"), "old");
+}
+
+/// A file system that can't exchange names.
+class WithoutExchange : public AtomicFolderTest {
+protected:
+    void SetUp() override {
+        AtomicFolderTest::SetUp();
+        canExchange = false;
+        fs::create_directory(folder_ / "model");
+        put(folder_ / "model" / "a.txt", "old");
+    }
+    void TearDown() override {
+        canExchange = true;
+        AtomicFolderTest::TearDown();
+    }
+};
+
+TEST_F(WithoutExchange, FoldersAreReplacedWhole) {
+    {
+        AtomicFolder model(folder_ / "model", kOwn);
+        model.writeText("b.txt", "new");
+        model.commit();
+    }
+    EXPECT_EQ(names(folder_), (Names{"model"}));
+    EXPECT_EQ(names(folder_ / "model"), (Names{"b.txt"}));
+    EXPECT_EQ(text(folder_ / "model" / "b.txt"), "new");
+}
+
+TEST_F(WithoutExchange, FoldersComeBackWhenAnOutputCanNotBePutInPlace) {
+    {
+        AtomicFolder model(folder_ / "model", kOwn);
+        model.writeText("b.txt", "new");
+        std::vector<AtomicOutput> outputs;
+        outputs.emplace_back(folder_ / "c.txt").writeText("three");
+        fs::remove(outputs[0].temporary());
+        EXPECT_THROW(model.commit(outputs), FileError);
+    }
+    EXPECT_EQ(names(folder_), (Names{"model"}));
+    EXPECT_EQ(names(folder_ / "model"), (Names{"a.txt"}));
+    EXPECT_EQ(text(folder_ / "model" / "a.txt"), "old");
 }
 
 TEST_F(AtomicFolderTest, KeepsTheModesOfWhatItReplaces) {

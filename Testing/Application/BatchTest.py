@@ -84,7 +84,7 @@ class ManyInputs(BatchTest):
         self.assertEqual([line["exitCode"] for line in lines], [OK, BAD_INPUT])
         self.assertEqual(lines[0]["outputs"], ["a-iso80.vtp", "a-iso100.vtp"])
         self.assertEqual(lines[0]["report"]["schema"], "adaptiso-mesh/1")
-        self.assertIn("no NIfTI header", lines[1]["error"])
+        self.assertIn("no NIfTI header", lines[1]["error"]["text"])
         self.assertIsNone(lines[1]["report"])
 
     def test_json_to_a_file_beside_text(self):

@@ -136,7 +136,7 @@ class Codes(unittest.TestCase):
             self.assertRegex(code, "^(?=.{5,24}$)[a-z0-9]+(-[a-z0-9]+)+$")
 
     def test_are_documented_in_the_same_words(self):
-        page = (SOURCE / "Documentation/Warnings.md").read_text()
+        page = (SOURCE / "Documentation/Warnings.md").read_text().split("## Reports")[0]
         self.assertEqual(dict(re.findall(r"(?m)^\| `([^`]+)` \| (.+) \|$", page)), self.codes)
 
     def test_that_are_used_are_those_of_the_table(self):
@@ -149,6 +149,32 @@ class Codes(unittest.TestCase):
                         r'"([a-z0-9]+(?:-[a-z0-9]+)+)",?', path.read_text()))
         self.assertEqual({code for code in used if not code.startswith("adaptiso-")},  # programs
                          set(self.codes))
+
+
+class Allowed(WithWarnings):
+    RUN = ("ball.nii", "--iso", "100", "-o", "a.vtp", "--strict")
+
+    def test_codes_pass_a_strict_run(self):
+        for allow in (("--allow", "qform-sform-differ"), ("--allow=gantry-tilt,qform-sform-differ",),
+                      ("--allow", "gantry-tilt", "--allow", "qform-sform-differ")):
+            with self.subTest(allow):
+                done = self.run_mesh(*self.RUN, *allow, "--json", "r.json")
+                self.assertEqual(done.returncode, OK, done.stderr)
+                self.assertRegex(done.stderr, f"^adaptiso-mesh: warning: ({CONFLICT})")
+                report = json.loads(self.path("r.json").read_text())
+                self.assertEqual((report["passed"], report["failedByWarnings"]), (True, False))
+                self.assertEqual(report["warnings"][0]["code"], "qform-sform-differ")
+                self.path("a.vtp").unlink()
+
+    def test_other_codes_do_not(self):
+        done = self.run_mesh(*self.RUN, "--allow", "gantry-tilt", "--json", "-")
+        self.assertEqual(done.returncode, CHECK_FAILED)
+        self.assertRegex(json.loads(done.stdout)["error"]["text"], "^--strict: 1 warning, so no "
+                                                                   "surface was written: ball.nii: ")
+
+    def test_batches_hand_them_on(self):
+        self.mesh("ball.nii", "good.nii", "--iso", "100", "--output-dir", "out", "--strict",
+                  "--allow", "qform-sform-differ")
 
 
 class Batches(WithWarnings):

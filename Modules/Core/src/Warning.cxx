@@ -41,6 +41,8 @@ constexpr WarningCode kCodes[] = {
     {"skull-unseen", "the skull shows on too few of the rays to the scalp"},
     {"slices-resampled", "uneven slices were resampled to even ones"},
     {"stray-bits", "bits that are no part of the samples were left out"},
+    {"subject-not-listed", "participants.tsv does not list a participant of the dataset"},
+    {"subject-not-there", "participants.tsv lists a participant without a folder"},
     {"surface-unsound", "the surface has faults (holes aside)"},
     {"trailing-bytes", "bytes follow the image that the header describes; they were left out"},
     {"unit-converted", "lengths were converted to millimetres"},

@@ -223,6 +223,11 @@ std::string HeadModelData::reportOf(const BemModel& model, const BemFileOptions&
     told["strict"] = false;
     Json report{{"schema", "adaptiso-bem/1"},
                 {"program", {{"name", kProgramName}, {"version", ADAPTISO_VERSION}}},
+                {"passed", model.hasModel()},
+                {"exitCode", model.hasModel() ? 0 : 1},
+                {"error", model.hasModel() ? Json(nullptr)
+                                           : Json{{"text", "no model: " + model.failureText()}}},
+                {"warnings", model.warnings},
                 {"model", model.hasModel()},
                 {"failedByWarnings", false},
                 {"input", bemInputJson(model)},

@@ -66,6 +66,10 @@ std::string reportOf(const SurfaceHistory& history, const ImageGeometry& image) 
                 history.origin.file.empty() ? "the image" : history.origin.file);
     const Json report{{"schema", "adaptiso-mesh/1"},
                       {"program", {{"name", kProgramName}, {"version", ADAPTISO_VERSION}}},
+                      {"passed", true},
+                      {"exitCode", 0},
+                      {"error", nullptr},
+                      {"warnings", warnings},
                       {"input", originJson(history, image)},
                       {"preprocessing", nullptr},
                       {"options", optionsJson(history)},
@@ -76,7 +80,6 @@ std::string reportOf(const SurfaceHistory& history, const ImageGeometry& image) 
                         {"file", nullptr},
                         {"fileBytes", nullptr}}},
                       {"surfaces", Json::array({surface})},
-                      {"warnings", warnings},
                       {"failedByWarnings", false},
                       {"reportFailure", nullptr},
                       {"seconds", timesJson(history)},

@@ -1,0 +1,215 @@
+#include "Common/Verdict.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <new>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "Common/AtomicOutput.h"
+#include "Common/Numbers.h"
+#include "Common/Resources.h"
+#include "Common/ResultOutput.h"
+#include "Common/RunApp.h"
+#include "Common/Warnings.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNoThreads =
+    "a thread or process could not be started; the limit of processes (ulimit -u) or of memory is "
+    "reached. Raise it, or ask for fewer (--threads, --jobs)";
+
+/// The command line, as far as a report needs it.
+struct CommandLine {
+    std::string json;                ///< of --json; empty: not given
+    std::vector<std::string> words;  ///< that may name files
+    bool isReported = false;
+};
+
+CommandLine& commandLine() {
+    static CommandLine line;
+    return line;
+}
+
+/// `text` with `path`, where it stands as a word of its own, by its last part. \return was it there
+bool leaveOutFolders(std::string& text, const std::string& path) {
+    const auto isPart = [&](std::size_t at) {
+        const auto c = static_cast<unsigned char>(at < text.size() ? text[at] : ' ');
+        return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '-' || c >= 0x80;
+    };
+    const std::string name = baseName(path);
+    bool isThere = false;
+    for (std::size_t at = text.find(path); at != std::string::npos; at = text.find(path, at)) {
+        const bool isWord =
+            (at == 0 || !isPart(at - 1)) &&
+            (path.back() == '/' || text[at + path.size()] == '/' || !isPart(at + path.size()));
+        if (isWord) text.replace(at, path.size(), name);
+        at += isWord ? name.size() : path.size();
+        isThere = isThere || isWord;
+    }
+    return isThere;
+}
+
+/// {text, file}: without folders.
+Json errorJson(const Verdict& verdict) {
+    if (verdict.error.empty()) return nullptr;
+    std::string text = oneLine(verdict.error), file;
+    std::vector<std::string> words = commandLine().words;
+    // a folder after what lies in it
+    std::ranges::stable_sort(words, std::ranges::greater{}, &std::string::size);
+    for (const std::string& word : words) {
+        std::error_code error;
+        const bool isFile = word.find_first_of("./") != std::string::npos ||
+                            fs::symlink_status(word, error).type() > fs::file_type::not_found;
+        if (isFile && leaveOutFolders(text, word) && file.empty()) file = baseName(word);
+    }
+    Json json{{"text", text}};
+    if (!file.empty()) json["file"] = file;
+    return json;
+}
+
+/// A report may go there: no other word names it, and nothing is there, or no file, or a report.
+bool mayReplace(const fs::path& path) {
+    std::error_code error;
+    const auto whole = [&](const fs::path& name) {
+        return fs::weakly_canonical(fs::absolute(name, error), error);
+    };
+    const auto isSame = [&](const std::string& word) { return whole(word) == whole(path); };
+    if (std::ranges::any_of(commandLine().words, isSame)) return false;
+    if (!fs::is_regular_file(path, error)) return !fs::is_directory(path, error);
+    std::ifstream file(path, std::ios::binary);
+    const int first = (file >> std::ws).peek();
+    return first == '{' || first == std::ifstream::traits_type::eof();
+}
+
+std::string internal(const char* what) {
+    return std::string("internal error (please report it)") +
+           (what == nullptr ? "" : std::string(": ") + what);
+}
+
+}  // namespace
+
+void Verdict::failStrict(const CommonOptions& common, std::span<const Warning> warnings,
+                         const std::string& consequence) {
+    if (!failsStrict(common, warnings)) return;
+    exitCode = kExitCheckFailed;
+    error = strictFailure(common, warnings, consequence);
+}
+
+void Verdict::failReport(const std::string& failure) {
+    reportFailure = failure;
+    if (failure.empty() || exitCode != kExitOk) return;
+    exitCode = kExitCheckFailed;
+    error = "the report failed: " + failure;
+}
+
+Json reportHead(const std::string& schema, const std::string& program, const Verdict& verdict,
+                std::span<const Warning> warnings) {
+    return {{"schema", schema},
+            {"program", {{"name", program}, {"version", programVersion()}}},
+            {"passed", verdict.exitCode == kExitOk},
+            {"exitCode", verdict.exitCode},
+            {"error", errorJson(verdict)},
+            {"warnings", std::vector<Warning>(warnings.begin(), warnings.end())}};
+}
+
+int printVerdict(const std::string& program, const Verdict& verdict, const std::string& written) {
+    const bool isReportAlone = verdict.error.ends_with(verdict.reportFailure);
+    if (!verdict.error.empty() && (verdict.reportFailure.empty() || !isReportAlone)) {
+        printError(program, verdict.error);
+    }
+    if (!verdict.reportFailure.empty()) {
+        printError(program, written + "; the report failed: " + verdict.reportFailure);
+    }
+    return verdict.exitCode;
+}
+
+Verdict verdictOf(const std::exception_ptr& thrown) {
+    try {
+        std::rethrow_exception(thrown);
+    } catch (const UsageError& error) {
+        return {kExitUsage, error.what()};
+    } catch (const InvalidInput& error) {
+        return {kExitBadInput, error.what()};
+    } catch (const FileError& error) {
+        return {kExitBadInput, error.what()};
+    } catch (const fs::filesystem_error& error) {
+        return {kExitBadInput, error.what()};
+    } catch (const std::bad_alloc&) {
+        return {kExitBadInput,
+                "not enough memory (" + formatNumber(std::round(peakMemoryMb())) +
+                    " MB were in use); a machine with more of it, or a smaller image, will do"};
+    } catch (const std::system_error& error) {
+        if (error.code() == std::errc::resource_unavailable_try_again) {
+            return {kExitBadInput, kNoThreads};
+        }
+        return {kExitInternalError, internal(error.what())};
+    } catch (const std::exception& error) {
+        // oneTBB throws a text where it can't start a thread
+        if (std::strstr(error.what(), "pthread_create") != nullptr)
+            return {kExitBadInput, kNoThreads};
+        return {kExitInternalError, internal(error.what())};
+    } catch (...) {
+        return {kExitInternalError, internal(nullptr)};
+    }
+}
+
+void rememberReport(int argc, const char* const* argv) {
+    CommandLine& line = commandLine();
+    bool hasOptionsEnded = false;
+    for (int n = 1; n < argc; ++n) {
+        const std::string_view word = argv[n];
+        hasOptionsEnded = hasOptionsEnded || word == "--";
+        if (hasOptionsEnded || !word.starts_with("-") || word == "-") {
+            line.words.emplace_back(word);
+            continue;
+        }
+        const std::size_t equals = word.find('=');
+        const std::string_view value =
+            equals == std::string_view::npos ? "" : word.substr(equals + 1);
+        if (word.substr(0, equals) != "--json") {
+            if (!value.empty()) line.words.emplace_back(value);
+        } else if (equals != std::string_view::npos) {
+            line.json = value;
+        } else if (n + 1 < argc && !std::string_view(argv[n + 1]).starts_with("--")) {
+            line.json = argv[++n];
+        }
+    }
+    std::erase_if(line.words, [](const std::string& word) {
+        return word.empty() || word == "-" || parseFiniteNumber(word).has_value();
+    });
+}
+
+void markReported() {
+    commandLine().isReported = true;
+}
+
+void writeFailureReport(const std::string& program, const Verdict& verdict) {
+    const std::string& target = commandLine().json;
+    if (target.empty() || std::exchange(commandLine().isReported, true)) return;
+    try {
+        const std::string text =
+            jsonText(reportHead(kFailureSchema, program, verdict, printedWarnings()), -1) + "\n";
+        if (target == "-") {
+            std::cout << text << std::flush;
+        } else if (mayReplace(target)) {
+            AtomicOutput output(target);
+            output.writeText(text);
+            AtomicOutput::commit({&output, 1});
+        }
+    } catch (const std::exception&) {
+        // the error itself is on stderr
+    }
+}
+
+}  // namespace adaptiso

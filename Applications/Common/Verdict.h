@@ -1,0 +1,56 @@
+#pragma once
+
+#include <exception>
+#include <span>
+#include <string>
+
+#include "Common/CommonOptions.h"
+#include "Common/ExitCodes.h"
+#include "Common/Json.h"
+#include "adaptiso/Core/Warning.h"
+
+namespace adaptiso {
+
+/// How a run ends.
+struct Verdict {
+    int exitCode = kExitOk;
+    /// Why it failed, in one line, which is the last on stderr; empty: it passed, or checks alone
+    /// failed, which are in the report.
+    std::string error{};
+    std::string reportFailure{};  ///< why there is no page; empty: nothing failed
+
+    /// --strict makes warnings failures, unless --allow lets them pass.
+    /// \param consequence  as strictFailure() takes it
+    void failStrict(const CommonOptions& common, std::span<const Warning> warnings,
+                    const std::string& consequence);
+    /// A page that is missing makes a run fail, and takes nothing back. \param failure  may be
+    /// empty
+    void failReport(const std::string& failure);
+};
+
+/// The first keys of a report: schema, program, passed, exitCode, error, warnings.
+Json reportHead(const std::string& schema, const std::string& program, const Verdict& verdict,
+                std::span<const Warning> warnings);
+
+/// Prints `error` and `reportFailure` on stderr.
+/// \param written  "brain.ply is written": what is there although the page is not
+/// \return the exit code
+int printVerdict(const std::string& program, const Verdict& verdict, const std::string& written);
+
+/// What an exception means to whoever started the program.
+Verdict verdictOf(const std::exception_ptr& thrown);
+
+/// Reads --json from the command line, for a run that fails before its options are known.
+void rememberReport(int argc, const char* const* argv);
+
+/// A report is printed on stdout, or holds the error already: no other follows.
+void markReported();
+
+inline constexpr const char* kFailureSchema = "adaptiso-failure/1";
+
+/// Writes what --json asks for, on one line, where a run ends before its own report is written:
+/// the head alone, of kFailureSchema, with the warnings printed so far. Folders are left
+/// out of the error. Never replaces a file that is no JSON; throws nothing.
+void writeFailureReport(const std::string& program, const Verdict& verdict);
+
+}  // namespace adaptiso
