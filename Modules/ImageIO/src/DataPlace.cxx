@@ -253,9 +253,9 @@ void requireBinaryTransfer(const DataPlace& place, const SampleLayout& layout, c
 void refuseForeignData(const DataPlace& place) {
     if (!place.isDetached()) return;
     const std::string name = displayName(place.file.filename());
+    // what these hold may lie at a place that the header knows
+    const bool isEntered = place.bytes > 0 || place.lines > 0 || place.countsFromEnd;
     const auto check = [&](const std::optional<ForeignContent>& content, bool isGzip) {
-        // what these hold may lie at a place that the header knows
-        const bool isEntered = place.bytes > 0 || place.lines > 0 || place.countsFromEnd;
         if (!content || (content->kind == ForeignKind::Other && isEntered)) return;
         const bool saysSo = isGzip && !place.gzipField.empty();
         refuse(place.header, fmt::format("its data file '{}' {}", name, content->fault),
@@ -265,6 +265,10 @@ void refuseForeignData(const DataPlace& place) {
     const std::string head = headOf(plain(), kForeignHeadBytes);
     const bool isGzip = head.starts_with("\x1f\x8b");
     if (!isGzip || place.encoding == ByteSource::Encoding::Raw) {
+        if (looksLikeDicom(head) && !isEntered) {  // without its magic
+            refuse(place.header, fmt::format("its data file '{}' is a DICOM file", name),
+                   fmt::format("give {} itself", name));
+        }
         check(foreignContentOf(head, place.file), isGzip);
         return;
     }

@@ -64,8 +64,11 @@ void refuse(const fs::path& file, std::string_view fault, std::string_view remed
 }
 
 void refuseForeignContent(const fs::path& file) {
-    if (const auto foreign = findForeignContent(file))
-        refuse(file, foreign->fault, foreign->remedy);
+    const auto foreign = findForeignContent(file);
+    if (!foreign) return;
+    const bool isElsewhere = foreign->kind == ForeignKind::StandIn;
+    refuse(file, foreign->fault + (isElsewhere ? "" : ", not a format that is read here"),
+           foreign->remedy);
 }
 
 std::uint64_t requireRegularFile(const fs::path& file) {

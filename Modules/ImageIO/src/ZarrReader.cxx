@@ -13,6 +13,7 @@
 #include "Readers.h"
 #include "Samples.h"
 #include "ZarrImage.h"
+#include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/Parallel.h"
 
 // Zarr's specifications 2 and 3 with sharding, OME-NGFF 0.4 and 0.5, N5.
@@ -199,11 +200,18 @@ public:
         ZarrIndex index = touched_.indexOf(number);
         const std::optional<ZarrFile> file = store_.open(array_.key(index));
         for (std::size_t n = 0; n < array_.rank(); ++n) index[n] *= side[n];  // first sample
-        if (array_.sharding) {
-            addShard(file, index);
-        } else {
-            ++chunks_;
-            addChunk(file, 0, file ? file->size() : 0, index);
+        try {
+            if (array_.sharding) {
+                addShard(file, index);
+            } else {
+                ++chunks_;
+                addChunk(file, 0, file ? file->size() : 0, index);
+            }
+        } catch (const FileError&) {
+            const auto foreign = file ? findForeignContent(file->path()) : std::nullopt;
+            // packed data are what chunks hold
+            if (!foreign || foreign->kind != ForeignKind::StandIn) throw;
+            refuse(file->path(), foreign->fault, foreign->remedy);
         }
     }
 

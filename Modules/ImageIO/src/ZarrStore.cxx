@@ -69,6 +69,7 @@ std::optional<ZarrFile> ZarrStore::open(const std::string& key) const {
         std::error_code error;
         const bool isThere = fs::exists(path, error);
         if (!isThere && fs::is_symlink(fs::symlink_status(path, error))) {
+            refuseForeignContent(path);
             refuse(path, "the link points to no existing file", "get the file it points to");
         }
         if (isThere) requireInFolder(root_, path);

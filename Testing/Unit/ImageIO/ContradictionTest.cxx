@@ -365,6 +365,13 @@ TEST(OtherKindsOfData, AreNamed) {
     }
 }
 
+TEST(OtherKindsOfData, DicomIsNamedWithoutItsMagicToo) {
+    const std::string dicom = otherImages().back().bytes.substr(132);
+    for (const DetachedHeader& header : detachedHeaders()) {
+        if (packedFor(header, "x") == "x") expectRefusedOver(header, 0, dicom, "is a DICOM file");
+    }
+}
+
 TEST(OtherKindsOfData, PackedDataWithoutAWordInTheHeaderGetIt) {
     for (const std::size_t index : {0U, 2U}) {
         expectRefusedOver(detachedHeaders()[index], 0, gzipped(data()),

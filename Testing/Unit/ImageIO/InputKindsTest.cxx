@@ -44,6 +44,8 @@ TEST(InputKinds, NamesContentThatStandsInThePlaceOfAnImage) {
                       "is a git-lfs pointer, its 1234 bytes of data are not here; fetch them: git "
                       "lfs pull");
         expectRefusal(writeFile(folder / name, "<!DOCTYPE html><html>"), "is a web page");
+        expectRefusal(writeFile(folder / name, "PK\3\4"),
+                      "is a zip archive, not a format that is read here; unpack it");
         expectRefusal(writeFile(folder / name, "BZh91AY&SY"), "unpack it: bunzip2 -k x");
         expectRefusal(writeFile(folder / name, std::string(2000, '\0')), "holds zeros alone");
         expectRefusal(writeFile(folder / name, ""), "is an empty file");

@@ -112,6 +112,23 @@ TEST_F(ZarrRefusalTest, AChunkThatCannotBeOpenedIsNoFill) {
     expectRefused("0.0.0: can't be opened");
 }
 
+TEST_F(ZarrRefusalTest, ChunksThatAreElsewhereAreNamed) {
+    const std::pair<const char*, const char*> stands[] = {
+        {"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 1024\n",
+         "is a git-lfs pointer"},
+        {"<!DOCTYPE html><html>", "is a web page"}};
+    for (const char* const codec : {"null", R"({"id": "zlib"})"}) {
+        put(".zarray", metadata2(codec));
+        for (const auto& [content, name] : stands) {
+            putChunks("", ".", [&](const Text&) { return Text(content); });
+            expectRefused(name);
+        }
+    }
+    fs::remove(root_ / "0.0.0");
+    fs::create_symlink("../.git/annex/objects/a/MD5E-s12--c", root_ / "0.0.0");
+    expectRefused("git annex get 0.0.0");
+}
+
 TEST_F(ZarrRefusalTest, DamagedChunksAndBombsAreRefused) {
     const std::pair<std::string, Text> bombs[] = {
         {R"({"id": "zlib"})", zlibbed(Text(1 << 24, '\0'))},
