@@ -1,7 +1,11 @@
 #include "Common/Bids.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
 #include <fstream>
+#include <span>
+#include <sstream>
 #include <system_error>
 
 #include "Common/AtomicOutput.h"
@@ -48,7 +52,7 @@ void requireFound(const std::vector<BatchItem>& items, std::size_t before, const
 }
 
 void addImages(const fs::path& folder, const fs::path& target, const BidsImages& images,
-               std::vector<BatchItem>& items) {
+               const BidsIgnore& ignored, std::vector<BatchItem>& items) {
     std::vector<fs::path> files;
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder / "anat", error)) {
@@ -58,8 +62,16 @@ void addImages(const fs::path& folder, const fs::path& target, const BidsImages&
         const std::string name = file.filename().string();
         for (const char* const type : {".nii", ".nii.gz"}) {
             const std::string ending = "_" + images.suffix + type;
-            if (!name.ends_with(ending) || name.starts_with(".")) continue;
-            items.push_back({name.substr(0, name.size() - ending.size()), {file}, target / "anat"});
+            if (!name.ends_with(ending) || name.starts_with(".") || ignored.contains(file))
+                continue;
+            BatchItem item{name.substr(0, name.size() - ending.size()), {file}, target / "anat"};
+            if (!items.empty() && items.back().name == item.name &&
+                items.back().folder == item.folder) {
+                items.back().fault =
+                    "lies beside " + name + ", another image of its name; keep one";
+            } else {
+                items.push_back(std::move(item));
+            }
         }
     }
 }
@@ -104,7 +116,79 @@ Json sourceOf(const fs::path& root) {
     return source;
 }
 
+/// Parts of `path` that are not empty.
+std::vector<std::string> partsOf(const std::string& path) {
+    std::vector<std::string> parts;
+    std::istringstream stream(path);
+    for (std::string part; std::getline(stream, part, '/');) {
+        if (!part.empty()) parts.push_back(part);
+    }
+    return parts;
+}
+
+/// The path, or a folder that it lies in, fits; "**" stands for any number of folders.
+bool fits(std::span<const std::string> pattern, std::span<const std::string> path) {
+    if (pattern.empty()) return true;
+    if (pattern[0] == "**" && fits(pattern.subspan(1), path)) return true;
+    if (path.empty()) return false;
+    if (pattern[0] == "**") return fits(pattern, path.subspan(1));
+    return fnmatch(pattern[0].c_str(), path[0].c_str(), 0) == 0 &&
+           fits(pattern.subspan(1), path.subspan(1));
+}
+
 }  // namespace
+
+BidsIgnore::BidsIgnore(const fs::path& root) : root_(root) {
+    std::ifstream file(root / ".bidsignore");
+    for (std::string line; std::getline(file, line);) {
+        while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+        if (line.empty() || line[0] == '#') continue;
+        Rule rule;
+        rule.takesBack = line[0] == '!';
+        if (rule.takesBack) line.erase(0, 1);
+        const std::size_t slash = line.find('/');
+        rule.pattern = partsOf(line);
+        // one without a slash but at its end is a name anywhere
+        if (slash == std::string::npos || slash + 1 == line.size()) {
+            rule.pattern.insert(rule.pattern.begin(), "**");
+        }
+        rules_.push_back(std::move(rule));
+    }
+}
+
+bool BidsIgnore::contains(const fs::path& path) const {
+    const std::vector<std::string> parts = partsOf(path.lexically_relative(root_).generic_string());
+    bool isIgnored = false;
+    for (const Rule& rule : rules_) {
+        if (fits(rule.pattern, parts)) isIgnored = !rule.takesBack;
+    }
+    return isIgnored;
+}
+
+std::optional<std::set<std::string>> listedParticipants(const fs::path& root) {
+    std::ifstream file(root / "participants.tsv");
+    std::string line;
+    if (!std::getline(file, line)) return std::nullopt;
+    if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+    const auto cells = [](std::string row) {
+        if (row.ends_with('\r')) row.pop_back();
+        std::vector<std::string> found;
+        std::istringstream stream(row);
+        for (std::string cell; std::getline(stream, cell, '\t');) found.push_back(cell);
+        return found;
+    };
+    const std::vector<std::string> header = cells(line);
+    const auto column = std::ranges::find(header, "participant_id") - header.begin();
+    if (column == std::ssize(header)) return std::nullopt;
+    std::set<std::string> listed;
+    while (std::getline(file, line)) {
+        const std::vector<std::string> row = cells(line);
+        if (column < std::ssize(row)) {
+            listed.insert(withPrefix(row[static_cast<std::size_t>(column)], "sub-"));
+        }
+    }
+    return listed;
+}
 
 std::vector<fs::path> bidsSubjects(const fs::path& root, const fs::path& within,
                                    const std::vector<std::string>& participants,
@@ -113,7 +197,12 @@ std::vector<fs::path> bidsSubjects(const fs::path& root, const fs::path& within,
         throw InvalidInput((option == "--participant" ? "--bids " : "") + root.string() +
                            ": is no BIDS dataset, it has no " + kDescription);
     }
-    if (participants.empty()) return foldersIn(within, "sub-");
+    if (participants.empty()) {
+        std::vector<fs::path> found = foldersIn(within, "sub-");
+        const BidsIgnore ignored(within);
+        std::erase_if(found, [&](const fs::path& folder) { return ignored.contains(folder); });
+        return found;
+    }
     std::vector<fs::path> folders;
     for (const std::string& label : participants) {
         const std::string name = withPrefix(label, "sub-");
@@ -130,14 +219,15 @@ std::vector<BatchItem> bidsImagesOf(const fs::path& subject,
                                     const std::vector<std::string>& sessions,
                                     const fs::path& target, const BidsImages& images) {
     std::vector<BatchItem> items;
-    if (sessions.empty()) addImages(subject, target, images, items);
+    const BidsIgnore ignored(subject.parent_path());
+    if (sessions.empty()) addImages(subject, target, images, ignored, items);
     for (const fs::path& session : foldersIn(subject, "ses-")) {
         const std::string name = session.filename().string();
         const bool isAsked = sessions.empty() ||
                              std::any_of(sessions.begin(), sessions.end(), [&](const auto& label) {
                                  return withPrefix(label, "ses-") == name;
                              });
-        if (isAsked) addImages(session, target / name, images, items);
+        if (isAsked) addImages(session, target / name, images, ignored, items);
     }
     return items;
 }

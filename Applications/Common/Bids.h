@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,8 +23,30 @@ struct BidsImages {
 extern const BidsImages kBidsScans;          ///< *_T1w.nii[.gz]
 extern const BidsImages kBidsSegmentations;  ///< *_dseg.nii[.gz]
 
+/// The paths that .bidsignore of a dataset leaves out, by the rules of .gitignore.
+class BidsIgnore {
+public:
+    /// A dataset without the file leaves nothing out.
+    explicit BidsIgnore(const std::filesystem::path& root);
+    /// \param path  in the dataset, begun as `root` is
+    bool contains(const std::filesystem::path& path) const;
+
+private:
+    struct Rule {
+        std::vector<std::string> pattern;  ///< by folders
+        bool takesBack = false;            ///< "!"
+    };
+    std::filesystem::path root_;
+    std::vector<Rule> rules_;
+};
+
+/// participant_id of participants.tsv, "sub-01"; none where there is no such table.
+std::optional<std::set<std::string>> listedParticipants(const std::filesystem::path& root);
+
 /// The T1w images of a BIDS dataset, sub-*/[ses-*/]anat/*_T1w.nii[.gz], by name; each goes into the
 /// same subfolders of `derivatives`, named by its entities ("sub-01_ses-2_acq-hi").
+/// What .bidsignore leaves out is none. Two files of one name (.nii and .nii.gz) are an item with a
+/// fault.
 /// \param participants  labels, with or without "sub-"; empty: all
 /// \throws InvalidInput  no BIDS dataset, no such participant, or one asked for has no such image
 std::vector<BatchItem> findBidsScans(const std::filesystem::path& root,

@@ -107,12 +107,17 @@ Checks lookAtChecks(const BidsOptions& options, const Product& surfaces) {
 
 class CohortLook {
 public:
-    CohortLook(const BidsOptions& options, const std::vector<fs::path>& subjects)
-        : options_(options), subjects_(subjects) {}
+    CohortLook(const BidsOptions& options, const ChosenSubjects& chosen)
+        : options_(options), chosen_(chosen), subjects_(chosen.folders) {}
 
     Cohort run() {
         std::deque<Product> products = findProducts(options_, subjects_);
         if (options_.makesChecks) checks_ = lookAtChecks(options_, products.front());
+        for (const auto& [subject, reason] : chosen_.faulty) {
+            QualityRow row;
+            row.participant = subject;
+            addAbsent(std::move(row), QualityState::Failed, reason);
+        }
         for (const Product& product : products) look(product);
         if (options_.participants.empty() && options_.sessions.empty()) addLeftovers();
         sort();
@@ -158,6 +163,11 @@ private:
         row.product = product.name;
         row.part = partOf(planned.surface);
         if (product.name == "surfaces") surfaces_.insert(planned.surface.filename().string());
+        if (!item.fault.empty()) {
+            cohort_.records += found.record ? 1 : 0;
+            return addAbsent(std::move(row), QualityState::Failed,
+                             baseName(item.inputs.front()) + ": " + item.fault);
+        }
         if (!found.record) {
             cohort_.records += found.isThere ? 1 : 0;
             return addAbsent(std::move(row), QualityState::Missing,
@@ -304,12 +314,38 @@ private:
     }
 
     const BidsOptions& options_;
+    const ChosenSubjects& chosen_;
     const std::vector<fs::path>& subjects_;
     Checks checks_;
     std::set<std::string> surfaces_;  ///< names of the files that are asked for
     std::vector<Entry> entries_;
     Cohort cohort_;
 };
+
+/// Of one product, as askedOf() has it.
+void takeAsked(const Json& asked, BidsOptions& options) {
+    const std::string product = asked.value("product", ""), list = asked.value("options", "");
+    if (product == "surfaces") options.surfaces = list;
+    if (product == "bem") {
+        options.makesBem = true;
+        options.bemOptions = list;
+    } else if (product == "labels") {
+        options.makesLabels = true;
+        options.labelsOptions = list;
+        const std::string folder = asked.value("segmentations", "");
+        if (!folder.empty() && options.segmentations.empty()) {
+            options.segmentations = (options.output / folder).lexically_normal();
+        }
+    } else if (product == "check") {
+        options.makesChecks = true;
+        options.checkOptions = list;
+    }
+    options.makesPictures = options.makesPictures && asked.value("pictures", true);
+    options.common.isStrict = options.common.isStrict || asked.value("strict", false);
+    if (options.common.allowed.empty()) {
+        options.common.allowed = asked.value("allow", std::vector<std::string>());
+    }
+}
 
 }  // namespace
 
@@ -334,8 +370,46 @@ std::vector<QualityRow> rowsOfReport(const QualityRow& scan, const Json& report)
     return rows;
 }
 
-Cohort lookAtCohort(const BidsOptions& options, const std::vector<fs::path>& subjects) {
-    return CohortLook(options, subjects).run();
+void takeAsked(BidsOptions& options) {
+    // of each program: what was asked for of each participant last, with the record's date
+    std::map<std::string, std::map<std::string, std::pair<std::string, Json>>> last;
+    std::error_code error;
+    fs::recursive_directory_iterator entry(options.output, error);
+    for (const fs::recursive_directory_iterator end; !error && entry != end;
+         entry.increment(error)) {
+        RecordFault fault = RecordFault::None;
+        if (!isRecordFile(entry->path())) continue;
+        const std::optional<KeptRecord> record = readRecord(entry->path(), fault);
+        if (!record || !record->asked.is_object()) continue;
+        auto& [date, asked] = last[record->program][entityOf(record->run.name, "sub")];
+        if (record->date < date) continue;
+        date = record->date;
+        asked = record->asked;
+    }
+    for (const auto& [program, participants] : last) {
+        std::map<std::string, std::pair<std::size_t, std::string>> votes;  // and the last date
+        for (const auto& [participant, one] : participants) {
+            auto& [count, date] = votes[one.second.dump()];
+            ++count;
+            date = std::max(date, one.first);
+        }
+        const auto most = std::ranges::max_element(
+            votes, {}, [](const auto& vote) -> const auto& { return vote.second; });
+        takeAsked(Json::parse(most->first), options);
+    }
+}
+
+Json askedOf(const BidsOptions& options) {
+    Json asked = Json::array();
+    if (!options.surfaces.empty()) asked.push_back(askedOf(options, "surfaces"));
+    if (options.makesBem) asked.push_back(askedOf(options, "bem"));
+    if (options.makesLabels) asked.push_back(askedOf(options, "labels"));
+    if (options.makesChecks) asked.push_back(askedOf(options, "check"));
+    return asked;
+}
+
+Cohort lookAtCohort(const BidsOptions& options, const ChosenSubjects& chosen) {
+    return CohortLook(options, chosen).run();
 }
 
 }  // namespace adaptiso

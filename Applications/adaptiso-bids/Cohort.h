@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "Common/BatchSummary.h"
+#include "Dataset.h"
 #include "Pipeline.h"
 #include "QualityTable.h"
 
@@ -18,9 +19,16 @@ struct Cohort {
     std::size_t records = 0;           ///< that are there
 };
 
-/// Looks at all that was asked for of `subjects`: versions, options, and the content of inputs and
+/// Fills in what was asked for of the participant level, for most participants, by the records in
+/// `options.output`; nothing where none is there. \pre options name no product
+void takeAsked(BidsOptions& options);
+
+/// What `options` ask for, as the records' askedOf() have it.
+Json askedOf(const BidsOptions& options);
+
+/// Looks at all that was asked for of `chosen`: versions, options, and the content of inputs and
 /// outputs.
-Cohort lookAtCohort(const BidsOptions& options, const std::vector<std::filesystem::path>& subjects);
+Cohort lookAtCohort(const BidsOptions& options, const ChosenSubjects& chosen);
 
 /// The rows of what a finished record tells: a surface, three of a head model, regions.
 /// \param scan  what they share

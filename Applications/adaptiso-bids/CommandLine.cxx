@@ -95,6 +95,14 @@ void declareRunning(CLI::App& app, BidsOptions& options) {
               "distance from the median) from the cohort's median (default: 3.5)")
         ->type_name("Z")
         ->group(kGroupLevel);
+    addNumber(app, "--outlier-percent", options.outlierPercent, {.least = 0, .most = 100},
+              "Mark none that lie nearer to the median than P per cent of it (default: 1)")
+        ->type_name("P")
+        ->group(kGroupLevel);
+    app.add_flag("--force", options.force,
+                 "Replace a table that was made with options which are neither these nor the "
+                 "participant level's")
+        ->group(kGroupLevel);
     addCount(app, "--jobs", options.jobs, 1, 1024,
              "Participant level: work on N scans at a time (default: 1)")
         ->group(kRunning);
@@ -108,18 +116,19 @@ void checkCombinations(BidsOptions& options) {
     const auto require = [](bool isGood, const std::string& message) {
         if (!isGood) throw UsageError(message);
     };
+    const bool isGroup = options.level == BidsLevel::Group;
     require(options.bemOptions.empty() || options.makesBem, "--bem-options: needs --bem");
     require(options.labelsOptions.empty() || options.makesLabels,
             "--labels-options: needs --labels");
     require(options.segmentations.empty() || options.makesLabels,
             "--segmentations: needs --labels");
     require(options.checkOptions.empty() || options.makesChecks, "--check-options: needs --check");
-    if (options.surfaces.empty() && !options.makesBem && !options.makesLabels) {
-        options.surfaces = "iso=auto";
-    }
-    require(!options.makesChecks || !options.surfaces.empty(), "--check: needs --surfaces");
-    require(options.level == BidsLevel::Participant || !options.jobs,
-            "--jobs: is for the participant level");
+    // the group level takes what the participant level was asked for
+    if (!options.namesProducts() && !isGroup) options.surfaces = "iso=auto";
+    require(!options.makesChecks || !options.surfaces.empty() || isGroup,
+            "--check: needs --surfaces");
+    require(!isGroup || !options.jobs, "--jobs: is for the participant level");
+    require(isGroup || !options.force, "--force: is for the group level");
     std::error_code error;
     require(!fs::equivalent(options.dataset, options.output, error),
             "OUT_DIR " + options.output.string() +
@@ -135,9 +144,9 @@ constexpr const char* kFooter = R"(Examples:
       one participant: an isosurface at Otsu's value
   adaptiso-bids study out participant --surfaces iso=90,largest --bem --jobs 4
   adaptiso-bids study out participant --labels --segmentations study/derivatives/seg
-  adaptiso-bids study out group --surfaces iso=90,largest --bem
-      with the options of the participant level: quality.tsv, summary.html, who
-      is missing and why
+  adaptiso-bids study out group
+      by the options of the participant level: quality.tsv, summary.html, who is
+      missing and why
 
 What is there from the same inputs (by checksum), options and version is not
 made again. A participant may be run again at any time, by several at once too.

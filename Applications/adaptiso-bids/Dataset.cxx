@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <set>
 #include <system_error>
 
 #include "adaptiso/Core/Errors.h"
@@ -26,12 +27,14 @@ std::vector<std::string> splitAt(const std::string& text, char separator) {
     return parts;
 }
 
-void lookAtDescription(const fs::path& root, std::vector<std::string>& faults) {
+void requireDescription(const fs::path& root) {
     std::ifstream file(root / "dataset_description.json");
     const Json said = Json::parse(file, nullptr, false);
     for (const char* const key : {"Name", "BIDSVersion"}) {
         if (said.is_object() && said.contains(key) && said[key].is_string()) continue;
-        faults.push_back("dataset_description.json: has no " + std::string(key));
+        throw InvalidInput(root.string() +
+                           ": is no valid BIDS dataset: dataset_description.json has no " + key +
+                           "; add it, or give --skip-bids-validation");
     }
 }
 
@@ -64,29 +67,55 @@ void lookAtSubject(const fs::path& subject, std::vector<std::string>& faults) {
     }
 }
 
-}  // namespace
-
-std::vector<std::string> bidsFaults(const fs::path& root, const std::vector<fs::path>& subjects) {
-    std::vector<std::string> faults;
-    lookAtDescription(root, faults);
-    for (const fs::path& subject : subjects) lookAtSubject(subject, faults);
-    return faults;
+/// Where participants.tsv and the folders differ.
+void warnOfList(const BidsOptions& options, ChosenSubjects& chosen) {
+    const auto listed = listedParticipants(options.dataset);
+    if (!listed) return;
+    std::set<std::string> there;
+    for (const fs::path& folder : chosen.folders) there.insert(folder.filename().string());
+    const auto warn = [&](Warning warning, const std::set<std::string>& some,
+                          const std::set<std::string>& others) {
+        std::string names;
+        std::size_t count = 0;
+        for (const std::string& name : some) {
+            if (others.contains(name)) continue;
+            constexpr std::size_t kMost = 5;
+            if (count++ < kMost) names += (count == 1 ? "" : ", ") + name;
+        }
+        if (count == 0) return;
+        if (count > 5) names += " and " + std::to_string(count - 5) + " more";
+        warning.text += names;
+        warning.file = "participants.tsv";
+        chosen.warnings.push_back(std::move(warning));
+    };
+    warn(Warning{"subject-not-listed", "does not list "}, there, *listed);
+    if (options.participants.empty()) {
+        warn(Warning{"subject-not-there", "lists participants without a folder: "}, *listed, there);
+    }
 }
 
-std::vector<fs::path> chosenSubjects(const BidsOptions& options) {
+}  // namespace
+
+ChosenSubjects chooseSubjects(const BidsOptions& options) {
     const fs::path& root = options.dataset;
-    std::vector<fs::path> subjects =
-        bidsSubjects(root, root, options.participants, "--participant-label");
-    std::sort(subjects.begin(), subjects.end());
-    subjects.erase(std::unique(subjects.begin(), subjects.end()), subjects.end());
-    if (subjects.empty()) throw InvalidInput(root.string() + ": holds no participant (sub-*)");
-    if (options.skipsValidation) return subjects;
-    const std::vector<std::string> faults = bidsFaults(root, subjects);
-    if (faults.empty()) return subjects;
-    throw InvalidInput(
-        root.string() + ": is no valid BIDS dataset: " + faults.front() +
-        (faults.size() == 1 ? "" : "; and " + std::to_string(faults.size() - 1) + " more") +
-        "; --skip-bids-validation takes it as it is");
+    ChosenSubjects chosen;
+    std::vector<fs::path>& folders = chosen.folders;
+    folders = bidsSubjects(root, root, options.participants, "--participant-label");
+    std::sort(folders.begin(), folders.end());
+    folders.erase(std::unique(folders.begin(), folders.end()), folders.end());
+    if (folders.empty()) throw InvalidInput(root.string() + ": holds no participant (sub-*)");
+    warnOfList(options, chosen);
+    if (options.skipsValidation) return chosen;
+    requireDescription(root);
+    std::erase_if(folders, [&](const fs::path& subject) {
+        std::vector<std::string> faults;
+        lookAtSubject(subject, faults);
+        if (faults.empty()) return false;
+        chosen.faulty.emplace_back(subject.filename().string(),
+                                   faults.front() + "; rename it, or give --skip-bids-validation");
+        return true;
+    });
+    return chosen;
 }
 
 std::string entityOf(const std::string& name, const std::string& key) {

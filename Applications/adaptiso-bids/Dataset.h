@@ -2,23 +2,27 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "Common/BatchItems.h"
 #include "Common/Bids.h"
 #include "Pipeline.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso {
 
-/// The folders of the participants asked for, by name.
-/// \throws InvalidInput  no BIDS dataset, no such participant, none at all; or the names are not
-///                       those of a BIDS dataset, unless that is not to be looked at
-std::vector<std::filesystem::path> chosenSubjects(const BidsOptions& options);
+/// The participants asked for, by name, without those that .bidsignore leaves out.
+struct ChosenSubjects {
+    std::vector<std::filesystem::path> folders;
+    /// Those whose names, or whose sessions' or images' names, are not BIDS's: "sub-02", and why.
+    std::vector<std::pair<std::string, std::string>> faulty;
+    std::vector<Warning> warnings;  ///< where participants.tsv lists others
+};
 
-/// What in the dataset's description and in the names of participants, sessions and images is not
-/// as BIDS has it, a line each.
-std::vector<std::string> bidsFaults(const std::filesystem::path& root,
-                                    const std::vector<std::filesystem::path>& subjects);
+/// \throws InvalidInput  no BIDS dataset, no such participant, none at all; or its description is
+///                       not BIDS's, unless that is not to be looked at
+ChosenSubjects chooseSubjects(const BidsOptions& options);
 
 /// "01" of "sub-01_ses-2_acq-hi", for "sub"; empty: it has no such entity.
 std::string entityOf(const std::string& name, const std::string& key);

@@ -12,6 +12,8 @@
 #include "Common/Numbers.h"
 #include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
+#include "Common/Sha256.h"
+#include "Common/Verdict.h"
 #include "Levels.h"
 
 namespace adaptiso {
@@ -41,8 +43,16 @@ std::string dumped(const Json& json) {
     return jsonText(json) + "\n";
 }
 
+/// By which a table made with other options is known: of what may hold paths a checksum alone.
+std::string sumOf(const Json& asked) {
+    return sha256Of(asked.dump());
+}
+
+constexpr const char* kOptionsSum = "OptionsSha256";
+
 Json descriptionOf(const BidsOptions& options) {
     Json json = bidsDescription(options.dataset, options.output, kProgram);
+    json["GeneratedBy"][0][kOptionsSum] = sumOf(askedOf(options));
     if (!options.segmentations.empty()) {
         std::error_code error;
         json["DatasetLinks"]["segmentations"] =
@@ -113,20 +123,39 @@ Counts countsOf(const std::vector<QualityRow>& rows) {
     return counts;
 }
 
-std::string jsonReport(const std::vector<QualityRow>& rows, const Counts& counts) {
+std::string jsonReport(const std::vector<QualityRow>& rows, const Counts& counts,
+                       const BidsOptions& options, const Verdict& verdict,
+                       const std::vector<Warning>& warnings) {
     Json faulty = Json::array(), unusual = Json::array();
     for (const QualityRow& row : rows) {
         if (!isGood(row)) faulty.push_back(rowJson(row));
         if (!row.outliers.empty()) unusual.push_back(rowJson(row));
     }
-    return dumped({{"schema", "adaptiso-bids/1"},
-                   {"program", {{"name", kProgram}, {"version", programVersion()}}},
-                   {"passed", counts.bad == 0},
-                   {"participants", counts.participants},
-                   {"wholeParticipants", counts.whole},
-                   {"surfaces", rows.size() - counts.bad},
-                   {"missing", faulty},
-                   {"unusual", unusual}});
+    Json report = reportHead("adaptiso-bids/1", kProgram, verdict, warnings);
+    report.update(Json{{"options", askedOf(options)},
+                       {"participants", counts.participants},
+                       {"wholeParticipants", counts.whole},
+                       {"surfaces", rows.size() - counts.bad},
+                       {"missing", faulty},
+                       {"unusual", unusual}});
+    return dumped(report);
+}
+
+/// As the command line has them: "--surfaces iso=100 --check".
+std::string wordsOf(const BidsOptions& options) {
+    std::string words;
+    const auto add = [&](const std::string& name, const std::string& list) {
+        words += (words.empty() ? "" : " ") + name + (list.empty() ? "" : " " + list);
+    };
+    if (!options.surfaces.empty()) add("--surfaces", options.surfaces);
+    if (options.makesBem) add("--bem", "");
+    if (!options.bemOptions.empty()) add("--bem-options", options.bemOptions);
+    if (options.makesLabels) add("--labels", "");
+    if (!options.labelsOptions.empty()) add("--labels-options", options.labelsOptions);
+    if (!options.segmentations.empty()) add("--segmentations", options.segmentations.string());
+    if (options.makesChecks) add("--check", "");
+    if (!options.checkOptions.empty()) add("--check-options", options.checkOptions);
+    return words;
 }
 
 void printTotals(std::ostream& out, const Counts& counts, std::size_t rows,
@@ -134,6 +163,7 @@ void printTotals(std::ostream& out, const Counts& counts, std::size_t rows,
     out << counts.participants << " participant" << (counts.participants == 1 ? "" : "s") << ", "
         << counts.whole << " whole; " << rows - counts.bad << " surfaces, " << counts.unusual
         << " unusual\n"
+        << "options: " << wordsOf(options) << '\n'
         << (options.output / "quality.tsv").string() << " and "
         << (options.output / "summary.html").string() << " are written\n";
 }
@@ -170,9 +200,43 @@ void requireOwnDataset(const fs::path& output) {
     }
 }
 
+/// Fills in the participant level's options where none are given, and keeps a table that was made
+/// with others. \throws InvalidInput  there is one, and --force is not given
+void requireOwnOptions(BidsOptions& options) {
+    BidsOptions ofParticipants = options;
+    ofParticipants.surfaces.clear();
+    ofParticipants.makesBem = ofParticipants.makesLabels = ofParticipants.makesChecks = false;
+    ofParticipants.checkOptions.clear();
+    takeAsked(ofParticipants);
+    if (!options.namesProducts()) {
+        const BidsOptions given = options;
+        options = ofParticipants;
+        if (given.makesChecks) {
+            options.makesChecks = true;
+            options.checkOptions = given.checkOptions;
+        }
+    }
+    if (!options.namesProducts()) options.surfaces = "iso=auto";  // of a version that kept none
+    if (options.makesChecks && options.surfaces.empty()) {
+        throw UsageError("--check: needs --surfaces");
+    }
+    const Json asked = askedOf(options);
+    if (options.force || asked == askedOf(ofParticipants)) return;
+    std::error_code error;
+    std::ifstream file(options.output / "dataset_description.json");
+    const Json said = Json::parse(file, nullptr, false);
+    if (!said.is_object() || !fs::exists(options.output / "quality.tsv", error)) return;
+    const std::string sum = said["GeneratedBy"][0].value(kOptionsSum, "");
+    if (sum.empty() || sum == sumOf(asked)) return;
+    throw InvalidInput((options.output / "quality.tsv").string() +
+                       ": was made with other options than " + wordsOf(options) +
+                       "; leave them out to take the participant level's, or give --force to "
+                       "replace it");
+}
+
 }  // namespace
 
-int runGroup(const BidsOptions& options, const std::vector<fs::path>& subjects) {
+int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
     const bool writesJson = options.common.wantsJson() && !options.common.wantsJsonOnStdout();
     if (writesJson) checkOutput(options.common.json);
     std::error_code error;
@@ -181,13 +245,14 @@ int runGroup(const BidsOptions& options, const std::vector<fs::path>& subjects) 
                            ": is not there; run the participant level first");
     }
     requireOwnDataset(options.output);
-    Cohort cohort = lookAtCohort(options, subjects);
+    requireOwnOptions(options);
+    Cohort cohort = lookAtCohort(options, chosen);
     if (cohort.records == 0) {
         throw InvalidInput(options.output.string() +
-                           ": nothing of these participants is there, "
-                           "with these options; run the participant level first");
+                           ": nothing of these participants is there, with these options (" +
+                           wordsOf(options) + "); run the participant level first");
     }
-    markOutliers(cohort.rows, options.outlierLimit);
+    markOutliers(cohort.rows, options.outlierLimit, options.outlierPercent);
     const std::vector<SummaryRow> lines = pageRows(cohort);
     const std::vector<QualityRow>& rows = cohort.rows;
     const fs::path page = options.output / "summary.html";
@@ -199,10 +264,14 @@ int runGroup(const BidsOptions& options, const std::vector<fs::path>& subjects) 
     write("README", readme());
     write(".bidsignore", kIgnored);
     write("quality.tsv", qualityTable(rows));
-    write("quality.json", dumped(qualityDictionary(options.outlierLimit)));
+    write("quality.json", dumped(qualityDictionary(options.outlierLimit, options.outlierPercent)));
     write("summary.html", summaryPage(lines, page));
     const Counts counts = countsOf(rows);
-    const std::string json = options.common.wantsJson() ? jsonReport(rows, counts) : "";
+    Verdict verdict{counts.bad == 0 ? kExitOk : kExitCheckFailed};
+    if (counts.bad == 0) verdict.failStrict(options.common, chosen.warnings, "");
+    const std::string json = options.common.wantsJson()
+                                 ? jsonReport(rows, counts, options, verdict, chosen.warnings)
+                                 : "";
     if (writesJson) outputs.emplace_back(options.common.json).writeText(json);
     printResults(options.common, json,
                  [&](std::ostream& out) { printTotals(out, counts, rows.size(), options); });

@@ -15,17 +15,27 @@ double medianOf(std::vector<double> values) {
     return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
+std::vector<double> knownOf(std::span<const std::optional<double>> values) {
+    std::vector<double> known;
+    for (const std::optional<double>& value : values) {
+        if (value && std::isfinite(*value)) known.push_back(*value);
+    }
+    return known;
+}
+
 }  // namespace
+
+double medianOf(std::span<const std::optional<double>> values) {
+    std::vector<double> known = knownOf(values);
+    return known.empty() ? std::nan("") : medianOf(std::move(known));
+}
 
 std::vector<std::optional<double>> robustScores(std::span<const std::optional<double>> values) {
     constexpr std::size_t kFewest = 5;          // of four, one is no exception
     constexpr double kOfNormal = 1.4826;        // MAD of a normal distribution is 1 / this
     constexpr double kOfNormalMean = 1.253314;  // its mean distance is 1 / this: sqrt(pi / 2)
     std::vector<std::optional<double>> scores(values.size());
-    std::vector<double> known;
-    for (const std::optional<double>& value : values) {
-        if (value && std::isfinite(*value)) known.push_back(*value);
-    }
+    const std::vector<double> known = knownOf(values);
     if (known.size() < kFewest) return scores;
     const double median = medianOf(known);
     std::vector<double> distances;

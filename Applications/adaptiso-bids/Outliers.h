@@ -6,6 +6,9 @@
 
 namespace adaptiso {
 
+/// The median of the values that are there; NaN where none is.
+double medianOf(std::span<const std::optional<double>> values);
+
 /// How far each value lies from the median of all, in robust standard deviations.
 ///
 /// The modified z-score [IglewiczHoaglin1993]: (x - median) / (1.4826 MAD), MAD being the median

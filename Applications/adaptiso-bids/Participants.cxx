@@ -35,21 +35,20 @@ struct Ends {
     }
 };
 
-/// Participants that have no image to make something of.
-void tellThoseWithout(const Product& product, const CommonOptions& common, Ends& ends) {
-    for (const std::string& subject : product.without) {
-        ends.haveFailed = true;
-        const std::string reason = product.name + ": no " + product.needs;
-        if (common.isQuiet || common.wantsJsonOnStdout()) {
-            printError(kProgram, "failed: " + subject + ": " + reason);
-        } else {
-            std::cout << "FAILED  " << subject << ": " << reason << std::endl;
-        }
+void tellFailed(const std::string& subject, const std::string& reason, const CommonOptions& common,
+                Ends& ends) {
+    ends.haveFailed = true;
+    if (common.isQuiet || common.wantsJsonOnStdout()) {
+        printError(kProgram, "failed: " + subject + ": " + reason);
+    } else {
+        std::cout << "FAILED  " << subject << ": " << reason << std::endl;
     }
 }
 
 void run(Product& product, const CommonOptions& common, std::string& lines, Ends& ends) {
-    tellThoseWithout(product, common, ends);
+    for (const std::string& subject : product.without) {
+        tellFailed(subject, product.name + ": no " + product.needs, common, ends);
+    }
     if (product.items.empty()) return;
     product.program.jsonLines = &lines;
     product.program.ended = [&ends](const BatchItem&, const BatchRecord& record) {
@@ -61,12 +60,14 @@ void run(Product& product, const CommonOptions& common, std::string& lines, Ends
 
 }  // namespace
 
-int runParticipants(const BidsOptions& options,
-                    const std::vector<std::filesystem::path>& subjects) {
+int runParticipants(const BidsOptions& options, const ChosenSubjects& chosen) {
     const bool writesJson = options.common.wantsJson() && !options.common.wantsJsonOnStdout();
     if (writesJson) checkOutput(options.common.json);
-    std::deque<Product> products = findProducts(options, subjects);
+    std::deque<Product> products = findProducts(options, chosen.folders);
     Ends ends;
+    for (const auto& [subject, reason] : chosen.faulty) {
+        tellFailed(subject, reason, options.common, ends);
+    }
     std::string lines;
     for (Product& product : products) run(product, options.common, lines, ends);
     if (options.makesChecks) {

@@ -26,7 +26,12 @@ struct BidsOptions {
     std::filesystem::path segmentations;                  ///< a dataset; empty: `dataset`
     bool makesPictures = true;
 
+    /// Says what to make.
+    bool namesProducts() const { return !surfaces.empty() || makesBem || makesLabels; }
+
     double outlierLimit = 3.5;  ///< robust standard deviations
+    double outlierPercent = 1;  ///< of the median, at least
+    bool force = false;         ///< replaces a table made with other options
     std::optional<int> jobs;
     CommonOptions common;
 };

@@ -22,13 +22,13 @@ constexpr const char* kIso = "--iso";
 
 /// Options that say what a run reads and writes, and how it runs: of all programs.
 std::vector<std::string> refusedOptions() {
-    return {
-        "output",        "output-dir",  "list",     "bids",          "participant", "jobs",
-        "skip-existing", "summary",     "report",   "pictures",      "json",        "quiet",
-        "threads",       "no-warnings", "strict",   "help",          "version",     "save-index",
-        "index",         "list-series", "info",     "show-phi",      "force",       "subjects-dir",
-        "subject",       "dry-run",     "t1",       "probabilities", "ct",          "surfaces",
-        "volume",        "nested",      "self-test"};
+    return {"output",      "output-dir",    "list",       "bids",          "participant",
+            "jobs",        "skip-existing", "summary",    "report",        "pictures",
+            "json",        "quiet",         "threads",    "no-warnings",   "strict",
+            "help",        "version",       "save-index", "index",         "allow",
+            "list-series", "info",          "show-phi",   "force",         "subjects-dir",
+            "subject",     "dry-run",       "t1",         "probabilities", "ct",
+            "surfaces",    "volume",        "nested",     "self-test"};
 }
 
 Json sourceJson(const BidsOptions& options, const BatchItem& item, bool isSegmentation) {
@@ -55,6 +55,10 @@ Product newProduct(const BidsOptions& options, const std::string& name, const Si
     batch.jobs = options.jobs;
     batch.skipsExisting = true;
     if (options.common.isStrict) batch.runOptions.push_back("--strict");
+    for (const std::string& code : options.common.allowed) {
+        batch.runOptions.push_back("--allow=" + code);
+    }
+    program.asked = askedOf(options, name);
     return product;
 }
 
@@ -273,6 +277,24 @@ std::string checkSays(const Json& report) {
 }
 
 }  // namespace
+
+Json askedOf(const BidsOptions& options, const std::string& product) {
+    Json asked{{"product", product},
+               {"pictures", options.makesPictures},
+               {"strict", options.common.isStrict},
+               {"allow", options.common.allowed}};
+    if (product == "surfaces") asked["options"] = options.surfaces;
+    if (product == "bem") asked["options"] = options.bemOptions;
+    if (product == "check") asked["options"] = options.checkOptions;
+    if (product != "labels") return asked;
+    asked["options"] = options.labelsOptions;
+    if (!options.segmentations.empty()) {
+        std::error_code error;
+        asked["segmentations"] =
+            fs::proximate(options.segmentations, options.output, error).generic_string();
+    }
+    return asked;
+}
 
 void bindItems(Product& product) {
     product.program.findInBids = [&product](const fs::path&, const std::vector<std::string>&,

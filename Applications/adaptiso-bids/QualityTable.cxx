@@ -47,6 +47,13 @@ std::string cell(const std::optional<double>& value) {
     return value && std::isfinite(*value) ? formatNumber(*value) : "n/a";
 }
 
+/// Two digits: "31%", "0.52%", "12000%"; of what is infinite "inf%".
+std::string percentText(double percent) {
+    const double size = std::abs(percent);
+    if (!std::isfinite(size)) return "inf%";
+    return (size < 10 ? formatShort(std::round(size * 100) / 100) : formatFixed(size, 0)) + "%";
+}
+
 Json described(std::string_view text) {
     return {{"Description", text}};
 }
@@ -69,7 +76,7 @@ std::string toString(QualityState state) {
     return "";
 }
 
-void markOutliers(std::vector<QualityRow>& rows, double limit) {
+void markOutliers(std::vector<QualityRow>& rows, double limit, double leastPercent) {
     std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> alike;
     for (std::size_t n = 0; n < rows.size(); ++n) {
         alike[{rows[n].product, rows[n].part}].push_back(n);
@@ -80,11 +87,15 @@ void markOutliers(std::vector<QualityRow>& rows, double limit) {
             std::vector<std::optional<double>> values;
             for (const std::size_t n : members) values.push_back(rows[n].measures[k]);
             const std::vector<std::optional<double>> scores = robustScores(values);
+            const double median = medianOf(values);
             for (std::size_t m = 0; m < members.size(); ++m) {
                 if (!scores[m] || !(std::abs(*scores[m]) > limit)) continue;
+                const double percent = 100 * (*values[m] - median) / std::abs(median);
+                if (std::abs(percent) < leastPercent) continue;
                 std::string& marks = rows[members[m]].outliers;
                 marks += (marks.empty() ? "" : ",") + std::string(kColumns[k].name) +
-                         (*scores[m] > 0 ? ":+" : ":-") + formatFixed(std::abs(*scores[m]), 1);
+                         (*scores[m] > 0 ? ":+" : ":-") + formatFixed(std::abs(*scores[m]), 1) +
+                         (percent > 0 ? "(+" : "(-") + percentText(percent) + ")";
             }
         }
     }
@@ -107,7 +118,7 @@ std::string qualityTable(const std::vector<QualityRow>& rows) {
     return text;
 }
 
-Json qualityDictionary(double limit) {
+Json qualityDictionary(double limit, double leastPercent) {
     Json json{{"participant_id", described("Participant")},
               {"session_id", described("Session")},
               {"scan", described("Entities of the image that the surface was made of")},
@@ -119,8 +130,10 @@ Json qualityDictionary(double limit) {
               {"outliers",
                described("Columns in which this surface lies more than " + formatNumber(limit) +
                          " robust standard deviations (1.4826 times the median distance from "
-                         "the median) from the median of all rows of its product and part, each "
-                         "with that distance: volume_mm3:+4.2 is far above it")}};
+                         "the median) and at least " +
+                         formatNumber(leastPercent) +
+                         " % from the median of all rows of its product and part, each "
+                         "with that distance: volume_mm3:+4.2(+31%) is far above it")}};
     json["product"] = described("What was made");
     json["product"]["Levels"] = {{"surfaces", "An isosurface, by adaptiso-mesh"},
                                  {"bem", "A surface of a head model, by adaptiso-bem"},

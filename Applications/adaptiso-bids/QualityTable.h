@@ -42,7 +42,7 @@ struct QualityRow {
     std::string reason;  ///< why it is not done; empty: it is
     std::string check;   ///< what adaptiso-check said; empty: it was not asked
     std::array<std::optional<double>, kMeasures> measures{};
-    std::string outliers;  ///< "volume_mm3:+4.2,area_mm2:-3.9"; empty: none
+    std::string outliers;  ///< "volume_mm3:+4.2(+31%)"; empty: none
 
     std::optional<double>& operator[](Measure measure) {
         return measures[static_cast<std::size_t>(measure)];
@@ -50,11 +50,12 @@ struct QualityRow {
 };
 
 /// Fills `outliers`: each row is compared with those of its product and part.
-/// \param limit  robust standard deviations from the median
-void markOutliers(std::vector<QualityRow>& rows, double limit);
+/// \param limit         robust standard deviations from the median
+/// \param leastPercent  of the median: what lies nearer to it is no outlier
+void markOutliers(std::vector<QualityRow>& rows, double limit, double leastPercent = 1);
 
 /// quality.tsv, and quality.json, which says what its columns are, as BIDS has it.
 std::string qualityTable(const std::vector<QualityRow>& rows);
-Json qualityDictionary(double limit);
+Json qualityDictionary(double limit, double leastPercent = 1);
 
 }  // namespace adaptiso

@@ -1,6 +1,7 @@
 """adaptiso-bids: participants side by side, what is made again and what is not, and the group."""
 
 import csv
+import gzip
 import json
 import os
 import shutil
@@ -191,6 +192,7 @@ class Participants(BidsTest):
                 (USAGE, "max-error", ("participant", "--participant-label", "01", "--surfaces",
                                       "iso=1,max-error=-3")),
                 (BAD_INPUT, "there is no folder sub-99", ("participant", "--participant-label", "99")),
+                (USAGE, "--force: is for the group level", ("participant", "--force")),
                 (BAD_INPUT, "out: is not there; run the participant level first", ("group",))):
             with self.subTest(pattern):
                 shutil.rmtree(self.path("out"), ignore_errors=True)
@@ -201,13 +203,62 @@ class Participants(BidsTest):
         self.assertEqual(done.returncode, USAGE)
         self.assertIn("is BIDS_DIR", done.stderr)
 
-    def test_validation(self):
+    def test_a_participant_of_wrong_names_fails_alone(self):
         self.scan("sub-02/anat/sub-01", ball(24, 8))
-        done = self.bids(BAD_INPUT, "participant")
-        self.assertIn("sub-01: lies in the folder of sub-02", done.stderr)
-        self.assertEqual(len(done.stderr.splitlines()), 1)
-        self.bids(OK, "participant", "--participant-label", "03")  # its own names are good
+        self.scan("sub-0_8/anat/sub-0_8", ball(24, 8))
+        done = self.bids(CHECK_FAILED, "participant")
+        self.assertRegex(done.stdout, r"(?m)^FAILED  sub-02: sub-01: lies in the folder of sub-02; .*"
+                                      r"--skip-bids-validation$")
+        self.assertRegex(done.stdout, r"(?m)^FAILED  sub-0_8: ")
+        self.assertEqual(len([line for line in done.stdout.splitlines() if line.startswith("done")]), 6)
+        done = self.bids(CHECK_FAILED, "group")
+        self.assertRegex(done.stderr, r"(?m)^adaptiso-bids: failed: sub-02: sub-01: lies in")
+        self.assertEqual(sorted(row["participant_id"] for row in self.table()
+                                if row["state"] == "failed"), ["sub-02", "sub-0_8"])
         self.bids(OK, "participant", "--participant-label", "02", "--skip-bids-validation")
+        self.study.joinpath("dataset_description.json").write_text("{}")
+        self.assertIn("has no Name", self.bids(BAD_INPUT, "participant").stderr)
+
+    def test_an_image_that_is_there_twice_costs_its_own_line(self):
+        scan = self.study / "sub-01/anat/sub-01_T1w.nii"
+        self.bids(OK, "participant", "--participant-label", "01")
+        scan.with_suffix(".nii.gz").write_bytes(gzip.compress(scan.read_bytes()))
+        done = self.bids(CHECK_FAILED, "participant", "--participant-label", "01", "02")
+        self.assertRegex(done.stdout, r"(?m)^FAILED  .*sub-01_T1w.nii: lies beside "
+                                      r"sub-01_T1w.nii.gz, another image of its name; keep one, ")
+        self.assertRegex(done.stdout, r"(?m)^done    .*sub-02_T1w.nii: ")
+        done = self.bids(CHECK_FAILED, "group", "--participant-label", "01", "02")
+        self.assertRegex(done.stderr, r"^adaptiso-bids: failed: sub-01: surfaces.*keep one\n$")
+        scan.unlink()
+        self.bids(OK, "participant", "--participant-label", "01", "02")
+        self.bids(OK, "group", "--participant-label", "01", "02")
+
+    def test_bidsignore_is_obeyed(self):
+        self.scan("sub-08/anat/sub-08_acq-bad", ball(24, 8))
+        self.scan("sub-08/anat/sub-08_acq-good", ball(24, 8))
+        self.study.joinpath(".bidsignore").write_text(
+            "# comment\n/sub-01\n**/*_acq-bad_*\nsub-0[3-6]/\nsub-02/anat/*\n!sub-04/\n")
+        self.assertEqual(set(self.told(code=CHECK_FAILED)), {"sub-04", "sub-07", "sub-08_acq-good"})
+
+    def test_participants_that_are_listed_and_not_there_are_warned_of(self):
+        rows = "\n".join(f"sub-{number:02}\t3" for number in (1, 2, 3, 4, 5, 6, 9))
+        self.study.joinpath("participants.tsv").write_text(f"participant_id\tage\n{rows}\n")
+        done = self.bids(OK, "participant")
+        self.assertEqual(done.stderr.splitlines(), [
+            "adaptiso-bids: warning: participants.tsv: does not list sub-07",
+            "adaptiso-bids: warning: participants.tsv: lists participants without a folder: sub-09"])
+        report = json.loads(self.bids(OK, "group", "--json", "-").stdout)
+        self.assertEqual([warning["code"] for warning in report["warnings"]],
+                         ["subject-not-listed", "subject-not-there"])
+        self.assertEqual(self.bids(OK, "group", "--participant-label", "01", "02").stderr, "")
+
+    def test_content_that_is_not_fetched_fails_with_the_command(self):
+        scan = self.study / "sub-02/anat/sub-02_T1w.nii"
+        scan.unlink()
+        scan.symlink_to("../../.git/annex/objects/x/y/MD5E-s9--0123.nii/MD5E-s9--0123.nii")
+        done = self.bids(CHECK_FAILED, "participant", "--participant-label", "01", "02")
+        self.assertRegex(done.stdout, r"(?m)^FAILED  .*sub-02_T1w.nii: .*(git annex|datalad) get")
+        self.assertRegex(done.stdout, r"(?m)^done    .*sub-01_T1w.nii: ")
 
     def test_version_as_bids_apps_have_it(self):
         for option in ("-v", "--version"):
@@ -443,6 +494,50 @@ class Group(BidsTest):
             shutil.rmtree(self.study / f"sub-{number:02}")
         self.bids(OK, "group")
 
+    def test_takes_the_options_of_the_participant_level(self):
+        what = ("--surfaces", "iso=100.5,largest", "--check")  # and pictures
+        self.bids(OK, "participant", what=what)
+        self.bids(OK, "participant", "--participant-label", "07", what=("--surfaces", "iso=100.5"))
+        self.bids(OK, "participant", "--participant-label", "07", what=what)
+        done = self.bids(OK, "group", what=())
+        self.assertIn("7 participants, 7 whole; 7 surfaces", done.stdout)
+        self.assertIn("options: --surfaces iso=100.5,largest --check", done.stdout)
+        whole = self.tree()
+        self.assertEqual({row["check"] for row in self.table()}, {"passed"})
+        self.bids(OK, "group", what=what)
+        self.assertEqual(self.tree(), whole)
+        # a table made with others stays
+        page = self.path("out/summary.html").read_bytes()
+        done = self.bids(BAD_INPUT, "group", what=("--surfaces", "iso=auto"))
+        self.assertRegex(done.stderr, "quality.tsv: was made with other options than --surfaces "
+                                      "iso=auto; .*--force")
+        self.assertEqual((self.tree(), self.path("out/summary.html").read_bytes()), (whole, page))
+        done = self.bids(CHECK_FAILED, "group", "--force", what=("--surfaces", "iso=100.5"))
+        self.assertIn("7 participants, 0 whole", done.stdout)
+        self.bids(OK, "group", what=())
+
+    def test_takes_what_most_participants_were_asked_for(self):
+        self.bids(OK, "participant")
+        self.bids(OK, "participant", "--participant-label", "07",
+                  what=("--surfaces", "iso=100.5", "--no-pictures"))
+        done = self.bids(CHECK_FAILED, "group", what=())
+        self.assertIn("7 participants, 6 whole", done.stdout)
+        # asked for anew in other words: nothing is made again, the words are kept
+        other = ("--surfaces", "largest,iso=100.50", "--no-pictures")
+        self.assertIs(self.told(what=other)["sub-01"], False)
+        self.assertIn("options: --surfaces largest,iso=100.50", self.bids(OK, "group", what=()).stdout)
+
+    def test_marks_no_outlier_of_no_effect(self):
+        for number in range(1, 8):  # volumes by 0.03 % each, and one by 0.5 %
+            spacing = 1.002 if number == 7 else 1 + 1e-4 * number
+            self.scan(f"sub-{number:02}/anat/sub-{number:02}", ball(24, 8, (spacing,) * 3))
+        self.bids(OK, "participant", what=("--surfaces", "iso=100.5,method=mc", "--no-pictures"))
+        self.assertIn("0 unusual", self.bids(OK, "group", what=()).stdout)
+        done = self.bids(OK, "group", "--outlier-percent", "0.1", what=())
+        self.assertIn("1 unusual", done.stdout)
+        marks = next(row["outliers"] for row in self.table() if row["outliers"] != "n/a")
+        self.assertRegex(marks, r"volume_mm3:\+\d+\.\d\(\+0\.\d+%\)$")
+
     def test_marks_outliers(self):
         self.scan("sub-04/anat/sub-04", ball(24, 11))
         self.bids(OK, "participant", "--jobs", 2)
@@ -450,7 +545,7 @@ class Group(BidsTest):
         self.assertIn("7 surfaces, 1 unusual", done.stdout)
         marked = {row["participant_id"]: row["outliers"] for row in self.table() if row["outliers"] != "n/a"}
         self.assertEqual(list(marked), ["sub-04"])
-        self.assertRegex(marked["sub-04"], r"^area_mm2:\+\d+\.\d,volume_mm3:\+\d+\.\d$")
+        self.assertRegex(marked["sub-04"], r"^area_mm2:\+\d+\.\d\(\+\d+%\),volume_mm3:\+\d+\.\d\(\+\d+%\)$")
         page = self.path("out/summary.html").read_text()
         self.assertIn("All 7 done, 1 unusual", page)
         self.assertLess(page.index("sub-04"), page.index("sub-01"))

@@ -84,6 +84,18 @@ TEST(QualityTable, ComparesWhatIsAlike) {
     for (std::size_t n = 1; n < rows.size(); ++n) EXPECT_EQ(rows[n].outliers, "");
 }
 
+TEST(MarkOutliers, AsksForAnEffectAndTellsIt) {
+    std::vector<QualityRow> rows(6);
+    const double volumes[] = {1000, 1000.1, 999.9, 1000.1, 999.9, 1005};  // 0.5 %
+    for (std::size_t n = 0; n < rows.size(); ++n) rows[n][Measure::VolumeMm3] = volumes[n];
+    markOutliers(rows, 3.5);
+    EXPECT_EQ(rows[5].outliers, "");
+    markOutliers(rows, 3.5, 0.4);
+    // median 1000.05; distances 0.05 0.05 0.15 0.05 0.15 4.95: their median is 0.1
+    EXPECT_EQ(rows[5].outliers, "volume_mm3:+33.4(+0.49%)");
+    EXPECT_EQ(rows[0].outliers, "");
+}
+
 TEST(SiblingOptions, GiveValuesTheirCommas) {
     const Sibling sibling{"adaptiso-x", {}, {}, {"iso", "largest", "crop", "vertices", "output"}};
     EXPECT_EQ(
