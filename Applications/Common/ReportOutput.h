@@ -12,9 +12,9 @@
 #include "Common/CommonOptions.h"
 #include "Common/Resources.h"
 #include "adaptiso/Core/Warning.h"
+#include "adaptiso/Report/ImageFacts.h"  // IWYU pragma: export
 #include "adaptiso/Report/Pictures.h"
 #include "adaptiso/Report/Report.h"
-#include "adaptiso/SurfacePipeline/ImageFacts.h"  // IWYU pragma: export
 
 namespace adaptiso {
 

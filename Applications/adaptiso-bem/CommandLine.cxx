@@ -9,7 +9,7 @@
 
 #include "Common/ImageOptions.h"
 #include "Common/Numbers.h"
-#include "adaptiso/SurfacePipeline/Checks.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
 
 namespace adaptiso {
 namespace {

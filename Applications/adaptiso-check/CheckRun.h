@@ -16,8 +16,8 @@
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
-#include "adaptiso/SurfacePipeline/Checks.h"
-#include "adaptiso/SurfacePipeline/SurfaceFacts.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
+#include "adaptiso/SurfaceChecks/SurfaceFacts.h"
 
 namespace adaptiso {
 

@@ -4,7 +4,7 @@
 #include "Common/Json.h"
 #include "Common/PreprocessingOptions.h"
 #include "Common/Warnings.h"
-#include "adaptiso/SurfacePipeline/CheckJson.h"
+#include "adaptiso/SurfaceChecks/CheckJson.h"
 
 namespace adaptiso {
 namespace {

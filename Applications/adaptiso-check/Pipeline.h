@@ -10,7 +10,7 @@
 #include "Common/ReportOutput.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/Preprocessing/Preprocess.h"
-#include "adaptiso/SurfacePipeline/Checks.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
 
 namespace adaptiso {
 

@@ -20,8 +20,8 @@
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
-#include "adaptiso/SurfacePipeline/Checks.h"
-#include "adaptiso/SurfacePipeline/SurfaceFacts.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
+#include "adaptiso/SurfaceChecks/SurfaceFacts.h"
 
 namespace adaptiso::selftest {
 namespace {

@@ -5,7 +5,7 @@
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Common/Warnings.h"
-#include "adaptiso/SurfacePipeline/DistanceJson.h"
+#include "adaptiso/SurfaceChecks/DistanceJson.h"
 
 namespace adaptiso {
 namespace {

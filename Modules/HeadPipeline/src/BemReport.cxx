@@ -4,7 +4,7 @@
 #include <array>
 
 #include "adaptiso/Core/Numbers.h"
-#include "adaptiso/SurfacePipeline/ImageFacts.h"
+#include "adaptiso/Report/ImageFacts.h"
 
 namespace adaptiso {
 namespace {

@@ -1,4 +1,4 @@
-#include "adaptiso/SurfacePipeline/Checks.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
 
 #include <pybind11/stl.h>
 
@@ -17,7 +17,7 @@
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
-#include "adaptiso/SurfacePipeline/DistanceJson.h"
+#include "adaptiso/SurfaceChecks/DistanceJson.h"
 
 namespace adaptiso::python {
 namespace {

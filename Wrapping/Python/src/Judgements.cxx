@@ -4,7 +4,7 @@
 
 #include "adaptiso/Core/FreeMemory.h"
 #include "adaptiso/MeshQuality/Nesting.h"
-#include "adaptiso/SurfacePipeline/CheckJson.h"
+#include "adaptiso/SurfaceChecks/CheckJson.h"
 
 namespace adaptiso::python {
 

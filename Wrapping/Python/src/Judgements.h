@@ -5,7 +5,7 @@
 
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Json/Json.h"
-#include "adaptiso/SurfacePipeline/Checks.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
 
 namespace adaptiso::python {
 

@@ -8,7 +8,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
-#include "adaptiso/SurfacePipeline/Checks.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
 
 namespace adaptiso::python {
 

@@ -8,7 +8,7 @@
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/HeadPipeline/BemModel.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
-#include "adaptiso/SurfacePipeline/Checks.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
 
 namespace adaptiso {
 

@@ -9,7 +9,7 @@
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
-#include "adaptiso/SurfacePipeline/SurfaceFacts.h"
+#include "adaptiso/SurfaceChecks/SurfaceFacts.h"
 
 namespace adaptiso {
 

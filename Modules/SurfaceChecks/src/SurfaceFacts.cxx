@@ -1,4 +1,4 @@
-#include "adaptiso/SurfacePipeline/SurfaceFacts.h"
+#include "adaptiso/SurfaceChecks/SurfaceFacts.h"
 
 #include <algorithm>
 #include <limits>

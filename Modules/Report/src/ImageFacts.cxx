@@ -1,4 +1,4 @@
-#include "adaptiso/SurfacePipeline/ImageFacts.h"
+#include "adaptiso/Report/ImageFacts.h"
 
 #include "adaptiso/Core/Numbers.h"
 

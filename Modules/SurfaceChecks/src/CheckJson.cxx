@@ -1,4 +1,4 @@
-#include "adaptiso/SurfacePipeline/CheckJson.h"
+#include "adaptiso/SurfaceChecks/CheckJson.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "adaptiso/SurfacePipeline/Checks.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "adaptiso/SurfacePipeline/DistanceJson.h"
+#include "adaptiso/SurfaceChecks/DistanceJson.h"
 
 namespace adaptiso {
 
