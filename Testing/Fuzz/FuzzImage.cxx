@@ -1,9 +1,10 @@
-// libFuzzer target: bytes that claim to be an image file with the ending ADAPTISO_FUZZ_ENDING, in a
+// libFuzzer target: bytes that claim to be an image file with the ending fuzz::ending(), in a
 // folder with data files that detached headers may name. They are refused with a FileError or give
 // a sound volume. ITK and GDCM are not asked (Decoders.cxx).
 
 #include <cstdint>
 
+#include "Ending.h"
 #include "InputFolder.h"
 #include "ReadFuzzed.h"
 
@@ -23,8 +24,8 @@ const adaptiso::fuzz::InputFolder& inputFolder() {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const auto file =
-        inputFolder().write("x" ADAPTISO_FUZZ_ENDING, {reinterpret_cast<const char*>(data), size});
+    const auto file = inputFolder().write("x" + adaptiso::fuzz::ending(),
+                                          {reinterpret_cast<const char*>(data), size});
     adaptiso::fuzz::readFuzzed(file);
     adaptiso::ReadOptions options;
     options.volumeIndex = 0;

@@ -1,4 +1,4 @@
-// libFuzzer target: bytes that claim to be a mesh file with the ending ADAPTISO_FUZZ_ENDING.
+// libFuzzer target: bytes that claim to be a mesh file with the ending fuzz::ending().
 // Whatever they hold, they are refused with a FileError or give a sound mesh.
 
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "Ending.h"
 #include "OneLine.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
@@ -38,10 +39,10 @@ void requireSound(const MeshFile& file) {
 
 /// \param isKnown  the format is; else content tells
 void decode(std::string_view bytes, const MeshReadOptions& options, bool isKnown = true) {
-    static const MeshFormat& format = findMeshFormat("fuzzed" ADAPTISO_FUZZ_ENDING);
+    static const MeshFormat& format = findMeshFormat("fuzzed" + fuzz::ending());
     try {
         const MeshFile file = isKnown ? decodeMesh(bytes, format, "fuzzed", options)
-                                      : decodeMesh(bytes, "fuzzed" ADAPTISO_FUZZ_ENDING, options);
+                                      : decodeMesh(bytes, "fuzzed" + fuzz::ending(), options);
         if (!options.keepsFaults) requireSound(file.mesh);
         requireSound(file);
     } catch (const FileError& refusal) {

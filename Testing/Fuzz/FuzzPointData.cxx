@@ -1,11 +1,12 @@
 // libFuzzer target: bytes that claim to be a file of values at points with the ending
-// ADAPTISO_FUZZ_ENDING. Whatever they hold, they are refused with a FileError or give values, one
+// fuzz::ending(). Whatever they hold, they are refused with a FileError or give values, one
 // for each point and column.
 
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
 
+#include "Ending.h"
 #include "OneLine.h"
 #include "adaptiso/MeshIO/PointData.h"
 
@@ -34,7 +35,7 @@ void requireSound(const PointData& data) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace adaptiso;
-    static const PointDataFormat format = findPointDataFormat("fuzzed" ADAPTISO_FUZZ_ENDING);
+    static const PointDataFormat format = findPointDataFormat("fuzzed" + fuzz::ending());
     try {
         requireSound(
             decodePointData({reinterpret_cast<const char*>(data), size}, format, "fuzzed"));

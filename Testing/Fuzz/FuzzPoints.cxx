@@ -1,4 +1,4 @@
-// libFuzzer target: bytes that claim to be electrodes of the kind that ADAPTISO_FUZZ_ENDING says
+// libFuzzer target: bytes that claim to be electrodes of the kind that fuzz::ending() says
 // (.tsv, .elc, .sfp, .fif); of .tsv what follows a byte 0 is its _coordsystem.json. They are
 // refused with a FileError, or all points have names and are finite.
 
@@ -10,20 +10,21 @@
 #include <string>
 #include <string_view>
 
+#include "Ending.h"
 #include "OneLine.h"
 #include "adaptiso/MeshIO/PointFiles.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     std::string_view bytes(reinterpret_cast<const char*>(data), size);
-    constexpr std::string_view kEnding = ADAPTISO_FUZZ_ENDING;
+    const std::string& ending = adaptiso::fuzz::ending();
     std::optional<std::string> json;
     const std::size_t cut = bytes.find('\0');
-    if (kEnding == ".tsv" && cut != bytes.npos) {
+    if (ending == ".tsv" && cut != bytes.npos) {
         json = std::string(bytes.substr(cut + 1));
         bytes = bytes.substr(0, cut);
     }
     try {
-        for (const auto& point : adaptiso::decodePoints(bytes, kEnding, "input", json).points) {
+        for (const auto& point : adaptiso::decodePoints(bytes, ending, "input", json).points) {
             if (point.name.empty() || !std::isfinite(squaredNorm(point.point))) std::abort();
         }
     } catch (const adaptiso::FileError& refusal) {

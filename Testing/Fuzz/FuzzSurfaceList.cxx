@@ -1,4 +1,4 @@
-// libFuzzer target: bytes that claim to be surfaces of the kind that ADAPTISO_FUZZ_ENDING says
+// libFuzzer target: bytes that claim to be surfaces of the kind that fuzz::ending() says
 // (.fif, .s00). They are refused with a FileError, or all triangles name points that are there and
 // finite.
 
@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "Ending.h"
 #include "OneLine.h"
 #include "adaptiso/MeshIO/CurrySurface.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
@@ -29,7 +30,7 @@ void requireSound(const adaptiso::TriangleMesh& mesh) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     try {
-        if (std::string_view(ADAPTISO_FUZZ_ENDING) == ".fif") {
+        if (adaptiso::fuzz::ending() == ".fif") {
             for (const auto& surface : adaptiso::decodeFiffSurfaces(bytes, "input")) {
                 requireSound(surface.mesh);
             }

@@ -1,4 +1,4 @@
-// libFuzzer target: bytes that claim to be what a mesher wrote, by ADAPTISO_FUZZ_ENDING: .gmsh (a
+// libFuzzer target: bytes that claim to be what a mesher wrote, by fuzz::ending(): .gmsh (a
 // .msh of version 2.2), or .tetgen (.node, and after a byte 0 .ele). They are refused with a
 // FileError, or all elements have corners that are there, at finite points.
 
@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "Ending.h"
 #include "OneLine.h"
 #include "adaptiso/Tetrahedra/MesherFiles.h"
 
@@ -27,11 +28,11 @@ void requireSound(const adaptiso::TetrahedralMesh& mesh) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-    constexpr std::string_view kEnding = ADAPTISO_FUZZ_ENDING;
+    const std::string& ending = adaptiso::fuzz::ending();
     const std::size_t cut = std::min(bytes.find('\0'), size);
     try {
         adaptiso::TetrahedralMesh mesh =
-            kEnding == ".gmsh"
+            ending == ".gmsh"
                 ? adaptiso::decodeGmsh(bytes, "input")
                 : adaptiso::decodeTetgen(bytes.substr(0, cut),
                                          bytes.substr(std::min(cut + 1, size)), "input");
