@@ -6,7 +6,7 @@
 #include "Common/ImageOptions.h"
 #include "Common/OptionValues.h"
 
-namespace adaptiso {
+namespace adaptiso::compare {
 namespace {
 
 constexpr const char* kDistances = "Distances";
@@ -93,4 +93,4 @@ void declareCompareOptions(CLI::App& app, CompareOptions& options) {
     declareCommonOptions(app, options.common, "all files are written all the same");
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::compare

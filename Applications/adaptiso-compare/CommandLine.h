@@ -4,7 +4,7 @@
 #include "Common/RunApp.h"
 #include "Pipeline.h"
 
-namespace adaptiso {
+namespace adaptiso::compare {
 
 /// Name, description and closing help text of adaptiso-compare.
 Program compareProgram();
@@ -13,4 +13,4 @@ Program compareProgram();
 /// values, and for combinations of options, that make no sense.
 void declareCompareOptions(CLI::App& app, CompareOptions& options);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::compare

@@ -18,7 +18,7 @@
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 
-namespace adaptiso {
+namespace adaptiso::compare {
 
 /// What is known of one of the surfaces.
 struct SurfaceSummary {
@@ -80,4 +80,4 @@ struct CompareRun {
     Verdict verdict;              ///< how the run ends, known before the reports are made
 };
 
-}  // namespace adaptiso
+}  // namespace adaptiso::compare

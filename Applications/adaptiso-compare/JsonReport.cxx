@@ -7,7 +7,7 @@
 #include "Common/Warnings.h"
 #include "adaptiso/SurfaceChecks/DistanceJson.h"
 
-namespace adaptiso {
+namespace adaptiso::compare {
 namespace {
 
 Json surfaceJson(const SurfaceSummary& surface) {
@@ -116,4 +116,4 @@ std::string jsonReport(const CompareRun& run) {
     return jsonText(report) + "\n";
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::compare

@@ -8,7 +8,7 @@
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/Predicates.h"
 
-namespace adaptiso {
+namespace adaptiso::compare {
 namespace {
 
 /// The whole numbers in [first, last); empty where first >= last.
@@ -143,4 +143,4 @@ Overlap voxelOverlap(const TriangleMesh& a, const TriangleMesh& b, const ImageGe
     return all;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::compare

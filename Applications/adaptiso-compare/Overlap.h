@@ -5,7 +5,7 @@
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
-namespace adaptiso {
+namespace adaptiso::compare {
 
 /// Voxels of an image by which surface their centres lie inside.
 struct Overlap {
@@ -36,4 +36,4 @@ struct Overlap {
 /// [Edelsbrunner1990] H. Edelsbrunner, E. P. Muecke, Simulation of simplicity, ACM Trans. Graph.
 Overlap voxelOverlap(const TriangleMesh& a, const TriangleMesh& b, const ImageGeometry& image);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::compare

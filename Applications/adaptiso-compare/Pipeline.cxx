@@ -29,7 +29,7 @@
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/Report/ColorMap.h"
 
-namespace adaptiso {
+namespace adaptiso::compare {
 namespace {
 
 namespace fs = std::filesystem;
@@ -279,4 +279,4 @@ int runCompare(const CompareOptions& options) {
     return printVerdict(kProgram, run.verdict, written);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::compare

@@ -8,7 +8,7 @@
 #include "Common/ReportOutput.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
-namespace adaptiso {
+namespace adaptiso::compare {
 
 /// What adaptiso-compare is asked to do.
 struct CompareOptions {
@@ -33,4 +33,4 @@ struct CompareOptions {
 /// \throws InvalidInput  a surface without area, or frames that can't be brought together
 int runCompare(const CompareOptions& options);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::compare

@@ -6,7 +6,7 @@
 #include "Common/Numbers.h"
 #include "Common/ReportOutput.h"
 
-namespace adaptiso {
+namespace adaptiso::compare {
 namespace {
 
 void tellVerdict(const CompareRun& run, const std::string& a, const std::string& b,
@@ -132,4 +132,4 @@ Report makeReport(const CompareRun& run, ShownSurfaces& shown) {
     return report;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::compare

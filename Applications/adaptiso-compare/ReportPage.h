@@ -6,7 +6,7 @@
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Report/Report.h"
 
-namespace adaptiso {
+namespace adaptiso::compare {
 
 /// What --report and --pictures show, besides what the run tells; LPS mm.
 struct ShownSurfaces {
@@ -17,4 +17,4 @@ struct ShownSurfaces {
 /// The report of a run, which must outlive it; the surfaces are moved out of `shown`.
 Report makeReport(const CompareRun& run, ShownSurfaces& shown);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::compare

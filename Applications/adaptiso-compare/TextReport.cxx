@@ -7,7 +7,7 @@
 
 #include "Common/Numbers.h"
 
-namespace adaptiso {
+namespace adaptiso::compare {
 namespace {
 
 std::string signedPercent(double value, double of) {
@@ -93,4 +93,4 @@ void printReport(std::ostream& out, const CompareRun& run) {
     printTimes(out, run.timer);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::compare

@@ -3,6 +3,7 @@
 #include "Pipeline.h"
 
 int main(int argc, char** argv) {
-    return adaptiso::runApp(argc, argv, adaptiso::compareProgram(), adaptiso::declareCompareOptions,
-                            adaptiso::runCompare);
+    return adaptiso::runApp(argc, argv, adaptiso::compare::compareProgram(),
+                            adaptiso::compare::declareCompareOptions,
+                            adaptiso::compare::runCompare);
 }

@@ -10,7 +10,7 @@
 #include "OutputNames.h"
 #include "adaptiso/MeshIO/Formats.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 namespace {
 
 constexpr const char* kInput = "Input";
@@ -183,4 +183,4 @@ void declareSimplifyOptions(CLI::App& app, SimplifyCommand& command) {
     });
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

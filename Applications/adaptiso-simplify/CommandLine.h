@@ -4,7 +4,7 @@
 #include "Common/RunApp.h"
 #include "Pipeline.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 
 /// Name, description and closing help text of adaptiso-simplify.
 Program simplifyProgram();
@@ -13,4 +13,4 @@ Program simplifyProgram();
 /// values, and for combinations of options, that make no sense.
 void declareSimplifyOptions(CLI::App& app, SimplifyCommand& command);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

@@ -8,7 +8,7 @@
 #include "Common/SpotClusters.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 namespace {
 
 struct Kind {
@@ -98,4 +98,4 @@ std::vector<std::int64_t> findCrossing(const TriangleMesh& mesh) {
     return triangles;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

@@ -10,7 +10,7 @@
 #include "adaptiso/Extraction/Simplify.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 
 /// A kind of places where a surface is not sound.
 struct Finding {
@@ -37,4 +37,4 @@ std::optional<Finding> crossingFinding(const TriangleMesh& mesh,
 /// Numbers of the triangles that cross others, ascending, found by MeshQuality.
 std::vector<std::int64_t> findCrossing(const TriangleMesh& mesh);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

@@ -4,7 +4,7 @@
 
 #include "adaptiso/Core/Errors.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 namespace {
 
 bool needsVolume(CoordinateFrame frame) {
@@ -54,4 +54,4 @@ double roundingOf(CoordinatePrecision precision, double largest) {
     throw InternalError("roundingOf: unknown precision");
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

@@ -7,7 +7,7 @@
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 
 /// How the points of a file go to those of another.
 struct FrameChange {
@@ -41,4 +41,4 @@ PageFrame pageFrame(const MeshFile& input);
 /// The most that a coordinate changes when it is written, of one as large as `largest`.
 double roundingOf(CoordinatePrecision precision, double largest);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

@@ -4,7 +4,7 @@
 #include "Common/Json.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 namespace {
 
 Json surfaceJson(const SurfaceSummary& surface) {
@@ -93,4 +93,4 @@ std::string jsonReport(const SimplifyRun& run) {
     return jsonText(report) + "\n";
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

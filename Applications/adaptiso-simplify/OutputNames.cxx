@@ -8,7 +8,7 @@
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/Formats.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 namespace {
 
 namespace fs = std::filesystem;
@@ -79,4 +79,4 @@ std::string bidsName(const fs::path& input) {
     return name.substr(0, suffix) + entity + name.substr(suffix);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

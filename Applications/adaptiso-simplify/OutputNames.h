@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 
 /// It ends with a slash, or is a folder that is there.
 bool isFolder(const std::filesystem::path& path);
@@ -25,4 +25,4 @@ std::filesystem::path dataFile(const std::filesystem::path& data,
 /// "sub-01_hemi-L_desc-simplified_pial.surf.gii", BIDS's way to name what was made of a file.
 std::string bidsName(const std::filesystem::path& input);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

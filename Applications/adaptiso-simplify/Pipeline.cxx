@@ -28,7 +28,7 @@
 #include "Verification.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 namespace {
 
 namespace fs = std::filesystem;
@@ -372,4 +372,4 @@ int runSimplify(const SimplifyCommand& command) {
     return printVerdict(kProgram, run.verdict, written);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

@@ -12,7 +12,7 @@
 #include "adaptiso/Extraction/Simplify.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 
 /// What adaptiso-simplify is asked to do.
 struct SimplifyCommand {
@@ -49,4 +49,4 @@ struct SimplifyCommand {
 /// \throws InternalError  the result breaks a promise
 int runSimplify(const SimplifyCommand& command);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

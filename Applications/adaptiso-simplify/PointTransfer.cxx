@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 
 PointTransfer::PointTransfer(const TriangleMesh& from, const TriangleMesh& to)
     : from_(from), to_(to), places_(nearestPoints(to, from)) {}
@@ -92,4 +92,4 @@ PointData PointTransfer::operator()(const PointData& data) const {
     return taken;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

@@ -7,7 +7,7 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshIO/PointData.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 
 /// Takes values at the points of a surface to those of another that lies near it.
 ///
@@ -36,4 +36,4 @@ private:
     std::vector<SurfacePoint> places_;  ///< of the points of `to` on `from`
 };
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

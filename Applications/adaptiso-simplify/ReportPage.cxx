@@ -9,7 +9,7 @@
 #include "Frames.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 namespace {
 
 void tellVerdict(const SimplifyRun& run, Report& report) {
@@ -142,4 +142,4 @@ Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh sh
     return report;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

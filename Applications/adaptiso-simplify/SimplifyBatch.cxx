@@ -5,7 +5,7 @@
 #include "Common/Numbers.h"
 #include "OutputNames.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 namespace {
 
 std::string says(const Json& report) {
@@ -58,4 +58,4 @@ int runSimplifyBatch(const SimplifyCommand& command) {
     return runBatch(program, command.batch, command.common);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

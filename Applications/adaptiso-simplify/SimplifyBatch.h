@@ -2,9 +2,9 @@
 
 #include "Pipeline.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 
 /// Runs adaptiso-simplify for each of many surfaces. \return, \throws as runBatch()
 int runSimplifyBatch(const SimplifyCommand& command);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

@@ -18,7 +18,7 @@
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/SurfacePipeline/FinishSurface.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 
 /// A surface as a file has it.
 struct SurfaceSummary {
@@ -70,4 +70,4 @@ struct SimplifyRun {
     }
 };
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

@@ -8,7 +8,7 @@
 #include "Common/Numbers.h"
 #include "Common/RunApp.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 namespace {
 
 std::string frameText(const std::optional<CoordinateFrame>& frame) {
@@ -61,4 +61,4 @@ void printReport(std::ostream& out, const SimplifyRun& run) {
     printTimes(out, run.timer);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

@@ -4,9 +4,9 @@
 
 #include "SimplifyRun.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 
 /// What the program prints when nothing else is asked for.
 void printReport(std::ostream& out, const SimplifyRun& run);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

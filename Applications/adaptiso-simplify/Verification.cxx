@@ -11,7 +11,7 @@
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 namespace {
 
 constexpr double kRounding = 1e-9;  // of the bound: sums of distances
@@ -98,4 +98,4 @@ void verify(const VerifiedSurface& surface, SimplifyRun& run) {
     run.verification = Verification{distance.aToB.samples + distance.bToA.samples, maxMm};
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

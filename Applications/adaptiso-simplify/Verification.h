@@ -3,7 +3,7 @@
 #include "SimplifyRun.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
-namespace adaptiso {
+namespace adaptiso::simplifier {
 
 /// What a surface as written is checked against.
 struct VerifiedSurface {
@@ -22,4 +22,4 @@ struct VerifiedSurface {
 /// \throws InternalError  a promise is broken
 void verify(const VerifiedSurface& surface, SimplifyRun& run);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::simplifier

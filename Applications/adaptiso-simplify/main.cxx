@@ -5,6 +5,7 @@
 
 int main(int argc, char** argv) {
     adaptiso::keepFreedMemory();
-    return adaptiso::runApp(argc, argv, adaptiso::simplifyProgram(),
-                            adaptiso::declareSimplifyOptions, adaptiso::runSimplify);
+    return adaptiso::runApp(argc, argv, adaptiso::simplifier::simplifyProgram(),
+                            adaptiso::simplifier::declareSimplifyOptions,
+                            adaptiso::simplifier::runSimplify);
 }

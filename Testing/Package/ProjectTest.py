@@ -28,6 +28,30 @@ class Licences(unittest.TestCase):
         self.assertEqual(text("LICENSE"), text("LICENSES/Apache-2.0.txt"))
 
 
+class Names(unittest.TestCase):
+    """Two types of one name in one program are undefined behaviour that no linker reports."""
+
+    @staticmethod
+    def types(*patterns):
+        """Qualified names of the types defined in these files."""
+        found = {}
+        for file in (file for pattern in patterns for file in sorted(SOURCE.glob(pattern))):
+            for space, body in re.findall(r"^namespace ([\w:]+) \{(.*?)^\}  // namespace \1$",
+                                          file.read_text(encoding="utf-8"), re.M | re.S):
+                for name in re.findall(r"^(?:struct|class|enum class) (\w+)(?: final)?(?: : [^;{]*)? \{",
+                                       body, re.M):
+                    found.setdefault(f"{space}::{name}", []).append(file.name)
+        return found
+
+    def test_no_program_defines_a_type_of_the_libraries_again(self):
+        shared = self.types("Modules/*/include/**/*.h", "Modules/*/src/**/*.h", "Applications/Common/*.h")
+        self.assertIn("adaptiso::Finding", shared)
+        self.assertEqual([name for name, files in shared.items() if len(files) > 1], [])
+        for program in SOURCE.glob("Applications/adaptiso-*"):
+            own = self.types(f"Applications/{program.name}/*.h")
+            self.assertEqual([f"{name}: {shared[name]}" for name in own if name in shared], [], program.name)
+
+
 class Citation(unittest.TestCase):
     """CITATION.cff, by the rules of its format's version 1.2.0."""
 
