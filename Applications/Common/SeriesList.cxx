@@ -25,7 +25,13 @@ void printSeries(std::ostream& out, const DicomSeries& series, bool showsPhi) {
     if (series.volumes > 1) out << counted(series.volumes, "volume") << " of ";
     out << counted(series.slices, "slice") << " of " << series.columns << " x " << series.rows
         << " voxels, " << spacingText(series.spacingMm) << ", " << series.orientation
-        << (series.isLocalizer ? ", localizer" : "") << '\n';
+        << (series.isLocalizer ? ", localizer" : "");
+    if (series.segment) out << ", segment " << *series.segment;
+    if (!series.segmentLabel.empty()) out << " '" << oneLine(series.segmentLabel) << "'";
+    for (const auto& [keyword, value] : series.details) {
+        out << ", " << keyword << ' ' << oneLine(value);
+    }
+    out << '\n';
     if (showsPhi) {
         out << "     UID " << oneLine(series.uid) << ", description '"
             << oneLine(series.description) << "'\n";
@@ -51,6 +57,8 @@ void printList(std::ostream& out, const std::string& name, const DicomListing& l
 
 Json seriesJson(const DicomSeries& series, bool showsPhi) {
     const auto mm = [](double value) { return value > 0 ? Json(value) : Json(nullptr); };
+    Json details = Json::object();
+    for (const auto& [keyword, value] : series.details) details[keyword] = value;
     Json json{
         {"number", series.number},
         {"modality", series.modality},
@@ -59,6 +67,9 @@ Json seriesJson(const DicomSeries& series, bool showsPhi) {
         {"spacingMm", {mm(series.spacingMm.x), mm(series.spacingMm.y), mm(series.spacingMm.z)}},
         {"orientation", series.orientation},
         {"localizer", series.isLocalizer},
+        {"segment", series.segment ? Json(*series.segment) : Json(nullptr)},
+        {"segmentLabel", series.segmentLabel},
+        {"details", details},
         {"readable", series.isReadable()},
         {"fault", series.isReadable() ? Json(nullptr) : Json(series.fault)},
         {"warnings", series.warnings}};

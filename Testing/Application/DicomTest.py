@@ -16,7 +16,7 @@ def element(group, number, vr, value):
     if isinstance(value, str):
         value = value.encode() + (b"\0" if vr == "UI" else b" ") * (len(value) % 2)
     head = struct.pack("<HH", group, number) + vr.encode()
-    if vr in ("OW", "SQ"):
+    if vr in ("OB", "OW", "SQ"):
         return head + struct.pack("<HI", 0, len(value)) + value
     return head + struct.pack("<H", len(value)) + value
 
@@ -26,16 +26,17 @@ def number(value):
 
 
 def slice_file(samples, columns, rows, position, along_column=(0, 1, 0), uid="1.2.3", echo=None,
-               image_type="ORIGINAL\\PRIMARY\\AXIAL"):
+               image_type="ORIGINAL\\PRIMARY\\AXIAL", time=None, patient="Doe^Jane"):
     """A CT slice of signed 16-bit samples, 1 mm pixels, rows along x."""
     us = lambda value: struct.pack("<H", value)
     data = b"".join([
         element(0x0002, 0x0010, "UI", "1.2.840.10008.1.2.1"),
         element(0x0008, 0x0008, "CS", image_type),
         element(0x0008, 0x0016, "UI", "1.2.840.10008.5.1.4.1.1.2"),
+        element(0x0008, 0x0032, "TM", time) if time else b"",
         element(0x0008, 0x0060, "CS", "CT"),
         element(0x0008, 0x103E, "LO", "Head first"),
-        element(0x0010, 0x0010, "PN", "Doe^Jane"),
+        element(0x0010, 0x0010, "PN", patient),
         element(0x0018, 0x0086, "IS", str(echo)) if echo else b"",
         element(0x0020, 0x000E, "UI", uid),
         element(0x0020, 0x0032, "DS", "\\".join(map(number, position))),
@@ -52,6 +53,51 @@ def slice_file(samples, columns, rows, position, along_column=(0, 1, 0), uid="1.
         element(0x0028, 0x1052, "DS", "-1000"),
         element(0x0028, 0x1053, "DS", "1"),
         element(0x7FE0, 0x0010, "OW", struct.pack(f"<{len(samples)}h", *samples))])
+    return bytes(128) + b"DICM" + data
+
+
+def sequence(group, number, items):
+    """A sequence of data sets, each the bytes of its elements."""
+    return element(group, number, "SQ", b"".join(
+        struct.pack("<HHI", 0xFFFE, 0xE000, len(item)) + item for item in items))
+
+
+def segmentation(heights, columns, rows, is_inside):
+    """A DICOM SEG of one bit a pixel, a frame at each of the heights, 1 mm pixels; its segments
+    by number are those of is_inside(segment, i, j, height)."""
+    us = lambda value: struct.pack("<H", value)
+    bits = [is_inside(segment, i, j, z) for segment in (1, 2) for z in heights[segment]
+            for j in range(rows) for i in range(columns)]
+    packed = bytes(sum(bit << n for n, bit in enumerate(bits[at:at + 8]))
+                   for at in range(0, len(bits), 8))
+    frames = [(segment, z) for segment in (1, 2) for z in heights[segment]]
+    data = b"".join([
+        element(0x0002, 0x0010, "UI", "1.2.840.10008.1.2.1"),
+        element(0x0008, 0x0016, "UI", "1.2.840.10008.5.1.4.1.1.66.4"),
+        element(0x0008, 0x0060, "CS", "SEG"),
+        element(0x0010, 0x0010, "PN", "Doe^Jane"),
+        element(0x0020, 0x000E, "UI", "1.2.3.6"),
+        element(0x0028, 0x0002, "US", us(1)),
+        element(0x0028, 0x0004, "CS", "MONOCHROME2"),
+        element(0x0028, 0x0008, "IS", str(len(frames))),
+        element(0x0028, 0x0010, "US", us(rows)),
+        element(0x0028, 0x0011, "US", us(columns)),
+        element(0x0028, 0x0100, "US", us(1)),
+        element(0x0028, 0x0101, "US", us(1)),
+        element(0x0028, 0x0102, "US", us(0)),
+        element(0x0028, 0x0103, "US", us(0)),
+        sequence(0x0062, 0x0002, [
+            element(0x0062, 0x0004, "US", us(n + 1)) + element(0x0062, 0x0005, "LO", name)
+            for n, name in enumerate(("Liver", "Left kidney"))]),
+        sequence(0x5200, 0x9229, [
+            sequence(0x0020, 0x9116, [element(0x0020, 0x0037, "DS", "1\\0\\0\\0\\1\\0")]) +
+            sequence(0x0028, 0x9110, [element(0x0018, 0x0088, "DS", "2") +
+                                      element(0x0028, 0x0030, "DS", "1\\1")])]),
+        sequence(0x5200, 0x9230, [
+            sequence(0x0020, 0x9113, [element(0x0020, 0x0032, "DS", f"0\\0\\{z}")]) +
+            sequence(0x0062, 0x000A, [element(0x0062, 0x000B, "US", us(segment))])
+            for segment, z in frames]),
+        element(0x7FE0, 0x0010, "OB", packed + b"\0" * (len(packed) % 2))])
     return bytes(128) + b"DICM" + data
 
 
@@ -72,7 +118,8 @@ class Sphere:
                     point = (first[0] + i, first[1] + j * along[1], first[2] + j * along[2])
                     value = 250 + 40 * (self.radius - math.dist(point, self.center))
                     samples.append(round(min(3000, max(-1000, value))) + 1000)
-            name = f"{options.get('uid', '')}{options.get('echo', '')}{n * 7 % 101}"
+            name = "".join(str(options.get(key, "")) for key in ("uid", "echo", "time"))
+            name += str(n * 7 % 101)
             (folder / name).write_bytes(
                 slice_file(samples, self.side, self.side, first, along, **options))
 
@@ -126,6 +173,44 @@ class DicomImages(ApplicationTest):
         for wrong in ("-1", "x", "1.5"):
             self.assert_fails(USAGE, "--volume-index", "ct", "--iso", "250",
                               f"--volume-index={wrong}")
+
+    def test_passes_over_the_same_places_are_told_apart_by_their_times(self):
+        Sphere().write(self.path("ct"), range(10, 71, 2), time="120000")
+        smaller = Sphere()
+        smaller.radius = 10.0
+        smaller.write(self.path("ct"), range(10, 71, 2), time="120030")
+        self.assert_fails(BAD_INPUT, "2 volumes.*acquisition times.*--volume-index 0 to 1", "ct",
+                          "--iso", "250")
+        self.assert_is_sphere(self.vertices("ct", "--volume-index", "0"), 0.1)
+
+    def test_two_patients_in_one_series_are_not_mixed(self):
+        for first, patient in ((10, "Doe^Jane"), (12, "Doe^John")):
+            Sphere().write(self.path("ct"), range(first, 71, 4), patient=patient, echo=first)
+        done = self.assert_fails(BAD_INPUT, "2 groups of slices.*Patient 1; 2:.*Patient 2.*--series",
+                                 "ct", "--iso", "250")
+        listed = self.mesh("ct", "--list-series").stdout
+        self.assertIn("Patient 2", listed)
+        for secret in SECRETS:
+            self.assertNotIn(secret, done.stderr + listed)
+
+    def test_frames_left_out_of_a_segmentation_are_empty(self):
+        boxes = {1: (2, 4, 6, 16, 18), 2: (8, 10, 12)}
+        inside = lambda segment, i, j, z: 2 <= i < 10 and 2 <= j < 9
+        self.path("seg.dcm").write_bytes(segmentation(boxes, 13, 11, inside))
+        self.assert_fails(BAD_INPUT, "segment 1 'Liver'.*segment 2 'Left kidney'.*--series",
+                          "seg.dcm", "--iso", "0.5")
+        done = self.mesh("seg.dcm", "--series", "1", "--iso", "0.5", "--method", "mc",
+                         "--coordinates", "lps", "--json", "out.json", "-o", "out.obj")
+        self.assertEqual(done.stderr, "")
+        heights = {float(line.split()[3]) for line in self.path("out.obj").read_text().splitlines()
+                   if line.startswith("v ")}
+        # half a step above and below each box
+        self.assertEqual(heights, {1, 2, 4, 6, 7, 15, 16, 18, 19})
+
+    def test_a_pointer_in_a_slices_place_is_refused(self):
+        Sphere().write(self.path("ct"), range(10, 71, 2))
+        (self.path("ct") / "7").write_text("version https://git-lfs.github.com/spec/v1\nsize 9\n")
+        self.assert_fails(BAD_INPUT, r"ct/7: is a git-lfs pointer.*git lfs pull", "ct", "--iso", "250")
 
     def write_study(self):
         Sphere().write(self.path("study"), (0, 2, 4))

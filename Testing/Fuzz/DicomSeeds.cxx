@@ -79,6 +79,55 @@ DicomBuilder enhanced() {
     return image;
 }
 
+/// Two segments of one bit a pixel; of the first a frame is left out.
+std::string segmentation() {
+    struct Frame {
+        double height;
+        std::uint16_t segment;
+    };
+    std::vector<DicomBuilder> groups;
+    for (const auto& [height, segment] : {Frame{0, 1}, Frame{4, 1}, Frame{2, 2}, Frame{4, 2}}) {
+        DicomBuilder plane, identification, group;
+        plane.text(0x00200032, "DS", dicomText({1, 2, height}));
+        identification.us(0x0062000B, segment);
+        groups.push_back(
+            group.sequence(0x00209113, {plane}).sequence(0x0062000A, {identification}));
+    }
+    DicomBuilder orientation, measures, shared, label;
+    orientation.text(0x00200037, "DS", "1\\0\\0\\0\\1\\0");
+    measures.text(0x00280030, "DS", "0.75\\0.5").text(0x00180088, "DS", "2");
+    shared.sequence(0x00209116, {orientation}).sequence(0x00289110, {measures});
+    label.us(0x00620004, 1).text(0x00620005, "LO", "Liver");
+    DicomBuilder image = dicomImage(kColumns, kRows);
+    return image.text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.66.4")
+        .text(0x00280008, "IS", "4")
+        .us(0x00280100, 1)
+        .us(0x00280101, 1)
+        .us(0x00280102, 0)
+        .sequence(0x00620002, {label})
+        .sequence(0x52009229, {shared})
+        .sequence(0x52009230, groups)
+        .bytes(0x7FE00010, "OB", std::string(6, '\x5A'))
+        .file();
+}
+
+/// Passes that times tell apart, and headers that count more slices than there are.
+std::string passes() {
+    std::string files;
+    for (const char* time : {"120000", "120030.5"}) {
+        for (const double height : {0., 2.}) {
+            files += slice(height)
+                         .text(0x00080018, "UI", "1.2.9")
+                         .text(0x00080032, "TM", time)
+                         .text(0x00201002, "IS", "9")
+                         .text(0x00200105, "IS", "3")
+                         .us(0x00540081, 3)
+                         .file();
+        }
+    }
+    return files;
+}
+
 std::string mosaicCsa() {
     const auto tag = [](std::string name, const std::vector<std::string>& values) {
         name.resize(64, '\0');
@@ -165,6 +214,8 @@ void addDicomSeeds(Seeds& seeds) {
                            .fragments({rleFrame(), rleFrame(), rleFrame()}, {0, 76, 152})
                            .file(kRleLossless));
     seeds.add("dicom", mosaic());
+    seeds.add("dicom", segmentation());
+    seeds.add("dicom", passes());
     seeds.add("dicom", directory());
     addContradictions(seeds);
 }

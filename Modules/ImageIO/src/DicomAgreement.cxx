@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <set>
 
 #include "FileFault.h"
 
@@ -37,6 +38,42 @@ Votes count(const std::vector<DicomPlane>& planes,
         if (!value.empty()) ++votes[std::string(value)];
     }
     return votes;
+}
+
+struct ImageCount {
+    std::int64_t stated = 0, there = 0;
+};
+
+/// Of an acquisition that lacks images, beside whole ones; or of all images that state one number,
+/// which may be that of several acquisitions, echoes or series.
+ImageCount countOfAcquisition(const std::vector<DicomFile>& files, const DicomGroup& group) {
+    struct Acquisition {
+        std::int64_t number, stated;
+        auto operator<=>(const Acquisition&) const = default;
+    };
+    const auto acquisitionOf = [&](const DicomFile& file) {
+        const DicomDataset& set = file.header.dataset;
+        return Acquisition{set.integer(tag::kAcquisitionNumber).value_or(-1),
+                           set.integer(tag::kImagesInAcquisition).value_or(0)};
+    };
+    std::map<Acquisition, std::int64_t> images;
+    std::map<std::int64_t, std::int64_t> imagesOfStated;
+    for (const DicomFile& file : files) {
+        const Acquisition acquisition = acquisitionOf(file);
+        constexpr std::int64_t kMostFrames = 1'000'000;
+        const auto frames = std::clamp<std::int64_t>(
+            file.header.dataset.integer(tag::kNumberOfFrames).value_or(1), 0, kMostFrames);
+        images[acquisition] += frames;
+        imagesOfStated[acquisition.stated] += frames;
+    }
+    std::set<Acquisition> own;
+    for (const DicomPlane& plane : group.planes) own.insert(acquisitionOf(files[plane.file]));
+    const auto lacks = [&](const Acquisition& one) { return images[one] < one.stated; };
+    const auto incomplete = std::ranges::find_if(own, lacks);
+    if (incomplete == own.end()) return {};
+    const bool isOnlyOne = !std::ranges::all_of(own, lacks);
+    return {incomplete->stated,
+            isOnlyOne ? images[*incomplete] : imagesOfStated[incomplete->stated]};
 }
 
 bool isRescaled(const DicomPlane& plane) {
@@ -84,6 +121,61 @@ void requireAgreement(const fs::path& input, const std::vector<DicomFile>& files
                             "some slices hold signed samples and some unsigned ones; each was read "
                             "as its own header says"});
     }
+}
+
+void requireWholeConcatenation(const fs::path& input, const std::vector<DicomFile>& files,
+                               const std::vector<DicomPlane>& planes) {
+    struct Concatenation {
+        std::set<std::int64_t> parts;
+        std::int64_t total = 0;
+    };
+    std::map<std::string_view, Concatenation> found;
+    for (const DicomPlane& plane : planes) {
+        const DicomDataset& set = files[plane.file].header.dataset;
+        Concatenation& one = found[set.text(tag::kConcatenationUid).value_or("")];
+        one.parts.insert(set.integer(tag::kInConcatenationNumber).value_or(0));
+        one.total = std::max(one.total, set.integer(tag::kInConcatenationTotal).value_or(0));
+    }
+    for (const auto& [uid, one] : found) {
+        if (std::ssize(one.parts) >= one.total) continue;
+        refuse(input,
+               fmt::format("holds {} of the {} files of a multi-frame image "
+                           "(InConcatenationTotalNumber)",
+                           one.parts.size(), one.total),
+               "give the folder with all of them");
+    }
+}
+
+void warnOfFewer(const std::vector<DicomFile>& files, const DicomGroup& group, std::size_t slices,
+                 std::vector<Warning>& warnings) {
+    const auto largest = [&](DicomTag tag) {
+        std::int64_t value = 0;
+        for (const DicomPlane& plane : group.planes) {
+            value = std::max(value, files[plane.file].header.dataset.integer(tag).value_or(0));
+        }
+        return value;
+    };
+    const auto warn = [&](std::int64_t stated, std::int64_t there, std::string_view what,
+                          std::string_view keyword) {
+        if (stated <= there) return;
+        warnings.push_back(
+            {"fewer-images",
+             fmt::format("its headers count {} {} ({}), {} {} here: {} missing", stated, what,
+                         keyword, there, there == 1 ? "is" : "are", stated - there)});
+    };
+    warn(largest(tag::kNumberOfSlices), static_cast<std::int64_t>(slices), "slices",
+         "NumberOfSlices");
+
+    std::set<std::string_view> times;
+    for (const DicomPlane& plane : group.planes) {
+        times.insert(files[plane.file].header.dataset.text(tag::kTemporalPosition).value_or(""));
+    }
+    const auto volumes = static_cast<std::int64_t>(group.planes.size() / slices);
+    const auto points = times.size() > 1 ? std::ssize(times) : volumes;
+    warn(largest(tag::kNumberOfTemporalPositions), points, "time points",
+         "NumberOfTemporalPositions");
+    const ImageCount images = countOfAcquisition(files, group);
+    warn(images.stated, images.there, "images", "ImagesInAcquisition");
 }
 
 }  // namespace adaptiso::detail

@@ -44,6 +44,14 @@ std::string_view nameOf(DicomTag tag) {
 
 }  // namespace
 
+std::string plainDicomText(std::string_view text) {
+    std::string plain(trimmed(text.substr(0, text.find('\0'))));
+    for (char& c : plain) {
+        if (c < 0x20 || c == 0x7f) c = '?';
+    }
+    return plain;
+}
+
 std::optional<std::string_view> DicomDataset::text(DicomTag tag) const {
     const auto it = values.find(tag);
     if (it == values.end()) return std::nullopt;

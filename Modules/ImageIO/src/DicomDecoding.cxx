@@ -75,20 +75,29 @@ void requireFiniteRescale(const DicomFile& dicom, const DicomPixelFormat& format
 }
 
 /// Tiles of a mosaic behind its last slice hold one value, 0 as a rule.
-void requireBlankTiles(const DicomFile& dicom, const DicomPixelFormat& format,
-                       const std::vector<std::byte>& frame, std::int64_t columns, std::int64_t rows,
-                       std::int64_t slices) {
+/// \return slices that hold one value: they may be missing
+std::int64_t requireBlankTiles(const DicomFile& dicom, const DicomPixelFormat& format,
+                               const std::vector<std::byte>& frame, std::int64_t columns,
+                               std::int64_t rows, std::int64_t slices) {
     const std::int64_t across = format.columns / columns, tiles = across * (format.rows / rows);
+    std::int64_t blank = 0;
     withPixelType(format.stored, [&]<class Stored>(Stored) {
         const auto* const pixels = reinterpret_cast<const Stored*>(frame.data());
-        for (std::int64_t tile = slices; tile < tiles; ++tile) {
-            const Stored* const corner =
+        const auto isBlank = [&](std::int64_t tile) {
+            const Stored* row =
                 pixels + tile / across * rows * format.columns + tile % across * columns;
-            for (std::int64_t row = 0; row < rows; ++row) {
-                const Stored* const begin = corner + row * format.columns;
-                if (std::all_of(begin, begin + columns, [&](Stored s) { return s == *corner; })) {
-                    continue;
+            const Stored corner = *row;
+            for (std::int64_t n = 0; n < rows; ++n, row += format.columns) {
+                if (!std::all_of(row, row + columns, [&](Stored s) { return s == corner; })) {
+                    return false;
                 }
+            }
+            return true;
+        };
+        for (std::int64_t tile = 0; tile < tiles; ++tile) {
+            if (isBlank(tile)) {
+                blank += tile < slices ? 1 : 0;
+            } else if (tile >= slices) {
                 refuse(
                     dicom.path,
                     fmt::format("is a Siemens mosaic of {} slices by its header, but its tile {} "
@@ -98,6 +107,7 @@ void requireBlankTiles(const DicomFile& dicom, const DicomPixelFormat& format,
             }
         }
     });
+    return blank;
 }
 
 /// Where decoded planes go.
@@ -145,8 +155,10 @@ Volume decodePlanes(const fs::path& input, const std::vector<DicomFile>& files,
     }
     const PixelType type = outputTypeOf(formats, stack.planes);
     ImageGeometry geometry = stack.geometry;
-    geometry.size[2] = std::ssize(stack.planes);
-    SampleBuffer samples = allocateSamples(input, requireImageBytes(input, geometry.size, type));
+    if (stack.slices.empty()) geometry.size[2] = std::ssize(stack.planes);
+    const std::uint64_t byteCount = requireImageBytes(input, geometry.size, type);
+    SampleBuffer samples = allocateSamples(input, byteCount);
+    if (!stack.slices.empty()) std::memset(samples.get(), 0, byteCount);
     const SliceStore store{samples.get(), type, geometry.size[0], geometry.size[1]};
 
     std::vector<std::byte> frame;
@@ -162,11 +174,20 @@ Volume decodePlanes(const fs::path& input, const std::vector<DicomFile>& files,
             requireFiniteRescale(files[file], formats[file], plane, type);
             if (plane.frame != decoded) frames.read(plane.frame, frame);  // tiles share theirs
             decoded = plane.frame;
-            store.store(formats[file], plane, frame, slice);
+            store.store(formats[file], plane, frame,
+                        stack.slices.empty() ? slice : stack.slices[slice]);
         }
         if (isSiemensMosaic(files[file].header)) {
-            requireBlankTiles(files[file], formats[file], frame, store.columns, store.rows,
-                              std::ssize(slices));
+            const std::int64_t blank = requireBlankTiles(
+                files[file], formats[file], frame, store.columns, store.rows, std::ssize(slices));
+            const auto type = files[file].header.dataset.text(tag::kImageType).value_or("");
+            if (blank > 0 && type.starts_with("ORIGINAL")) {
+                warnings.push_back(
+                    {"fewer-images",
+                     fmt::format("its header counts {} slices (NumberOfImagesInMosaic), {} of them "
+                                 "hold one value: they may be missing",
+                                 slices.size(), blank)});
+            }
         }
         filesWithStrayBits += frames.hasStrayBits() ? 1 : 0;
         filesWithPadding += frames.hasPadding() ? 1 : 0;

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include "HeaderBytes.h"
+#include "HeaderText.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -21,25 +23,40 @@ constexpr std::array kWantedValues = {
     WantedValue{tag::kReferencedFileId},
     WantedValue{tag::kImageType},
     WantedValue{tag::kSopClass},
+    WantedValue{tag::kSopInstance, DicomValueKind::Digest},
+    WantedValue{tag::kAcquisitionTime},
+    WantedValue{tag::kContentTime},
     WantedValue{tag::kModality},
     WantedValue{tag::kFrameType},
     WantedValue{tag::kComplexImageComponent},
+    WantedValue{tag::kPatientName, DicomValueKind::Digest},
+    WantedValue{tag::kPatientId, DicomValueKind::Digest},
+    WantedValue{tag::kPatientBirthDate, DicomValueKind::Digest},
     WantedValue{tag::kEchoTime},
     WantedValue{tag::kEchoNumbers},
     WantedValue{tag::kSpacingBetweenSlices},
     WantedValue{tag::kTriggerTime},
+    WantedValue{tag::kConvolutionKernel},
     WantedValue{tag::kEffectiveEchoTime, DicomValueKind::Float64},
     WantedValue{tag::kDiffusionBValue, DicomValueKind::Float64},
     WantedValue{tag::kGradientOrientation, DicomValueKind::Float64},
+    WantedValue{tag::kStudyInstanceUid, DicomValueKind::Digest},
     WantedValue{tag::kSeriesInstanceUid},
+    WantedValue{tag::kSeriesNumber},
     WantedValue{tag::kAcquisitionNumber},
     WantedValue{tag::kInstanceNumber},
     WantedValue{tag::kImagePosition},
     WantedValue{tag::kImageOrientation},
+    WantedValue{tag::kFrameOfReferenceUid, DicomValueKind::Digest},
     WantedValue{tag::kTemporalPosition},
+    WantedValue{tag::kNumberOfTemporalPositions},
+    WantedValue{tag::kImagesInAcquisition},
     WantedValue{tag::kTemporalPositionIndex, DicomValueKind::UInt32},
     WantedValue{tag::kTriggerDelay, DicomValueKind::Float64},
     WantedValue{tag::kDimensionIndexValues, DicomValueKind::UInt32},
+    WantedValue{tag::kConcatenationUid, DicomValueKind::Digest},
+    WantedValue{tag::kInConcatenationNumber, DicomValueKind::UInt16},
+    WantedValue{tag::kInConcatenationTotal, DicomValueKind::UInt16},
     WantedValue{tag::kSamplesPerPixel, DicomValueKind::UInt16},
     WantedValue{tag::kPhotometric},
     WantedValue{tag::kNumberOfFrames},
@@ -53,17 +70,29 @@ constexpr std::array kWantedValues = {
     WantedValue{tag::kRescaleIntercept},
     WantedValue{tag::kRescaleSlope},
     WantedValue{tag::kRescaleType},
-    WantedValue{tag::kUnits}};
+    WantedValue{tag::kNumberOfSlices, DicomValueKind::UInt16},
+    WantedValue{tag::kUnits},
+    WantedValue{tag::kSegmentNumber, DicomValueKind::UInt16},
+    WantedValue{tag::kSegmentLabel},
+    WantedValue{tag::kReferencedSegmentNumber, DicomValueKind::UInt16}};
 
-constexpr std::array kWantedSequences = {
-    tag::kDirectoryRecordSequence, tag::kModalityLutSequence,
-    tag::kPlanePositionSequence,   tag::kPlaneOrientationSequence,
-    tag::kPixelMeasuresSequence,   tag::kPixelValueTransformationSequence,
-    tag::kFrameContentSequence,    tag::kMrEchoSequence,
-    tag::kMrDiffusionSequence,     tag::kGradientDirectionSequence,
-    tag::kCardiacSequence,         tag::kMrFrameTypeSequence,
-    tag::kCtFrameTypeSequence,     tag::kSharedFunctionalGroups,
-    tag::kPerFrameFunctionalGroups};
+constexpr std::array kWantedSequences = {tag::kDirectoryRecordSequence,
+                                         tag::kModalityLutSequence,
+                                         tag::kPlanePositionSequence,
+                                         tag::kPlaneOrientationSequence,
+                                         tag::kPixelMeasuresSequence,
+                                         tag::kPixelValueTransformationSequence,
+                                         tag::kFrameContentSequence,
+                                         tag::kMrEchoSequence,
+                                         tag::kMrDiffusionSequence,
+                                         tag::kGradientDirectionSequence,
+                                         tag::kCardiacSequence,
+                                         tag::kMrFrameTypeSequence,
+                                         tag::kCtFrameTypeSequence,
+                                         tag::kSegmentSequence,
+                                         tag::kSegmentIdentificationSequence,
+                                         tag::kSharedFunctionalGroups,
+                                         tag::kPerFrameFunctionalGroups};
 
 template <class T>
 std::string decimalText(std::string_view bytes, std::endian order) {
@@ -72,6 +101,12 @@ std::string decimalText(std::string_view bytes, std::endian order) {
         text += fmt::format("{}{}", at ? "\\" : "", HeaderBytes(bytes, order).at<T>(at));
     }
     return text;
+}
+
+/// Empty of an empty value; padding does not count.
+std::string digestOf(std::string_view value) {
+    value = trimmed(value.substr(0, value.find('\0')));
+    return value.empty() ? "" : fmt::format("{:x}", std::hash<std::string_view>()(value));
 }
 
 }  // namespace
@@ -95,6 +130,8 @@ std::string dicomText(std::string value, DicomValueKind kind, std::endian order)
             return decimalText<std::uint32_t>(value, order);
         case DicomValueKind::Float64:
             return decimalText<double>(value, order);
+        case DicomValueKind::Digest:
+            return digestOf(value);
     }
     return {};
 }

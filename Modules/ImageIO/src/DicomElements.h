@@ -9,7 +9,7 @@
 namespace adaptiso::detail {
 
 /// How a value stands in the file; not every transfer syntax says so.
-enum class DicomValueKind { Text, UInt16, UInt32, Float64 };
+enum class DicomValueKind { Text, UInt16, UInt32, Float64, Digest };
 
 /// The kind of a value that DicomDataset keeps; nothing for all others.
 std::optional<DicomValueKind> wantedDicomValue(DicomTag tag);

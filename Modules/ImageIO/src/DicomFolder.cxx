@@ -3,6 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <map>
 #include <set>
 
 #include "ByteSource.h"
@@ -10,6 +13,7 @@
 #include "HeaderText.h"
 #include "Readers.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/ForeignContent.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -17,6 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kDirectoryStorage = "1.2.840.10008.1.3.10";  // DICOMDIR
+constexpr std::size_t kMagicEnd = 132;
 constexpr const char* kGetOrRemove = "get it again or remove it";
 constexpr const char* kDecompress = "decompress it, e.g. with gunzip, or remove it";
 
@@ -43,24 +48,60 @@ bool isHidden(const fs::path& path) {
     return path.filename().native().starts_with('.');
 }
 
-/// DICOMDIR, reports, presentation states, plans and the like: what may lie beside the slices.
-bool isOtherThanImage(const DicomHeader& header) {
-    constexpr std::string_view kStorage = "1.2.840.10008.5.1.4.1.1.";
+/// Which objects hold an image is known of DICOM's own classes; of a vendor's, Rows says.
+enum class ObjectKind { Image, NoImage, VendorsWithoutImage };
+
+ObjectKind objectKind(const DicomHeader& header) {
+    constexpr std::string_view kDicom = "1.2.840.10008.", kStorage = "1.2.840.10008.5.1.4.1.1.";
     std::string_view storage = header.mediaStorage;
-    if (storage == kDirectoryStorage) return true;
-    if (!storage.starts_with(kStorage)) return false;
-    storage.remove_prefix(kStorage.size());
-    for (const std::string_view kind :
-         {"9.", "11.", "66", "67", "68.", "88.", "104.", "481.2", "481.3", "481.4", "481.5",
-          "481.6", "481.7", "481.8", "481.9"}) {
-        if (storage.starts_with(kind) && storage != "66.4") return true;  // 66.4: segmentation
+    if (!storage.starts_with(kDicom)) {
+        const bool isImage = storage.empty() || header.dataset.integer(tag::kRows).value_or(0) > 0;
+        return isImage ? ObjectKind::Image : ObjectKind::VendorsWithoutImage;
     }
-    return false;
+    if (!storage.starts_with(kStorage)) return ObjectKind::NoImage;
+    storage.remove_prefix(kStorage.size());
+    if (storage == "4.2") return ObjectKind::NoImage;  // MR spectroscopy
+    // CR, CT, ultrasound, MR, NM, secondary capture, X-ray, parametric maps, segmentations, visible
+    // light, PET, RT image
+    for (const std::string_view kind : {"1", "2", "3", "4", "5", "6", "7", "12", "13", "14", "20",
+                                        "30", "66.4", "66.7", "77", "128", "130", "481.1"}) {
+        const bool isOf = storage.starts_with(kind) &&
+                          (storage.size() == kind.size() || storage[kind.size()] == '.');
+        if (isOf) return ObjectKind::Image;
+    }
+    return ObjectKind::NoImage;
 }
 
-/// A slice that lost its end, as interrupted copies do.
-bool isBlankStub(std::string_view head, std::size_t wholeHead) {
-    return head.size() < wholeHead && head.find_first_not_of('\0') == std::string_view::npos;
+/// Lower case, numbers as '#': the names of one series' files mostly share it.
+std::string namePattern(const fs::path& file) {
+    std::string pattern;
+    for (const char c : lowerCase(file.filename().native())) {
+        const bool isDigit = c >= '0' && c <= '9';
+        if (!isDigit || !pattern.ends_with('#')) pattern += isDigit ? '#' : c;
+    }
+    return pattern;
+}
+
+/// Documents, pictures and other formats' files may lie beside the slices, whatever they hold.
+bool hasStrayName(const fs::path& file) {
+    constexpr std::string_view kNames[] = {"dicomdir",  "readme",  "license", "licence", "copying",
+                                           "changelog", "authors", "version", "makefile"};
+    constexpr std::string_view kEndings[] = {
+        ".txt", ".md",   ".rst",  ".json", ".xml",  ".html", ".htm",  ".css", ".js",  ".csv",
+        ".tsv", ".log",  ".pdf",  ".doc",  ".docx", ".xls",  ".xlsx", ".ppt", ".rtf", ".jpg",
+        ".png", ".jpeg", ".gif",  ".bmp",  ".tif",  ".tiff", ".mp4",  ".avi", ".db",  ".ini",
+        ".inf", ".exe",  ".dll",  ".jar",  ".ico",  ".cfg",  ".yml",  ".nii", ".gz",  ".nrrd",
+        ".mat", ".yaml", ".bval", ".bvec", ".toml", ".py",   ".sh",   ".bat", ".zip", ".stl"};
+    fs::path name = file.filename();
+    if (lowerCase(name.extension().native()) == ".icloud") name = name.native().substr(1);
+    if (lowerCase(name.extension().native()) == ".icloud") name.replace_extension();
+    const std::string whole = lowerCase(name.native());
+    return std::ranges::find(kNames, whole) != std::end(kNames) ||
+           std::ranges::find(kEndings, lowerCase(name.extension().native())) != std::end(kEndings);
+}
+
+bool isPlaceholder(const fs::path& file) {
+    return lowerCase(file.extension().native()) == ".icloud";
 }
 
 /// gdcm::Directory stops at the first broken link or pipe, so folders are walked here.
@@ -70,6 +111,7 @@ public:
         : folder_(folder), treatment_(treatment) {
         walk(folder, 0);
         std::ranges::sort(dicomFiles_);
+        refuseStandIns();
     }
 
     const std::vector<fs::path>& dicomFiles() const { return dicomFiles_; }
@@ -132,16 +174,44 @@ private:
             return;
         }
         requireRegularFile(entry);
-        constexpr std::size_t kMagicEnd = 132;
         const std::string head = readHead(entry, kMagicEnd);
         if (looksLikeDicom(head)) {
             dicomFiles_.push_back(entry);
         } else if (!isHidden(entry) && isCompressedDicom(entry, head)) {
             takeCompressed(entry);
-        } else if (!isHidden(entry) && (hasDicomName(entry) || isBlankStub(head, kMagicEnd))) {
-            refuse(entry, "is empty, or named like a DICOM file but none: a slice may be damaged",
-                   kGetOrRemove);
+        } else if (!isHidden(entry) || isPlaceholder(entry)) {
+            others_.push_back(entry);
         }
+    }
+
+    /// Files in a slice's place that hold none: pointers, placeholders, web pages, zeros, nothing;
+    /// and whatever is named like a slice and is no DICOM.
+    void refuseStandIns() {
+        std::set<fs::path> sliceNames;
+        for (const fs::path& file : dicomFiles_) {
+            sliceNames.insert(file.parent_path() / namePattern(file));
+        }
+        std::vector<DicomFault> found;
+        std::string remedy;  // of the first; it may hold the file's name, which lists do not show
+        std::ranges::sort(others_);
+        for (const fs::path& file : others_) {
+            const bool isNamedSo =
+                hasDicomName(file) || sliceNames.contains(file.parent_path() / namePattern(file));
+            if (!isNamedSo && hasStrayName(file)) continue;
+            const auto foreign = findForeignContent(file);
+            if (!isNamedSo && (!foreign || foreign->kind != ForeignKind::StandIn)) continue;
+            if (found.empty()) remedy = foreign ? foreign->remedy + ", or remove it" : kGetOrRemove;
+            found.push_back(
+                {file, (foreign ? foreign->fault : "is named like a DICOM file but is none") +
+                           ": a slice would be missing"});
+        }
+        if (!found.empty() && treatment_ == DamagedFiles::Refuse) {
+            const std::string more =
+                found.size() > 1 ? fmt::format(" ({} such files)", found.size()) : "";
+            throw FileError(fmt::format("{}{}: {}; {}", displayName(found[0].file), more,
+                                        found[0].fault, remedy));
+        }
+        damaged_.insert(damaged_.end(), found.begin(), found.end());
     }
 
     /// One that lies beside what it holds is a copy; alone, it is a slice that would be missing.
@@ -157,6 +227,7 @@ private:
     const fs::path& folder_;
     DamagedFiles treatment_;
     std::vector<fs::path> dicomFiles_;
+    std::vector<fs::path> others_;  ///< neither DICOM nor a copy of it
     std::vector<DicomFault> damaged_;
     std::size_t oddEntries_ = 0;  ///< pipes, devices, link loops, links to folders
     std::size_t compressedCopies_ = 0;
@@ -167,11 +238,51 @@ private:
 void takeHeader(const fs::path& path, DicomHeader header, DicomInput& input) {
     if (header.pixelData || header.hasFloatPixelData) {
         input.files.push_back({path, std::move(header)});
-    } else if (isOtherThanImage(header)) {
+    } else if (const ObjectKind kind = objectKind(header); kind != ObjectKind::Image) {
         ++input.otherFiles;
+        if (kind == ObjectKind::VendorsWithoutImage) ++input.vendorFiles;
     } else {
         refuse(path, "is a DICOM image without pixel data, a slice may be cut off", kGetOrRemove);
     }
+}
+
+void requireDicom(const fs::path& path) {
+    if (!looksLikeDicom(readHead(path, kMagicEnd))) refuseForeignContent(path);
+}
+
+bool isSameFile(const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    if (fs::file_size(a, error) != fs::file_size(b, error) || error) return false;
+    std::ifstream first(a, std::ios::binary), second(b, std::ios::binary);
+    return first && second &&
+           std::equal(std::istreambuf_iterator<char>(first), std::istreambuf_iterator<char>(),
+                      std::istreambuf_iterator<char>(second));
+}
+
+/// Files with another one's SOPInstanceUID that are the same to the byte.
+void leaveOutCopies(DicomInput& input) {
+    std::map<std::string_view, std::vector<const DicomFile*>> known;
+    std::vector<bool> isCopy;
+    for (const DicomFile& file : input.files) {
+        const std::string_view uid = file.header.dataset.text(tag::kSopInstance).value_or("");
+        auto& others = known[uid];
+        isCopy.push_back(!uid.empty() && std::ranges::any_of(others, [&](const DicomFile* other) {
+            return other->header.dataset.values == file.header.dataset.values &&
+                   isSameFile(other->path, file.path);
+        }));
+        if (!isCopy.back()) others.push_back(&file);
+    }
+    const auto copies = std::ranges::count(isCopy, true);
+    if (copies == 0) return;
+    std::vector<DicomFile> kept;
+    for (std::size_t n = 0; n < isCopy.size(); ++n) {
+        if (!isCopy[n]) kept.push_back(std::move(input.files[n]));
+    }
+    input.files = std::move(kept);
+    input.warnings.push_back(
+        {"copies-left-out", fmt::format("left out {} that {} of others",
+                                        copies == 1 ? "1 file" : fmt::format("{} files", copies),
+                                        copies == 1 ? "is an exact copy" : "are exact copies")});
 }
 
 DicomInput readHeaders(const std::vector<fs::path>& paths, DamagedFiles damaged,
@@ -179,11 +290,21 @@ DicomInput readHeaders(const std::vector<fs::path>& paths, DamagedFiles damaged,
     DicomInput input;
     for (const fs::path& path : paths) {
         try {
+            requireDicom(path);
             takeHeader(path, readDicomHeader(path, keepsDescription), input);
         } catch (const FileError& error) {
             if (damaged == DamagedFiles::Refuse) throw;
             input.damaged.push_back({path, withoutName(error.what(), path)});
         }
+    }
+    leaveOutCopies(input);
+    if (input.vendorFiles > 0) {
+        input.warnings.push_back(
+            {"objects-left-aside",
+             fmt::format("left aside: {} of a vendor's own kind, without an image",
+                         input.vendorFiles == 1
+                             ? "1 DICOM file"
+                             : fmt::format("{} DICOM files", input.vendorFiles))});
     }
     return input;
 }

@@ -14,6 +14,7 @@ namespace adaptiso::detail {
 struct DicomInput {
     std::vector<DicomFile> files;     ///< with pixel data, by path
     std::size_t otherFiles = 0;       ///< DICOM, but no images: reports, plans, DICOMDIR
+    std::size_t vendorFiles = 0;      ///< of these, objects of a vendor's own kind
     std::vector<Warning> warnings;    ///< entries that were left out, without names
     std::vector<DicomFault> damaged;  ///< when damaged files are to be listed
 };
@@ -28,7 +29,9 @@ bool isGzippedDicom(const std::filesystem::path& file);
 enum class DamagedFiles { Refuse, List };
 
 /// Walks through all of a folder, subfolders too. Links to files are followed, links to folders and
-/// hidden folders are not. Files that are no DICOM are left alone, unless they are named like it.
+/// hidden folders are not. Files that are no DICOM are left alone, unless they are named like the
+/// slices beside them or stand in a slice's place (a pointer, a placeholder, a web page, zeros).
+/// Exact copies of a file are left out, with a warning.
 /// \param keepsDescription  also keep the series' descriptions, which may identify the patient
 /// \throws FileError  a folder can't be listed, a link points nowhere, and for DamagedFiles::Refuse
 ///         a damaged file (a slice could be missing without a word)

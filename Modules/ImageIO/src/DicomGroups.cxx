@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "DicomPixels.h"
 #include "DicomVolumes.h"
@@ -24,17 +25,28 @@ bool isSame(const std::optional<Vec3>& a, const std::optional<Vec3>& b) {
     return a.has_value() == b.has_value() && (!a || norm(*a - *b) <= kSameDirection);
 }
 
-bool belongs(const DicomGroup& group, const DicomGroup& candidate) {
-    if (group.seriesUid != candidate.seriesUid) return false;
+/// All but the UIDs of series, study and frame of reference agrees.
+bool isAlike(const DicomGroup& group, const DicomGroup& candidate) {
+    if (group.patient != candidate.patient || group.segment != candidate.segment ||
+        group.isSegmentation != candidate.isSegmentation) {
+        return false;
+    }
     if (group.fault.empty() != candidate.fault.empty()) return false;
     if (group.isSecondary != candidate.isSecondary) return false;
+    if (group.isScreenshot != candidate.isScreenshot) return false;
     if (group.isLocalizer != candidate.isLocalizer) return false;
     if (!group.fault.empty()) return true;
     const DicomPlane& a = group.planes.front();
     const DicomPlane& b = candidate.planes.front();
+    if (group.isSegmentation && a.file != b.file) return false;
     return group.columns == candidate.columns && group.rows == candidate.rows &&
            isSame(a.alongRow, b.alongRow) && isSame(a.alongColumn, b.alongColumn) &&
            isSame(a.columnStepMm, b.columnStepMm) && isSame(a.rowStepMm, b.rowStepMm);
+}
+
+bool belongs(const DicomGroup& group, const DicomGroup& candidate) {
+    return group.seriesUid == candidate.seriesUid && group.study == candidate.study &&
+           group.frameOfReference == candidate.frameOfReference && isAlike(group, candidate);
 }
 
 /// Every image is compared with every group found before it, and groups with one another.
@@ -75,6 +87,22 @@ bool isSecondary(const DicomHeader& header) {
            (isCapture && !header.dataset.text(tag::kImagePosition));
 }
 
+bool isSegmentation(const DicomHeader& header) {
+    constexpr std::string_view kSegmentation = "1.2.840.10008.5.1.4.1.1.66.4";
+    constexpr std::string_view kLabelMap = "1.2.840.10008.5.1.4.1.1.66.7";
+    return header.mediaStorage == kSegmentation || header.mediaStorage == kLabelMap;
+}
+
+std::string segmentLabel(const DicomDataset& set, std::int64_t number) {
+    const auto segments = set.sequences.find(tag::kSegmentSequence);
+    if (segments == set.sequences.end()) return {};
+    for (const DicomDataset& segment : segments->second) {
+        if (segment.integer(tag::kSegmentNumber) != number) continue;
+        return plainDicomText(segment.text(tag::kSegmentLabel).value_or("").substr(0, 80));
+    }
+    return {};
+}
+
 /// One file's planes, each as a group of its own; of a file that can't be read a single one.
 std::vector<DicomGroup> groupsOf(const DicomFile& dicom, std::size_t number) {
     const DicomDataset& set = dicom.header.dataset;
@@ -83,7 +111,15 @@ std::vector<DicomGroup> groupsOf(const DicomFile& dicom, std::size_t number) {
     group.modality = set.text(tag::kModality).value_or("");
     group.description = dicom.header.seriesDescription;
     group.isSecondary = isSecondary(dicom.header);
+    group.isScreenshot = group.isSecondary && !set.text(tag::kImagePosition) &&
+                         !set.sequences.contains(tag::kPerFrameFunctionalGroups);
+    group.isSegmentation = isSegmentation(dicom.header);
     group.isLocalizer = saysLocalizer(set.text(tag::kImageType).value_or(""));
+    const auto digest = [&](DicomTag tag) { return std::string(set.text(tag).value_or("")); };
+    group.patient = digest(tag::kPatientId) + "|" + digest(tag::kPatientName) + "|" +
+                    digest(tag::kPatientBirthDate);
+    group.study = digest(tag::kStudyInstanceUid);
+    group.frameOfReference = digest(tag::kFrameOfReferenceUid);
     group.rows = set.integer(tag::kRows).value_or(0);
     group.columns = set.integer(tag::kColumns).value_or(0);
     std::vector<DicomGroup> groups;
@@ -98,6 +134,8 @@ std::vector<DicomGroup> groupsOf(const DicomFile& dicom, std::size_t number) {
             plane.file = number;
             groups.push_back(group);
             groups.back().isLocalizer |= saysLocalizer(plane.imageType);
+            groups.back().segment = plane.segment;
+            if (plane.segment) groups.back().segmentLabel = segmentLabel(set, *plane.segment);
             groups.back().planes.push_back(std::move(plane));
         }
     } catch (const FileError& error) {
@@ -108,26 +146,152 @@ std::vector<DicomGroup> groupsOf(const DicomFile& dicom, std::size_t number) {
     return groups;
 }
 
+using Kind = std::string DicomPlane::*;
+
 /// Magnitude and phase, ...: where images of several kinds lie at one place, a group for each.
-std::vector<DicomGroup> splitByImageType(const DicomGroup& group,
-                                         const std::vector<DicomFile>& files) {
+std::vector<DicomGroup> splitByKind(const DicomGroup& group, Kind kind,
+                                    const std::vector<DicomFile>& files) {
     if (!group.fault.empty() || !group.isPlaced()) return {group};
     const bool isMixed = std::ranges::any_of(dicomPlaces(group.planes), [&](const auto& place) {
         return std::ranges::any_of(place, [&](std::size_t n) {
-            return group.planes[n].imageType != group.planes[place.front()].imageType;
+            return group.planes[n].*kind != group.planes[place.front()].*kind;
         });
     });
     if (!isMixed) return {group};
     DicomGroup empty = group;
     empty.planes.clear();
-    std::map<std::string, DicomGroup> byType;
+    std::map<std::string, DicomGroup> byKind;
     for (const DicomPlane& plane : group.planes) {
-        byType.try_emplace(plane.imageType, empty).first->second.planes.push_back(plane);
-        requireFewGroups(byType.size(), files[plane.file]);
+        byKind.try_emplace(plane.*kind, empty).first->second.planes.push_back(plane);
+        requireFewGroups(byKind.size(), files[plane.file]);
     }
     std::vector<DicomGroup> parts;
-    for (auto& [type, part] : byType) parts.push_back(std::move(part));
+    for (auto& [value, part] : byKind) parts.push_back(std::move(part));
     return parts;
+}
+
+/// A text of the header, its first 80 characters, where all planes of the group share it.
+std::string sharedText(const DicomGroup& group, DicomTag tag, const std::vector<DicomFile>& files) {
+    const auto textOf = [&](const DicomPlane& plane) {
+        return files[plane.file].header.dataset.text(tag).value_or("");
+    };
+    const std::string_view first = textOf(group.planes.front());
+    const auto isFirst = [&](const DicomPlane& plane) { return textOf(plane) == first; };
+    return std::ranges::all_of(group.planes, isFirst) ? plainDicomText(first.substr(0, 80)) : "";
+}
+
+bool isLoneSlice(const DicomGroup& group) {
+    return group.planes.size() == 1 && group.fault.empty() && group.isPlaced() &&
+           !group.isLocalizer && !group.isSecondary && !group.isSegmentation;
+}
+
+/// Lone slices that can only be of one series: UIDs differ, all else that tells series apart
+/// agrees.
+bool areOneSeries(const DicomGroup& a, const DicomGroup& b, const std::vector<DicomFile>& files) {
+    const auto isShared = [&](DicomTag tag) {
+        return sharedText(a, tag, files) == sharedText(b, tag, files);
+    };
+    if (!isLoneSlice(b) || !isAlike(a, b) || a.modality != b.modality ||
+        a.planes[0].imageType != b.planes[0].imageType ||
+        a.planes[0].kernel != b.planes[0].kernel || !isShared(tag::kSeriesNumber) ||
+        !isShared(tag::kEchoTime)) {
+        return false;
+    }
+    if (a.seriesUid == b.seriesUid) return true;
+    return a.study == b.study && !a.study.empty() && a.frameOfReference == b.frameOfReference &&
+           !a.frameOfReference.empty() && !sharedText(a, tag::kSeriesNumber, files).empty() &&
+           a.planes[0].order != b.planes[0].order;
+}
+
+/// Some tools write new UIDs of series, study or frame of reference into every slice.
+void joinLoneSlices(std::vector<DicomGroup>& groups, const std::vector<DicomFile>& files) {
+    constexpr std::size_t kFewest = 3;
+    for (std::size_t n = 0; n < groups.size(); ++n) {
+        if (!isLoneSlice(groups[n])) continue;
+        DicomGroup joined = groups[n];
+        std::vector<std::size_t> members{n};
+        for (std::size_t other = n + 1; other < groups.size(); ++other) {
+            if (!areOneSeries(groups[n], groups[other], files)) continue;
+            members.push_back(other);
+            joined.planes.push_back(groups[other].planes[0]);
+        }
+        if (members.size() < kFewest || dicomPlaces(joined.planes).size() < members.size()) {
+            continue;
+        }
+        const bool isSeries = groups[members[1]].seriesUid != joined.seriesUid;
+        joined.warnings.push_back(
+            {"uids-differ",
+             fmt::format("each of its {} slices has a {} of its own: read as one series, for "
+                         "patient, series number, kind, size and spacing agree",
+                         members.size(),
+                         isSeries                                   ? "SeriesInstanceUID"
+                         : groups[members[1]].study != joined.study ? "StudyInstanceUID"
+                                                                    : "FrameOfReferenceUID")});
+        groups[n] = std::move(joined);
+        for (std::size_t m = members.size(); m-- > 1;) {
+            groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(members[m]));
+        }
+    }
+}
+
+/// The segments of one file share their frames' places.
+void addFramePositions(std::vector<DicomGroup>& groups) {
+    for (DicomGroup& group : groups) {
+        if (!group.isSegmentation || !group.fault.empty() || !group.isPlaced()) continue;
+        for (const DicomGroup& other : groups) {
+            if (other.planes[0].file != group.planes[0].file || !other.isPlaced()) continue;
+            for (const DicomPlane& plane : other.planes) {
+                group.framePositions.push_back(*plane.position);
+            }
+        }
+    }
+}
+
+/// Each of the groups' values, numbered in the order they come.
+std::vector<std::string> numbered(const std::vector<DicomGroup>& groups,
+                                  std::string DicomGroup::*value) {
+    std::vector<std::string> known, numbers;
+    for (const DicomGroup& group : groups) {
+        auto it = std::ranges::find(known, group.*value);
+        if (it == known.end()) it = known.insert(it, group.*value);
+        numbers.push_back(std::to_string(it - known.begin() + 1));
+    }
+    return numbers;
+}
+
+/// Values that differ between the groups; no names, no ids.
+void addDetails(std::vector<DicomGroup>& groups, const std::vector<DicomFile>& files) {
+    const auto add = [&](const char* keyword, const std::vector<std::string>& values) {
+        const auto isFirst = [&](const std::string& value) { return value == values.front(); };
+        if (std::ranges::all_of(values, isFirst)) return;
+        for (std::size_t n = 0; n < groups.size(); ++n) {
+            if (!values[n].empty()) groups[n].details.emplace_back(keyword, values[n]);
+        }
+    };
+    add("Patient", numbered(groups, &DicomGroup::patient));
+    add("Study", numbered(groups, &DicomGroup::study));
+    add("FrameOfReference", numbered(groups, &DicomGroup::frameOfReference));
+    constexpr std::pair<const char*, DicomTag> kTexts[] = {
+        {"SeriesNumber", tag::kSeriesNumber},
+        {"ImageType", tag::kImageType},
+        {"ConvolutionKernel", tag::kConvolutionKernel},
+        {"EchoTime", tag::kEchoTime},
+        {"DiffusionBValue", tag::kDiffusionBValue},
+        {"AcquisitionNumber", tag::kAcquisitionNumber}};
+    for (const auto& [keyword, tag] : kTexts) {
+        std::vector<std::string> values;
+        for (const DicomGroup& group : groups) values.push_back(sharedText(group, tag, files));
+        add(keyword, values);
+    }
+    std::vector<std::string> types;
+    for (const DicomGroup& group : groups) {
+        const std::string& type = group.planes.front().imageType;
+        const bool isOfFrames = files[group.planes.front().file].header.dataset.sequences.contains(
+            tag::kPerFrameFunctionalGroups);
+        types.push_back(isOfFrames ? plainDicomText(type.substr(0, type.find_last_not_of('|') + 1))
+                                   : "");
+    }
+    add("FrameType", types);
 }
 
 /// A series of few slices in each of several directions is there to plan other scans.
@@ -174,10 +338,17 @@ std::vector<DicomGroup> groupDicomPlanes(const std::vector<DicomFile>& files) {
         for (DicomGroup& plane : groupsOf(files[n], n)) addTo(byGeometry, std::move(plane), files);
     }
     for (const DicomGroup& group : byGeometry) {
-        for (DicomGroup& part : splitByImageType(group, files)) groups.push_back(std::move(part));
+        for (const DicomGroup& part : splitByKind(group, &DicomPlane::imageType, files)) {
+            for (DicomGroup& one : splitByKind(part, &DicomPlane::kernel, files)) {
+                groups.push_back(std::move(one));
+            }
+        }
         requireFewGroups(groups.size(), files[group.planes.front().file]);
     }
+    joinLoneSlices(groups, files);
     markSurveys(groups);
+    addFramePositions(groups);
+    addDetails(groups, files);
     return groups;
 }
 
@@ -200,6 +371,9 @@ std::string describeDicomGroup(const DicomGroup& group) {
     }
     if (group.isLocalizer) text += ", localizer";
     if (group.isSecondary) text += ", screenshot or colour";
+    if (group.segment) text += fmt::format(", segment {}", *group.segment);
+    if (!group.segmentLabel.empty()) text += fmt::format(" '{}'", group.segmentLabel);
+    for (const auto& [keyword, value] : group.details) text += ", " + keyword + " " + value;
     if (!group.fault.empty()) text += ", can't be read";
     return text;
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "DicomFile.h"
@@ -11,24 +12,40 @@
 
 namespace adaptiso::detail {
 
-/// Planes that could be one volume, or the volumes of one 4-D image: of one series, one size, one
-/// orientation, one pixel spacing; or the files of a series that can't be read.
+/// Planes that could be one volume, or the volumes of one 4-D image: of one patient, study, frame
+/// of reference and series, one size, one orientation, one pixel spacing; one segment of a
+/// segmentation; or the files of a series that can't be read.
 struct DicomGroup {
     std::string seriesUid, modality;
-    std::string description;  ///< may identify the patient
+    std::string patient, study, frameOfReference;  ///< digests
+    std::string description;                       ///< may identify the patient
     std::int64_t columns = 0, rows = 0;
     std::vector<DicomPlane> planes;
     bool isMosaic = false;
     bool isLocalizer = false;  ///< says so itself, or is a survey: few slices in several directions
     bool isSecondary = false;  ///< a screenshot, or colour
-    std::string fault;         ///< why its first file can't be read; empty when it can
+    bool isScreenshot = false;  ///< isSecondary, and no header says where it lies
+    bool isSegmentation = false;
+    std::optional<std::int64_t> segment;  ///< its number in the file
+    std::string segmentLabel;             ///< ASCII
+    /// Of a segmentation: where frames of any of its segments lie. Between them slices without a
+    /// frame are empty.
+    std::vector<Vec3> framePositions;
+    std::string fault;  ///< why its first file can't be read; empty when it can
+    std::vector<Warning> warnings;
+    /// What tells it from the other groups, as DICOM's keywords and values: ImageType,
+    /// ConvolutionKernel, SeriesNumber, ...; Patient, Study and FrameOfReference are numbered.
+    std::vector<std::pair<std::string, std::string>> details;
 
     /// All planes have a position, an orientation and a pixel spacing.
     bool isPlaced() const;
 };
 
 /// In the order of the files: the same input gives the same numbers. Images of several kinds
-/// (magnitude and phase) at the same places become groups of their own.
+/// (magnitude and phase) or kernels at the same places become groups of their own. Slices that each
+/// have a UID of their own become one group, with a warning, where nothing else tells them apart:
+/// of the series, where study, frame of reference and series number agree; of the study or frame of
+/// reference, where the series agrees.
 /// \throws FileError when there are more than 1000 groups
 std::vector<DicomGroup> groupDicomPlanes(const std::vector<DicomFile>& files);
 
@@ -43,7 +60,8 @@ std::string_view orientationName(const DicomGroup& group);
 std::string describeDicomGroup(const DicomGroup& group);
 
 /// The group to read: the one that `series` names by number (from 1) or UID; without it the only
-/// volume, with a warning for every image that is left aside.
+/// volume, with a warning for every image that is left aside. Segmentations are left aside
+/// where there is an image.
 /// \throws FileError when there is none or more than one, or when a file of the same series does
 ///         not fit in (a slice would be missing)
 std::size_t chooseDicomGroup(const std::filesystem::path& input,

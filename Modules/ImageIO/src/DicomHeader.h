@@ -20,14 +20,21 @@ inline constexpr DicomTag kDirectoryRecordSequence = 0x00041220;
 inline constexpr DicomTag kReferencedFileId = 0x00041500;
 inline constexpr DicomTag kImageType = 0x00080008;
 inline constexpr DicomTag kSopClass = 0x00080016;
+inline constexpr DicomTag kSopInstance = 0x00080018;
+inline constexpr DicomTag kAcquisitionTime = 0x00080032;
+inline constexpr DicomTag kContentTime = 0x00080033;
 inline constexpr DicomTag kModality = 0x00080060;
 inline constexpr DicomTag kSeriesDescription = 0x0008103E;
 inline constexpr DicomTag kFrameType = 0x00089007;
 inline constexpr DicomTag kComplexImageComponent = 0x00089208;
+inline constexpr DicomTag kPatientName = 0x00100010;
+inline constexpr DicomTag kPatientId = 0x00100020;
+inline constexpr DicomTag kPatientBirthDate = 0x00100030;
 inline constexpr DicomTag kEchoTime = 0x00180081;
 inline constexpr DicomTag kEchoNumbers = 0x00180086;
 inline constexpr DicomTag kSpacingBetweenSlices = 0x00180088;
 inline constexpr DicomTag kTriggerTime = 0x00181060;
+inline constexpr DicomTag kConvolutionKernel = 0x00181210;
 inline constexpr DicomTag kGradientDirectionSequence = 0x00189076;
 inline constexpr DicomTag kEffectiveEchoTime = 0x00189082;
 inline constexpr DicomTag kDiffusionBValue = 0x00189087;
@@ -37,18 +44,26 @@ inline constexpr DicomTag kMrDiffusionSequence = 0x00189117;
 inline constexpr DicomTag kCardiacSequence = 0x00189118;
 inline constexpr DicomTag kMrFrameTypeSequence = 0x00189226;
 inline constexpr DicomTag kCtFrameTypeSequence = 0x00189329;
+inline constexpr DicomTag kStudyInstanceUid = 0x0020000D;
 inline constexpr DicomTag kSeriesInstanceUid = 0x0020000E;
+inline constexpr DicomTag kSeriesNumber = 0x00200011;
 inline constexpr DicomTag kAcquisitionNumber = 0x00200012;
 inline constexpr DicomTag kInstanceNumber = 0x00200013;
 inline constexpr DicomTag kImagePosition = 0x00200032;
 inline constexpr DicomTag kImageOrientation = 0x00200037;
+inline constexpr DicomTag kFrameOfReferenceUid = 0x00200052;
 inline constexpr DicomTag kTemporalPosition = 0x00200100;
+inline constexpr DicomTag kNumberOfTemporalPositions = 0x00200105;
+inline constexpr DicomTag kImagesInAcquisition = 0x00201002;
 inline constexpr DicomTag kFrameContentSequence = 0x00209111;
 inline constexpr DicomTag kPlanePositionSequence = 0x00209113;
 inline constexpr DicomTag kPlaneOrientationSequence = 0x00209116;
 inline constexpr DicomTag kTemporalPositionIndex = 0x00209128;
 inline constexpr DicomTag kTriggerDelay = 0x00209153;
 inline constexpr DicomTag kDimensionIndexValues = 0x00209157;
+inline constexpr DicomTag kConcatenationUid = 0x00209161;
+inline constexpr DicomTag kInConcatenationNumber = 0x00209162;
+inline constexpr DicomTag kInConcatenationTotal = 0x00209163;
 inline constexpr DicomTag kSamplesPerPixel = 0x00280002;
 inline constexpr DicomTag kPhotometric = 0x00280004;
 inline constexpr DicomTag kNumberOfFrames = 0x00280008;
@@ -65,7 +80,13 @@ inline constexpr DicomTag kRescaleType = 0x00281054;
 inline constexpr DicomTag kModalityLutSequence = 0x00283000;
 inline constexpr DicomTag kPixelMeasuresSequence = 0x00289110;
 inline constexpr DicomTag kPixelValueTransformationSequence = 0x00289145;
-inline constexpr DicomTag kUnits = 0x00541001;  ///< of PET
+inline constexpr DicomTag kNumberOfSlices = 0x00540081;  ///< of PET
+inline constexpr DicomTag kUnits = 0x00541001;           ///< of PET
+inline constexpr DicomTag kSegmentSequence = 0x00620002;
+inline constexpr DicomTag kSegmentNumber = 0x00620004;
+inline constexpr DicomTag kSegmentLabel = 0x00620005;
+inline constexpr DicomTag kSegmentIdentificationSequence = 0x0062000A;
+inline constexpr DicomTag kReferencedSegmentNumber = 0x0062000B;
 inline constexpr DicomTag kSharedFunctionalGroups = 0x52009229;
 inline constexpr DicomTag kPerFrameFunctionalGroups = 0x52009230;
 inline constexpr DicomTag kOverlayBitPosition = 0x60000102;  ///< and groups 6002, 6004, ...
@@ -75,9 +96,11 @@ inline constexpr DicomTag kDoublePixelData = 0x7FE00009;
 inline constexpr DicomTag kPixelData = 0x7FE00010;
 }  // namespace tag
 
-/// The elements of a data set that this module needs; names, ids and dates are never kept.
+/// The elements of a data set that this module needs. What identifies the patient, the study or a
+/// file is kept as a digest, good for comparing alone.
 struct DicomDataset {
-    /// Values of text as they stand in the file, binary numbers as decimal text ("1\2.5").
+    /// Values of text as they stand in the file, binary numbers as decimal text ("1\2.5"),
+    /// digests as hexadecimal text.
     std::map<DicomTag, std::string> values;
     std::map<DicomTag, std::vector<DicomDataset>> sequences;
 
@@ -92,6 +115,9 @@ struct DicomDataset {
     /// The first item of a sequence, or nullptr.
     const DicomDataset* item(DicomTag sequence) const;
 };
+
+/// ASCII as it is, all else as '?': what character set it is in is not looked at.
+std::string plainDicomText(std::string_view text);
 
 /// Where the pixels are, in DicomBytes' positions.
 struct DicomPixelData {

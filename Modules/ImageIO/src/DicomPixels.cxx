@@ -55,7 +55,7 @@ DicomCodec codecOf(const DicomFile& dicom) {
                                   : uid.starts_with("1.2.840.10008.1.2.8") ? "deflated frames"
                                                                            : "not known here";
     refuse(dicom.path, fmt::format("unsupported transfer syntax of its pixel data ({})", name),
-           kSaveUncompressed);
+           "export it uncompressed (Explicit VR Little Endian) from where it comes");
 }
 
 void requireGrey(const DicomFile& dicom) {
@@ -150,7 +150,8 @@ DicomPixelFormat dicomPixelFormat(const DicomFile& dicom) {
     const int bits = need(tag::kBitsAllocated, "BitsAllocated");
     format.bitsStored = need(tag::kBitsStored, "BitsStored");
     format.highBit = static_cast<int>(set.integer(tag::kHighBit).value_or(format.bitsStored - 1));
-    if ((bits != 8 && bits != 16 && bits != 32) || format.bitsStored < 1 ||
+    format.isPacked = bits == 1;
+    if ((bits != 1 && bits != 8 && bits != 16 && bits != 32) || format.bitsStored < 1 ||
         format.bitsStored > bits || format.highBit >= bits ||
         format.highBit < format.bitsStored - 1) {
         refuse(path,
@@ -158,7 +159,8 @@ DicomPixelFormat dicomPixelFormat(const DicomFile& dicom) {
                            format.bitsStored, format.highBit),
                "convert it to 8 or 16 bits");
     }
-    format.stored = storedType(bits, need(tag::kPixelRepresentation, "PixelRepresentation") == 1);
+    const bool isSigned = need(tag::kPixelRepresentation, "PixelRepresentation") == 1;
+    format.stored = storedType(bits == 1 ? 8 : bits, isSigned && bits > 1);
     if (set.text(tag::kNumberOfFrames)) {
         const auto frames = set.integer(tag::kNumberOfFrames);
         if (!frames || *frames < 1 || *frames > 1'000'000) {
@@ -176,6 +178,10 @@ DicomFrames::DicomFrames(const DicomFile& dicom, const DicomPixelFormat& format)
         refuse(dicom.path, "damaged: its pixel data are not as its transfer syntax says",
                kGetAgain);
     }
+    if (format.isPacked && dicom.header.isBigEndian) {
+        refuse(dicom.path, "unsupported pixel bits: 1 a pixel, big endian",
+               "save it as little endian, e.g. with gdcmconv --explicit");
+    }
     if (codec_ == DicomCodec::None) {
         openNative();
     } else {
@@ -184,7 +190,8 @@ DicomFrames::DicomFrames(const DicomFile& dicom, const DicomPixelFormat& format)
 }
 
 void DicomFrames::openNative() {
-    const std::uint64_t needed = format_.frameBytes() * static_cast<std::uint64_t>(format_.frames);
+    const std::uint64_t needed =
+        format_.nativeBytes(format_.framePixels() * static_cast<std::uint64_t>(format_.frames));
     const std::uint64_t there = dicom_.header.pixelData->byteCount;
     if (there < needed) {
         refuse(dicom_.path,
@@ -194,8 +201,16 @@ void DicomFrames::openNative() {
     const std::uint64_t extra = there - needed;
     if (extra <= needed % 2) return;  // lengths are even (PS3.5, 8.1.1)
     hasPadding_ = true;
-    const std::uint64_t rowBytes = format_.frameBytes() / static_cast<std::uint64_t>(format_.rows);
-    if (!isMoreImage(extra, {rowBytes, format_.frameBytes()}) ||
+    if (format_.isPacked && format_.framePixels() % 8 != 0) {
+        refuse(
+            dicom_.path,
+            fmt::format("its 1-bit pixel data hold {} bytes, {} frames take {}: each may be padded",
+                        there, format_.frames, needed),
+            "convert it with segimage2itkimage (dcmqi)");
+    }
+    const auto columns = static_cast<std::uint64_t>(format_.columns);
+    if (!isMoreImage(extra,
+                     {format_.nativeBytes(columns), format_.nativeBytes(format_.framePixels())}) ||
         isZeros(dicom_.header.pixelData->offset + needed, extra)) {
         return;
     }
@@ -203,8 +218,9 @@ void DicomFrames::openNative() {
         dicom_.path,
         fmt::format("its pixel data hold {} bytes, its header describes {} ({} x {} pixels of {} "
                     "bits, {} frame{})",
-                    there, needed, format_.columns, format_.rows, 8 * bytesPerPixel(format_.stored),
-                    format_.frames, format_.frames > 1 ? "s" : ""),
+                    there, needed, format_.columns, format_.rows,
+                    format_.isPacked ? 1 : 8 * bytesPerPixel(format_.stored), format_.frames,
+                    format_.frames > 1 ? "s" : ""),
         "correct Rows, Columns, BitsAllocated or NumberOfFrames, or get the file again");
 }
 
@@ -226,6 +242,10 @@ void DicomFrames::inflateOnce() {
 }
 
 void DicomFrames::openEncapsulated() {
+    if (format_.isPacked) {
+        refuse(dicom_.path, "unsupported pixel bits: 1 a pixel, compressed",
+               "export it uncompressed (Explicit VR Little Endian) from where it comes");
+    }
     if (format_.highBit != format_.bitsStored - 1) {
         refuse(dicom_.path,
                fmt::format("unsupported pixel bits: compressed with high bit {} for {} bits stored",
@@ -323,8 +343,22 @@ std::string DicomFrames::codestreamOf(std::int64_t frame) {
     return stream;
 }
 
+void DicomFrames::readPacked(std::int64_t frame, std::vector<std::byte>& samples) {
+    inflateOnce();
+    samples.resize(format_.frameBytes());
+    const std::uint64_t first = static_cast<std::uint64_t>(frame) * samples.size();
+    std::vector<std::byte> packed((first + samples.size() + 7) / 8 - first / 8);
+    bytes_.read(dicom_.header.pixelData->offset + first / 8, packed.data(), packed.size());
+    for (std::uint64_t n = 0; n < samples.size(); ++n) {
+        const std::uint64_t bit = first % 8 + n;
+        samples[n] = packed[bit / 8] >> (bit % 8) & std::byte{1};
+    }
+}
+
 void DicomFrames::read(std::int64_t frame, std::vector<std::byte>& samples) {
-    if (codec_ == DicomCodec::None) {
+    if (format_.isPacked) {
+        readPacked(frame, samples);
+    } else if (codec_ == DicomCodec::None) {
         const DicomHeader& header = dicom_.header;
         inflateOnce();
         samples.resize(format_.frameBytes());

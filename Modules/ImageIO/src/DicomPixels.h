@@ -12,7 +12,7 @@
 
 namespace adaptiso::detail {
 
-/// \throws FileError unless the file holds scalar grey pixels of 8, 16 or 32 bits
+/// \throws FileError unless the file holds scalar grey pixels of 1, 8, 16 or 32 bits
 DicomPixelFormat dicomPixelFormat(const DicomFile& dicom);
 
 /// The stored samples of one file (before rescale), frame by frame.
@@ -47,6 +47,7 @@ private:
     bool beginsCodestream(const DicomPixelData::Fragment& fragment);
     bool beginsRle(const DicomPixelData::Fragment& fragment);
     void requireOneFrame();
+    void readPacked(std::int64_t frame, std::vector<std::byte>& samples);
     std::string codestreamOf(std::int64_t frame);
 
     const DicomFile& dicom_;

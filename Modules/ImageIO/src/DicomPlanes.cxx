@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "FileFault.h"
+#include "HeaderText.h"
 
 // Geometry: PS3.3, C.7.6.2.1.1 (classic images), C.7.6.16 (functional groups).
 namespace adaptiso::detail {
@@ -40,6 +41,10 @@ DicomPlane placedPlane(const fs::path& path, const PlaneSources& from) {
         plane.rowStepMm = s[0];  // between rows comes first (PS3.3, 10.7.1.3)
         plane.columnStepMm = s[1];
     }
+    if (from.measures) {
+        const auto apart = from.measures->numbersIfAny(tag::kSpacingBetweenSlices);
+        if (apart.size() == 1 && apart[0] != 0) plane.sliceStepMm = std::abs(apart[0]);
+    }
     const auto slope = numbers(from.transformation, tag::kRescaleSlope);
     const auto intercept = numbers(from.transformation, tag::kRescaleIntercept);
     if (!slope.empty()) plane.slope = slope.front();
@@ -69,6 +74,18 @@ std::string imageTypeOf(const DicomDataset& set, DicomTag type) {
            std::string(set.text(tag::kComplexImageComponent).value_or(""));
 }
 
+/// "HHMMSS.FFFFFF" in seconds; empty when absent or otherwise written.
+std::vector<double> secondsOf(const DicomDataset& set) {
+    for (const DicomTag tag : {tag::kAcquisitionTime, tag::kContentTime}) {
+        const auto text = set.text(tag);
+        const auto value = text && text->size() >= 6 ? parseNumber(*text) : std::nullopt;
+        if (!value || !(*value >= 0 && *value < 240000)) continue;
+        const double hours = std::floor(*value / 1e4), minutes = std::floor(*value / 100);
+        return {3600 * hours + 60 * (minutes - 100 * hours) + (*value - 100 * minutes)};
+    }
+    return {};
+}
+
 DicomPlane classicPlane(const DicomFile& dicom) {
     const DicomDataset& top = dicom.header.dataset;
     DicomPlane plane = placedPlane(dicom.path, {&top, &top, &top, &top});
@@ -81,6 +98,8 @@ DicomPlane classicPlane(const DicomFile& dicom) {
     addNumbers(labelOf(plane, DicomLabel::Diffusion), &top, tag::kGradientOrientation);
     addNumbers(labelOf(plane, DicomLabel::Acquisition), &top, tag::kAcquisitionNumber);
     addNumbers(plane.order, &top, tag::kInstanceNumber);
+    plane.time = secondsOf(top);
+    plane.kernel = top.text(tag::kConvolutionKernel).value_or("");
     return plane;
 }
 
@@ -123,6 +142,9 @@ DicomPlane framePlane(const DicomFile& dicom, const FunctionalGroups& group) {
                    diffusion->item(tag::kGradientDirectionSequence), tag::kGradientOrientation);
     }
     addNumbers(plane.order, &top, tag::kInstanceNumber);
+    if (const DicomDataset* segment = group(tag::kSegmentIdentificationSequence)) {
+        plane.segment = segment->integer(tag::kReferencedSegmentNumber);
+    }
     return plane;
 }
 

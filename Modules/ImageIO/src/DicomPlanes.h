@@ -25,12 +25,16 @@ struct DicomPlane {
     std::optional<Vec3> position;                ///< centre of the first voxel, LPS mm
     std::optional<Vec3> alongRow, alongColumn;   ///< unit vectors
     std::optional<double> columnStepMm, rowStepMm;
+    std::optional<double> sliceStepMm;  ///< of a multi-frame file; only segmentations need it
     double slope = 1, intercept = 0;
     bool hasRescale = false;  ///< the header says so, be it by 1 and 0
     std::string rescaleType;  ///< "HU", ...; empty when absent
 
     std::string imageType;  ///< ImageType or FrameType, with the complex component (phase, ...)
+    std::string kernel;     ///< ConvolutionKernel
+    std::optional<std::int64_t> segment;  ///< of a segmentation's frame
     std::array<std::vector<double>, kDicomLabels> labels;
+    std::vector<double> time;   ///< of acquisition, else of content, s of the day
     std::vector<double> order;  ///< instance number, frame
 };
 

@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* kGiveAll = "give a folder that holds slices at several positions";
 constexpr const char* kRepeated =
     "several slices lie at the same position: duplicate files, or volumes that can't be told apart";
 
@@ -47,11 +48,11 @@ constexpr const char* kRepeated =
 /// The planes of the one volume to read.
 std::vector<DicomPlane> chooseVolume(const fs::path& input, const std::vector<DicomFile>& files,
                                      const DicomGroup& group, std::optional<std::int64_t> wanted) {
-    if (dicomPlaces(group.planes).size() == 1) {
+    if (dicomPlaces(group.planes).size() == 1 && !group.isSegmentation) {
         refuse(input,
                fmt::format("all of its {} slices lie at the same position: no volume",
                            group.planes.size()),
-               "give the folder with all slices of the series");
+               kGiveAll);
     }
     DicomVolumes split = splitDicomVolumes(group.planes);
     const std::int64_t count = std::ssize(split.volumes);
@@ -69,15 +70,18 @@ std::vector<DicomPlane> chooseVolume(const fs::path& input, const std::vector<Di
 DicomStack stackOf(const fs::path& input, const std::vector<DicomFile>& files,
                    const DicomGroup& group, const ReadOptions& options) {
     if (!group.fault.empty()) throw FileError(group.fault);
-    if (group.planes.size() == 1) {
-        refuse(input, "is a single DICOM slice, a surface needs a volume",
-               "give the folder with all slices of the series");
+    if (group.planes.size() == 1 && !group.isSegmentation) {
+        refuse(input, "is a single DICOM slice, a surface needs a volume", kGiveAll);
     }
     requirePlacedPlanes(files, group);
     std::vector<DicomPlane> planes = chooseVolume(input, files, group, options.volumeIndex);
-    std::vector<Warning> warnings;
+    std::vector<Warning> warnings = group.warnings;
     requireAgreement(input, files, planes, warnings);
-    DicomStack stack = stackDicomPlanes(input, group, std::move(planes), options.resampleSlices);
+    requireWholeConcatenation(input, files, planes);
+    warnOfFewer(files, group, planes.size(), warnings);
+    DicomStack stack = group.isSegmentation ? stackSegmentFrames(input, group, std::move(planes))
+                                            : stackDicomPlanes(input, group, std::move(planes),
+                                                               options.resampleSlices);
     stack.warnings.insert(stack.warnings.end(), warnings.begin(), warnings.end());
     return stack;
 }
@@ -107,15 +111,6 @@ ReadVolume readImages(const fs::path& input, DicomInput images, const ReadOption
 
 // ---- the list
 
-/// ASCII as it is, all else as '?': what character set it is in is not looked at.
-std::string plainText(std::string_view text) {
-    std::string plain(trimmed(text.substr(0, text.find('\0'))));
-    for (char& c : plain) {
-        if (c < 0x20 || c == 0x7f) c = '?';
-    }
-    return plain;
-}
-
 /// Fills in what reading the group would give, or why it can't be read.
 void tryGroup(const fs::path& input, const std::vector<DicomFile>& files, const DicomGroup& group,
               DicomSeries& series) {
@@ -143,14 +138,17 @@ DicomSeries seriesOf(const fs::path& input, const std::vector<DicomFile>& files,
     DicomSeries series;
     series.number = number;
     series.uid = group.seriesUid;
-    series.description = plainText(group.description);
-    series.modality = plainText(group.modality);
+    series.description = plainDicomText(group.description);
+    series.modality = plainDicomText(group.modality);
     series.orientation = orientationName(group);
     series.columns = group.columns;
     series.rows = group.rows;
     series.slices = std::ssize(group.planes);
     series.spacingMm = {first.columnStepMm.value_or(0), first.rowStepMm.value_or(0), 0};
     series.isLocalizer = group.isLocalizer;
+    series.segment = group.segment;
+    series.segmentLabel = group.segmentLabel;
+    series.details = group.details;
     tryGroup(input, files, group, series);
     return series;
 }

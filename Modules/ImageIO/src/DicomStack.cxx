@@ -56,15 +56,25 @@ struct EvenSteps {
     double stepMm = 0;
 };
 
-EvenSteps evenSteps(const fs::path& input, const std::vector<double>& along) {
+EvenSteps evenSteps(const std::vector<double>& along) {
     const double length = along.back() - along.front();
     const double intervals = std::max(1.0, std::round(length / median(stepsBetween(along))));
-    constexpr double kMostMade = 8;  // slices for each one that is there: else it is not a series
-    if (intervals > kMostMade * static_cast<double>(along.size())) {
-        refuse(input, describeGap(along) + ": too far apart to be resampled",
-               "give one series of slices");
-    }
     return {static_cast<std::int64_t>(intervals) + 1, length / intervals};
+}
+
+/// Why the planes can't be blended onto even steps; empty if they can.
+std::string blendFault(const std::vector<double>& along) {
+    constexpr double kMostMade = 8;      // slices for each one that is there: else it is no series
+    constexpr double kSamePlace = 0.05;  // of the usual step: a blend of both would be a mix
+    const std::vector<double> steps = stepsBetween(along);
+    const auto least = std::ranges::min_element(steps);
+    const double usual = median(steps);
+    if ((along.back() - along.front()) / usual > kMostMade * static_cast<double>(along.size())) {
+        return "too far apart to be resampled";
+    }
+    if (*least >= kSamePlace * usual) return {};
+    return fmt::format("slices {} and {} lie at nearly the same position",
+                       least - steps.begin() + 1, least - steps.begin() + 2);
 }
 
 std::vector<SliceBlend> blendsOf(const std::vector<double>& along, const EvenSteps& even) {
@@ -77,6 +87,49 @@ std::vector<SliceBlend> blendsOf(const std::vector<double>& along, const EvenSte
         blends.push_back({before, std::clamp(weight, 0.0, 1.0)});
     }
     return blends;
+}
+
+/// The line through the places of a segmentation's frames.
+struct FrameLine {
+    Vec3 origin, direction;
+    std::vector<double> along;  ///< from 0, without repeats
+};
+
+FrameLine frameLine(const fs::path& input, const DicomGroup& group) {
+    const DicomPlane& first = group.planes.front();
+    const Vec3 normal = normalized(cross(*first.alongRow, *first.alongColumn));
+    const auto height = [&](const Vec3& position) { return dot(position, normal); };
+    const auto [low, high] = std::ranges::minmax_element(group.framePositions, {}, height);
+    FrameLine line{*low, normalized(*high - *low), {}};
+    if (norm(*high - *low) < kLargestMisplacementMm) {
+        refuse(input, "its frames all lie at the same position: no volume",
+               "give a segmentation of several slices");
+    }
+    for (const Vec3& position : group.framePositions) {
+        const Vec3 from = position - line.origin;
+        line.along.push_back(dot(from, line.direction));
+        const double beside = norm(from - line.along.back() * line.direction);
+        if (beside > kLargestMisplacementMm) {
+            refuse(input,
+                   fmt::format("a frame lies {} mm beside the line through the others' positions",
+                               number(beside)),
+                   "export the segmentation with all frames on one line");
+        }
+    }
+    std::ranges::sort(line.along);
+    const auto isSame = [](double a, double b) { return b - a < kLargestMisplacementMm; };
+    line.along.erase(std::ranges::unique(line.along, isSame).begin(), line.along.end());
+    return line;
+}
+
+/// \param stated  SpacingBetweenSlices
+double frameStep(const std::vector<double>& along, const std::optional<double>& stated) {
+    const double least = std::ranges::min(stepsBetween(along));
+    if (!stated || *stated < kLargestMisplacementMm) return least;
+    constexpr double kSameStep = 0.01;
+    const double times = std::round(least / *stated);
+    const bool fits = times >= 1 && std::abs(least - times * *stated) <= kSameStep * *stated;
+    return fits ? least / times : least;
 }
 
 Warning tiltWarning(double tiltRad) {
@@ -107,6 +160,46 @@ void requirePlacedPlanes(const std::vector<DicomFile>& files, const DicomGroup& 
     }
 }
 
+DicomStack stackSegmentFrames(const fs::path& input, const DicomGroup& group,
+                              std::vector<DicomPlane> planes) {
+    const DicomPlane first = planes.front();
+    const FrameLine line = frameLine(input, group);
+    const double length = line.along.back();
+    const double step = frameStep(line.along, first.sliceStepMm);
+    const double intervals = std::round(length / step);
+    constexpr double kMostSlices = 10000;
+    if (intervals >= kMostSlices) {
+        refuse(input,
+               fmt::format("its frames span {} slices, {} mm apart", intervals + 1, number(step)),
+               "check SpacingBetweenSlices and the frames' positions");
+    }
+    DicomStack stack;
+    for (const double at : line.along) {
+        const double off = at - std::round(at / step) * length / intervals;
+        if (std::abs(off) > kLargestMisplacementMm) {
+            refuse(input, describeGap(line.along), "export the segmentation with even steps");
+        }
+    }
+    if (std::ranges::min(stepsBetween(line.along)) > 1.5 * step) {
+        stack.warnings.push_back(
+            {"empty-slices",
+             fmt::format("no two frames of the segmentation are neighbours, {} mm apart: slices "
+                         "without a frame are empty",
+                         number(step))});
+    }
+    for (const DicomPlane& plane : planes) {
+        const double at = dot(*plane.position - line.origin, line.direction);
+        stack.slices.push_back(static_cast<std::size_t>(std::llround(at / step)));
+    }
+    stack.geometry = {
+        {group.columns, group.rows, static_cast<std::int64_t>(intervals) + 1},
+        line.origin,
+        {{{*first.columnStepMm * *first.alongRow, *first.rowStepMm * *first.alongColumn,
+           length / intervals * line.direction}}}};
+    stack.planes = std::move(planes);
+    return stack;
+}
+
 DicomStack stackDicomPlanes(const fs::path& input, const DicomGroup& group,
                             std::vector<DicomPlane> planes, bool resamplesSlices) {
     const DicomPlane first = planes.front();
@@ -134,6 +227,9 @@ DicomStack stackDicomPlanes(const fs::path& input, const DicomGroup& group,
         const Vec3 off = from - static_cast<double>(n) / steps * span;
         if (norm(off) > kLargestMisplacementMm) isEven = false;
     }
+    if (const std::string fault = isEven ? "" : blendFault(along); !fault.empty()) {
+        refuse(input, describeGap(along) + ", " + fault, "give one complete series of slices");
+    }
     if (!isEven && !resamplesSlices) {
         refuse(input, describeGap(along),
                "give the complete series, or let the slices be resampled (--resample-slices)");
@@ -142,7 +238,7 @@ DicomStack stackDicomPlanes(const fs::path& input, const DicomGroup& group,
     DicomStack stack;
     EvenSteps even{std::ssize(planes), norm(span) / steps};
     if (!isEven) {
-        even = evenSteps(input, along);
+        even = evenSteps(along);
         stack.blends = blendsOf(along, even);
         stack.warnings.push_back(
             {"slices-resampled",

@@ -25,11 +25,20 @@ struct DicomStack {
     /// How each of the geometry's slices is made where the planes are uneven; else empty, and the
     /// planes are the slices.
     std::vector<SliceBlend> blends;
+    /// The slice that each plane is, where slices without a plane are empty (0); else empty.
+    std::vector<std::size_t> slices;
     std::vector<Warning> warnings;
 };
 
 /// \throws FileError unless all planes of the group have a position, an orientation and a spacing
 void requirePlacedPlanes(const std::vector<DicomFile>& files, const DicomGroup& group);
+
+/// Places a segment's frames on the even steps of its file's frames; slices without a frame are
+/// empty (PS3.3, A.51). The step is SpacingBetweenSlices where it fits the frames' positions, else
+/// the least distance between two frames.
+/// \throws FileError unless all frames lie on such steps, within 0.05 mm
+DicomStack stackSegmentFrames(const std::filesystem::path& input, const DicomGroup& group,
+                              std::vector<DicomPlane> planes);
 
 /// Sorts a volume's planes and checks that they lie evenly on a line, within 0.05 mm. The step from
 /// one to the next is kept as it is: tilt becomes shear.

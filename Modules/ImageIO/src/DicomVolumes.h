@@ -20,7 +20,8 @@ struct DicomVolumes {
 };
 
 /// Tells the volumes of a 4-D series apart where several planes lie at every place: by the one
-/// attribute that does, by all of them, or by the images' numbers at each place.
+/// attribute that does, by all of them, by times of acquisition, or by the images' numbers where
+/// these are those of whole passes. None where two of these tell them apart differently.
 /// \pre  as dicomPlaces
 DicomVolumes splitDicomVolumes(const std::vector<DicomPlane>& planes);
 

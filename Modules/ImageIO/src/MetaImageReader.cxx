@@ -346,12 +346,12 @@ ReadVolume readMetaImage(const fs::path& file, const ReadOptions& options) {
     std::vector<Warning> warnings;
     SampleLayout layout{parseType(file, type)};
     layout.volumeCount = extents.volumeCount;
-    layout.volumeIndex = chooseVolume(file, extents.volumeCount, options);
-    layout.byteOrder = byteOrderOf(file, header, layout.stored);
-    parseScaling(file, header, layout, warnings);
     const std::uint64_t byteCount =
         requireProduct(file, requireImageBytes(file, extents.size, layout.stored),
                        static_cast<std::uint64_t>(extents.volumeCount));
+    layout.volumeIndex = chooseVolume(file, extents.volumeCount, options);
+    layout.byteOrder = byteOrderOf(file, header, layout.stored);
+    parseScaling(file, header, layout, warnings);
     const ImageGeometry geometry = geometryOf(file, header, extents, warnings);
     requireUsableGeometry(file, geometry);
     const DataPlace place = placeOf(file, header);

@@ -522,11 +522,11 @@ ReadVolume readNifti(const fs::path& input, const ReadOptions& options) {
     std::vector<Warning> warnings;
     SampleLayout layout = layoutOf(headerFile, header, warnings);
     layout.volumeCount = extents.volumeCount;
+    requireImageBytes(headerFile, extents.size, layout.stored);
     const std::string_view components = componentsOf(header.intent);
     layout.volumeIndex =
         chooseVolume(headerFile, extents.volumeCount, options,
                      components.empty() ? "volumes" : fmt::format("components of {}", components));
-    requireImageBytes(headerFile, extents.size, layout.stored);
     const ImageGeometry geometry = geometryOf(headerFile, header, extents.size, warnings);
 
     const fs::path dataFile =

@@ -86,9 +86,9 @@ ReadVolume readNrrd(const fs::path& file, const ReadOptions& options) {
     const NrrdAxes axes = axesOf(file, header);
     SampleLayout layout{pixelTypeOf(file, header)};
     layout.volumeCount = axes.volumeCount;
+    requireImageBytes(file, axes.size, layout.stored);
     layout.volumeIndex = chooseVolume(file, axes.volumeCount, options, volumesNameOf(header));
     layout.isInterleaved = axes.volumeAxis == 0U;
-    requireImageBytes(file, axes.size, layout.stored);
     std::vector<Warning> warnings;
     const ImageGeometry geometry = geometryOf(file, header, axes, warnings);
     requireUsableGeometry(file, geometry);

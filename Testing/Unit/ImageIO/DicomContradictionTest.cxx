@@ -109,11 +109,11 @@ TEST(DicomMorePixels, TheByteThatMakesLengthsEvenIsNone) {
     EXPECT_TRUE(readVolume(folder.path()).warnings.empty());
 }
 
-DicomBuilder multiFrame(int groups, int frames) {
+DicomBuilder multiFrame(int groups, int frames, int first = 0) {
     std::vector<DicomBuilder> perFrame;
     std::vector<std::uint16_t> samples;
     for (int n = 0; n < frames; ++n) {
-        const Vec3 place{1, 2, 3.0 + 2 * n};
+        const Vec3 place{1, 2, 3.0 + 2 * (first + n)};
         DicomBuilder position, orientation, measures, group;
         position.text(0x00200032, "DS", dicomText(place));
         orientation.text(0x00200037, "DS", "1\\0\\0\\0\\1\\0");
@@ -229,6 +229,73 @@ TEST(DicomAgreement, ARescaleThatMakesValuesInfiniteIsRefused) {
     expectFault("RescaleSlope 1e+36 and RescaleIntercept 0 make values infinite", by("1e36", "0"));
     expectFault("make values infinite", by("1", "1e300"));
     expectFault("make values infinite", by("1e308", "0"));
+}
+
+// ---- fewer images than headers count
+
+/// The one warning of 5 slices whose header says so.
+std::string countWarning(const Change& change) {
+    const auto warnings = warningsOf(change);
+    EXPECT_LE(warnings.size(), 1U);
+    return warnings.empty() ? "" : warnings[0].text;
+}
+
+TEST(DicomCounts, OfSlicesImagesAndTimePointsAreCompared) {
+    const auto slices = [](std::uint16_t count) {
+        return countWarning([=](DicomBuilder& image, int) { image.us(0x00540081, count); });
+    };
+    EXPECT_EQ(slices(7), "its headers count 7 slices (NumberOfSlices), 5 are here: 2 missing");
+    EXPECT_EQ(slices(5), "");
+    const auto text = [](std::uint32_t tag, const char* count) {
+        return countWarning([=](DicomBuilder& image, int) { image.text(tag, "IS", count); });
+    };
+    EXPECT_EQ(text(0x00201002, "6"),
+              "its headers count 6 images (ImagesInAcquisition), 5 are here: 1 missing");
+    EXPECT_EQ(text(0x00201002, "5"), "");
+    EXPECT_EQ(text(0x00201002, "4"), "");
+    EXPECT_EQ(text(0x00200105, "3"),
+              "its headers count 3 time points (NumberOfTemporalPositions), 1 is here: 2 missing");
+    EXPECT_EQ(text(0x00200105, "1"), "");
+}
+
+TEST(DicomCounts, OfAnAcquisitionMayBeThoseOfSeveral) {
+    const auto acquisitions = [](int first, const char* stated) {
+        return countWarning([=](DicomBuilder& image, int k) {
+            image.text(0x00200012, "IS", k < first ? "1" : "2").text(0x00201002, "IS", stated);
+        });
+    };
+    EXPECT_EQ(acquisitions(3, "5"), "");  // of the series
+    EXPECT_EQ(acquisitions(3, "3"),
+              "its headers count 3 images (ImagesInAcquisition), 2 are here: 1 missing");
+    EXPECT_EQ(acquisitions(3, "8"),
+              "its headers count 8 images (ImagesInAcquisition), 5 are here: 3 missing");
+    // another series of the same acquisition, in the same folder
+    const TempFolder folder;
+    const auto state = [](DicomBuilder& image, int) { image.text(0x00201002, "IS", "10"); };
+    writeSeries(folder, state);
+    for (int k = 0; k < kSlices; ++k) {
+        DicomBuilder image = fieldSlice(tellTale, {1, 2, 3.0 + 2 * k});
+        state(image, k);
+        writeFile(folder / ("t" + std::to_string(k)), image.text(0x0020000E, "UI", "1.2.5").file());
+    }
+    EXPECT_TRUE(readVolume(folder.path(), {.series = "2"}).warnings.empty());
+}
+
+TEST(DicomCounts, ConcatenationsMustBeWhole) {
+    const TempFolder folder;
+    for (int part = 0; part < 3; ++part) {
+        DicomBuilder image = multiFrame(2, 2, 2 * part);
+        image.text(0x00209161, "UI", "1.2.6")
+            .us(0x00209162, static_cast<std::uint16_t>(part + 1))
+            .us(0x00209163, 3);
+        writeFile(folder / std::to_string(part), image.file());
+    }
+    const ReadVolume read = readVolume(folder.path());
+    EXPECT_EQ(read.volume.view().geometry().size[2], 6);
+    expectField(read.volume, tellTale);
+    expectRefusal(folder / "0", "holds 1 of the 3 files of a multi-frame image");
+    fs::remove(folder / "2");
+    expectRefusal(folder.path(), "holds 2 of the 3 files of a multi-frame image");
 }
 
 // ---- slices that are there only compressed as a whole

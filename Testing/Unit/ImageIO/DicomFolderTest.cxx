@@ -148,6 +148,143 @@ TEST(DicomStrays, NothingOfTheSameSeriesIsLeftAside) {
     refused(slice(4).without(0x00200032), "no ImagePositionPatient");
 }
 
+TEST(DicomStrays, AScreenshotWithinTheSeriesIsLeftAside) {
+    const TempFolder folder;
+    writeVolume(folder.path(), 4);
+    DicomBuilder image = dicomImage(4, 3);  // of the slices' series, without a place
+    image.text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.7").text(0x00280004, "CS", "RGB");
+    image.us(0x00280002, 3).us(0x00280100, 8).us(0x00280101, 8).us(0x00280102, 7);
+    writeFile(folder / "dose", image.bytes(0x7FE00010, "OB", std::string(36, '\1')).file());
+    const ReadVolume read = readVolume(folder.path());
+    EXPECT_EQ(slicesOf(read), 4);
+    EXPECT_TRUE(mentions(read.warnings, "left aside: 1 slice of 4 x 3 voxels"));
+}
+
+DicomBuilder objectWithoutPixels(const std::string& sopClass) {
+    DicomBuilder object;
+    object.text(0x00080008, "CS", "ORIGINAL\\PRIMARY")
+        .text(0x00080016, "UI", sopClass)
+        .text(0x00080060, "CS", "MR")
+        .text(0x0020000E, "UI", "1.2.3.4");
+    return object;
+}
+
+TEST(DicomStrays, ObjectsWithoutPixelsAreLeftAside) {
+    const std::string storage = "1.2.840.10008.5.1.4.1.1.";
+    // spectroscopy, CT protocol, report, dose report, key objects, presentation state, structures,
+    // registration, raw data, a vendor's own
+    for (const std::string& sopClass :
+         {storage + "4.2", storage + "200.2", storage + "88.11", storage + "88.67",
+          storage + "88.59", storage + "11.1", storage + "481.3", storage + "66.1", storage + "66",
+          std::string("1.3.12.2.1107.5.9.1"), std::string("1.2.840.113619.4.27")}) {
+        const TempFolder folder;
+        writeVolume(folder.path(), 4);
+        DicomBuilder object = objectWithoutPixels(sopClass);
+        if (sopClass == storage + "4.2") object.us(0x00280010, 1).us(0x00280011, 1);
+        writeFile(folder / "object.dcm", object.file());
+        const ReadVolume read = readVolume(folder.path());
+        EXPECT_EQ(slicesOf(read), 4) << sopClass;
+        const bool isVendors = !sopClass.starts_with(storage);
+        EXPECT_EQ(read.warnings.size(), isVendors ? 1U : 0U);
+        EXPECT_EQ(mentions(read.warnings, "left aside: 1 DICOM file of a vendor's own kind"),
+                  isVendors);
+        EXPECT_EQ(listSeries(folder.path()).otherFiles, 1U);
+    }
+}
+
+TEST(DicomStrays, ASliceThatLostItsPixelsIsNotLeftAside) {
+    for (const char* sopClass :
+         {"1.2.840.10008.5.1.4.1.1.2", "1.2.840.10008.5.1.4.1.1.4.1", "1.2.840.10008.5.1.4.1.1.128",
+          "1.2.840.10008.5.1.4.1.1.66.4", "1.3.12.2.1107.5.9.1"}) {
+        const TempFolder folder;
+        writeVolume(folder.path(), 4);
+        DicomBuilder object = objectWithoutPixels(sopClass);
+        if (sopClass[2] == '3') object.us(0x00280010, 3);  // a vendor's, with Rows
+        writeFile(folder / "object.dcm", object.file());
+        expectRefusal(folder.path(), "without pixel data");
+    }
+}
+
+// ---- what stands in a slice's place
+
+constexpr const char* kLfsPointer =
+    "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a4d\nsize 1346\n";
+
+TEST(DicomStandIns, AreRefusedWhateverTheirNames) {
+    const std::vector<std::pair<std::string, std::string>> contents{
+        {kLfsPointer, "git lfs pull"},
+        {"/annex/objects/SHA256E-s1346--4d7a4d\n", "git annex get"},
+        {"<!DOCTYPE html><html><body>Log in</body></html>", "web page"},
+        {std::string(5000, '\0'), "zeros"},
+        {"", "empty file"}};
+    for (const auto& [content, remedy] : contents) {
+        for (const char* name : {"s9", "S9", "IM0003", "x.dcm", "1.2.840.7", "slice.0003"}) {
+            const TempFolder folder;
+            writeVolume(folder.path(), 4);
+            const fs::path file = writeFile(folder / name, content);
+            const std::string message = refusalOf(folder.path());
+            EXPECT_TRUE(message.starts_with(file.native() + ": ")) << message;
+            EXPECT_NE(message.find(remedy), std::string::npos) << message;
+            EXPECT_EQ(message.find('\n'), std::string::npos);
+            const DicomListing listing = listSeries(folder.path());
+            ASSERT_EQ(listing.damaged.size(), 1U);
+            EXPECT_EQ(listing.damaged[0].fault.find(name), std::string::npos);
+        }
+    }
+}
+
+TEST(DicomStandIns, AreCounted) {
+    const TempFolder folder;
+    writeVolume(folder.path(), 2);
+    for (const char* name : {"s7", "s8", "s9"}) writeFile(folder / name, kLfsPointer);
+    const std::string message = refusalOf(folder.path());
+    EXPECT_TRUE(message.starts_with((folder / "s7").native() + " (3 such files): is a git-lfs"))
+        << message;
+}
+
+TEST(DicomStandIns, OfCloudFoldersAreRefused) {
+    const TempFolder folder;
+    writeVolume(folder.path(), 4);
+    writeFile(folder / ".notes.txt.icloud", "bplist00");
+    EXPECT_EQ(slicesOf(readVolume(folder.path())), 4);
+    writeFile(folder / ".s9.dcm.icloud", "bplist00");
+    EXPECT_NE(refusalOf(folder.path()).find(".s9.dcm.icloud: is a placeholder of iCloud"),
+              std::string::npos);
+}
+
+TEST(DicomStandIns, WhatIsNamedLikeTheSlicesMustBeDicom) {
+    const TempFolder folder;
+    writeVolume(folder.path(), 4);
+    writeFile(folder / "s7", "no DICOM");
+    expectRefusal(folder.path(), "named like a DICOM file but is none");
+    fs::remove(folder / "s7");
+    fs::create_directory(folder / "sub");
+    writeFile(folder / "sub/s7", "no DICOM");  // not beside them
+    EXPECT_EQ(slicesOf(readVolume(folder.path())), 4);
+}
+
+TEST(DicomStandIns, FilesThatLieInFoldersAreLeftAside) {
+    const TempFolder folder;
+    writeVolume(folder.path(), 4);
+    for (const char* name : {"notes.txt", "a.json", "Thumbs.db", ".DS_Store", "photo.JPG", "x.pdf",
+                             "README", "LICENSE", "index.html", "mask.nii.gz", "._s9"}) {
+        writeFile(folder / name, name[0] == 'R' ? "" : kLfsPointer);
+    }
+    writeFile(folder / "viewer",
+              "\x7f"
+              "ELF");
+    const ReadVolume read = readVolume(folder.path());
+    EXPECT_EQ(slicesOf(read), 4);
+    EXPECT_TRUE(read.warnings.empty());
+}
+
+TEST(DicomStandIns, AFolderOfPointersAloneSaysSo) {
+    const TempFolder folder;
+    writeFile(folder / "IM1", kLfsPointer);
+    writeFile(folder / "IM2", kLfsPointer);
+    EXPECT_NE(refusalOf(folder.path()).find("git lfs pull"), std::string::npos);
+}
+
 TEST(DicomStrays, TwoVolumesAreForTheUserToChoose) {
     const TempFolder folder;
     writeVolume(folder / "a", 3);
@@ -202,6 +339,9 @@ TEST(DicomDirectory, MayNotLeaveItsFolderNorNameWhatIsMissing) {
         expectRefusal(writeFile(directory, directoryOf({name})), "outside its own folder");
     }
     expectRefusal(writeFile(directory, directoryOf({"GONE"})), "not there (GONE)");
+    writeFile(folder / "sub/POINTER", kLfsPointer);
+    writeFile(directory, directoryOf({"POINTER"}));
+    EXPECT_NE(refusalOf(directory).find("git lfs pull"), std::string::npos);
     expectRefusal(writeFile(directory, directoryOf({})), "no DICOM file found in this DICOMDIR");
 }
 

@@ -107,7 +107,10 @@ TEST(SiemensMosaic, MoreTilesThanItsHeaderCountsAreRefused) {
     expectRefusal(counted("6"), "of 6 slices by its header, but its tile 7 holds an image too");
     expectRefusal(counted("5"), "but its tile 6 holds an image too");
     EXPECT_NO_THROW(readVolume(counted("7")));
-    EXPECT_NO_THROW(readVolume(counted("8")));  // the last one is blank
+    const ReadVolume read = readVolume(counted("8"));  // the last one is blank
+    ASSERT_EQ(read.warnings.size(), 1U);
+    EXPECT_NE(read.warnings[0].text.find("counts 8 slices (NumberOfImagesInMosaic), 1 of them"),
+              std::string::npos);
 }
 
 TEST(SiemensMosaic, SeveralAreVolumes) {

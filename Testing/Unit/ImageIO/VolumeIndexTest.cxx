@@ -195,5 +195,13 @@ TEST(VolumeIndex, RefusesNonsenseCounts) {
     EXPECT_THROW(readVolume(writeFile(folder / "x.mha", huge), indexed(0)), FileError);
 }
 
+TEST(VolumeIndex, IsNotAskedForWhereVolumesAreSingleSlices) {
+    const TempFolder folder;
+    NiftiFile file;
+    file.dim = {4, 4, 3, 1, 6, 1, 1, 1};
+    file.data = samplesOf(threeVolumes());
+    expectRefusal(writeFile(folder / "x.nii", file.bytes()), "is a 2-D image or a single slice");
+}
+
 }  // namespace
 }  // namespace adaptiso::testing

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "adaptiso/Core/Geometry.h"
@@ -22,6 +24,12 @@ struct DicomSeries {
     std::int64_t volumes = 1;  ///< more than 1: 4-D; 0: can't be told apart
     Vec3 spacingMm;            ///< between columns, rows, slices; 0: unknown
     bool isLocalizer = false;
+    std::optional<std::int64_t> segment;  ///< of a segmentation: its number in the file
+    std::string segmentLabel;             ///< ASCII
+    /// What tells it from the others: DICOM's keyword and the value, of ImageType, SeriesNumber,
+    /// ConvolutionKernel, EchoTime, DiffusionBValue, AcquisitionNumber, FrameType; Patient, Study
+    /// and FrameOfReference are numbered from 1. Identifies no patient.
+    std::vector<std::pair<std::string, std::string>> details;
     std::string fault;  ///< why it can't be read (a file's name may be in it); empty: it can
     std::vector<Warning> warnings;  ///< what reading it would warn of
 

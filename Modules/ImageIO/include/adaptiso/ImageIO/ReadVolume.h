@@ -14,7 +14,8 @@ namespace adaptiso {
 struct ReadOptions {
     /// Which of a DICOM folder's image groups to read: its number (from 1) in the list that a
     /// refusal prints and listSeries() returns, or its SeriesInstanceUID. Unset: the folder must
-    /// hold one volume; localizers and other stray images are left aside with a warning.
+    /// hold one volume; localizers, segmentations beside a scan and other stray images are left
+    /// aside with a warning.
     std::optional<std::string> series{};
 
     /// Which volume of a 4-D image to read, counted from 0. Unset: the image must hold one.
@@ -66,7 +67,8 @@ struct ReadVolume {
 ///   MGH        Mdc and c_ras; RAS -> LPS
 ///   DICOM      slices, frames (each with its own position) and mosaic tiles sorted along the
 ///              normal; the step from slice to slice is kept as it is, so gantry tilt stays in the
-///              geometry as shear, with a warning
+///              geometry as shear, with a warning. Segmentations: one segment, on the even steps
+///              of its file's frames; slices without a frame are 0
 ///   Zarr       a folder, version 2 or 3, or N5: one array (1 mm, with a warning), an OME-Zarr of
 ///              0.4 or 0.5, or N5's group of s0, s1, ... with their pixelResolution and
 ///              downsamplingFactors: scale and translation of the level, then of the image, units
