@@ -180,8 +180,8 @@ Volume decodePlanes(const fs::path& input, const std::vector<DicomFile>& files,
         if (isSiemensMosaic(files[file].header)) {
             const std::int64_t blank = requireBlankTiles(
                 files[file], formats[file], frame, store.columns, store.rows, std::ssize(slices));
-            const auto type = files[file].header.dataset.text(tag::kImageType).value_or("");
-            if (blank > 0 && type.starts_with("ORIGINAL")) {
+            const auto imageType = files[file].header.dataset.text(tag::kImageType).value_or("");
+            if (blank > 0 && imageType.starts_with("ORIGINAL")) {
                 warnings.push_back(
                     {"fewer-images",
                      fmt::format("its header counts {} slices (NumberOfImagesInMosaic), {} of them "
