@@ -85,7 +85,8 @@ void declareInput(CLI::App& app, LabelsOptions& options) {
     app.add_option("--names", options.names,
                    "A table of names and colours: BIDS .tsv, FreeSurfer, ITK-SNAP, 3D Slicer, "
                    "MRIcron, FSL, GIFTI or JSON, told apart by content (default: what lies beside "
-                   "the image under its name, or is its BIDS dataset's)")
+                   "the image under its name, or is its BIDS dataset's, or is in the image: 3D "
+                   "Slicer's segments, the LabelTable of a NIfTI extension)")
         ->type_name("FILE")
         ->group(kInput);
 }
@@ -96,7 +97,8 @@ void declareRegions(CLI::App& app, LabelsOptions& options) {
         [&options](const std::string& text) {
             options.labels = parseLabelRanges("--labels", text);
         },
-        "Write these regions only, 1,2,10-20; their walls are those that the whole map gives them")
+        "Write these regions only, by number or name, 1,Hippocampus_L,10-20; their walls are those "
+        "that the whole map gives them")
         ->group(kRegions);
     app.add_option_function<std::vector<std::string>>(
            "--merge",
@@ -105,7 +107,9 @@ void declareRegions(CLI::App& app, LabelsOptions& options) {
                    options.merges.push_back(parseLabelMerge(text));
                }
            },
-           "Take several labels for one region, Thalamus=10,49, that goes by the first of them; "
+           "Take several labels, numbers or names, for one region, Thalamus=10,49, that goes by "
+           "the "
+           "first of them; "
            "may be given several times")
         ->type_name("NAME=LIST")
         ->allow_extra_args(false)
@@ -160,6 +164,14 @@ void declareOutput(CLI::App& app, LabelsOptions& options) {
         choiceName({"vtp", "vtk", "ply", "stl", "obj", "off", "gii", "tri", "surf"}),
         [&options](const std::string& text) { options.format = parseFormat(text); },
         "The format of the regions' files (default: vtp)")
+        ->group(kOutput);
+    addValue(
+        app, "--file-names", choiceName({"number", "name"}),
+        [&options](const std::string& text) {
+            options.namesFiles = parseChoice("--file-names", text, {"number", "name"}) == 1;
+        },
+        "The regions' files go by their labels, regions/17.vtp (default), or by their names, "
+        "regions/Hippocampus_L.vtp")
         ->group(kOutput);
     addChoice<CoordinateFrame>(app, "--coordinates", options.frame,
                                {{"ras", CoordinateFrame::Ras},

@@ -6,6 +6,7 @@
 
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
@@ -26,17 +27,30 @@ bool takeRange(std::string_view text, LabelRange& range) {
     return takeLabel(text, range.last) && text.empty() && range.first <= range.last;
 }
 
+/// What is not meant for numbers, and fits on a line.
+bool takeName(std::string_view text, LabelRange& range) {
+    const auto isControl = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+    if (text.find_first_not_of("0123456789+-. ") == std::string_view::npos ||
+        std::ranges::any_of(text, isControl)) {
+        return false;
+    }
+    range = {0, 0, std::string(trimmed(text))};
+    return true;
+}
+
 bool contain(const LabelRanges& ranges, Label label) {
     return std::ranges::any_of(ranges, [&](const auto& range) { return range.contains(label); });
 }
 
 bool overlap(const LabelRange& a, const LabelRange& b) {
+    if (!a.name.empty() || !b.name.empty()) return false;  // not known yet
     return a.first <= b.last && b.first <= a.last;
 }
 
 }  // namespace
 
 std::string toText(const LabelRange& range) {
+    if (!range.name.empty()) return range.name;
     const std::string first = std::to_string(range.first);
     return range.first == range.last ? first : first + "-" + std::to_string(range.last);
 }
@@ -46,12 +60,13 @@ LabelRanges parseLabelRanges(const std::string& option, const std::string& text)
     for (std::size_t at = 0; at <= text.size();) {
         const std::size_t end = std::min(text.find(',', at), text.size());
         LabelRange range;
-        if (!takeRange(std::string_view(text).substr(at, end - at), range)) {
+        const std::string_view item = std::string_view(text).substr(at, end - at);
+        if (!takeRange(item, range) && !takeName(item, range)) {
             throw UsageError(option + " " + shown(text) +
-                             ": must be labels and ranges of them with commas between, like "
-                             "1,2,10-20");
+                             ": must be labels, names and ranges of labels with commas between, "
+                             "like 1,Hippocampus_L,10-20");
         }
-        if (range.contains(0)) {
+        if (range.name.empty() && range.contains(0)) {
             throw UsageError(option + " " + shown(text) +
                              ": holds 0, which is what lies outside of all regions");
         }

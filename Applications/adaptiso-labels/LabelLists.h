@@ -10,19 +10,20 @@
 
 namespace adaptiso {
 
-/// Labels from `first` to `last`.
+/// Labels from `first` to `last`, or those of a name that is still to be looked up.
 struct LabelRange {
     Label first = 0, last = 0;
+    std::string name{};  ///< not looked up yet (resolveNames()); empty: numbers
 
     bool contains(Label label) const { return first <= label && label <= last; }
     friend bool operator==(const LabelRange&, const LabelRange&) = default;
 };
 using LabelRanges = std::vector<LabelRange>;
 
-/// "1", "10-20"
+/// "1", "10-20", "Hippocampus_L"
 std::string toText(const LabelRange& range);
 
-/// "1,2,10-20" \throws UsageError  naming `option`: no such list, or one with 0 in it
+/// "1,Hippocampus_L,10-20" \throws UsageError  naming `option`: no such list, or one with 0 in it
 LabelRanges parseLabelRanges(const std::string& option, const std::string& text);
 
 /// Labels that become one region, of the number that is the first of `labels`.

@@ -1,7 +1,10 @@
 #include "Pipeline.h"
 
 #include <algorithm>
+#include <fstream>
+#include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -50,8 +53,28 @@ fs::path outputFolder(const LabelsOptions& options) {
     return options.output.empty() ? fs::path(inputStem(options.input) + "-labels") : options.output;
 }
 
-OwnNames replaceable(const LabelsOptions& options) {
-    return options.mayReplace ? OwnNames(isOwnFile) : OwnNames();
+/// The regions' files of a run before, which may have their names.
+std::set<std::string, std::less<>> earlierRegionFiles(const fs::path& folder) {
+    std::set<std::string, std::less<>> files;
+    std::ifstream stream(folder / "report.json");
+    const Json report = Json::parse(stream, nullptr, false);
+    if (!report.is_object() || !report.contains("regions") || !report["regions"].is_array()) {
+        return files;
+    }
+    for (const Json& region : report["regions"]) {
+        if (!region.is_object() || !region.contains("file") || !region["file"].is_string())
+            continue;
+        const std::string file = region["file"];
+        if (file.starts_with("regions/")) files.insert(file);
+    }
+    return files;
+}
+
+OwnNames replaceable(const LabelsOptions& options, const fs::path& folder) {
+    if (!options.mayReplace) return {};
+    return OwnNames([earlier = earlierRegionFiles(folder)](std::string_view name) {
+        return isOwnFile(name) || earlier.contains(name);
+    });
 }
 
 CoordinateFrame frameOf(const LabelsOptions& options, const MeshFormat& format) {
@@ -89,7 +112,7 @@ void checkOutputs(const LabelsRun& run) {
     }
     if (hasJsonFile(options)) checkOutput(options.common.json);
     checkReportOutputs(options.report, inputs);
-    AtomicFolder::check(run.folder, replaceable(options));
+    AtomicFolder::check(run.folder, replaceable(options, run.folder));
 }
 
 /// Labels of a merge that the map has not.
@@ -116,10 +139,11 @@ void warnOfMissing(const LabelMerge& merge, const LabelCensus& census, const std
 
 /// Reads the map and learns what it holds.
 /// \throws InvalidInput  it is no label map, or holds nothing but 0
-Volume readMap(LabelsRun& run, LabelCensus& census) {
-    const LabelsOptions& options = run.options;
+/// \param options  the run's; names in them become labels
+Volume readMap(LabelsOptions& options, LabelsRun& run, LabelCensus& census) {
     const std::string name = baseName(options.input);
     ReadVolume read = readImage(options.input, options.read);
+    resolveNames(options);
     const VolumeView& view = read.volume.view();
     run.map = {read.format, view.geometry(), view.pixelType(), valueRange(view), read.warnings, 0};
     addWarnings(run.warnings, read.warnings, name);
@@ -229,8 +253,9 @@ ReportResult show(LabelsRun& run, const RegionSurfaces& surfaces, const VolumeVi
 
 }  // namespace
 
-int runLabels(const LabelsOptions& options) {
-    if (options.isBatch()) return runLabelsBatch(options);
+int runLabels(const LabelsOptions& given) {
+    if (given.isBatch()) return runLabelsBatch(given);
+    LabelsOptions options = given;
     const ThreadLimit threads(options.common);
     ProgressLine progress(options.common.isQuiet);
     LabelsRun run{options, outputFolder(options)};
@@ -241,7 +266,7 @@ int runLabels(const LabelsOptions& options) {
 
     progress.show(kRead);
     LabelCensus census;
-    const Volume volume = run.timer.time(kRead, [&] { return readMap(run, census); });
+    const Volume volume = run.timer.time(kRead, [&] { return readMap(options, run, census); });
     const VolumeView& map = volume.view();
     run.timer.time(kRead, [&] { nameRegions(chooseLabels(census, options), census, run); });
     requireTetrahedraLabels(run);
@@ -274,7 +299,7 @@ int runLabels(const LabelsOptions& options) {
     if (run.writesFolder()) {
         progress.show(kWrite);
         run.timer.time(kWrite, [&] {
-            folder.emplace(run.folder, replaceable(options));
+            folder.emplace(run.folder, replaceable(options, run.folder));
             writeFiles(complex, surfaces, run, *folder);
             folder->writeText("report.json", folderReport(run));
             run.files = folder->files();

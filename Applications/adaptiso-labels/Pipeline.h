@@ -37,6 +37,7 @@ struct LabelsOptions {
     std::map<Label, double> conductivities;  ///< of regions, S/m; empty: none are written
     std::filesystem::path output;  ///< a folder; empty: "<input>-labels" in the current one
     bool mayReplace = false;
+    bool namesFiles = false;               ///< of regions by their names, else by their labels
     std::string format = ".vtp";           ///< of the regions' files, an extension
     std::optional<CoordinateFrame> frame;  ///< none: the format's own
     std::filesystem::path volume;          ///< shown behind the regions; empty: the input

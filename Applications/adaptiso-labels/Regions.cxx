@@ -1,10 +1,13 @@
 #include "Regions.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "Common/Json.h"
 #include "Common/Numbers.h"
+#include "Common/UsageWords.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
@@ -20,13 +23,59 @@ LabelTable readNames(LabelsRun& run) {
         run.names.files = {baseName(options.names)};
         addWarnings(run.warnings, table.warnings, baseName(options.names));
     } else {
-        FoundLabelTables found = findLabelTables(options.input);
+        FoundLabelTables found =
+            findLabelTables(options.input, options.read.volumeIndex.value_or(0));
         table = std::move(found.table);
         for (const fs::path& file : found.files) run.names.files.push_back(baseName(file));
         addWarnings(run.warnings, table.warnings, baseName(options.input));
     }
     run.names.format = table.format;
     return table;
+}
+
+/// "did you mean ...", or what else to do where nothing is near.
+std::string namesNear(const std::string& name, const LabelTable& table) {
+    constexpr std::size_t kMost = 5;
+    std::vector<std::string> all, holding;
+    for (const LabelEntry& entry : table.entries) {
+        if (entry.value == 0 || entry.name.empty()) continue;
+        all.push_back(entry.name);
+        if (lowerCase(entry.name).find(lowerCase(name)) != std::string::npos) {
+            holding.push_back(entry.name);
+        }
+    }
+    if (holding.size() > kMost) holding.resize(kMost);
+    if (!holding.empty()) return "; did you mean " + alternatives(holding) + "?";
+    const std::string near = suggestion(name, all);
+    return near.empty() ? "; regions.tsv of a run without --labels lists the names" : near;
+}
+
+/// Puts the labels that a table names so in place of names.
+void resolve(const std::string& option, const LabelTable& table, const std::string& source,
+             LabelRanges& ranges) {
+    LabelRanges resolved;
+    for (const LabelRange& range : ranges) {
+        if (range.name.empty()) {
+            resolved.push_back(range);
+            continue;
+        }
+        const std::size_t before = resolved.size();
+        const auto take = [&](const auto& isMeant) {
+            for (const LabelEntry& entry : table.entries) {
+                if (entry.value == 0 || !isMeant(entry.name)) continue;
+                resolved.push_back({entry.value, entry.value});
+            }
+        };
+        take([&](const std::string& name) { return name == range.name; });
+        if (resolved.size() > before) continue;
+        take([&](const std::string& name) { return lowerCase(name) == lowerCase(range.name); });
+        if (resolved.size() > before) continue;
+        throw InvalidInput(option + " " + shown(range.name) + ": " +
+                           (table.format.empty()
+                                ? source + " has no table of names; give one (--names), or numbers"
+                                : source + " names no label so" + namesNear(range.name, table)));
+    }
+    ranges = std::move(resolved);
 }
 
 std::string listed(const std::vector<Label>& labels) {
@@ -56,7 +105,70 @@ void warnOfNameless(LabelsRun& run) {
                             run.names.files.empty() ? "" : run.names.files.front()});
 }
 
+/// A name that every file system takes: others than letters, digits, '.', '-' and '_' of ASCII are
+/// '_'.
+std::string fileName(const std::string& name) {
+    constexpr std::size_t kLongest = 100;
+    std::string safe;
+    for (const char c : name.substr(0, kLongest)) {
+        const bool isPlain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
+                             (c >= 'A' && c <= 'Z') || c == '-' || c == '_' || c == '.';
+        safe += isPlain ? c : '_';
+    }
+    while (!safe.empty() && (safe.front() == '.' || safe.front() == '-')) safe.erase(0, 1);
+    while (safe.ends_with('.')) safe.pop_back();
+    constexpr std::array<std::string_view, 4> kDevices{"con", "prn", "aux", "nul"};
+    const std::string stem = lowerCase(safe.substr(0, safe.find('.')));
+    const bool isDevice =
+        std::ranges::count(kDevices, stem) > 0 ||
+        (stem.size() == 4 && (stem.starts_with("com") || stem.starts_with("lpt")));
+    return isDevice ? "_" + safe : safe;
+}
+
+/// Files by the names of their regions; the label follows names that are alike but for case, and
+/// stands alone where there is no name.
+void nameFiles(LabelsRun& run) {
+    std::map<std::string, int> uses;
+    for (const Region& region : run.regions) ++uses[lowerCase(fileName(region.name))];
+    for (Region& region : run.regions) {
+        std::string name = region.hasOwnName ? fileName(region.name) : "";
+        const std::string label = std::to_string(region.label);
+        if (name.empty()) {
+            name = label;
+        } else if (uses[lowerCase(name)] > 1) {
+            name += "-" + label;
+        }
+        region.file = "regions/" + name + run.options.format;
+    }
+    std::map<std::string, Label> taken;
+    for (const Region& region : run.regions) {
+        const auto [other, isNew] = taken.emplace(lowerCase(region.file), region.label);
+        if (isNew) continue;
+        throw InvalidInput("--file-names name: labels " + std::to_string(other->second) + " and " +
+                           std::to_string(region.label) + " would both be " + region.file +
+                           "; rename one in the table, or leave the option out");
+    }
+}
+
 }  // namespace
+
+void resolveNames(LabelsOptions& options) {
+    const auto isNamed = [](const LabelRanges& ranges) {
+        return std::ranges::any_of(ranges, [](const auto& range) { return !range.name.empty(); });
+    };
+    const bool isNeeded = isNamed(options.labels) ||
+                          std::ranges::any_of(options.merges, isNamed, &LabelMerge::labels);
+    if (!isNeeded) return;
+    LabelsRun unnamed{options, {}};  // the run itself warns of the table
+    const LabelTable table = readNames(unnamed);
+    const std::string source =
+        unnamed.names.files.empty() ? baseName(options.input) : unnamed.names.files.front();
+    resolve("--labels", table, source, options.labels);
+    for (LabelMerge& merge : options.merges) {
+        resolve("--merge " + shown(merge.name), table, source, merge.labels);
+    }
+    requireDisjoint(options.merges);
+}
 
 const Region* LabelsRun::find(Label label) const {
     const auto at = std::ranges::lower_bound(regions, label, {}, &Region::label);
@@ -119,6 +231,7 @@ void nameRegions(const std::vector<Label>& labels, const LabelCensus& census, La
         if (!region.hasOwnName) region.name = "region " + std::to_string(label);
         region.file = "regions/" + std::to_string(label) + run.options.format;
     }
+    if (run.options.namesFiles) nameFiles(run);
     warnOfNameless(run);
 }
 

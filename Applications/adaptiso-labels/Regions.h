@@ -10,6 +10,11 @@
 
 namespace adaptiso {
 
+/// Looks up the names in --labels and --merge: those of --names, of tables beside the input or in
+/// it. \throws InvalidInput  there is no such name; the nearest are named \throws UsageError labels
+/// of two merges overlap
+void resolveNames(LabelsOptions& options);
+
 /// The labels to take: all of the map's, or those of --labels.
 /// \throws InvalidInput  the map has none of a range that is asked for
 std::vector<Label> chooseLabels(const LabelCensus& census, const LabelsOptions& options);

@@ -254,7 +254,8 @@ class ChoiceTest(LabelsTest):
 
     def test_refuses_choices_that_make_no_sense(self):
         for pattern, *arguments in (
-                (r"--labels 1,x: must be labels", "--labels", "1,x"),
+                (r"--labels 1,,2: must be labels", "--labels", "1,,2"),
+                (r"--labels 1.5: must be labels", "--labels", "1.5"),
                 (r"--labels 9-3: must be labels", "--labels", "9-3"),
                 (r"--labels 0: holds 0", "--labels", "0"),
                 (r"--merge both: must be a name and labels", "--merge", "both"),
@@ -269,6 +270,8 @@ class ChoiceTest(LabelsTest):
         self.refused(USAGE, "SEG is missing", "-o", "out")
         self.refused(BAD_INPUT, "--labels 5: boxes.nii has no such label", "boxes.nii", "-o", "out",
                      "--labels", "1,5")
+        self.refused(BAD_INPUT, "--labels x: boxes.tsv names no label so", "boxes.nii", "-o", "out",
+                     "--labels", "1,x")
 
     def test_a_merge_of_nothing_is_told(self):
         done = self.labels("boxes.nii", "-o", "out", "-q", "--merge", "x=50,51")
@@ -394,6 +397,73 @@ class NamesTest(LabelsTest):
         self.path("boxes.nii.lut").write_bytes(colors)
         self.assertEqual(self.names(), [("left", "#ff0000"), ("right", "#00ff00"),
                                         ("inner", "#0000ff")])
+
+    def test_labels_and_merges_take_names(self):
+        self.refused(BAD_INPUT, "--labels x: boxes.nii has no table of names; give one", "boxes.nii",
+                     "-o", "out", "--labels", "1,x")
+        self.path("boxes.txt").write_text("1 Hippocampus_L\n2 Hippocampus_R\n7 Caudate\n")
+        self.labels("boxes.nii", "-o", "out", "-q", "--labels", "Caudate,1")
+        self.assertEqual(set(self.table("out")), {1, 7})
+        self.labels("boxes.nii", "-o", "lower", "-q", "--labels", "hippocampus_r")
+        self.assertEqual(set(self.table("lower")), {2})
+        self.labels("boxes.nii", "-o", "both", "-q", "--merge", "Hippocampus=Hippocampus_L,2")
+        self.assertEqual({label: row["name"] for label, row in self.table("both").items()},
+                         {1: "Hippocampus", 7: "Caudate"})
+        for pattern, *arguments in (
+                (r"--labels Hippocampus: boxes.txt names no label so; did you mean Hippocampus_L or "
+                 r"Hippocampus_R\?", "--labels", "Hippocampus"),
+                (r"--labels Caudatte: .*did you mean Caudate\?", "--labels", "Caudatte"),
+                (r"--labels Spleen: boxes.txt names no label so; regions.tsv", "--labels", "Spleen"),
+                (r"--merge a Spleen: ", "--merge", "a=1,Spleen")):
+            with self.subTest(pattern):
+                self.refused(BAD_INPUT, pattern, "boxes.nii", "-o", "no", *arguments)
+        self.refused(USAGE, "a and b both take label 7", "boxes.nii", "-o", "no", "--merge",
+                     "a=Caudate", "--merge", "b=7")
+
+    def test_files_go_by_names_where_wanted(self):
+        def files(folder):
+            return sorted(path.name for path in (self.path(folder) / "regions").iterdir())
+        self.path("boxes.txt").write_text("1 Left/Lobe\n2 left_lobe\n7 Caudate\n")
+        self.labels("boxes.nii", "-o", "out", "-q", "--file-names", "name")
+        self.assertEqual(files("out"), ["Caudate.vtp", "Left_Lobe-1.vtp", "left_lobe-2.vtp"])
+        self.assertEqual({row["label"]: row["file"] for row in self.folder_report("out")["regions"]},
+                         {1: "regions/Left_Lobe-1.vtp", 2: "regions/left_lobe-2.vtp",
+                          7: "regions/Caudate.vtp"})
+        self.labels("boxes.nii", "-o", "numbers", "-q")
+        self.assertEqual(files("numbers"), ["1.vtp", "2.vtp", "7.vtp"])
+        for name, other in (("Caudate.vtp", "7.vtp"), ("Left_Lobe-1.vtp", "1.vtp")):
+            self.assertEqual((self.path("out") / "regions" / name).read_bytes(),
+                             (self.path("numbers") / "regions" / other).read_bytes())
+        # a folder with such names is this program's own; one with another file in it is not
+        self.labels("boxes.nii", "-o", "out", "-q", "--force")
+        self.assertEqual(files("out"), ["1.vtp", "2.vtp", "7.vtp"])
+        (self.path("out") / "regions" / "mine.vtp").write_text("x")
+        self.assertEqual(self.run_labels("boxes.nii", "-o", "out", "-q", "--force").returncode,
+                         BAD_INPUT)
+
+    def test_names_inside_a_file_are_read(self):
+        boxes = three_boxes("B")
+        header = ("NRRD0004\ntype: uchar\ndimension: {}\nspace: left-posterior-superior\n"
+                  "sizes: {}16 14 12\nspace directions: {}(1,0,0) (0,1,0) (0,0,1)\nkinds: {}domain "
+                  "domain domain\nencoding: raw\nspace origin: (0,0,0)\n")
+        segments = ("Segment0_Name:=liver\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
+                    "Segment0_Color:=1 0 0\nSegment1_Name:=tumour\nSegment1_LabelValue:=7\n"
+                    "Segment1_Layer:={}\nSegment1_Color:=0 1 0\n\n")
+        data = bytes(boxes.samples)
+        self.path("one.seg.nrrd").write_bytes(
+            (header.format(3, "", "", "") + segments.format(0)).encode() + data)
+        done = self.labels("one.seg.nrrd", "-o", "out", "--labels", "liver,tumour")
+        self.assertIn("names and colours of one.seg.nrrd (3D Slicer segmentation)", done.stdout)
+        self.assertEqual({label: (row["name"], row["color"])
+                          for label, row in self.table("out").items()},
+                         {1: ("liver", "#ff0000"), 7: ("tumour", "#00ff00")})
+        layers = bytes(value for sample in data for value in (int(sample == 1), 7 * (sample == 7)))
+        self.path("two.seg.nrrd").write_bytes(
+            (header.format(4, "2 ", "none ", "list ") + segments.format(1)).encode() + layers)
+        self.refused(BAD_INPUT, r"2 layers of segments that overlap \(0: liver; 1: tumour\)",
+                     "two.seg.nrrd", "-o", "b")
+        self.labels("two.seg.nrrd", "-o", "b", "-q", "--volume-index", "1")
+        self.assertEqual(self.table("b")[7]["name"], "tumour")
 
     def test_regions_tsv_names_the_same_regions_again(self):
         self.path("boxes.txt").write_text("1 c\u00f4t\u00e9\n2 right\n7 inner\n")

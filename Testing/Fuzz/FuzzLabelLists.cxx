@@ -20,7 +20,7 @@ void requireSound(const LabelRanges& ranges) {
     if (ranges.empty()) std::abort();
     std::string text;
     for (const LabelRange& range : ranges) {
-        if (range.first > range.last || range.contains(0)) std::abort();
+        if (range.name.empty() && (range.first > range.last || range.contains(0))) std::abort();
         text += (text.empty() ? "" : ",") + toText(range);
     }
     if (parseLabelRanges("--labels", text) != ranges) std::abort();
@@ -34,13 +34,15 @@ void tryMerges(std::string_view text) {
         merges.push_back(parseLabelMerge(std::string(text.substr(at, end - at))));
         const LabelMerge& merge = merges.back();
         requireSound(merge.labels);
-        if (merge.name.empty() || !merge.contains(merge.number())) std::abort();
+        const bool isNamed = !merge.labels.front().name.empty();
+        if (merge.name.empty() || (!isNamed && !merge.contains(merge.number()))) std::abort();
         at = end + 1;
     }
     requireDisjoint(merges);
     for (const LabelMerge& merge : merges) {
         for (const LabelMerge& other : merges) {
-            if (&other != &merge && other.contains(merge.number())) std::abort();
+            const bool isNamed = !merge.labels.front().name.empty();
+            if (&other != &merge && !isNamed && other.contains(merge.number())) std::abort();
         }
     }
 }

@@ -42,5 +42,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } catch (const adaptiso::FileError& refusal) {
         adaptiso::fuzz::requireOneLine(refusal);
     }
+    try {
+        const adaptiso::LabelTable inside = adaptiso::decodeEmbeddedTable(bytes, size % 2);
+        if (!inside.entries.empty()) adaptiso::requireSound(inside);
+    } catch (const adaptiso::FileError& refusal) {
+        adaptiso::fuzz::requireOneLine(refusal);
+    }
     return 0;
 }

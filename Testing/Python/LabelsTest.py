@@ -206,6 +206,14 @@ class Bytes(InFolder):
         self.assertEqual(named.regions[2].name, "right")
         self.assertEqual(adaptiso.labels(self.input, names={2: "two"}).regions[2].name, "two")
 
+    def test_labels_are_chosen_by_names(self):
+        chosen = adaptiso.labels(self.input, labels=["LEFT", 7])
+        self.assertEqual(set(chosen.regions), {1, 7})
+        with self.assertRaisesRegex(adaptiso.Error, "labels righ: .*did you mean right"):
+            adaptiso.labels(self.input, labels=["righ"])
+        with self.assertRaisesRegex(adaptiso.Error, "names= takes a table of names"):
+            adaptiso.labels(boxes(), labels=["left"])
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

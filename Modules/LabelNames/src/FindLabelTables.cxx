@@ -130,16 +130,20 @@ bool hasAllColors(const LabelTable& table) {
 
 }  // namespace
 
-FoundLabelTables findLabelTables(const fs::path& image) {
+FoundLabelTables findLabelTables(const fs::path& image, std::int64_t volume) {
     FoundLabelTables found;
     std::vector<Warning> warnings;
     std::vector<fs::path> candidates = ownNames(image);
     for (fs::path& path : inheritedTables(image)) candidates.push_back(std::move(path));
+    candidates.push_back(image);
     for (const fs::path& path : candidates) {
         std::error_code error;
-        if (!fs::is_regular_file(path, error) || fs::equivalent(path, image, error)) continue;
+        const bool isInside = path == image;
+        if (!fs::is_regular_file(path, error) || (!isInside && fs::equivalent(path, image, error)))
+            continue;
         try {
-            LabelTable table = readLabelTable(path);
+            LabelTable table = isInside ? readEmbeddedTable(image, volume) : readLabelTable(path);
+            if (table.entries.empty()) continue;
             const bool isUseful = hasNames(table)
                                       ? !hasNames(found.table)
                                       : found.table.entries.empty() || !hasAllColors(found.table);

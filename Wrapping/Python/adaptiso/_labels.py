@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 import logging
 from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union
@@ -218,9 +219,22 @@ class _Names:
             color = (red, green, blue)
         return name or f"region {label}", color
 
+    def labels_of(self, name: str) -> List[int]:
+        """\\raises Error"""
+        known = {label: entry[0] for label, entry in self.table.items() if label != 0}
+        found = ([label for label, other in known.items() if other == name]
+                 or [label for label, other in known.items() if other.lower() == name.lower()])
+        if found:
+            return found
+        near = [other for other in known.values() if name.lower() in other.lower()][:5]
+        near = near or difflib.get_close_matches(name, known.values())
+        raise Error(f"labels {shown(name)}: no label has this name; "
+                    + (f"did you mean {', '.join(near)}?" if near
+                       else "names= takes a table of names" if not known else "see regions"))
+
 
 def labels(image: Any, *, max_error: Optional[float] = None, triangles: Optional[int] = None,
-           reduction: Optional[float] = None, labels: Optional[Iterable[int]] = None,
+           reduction: Optional[float] = None, labels: Optional[Iterable[Union[int, str]]] = None,
            names: Union[Mapping[int, str], Any] = None, affine: Any = None, threads: int = 0,
            progress: Optional[Progress] = None) -> LabelSurfaces:
     """Make the surfaces of all regions of a segmentation at once: neighbours share one wall.
@@ -242,12 +256,13 @@ def labels(image: Any, *, max_error: Optional[float] = None, triangles: Optional
         As near to the full resolution as so many triangles in all walls can be.
     reduction : float, optional
         Share of the full resolution's triangles to drop, 0 to 1.
-    labels : iterable of int, optional
-        The regions that are wanted; their walls are those that the whole map gives them. Default:
+    labels : iterable of int or str, optional
+        The regions that are wanted, by number or name; their walls are those that the whole map gives them. Default:
         all.
     names : path or mapping of int to str, optional
         Names by label, or a table of names and colours (BIDS, FreeSurfer, ITK-SNAP, 3D Slicer,
-        MRIcron, FSL, GIFTI, JSON). Default: of a path, what lies beside the file.
+        MRIcron, FSL, GIFTI, JSON). Default: of a path, what lies beside the file, or in it (3D
+        Slicer's segments, the LabelTable of a NIfTI extension).
     affine : array_like of shape (4, 4), optional
         Takes voxel indices to scanner RAS mm. Default: the image's own; of an array the identity.
     threads, progress
@@ -283,11 +298,11 @@ def labels(image: Any, *, max_error: Optional[float] = None, triangles: Optional
         "triangles": None if triangles is None else count("triangles", triangles),
         "reduction": optional_number("reduction", reduction, "a number from 0 to 1",
                                      lambda value: 0 <= value <= 1),
-        "labels": _chosen(labels),
         "threads": checked_threads(threads),
         "progress": checked_progress(progress),
     }
     table = _names(names, image)
+    options["labels"] = _chosen(labels, table)
     samples = samples_of(image, affine, True)
     subject = samples.file or "image"
     with read_only(samples.user):
@@ -297,11 +312,13 @@ def labels(image: Any, *, max_error: Optional[float] = None, triangles: Optional
     return LabelSurfaces(data, table)
 
 
-def _chosen(labels: Any) -> List[int]:
+def _chosen(labels: Any, names: _Names) -> List[int]:
     if labels is None:
         return []
-    parts = listed("labels", labels, "a sequence of whole numbers")
-    chosen = sorted({count("labels", label, -_MOST, _MOST) for label in parts})
+    parts = listed("labels", labels, "a sequence of whole numbers and names")
+    chosen = sorted({number for label in parts
+                     for number in (names.labels_of(label) if isinstance(label, str)
+                                    else [count("labels", label, -_MOST, _MOST)])})
     if not chosen or 0 in chosen:
         raise Error(f"labels {shown(labels)}: must be one or more, without 0, the outside")
     return chosen

@@ -134,11 +134,11 @@ void declareLabels(py::module_& module) {
         py::arg("path"));
     module.def(
         "find_label_table",
-        [](const std::string& image) {
-            const FoundLabelTables found = findLabelTables(image);
+        [](const std::string& image, std::int64_t volume) {
+            const FoundLabelTables found = findLabelTables(image, volume);
             return py::make_tuple(entriesOf(found.table), found.table.warnings);
         },
-        py::arg("image"));
+        py::arg("image"), py::arg("volume") = 0);
     module.def("label_color", &labelColor, py::arg("label"));
 }
 

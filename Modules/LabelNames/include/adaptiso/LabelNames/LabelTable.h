@@ -67,6 +67,14 @@ LabelTable decodeLabelTable(std::string_view bytes, std::string_view name);
 /// \throws FileError as decodeLabelTable(), and when there is no such file or it is above 64 MiB
 LabelTable readLabelTable(const std::filesystem::path& file);
 
+/// The table inside a label image, for the volume of that number: the segments in a NRRD header of
+/// 3D Slicer (.seg.nrrd: those of one layer), the LabelTable of Connectome or AFNI's
+/// VALUE_LABEL_DTABLE in a NIfTI extension. Headers are read, up to 16 MiB, no samples. \return no
+/// entries if there is none \throws FileError  the table has a fault; without a file's name
+LabelTable readEmbeddedTable(const std::filesystem::path& image, std::int64_t volume = 0);
+/// The same from a file's first bytes, unpacked.
+LabelTable decodeEmbeddedTable(std::string_view bytes, std::int64_t volume = 0);
+
 /// What was found beside an image, put together.
 struct FoundLabelTables {
     LabelTable table;  ///< its warnings name the files
@@ -79,10 +87,14 @@ struct FoundLabelTables {
 /// BIDS dataset, the .tsv of its suffix, in its folder or one above it up to the dataset's, whose
 /// entities are all the image's ("dseg.tsv", "sub-01_dseg.tsv", "desc-aseg_dseg.tsv").
 ///
+/// Last comes the table inside the image (readEmbeddedTable()), which `files` then has as the
+/// image.
+///
 /// The first table that has names gives them; a table without names (a .lut) gives colours to those
 /// that have none. A file of such a name that is no table is passed over, one with a fault is told
 /// in a warning. Nothing is thrown for want of a table.
-FoundLabelTables findLabelTables(const std::filesystem::path& image);
+/// \param volume  of a 4-D image
+FoundLabelTables findLabelTables(const std::filesystem::path& image, std::int64_t volume = 0);
 
 /// A colour for a value that no table has one for: strong, and far from those of values near it.
 LabelColor labelColor(std::int32_t value);
