@@ -220,8 +220,11 @@ void requireOwnOptions(BidsOptions& options) {
     if (options.makesChecks && options.surfaces.empty()) {
         throw UsageError("--check: needs --surfaces");
     }
-    const Json asked = askedOf(options);
-    if (options.force || asked == askedOf(ofParticipants)) return;
+    const Json asked = askedOf(options), known = askedOf(ofParticipants);
+    const auto isKnown = [&](const Json& one) {
+        return std::find(known.begin(), known.end(), one) != known.end();
+    };
+    if (options.force || std::all_of(asked.begin(), asked.end(), isKnown)) return;
     std::error_code error;
     std::ifstream file(options.output / "dataset_description.json");
     const Json said = Json::parse(file, nullptr, false);
