@@ -1,9 +1,12 @@
-"""The examples of adaptiso-mesh's README.md, run as they stand."""
+"""The examples of adaptiso-mesh's README.md and the first session of the project's, run as they stand."""
 
 import os
 import re
 import subprocess
+import unittest
+from pathlib import Path
 
+from documents import check_printed, commands, run
 from support import BIN, SOURCE, ApplicationTest, ball, main, write_nifti
 
 README = SOURCE / "Applications" / "adaptiso-mesh" / "README.md"
@@ -22,6 +25,21 @@ class Readme(ApplicationTest):
                                         "head-iso120.vtp", "head.index", "head.nii.gz", "head.stl",
                                         "head.vtp", "lh.pial", "report.json", "smooth.ply"])
         self.assertRegex(done.stdout, r'"triangles": \d+')
+
+    @unittest.skipUnless(Path("/usr/share/mricron/templates/ch2.nii.gz").exists(), "mricron-data is not installed")
+    def test_first_session_prints_what_the_page_says(self):
+        scan = self.path("study/sub-01/anat/sub-01_T1w.nii")
+        scan.parent.mkdir(parents=True)
+        write_nifti(scan, ball(24, 8))
+        self.path("study/dataset_description.json").write_text('{"Name": "x", "BIDSVersion": "1.8.0"}')
+        # what installs and builds is Testing/BareMachine's; heads and atlases have tests of their own, as long as this
+        done = run(commands("README.md", marks=True, without=(
+            "run.sh", "cmake", "apt-get", "adaptiso-bem", "adaptiso-labels", "adaptiso-check --nested")), self.folder)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(check_printed(self, "README.md", done.stdout), 1)
+        written = {"ch2bet-iso100.vtp", "head.stl", "brain-80.ply", "brain-100.ply", "report.json", "full.vtp",
+                   "distance.vtp", "small.vtp", "out"}
+        self.assertLessEqual(written, set(self.names()))
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import json
 import subprocess
 import sys
 
-from documents import run, script
+from documents import commands, run
 from support import ApplicationTest, Image, ball, from_function, main, write_nifti
 
 
@@ -45,7 +45,7 @@ class Recipes(ApplicationTest):
         for subject in ("01", "02"):
             self.make(f"study/sub-{subject}/anat/sub-{subject}_T1w.nii", ball(24, 8))
         self.path("study/dataset_description.json").write_text('{"Name": "x", "BIDSVersion": "1.8.0"}')
-        done = run(script("Recipes.md"), self.folder)
+        done = run(commands("Recipes.md"), self.folder)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
         # 250 HU is at 8.3 - 210 / 400 = 7.775 voxels of 2 mm: 15,750 mm3. A mesh 0.3 mm off, and

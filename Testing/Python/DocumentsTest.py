@@ -131,6 +131,19 @@ class Pages(InFolder):
         for name in ("head.stl", "hippocampus.stl", "walls.vtp", "brain.pvtp", "coarse.ply", "brain.ply"):
             self.assertTrue((self.folder / name).exists(), name)
 
+    @needs("nibabel")
+    def test_the_first_example_prints_what_the_page_says(self):
+        """Of ch2 as it is; ADAPTISO_RENEW_PAGES=1 writes the line anew instead."""
+        page = ROOT / "Documentation" / "Python.md"
+        scan = BRAIN.with_name("ch2.nii.gz")
+        made = self.run_blocks(blocks_of("Documentation/Python.md", ('"T1.nii.gz"', f'"{scan}"'))[:1])
+        text = page.read_text()
+        said = re.search(r"print\(mesh\) +# (.*)", text).group(1)
+        if os.environ.get("ADAPTISO_RENEW_PAGES"):
+            page.write_text(text.replace(said, str(made["mesh"])))
+        else:
+            self.assertEqual(said, str(made["mesh"]))
+
     @needs("nibabel", "vtkmodules")
     def test_readme(self):
         made = self.run_blocks(blocks_of("README.md"))
