@@ -117,6 +117,12 @@ void addNrrdSeeds(Seeds& seeds) {
     seeds.add("nrrd", file(placed + "encoding: raw\nline skip: 1\nbyte skip: 2\n",
                            "\n12" + shortSamples()));
     seeds.add("nrrd", file(placed + "encoding: raw\nbyte skip: -1\ndata file: x.raw\n", ""));
+    seeds.add("nrrd", file(placed + "encoding: gzip\nbyte skip: -1\n",
+                           gzipped("a header" + shortSamples())));
+    // another image's file, and line ends of Windows, in the place of samples
+    seeds.add("nrrd", file(placed + "encoding: raw\nbyte skip: -1\n",
+                           file("encoding: raw\n", shortSamples())));
+    seeds.add("nrrd", file(placed + "encoding: raw\n", "\r\n" + shortSamples()));
     seeds.add("nrrd",
               "NRRD0005\ntype: float\ndimension: 4\nspace: LPS\nsizes: 2 3 2 2\nspace directions: "
               "none (1,0,0) (0,1,0) (0,0,1)\nkinds: list domain domain domain\nendian: little\n"

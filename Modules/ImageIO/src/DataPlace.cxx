@@ -106,8 +106,9 @@ std::optional<OtherImage> otherImage(std::string_view head, std::uint64_t at,
         if (at < kPreamble) return dicom;
         ByteSource source = reopen();
         source.skip(at - kElementHead);
-        if (beginsPixelData(headOf(std::move(source), kElementHead), byteCount))
-            dicom.samplesAt = at;
+        const std::string before = headOf(std::move(source), kElementHead);
+        const bool isThere = before.size() == kElementHead;
+        if (isThere && beginsPixelData(before, byteCount)) dicom.samplesAt = at;
         return dicom;
     }
     return std::nullopt;

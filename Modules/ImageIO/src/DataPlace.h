@@ -27,6 +27,7 @@ struct ImageExtent {
 /// than its header tells of. Less than that is something else, which harms nothing.
 bool isMoreImage(std::uint64_t extraBytes, const ImageExtent& extent);
 
+/// A header's word of where its samples lie.
 struct DataPlace {
     std::filesystem::path header;
     std::filesystem::path file;  ///< holds the samples; the header itself where they are attached

@@ -296,6 +296,8 @@ TEST(OtherImagesAsData, AreReadWhereTheirSamplesBeginOnly) {
             }
             const TempFolder folder;
             writeFile(folder / header.dataName, content);
+            const auto behindTheEnd = header.text(at + static_cast<int>(kVolumeBytes) + 5);
+            refusalOf(writeFile(folder / header.headerName, behindTheEnd));
             expectRead(writeFile(folder / header.headerName, header.text(at)));
             if (!header.countsFromEnd) continue;
             expectRead(writeFile(folder / header.headerName, header.text(-1)));
