@@ -448,9 +448,11 @@ TEST(Nifti2, CiftiIsCalledByItsName) {
     put<std::int64_t>(h, 168, 544);
     put<std::int32_t>(h, 504, 3006);  // ConnDenseScalar
     const TempFolder folder;
-    const auto file = writeFile(folder / "x.dscalar.nii", h + std::string(600, '\1'));
-    expectRefusal(file, "is CIFTI");
-    expectRefusal(file, "wb_command -cifti-separate x.dscalar.nii COLUMN -volume-all");
+    h += std::string(600, '\1');
+    for (const auto& [name, bytes] : {std::pair{"x.dscalar.nii", h}, {"x.nii.gz", gzipped(h)}}) {
+        expectRefusal(writeFile(folder / name, bytes), "is CIFTI");
+        expectRefusal(folder / name, "wb_command -cifti-separate");
+    }
 }
 
 TEST(NiftiIntent, NamesComponents) {
