@@ -118,7 +118,7 @@ FrameLine frameLine(const fs::path& input, const DicomGroup& group) {
     }
     std::ranges::sort(line.along);
     const auto isSame = [](double a, double b) { return b - a < kLargestMisplacementMm; };
-    line.along.erase(std::ranges::unique(line.along, isSame).begin(), line.along.end());
+    line.along.erase(std::unique(line.along.begin(), line.along.end(), isSame), line.along.end());
     return line;
 }
 
