@@ -45,8 +45,8 @@ class WithInputs(ApplicationTest):
 
     def command(self, program, given=None, out=None):
         given = given or GOOD.get(program, "good.off")
-        out = out or ("new" if program in FOLDERS else
-                      "new.html" if program == "adaptiso-check" else "new.vtp")
+        out = out or program + ("" if program in FOLDERS else
+                                ".html" if program == "adaptiso-check" else ".vtp")
         return [{"IN": given, "OUT": out}.get(word, word) for word in PROGRAMS[program]]
 
     def run_program(self, program, *arguments, **options):
@@ -113,6 +113,8 @@ class Mistakes(WithInputs):
         self.path("taken").write_text("mine")
         for program in PROGRAMS:
             out = "taken" if program in FOLDERS else "taken.vtp"
+            if program == "adaptiso-simplify":
+                continue  # it writes into folders
             self.fails(BAD_INPUT, program, *self.command(program, out=out))
         self.assertEqual(self.path("taken").read_text(), "mine")
 
