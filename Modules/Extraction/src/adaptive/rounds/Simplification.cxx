@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "adaptiso/Core/FreeMemory.h"
 #include "adaptive/Parameters.h"
+#include "adaptive/rounds/BorderMarks.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -64,6 +66,29 @@ bool landOn(std::int64_t wanted, const PatchTrial& trial, PatchWork& work) {
     work.fits = true;
     return true;
 }
+
+/// Within some times the target.
+bool isWithin(double times, std::int64_t triangles, std::int64_t target) {
+    return static_cast<double>(triangles) <= times * static_cast<double>(target);
+}
+
+/// A copy of what rounds change.
+class Checkpoint {
+public:
+    explicit Checkpoint(const SimplifiedSurface& surface)
+        : state_(surface), quadrics_(surface.quadrics) {}
+
+    std::int64_t triangleCount() const { return state_.triangleCount(); }
+    /// Once.
+    void restore(SimplifiedSurface& surface) {
+        surface.state() = std::move(state_);
+        surface.quadrics = std::move(quadrics_);
+    }
+
+private:
+    SurfaceState state_;
+    std::vector<StoredQuadric> quadrics_;
+};
 
 }  // namespace
 
@@ -162,13 +187,9 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
         work.mostCollapses = wanted;
         work.fits = dealsOut;
     }
-    SurfaceState kept;
-    std::vector<StoredQuadric> keptQuadrics;
+    std::optional<Checkpoint> kept;
     CollapseCosts costs;
-    if (maySurpass) {
-        kept = surface.state();
-        keptQuadrics = surface.quadrics;
-    }
+    if (maySurpass) kept.emplace(surface);
     {
         PatchRound round(surface, cut, frame_);
         const bool isLikely =
@@ -181,8 +202,7 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
         round.run(work, maySurpass ? &costs : nullptr);
     }
     if (maySurpass && surface.triangleCount() + 1 < target) {
-        surface.state() = std::move(kept);
-        surface.quadrics = std::move(keptQuadrics);
+        kept->restore(surface);
         work = PatchWork{limits_};
         isLanding = landOn(wanted, {std::move(costs)}, work);
         PatchRound(surface, cut, frame_).run(work);
@@ -216,30 +236,56 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
         surface = full_.firstRound(tolerances_, limits_, nullptr);
     }
     limits_.triedCost = limits_.maxCost;
-    const auto isWithin = [&](double times) {  // of the target
-        return static_cast<double>(surface.triangleCount()) <= times * static_cast<double>(target);
-    };
+    approach(surface, target, farthestMm);
+    // far from the full surface its planes hold vertices in vain: those of this one may not
+    for (bool helps = limits_.maxDistanceMm < farthestMm;
+         helps && !isWithin(kMet, surface.triangleCount(), target);) {
+        Checkpoint before(surface);
+        beginAnew(surface);
+        approach(surface, target, farthestMm);
+        helps = isWithin(kMet, surface.triangleCount(), target) ||
+                leavesLess(kWorthDoubling, surface.triangleCount(), before.triangleCount());
+        if (!helps) before.restore(surface);
+    }
+    return surface;
+}
+
+/// Rounds with a limit of cost that grows; then, where the count can't be met, with the allowed
+/// distance doubled again and again.
+void Simplification::approach(SimplifiedSurface& surface, std::int64_t target, double farthestMm) {
+    double cost = kFirstCost;
+    std::optional<Checkpoint> worthwhile;  // after the last doubling that was
+    double worthwhileMm = 0;
+    std::int64_t last = std::numeric_limits<std::int64_t>::max();
     for (int helpless = 0; helpless < kMostHelpless;) {
         const std::int64_t above = surface.triangleCount() - target;
         const bool mayGoFarther = limits_.maxDistanceMm < farthestMm;
-        const double worthwhile = mayGoFarther ? kWorthwhileAsFar : kWorthwhile;
+        const double gains = mayGoFarther ? kWorthwhileAsFar : kWorthwhile;
         const int mostIdle = mayGoFarther ? 1 : 2;  // both cuts have their turn
-        for (int idle = 0; !isWithin(1) && idle < mostIdle;) {
+        for (int idle = 0; surface.triangleCount() > target && idle < mostIdle;) {
             const std::int64_t before = surface.triangleCount();
             cost *= costStep(before, target, collapsed_);
             if (cost > kLastCost) cost = std::numeric_limits<double>::infinity();
             roundTowards(surface, target, cost);
             const bool helped =
-                leavesLess(worthwhile, surface.triangleCount() - target, before - target);
+                leavesLess(gains, surface.triangleCount() - target, before - target);
             if (cost > kLastCost) idle = helped ? 0 : idle + 1;
         }
-        if (isWithin(kMet) || !mayGoFarther) break;
-        const bool helped = leavesLess(kHelped, surface.triangleCount() - target, above);
+        const std::int64_t now = surface.triangleCount();
+        if (isWithin(kMet, now, target) || farthestMm == 0) return;
+        if (leavesLess(kWorthDoubling, now, last)) {
+            worthwhile.emplace(surface);
+            worthwhileMm = limits_.maxDistanceMm;
+        }
+        last = now;
+        if (!mayGoFarther) break;
+        const bool helped = leavesLess(kHelped, now - target, above);
         helpless = helped ? 0 : helpless + 1;
         goFarther(surface);
         cost = kCostAfterDistance;
     }
-    return surface;
+    worthwhile->restore(surface);
+    limits_.maxDistanceMm = worthwhileMm;
 }
 
 /// Goes on with twice the allowed distance: what was refused for it is to be tried again.
@@ -249,6 +295,26 @@ void Simplification::goFarther(SimplifiedSurface& surface) {
     for (Patch::State& state : surface.states) {
         if (state == Patch::State::Tried) state = Patch::State::Open;
     }
+}
+
+/// Forgets the planes of the full surface: vertices get those of the triangles that there are.
+void Simplification::beginAnew(SimplifiedSurface& surface) {
+    std::vector<Quadric> sums(surface.points.size());
+    for (const SurfaceState::Triangle& t : surface.triangles) {
+        const Vec3& a = surface.points[t[0]];
+        const Quadric q =
+            Quadric::ofTriangle(areaVector2(a, surface.points[t[1]], surface.points[t[2]]), a);
+        for (const SurfaceState::Number v : t) sums[v] += q;
+    }
+    std::vector<std::uint8_t> isOnBorder(surface.marks.size());
+    for (std::size_t v = 0; v < surface.points.size(); ++v) {
+        surface.quadrics[v] = StoredQuadric::of(sums[v], surface.points[v]);
+        if (surface.states[v] != Patch::State::Final) surface.states[v] = Patch::State::Open;
+        if (!isOnBorder.empty()) isOnBorder[v] = surface.marks[v] == Patch::kBorder ? 1 : 0;
+    }
+    if (!isOnBorder.empty()) markBorders(openHalfEdges(surface, isOnBorder), surface);
+    limits_.maxCost = kFirstCost * costUnit_;
+    limits_.triedCost = -1;
 }
 
 /// Moves vertices to where they lie closest to their samples: twice, so that what straddles the cut

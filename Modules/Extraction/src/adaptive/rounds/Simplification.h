@@ -39,7 +39,9 @@ public:
 
     /// The wanted number of triangles, or as few as the limits allow.
     /// \param farthestMm  where they don't, the allowed distance of samples is doubled on the way
-    ///                    until it is as large as that
+    ///                    until it is as large as that. Where that does not lead to the count, the
+    ///                    surface is the one after the last doubling that dropped a tenth of the
+    ///                    triangles (kWorthDoubling)
     SimplifiedSurface toCount(const WantedCount& wanted, double farthestMm);
 
 private:
@@ -48,7 +50,9 @@ private:
     void roundUpTo(double cost, SimplifiedSurface& surface, bool fits = false);
     SimplifiedSurface toCheckpoint();
     SimplifiedSurface towards(const WantedCount& wanted, double farthestMm);
+    void approach(SimplifiedSurface& surface, std::int64_t target, double farthestMm);
     void goFarther(SimplifiedSurface& surface);
+    void beginAnew(SimplifiedSurface& surface);
     void roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost);
 
     const FullSurface& full_;
