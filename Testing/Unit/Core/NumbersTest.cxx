@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "adaptiso/Core/Numbers.h"
 
@@ -70,6 +74,53 @@ TEST(FormatFixed, KeepsTheDigitsAskedFor) {
     EXPECT_EQ(formatFixed(-0.04, 1), "0.0");
     EXPECT_EQ(formatFixed(-0.0, 0), "0");
     EXPECT_EQ(formatFixed(-0.06, 1), "-0.1");
+}
+
+TEST(FormatLength, KeepsThreeSignificantDigits) {
+    EXPECT_EQ(formatLength(1.5, 4), "1.5000");
+    EXPECT_EQ(formatLength(0.0123, 4), "0.0123");
+    EXPECT_EQ(formatLength(0.00123456, 4), "0.00123");
+    EXPECT_EQ(formatLength(0.00015, 4), "0.00015");
+    EXPECT_EQ(formatLength(1.409e-5, 4), "1.41e-05");
+    EXPECT_EQ(formatLength(-0.002, 1), "-0.002");
+    EXPECT_EQ(formatLength(0.05, 3), "0.050");  // nothing is lost
+    EXPECT_EQ(formatLength(3e-14, 3), "0.000");
+    EXPECT_EQ(formatLength(0, 2), "0.00");
+}
+
+TEST(FormatBound, IsNeverLessThanTheBound) {
+    EXPECT_EQ(formatBound(0.15), "0.1500");
+    EXPECT_EQ(formatBound(0.07), "0.0700");
+    EXPECT_EQ(formatBound(0.15000763), "0.1501");
+    EXPECT_EQ(formatBound(0.00015), "0.00015");
+    EXPECT_EQ(formatBound(0.000150001), "0.000151");
+    EXPECT_EQ(formatBound(9.999e-5), "0.0001");
+    EXPECT_EQ(formatBound(16.00001), "16.0001");
+    EXPECT_EQ(formatBound(0), "0.0000");
+    double value = 1e-9;
+    for (int n = 0; n < 3000; ++n) {
+        value *= 1.0123456789;
+        for (const int digits : {2, 4}) {
+            const double shown = *parseFiniteNumber(formatBound(value, digits));
+            EXPECT_GE(shown, (1 - 1e-9) * value);
+            EXPECT_LE(shown, std::max(value + std::pow(10, -digits), 1.01 * value));
+        }
+    }
+}
+
+TEST(FormatMeasure, KeepsThreeSignificantDigits) {
+    EXPECT_EQ(formatMeasure(0.0028), "0.0028");
+    EXPECT_EQ(formatMeasure(1.409e-5), "1.41e-05");
+    EXPECT_EQ(formatMeasure(12.345), "12.3");
+    EXPECT_EQ(formatMeasure(1234567.5), "1,234,568");
+    EXPECT_EQ(formatMeasure(0), "0");
+}
+
+TEST(FormatApart, TellsDifferentNumbersApart) {
+    using Texts = std::vector<std::string>;
+    EXPECT_EQ(formatApart({1.0 / 3, 2}), (Texts{"0.333333", "2"}));
+    EXPECT_EQ(formatApart({1000000.25, 1000000.5}), (Texts{"1000000.2", "1000000.5"}));
+    EXPECT_EQ(formatApart({5, 5}), (Texts{"5", "5"}));
 }
 
 }  // namespace adaptiso

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace adaptiso {
 
@@ -27,5 +28,20 @@ std::string formatRounded(double value);
 /// `value` with `digits` decimals: "0.10", never "-0.00"; from 1e15 on, and for infinity and NaN,
 /// as formatShort().
 std::string formatFixed(double value, int digits);
+
+/// A length in mm with `digits` decimals, in three significant digits where that would leave fewer:
+/// "1.50", "0.00015", "1.41e-05"; below 1e-9 mm as formatFixed().
+std::string formatLength(double value, int digits);
+
+/// A bound, as formatLength() but never less than `value` (to 1e-9 of it): 0.15001 is "0.1501" in
+/// four decimals.
+std::string formatBound(double value, int digits = 4);
+
+/// An area or a volume: as formatRounded() from 100 on, below in three significant digits.
+std::string formatMeasure(double value);
+
+/// As formatShort(), with more digits where different numbers would read alike: 1000000.25 and
+/// 1000000.5 are "1000000.2" and "1000000.5".
+std::vector<std::string> formatApart(const std::vector<double>& values);
 
 }  // namespace adaptiso
