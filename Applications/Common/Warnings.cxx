@@ -40,7 +40,7 @@ Warning countMissed(const std::string& file, const std::string& what, std::int64
     return {"count-missed",
             "has " + formatCount(written) + " " + what + ", not " + formatCount(wanted) +
                 " as asked for: these are the fewest reached with " + kept + ", and lie up to " +
-                formatShort(errorBoundMm) + " mm off; more triangles lie closer",
+                formatBound(errorBoundMm) + " mm off; more triangles lie closer",
             file};
 }
 

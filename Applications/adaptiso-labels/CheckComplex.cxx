@@ -9,6 +9,7 @@
 #include "adaptiso/MeshQuality/LabelCentres.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/MeshQuality/Winding.h"
 
 namespace adaptiso {
 namespace {
@@ -20,7 +21,8 @@ Vec3 middleOfTriangle(const std::vector<Vec3>& points, const Triangle& t) {
 }
 
 /// What is wrong with a region's surface as such; empty: nothing.
-std::string faultOf(const TopologyReport& topology, const RegionMeasure& measure) {
+std::string faultOf(const TriangleMesh& mesh, const TopologyReport& topology,
+                    const RegionMeasure& measure) {
     if (topology.triangles == 0) return "has no surface";
     for (int n = 0; n < kTopologyDefectCount; ++n) {
         if (topology.defects[n] == 0) continue;
@@ -34,6 +36,11 @@ std::string faultOf(const TopologyReport& topology, const RegionMeasure& measure
         euler += component.eulerCharacteristic();
     }
     if (!(volume > 0)) return "faces inward";
+    const std::int64_t insideOut = std::ssize(findInsideOutPieces(mesh, topology));
+    if (insideOut > 0) {
+        return "has " + formatCount(insideOut) + (insideOut == 1 ? " piece" : " pieces") +
+               " inside out";
+    }
     const bool isMeasured = topology.triangles == measure.triangles &&
                             topology.vertices == measure.vertices &&
                             std::ssize(topology.components) == measure.components &&
@@ -48,7 +55,7 @@ LabelsCheck checkSurfaces(const RegionSurfaces& surfaces, const LabelsRun& run) 
     parallelForPieces(std::ssize(run.regions), 1, [&](std::int64_t n, std::int64_t) {
         const TriangleMesh mesh = surfaces.surface(n);
         const TopologyReport topology = checkTopology(mesh, {.maxExamplesPerDefect = 1});
-        faults[n] = faultOf(topology, run.regions[n].measure);
+        faults[n] = faultOf(mesh, topology, run.regions[n].measure);
         if (faults[n].empty() || mesh.triangles.empty()) return;
         places[n] = topology.examples.empty()
                         ? middleOfTriangle(mesh.points, mesh.triangles.front())

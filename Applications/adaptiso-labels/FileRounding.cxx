@@ -1,5 +1,7 @@
 #include "FileRounding.h"
 
+#include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +13,8 @@
 
 namespace adaptiso {
 namespace {
+
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 /// A format of files of the run, and what they are called in messages.
 struct FileKind {
@@ -26,11 +30,46 @@ std::vector<FileKind> kindsOf(const LabelsRun& run) {
     return kinds;
 }
 
+AffineTransform frameTransform(const LabelsRun& run) {
+    return lpsToFrame(run.frame, frameVolume(run.frame, run.map.geometry));
+}
+
+/// Measures how far the files' digits move the walls.
+/// \param walls  settled \param exact  their points before
+/// \throws InvalidInput  those of a format that was asked for are beyond the bound
+void measureRounding(const TriangleMesh& walls, const std::vector<Vec3>& exact,
+                     const AffineTransform& toFrame, LabelsRun& run) {
+    const std::string input = baseName(run.options.input);
+    for (const FileKind& kind : kindsOf(run)) {
+        if (!kind.isAskedFor && run.leavesGiftiOut) continue;
+        const TriangleMesh stored = asStored(walls, kind.format->precision, toFrame);
+        double longestMm = 0;
+        for (std::size_t v = 0; v < exact.size(); ++v) {
+            longestMm = std::max(longestMm, norm(stored.points[v] - exact[v]));
+        }
+        double& roundingMm = kind.isAskedFor ? run.roundingMm : run.giftiRoundingMm;
+        roundingMm = std::max(roundingMm, longestMm);
+        const auto fault =
+            roundingFault(longestMm, run.askedBoundMm().value_or(kNoBound), *kind.format);
+        if (!fault) continue;
+        const std::string text = kind.files + ": " + *fault;
+        if (kind.isAskedFor) throw InvalidInput(input + ": " + text);
+        run.leavesGiftiOut = true;
+        run.giftiRoundingMm = 0;
+        run.warnings.push_back({"file-left-out", "all.surf.gii is left out; " + text, input});
+    }
+    if (!run.askedBoundMm()) return;
+    const auto warning = roundingWarning("regions/*" + run.options.format, run.errorBoundMm(),
+                                         *run.askedBoundMm(), run.roundingMm, *run.format);
+    if (warning) run.warnings.push_back(*warning);
+}
+
 }  // namespace
 
 void fitToFiles(LabelComplex& complex, LabelsRun& run) {
-    const AffineTransform toFrame = lpsToFrame(run.frame, frameVolume(run.frame, run.map.geometry));
+    const AffineTransform toFrame = frameTransform(run);
     TriangleMesh walls{std::move(complex.points), {}, std::move(complex.triangles)};
+    const std::vector<Vec3> exact = walls.points;
     const std::string input = baseName(run.options.input);
     constexpr int kMostRounds = 3;  // what fits one file may have to move for another
     for (int round = 0; round < kMostRounds; ++round) {
@@ -53,8 +92,15 @@ void fitToFiles(LabelComplex& complex, LabelsRun& run) {
         }
         if (moved == 0 || precisions < 2) break;
     }
+    measureRounding(walls, exact, toFrame, run);
     complex.points = std::move(walls.points);
     complex.triangles = std::move(walls.triangles);
+}
+
+LabelComplex asStored(const LabelComplex& complex, const LabelsRun& run) {
+    TriangleMesh stored = asStored(TriangleMesh{complex.points, {}, complex.triangles},
+                                   run.format->precision, frameTransform(run));
+    return {std::move(stored.points), std::move(stored.triangles), complex.labels};
 }
 
 }  // namespace adaptiso

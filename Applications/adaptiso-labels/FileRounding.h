@@ -12,4 +12,7 @@ namespace adaptiso {
 /// \throws InvalidInput  those of the format that was asked for, or of the layers, do not
 void fitToFiles(LabelComplex& complex, LabelsRun& run);
 
+/// The walls with the digits of the regions' files; LPS mm.
+LabelComplex asStored(const LabelComplex& complex, const LabelsRun& run);
+
 }  // namespace adaptiso

@@ -13,6 +13,7 @@
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/VoxelShape.h"
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/LabelNames/LabelTable.h"
 #include "adaptiso/Labels/Labels.h"
@@ -82,6 +83,8 @@ struct LabelsRun {
     std::optional<RegionTetrahedra> tetrahedra{};                 ///< if wanted
     std::vector<std::pair<std::string, std::uintmax_t>> files{};  ///< of the folder
     bool leavesGiftiOut = false;                                  ///< its digits do not do
+    double roundingMm = 0;       ///< largest move of a point by the digits of regions and layers
+    double giftiRoundingMm = 0;  ///< by those of all.surf.gii
     StageTimer timer{};
     std::vector<Warning> warnings{};  ///< all; each names its file
     Verdict verdict{};                ///< how the run ends, known before the reports are made
@@ -97,6 +100,17 @@ struct LabelsRun {
     /// --strict makes the warnings failures: the folder is not written.
     bool failsStrict() const { return adaptiso::failsStrict(options.common, warnings); }
     bool writesFolder() const { return holdsPromises() && !failsStrict(); }
+
+    /// The bound that the walls are to keep; none with a count alone, or at full resolution.
+    std::optional<double> askedBoundMm() const {
+        if (options.maxErrorMm == 0.0) return std::nullopt;
+        if (options.maxErrorMm || options.maxTriangles || options.reduction) {
+            return options.maxErrorMm;
+        }
+        return LabelOptions::kDefaultMaxErrorVoxels * leastPlaneDistanceMm(map.geometry);
+    }
+    /// Of the distance of the walls, as regions and layers hold them, to the full resolution.
+    double errorBoundMm() const { return statistics.errorBoundMm + roundingMm; }
 
     /// The region of a label; nullptr: it is not among those wanted.
     const Region* find(Label label) const;

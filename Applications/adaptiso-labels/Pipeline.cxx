@@ -223,7 +223,7 @@ void warnOfCount(LabelsRun& run) {
         baseName(run.options.input), "triangles in its walls", triangles, *wanted,
         std::string("all regions, pieces and junctions") +
             (run.isPart() ? " of the whole map (a count is of all of it, also with --labels)" : ""),
-        run.statistics.errorBoundMm));
+        run.errorBoundMm()));
 }
 
 std::string failureText(const LabelsRun& run) {
@@ -280,7 +280,12 @@ int runLabels(const LabelsOptions& given) {
     progress.show(kMeasure);
     run.timer.time(kMeasure, [&] { measure(complex, run); });
     const RegionSurfaces surfaces(complex, run.regions);
-    checkComplex(complex, surfaces, map, run, progress);
+    if (run.format->precision == CoordinatePrecision::Float64) {
+        checkComplex(complex, surfaces, map, run, progress);
+    } else {
+        const LabelComplex stored = asStored(complex, run);
+        checkComplex(stored, RegionSurfaces(stored, run.regions), map, run, progress);
+    }
     if (options.tetrahedra.isAsked() && run.holdsPromises()) {
         progress.show(kTetrahedra);
         run.timer.time(kTetrahedra, [&] { makeTetrahedra(complex, run); });

@@ -74,8 +74,8 @@ void tellOptions(const LabelsRun& run, Report& report) {
                                        : "full resolution ") +
                          formatCount(statistics.fullTriangles));
     add("Distance to the full resolution",
-        statistics.errorBoundMm > 0
-            ? "at most " + formatFixed(statistics.errorBoundMm, 4) + " mm, both ways (proved)"
+        run.errorBoundMm() > 0
+            ? "at most " + formatBound(run.errorBoundMm()) + " mm, both ways (proved)"
             : "none, these are its walls");
     add("Format, frame", std::string(run.format->name) + ", " + std::string(toString(run.frame)));
 }
@@ -100,7 +100,7 @@ std::string neighboursText(const LabelsRun& run, const Region& region) {
     std::string text;
     for (std::size_t n = 0; n < std::min(contacts.size(), kMost); ++n) {
         text += (n == 0 ? "" : ", ") + run.nameOf(contacts[n].label) + " " +
-                formatRounded(contacts[n].areaMm2);
+                formatMeasure(contacts[n].areaMm2);
     }
     const std::size_t more = contacts.size() - std::min(contacts.size(), kMost);
     return more == 0 ? text : text + ", " + std::to_string(more) + " more";
@@ -115,7 +115,7 @@ ReportTable regionTable(const LabelsRun& run, const std::vector<std::size_t>& sh
         const Region& region = run.regions[n];
         const RegionMeasure& measure = region.measure;
         table.rows.push_back({region.name, std::to_string(region.label), formatCount(region.voxels),
-                              formatRounded(measure.volumeMm3), formatRounded(measure.areaMm2),
+                              formatMeasure(measure.volumeMm3), formatMeasure(measure.areaMm2),
                               formatCount(measure.triangles), formatCount(measure.components),
                               std::to_string(measure.eulerCharacteristic),
                               neighboursText(run, region)});

@@ -23,14 +23,14 @@ void printWalls(std::ostream& out, const LabelsRun& run) {
                                ", at full resolution "
                          : "the full resolution has ")
         << formatCount(statistics.fullTriangles) << '\n';
-    if (statistics.errorBoundMm > 0) {
-        out << "  no wall farther than " << formatFixed(statistics.errorBoundMm, 4)
+    if (run.errorBoundMm() > 0) {
+        out << "  no wall farther than " << formatBound(run.errorBoundMm())
             << " mm from that of the full resolution, nor that from it (proved)\n";
     }
     if (statistics.wantedTriangles && statistics.mapTriangles > *statistics.wantedTriangles) {
         out << "  " << formatCount(*statistics.wantedTriangles) << " triangles were asked for"
             << (run.isPart() ? " in the whole map" : "")
-            << "; the walls, with all their pieces and junctions, do not allow as few\n";
+            << "; these are the fewest reached with all regions, pieces and junctions\n";
     }
 }
 

@@ -126,7 +126,8 @@ void declareAdaptive(CLI::App& app, AdaptiveOptions& options) {
         ->type_name("MM")
         ->group(kSurface);
     addCount(app, "--triangles", options.maxTriangles, 0, kAnyCount,
-             "Method adaptive: as near to the surface as N triangles can be")
+             "Method adaptive: simplify to N triangles, as close to the surface as the method "
+             "gets; of the pieces that are kept")
         ->group(kSurface);
     addNumber(app, "--reduction", options.reduction, {.least = 0, .most = 1},
               "Method adaptive: the share F of mc's triangles to drop, 0 to 1")
@@ -165,9 +166,11 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
                       "mc: marching cubes, every voxel at full resolution")
         ->group(kSurface);
     declareAdaptive(app, options.adaptive);
-    app.add_flag("--verify", options.verifies,
-                 "Method adaptive: also check the result against the surface of mc, by other "
-                 "code than made it: crossings, pieces, genus and sampled distance. Takes long")
+    app.add_flag(
+           "--verify", options.verifies,
+           "Method adaptive: also check the result against the surface of mc, by other "
+           "code than made it: crossings, pieces, their orientation, genus and sampled distance "
+           "of the file's points. Takes long")
         ->group(kSurface);
     app.add_flag("--adjust-vertices", options.adjustVertices,
                  "Move the vertices of the method dmc from the midpoints to where the image "

@@ -115,19 +115,20 @@ std::string inputName(const MeshOptions& options) {
     return name.empty() ? "the image" : name;
 }
 
-std::string rangeText(const MeshRun& run) {
+std::string rangeText(double isovalue, const MeshRun& run) {
     const ValueRange& range = run.range();
     const std::string file = inputName(run.options);
     if (range.minimum > range.maximum) return file + " holds no numbers";
-    return "the range of " + file + (run.preprocessed ? ", preprocessed, is " : " is ") +
-           formatShort(range.minimum) + " to " + formatShort(range.maximum);
+    const auto texts = formatApart({range.minimum, range.maximum, isovalue});
+    return "the range of " + file + (run.preprocessed ? ", preprocessed, is " : " is ") + texts[0] +
+           " to " + texts[1];
 }
 
 /// \throws InvalidInput when the surface would be empty, or the border of the image alone
 void checkIsovalue(double isovalue, const MeshRun& run) {
     const std::string name = "--iso " + shown(formatNumber(isovalue));
     if (const auto fault = isovalueFault(isovalue, run.range())) {
-        throw InvalidInput(name + ": " + *fault + "; " + rangeText(run));
+        throw InvalidInput(name + ": " + *fault + "; " + rangeText(isovalue, run));
     }
 }
 
@@ -168,27 +169,37 @@ Volume prepare(Volume read, MeshRun& run, ProgressLine& progress) {
     });
 }
 
-/// \throws InvalidInput when nothing is left
-FinishedSurface finishPieces(TriangleMesh mesh, const FinishOptions& options,
-                             SurfaceRecord& record) {
+/// Calls `work`, which chooses pieces. \throws InvalidInput when nothing is left
+template <class Work>
+auto choosingPieces(const MeshOptions& options, const Work& work) {
     try {
-        return finishSurface(std::move(mesh), options, record);
+        return work();
     } catch (const NothingLeft& error) {
         throw InvalidInput("--min-volume " + formatNumber(options.selection.minVolumeMm3) + ": " +
                            error.what());
     }
 }
 
-/// What is sound is to be so in the file, too.
-/// \throws InvalidInput  the format has too few digits for that
-void fitToFormat(TriangleMesh& mesh, const MeshWriteOptions& write, const SurfaceSummary& summary,
-                 const MeshOptions& options) {
-    if (!options.checksCrossings && options.method != Method::Adaptive) return;
-    const RoundingHarm harm =
-        settleRounding(mesh, summary.format->precision, lpsToFrame(write.frame, write.volume));
-    if (harm) {
-        throw InvalidInput(summary.file.string() + ": " + textOf(harm, *summary.format));
+/// The surface before it is finished.
+TriangleMesh extract(const VolumeView& volume, const SpanSpaceIndex& index, MeshRun& run,
+                     ProgressLine& progress, SurfaceSummary& summary) {
+    const MeshOptions& options = run.options;
+    TriangleMesh mesh = run.timer.time(kExtract, [&] {
+        ExtractionOptions extract = options.extraction();
+        extract.isovalue = summary.isovalue;
+        extract.computeNormals = summary.format->holdsNormals;
+        extract.progress = progress.callback();
+        const auto extractor = [&](const ExtractionOptions& each) {
+            return naming(inputName(options), [&] { return extractSurface(volume, index, each); });
+        };
+        return choosingPieces(
+            options, [&] { return extractPieces(extractor, extract, options.selection, summary); });
+    });
+    if (mesh.triangles.empty()) {
+        throw InvalidInput("--iso " + formatNumber(summary.isovalue) +
+                           ": the surface is empty; no two neighbouring voxels lie on both sides");
     }
+    return mesh;
 }
 
 /// Makes one surface and writes it under its temporary name.
@@ -203,29 +214,24 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     summary.format = &formatOf(summary.file);
     summary.frame = frameOf(options, *summary.format);
 
-    Extraction extraction = run.timer.time(kExtract, [&] {
-        ExtractionOptions extract = options.extraction();
-        extract.isovalue = isovalue;
-        extract.computeNormals = summary.format->holdsNormals;
-        extract.progress = progress.callback();
-        return naming(inputName(options), [&] { return extractSurface(volume, index, extract); });
-    });
-    summary.statistics = extraction.statistics;
-    summary.extractedTriangles = std::ssize(extraction.mesh.triangles);
-    if (extraction.mesh.triangles.empty()) {
-        throw InvalidInput("--iso " + formatNumber(isovalue) +
-                           ": the surface is empty; no two neighbouring voxels lie on both sides");
-    }
+    TriangleMesh mesh = extract(volume, index, run, progress, summary);
 
+    MeshWriteOptions write;
+    write.frame = summary.frame;
+    // tkRAS and voxel indices are those of the image that the user has
+    write.volume = frameVolume(summary.frame, run.input.geometry);
+    const FileDigits digits{summary.format, lpsToFrame(write.frame, write.volume),
+                            askedBoundMm(options.extraction(), volume.geometry())};
     if (options.verifies) {
         progress.show(kVerify);
-        summary.verification =
-            run.timer.time(kVerify, [&] { return verify(volume, index, isovalue, extraction); });
+        summary.verification = run.timer.time(
+            kVerify, [&] { return verify(volume, index, mesh, digits, options, summary); });
     }
 
     const bool isShown = options.report.isWanted();
     FinishOptions finish;
     finish.selection = options.selection;
+    finish.digits = digits;
     finish.method = options.method;
     finish.border = options.index.border;
     finish.countsCrossings = options.checksCrossings;
@@ -234,16 +240,17 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         progress.show(stage);
         run.timer.time(stage, work);
     };
-    FinishedSurface finished = finishPieces(std::move(extraction.mesh), finish, summary);
+    FinishedSurface finished = choosingPieces(options, [&] {
+        try {
+            return finishSurface(std::move(mesh), finish, summary);
+        } catch (const TooFewDigits& error) {
+            throw InvalidInput(summary.file.string() + ": " + error.what());
+        }
+    });
 
     progress.show(kWrite);
     run.timer.time(kWrite, [&] {
         AtomicOutput& output = outputs.emplace_back(summary.file);
-        MeshWriteOptions write;
-        write.frame = summary.frame;
-        // tkRAS and voxel indices are those of the image that the user has
-        write.volume = frameVolume(summary.frame, run.input.geometry);
-        fitToFormat(finished.mesh, write, summary, options);
         output.write([&](const fs::path& path) { writeMesh(finished.mesh, path, write); });
         summary.bytes = fs::file_size(output.temporary());
     });
@@ -272,16 +279,42 @@ IndexSummary keepIndex(const SpanSpaceIndex& index, const VolumeView& volume,
 
 /// Where a count could not be met. With --max-error as well the bound may end it before: that was
 /// asked for.
-void warnOfCounts(MeshRun& run) {
+std::optional<Warning> countWarning(const SurfaceSummary& surface, const MeshOptions& options) {
+    if (surface.countMet().value_or(true) || options.adaptive.maxErrorMm) return std::nullopt;
+    const bool isOpen = options.index.border == Border::Open;
+    return countMissed(
+        surface.file.filename().string(), "triangles", surface.topology.triangles,
+        *surface.statistics.wantedTriangles,
+        std::string("all its pieces and holes") + (isOpen ? " and its open border" : ""),
+        *surface.errorBoundMm());
+}
+
+std::optional<Warning> digitsWarning(const SurfaceSummary& surface, const MeshRun& run) {
+    const ImageGeometry& volume =
+        run.preprocessed ? run.preprocessed->geometry : run.input.geometry;
+    const auto asked = askedBoundMm(run.options.extraction(), volume);
+    if (!asked) return std::nullopt;
+    return roundingWarning(surface.file.filename().string(), *surface.errorBoundMm(), *asked,
+                           surface.roundingMm, *surface.format);
+}
+
+std::optional<Warning> insideOutWarning(const SurfaceSummary& surface) {
+    const std::int64_t count = surface.insideOutPieces.value_or(0);
+    if (count == 0) return std::nullopt;
+    return Warning{"pieces-inside-out",
+                   formatCount(count) + (count == 1 ? " piece is" : " pieces are") +
+                       " inside out; the method adaptive keeps all facing outward",
+                   surface.file.filename().string()};
+}
+
+/// What is to be said of the surfaces as their files hold them.
+void warnOfSurfaces(MeshRun& run) {
     const std::size_t told = run.warnings.size();
     for (const SurfaceSummary& surface : run.surfaces) {
-        if (surface.countMet().value_or(true) || run.options.adaptive.maxErrorMm) continue;
-        const bool isOpen = run.options.index.border == Border::Open;
-        run.warnings.push_back(countMissed(
-            surface.file.filename().string(), "triangles", surface.extractedTriangles,
-            *surface.statistics.wantedTriangles,
-            std::string("all its pieces and holes") + (isOpen ? " and its open border" : ""),
-            *surface.statistics.errorBoundMm));
+        for (const auto& warning : {countWarning(surface, run.options), digitsWarning(surface, run),
+                                    insideOutWarning(surface)}) {
+            if (warning) run.warnings.push_back(*warning);
+        }
     }
     printWarnings(kProgram, run.options.common, std::span(run.warnings).subspan(told));
 }
@@ -333,7 +366,7 @@ int runMesh(const MeshOptions& asked) {
         run.surfaces.push_back(
             makeSurface(volume, index, isovalues[n], options.isovalues[n], run, progress, outputs));
     }
-    warnOfCounts(run);
+    warnOfSurfaces(run);
     run.index = run.timer.time(
         kWrite, [&] { return keepIndex(index, volume, options.indexFiles, outputs); });
     if (run.failsStrict()) outputs.clear();

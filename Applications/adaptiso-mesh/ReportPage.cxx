@@ -19,16 +19,20 @@ void tellVerdict(const MeshRun& run, Report& report) {
     report.title = count == 1
                        ? "Surface of " + baseName(run.options.input)
                        : std::to_string(count) + " surfaces of " + baseName(run.options.input);
-    std::int64_t crossings = 0;
+    std::int64_t crossings = 0, insideOut = 0;
     bool isKnown = true, areClosed = true;
     for (const SurfaceSummary& surface : run.surfaces) {
         crossings += surface.crossingPairs.value_or(0);
         isKnown = isKnown && surface.crossingPairs.has_value();
         areClosed = areClosed && surface.topology.isClosed();
+        insideOut += surface.insideOutPieces.value_or(0);
     }
-    report.headline = std::string(count == 1 ? "Written: manifold" : "All written: manifold") +
-                      (areClosed ? ", closed" : ", open at the image's border") +
-                      " and facing outward";
+    report.headline =
+        std::string(count == 1 ? "Written: manifold" : "All written: manifold") +
+        (!areClosed       ? " and oriented, open at the image's border"
+         : insideOut == 0 ? ", closed and facing outward"
+                          : ", closed, " + formatCount(insideOut) +
+                                (insideOut == 1 ? " piece" : " pieces") + " inside out");
     report.headline += !isKnown ? "; crossings were not looked for."
                        : crossings == 0
                            ? "; no triangle crosses another."
@@ -79,6 +83,12 @@ void tellChecks(const SurfaceSummary& surface, Report& report) {
         topology.isClosed() ? ""
                             : formatCount(topology.count(TopologyDefect::BoundaryEdge)) +
                                   " edges at the image's border");
+    if (const auto count = surface.insideOutPieces) {
+        add("facing outward", *count == 0,
+            *count == 0 ? ""
+                        : formatCount(*count) + (*count == 1 ? " piece is" : " pieces are") +
+                              " inside out");
+    }
     if (!surface.crossingPairs) return;
     add("no self-intersection", *surface.crossingPairs == 0,
         *surface.crossingPairs == 0
@@ -95,7 +105,7 @@ ReportTable surfaceTable(const MeshRun& run) {
         {}};
     for (const SurfaceSummary& surface : run.surfaces) {
         const auto genus = surface.topology.genus();
-        const auto& bound = surface.statistics.errorBoundMm;
+        const auto bound = surface.errorBoundMm();
         table.rows.push_back(
             {nameOf(surface), formatNumber(surface.isovalue),
              std::string(surface.format->name) + ", " + std::string(toString(surface.frame)),
@@ -103,9 +113,9 @@ ReportTable surfaceTable(const MeshRun& run) {
              formatCount(surface.statistics.marchingCubesTriangles),
              formatCount(surface.topology.vertices),
              formatCount(std::ssize(surface.topology.components)),
-             genus ? formatCount(*genus) : "–", formatRounded(surface.areaMm2),
-             surface.volumeMm3 ? formatRounded(*surface.volumeMm3) : "–",
-             bound ? formatFixed(*bound, 3) : "–"});
+             genus ? formatCount(*genus) : "–", formatMeasure(surface.areaMm2),
+             surface.volumeMm3 ? formatMeasure(*surface.volumeMm3) : "–",
+             bound ? formatBound(*bound) : "–"});
     }
     return table;
 }

@@ -28,28 +28,32 @@ void printSurface(std::ostream& out, const MeshRun& run, const SurfaceSummary& s
         << "; marching cubes makes " << formatCount(surface.statistics.marchingCubesTriangles)
         << '\n';
     if (surface.volumeMm3) {
-        out << "  closed, area " << formatRounded(surface.areaMm2) << " mm2, volume "
-            << formatRounded(*surface.volumeMm3) << " mm3\n";
+        out << "  closed, area " << formatMeasure(surface.areaMm2) << " mm2, volume "
+            << formatMeasure(*surface.volumeMm3) << " mm3\n";
     } else {
         out << "  open at the border of the image ("
             << counted(topology.count(TopologyDefect::BoundaryEdge), "edge") << "), area "
-            << formatRounded(surface.areaMm2) << " mm2\n";
+            << formatMeasure(surface.areaMm2) << " mm2\n";
     }
-    if (surface.statistics.errorBoundMm) {
-        out << "  no point farther than " << formatFixed(*surface.statistics.errorBoundMm, 4)
-            << " mm from the surface of marching cubes, nor it from this one (proved";
+    if (const auto boundMm = surface.errorBoundMm()) {
+        out << "  no point farther than " << formatBound(*boundMm)
+            << " mm from the surface of marching cubes, nor "
+            << (surface.isPart ? "the pieces kept of it" : "it") << " from this one (proved";
         if (surface.verification) {
             out << "; farthest of " << formatCount(surface.verification->samples)
-                << " points measured: " << formatFixed(surface.verification->maxMm, 4) << " mm";
+                << " points measured: " << formatLength(surface.verification->maxMm, 4) << " mm";
         }
         out << ")\n";
     }
     if (!surface.countMet().value_or(true)) {
         out << "  " << formatCount(*surface.statistics.wantedTriangles)
-            << " triangles were asked for; the "
-            << (run.options.adaptive.maxErrorMm ? "bound of --max-error"
-                                                : "surface, with all its pieces and holes,")
-            << " does not allow as few\n";
+            << " triangles were asked for; "
+            << (run.options.adaptive.maxErrorMm
+                    ? "the bound of --max-error does not allow as few\n"
+                    : "these are the fewest reached with all its pieces and holes\n");
+    }
+    if (surface.insideOutPieces.value_or(0) > 0) {
+        out << "  " << counted(*surface.insideOutPieces, "piece") << " inside out\n";
     }
     if (surface.crossingPairs) {
         out << "  " << counted(*surface.crossingPairs, "pair") << " of triangles cross\n";

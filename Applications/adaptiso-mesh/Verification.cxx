@@ -1,5 +1,6 @@
 #include "Verification.h"
 
+#include <algorithm>
 #include <string>
 
 #include "Common/Numbers.h"
@@ -7,6 +8,8 @@
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/MeshQuality/Winding.h"
+#include "adaptiso/SurfacePipeline/StoredMesh.h"
 
 namespace adaptiso {
 namespace {
@@ -23,25 +26,34 @@ std::int64_t eulerCharacteristic(const TopologyReport& topology) {
 
 }  // namespace
 
-Verification verify(const VolumeView& volume, const SpanSpaceIndex& index, double isovalue,
-                    const Extraction& extraction) {
-    const std::int64_t crossing = findSelfIntersections(extraction.mesh, {.maxPairs = 0}).pairCount;
+Verification verify(const VolumeView& volume, const SpanSpaceIndex& index, const TriangleMesh& mesh,
+                    const FileDigits& digits, const MeshOptions& options,
+                    const SurfaceRecord& record) {
+    const std::int64_t crossing = findSelfIntersections(mesh, {.maxPairs = 0}).pairCount;
     require(crossing == 0, std::to_string(crossing) + " pairs of triangles cross");
 
-    ExtractionOptions options;
-    options.isovalue = isovalue;
-    options.method = Method::MarchingCubes;
-    options.computeNormals = false;
-    const TriangleMesh full = extractSurface(volume, index, options).mesh;
-    const TopologyReport ours = checkTopology(extraction.mesh), theirs = checkTopology(full);
+    ExtractionOptions atFullResolution;
+    atFullResolution.isovalue = record.isovalue;
+    atFullResolution.method = Method::MarchingCubes;
+    atFullResolution.computeNormals = false;
+    TriangleMesh full = extractSurface(volume, index, atFullResolution).mesh;
+    if (record.isPart) full = selectComponents(full, options.selection);
+    const TopologyReport ours = checkTopology(mesh), theirs = checkTopology(full);
     require(ours.components.size() == theirs.components.size() &&
                 eulerCharacteristic(ours) == eulerCharacteristic(theirs),
             "its components or holes are not those of marching cubes");
+    const std::size_t insideOut = ours.isWatertight() ? findInsideOutPieces(mesh, ours).size() : 0;
+    require(insideOut == 0, std::to_string(insideOut) + " pieces are inside out");
 
     constexpr double kRounding = 1e-9;  // of the bound: coordinates in other frames
-    const DistanceReport distance = surfaceDistance(extraction.mesh, full);
+    const TriangleMesh written = asStored(mesh, digits.format->precision, digits.toFrame);
+    double roundingMm = 0;
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+        roundingMm = std::max(roundingMm, norm(written.points[v] - mesh.points[v]));
+    }
+    const DistanceReport distance = surfaceDistance(written, full);
     const double maxMm = distance.combined.maxMm,
-                 boundMm = extraction.statistics.errorBoundMm.value_or(0);
+                 boundMm = record.statistics.errorBoundMm.value_or(0) + roundingMm;
     require(maxMm <= (1 + kRounding) * boundMm, "a point lies " + formatNumber(maxMm) +
                                                     " mm from the surface of marching cubes, not " +
                                                     formatNumber(boundMm));

@@ -1,7 +1,5 @@
 #include "Frames.h"
 
-#include <cmath>
-
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::simplifier {
@@ -40,18 +38,6 @@ PageFrame pageFrame(const MeshFile& input) {
     }
     return {inverse(lpsToFrame(CoordinateFrame::Ras, std::nullopt)),
             frame == CoordinateFrame::TkRas ? "FreeSurfer's tkRAS mm" : "voxel indices"};
-}
-
-double roundingOf(CoordinatePrecision precision, double largest) {
-    switch (precision) {
-        case CoordinatePrecision::Float32:
-            return std::ldexp(largest, -24);
-        case CoordinatePrecision::NineDigits:
-            return 5e-9 * largest;
-        case CoordinatePrecision::Float64:
-            return std::ldexp(largest, -50);  // of the sums that a move to another frame takes
-    }
-    throw InternalError("roundingOf: unknown precision");
 }
 
 }  // namespace adaptiso::simplifier

@@ -38,7 +38,4 @@ struct PageFrame {
 
 PageFrame pageFrame(const MeshFile& input);
 
-/// The most that a coordinate changes when it is written, of one as large as `largest`.
-double roundingOf(CoordinatePrecision precision, double largest);
-
 }  // namespace adaptiso::simplifier

@@ -56,7 +56,7 @@ Json outputJson(const SimplifyRun& run) {
     json["written"] = run.writesSurface();
     json["wantedTriangles"] = orNull(run.statistics.wantedTriangles);
     json["countMet"] = orNull(run.countMet());
-    json["errorBoundMm"] = number(run.statistics.errorBoundMm);
+    json["errorBoundMm"] = number(run.errorBoundMm());
     json["adaptive"] = workJson(run.statistics.work);
     json["roundingMm"] = number(run.roundingMm);
     json["verification"] = {{"samples", run.verification->samples},

@@ -1,7 +1,6 @@
 #include "Pipeline.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <set>
 #include <span>
@@ -34,10 +33,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "adaptiso-simplify";
-
-/// That settleRounding() moves a point by: three units in the last place, rounding being half of
-/// one, and that one itself.
-constexpr double kMovedRoundings = 7;
 
 /// The stages of a run, as progress, `seconds` of the report and README.md name them.
 constexpr const char* kRead = "read";
@@ -129,8 +124,15 @@ void warnOfCount(SimplifyRun& run) {
     if (run.countMet().value_or(true) || run.command.aim.maxErrorMm) return;
     run.warnings.push_back(countMissed(baseName(run.output.file), "triangles", run.output.triangles,
                                        *run.statistics.wantedTriangles,
-                                       "all its pieces, holes and borders",
-                                       run.statistics.errorBoundMm));
+                                       "all its pieces, holes and borders", run.errorBoundMm()));
+}
+
+void warnOfRounding(SimplifyRun& run) {
+    if (!run.command.aim.maxErrorMm) return;
+    const auto warning =
+        roundingWarning(baseName(run.output.file), run.errorBoundMm(), *run.command.aim.maxErrorMm,
+                        run.roundingMm, *run.output.format);
+    if (warning) run.warnings.push_back(*warning);
 }
 
 /// Every triangle has its corners for itself.
@@ -214,11 +216,29 @@ TakenValues takeValues(const MeshFile& input, const std::vector<PointData>& data
     return taken;
 }
 
-double largestCoordinate(const TriangleMesh& mesh) {
+/// Moves what the output's digits would harm, and measures their rounding, in the input's frame.
+/// What harm is left verify() finds.
+void fitToDigits(TriangleMesh& mesh, const FrameChange& change, SimplifyRun& run) {
+    run.roundingMm =
+        settleRounding(mesh, run.output.format->precision, change.move.value_or(AffineTransform{}))
+            .roundingMm;
+}
+
+/// \throws InvalidInput  the output's digits alone are beyond the bound
+void requireDigits(const SimplifyRun& run) {
+    if (!run.command.aim.maxErrorMm) return;
+    const auto fault =
+        roundingFault(run.roundingMm, *run.command.aim.maxErrorMm, *run.output.format);
+    if (fault) throw InvalidInput(baseName(run.output.file) + ": " + *fault);
+}
+
+/// Of doubles on the way to the output's frame and back, at most.
+double frameRoundingMm(const TriangleMesh& mesh, const FrameChange& change) {
     double largest = 0;
-    for (const Vec3& p : mesh.points) {
-        largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    }
+    if (!change.move) return largest;
+    const AffineTransform back = inverse(*change.move);
+    for (const Vec3& p : mesh.points)
+        largest = std::max(largest, norm(back((*change.move)(p)) - p));
     return largest;
 }
 
@@ -252,21 +272,20 @@ void finish(Simplified result, const MeshFile& input, const std::vector<PointDat
     TakenValues values =
         run.timer.time(kValues, [&] { return takeValues(input, data, result.mesh, run); });
     progress.show(kWrite);
+    TriangleMesh settled;
     MeshFile written = run.timer.time(kWrite, [&] {
         if (!run.output.format->holdsNormals) result.mesh.normals.clear();
-        TriangleMesh moved = change.apply(result.mesh);
-        const RoundingHarm harm =
-            settleRounding(moved, run.output.format->precision, AffineTransform{});
-        const double largest = std::max(largestCoordinate(moved), largestCoordinate(result.mesh));
-        run.roundingMm = std::sqrt(3.0) * roundingOf(run.output.format->precision, largest);
-        if (harm.movedPoints > 0) run.roundingMm *= kMovedRoundings;
-        return writeFiles(moved, std::move(values), input, change, run, outputs);
+        settled = result.mesh;
+        fitToDigits(settled, change, run);
+        return writeFiles(change.apply(settled), std::move(values), input, change, run, outputs);
     });
     progress.show(kVerify);
     run.timer.time(kVerify, [&] {
         summarize(written.mesh, run.output);
-        verify({input.mesh, result.mesh, change.undo(std::move(written.mesh)), run.roundingMm},
+        verify({input.mesh, result.mesh, change.undo(std::move(written.mesh)),
+                run.roundingMm + frameRoundingMm(result.mesh, change)},
                run);
+        requireDigits(run);
     });
 }
 
@@ -349,6 +368,7 @@ int runSimplify(const SimplifyCommand& command) {
         finish(std::move(result), input, data, change, run, progress, outputs);
         warnOfFindings(run);
         warnOfCount(run);
+        warnOfRounding(run);
     }
     if (!run.writesSurface()) outputs.clear();
     if (command.report.isWanted()) {

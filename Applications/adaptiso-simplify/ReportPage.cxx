@@ -21,7 +21,7 @@ void tellVerdict(const SimplifyRun& run, Report& report) {
     }
     report.headline = formatCount(run.output.triangles) + " triangles of " +
                       formatCount(run.input.triangles) + "; no point farther than " +
-                      formatShort(run.statistics.errorBoundMm) +
+                      formatBound(run.errorBoundMm()) +
                       " mm from the input, nor the other way round.";
 }
 
@@ -73,9 +73,9 @@ void tellChecks(const SimplifyRun& run, Report& report) {
     const std::string output = baseName(run.output.file);
     add(output, "as sound as the input, as written", true, "");
     add(output, "within the proved distance", true,
-        formatShort(run.verification->maxMm) + " mm at most at " +
-            formatCount(run.verification->samples) + " points, " +
-            formatShort(run.statistics.errorBoundMm) + " mm proved");
+        formatLength(run.verification->maxMm, 4) + " mm at most at " +
+            formatCount(run.verification->samples) + " points, " + formatBound(run.errorBoundMm()) +
+            " mm proved");
 }
 
 ReportTable surfaceTable(const SimplifyRun& run) {
@@ -87,7 +87,7 @@ ReportTable surfaceTable(const SimplifyRun& run) {
         table.rows.push_back({&surface == &run.input ? "read" : "written", baseName(surface.file),
                               formatCount(surface.triangles), formatCount(surface.vertices),
                               formatCount(std::ssize(surface.topology.components)),
-                              genus ? formatCount(*genus) : "–", formatRounded(surface.areaMm2)});
+                              genus ? formatCount(*genus) : "–", formatMeasure(surface.areaMm2)});
     };
     add(run.input);
     if (!run.failsSoundness()) add(run.output);

@@ -49,7 +49,7 @@ struct SimplifyRun {
     /// Of the result; all of it none (`output.triangles` 0) of a surface that was refused.
     SurfaceSummary output{};
     SimplifyStatistics statistics{};
-    double roundingMm = 0;                       ///< at most, of a point in the output's format
+    double roundingMm = 0;                       ///< largest move of a point by the output's digits
     std::optional<Verification> verification{};  ///< of the surface as written
     std::uintmax_t bytes = 0;                    ///< of the output
     std::vector<std::string> keptArrays{};       ///< values at points in the surface's own file
@@ -62,6 +62,8 @@ struct SimplifyRun {
     bool failsSoundness() const { return command.requiresSound && !isSound(findings); }
     /// --strict makes the warnings failures.
     bool failsStrict() const { return adaptiso::failsStrict(command.common, warnings); }
+    /// Of the distance between input and output as written, both ways.
+    double errorBoundMm() const { return statistics.errorBoundMm + roundingMm; }
     bool writesSurface() const { return !failsSoundness() && !failsStrict(); }
     /// The count of --triangles or --reduction was met; none when none was asked for.
     std::optional<bool> countMet() const {

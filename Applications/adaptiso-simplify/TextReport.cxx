@@ -30,16 +30,15 @@ void printOutput(std::ostream& out, const SimplifyRun& run) {
     out << oneLine(output.file.string()) << (run.writesSurface() ? "" : " (not written)") << ": "
         << formatCount(output.triangles) << " triangles (" << formatFixed(percent, 1) << " %), "
         << output.format->name << ", " << frameText(output.frame) << '\n';
-    out << "  no point farther than " << formatShort(run.statistics.errorBoundMm)
+    out << "  no point farther than " << formatBound(run.errorBoundMm())
         << " mm from the input, nor it from this one (proved; farthest of "
         << formatCount(run.verification->samples)
-        << " points measured: " << formatShort(run.verification->maxMm) << " mm)\n";
+        << " points measured: " << formatLength(run.verification->maxMm, 4) << " mm)\n";
     if (!run.countMet().value_or(true)) {
-        out << "  " << formatCount(*run.statistics.wantedTriangles)
-            << " triangles were asked for; the "
-            << (run.command.aim.maxErrorMm ? "bound of --max-error"
-                                           : "surface, with all its pieces, holes and borders,")
-            << " does not allow as few\n";
+        out << "  " << formatCount(*run.statistics.wantedTriangles) << " triangles were asked for; "
+            << (run.command.aim.maxErrorMm
+                    ? "the bound of --max-error does not allow as few\n"
+                    : "these are the fewest reached with all its pieces, holes and borders\n");
     }
     for (const std::string& name : run.keptArrays) {
         out << "  with the values " << oneLine(name) << '\n';

@@ -10,6 +10,7 @@
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/MeshQuality/Winding.h"
 
 namespace adaptiso::simplifier {
 namespace {
@@ -50,6 +51,12 @@ std::string topologyFault(const TopologyReport& before, const TopologyReport& to
     return {};
 }
 
+std::int64_t insideOutPieces(const TriangleMesh& mesh, const TopologyReport& topology) {
+    const bool isTold =
+        topology.isWatertight() && topology.count(TopologyDefect::NonFiniteVertex) == 0;
+    return isTold ? std::ssize(findInsideOutPieces(mesh, topology)) : 0;
+}
+
 /// What is wrong with a surface that was made of the run's input; empty: nothing.
 std::string soundnessFault(const VerifiedSurface& surface, const TriangleMesh& mesh,
                            const TopologyReport& topology, const SimplifyRun& run) {
@@ -57,8 +64,15 @@ std::string soundnessFault(const VerifiedSurface& surface, const TriangleMesh& m
     if (!fault.empty()) return fault;
     const std::int64_t pairs = crossingPairs(mesh);
     const std::int64_t before = pairs == 0 ? 0 : crossingPairs(surface.input);
-    if (pairs <= before) return {};
-    return formatCount(pairs) + " pairs of triangles cross, " + formatCount(before) +
+    if (pairs > before) {
+        return formatCount(pairs) + " pairs of triangles cross, " + formatCount(before) +
+               " of the input";
+    }
+    const std::int64_t pieces = insideOutPieces(mesh, topology);
+    const std::int64_t inInput =
+        pieces == 0 ? 0 : insideOutPieces(surface.input, run.input.topology);
+    if (pieces <= inInput) return {};
+    return formatCount(pieces) + " pieces are inside out, " + formatCount(inInput) +
            " of the input";
 }
 

@@ -1,6 +1,7 @@
 """--triangles and --reduction: met, or told that they can't be."""
 
 import json
+import math
 import unittest
 
 from support import CHECK_FAILED, OK, SOURCE, ApplicationTest, ball, from_function, main, write_nifti
@@ -62,8 +63,30 @@ class Count(ApplicationTest):
                                           r"not \d as asked for: [^\n]*fewest[^\n]*up to "
                                           r"[0-4]\.\d+ mm off[^\n]*\n$")
             self.assertEqual(len(report["warnings"]), 1)
-            self.assertIn("does not allow as few", done.stdout)
+            self.assertIn("these are the fewest reached with all its pieces", done.stdout)
             self.assertNotRegex(done.stdout, r"inf|nan|\d{20}")
+
+    def test_pieces_that_go_take_no_triangles(self):
+        # a ball, and 80 specks of one voxel that take 4 triangles each
+        def value(x, y, z):
+            isSpeck = x % 9 == y % 9 == z % 9 == 0 and max(map(abs, (x, y, z))) == 18
+            return 200 * isSpeck + max(0, round(100 + 10 * (13 - math.sqrt(x * x + y * y + z * z))))
+        write_nifti(self.path("specks.nii"), from_function(41, "h", value))
+        for pieces in (("--largest",), ("--min-volume", 100)):
+            done, report, surface = self.surface("specks.nii", "--iso", 100, *pieces, "--triangles",
+                                                 300, "-o", "ball.vtp", "--verify")
+            self.assertEqual((done.returncode, done.stderr), (OK, ""))
+            self.assertTrue(surface["countMet"])
+            self.assertGreater(surface["triangles"], 270)
+            self.assertEqual(surface["componentCount"], 1)
+            self.assertLess(surface["errorBoundMm"], 0.5)  # a ball of 300 triangles alone
+            self.assertLess(surface["volumeMm3"] / (4 / 3 * math.pi * 13 ** 3), 1.03)
+            self.assertGreater(surface["volumeMm3"] / (4 / 3 * math.pi * 13 ** 3), 0.97)
+        # a count that can't be met is told with the file's own
+        done, report, surface = self.surface("specks.nii", "--iso", 100, "--largest", "--triangles",
+                                             2, "-o", "ball.vtp")
+        self.assertRegex(done.stderr, f"ball.vtp: has {surface['triangles']} triangles, not 2 ")
+        self.assertLess(surface["triangles"], 80)
 
     def test_that_pieces_do_not_allow_fails_a_strict_run(self):
         write_nifti(self.path("ball.nii"), ball())

@@ -1,8 +1,10 @@
 """Outputs: names, formats, frames, what goes to stdout, and the same bytes for every number of
 threads."""
 
+import json
 import math
 import os
+import re
 import struct
 import subprocess
 
@@ -18,6 +20,73 @@ def stl_points(path):
     count = struct.unpack_from("<I", data, 80)[0]
     return [struct.unpack_from("<3f", data, 84 + 50 * t + 12 + 12 * corner)
             for t in range(count) for corner in range(3)]
+
+
+def off_points(path):
+    lines = [line for line in path.read_text().splitlines() if line and not line.startswith("#")]
+    count = int(lines[1].split()[0])
+    return [tuple(map(float, line.split())) for line in lines[2:2 + count]]
+
+
+class Digits(ApplicationTest):
+    """Bounds are of the files: their digits are part of them."""
+
+    def surface(self, name, *arguments):
+        done = self.run_mesh("far.nii", "--iso", 100, *arguments, "-o", name, "--json", "report.json")
+        self.assertEqual(done.returncode, OK, done.stderr)
+        report = json.loads(self.path("report.json").read_text())
+        return done, report, report["surfaces"][0]
+
+    def test_rounding_beyond_the_bound_is_refused(self):
+        # at 4e6 mm single precision has steps of a quarter of a millimetre
+        write_nifti(self.path("far.nii"), ball(origin=(4e6, 4e6, 0)))
+        for name in ("far.stl", "far.gii"):
+            self.assert_fails(BAD_INPUT, f"{name}: .* keeps 24 bits of a coordinate: points would "
+                                         r"move by up to 0.\d+ mm, more than the bound of 0.05 mm",
+                              "far.nii", "--iso", 100, "--max-error", 0.05, "-o", name)
+            self.assert_fails(BAD_INPUT, "more than the bound of 0.15 mm", "far.nii", "--iso", 100,
+                              "-o", name)
+
+    def test_the_bound_has_the_rounding_in_it(self):
+        # at 4e4 mm steps of 1/256 mm, nine digits of 1e-4 mm
+        write_nifti(self.path("far.nii"), ball(origin=(4e4, -3e4, 2e4)))
+        _, _, exact = self.surface("exact.vtp", "--max-error", 0.1)
+        self.assertEqual(exact["roundingMm"], 0)
+        self.assertLessEqual(exact["errorBoundMm"], 0.1)
+        done, report, surface = self.surface("far.stl", "--max-error", 0.1, "--verify")
+        self.assertGreater(surface["roundingMm"], 1e-3)
+        self.assertLess(surface["roundingMm"], 3 ** 0.5 / 512)
+        self.assertAlmostEqual(surface["errorBoundMm"], exact["errorBoundMm"] + surface["roundingMm"],
+                               places=12)
+        self.assertLessEqual(surface["verifiedMaxMm"], surface["errorBoundMm"])
+        told = float(re.search(r"no point farther than (\S+) mm", done.stdout)[1])
+        self.assertGreaterEqual(told, surface["errorBoundMm"])
+        self.assertLess(told, surface["errorBoundMm"] + 1e-4)
+        self.assertEqual([(w["code"], w["file"]) for w in report["warnings"]],
+                         [("bound-exceeded", "far.stl")])
+        self.assertRegex(done.stderr, "far.stl: lies within 0.10\\d+ mm, not 0.1 mm: STL")
+        done, _, _ = self.surface("far.stl", "--triangles", 300)
+        self.assertEqual(done.stderr, "")  # nothing was asked of the distance
+        done, _, surface = self.surface("far.obj", "--max-error", 0.1)
+        self.assertEqual(done.stderr, "")  # less than a hundredth of the bound
+
+    def test_the_rounding_is_that_of_the_file(self):
+        write_nifti(self.path("far.nii"), ball(origin=(4e5, -3e5, 2e5)))
+        _, _, surface = self.surface("far.off", "--max-error", 0.1)
+        self.surface("exact.vtk", "--max-error", 0.1)
+        points = struct.iter_unpack(">3d", self.vtk_points())
+        moved = max(math.dist(p, q) for p, q in zip(points, off_points(self.path("far.off"))))
+        self.assertAlmostEqual(surface["roundingMm"], moved, places=9)
+        self.assertGreater(moved, 1e-4)
+
+    def vtk_points(self):
+        """Those of exact.vtk, big-endian doubles."""
+        content = self.path("exact.vtk").read_bytes()
+        at = content.index(b"POINTS ")
+        end = content.index(b"\n", at)
+        count, kind = content[at:end].split()[1:3]
+        self.assertEqual(kind, b"double")
+        return content[end + 1:end + 1 + 24 * int(count)]
 
 
 class Names(ApplicationTest):

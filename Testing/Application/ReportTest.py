@@ -155,6 +155,7 @@ class Numbers(ApplicationTest):
                     self.assertEqual(soundness.pop("boundaryEdges") == 0, border == "closed")
                     # the methods do not exclude them; noise has some
                     self.assertGreaterEqual(soundness.pop("crossingPairs"), 0)
+                    self.assertEqual(soundness.pop("insideOutPieces") is None, border == "open")
                     self.assertEqual(set(soundness.values()), {0})
 
     def test_crossings_are_proved_absent_or_counted_or_not_known(self):

@@ -3,6 +3,7 @@
 import copy
 import gc
 import pickle
+import re
 import unittest
 from pathlib import Path
 
@@ -152,6 +153,28 @@ class Files(InFolder):
         mesh.save(self.folder / "far.ply")
         # what was made elsewhere is written as it is
         adaptiso.Mesh(mesh.vertices, mesh.faces).save(self.folder / "far.stl")
+
+    def test_rounding_beyond_the_bound_is_refused_or_told(self):
+        # at 4e5 mm single precision has steps of 1/32 mm, nine digits of 1e-3 mm
+        affine = np.diag([-1.0, -1, 1, 1])
+        affine[:3, 3] = 4e5, -4e5, 4e5
+        image = np.asfortranarray(ball((24, 24, 24)))
+        for make in (lambda bound: adaptiso.surface(image, -7, affine=affine, max_error=bound),
+                     lambda bound: adaptiso.simplify(
+                         adaptiso.surface(image, -7, affine=affine, method="mc"), max_error=bound)):
+            with self.assertRaisesRegex(adaptiso.Error, "far.stl: STL.*24 bits.*more than the bound "
+                                                        "of 0.01 mm"):
+                make(0.01).save(self.folder / "far.stl")
+            mesh = make(0.1)
+            with self.assertLogs("adaptiso", "WARNING") as logs:
+                mesh.save(self.folder / "far.gii")
+            told = re.search(r"far.gii: lies within (0\.1\d+) mm, not 0.1 mm", logs.output[0])
+            moved = np.linalg.norm(adaptiso.load(self.folder / "far.gii").vertices - mesh.vertices,
+                                   axis=1).max()
+            self.assertGreaterEqual(float(told[1]), mesh.error_bound + moved - 1e-9)
+            self.assertLess(float(told[1]), mesh.error_bound + moved + 1e-3)
+            with self.assertNoLogs("adaptiso"):
+                mesh.save(self.folder / "far.ply")
 
     def test_a_link_stays_a_link(self):
         (self.folder / "link.ply").symlink_to(self.folder / "real.ply")

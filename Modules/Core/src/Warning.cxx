@@ -7,6 +7,7 @@ namespace {
 constexpr WarningCode kCodes[] = {
     {"array-left-out", "the output's format cannot hold values at points that the input has"},
     {"blended-labels", "an image that may hold labels was smoothed or resampled with blending"},
+    {"bound-exceeded", "the format's digits take the file beyond the bound that was asked for"},
     {"brain-doubtful", "a part of the brain may be missing, or muscle was taken for brain"},
     {"copies-left-out", "copies of files, compressed or exact, were left out"},
     {"count-missed", "the number of triangles asked for was not reached"},
@@ -36,6 +37,7 @@ constexpr WarningCode kCodes[] = {
     {"not-finite", "voxels hold NaN or infinity"},
     {"objects-left-aside", "a vendor's DICOM objects without an image were left aside"},
     {"overlap-unmeasured", "the overlap (Dice) could not be measured"},
+    {"pieces-inside-out", "pieces of the surface face inward where they should face outward"},
     {"pixdim-sform-differ",
      "the voxel sizes by pixdim and by the sform differ; the sform was taken"},
     {"qform-sform-differ", "qform and sform place the image differently; the sform was taken"},

@@ -3,13 +3,16 @@
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/VoxelShape.h"
+#include "adaptiso/Extraction/Simplify.h"
+#include "adaptiso/MeshQuality/Winding.h"
+#include "adaptiso/SurfacePipeline/StoredMesh.h"
 
 namespace adaptiso {
 namespace {
 
-/// A surface's promise, kept or there is none: no defect; with an open border no defect but open
-/// edges.
-void requireSound(const TopologyReport& topology, Border border) {
+/// What breaks a surface's promise, no defect but with an open border open edges; empty: nothing.
+std::string faultsOf(const TopologyReport& topology, Border border) {
     std::string faults;
     for (int n = 0; n < kTopologyDefectCount; ++n) {
         const auto defect = static_cast<TopologyDefect>(n);
@@ -18,13 +21,64 @@ void requireSound(const TopologyReport& topology, Border border) {
         faults += (faults.empty() ? "" : ", ") + std::string(toString(defect)) + ": " +
                   std::to_string(topology.count(defect));
     }
-    if (!faults.empty()) throw InternalError("the surface is not sound (" + faults + ")");
+    return faults;
 }
 
 TriangleMesh keepPieces(const TriangleMesh& mesh, const ComponentSelection& selection) {
     TriangleMesh kept = selectComponents(mesh, selection);
     if (kept.triangles.empty()) throw NothingLeft("no piece of the surface has as much");
     return kept;
+}
+
+/// Facts of a mesh that do not depend on how it was made. \return  as faultsOf()
+std::string measure(const TriangleMesh& mesh, const FinishOptions& options, SurfaceRecord& record) {
+    record.topology = checkTopology(mesh);
+    std::string faults = faultsOf(record.topology, options.border);
+    if (!faults.empty()) return faults;
+    record.areaMm2 = surfaceArea(mesh);
+    if (!record.topology.isClosed()) return faults;
+    record.volumeMm3 = enclosedVolume(mesh);
+    record.insideOutPieces = std::ssize(findInsideOutPieces(mesh, record.topology));
+    if (options.method == Method::Adaptive && record.insideOutPieces > 0) {
+        faults = "pieces inside out: " + std::to_string(*record.insideOutPieces);
+    }
+    return faults;
+}
+
+/// Moves what rounding would harm, and measures the rounding.
+/// \return  the mesh as the file holds it; none where that is the mesh itself
+std::optional<TriangleMesh> fitToDigits(TriangleMesh& mesh, const FinishOptions& options,
+                                        SurfaceRecord& record) {
+    if (!options.digits) return std::nullopt;
+    const auto& [format, toFrame, askedBoundMm] = *options.digits;
+    if (format->precision == CoordinatePrecision::Float64) return std::nullopt;
+    if (!options.countsCrossings && options.method != Method::Adaptive) {
+        return asStored(mesh, format->precision, toFrame);
+    }
+    const RoundingHarm harm = settleRounding(mesh, format->precision, toFrame);
+    if (harm) throw TooFewDigits(textOf(harm, *format));
+    record.roundingMm = harm.roundingMm;
+    if (askedBoundMm) {
+        const auto fault = roundingFault(harm.roundingMm, *askedBoundMm, *format);
+        if (fault) throw TooFewDigits(*fault);
+    }
+    return asStored(mesh, format->precision, toFrame);
+}
+
+void requireSound(const TriangleMesh& mesh, const std::optional<TriangleMesh>& stored,
+                  const FinishOptions& options, SurfaceRecord& record) {
+    const std::string faults = measure(stored ? *stored : mesh, options, record);
+    if (faults.empty()) return;
+    if (stored) {
+        SurfaceRecord exact;
+        if (measure(mesh, options, exact).empty()) {
+            throw TooFewDigits(std::string(options.digits->format->name) +
+                               " keeps too few digits of this surface's coordinates, with which "
+                               "it is not sound (" +
+                               faults + "); write a .vtp or .ply");
+        }
+    }
+    throw InternalError("the surface is not sound (" + faults + ")");
 }
 
 }  // namespace
@@ -35,27 +89,69 @@ std::optional<std::string> isovalueFault(double isovalue, const ValueRange& rang
     return std::nullopt;
 }
 
+TriangleMesh extractPieces(const Extractor& extract, const ExtractionOptions& options,
+                           const ComponentSelection& selection, SurfaceRecord& record) {
+    const AdaptiveOptions& aims = options.adaptive;
+    record.choseFirst = !selection.keepsAll() && (aims.maxTriangles || aims.reduction);
+    const auto whole = [&] {
+        Extraction extraction = extract(options);
+        record.statistics = std::move(extraction.statistics);
+        return std::move(extraction.mesh);
+    };
+    if (!record.choseFirst) return whole();
+    ExtractionOptions atFullResolution = options;
+    atFullResolution.method = Method::MarchingCubes;
+    atFullResolution.adaptive = {};
+    Extraction full = extract(atFullResolution);
+    if (full.mesh.triangles.empty()) return {};
+    TriangleMesh kept = keepPieces(full.mesh, selection);
+    record.isPart = kept.triangles.size() < full.mesh.triangles.size();
+    full.mesh = {};
+    if (!record.isPart) return whole();
+    Simplified made = simplify(kept, {.maxErrorMm = aims.maxErrorMm,
+                                      .maxTriangles = aims.maxTriangles,
+                                      .reduction = aims.reduction,
+                                      .minAngleDeg = aims.minAngleDeg,
+                                      .progress = options.progress});
+    record.statistics = std::move(full.statistics);
+    record.statistics.marchingCubesTriangles = std::ssize(kept.triangles);
+    record.statistics.errorBoundMm = made.statistics.errorBoundMm;
+    record.statistics.wantedTriangles = made.statistics.wantedTriangles;
+    record.statistics.adaptiveWork = made.statistics.work;
+    return std::move(made.mesh);
+}
+
+std::optional<double> askedBoundMm(const ExtractionOptions& options, const ImageGeometry& volume) {
+    const AdaptiveOptions& aims = options.adaptive;
+    if (options.method != Method::Adaptive) return std::nullopt;
+    if (aims.maxErrorMm || aims.maxTriangles || aims.reduction) return aims.maxErrorMm;
+    return AdaptiveOptions::kDefaultMaxErrorVoxels * leastPlaneDistanceMm(volume);
+}
+
 FinishedSurface finishSurface(TriangleMesh mesh, const FinishOptions& options,
                               SurfaceRecord& record) {
     const auto stage = [&](std::string_view name, const std::function<void()>& work) {
         options.runStage ? options.runStage(name, work) : work();
     };
     FinishedSurface finished{std::move(mesh), {}};
-    if (!options.selection.keepsAll()) {
-        stage("pieces", [&] { finished.mesh = keepPieces(finished.mesh, options.selection); });
+    if (!options.selection.keepsAll() && !record.choseFirst) {
+        stage("pieces", [&] {
+            const std::size_t before = finished.mesh.triangles.size();
+            finished.mesh = keepPieces(finished.mesh, options.selection);
+            record.isPart = finished.mesh.triangles.size() < before;
+        });
     }
+    std::optional<TriangleMesh> stored;
     stage("check", [&] {
-        record.topology = checkTopology(finished.mesh);
-        requireSound(record.topology, options.border);
-        record.areaMm2 = surfaceArea(finished.mesh);
-        if (record.topology.isClosed()) record.volumeMm3 = enclosedVolume(finished.mesh);
+        stored = fitToDigits(finished.mesh, options, record);
+        requireSound(finished.mesh, stored, options, record);
     });
     if (options.method == Method::Adaptive) {
-        record.crossingPairs = 0;  // proved
+        record.crossingPairs = 0;  // proved, and kept by fitToDigits()
     } else if (options.countsCrossings) {
         stage("crossings", [&] {
-            SelfIntersections crossings =
-                findSelfIntersections(finished.mesh, {.maxPairs = options.maxCrossingPairs});
+            SelfIntersections crossings = findSelfIntersections(
+                stored ? *stored : finished.mesh, {.maxPairs = options.maxCrossingPairs});
             record.crossingPairs = crossings.pairCount;
             finished.crossings = std::move(crossings.pairs);
         });

@@ -83,6 +83,8 @@ public:
         return harm;
     }
 
+    const TriangleMesh& file() const { return file_; }
+
     /// Vertices that lie elsewhere than rounding puts them, with their places in the file.
     const std::vector<VertexId>& moved() const { return moved_; }
     const Vec3& at(VertexId v) const { return file_.points[v]; }
@@ -253,6 +255,25 @@ private:
     std::vector<VertexId> moved_;
 };
 
+/// What a format keeps, and what holds more.
+std::string digitsOf(const MeshFormat& format) {
+    return std::string(format.name) + " keeps " +
+           (format.precision == CoordinatePrecision::Float32 ? "24 bits" : "nine digits") +
+           " of a coordinate: ";
+}
+
+constexpr const char* kInstead = "; write a .vtp or .ply, or move the image nearer to the origin";
+
+/// The longest way from a point of `mesh` to where `file` has it, `back` taking it there.
+double longestMove(const TriangleMesh& mesh, const TriangleMesh& file,
+                   const AffineTransform& back) {
+    double longest = 0;
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+        longest = std::max(longest, squaredNorm(back(file.points[v]) - mesh.points[v]));
+    }
+    return std::sqrt(longest);
+}
+
 }  // namespace
 
 RoundingHarm settleRounding(TriangleMesh& mesh, CoordinatePrecision precision,
@@ -262,14 +283,44 @@ RoundingHarm settleRounding(TriangleMesh& mesh, CoordinatePrecision precision,
     Settling settling(transformed(bare, toFrame), precision);
     RoundingHarm harm = settling.run();
     const AffineTransform back = inverse(toFrame);
+    harm.roundingMm = longestMove(mesh, settling.file(), back);
     for (const VertexId v : settling.moved()) mesh.points[v] = back(settling.at(v));
     harm.movedPoints = std::ssize(settling.moved());
     return harm;
 }
 
+TriangleMesh asStored(const TriangleMesh& mesh, CoordinatePrecision precision,
+                      const AffineTransform& toFrame) {
+    TriangleMesh file{mesh.points, {}, mesh.triangles};
+    if (precision == CoordinatePrecision::Float64) return file;
+    const AffineTransform back = inverse(toFrame);
+    for (Vec3& p : file.points) {
+        Vec3 q = toFrame(p);
+        for (int a = 0; a < 3; ++a) q[a] = stored(q[a], precision);
+        p = back(q);
+    }
+    return file;
+}
+
+std::optional<std::string> roundingFault(double roundingMm, double boundMm,
+                                         const MeshFormat& format) {
+    if (roundingMm < boundMm) return std::nullopt;
+    return digitsOf(format) + "points would move by up to " + formatShort(roundingMm) +
+           " mm, more than the bound of " + formatShort(boundMm) + " mm" + kInstead;
+}
+
+std::optional<Warning> roundingWarning(const std::string& file, double boundMm, double askedMm,
+                                       double roundingMm, const MeshFormat& format) {
+    constexpr double kNoticed = 0.01;
+    if (!(boundMm > askedMm && roundingMm > kNoticed * askedMm)) return std::nullopt;
+    return Warning{"bound-exceeded",
+                   "lies within " + formatBound(boundMm) + " mm, not " + formatShort(askedMm) +
+                       " mm: " + digitsOf(format) + "points move by up to " +
+                       formatShort(roundingMm) + " mm" + kInstead,
+                   file};
+}
+
 std::string textOf(const RoundingHarm& harm, const MeshFormat& format) {
-    const char* const keeps =
-        format.precision == CoordinatePrecision::Float32 ? "24 bits" : "nine digits";
     std::string what;
     const auto add = [&](std::int64_t count, const char* text) {
         if (count == 0) return;
@@ -278,8 +329,7 @@ std::string textOf(const RoundingHarm& harm, const MeshFormat& format) {
     add(harm.flatTriangles, " triangles would lose their area");
     add(harm.mergedPoints, " vertices would lie on another");
     add(harm.crossingPairs, " pairs of triangles would cross");
-    return std::string(format.name) + " keeps " + keeps + " of a coordinate: " + what +
-           "; write a .vtp or .ply, or move the image nearer to the origin";
+    return digitsOf(format) + what + kInstead;
 }
 
 }  // namespace adaptiso

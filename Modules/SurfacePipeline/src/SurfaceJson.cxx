@@ -55,7 +55,8 @@ Json soundnessJson(const SurfaceRecord& surface) {
             {"degenerateTriangles", topology.count(TopologyDefect::DegenerateTriangle)},
             {"duplicateTriangles", topology.count(TopologyDefect::DuplicateTriangle)},
             {"unusedVertices", topology.count(TopologyDefect::UnusedVertex)},
-            {"crossingPairs", orNull(surface.crossingPairs)}};
+            {"crossingPairs", orNull(surface.crossingPairs)},
+            {"insideOutPieces", orNull(surface.insideOutPieces)}};
 }
 
 }  // namespace
@@ -111,7 +112,8 @@ Json surfaceJson(const SurfaceRecord& surface, Method method, int blockSize) {
         {"boxes", boxesJson(statistics.boxes)},
         {"boxesChangingTopology", statistics.boxesChangingTopology},
         {"edgesSplit", statistics.edgesSplit},
-        {"errorBoundMm", orNull(statistics.errorBoundMm)},
+        {"errorBoundMm", orNull(surface.errorBoundMm())},
+        {"roundingMm", number(surface.roundingMm)},
         {"verifiedSamples", surface.verification ? Json(surface.verification->samples) : Json()},
         {"verifiedMaxMm", surface.verification ? number(surface.verification->maxMm) : Json()},
         {"wantedTriangles", orNull(statistics.wantedTriangles)},

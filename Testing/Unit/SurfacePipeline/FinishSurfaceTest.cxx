@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,6 +80,136 @@ TEST(FinishSurface, RunsItsStagesInOrder) {
     SurfaceRecord record;
     finishSurface(testing::cubeMesh(), options, record);
     EXPECT_EQ(stages, (std::vector<std::string>{"pieces", "check", "crossings"}));
+}
+
+/// Boundaries that face outward, where the second lies in the first.
+TriangleMesh nestedOutward() {
+    TriangleMesh both =
+        testing::merged({testing::icosphere(2, {0, 0, 0}, 9), testing::icosphere(2, {1, 0, 0}, 3)});
+    both.normals = {};
+    return both;
+}
+
+TEST(FinishSurface, FindsPiecesThatAreInsideOut) {
+    SurfaceRecord record;
+    FinishOptions options;
+    EXPECT_THROW(finishSurface(nestedOutward(), options, record), InternalError);
+    options.method = Method::Boxes;
+    finishSurface(nestedOutward(), options, record);
+    EXPECT_EQ(record.insideOutPieces, 1);
+    SurfaceRecord sound;
+    finishSurface(testing::cubeMesh(), {}, sound);
+    EXPECT_EQ(sound.insideOutPieces, 0);
+}
+
+FileDigits stlDigits(std::optional<double> askedBoundMm) {
+    return {&findMeshFormat("a.stl"), lpsToFrame(CoordinateFrame::Ras, std::nullopt), askedBoundMm};
+}
+
+// at 4e5 mm single precision has steps of 1/32 mm
+TEST(FinishSurface, BoundsTheSurfaceAsTheFileHoldsIt) {
+    TriangleMesh sphere = testing::icosphere(2, {4e5 + 0.3, -4e5, 4e5}, 50);
+    sphere.normals = {};
+    SurfaceRecord record;
+    record.statistics.errorBoundMm = 0.05;
+    FinishOptions options;
+    options.digits = stlDigits(0.05);
+    const FinishedSurface finished = finishSurface(sphere, options, record);
+    double farthestMm = 0;
+    for (const Vec3& p : sphere.points) {
+        const Vec3 rounded{static_cast<float>(p.x), static_cast<float>(p.y),
+                           static_cast<float>(p.z)};
+        farthestMm = std::max(farthestMm, norm(rounded - p));
+    }
+    EXPECT_GT(farthestMm, 0.01);
+    EXPECT_NEAR(record.roundingMm, farthestMm, 1e-9);
+    EXPECT_NEAR(*record.errorBoundMm(), 0.05 + farthestMm, 1e-9);
+
+    options.digits = stlDigits(0.01);
+    EXPECT_THROW(finishSurface(sphere, options, record), TooFewDigits);
+    options.digits = stlDigits(std::nullopt);  // a count was asked for
+    EXPECT_NO_THROW(finishSurface(sphere, options, record));
+}
+
+TEST(FinishSurface, RefusesDigitsWithWhichTheSurfaceIsNotSound) {
+    TriangleMesh sphere = testing::icosphere(3, {1e8, 1e8, 1e8}, 5);
+    sphere.normals = {};
+    FinishOptions options;
+    options.digits = stlDigits(std::nullopt);
+    for (const bool counts : {true, false}) {
+        for (const Method method : {Method::Adaptive, Method::MarchingCubes}) {
+            options.method = method;
+            options.countsCrossings = counts;
+            SurfaceRecord record;
+            EXPECT_THROW(finishSurface(sphere, options, record), TooFewDigits);
+        }
+    }
+}
+
+/// A ball of radius 12 and 26 of radius 2 around it.
+Volume ballAndSpecks() {
+    const auto n = static_cast<std::int64_t>(48);
+    std::vector<float> samples;
+    for (std::int64_t k = 0; k < n; ++k) {
+        for (std::int64_t j = 0; j < n; ++j) {
+            for (std::int64_t i = 0; i < n; ++i) {
+                const Vec3 p{i - 23.5, j - 23.5, k - 23.5};
+                Vec3 q = p;  // from the nearest speck
+                for (int a = 0; a < 3; ++a) q[a] -= 18 * std::clamp(std::round(p[a] / 18), -1., 1.);
+                samples.push_back(static_cast<float>(std::max(12 - norm(p), 2 - norm(q))));
+            }
+        }
+    }
+    return Volume::fromSamples(std::move(samples), {{n, n, n}, {0, 0, 0}, {}});
+}
+
+TEST(ExtractPieces, SpendsACountOnThePiecesThatAreKept) {
+    const Volume volume = ballAndSpecks();
+    const Extractor extractor = [&](const ExtractionOptions& options) {
+        return extractSurface(volume.view(), options);
+    };
+    ExtractionOptions options;
+    options.adaptive.maxTriangles = 300;
+    ComponentSelection largest, minVolume;
+    largest.largestOnly = true;
+    minVolume.minVolumeMm3 = 500;
+    for (const ComponentSelection& selection : {largest, minVolume}) {
+        SurfaceRecord record;
+        TriangleMesh mesh = extractPieces(extractor, options, selection, record);
+        EXPECT_TRUE(record.isPart);
+        FinishOptions finish;
+        finish.selection = selection;
+        finishSurface(std::move(mesh), finish, record);
+        EXPECT_EQ(record.topology.components.size(), 1u);
+        EXPECT_TRUE(record.countMet().value_or(false));
+        EXPECT_GT(record.topology.triangles, 270);
+        // a sphere's caps of 300 triangles are about 12 (2.7 / 12)^2 / 6 high
+        EXPECT_LT(*record.errorBoundMm(), 0.4);
+        EXPECT_NEAR(*record.volumeMm3, 4 / 3. * 3.14159 * 12 * 12 * 12, 200);
+    }
+    // where no piece goes, and where no count is asked for, nothing changes
+    SurfaceRecord record;
+    ComponentSelection all;
+    all.minVolumeMm3 = 1;
+    EXPECT_EQ(extractPieces(extractor, options, all, record).points,
+              extractor(options).mesh.points);
+    EXPECT_FALSE(record.isPart);
+    options.adaptive = {};
+    EXPECT_EQ(extractPieces(extractor, options, largest, record).points,
+              extractor(options).mesh.points);
+}
+
+TEST(AskedBound, IsTheDefaultUnlessACountIsAskedFor) {
+    const ImageGeometry volume{{9, 9, 9}, {0, 0, 0}, {{Vec3{2, 0, 0}, {0, 2, 0}, {0, 0, 3}}}};
+    ExtractionOptions options;
+    EXPECT_NEAR(*askedBoundMm(options, volume), 0.3, 1e-12);
+    options.adaptive.maxTriangles = 5;
+    EXPECT_FALSE(askedBoundMm(options, volume));
+    options.adaptive.maxErrorMm = 0.7;
+    EXPECT_EQ(askedBoundMm(options, volume), 0.7);
+    options = {};
+    options.method = Method::MarchingCubes;
+    EXPECT_FALSE(askedBoundMm(options, volume));
 }
 
 TEST(IsovalueFault, TellsValuesThatCutNothing) {

@@ -142,5 +142,66 @@ TEST(SettleRounding, TakesNineDigits) {
     }
 }
 
+/// A sphere as a file has it, read again.
+TriangleMesh writtenAndRead(const TriangleMesh& mesh, const std::filesystem::path& path,
+                            CoordinateFrame frame, const std::optional<ImageGeometry>& volume) {
+    MeshWriteOptions write;
+    write.frame = frame;
+    write.volume = volume;
+    writeMesh(mesh, path, write);
+    MeshFile file = readMesh(path);
+    return fromFrame(file.mesh, frame, volume);
+}
+
+// The rounding claimed is that of the file, in every format that keeps the order of points.
+TEST(SettleRounding, MeasuresTheRoundingOfTheFile) {
+    const std::filesystem::path folder =
+        std::filesystem::path(::testing::TempDir()) / ("settled" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+    const ImageGeometry volume{{256, 256, 256}, {-128, -128, -128}, {}};
+    for (const double far : {10.0, 4e4, 4e5}) {
+        for (const char* name : {"a.obj", "a.off", "a.gii", "a.surf", "a.tri", "a.vtp"}) {
+            const MeshFormat& format = findMeshFormat(name);
+            const CoordinateFrame frame = defaultFrame(format);
+            TriangleMesh sphere = testing::icosphere(3, {far, 0.3 * far, -0.7 * far}, 50);
+            sphere.normals = {};
+            const std::vector<Vec3> exact = sphere.points;
+            const AffineTransform toFrame = lpsToFrame(frame, volume);
+            const RoundingHarm harm = settleRounding(sphere, format.precision, toFrame);
+            ASSERT_FALSE(harm);
+            const TriangleMesh file = writtenAndRead(sphere, folder / name, frame, volume);
+            const TriangleMesh stored = asStored(sphere, format.precision, toFrame);
+            ASSERT_EQ(file.points.size(), exact.size());
+            double farthestMm = 0;
+            for (std::size_t v = 0; v < exact.size(); ++v) {
+                farthestMm = std::max(farthestMm, norm(file.points[v] - exact[v]));
+                // a frame and back: some units in the last place of doubles
+                EXPECT_LE(norm(stored.points[v] - file.points[v]), 1e-14 * far) << name;
+            }
+            EXPECT_NEAR(harm.roundingMm, farthestMm, 1e-14 * far) << name << far;
+            if (format.precision == CoordinatePrecision::Float64) EXPECT_EQ(harm.roundingMm, 0);
+        }
+    }
+}
+
+TEST(RoundingFault, RefusesRoundingBeyondTheBound) {
+    const MeshFormat& stl = findMeshFormat("a.stl");
+    EXPECT_FALSE(roundingFault(0.01, 0.05, stl));
+    EXPECT_EQ(roundingFault(0.226, 0.05, stl),
+              "STL (binary) keeps 24 bits of a coordinate: points would move by up to 0.226 mm, "
+              "more than the bound of 0.05 mm; write a .vtp or .ply, or move the image nearer to "
+              "the origin");
+}
+
+TEST(RoundingWarning, StatesTheBoundOfTheFileWhereItIsNoticeablyLarger) {
+    const MeshFormat& stl = findMeshFormat("a.stl");
+    const auto warning = roundingWarning("a.stl", 0.056789, 0.05, 0.006789, stl);
+    ASSERT_TRUE(warning);
+    EXPECT_EQ(warning->code, "bound-exceeded");
+    EXPECT_EQ(warning->line().find("a.stl: lies within 0.0568 mm, not 0.05 mm"), 0u);
+    EXPECT_FALSE(roundingWarning("a.stl", 0.15000763, 0.15, 7.63e-6, stl));
+    EXPECT_FALSE(roundingWarning("a.stl", 0.04, 0.05, 0.006789, stl));  // within it all the same
+}
+
 }  // namespace
 }  // namespace adaptiso

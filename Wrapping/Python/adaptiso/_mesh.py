@@ -124,7 +124,9 @@ class Mesh(Triangles[_adaptiso.MeshData]):
     def save(self, path: Any, frame: Optional[str] = None) -> None:
         """Write the mesh: .vtp, .vtk, .ply, .stl, .obj, .off, .gii, FreeSurfer's, or .tri.
 
-        The file is whole or not there, and the same as the program adaptiso-mesh writes.
+        The file is whole or not there, and the same as the program adaptiso-mesh writes. Where the
+        format's digits take it noticeably beyond the bound that was asked for, the logger
+        "adaptiso" states the file's.
 
         Parameters
         ----------
@@ -138,7 +140,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         Error
             An unknown extension, a frame that the format can't hold or that needs an image that
             the mesh does not know, a format that keeps too few digits of the coordinates for a
-            surface made here to stay sound, a file that can't be written.
+            surface made here to stay sound or within its bound, a file that can't be written.
         """
         self._save(checked_path("path", path), frame)
 

@@ -31,7 +31,7 @@ def simplify(mesh: Any, faces: Any = None, *, max_error: Optional[float] = None,
     max_error : float, optional
         Largest distance, both ways, between the mesh and the result.
     triangles : int, optional
-        As near to the mesh as so many triangles can be.
+        Simplify to so many triangles, as close to the mesh as the method gets.
     reduction : float, optional
         Share of the triangles to drop, 0 to 1. One of these three must be given; with several,
         triangles are dropped until any of them ends it.

@@ -40,7 +40,8 @@ def surface(image: Any, level: Union[float, str], *, max_error: Optional[float] 
         Largest distance in mm, both ways, to the surface of marching cubes. Default: 0.15 of the
         least distance between planes of voxels, unless `triangles` or `reduction` is given.
     triangles : int, optional
-        As near to that surface as so many triangles can be.
+        Simplify to so many triangles, as close to that surface as the method gets; of the pieces
+        that are kept.
     reduction : float, optional
         Share of marching cubes' triangles to drop, 0 to 1.
     min_angle : float, optional

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import uuid
 from typing import Callable, Generic, Optional, TypeVar, Union
@@ -19,6 +20,9 @@ Faces = npt.NDArray[np.int64]
 
 FRAMES = ("ras", "lps", "tkras", "voxel")
 
+logger = logging.getLogger("adaptiso")
+
+Result = TypeVar("Result")
 Data = TypeVar("Data", bound=Union[_adaptiso.MeshData, _adaptiso.LabelData])
 
 
@@ -43,11 +47,14 @@ class Triangles(Generic[Data]):
         """\\raises Error"""
         if frame is not None:
             word("frame", frame, FRAMES)
-        save_whole(name, lambda temporary: self._data.write(temporary, frame))
+        warning = save_whole(name, lambda temporary: self._data.write(temporary, frame))
+        if warning:
+            logger.warning("%s: %s", os.path.basename(name), warning)
 
 
-def save_whole(path: str, write: Callable[[str], None]) -> None:
-    """Writes a file by `write` under a temporary name beside it, and renames it. \\raises Error"""
+def save_whole(path: str, write: Callable[[str], Result]) -> Result:
+    """Writes a file by `write` under a temporary name beside it, and renames it; returns what
+    `write` returns. \\raises Error"""
     if os.path.basename(path) in ("", ".", ".."):
         raise Error(f"{path}: is a folder's name; give a file's")
     name = os.path.realpath(path)
@@ -57,8 +64,9 @@ def save_whole(path: str, write: Callable[[str], None]) -> None:
     stem, extension = os.path.splitext(file)
     temporary = os.path.join(folder, f".{stem[:80]}-{uuid.uuid4().hex}{extension}")
     try:
-        write(temporary)
+        result = write(temporary)
         os.replace(temporary, name)
+        return result
     except BaseException as error:
         with contextlib.suppress(OSError):
             os.unlink(temporary)

@@ -46,8 +46,8 @@ public:
     /// Bound, statistics, and the measures of the regions; JSON.
     const std::string& report() const { return report_; }
 
-    /// walls.vtp of adaptiso-labels.
-    void write(const std::string& path, std::optional<CoordinateFrame> frame) const;
+    /// walls.vtp of adaptiso-labels. \return as MeshData::write()
+    std::string write(const std::string& path, std::optional<CoordinateFrame> frame) const;
 
 private:
     LabelComplex complex_;

@@ -101,7 +101,7 @@ void declareLabelData(py::module_& module) {
                const std::optional<std::string>& frame) {
                 const auto wanted = frameOf(frame);
                 const Unlocked unlocked;
-                self.write(path, wanted);
+                return self.write(path, wanted);
             },
             py::arg("path"), py::arg("frame"));
 }

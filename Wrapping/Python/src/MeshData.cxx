@@ -134,7 +134,10 @@ std::shared_ptr<MeshData> MeshData::fromLps(TriangleMesh mesh, std::optional<Ima
     turnXY(data->mesh_);
     data->image_ = std::move(image);
     data->history_ = std::move(history);
-    if (data->history_) data->errorBoundMm_ = data->history_->record.statistics.errorBoundMm;
+    if (data->history_) {
+        data->errorBoundMm_ = data->history_->record.statistics.errorBoundMm;
+        data->askedBoundMm_ = askedBoundMm(data->history_->extraction, *data->image_);
+    }
     return data;
 }
 
@@ -178,8 +181,8 @@ std::string MeshData::report() {
     return report_;
 }
 
-void MeshData::write(const std::string& path, std::optional<CoordinateFrame> frame,
-                     std::vector<CellArray> cellArrays) const {
+std::string MeshData::write(const std::string& path, std::optional<CoordinateFrame> frame,
+                            std::vector<CellArray> cellArrays) const {
     const MeshFormat& format = findMeshFormat(path);
     MeshWriteOptions options;
     options.cellArrays = std::move(cellArrays);
@@ -197,7 +200,7 @@ void MeshData::write(const std::string& path, std::optional<CoordinateFrame> fra
         const ImageGeometry standIn = conformedGeometry({{256, 256, 256}, {-128, -128, -128}, {}});
         options.volume = standIn;
         writeMesh(fromFrame(mesh_, CoordinateFrame::TkRas, standIn), path, options);
-        return;
+        return {};
     }
     if (needsVolume(options.frame)) {
         if (!image_) {
@@ -208,18 +211,26 @@ void MeshData::write(const std::string& path, std::optional<CoordinateFrame> fra
     }
     if (frame_ == CoordinateFrame::TkRas) {
         writeMesh(fromFrame(mesh_, frame_, frameVolume(frame_, *image_)), path, options);
-        return;
+        return {};
     }
     TriangleMesh lps = mesh_;
     turnXY(lps);
     // as the programs do; walls of labels are rounded alike on both sides instead
+    std::optional<Warning> warning;
     if (history_ || !report_.empty()) {
         RoundingHarm harm =
             settleRounding(lps, format.precision, lpsToFrame(options.frame, options.volume));
         if (!history_) harm.mergedPoints = 0;  // adaptiso-simplify looks at triangles alone
         if (harm) throw InvalidInput(path + ": " + textOf(harm, format));
+        if (askedBoundMm_) {
+            const auto fault = roundingFault(harm.roundingMm, *askedBoundMm_, format);
+            if (fault) throw InvalidInput(path + ": " + *fault);
+            warning = roundingWarning({}, errorBoundMm_.value_or(0) + harm.roundingMm,
+                                      *askedBoundMm_, harm.roundingMm, format);
+        }
     }
     writeMesh(lps, path, options);
+    return warning ? warning->text : "";
 }
 
 std::string MeshData::notebook(const std::string& title) const {

@@ -87,10 +87,16 @@ public:
     std::string report();
     void setReport(std::string report) { report_ = std::move(report); }
 
+    /// The bound that the mesh was asked to keep, mm; none: none, or not known.
+    void setAskedBoundMm(std::optional<double> bound) { askedBoundMm_ = bound; }
+
     /// Writes a file in place, in `frame` or in the format's own.
     /// \param cellArrays  as MeshWriteOptions has them
-    void write(const std::string& path, std::optional<CoordinateFrame> frame,
-               std::vector<CellArray> cellArrays = {}) const;
+    /// \return a warning, without the file's name: the format's digits take the file beyond the
+    ///         bound that was asked for; else ""
+    /// \throws InvalidInput  a frame that the format can't hold, or digits that do not do
+    std::string write(const std::string& path, std::optional<CoordinateFrame> frame,
+                      std::vector<CellArray> cellArrays = {}) const;
 
     /// The mesh in the viewer of report pages, for a notebook. \pre it has triangles
     std::string notebook(const std::string& title) const;
@@ -99,7 +105,7 @@ private:
     TriangleMesh mesh_;
     CoordinateFrame frame_ = CoordinateFrame::Ras;
     std::optional<ImageGeometry> image_;
-    std::optional<double> errorBoundMm_;
+    std::optional<double> errorBoundMm_, askedBoundMm_;
     std::optional<SurfaceHistory> history_;
     std::string report_;
 };

@@ -79,7 +79,7 @@ void declareMeshes(py::module_& module) {
                const std::optional<std::string>& frame) {
                 const auto wanted = frameOf(frame);
                 const Unlocked unlocked;
-                self.write(path, wanted);
+                return self.write(path, wanted);
             },
             py::arg("path"), py::arg("frame") = py::none())
         .def(

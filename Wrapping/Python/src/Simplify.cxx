@@ -34,6 +34,7 @@ py::tuple simplifyMesh(const MeshData& data, SimplifyOptions options, int thread
         std::make_shared<MeshData>(MeshData::asStored(std::move(result.mesh), data.frame()));
     if (data.image()) made->setImage(*data.image());
     made->setErrorBoundMm(result.statistics.errorBoundMm);
+    made->setAskedBoundMm(options.maxErrorMm);
     return py::make_tuple(std::move(made), toDict(result.statistics));
 }
 

@@ -84,10 +84,10 @@ struct SurfaceRequest {
     }
 };
 
-std::string rangeText(const ValueRange& range) {
+std::string rangeText(double level, const ValueRange& range) {
     if (range.minimum > range.maximum) return "the image holds no numbers";
-    return "the range of the image is " + formatShort(range.minimum) + " to " +
-           formatShort(range.maximum);
+    const auto texts = formatApart({range.minimum, range.maximum, level});
+    return "the range of the image is " + texts[0] + " to " + texts[1];
 }
 
 double levelOf(const SurfaceRequest& request, const VolumeView& volume, const ValueRange& range) {
@@ -100,7 +100,7 @@ double levelOf(const SurfaceRequest& request, const VolumeView& volume, const Va
     }
     if (const auto fault = isovalueFault(*request.level, range)) {
         throw InvalidInput("level " + formatNumber(*request.level) + ": " + *fault + "; " +
-                           rangeText(range));
+                           rangeText(*request.level, range));
     }
     return *request.level;
 }
@@ -123,7 +123,18 @@ SurfaceHistory historyOf(const SurfaceRequest& request, const ArrayIndex* built,
     return history;
 }
 
-/// The surface before pieces are dropped. Without an index every block is looked at, which for one
+/// Calls `work`, which chooses pieces. \throws InvalidInput when nothing is left
+template <class Work>
+TriangleMesh choosingPieces(const SurfaceRequest& request, const Work& work) {
+    try {
+        return work();
+    } catch (const NothingLeft& error) {
+        throw InvalidInput("min_volume " + formatNumber(request.minVolumeMm3) + ": " +
+                           error.what());
+    }
+}
+
+/// The surface before it is finished. Without an index every block is looked at, which for one
 /// level is quicker than to build one, and keeps nothing.
 TriangleMesh extracted(const VolumeView& volume, const ArrayIndex* built,
                        const SurfaceRequest& request, SurfaceHistory& history, Watcher& watcher) {
@@ -134,17 +145,18 @@ TriangleMesh extracted(const VolumeView& volume, const ArrayIndex* built,
     ExtractionOptions options = history.extraction;
     options.isovalue = record.isovalue;
     options.progress = watcher.callback();
-    Extraction extraction = built != nullptr
-                                ? extractSurface(volume, built->index, options)
-                                : extractSurface(volume, options, history.index.border);
+    const auto extractor = [&](const ExtractionOptions& each) {
+        return built != nullptr ? extractSurface(volume, built->index, each)
+                                : extractSurface(volume, each, history.index.border);
+    };
+    TriangleMesh mesh = choosingPieces(
+        request, [&] { return extractPieces(extractor, options, history.selection, record); });
     history.seconds.emplace_back("extract", secondsSince(start));
-    record.statistics = extraction.statistics;
-    record.extractedTriangles = std::ssize(extraction.mesh.triangles);
-    if (extraction.mesh.triangles.empty()) {
+    if (mesh.triangles.empty()) {
         throw InvalidInput("level " + formatNumber(record.isovalue) +
                            ": the surface is empty; no two neighbouring voxels lie on both sides");
     }
-    return std::move(extraction.mesh);
+    return mesh;
 }
 
 TriangleMesh finished(TriangleMesh mesh, const SurfaceRequest& request, SurfaceHistory& history,
@@ -160,12 +172,8 @@ TriangleMesh finished(TriangleMesh mesh, const SurfaceRequest& request, SurfaceH
         work();
         history.seconds.emplace_back(stage, secondsSince(begin));
     };
-    try {
-        return finishSurface(std::move(mesh), finish, history.record).mesh;
-    } catch (const NothingLeft& error) {
-        throw InvalidInput("min_volume " + formatNumber(request.minVolumeMm3) + ": " +
-                           error.what());
-    }
+    return choosingPieces(
+        request, [&] { return finishSurface(std::move(mesh), finish, history.record).mesh; });
 }
 
 /// Makes a surface as adaptiso-mesh does, from the samples on.

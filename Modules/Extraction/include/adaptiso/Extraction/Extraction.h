@@ -33,7 +33,7 @@ struct AdaptiveOptions {
     /// Two-sided: no point of the surface of MarchingCubes is farther from the mesh, no point of
     /// the mesh farther from that surface, mm. \pre > 0
     std::optional<double> maxErrorMm;
-    std::optional<std::int64_t> maxTriangles;  ///< as accurate as can be at this count. \pre >= 0
+    std::optional<std::int64_t> maxTriangles;  ///< to simplify to. \pre >= 0
     /// Share of the triangles of MarchingCubes to drop, 0 to 1: a count by another name.
     std::optional<double> reduction;
     /// Angles below this are not made where there was none, and where there was, none smaller

@@ -19,7 +19,7 @@ struct SimplifyOptions {
     /// Two-sided: no point of the input is farther from the result, no point of the result farther
     /// from the input. \pre > 0, at least 1e-12 of the mesh's diagonal
     std::optional<double> maxErrorMm;
-    std::optional<std::int64_t> maxTriangles;  ///< as accurate as can be at this count. \pre >= 0
+    std::optional<std::int64_t> maxTriangles;  ///< to simplify to. \pre >= 0
     /// Share of the triangles to drop, 0 to 1: a count by another name.
     std::optional<double> reduction;
     /// As AdaptiveOptions::minAngleDeg. \pre 0 to 40, degrees

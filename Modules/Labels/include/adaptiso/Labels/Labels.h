@@ -33,7 +33,7 @@ struct LabelOptions {
     /// Two-sided distance to the full-resolution walls, mm, of each wall to itself. 0: these walls
     /// themselves; none: kDefaultMaxErrorVoxels, unless a count is given. \pre >= 0
     std::optional<double> maxErrorMm;
-    std::optional<std::int64_t> maxTriangles;  ///< as accurate as can be at this count. \pre >= 0
+    std::optional<std::int64_t> maxTriangles;  ///< to simplify to. \pre >= 0
     /// Share of the full-resolution triangles to drop, 0 to 1: a count by another name.
     std::optional<double> reduction;
     /// No angle below it is made: where walls at full resolution have a smaller one, none that is
