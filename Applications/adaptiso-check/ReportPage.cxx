@@ -124,10 +124,10 @@ ReportTable surfaceTable(const CheckRun& run) {
         table.rows.push_back({baseName(surface.file), formatCount(facts.topology.triangles),
                               formatCount(facts.topology.vertices),
                               formatCount(std::ssize(facts.topology.components)),
-                              genus ? formatCount(*genus) : "–", formatRounded(facts.areaMm2),
-                              facts.volumeMm3 ? formatRounded(*facts.volumeMm3) : "–",
+                              genus ? formatCount(*genus) : "–", formatMeasure(facts.areaMm2),
+                              facts.volumeMm3 ? formatMeasure(*facts.volumeMm3) : "–",
                               formatFixed(facts.shape.minAngleDeg.minimum, 2) + "°",
-                              formatFixed(facts.shape.edgeMm.median, 2)});
+                              formatLength(facts.shape.edgeMm.median, 2)});
     }
     return table;
 }
@@ -139,7 +139,7 @@ ReportTable nestingTable(const CheckRun& run) {
     for (const NestingRun& pair : run.nesting) {
         const bool hasGap = pair.report.gap.triangleA >= 0;
         table.rows.push_back({pairName(run, pair), std::string(toString(pair.report.relation)),
-                              hasGap ? formatFixed(pair.report.gap.nearest.distanceMm, 3) : "–",
+                              hasGap ? formatLength(pair.report.gap.nearest.distanceMm, 3) : "–",
                               formatCount(pair.report.crossingPairs)});
     }
     return table;

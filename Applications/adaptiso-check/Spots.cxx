@@ -64,7 +64,7 @@ private:
         const std::vector<Hole> holes = findHoles(mesh_);
         for (std::size_t n = 0; n < std::min(holes.size(), kMostSpotsOfAKind); ++n) {
             spots_.push_back({"hole of " + formatCount(holes[n].edges) + " edges, " +
-                                  formatFixed(holes[n].lengthMm, 1) + " mm round," + in_,
+                                  formatLength(holes[n].lengthMm, 1) + " mm round," + in_,
                               holes[n].middleMm, check->isRequired, static_cast<int>(n)});
         }
     }
@@ -142,7 +142,7 @@ private:
         const Check* check = failed(surface_.checks, "onIsosurface");
         const Vec3& ras = surface_.deviation->maxPointMm;
         spots_.push_back({"farthest from the isosurface, " +
-                              formatFixed(surface_.deviation->maxMm, 2) + " mm," + in_,
+                              formatLength(surface_.deviation->maxMm, 2) + " mm," + in_,
                           {-ras.x, -ras.y, ras.z},
                           check && check->isRequired});
     }
@@ -185,7 +185,7 @@ std::vector<ReportSpot> spotsOf(const NestingRun& pair, const std::string& inner
     const NearestPoints nearest = triangleDistance(cornersOf(inner, report.gap.triangleA),
                                                    cornersOf(outer, report.gap.triangleB));
     spots.push_back(
-        {"smallest gap, " + formatFixed(nearest.distanceMm, 2) + " mm, between " + names,
+        {"smallest gap, " + formatLength(nearest.distanceMm, 2) + " mm, between " + names,
          0.5 * (nearest.pointA + nearest.pointB), check && check->isRequired});
     return spots;
 }

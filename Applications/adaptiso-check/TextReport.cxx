@@ -55,15 +55,15 @@ std::string frameText(const std::optional<CoordinateFrame>& frame) {
 }
 
 void printSpread(std::ostream& out, std::string_view name, const Spread& spread, int digits) {
-    out << "  " << std::left << std::setw(24) << name << formatFixed(spread.minimum, digits)
-        << " / " << formatFixed(spread.median, digits) << " / "
-        << formatFixed(spread.maximum, digits) << '\n';
+    out << "  " << std::left << std::setw(24) << name << formatLength(spread.minimum, digits)
+        << " / " << formatLength(spread.median, digits) << " / "
+        << formatLength(spread.maximum, digits) << '\n';
 }
 
 void printFacts(std::ostream& out, const SurfaceFacts& facts) {
     const auto genus = facts.topology.genus();
-    out << "  area " << formatRounded(facts.areaMm2) << " mm2";
-    if (facts.volumeMm3) out << ", volume " << formatRounded(*facts.volumeMm3) << " mm3";
+    out << "  area " << formatMeasure(facts.areaMm2) << " mm2";
+    if (facts.volumeMm3) out << ", volume " << formatMeasure(*facts.volumeMm3) << " mm3";
     out << ", " << formatCount(std::ssize(facts.topology.components)) << " component"
         << (facts.topology.components.size() == 1 ? "" : "s");
     if (genus) out << ", genus " << *genus;

@@ -13,9 +13,9 @@ void tellVerdict(const CompareRun& run, const std::string& a, const std::string&
                  Report& report) {
     const DistanceStatistics& distances = run.distances.combined;
     report.title = "Distance between " + a + " and " + b;
-    report.headline = formatFixed(distances.meanMm, 3) + " mm on the mean, " +
+    report.headline = formatLength(distances.meanMm, 3) + " mm on the mean, " +
                       formatFixed(distances.p95Mm, 3) + " mm at 95 %, " +
-                      formatFixed(distances.maxMm, 3) + " mm at most.";
+                      formatLength(distances.maxMm, 3) + " mm at most.";
     if (run.checks.empty()) return;
     const bool havePassed = std::all_of(run.checks.begin(), run.checks.end(),
                                         [](const Check& check) { return check.hasPassed(); });
@@ -23,7 +23,7 @@ void tellVerdict(const CompareRun& run, const std::string& a, const std::string&
     for (const Check& check : run.checks) {
         report.checks.push_back({a + " and " + b, check.name,
                                  check.hasPassed() ? ReportOutcome::Passed : ReportOutcome::Failed,
-                                 formatFixed(check.valueMm, 4) + " mm, at most " +
+                                 formatLength(check.valueMm, 4) + " mm, at most " +
                                      formatNumber(check.limitMm) + " mm"});
     }
 }
@@ -61,9 +61,9 @@ ReportTable distanceTable(const CompareRun& run) {
                        "Angle between the surfaces, mean"},
                       {}};
     const auto add = [&](const std::string& name, const DistanceStatistics& statistics) {
-        table.rows.push_back({name, formatFixed(statistics.meanMm, 4),
-                              formatFixed(statistics.rmsMm, 4), formatFixed(statistics.p95Mm, 4),
-                              formatFixed(statistics.p99Mm, 4), formatFixed(statistics.maxMm, 4),
+        table.rows.push_back({name, formatLength(statistics.meanMm, 4),
+                              formatLength(statistics.rmsMm, 4), formatLength(statistics.p95Mm, 4),
+                              formatLength(statistics.p99Mm, 4), formatLength(statistics.maxMm, 4),
                               formatFixed(statistics.meanNormalDeviationDeg, 2) + "°"});
     };
     add("A to B", run.distances.aToB);
@@ -79,15 +79,15 @@ ReportTable surfaceTable(const CompareRun& run) {
         "Surfaces", {"Surface", "Triangles", "Vertices", "Area, mm²", "Volume, mm³"}, {}};
     for (const SurfaceSummary* surface : {&run.a, &run.b}) {
         table.rows.push_back({baseName(surface->file), formatCount(surface->triangles),
-                              formatCount(surface->vertices), formatRounded(surface->areaMm2),
-                              surface->volumeMm3 ? formatRounded(*surface->volumeMm3) : "–"});
+                              formatCount(surface->vertices), formatMeasure(surface->areaMm2),
+                              surface->volumeMm3 ? formatMeasure(*surface->volumeMm3) : "–"});
     }
     return table;
 }
 
 ReportSpot farthest(const DistanceStatistics& statistics, const std::string& from,
                     const std::string& to, bool isFailure) {
-    return {"farthest point of " + from + " from " + to + ", " + formatFixed(statistics.maxMm, 3) +
+    return {"farthest point of " + from + " from " + to + ", " + formatLength(statistics.maxMm, 3) +
                 " mm",
             statistics.maxPointMm, isFailure};
 }
@@ -110,7 +110,7 @@ Report makeReport(const CompareRun& run, ShownSurfaces& shown) {
     if (run.overlap) {
         report.notes.push_back("As solids: Dice " + formatFixed(run.overlap->voxels.dice(), 4) +
                                ", mean offset of the boundary " +
-                               formatFixed(run.overlap->meanBoundaryOffsetMm, 4) + " mm.");
+                               formatLength(run.overlap->meanBoundaryOffsetMm, 4) + " mm.");
     }
     if (run.frame == CoordinateFrame::TkRas) report.frame = "FreeSurfer's tkRAS mm";
     const auto& limit = run.options.maxHausdorffMm;

@@ -17,9 +17,9 @@ std::string signedPercent(double value, double of) {
 
 void printSurface(std::ostream& out, std::string_view name, const SurfaceSummary& surface) {
     out << name << "  " << surface.file.string() << ": " << formatCount(surface.triangles)
-        << " triangles, area " << formatRounded(surface.areaMm2) << " mm2, ";
+        << " triangles, area " << formatMeasure(surface.areaMm2) << " mm2, ";
     if (surface.volumeMm3) {
-        out << "volume " << formatRounded(*surface.volumeMm3) << " mm3\n";
+        out << "volume " << formatMeasure(*surface.volumeMm3) << " mm3\n";
     } else {
         out << "not closed\n";
     }
@@ -34,7 +34,7 @@ void printRow(std::ostream& out, std::string_view name, Length length, double un
     for (const DistanceStatistics* direction :
          {&distances.aToB, &distances.bToA, &distances.combined}) {
         if (direction->samples == 0) continue;
-        out << std::setw(12) << formatFixed(direction->*length / unit, 4);
+        out << std::setw(12) << formatLength(direction->*length / unit, 4);
         if (distances.bToA.samples == 0) break;  // the combined figures are those of A to B
     }
     out << '\n';
@@ -75,7 +75,7 @@ void printDifferences(std::ostream& out, const CompareRun& run) {
     out << " against B\n";
     if (run.overlap) {
         out << "  Dice " << formatFixed(run.overlap->voxels.dice(), 5) << ", mean boundary offset "
-            << formatFixed(run.overlap->meanBoundaryOffsetMm, 4) << " mm\n";
+            << formatLength(run.overlap->meanBoundaryOffsetMm, 4) << " mm\n";
     }
 }
 
@@ -88,7 +88,7 @@ void printReport(std::ostream& out, const CompareRun& run) {
     printDifferences(out, run);
     if (run.colored) {
         out << run.options.colored.string() << ": A with its distances, viridis from 0 to "
-            << formatFixed(run.colored->maximumMm, 4) << " mm\n";
+            << formatLength(run.colored->maximumMm, 4) << " mm\n";
     }
     printTimes(out, run.timer);
 }

@@ -264,10 +264,16 @@ private:
             return add(kSize, Outcome::Undecided, "there is no triangle to measure");
         }
         const auto mm = [](double value) {
-            return formatNumber(std::stod(formatFixed(value, value < 1 ? 4 : 1)));
+            return value < 0.1 ? formatLength(value, 4)
+                               : formatNumber(std::stod(formatFixed(value, value < 1 ? 4 : 1)));
         };
         std::string finding =
             mm(size.extentMm.x) + " x " + mm(size.extentMm.y) + " x " + mm(size.extentMm.z) + " mm";
+        if (size.verdict == SizeVerdict::TooSmall && rules_.profileInUse() != Profile::Bem) {
+            const std::string unit =
+                size.guess ? ", or in " + std::string(toString(*size.guess)) : std::string();
+            return add(kSize, Outcome::Undecided, finding + ": of a micro-CT" + unit + "?");
+        }
         if (size.verdict != SizeVerdict::Plausible) {
             finding += size.verdict == SizeVerdict::TooSmall ? ": too small" : ": too large";
             if (size.guess) finding += "; in " + std::string(toString(*size.guess)) + "?";
@@ -289,7 +295,7 @@ std::string outsideText(const NestingReport& report, const std::string& inner,
                         const std::string& outer) {
     return counted(report.innerVerticesNotInside, "vertex", "vertices") + " of " + inner +
            (report.innerVerticesNotInside == 1 ? " is" : " are") + " not inside " + outer +
-           ": out by up to " + formatFixed(report.farthestOutMm, 2) + " mm";
+           ": out by up to " + formatLength(report.farthestOutMm, 2) + " mm";
 }
 
 std::string relationText(const NestingReport& report, const std::string& inner,
@@ -355,12 +361,12 @@ Check judgeDeviation(const std::optional<DistanceStatistics>& deviation, double 
     }
     const bool holds =
         rules.maxOffMm ? deviation->maxMm <= *rules.maxOffMm : deviation->meanMm <= voxelMm / 2;
-    std::string finding = "off by " + formatFixed(deviation->meanMm, 3) + " mm on the mean, " +
-                          formatFixed(deviation->maxMm, 3) + " mm at most";
+    std::string finding = "off by " + formatLength(deviation->meanMm, 3) + " mm on the mean, " +
+                          formatLength(deviation->maxMm, 3) + " mm at most";
     if (!holds) {
         finding += rules.maxOffMm ? ", must be at most " + formatNumber(*rules.maxOffMm) + " mm"
                                   : ", the mean must be at most half a voxel of " +
-                                        formatFixed(voxelMm, 3) + " mm";
+                                        formatLength(voxelMm, 3) + " mm";
     }
     return makeCheck(kDeviation, holds ? Outcome::Passed : Outcome::Failed, finding, rules);
 }
@@ -394,7 +400,7 @@ std::vector<Check> judgeNesting(const NestingReport& report, const std::string& 
         add(kMinGap, holds,
             areIdentical
                 ? "none: the two are the same surface"
-                : "smallest " + formatFixed(report.gap.nearest.distanceMm, 3) + " mm" + where +
+                : "smallest " + formatLength(report.gap.nearest.distanceMm, 3) + " mm" + where +
                       (holds ? "" : ", must be at least " + formatNumber(limit) + " mm"));
     }
     checks.back().isRequired |= rules.minGapMm.has_value();
