@@ -9,11 +9,6 @@
 namespace adaptiso {
 namespace {
 
-std::string rasText(const Vec3& lps) {
-    return "(" + formatFixed(-lps.x, 1) + ", " + formatFixed(-lps.y, 1) + ", " +
-           formatFixed(lps.z, 1) + ") mm RAS";
-}
-
 void printSurface(std::ostream& out, HeadSurface which, const BemSurface& surface) {
     out << toString(which) << ": " << formatCount(surface.topology.vertices) << " vertices, "
         << formatCount(surface.topology.triangles) << " triangles, edges "

@@ -66,6 +66,34 @@ class Surfaces(BemTest):
         self.assertEqual(report["surfaces"][0]["nesting"]["movedVertices"], 0)
         self.assertGreater(report["surfaces"][1]["nesting"]["movedVertices"], 0)
 
+    def test_given_ones_that_are_moved_are_a_warning_with_count_length_and_place(self):
+        names = self.write(globe(60, centre=(10, 0, 0)), globe(66), globe(72))
+        done = self.bem("--surfaces", *names, "-o", "model")
+        report = self.report()
+        moved = {w["text"].split(":")[0]: w for w in report["input"]["warnings"]
+                 if w["code"] == "surface-moved"}
+        self.assertEqual(set(moved), {"outer_skull", "outer_skin"})
+        for n, name in ((1, "outer_skull"), (2, "outer_skin")):
+            nesting = report["surfaces"][n]["nesting"]
+            given = globe((66, 72)[n - 1])[0]
+            points = read_tri(self.path("model") / f"{name}.tri")[0]
+            lengths = [math.dist(p, q) for p, q in zip(given, points)]
+            self.assertEqual(nesting["movedVertices"], sum(mm > 1e-6 for mm in lengths))
+            self.assertAlmostEqual(nesting["maximumMm"], max(lengths), places=5)
+            at = given[lengths.index(max(lengths))]
+            self.assertLess(math.dist(nesting["maximumPointMm"], (-at[0], -at[1], at[2])), 1e-6)
+            self.assertRegex(moved[name]["text"],
+                             rf"^{name}: {nesting['movedVertices']} of {len(given)} vertices were "
+                             rf"moved by up to {nesting['maximumMm']:.2f} mm, at \(")
+            self.assertIn("warning: " + moved[name]["text"], done.stderr)
+        self.assertEqual(self.run_bem("--surfaces", *names, "-o", "strict", "--strict").returncode,
+                         CHECK_FAILED)
+        self.assertFalse((self.path("strict") / "inner_skull.tri").exists())
+        # and none where they stay
+        names = self.write(*(globe(r) for r in RADII))
+        self.bem("--surfaces", *names, "-o", "kept")
+        self.assertNotIn("surface-moved", [w["code"] for w in self.report("kept")["input"]["warnings"]])
+
     def test_broken_ones_are_made_anew(self):
         points, triangles = globe(60)
         names = self.write((points, triangles[5:]), globe(66), globe(72))

@@ -141,6 +141,46 @@ class Model(BemTest):
         self.bem(*arguments, "--vertices", "162,300,200", "-o", "model")
         self.assertEqual([s["vertices"] for s in self.report()["surfaces"]], [162, 300, 200])
 
+    def test_what_is_not_as_in_the_labels_is_told(self):
+        # a skull of 1.5 mm, which is made 2 mm thick or more; voxels of 4 mm show 1 to 4 of it
+        self.bem(*self.labels(image=head(radii=(60, 61.5, 72)), name="thin.nii"), "-o", "thin")
+        report = self.report("thin")
+        skull = report["skull"]
+        self.assertLess(skull["segmentedMedianMm"], 2.5)
+        self.assertGreater(skull["modelMedianMm"], skull["segmentedMedianMm"])
+        notes = " ".join(report["notes"])
+        self.assertRegex(notes, r"skull: \d\.\d+ mm thick in the segmentation .* mm in the model")
+        self.assertRegex(notes, r"outer_skin: encloses [\d,]+ cm3, [\d,]+ cm3 in the segmentation \(")
+        for surface, radius in zip(report["surfaces"], (60, 61.5, 72)):
+            self.assertAlmostEqual(surface["segmentedVolumeMm3"] / (4 / 3 * math.pi * radius ** 3), 1,
+                                   delta=0.03)
+        # a hole of 30 mm radius in a skull of 8 mm
+        image = head(radii=(60, 68, 76))
+        n = image.size[0]
+        samples = bytearray(image.samples)
+        for at, label in enumerate(samples):
+            i, j, k = at % n, at // n % n, at // n // n
+            y, z = (STEP * (v - (n - 1) / 2) for v in (j, k))
+            if label == 2 and i > n / 2 and y * y + z * z < 30 * 30:
+                samples[at] = 3
+        holed = Image(image.size, "B", bytes(samples), image.spacing, image.origin)
+        arguments = self.labels(image=holed, name="holed.nii")
+        done = self.bem(*arguments, "-o", "holed")
+        report = self.report("holed")
+        warning, = [w for w in report["input"]["warnings"] if w["code"] == "skull-closed"]
+        cap = 2 * math.pi * 60 ** 2 * (1 - math.cos(math.asin(30 / 64)))  # seen from the middle
+        # 162 vertices are 18 mm apart
+        self.assertGreater(report["skull"]["largestHoleMm2"], 0.6 * cap)
+        self.assertLess(report["skull"]["largestHoleMm2"], 1.4 * cap)
+        x, y, z = report["skull"]["holePointMm"]  # LPS
+        self.assertLess(math.dist((-x, -y, z), (55, 0, 0)), 8)
+        self.assertRegex(warning["text"], r"^a hole of [\d.]+ cm2 .* mm RAS, is closed in the model")
+        self.assertIn(warning["text"], done.stderr)
+        self.assertEqual(self.run_bem(*arguments, "-o", "strict", "--strict").returncode, CHECK_FAILED)
+        self.bem(*self.labels(), "-o", "usual")
+        self.assertEqual([w for w in self.report("usual")["input"]["warnings"]
+                          if w["code"].startswith("skull")], [])
+
     def test_gap_is_kept_where_the_labels_touch(self):
         arguments = self.labels(image=head(radii=(60, 61, 62)), name="thin.nii")
         self.bem(*arguments, "--min-gap", "4,3", "-o", "model")

@@ -69,6 +69,24 @@ void unite(FloatImage& solid, const VolumeView& mask) {
 }
 
 /// \param enclosed  by inner skull, outer skull and skin
+SegmentedHead segmentedHead(const std::vector<FloatImage>& enclosed) {
+    SegmentedHead head;
+    head.grid = enclosed[0].geometry;
+    const double voxelMm3 = std::abs(determinant(head.grid.indexToPhysical));
+    for (std::size_t n = 0; n < enclosed.size(); ++n) {
+        double sum = 0;
+        for (const float part : enclosed[n].values) sum += part;
+        head.enclosedMm3[n] = voxelMm3 * sum;
+    }
+    head.isSkull.resize(enclosed[0].values.size());
+    for (std::size_t v = 0; v < head.isSkull.size(); ++v) {
+        head.isSkull[v] =
+            enclosed[1].values[v] - enclosed[0].values[v] >= kFractionIsovalue ? 1 : 0;
+    }
+    return head;
+}
+
+/// \param enclosed  by inner skull, outer skull and skin
 /// \param brain     by the brain's own surface, if that is wanted
 HeadBoundaries boundariesFrom(std::vector<FloatImage> enclosed, std::optional<FloatImage> brain,
                               BoundaryOptions options) {
@@ -78,6 +96,8 @@ HeadBoundaries boundariesFrom(std::vector<FloatImage> enclosed, std::optional<Fl
                          first, last)) {
         throw InvalidInput("the head is empty");
     }
+    std::optional<SegmentedHead> segmented;
+    if (enclosed.size() == 3) segmented = segmentedHead(enclosed);
     RawBoundaries raw;
     raw.grid = workingGrid(image, first, last, options.stepMm, marginMm(options));
     const std::vector<std::uint8_t> faces = imageFaces(image, raw.grid);
@@ -104,7 +124,9 @@ HeadBoundaries boundariesFrom(std::vector<FloatImage> enclosed, std::optional<Fl
     cutNecks(raw, options);
     if (raw.parts.size() > 1) limitOuterSkull(raw, options);
     options.smoothingMm = sigmaFor(image, options);
-    return finished(std::move(raw), options);
+    HeadBoundaries boundaries = finished(std::move(raw), options);
+    boundaries.segmented = std::move(segmented);
+    return boundaries;
 }
 
 void requireDistinct(const TissueLabels& tissues) {

@@ -482,15 +482,20 @@ std::vector<Vec3> skinSides(const Head& head) {
 }
 
 /// The brain by what is known of it, or guessed.
-Mask brainOf(const BrainSources& sources, const Head& head, std::vector<std::string>& notes) {
+Mask brainOf(const BrainSources& sources, const Head& head, RawBoundaries& raw) {
     const bool isGuess = !sources.mask && !sources.aseg;
     const Mask brain = sources.mask   ? above(brainPart(*sources.mask, head), kFractionIsovalue)
                        : sources.aseg ? above(asegPart(*sources.aseg, head.grid), kFractionIsovalue)
                                       : guessedBrain(head);
     if (!isGuess) requirePlausibleMask(brain, head);
-    notes.push_back(
+    const std::string cm3 = shortNumber(cm3Of(brain, head.grid)) + " cm3";
+    raw.notes.push_back(
         (isGuess ? "brain guessed by thresholds, give a mask if it is wrong: " : "brain mask: ") +
-        shortNumber(cm3Of(brain, head.grid)) + " cm3");
+        cm3);
+    if (isGuess) {
+        raw.warnings.push_back({"guessed-brain", "the brain was guessed by thresholds (" + cm3 +
+                                                     "); look at it, or give a brain mask"});
+    }
     return brain;
 }
 
@@ -559,7 +564,7 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
                             "there");
     }
     tell(options, "brain", 0);
-    Mask brain = brainOf(sources, head, raw.notes);
+    Mask brain = brainOf(sources, head, raw);
     raw.parts.push_back(innerSkullPart(brain, head, options));
     cutNecks(raw, options);
     if (options.withBrain) {

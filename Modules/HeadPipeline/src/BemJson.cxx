@@ -19,29 +19,33 @@ Json remeshJson(const BemSurface& surface) {
 
 Json surfaceJson(const std::string& name, const BemSurface& surface) {
     const ShapeReport& shape = surface.shape;
-    return {{"name", name},
-            {"denseTriangles", surface.denseTriangles},
-            {"vertices", surface.topology.vertices},
-            {"triangles", surface.topology.triangles},
-            {"genus", orNull(surface.topology.genus())},
-            {"crossingPairs", surface.crossingPairs},
-            {"areaMm2", number(surface.areaMm2)},
-            {"volumeMm3", number(surface.volumeMm3)},
-            {"extentMm", vector(surface.extentMm)},
-            {"solidAngleShare", number(surface.solidAngleShare)},
-            {"edgeMm",
-             {{"minimum", number(shape.edgeMm.minimum)},
-              {"mean", number(shape.edgeMm.mean)},
-              {"maximum", number(shape.edgeMm.maximum)}}},
-            {"minAngleDeg",
-             {{"minimum", number(shape.minAngleDeg.minimum)},
-              {"p5", number(shape.minAngleDeg.p5)},
-              {"median", number(shape.minAngleDeg.median)}}},
-            {"seenShare", surface.seen ? number(surface.seen->share) : Json(nullptr)},
-            {"remesh", remeshJson(surface)},
-            {"nesting",
-             {{"movedVertices", surface.move.movedVertices},
-              {"maximumMm", number(surface.move.maximumMm)}}}};
+    return {
+        {"name", name},
+        {"denseTriangles", surface.denseTriangles},
+        {"vertices", surface.topology.vertices},
+        {"triangles", surface.topology.triangles},
+        {"genus", orNull(surface.topology.genus())},
+        {"crossingPairs", surface.crossingPairs},
+        {"areaMm2", number(surface.areaMm2)},
+        {"volumeMm3", number(surface.volumeMm3)},
+        {"extentMm", vector(surface.extentMm)},
+        {"solidAngleShare", number(surface.solidAngleShare)},
+        {"edgeMm",
+         {{"minimum", number(shape.edgeMm.minimum)},
+          {"mean", number(shape.edgeMm.mean)},
+          {"maximum", number(shape.edgeMm.maximum)}}},
+        {"minAngleDeg",
+         {{"minimum", number(shape.minAngleDeg.minimum)},
+          {"p5", number(shape.minAngleDeg.p5)},
+          {"median", number(shape.minAngleDeg.median)}}},
+        {"segmentedVolumeMm3", orNull(surface.segmentedMm3)},
+        {"seenShare", surface.seen ? number(surface.seen->share) : Json(nullptr)},
+        {"remesh", remeshJson(surface)},
+        {"nesting",
+         {{"movedVertices", surface.move.movedVertices},
+          {"maximumMm", number(surface.move.maximumMm)},
+          {"maximumPointMm",
+           surface.move.movedVertices > 0 ? vector(surface.move.maximumPointMm) : Json(nullptr)}}}};
 }
 
 /// As all points of this report.
@@ -84,6 +88,24 @@ Json electrodesJson(const BemModel& model) {
             {"farthestMovedMm", number(e.farthestMovedMm)},
             {"farthest", e.areComputed ? Json(nullptr) : Json(e.farthestName)},
             {"points", points}};
+}
+
+/// The model's skull beside that of the segmentation.
+Json skullJson(const BemModel& model) {
+    if (!model.skull) return nullptr;
+    const SkullComparison& skull = *model.skull;
+    const auto place = [](const std::optional<Vec3>& p) { return p ? vector(*p) : Json(nullptr); };
+    return {{"areaMm2", number(skull.areaMm2)},
+            {"absentMm2", number(skull.absentMm2)},
+            {"largestHoleMm2", number(skull.largestHoleMm2)},
+            {"holePointMm", place(skull.holeMm)},
+            {"segmentedMedianMm", number(skull.medianMm)},
+            {"segmentedThinMm", number(skull.thinMm)},
+            {"modelMedianMm", number(skull.modelMedianMm)},
+            {"thickerMm", number(skull.thickerMm)},
+            {"thickenedMm2", number(skull.thickenedMm2)},
+            {"mostThickenedMm", number(skull.mostThickenedMm)},
+            {"thickenedPointMm", place(skull.thickenedMm)}};
 }
 
 Json tetrahedraJson(const BemModel& model) {
@@ -170,6 +192,7 @@ Json bemModelJson(const BemModel& model) {
     return {{"notes", model.notes},
             {"surfaces", surfaces},
             {"gaps", gaps},
+            {"skull", skullJson(model)},
             {"checks", checks},
             {"tetrahedra", tetrahedraJson(model)},
             {"landmarks", landmarksJson(model)},

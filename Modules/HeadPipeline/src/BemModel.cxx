@@ -3,14 +3,11 @@
 #include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
-namespace {
 
 std::string rasText(const Vec3& lps) {
     return "(" + formatFixed(-lps.x, 1) + ", " + formatFixed(-lps.y, 1) + ", " +
            formatFixed(lps.z, 1) + ") mm RAS";
 }
-
-}  // namespace
 
 std::string BemModel::failureText() const {
     std::string text = findings.front().what + " at " + rasText(findings.front().pointMm);

@@ -161,6 +161,7 @@ std::vector<TriangleMesh> mendSurfaces(std::vector<TriangleMesh> surfaces, BemMo
     boundaries.progress = hooks.progress;
     HeadBoundaries mended;
     hooks.stage("boundaries", [&] { mended = boundariesFromSurfaces(surfaces, boundaries); });
+    model.given = std::move(surfaces);
     return extractSurfaces(mended, model, hooks);
 }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Extraction/Extraction.h"
@@ -143,6 +144,105 @@ std::vector<TriangleMesh> nested(const std::vector<TriangleMesh>& surfaces, BemM
     return std::move(result.surfaces);
 }
 
+/// "213 of 1,280 vertices were moved by up to 8.04 mm, at (1.0, 2.0, 3.0) mm RAS, ...".
+std::string moveText(std::size_t n, const BemModel& model) {
+    const SurfaceMove& move = model.surfaces[n].move;
+    return formatCount(move.movedVertices) + " of " +
+           formatCount(std::ssize(model.meshes[n].points)) + " vertices were moved by up to " +
+           formatLength(move.maximumMm, 2) + " mm, at " + rasText(move.maximumPointMm) +
+           ", to keep the least gap";
+}
+
+/// Of a surface that was made anew: where it is not as it was given.
+void tellRemade(const TriangleMesh& given, std::size_t n, BemModel& model) {
+    constexpr double kRemadeMm = 2;  // voxels, smoothing and triangles take less
+    const AabbTree tree(model.meshes[n]);
+    std::int64_t far = 0;
+    double farthestMm = 0;
+    Vec3 farthest;
+    for (const Vec3& p : given.points) {
+        const ClosestPoint nearest = tree.closestPoint(p);
+        const double mm = std::sqrt(nearest.squaredDistanceMm2);
+        if (nearest.triangle < 0 || !(mm > kRemadeMm)) continue;
+        ++far;
+        if (mm <= farthestMm) continue;
+        farthestMm = mm;
+        farthest = p;
+    }
+    if (far == 0) return;
+    model.warnings.push_back(
+        {"surface-moved", bemSurfaceName(n, model.meshes.size()) + ": " + formatCount(far) +
+                              " of " + formatCount(std::ssize(given.points)) +
+                              " vertices given lie more than " + formatShort(kRemadeMm) +
+                              " mm from the model's surface, up to " + formatLength(farthestMm, 2) +
+                              " mm at " + rasText(farthest)});
+}
+
+/// Surfaces that were given are changed by no more than their digits without a warning; those found
+/// in an image lie where they do to a fraction of a voxel.
+void tellMoves(BemModel& model) {
+    constexpr double kGivenMm = 0.01, kFoundMm = 0.5;
+    for (std::size_t n = 0; n < model.given.size(); ++n) tellRemade(model.given[n], n, model);
+    if (!model.given.empty()) return;
+    for (std::size_t n = 0; n < model.meshes.size(); ++n) {
+        const double mm = model.surfaces[n].move.maximumMm;
+        const std::string name = bemSurfaceName(n, model.meshes.size());
+        if (model.source == "surfaces" && mm > kGivenMm) {
+            model.warnings.push_back({"surface-moved", name + ": " + moveText(n, model)});
+        } else if (model.source != "surfaces" && mm > kFoundMm) {
+            model.notes.push_back(name + ": " + moveText(n, model));
+        }
+    }
+}
+
+std::string cm2Text(double mm2) {
+    return formatLength(mm2 / 100, 1) + " cm2";
+}
+
+/// What of a model's skull and volumes is not as the segmentation has it.
+void compareWithSegmentation(BemModel& model) {
+    if (!model.segmented) return;
+    const std::size_t first = model.meshes.size() - 3;  // of the surfaces, the brain left out
+    for (std::size_t n = 0; n < 3; ++n) {
+        const double mm3 = model.segmented->enclosedMm3[n];
+        BemSurface& surface = model.surfaces[first + n];
+        surface.segmentedMm3 = mm3;
+        const double percent = 100 * (surface.volumeMm3 / mm3 - 1);
+        model.notes.push_back(bemSurfaceName(first + n, model.meshes.size()) + ": encloses " +
+                              formatMeasure(surface.volumeMm3 / 1000) + " cm3, " +
+                              formatMeasure(mm3 / 1000) + " cm3 in the segmentation (" +
+                              (percent < 0 ? "" : "+") + formatFixed(percent, 1) + " %)");
+    }
+    model.skull = compareSkull(model.meshes[first], model.meshes[first + 1], *model.segmented);
+    model.segmented.reset();  // a head's worth of memory
+    const SkullComparison& skull = *model.skull;
+    const auto share = [&](double mm2) {
+        return cm2Text(mm2) + " (" + formatFixed(100 * mm2 / skull.areaMm2, 1) + " %)";
+    };
+    model.notes.push_back("skull: " + formatLength(skull.medianMm, 1) +
+                          " mm thick in the segmentation (median; 5 % less than " +
+                          formatLength(skull.thinMm, 1) + " mm), " +
+                          formatLength(skull.modelMedianMm, 1) + " mm in the model; " +
+                          share(skull.absentMm2) + " of it are not in the segmentation");
+    constexpr double kMuchThicker = 0.1;  // of the area
+    if (skull.thickenedMm2 > kMuchThicker * skull.areaMm2) {
+        model.warnings.push_back(
+            {"skull-thickened",
+             share(skull.thickenedMm2) + " of the skull are thicker than in the segmentation by " +
+                 formatShort(skull.thickerMm) + " mm or more, by up to " +
+                 formatLength(skull.mostThickenedMm, 1) + " mm at " + rasText(*skull.thickenedMm) +
+                 " (median " + formatLength(skull.medianMm, 1) + " mm, " +
+                 formatLength(skull.modelMedianMm, 1) + " mm in the model)"});
+    }
+    constexpr double kHoleMm2 = 500;  // orbits and canals have less
+    if (skull.largestHoleMm2 > kHoleMm2) {
+        model.warnings.push_back({"skull-closed", "a hole of " + share(skull.largestHoleMm2) +
+                                                      " in the segmentation's skull, around " +
+                                                      rasText(*skull.holeMm) +
+                                                      ", is closed in the model"});
+    }
+}
+
 /// Solvers take the square of the number of vertices in memory, the cube in time.
 void warnOfMany(BemModel& model) {
     std::int64_t vertices = 0;
@@ -181,6 +281,7 @@ std::vector<TriangleMesh> extractSurfaces(const HeadBoundaries& boundaries, BemM
                           boundaries.warnings.end());
     std::vector<TriangleMesh> surfaces;
     model.seenMm = boundaries.seenMm;
+    model.segmented = boundaries.segmented;
     for (const FractionField& solid : boundaries.solids) {
         hooks.stage("extract", [&] {
             const SpanSpaceIndex index = SpanSpaceIndex::build(solid.view(), {});
@@ -205,6 +306,8 @@ void finishBemModel(std::vector<TriangleMesh> dense, BemModel& model, const BemH
     }
     if (model.hasModel()) checkModel(model, hooks);
     if (model.hasModel()) askWhatIsUsual(model, hooks);
+    if (model.hasModel()) tellMoves(model);
+    if (model.hasModel()) compareWithSegmentation(model);
     for (std::size_t n = 0; model.hasModel() && n < model.seenMm.size(); ++n) {
         model.surfaces[n].seen = seenOf(model.meshes[n], model.seenMm[n]);
         model.notes.push_back(

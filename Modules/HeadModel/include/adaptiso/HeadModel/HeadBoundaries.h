@@ -12,6 +12,7 @@
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/HeadModel/FractionField.h"
+#include "adaptiso/HeadModel/SegmentedSkull.h"
 
 namespace adaptiso {
 
@@ -73,6 +74,7 @@ struct HeadBoundaries {
     /// labels, levels that are passed, ends of the skull's dark band. The rest was closed, filled,
     /// cut, grown or taken as usual. Empty where nobody looked (surfaces).
     std::vector<std::vector<Vec3>> seenMm{};
+    std::optional<SegmentedHead> segmented{};  ///< of labels and probabilities with a skull
 };
 
 /// From a T1-weighted image, alone or with a brain mask (brain > 0.5 of the mask's range or, of a

@@ -18,6 +18,7 @@
 #include "adaptiso/HeadModel/NestSurfaces.h"
 #include "adaptiso/HeadModel/Remesh.h"
 #include "adaptiso/HeadModel/Seen.h"
+#include "adaptiso/HeadModel/SegmentedSkull.h"
 #include "adaptiso/HeadModel/Tetrahedra.h"
 #include "adaptiso/HeadPipeline/HeadNotes.h"
 #include "adaptiso/MeshIO/PointFiles.h"
@@ -86,7 +87,8 @@ struct BemSurface {
     double volumeMm3 = 0;
     double solidAngleShare = 0;
     Vec3 extentMm;
-    std::optional<SeenSurface> seen{};  ///< of the final mesh; none where nobody looked
+    std::optional<SeenSurface> seen{};     ///< of the final mesh; none where nobody looked
+    std::optional<double> segmentedMm3{};  ///< what it encloses in the segmentation it is made from
 };
 
 /// A promise about the model, kept or not.
@@ -138,7 +140,11 @@ struct BemModel {
     std::vector<TriangleMesh> meshes;
     std::vector<BemSurface> surfaces;
     std::vector<std::vector<Vec3>> seenMm;  ///< as HeadBoundaries has it
-    std::optional<HeadShape> headShape;     ///< LPS mm; if wanted, and there is a model with a skin
+    /// Surfaces that were given, where all are made anew, until the model is there.
+    std::vector<TriangleMesh> given;
+    std::optional<SegmentedHead> segmented;  ///< as HeadBoundaries has it, until the model is there
+    std::optional<SkullComparison> skull;    ///< of a model made from a segmentation
+    std::optional<HeadShape> headShape;  ///< LPS mm; if wanted, and there is a model with a skin
     std::optional<BemTetrahedra> tetrahedra;  ///< if wanted, and there is a model
     std::optional<BemElectrodes> electrodes;  ///< if wanted, and there is a model
     std::vector<NestedGap> gaps;
@@ -162,6 +168,9 @@ struct BemHooks {
         runStage ? runStage(name, work) : work();
     }
 };
+
+/// "(1.0, -2.0, 3.0) mm RAS" of a point in LPS mm.
+std::string rasText(const Vec3& lps);
 
 /// "inner_skull" of surface 0 of three.
 std::string bemSurfaceName(std::size_t surface, std::size_t count);
