@@ -209,7 +209,7 @@ class Bytes(InFolder):
     def test_labels_are_chosen_by_names(self):
         chosen = adaptiso.labels(self.input, labels=["LEFT", 7])
         self.assertEqual(set(chosen.regions), {1, 7})
-        with self.assertRaisesRegex(adaptiso.Error, "labels righ: .*did you mean right"):
+        with self.assertRaisesRegex(adaptiso.Error, "labels 'righ': .*did you mean right"):
             adaptiso.labels(self.input, labels=["righ"])
         with self.assertRaisesRegex(adaptiso.Error, "names= takes a table of names"):
             adaptiso.labels(boxes(), labels=["left"])
