@@ -25,7 +25,8 @@ bends.Update()
 writer = vtkXMLPolyDataWriter()
 writer.SetFileName("brain.vtp")
 writer.SetInputData(bends.GetOutput())
-if not writer.Write():
+writer.Write()
+if writer.GetErrorCode():
     sys.exit("brain.vtp can't be written")
 print(f"brain.vtp: {bends.GetOutput().GetNumberOfCells():,} triangles, "
       f"{mesh.volume / 1000:.0f} cm3, {mesh.area / 100:.0f} cm2")
