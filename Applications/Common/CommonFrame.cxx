@@ -2,7 +2,10 @@
 
 #include <algorithm>
 
+#include "Common/OptionValues.h"
+#include "Common/RunApp.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Json/Json.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 
 namespace adaptiso {
@@ -19,12 +22,18 @@ std::string nameOf(const NamedMesh& mesh) {
 }
 
 /// "a.stl and b.stl", "a.stl, b.stl and c.stl"
-std::string namesOf(std::span<const NamedMesh> meshes) {
+std::string namesOf(const std::vector<std::string>& names) {
     std::string text;
-    for (std::size_t n = 0; n < meshes.size(); ++n) {
-        text += (n == 0 ? "" : n + 1 == meshes.size() ? " and " : ", ") + nameOf(meshes[n]);
+    for (std::size_t n = 0; n < names.size(); ++n) {
+        text += (n == 0 ? "" : n + 1 == names.size() ? " and " : ", ") + names[n];
     }
     return text;
+}
+
+std::string namesOf(std::span<const NamedMesh> meshes) {
+    std::vector<std::string> names;
+    for (const NamedMesh& mesh : meshes) names.push_back(nameOf(mesh));
+    return namesOf(names);
 }
 
 std::string frameText(const NamedMesh& mesh) {
@@ -36,30 +45,48 @@ ImageGeometry standInVolume() {
     return conformedGeometry({{256, 256, 256}, {-128, -128, -128}, {}});
 }
 
-void assumeRas(std::span<NamedMesh> meshes, CommonFrame& common) {
-    for (NamedMesh& mesh : meshes) mesh.file.frame = CoordinateFrame::Ras;
-    const std::size_t count = meshes.size();
-    common.warnings.push_back(
-        count == 1 ? Warning{"guessed-frame", "does not say its coordinate frame; taken for RAS mm",
-                             nameOf(meshes[0])}
-                   : Warning{"guessed-frame",
-                             namesOf(meshes) + " don't say their coordinate frame; " +
-                                 (count == 2 ? "both" : "all") + " are taken for RAS mm"});
+/// How to state the frames of `meshes`: of all at once where none is known, else of each.
+std::string adviceFor(std::span<const NamedMesh> meshes, bool areAllUnknown) {
+    if (areAllUnknown) return kStateIt;
+    std::string text = "; state both by";
+    if (meshes.size() > 2) text = "; state all by";
+    for (const NamedMesh& mesh : meshes) {
+        text += " --input-coordinates ";
+        text += mesh.file.frame ? frameWord(*mesh.file.frame) : "FRAME";
+    }
+    return text + ", FRAME being ras, lps, tkras or voxel";
 }
 
-void assumeUnknownFrames(std::span<NamedMesh> meshes, CommonFrame& common) {
-    const auto known = std::find_if(meshes.begin(), meshes.end(),
-                                    [](const NamedMesh& m) { return m.file.frame.has_value(); });
-    if (known == meshes.end()) return assumeRas(meshes, common);
-    for (NamedMesh& mesh : meshes) {
-        if (mesh.file.frame) continue;
-        mesh.file.frame = known->file.frame;
-        mesh.file.volume = known->file.volume;
-        common.warnings.push_back(
-            {"guessed-frame",
-             "does not say its coordinate frame; taken for that of " + frameText(*known),
-             nameOf(mesh)});
+/// Frames that no file says: taken for one where nothing but how the surfaces lie to each other
+/// depends on it, else refused.
+void placeUnknownFrames(std::span<NamedMesh> meshes, bool isInImage, CommonFrame& common) {
+    std::vector<std::string> unknown;
+    const NamedMesh* known = nullptr;
+    for (const NamedMesh& mesh : meshes) {
+        if (mesh.file.frame) {
+            known = &mesh;
+        } else {
+            unknown.push_back(nameOf(mesh));
+        }
     }
+    if (unknown.empty()) return;
+    const bool isOne = unknown.size() == 1;
+    const std::string what =
+        namesOf(unknown) + (isOne ? " does not say its" : " don't say their") + " coordinate frame";
+    const auto refuse = [&](const std::string& why) {
+        throw InvalidInput(what + ", " + why + adviceFor(meshes, known == nullptr));
+    };
+    if (isInImage) refuse("so where it lies in the image is not known");
+    if (known != nullptr) refuse("and " + frameText(*known));
+    const bool areAlike = std::all_of(meshes.begin(), meshes.end(), [&](const NamedMesh& mesh) {
+        return areOfOneFormat(mesh, meshes[0]);
+    });
+    if (!areAlike) refuse("and files of different formats may differ in it");
+    for (NamedMesh& mesh : meshes) mesh.file.frame = CoordinateFrame::Ras;
+    common.isKnown = false;
+    common.warnings.push_back(
+        isOne ? Warning{"guessed-frame", "does not say its coordinate frame", unknown[0]}
+              : Warning{"guessed-frame", what + "; taken for one and the same"});
 }
 
 void requireNoLooseVoxels(const NamedMesh& mesh) {
@@ -99,10 +126,46 @@ void placeLooseTkRas(std::span<NamedMesh> meshes, CommonFrame& common) {
 
 }  // namespace
 
+CLI::Option* declareInputCoordinates(CLI::App& app, std::vector<CoordinateFrame>& stated,
+                                     const std::string& surfaces) {
+    static const std::vector<std::string> kWords{"ras", "lps", "tkras", "voxel"};
+    static constexpr CoordinateFrame kFrames[] = {CoordinateFrame::Ras, CoordinateFrame::Lps,
+                                                  CoordinateFrame::TkRas, CoordinateFrame::Voxel};
+    const std::string name = "--input-coordinates";
+    const auto take = [&stated, name](const std::vector<std::string>& texts) {
+        for (const std::string& text : texts) {
+            stated.push_back(kFrames[parseChoice(name, text, kWords)]);
+        }
+    };
+    return addValues(app, name, choiceName(kWords), take,
+                     "The frame of " + surfaces +
+                         ", whatever the file says of it: scanner RAS mm, scanner LPS mm, "
+                         "FreeSurfer's surface RAS mm, or voxel indices (default: as the file "
+                         "says)");
+}
+
+void checkInputCoordinates(const std::vector<CoordinateFrame>& stated, std::size_t surfaces) {
+    if (stated.size() <= 1 || stated.size() == surfaces) return;
+    throw UsageError("--input-coordinates: is given " + std::to_string(stated.size()) +
+                     " times for " + std::to_string(surfaces) +
+                     (surfaces == 1 ? " surface" : " surfaces") + "; give it once" +
+                     (surfaces == 1 ? "" : ", or once for each"));
+}
+
+std::optional<CoordinateFrame> statedFrame(const std::vector<CoordinateFrame>& stated,
+                                           std::size_t n) {
+    if (stated.empty()) return std::nullopt;
+    return stated.size() == 1 ? stated.front() : stated.at(n);
+}
+
+bool areOfOneFormat(const NamedMesh& a, const NamedMesh& b) {
+    return a.file.format == b.file.format;
+}
+
 CommonFrame bringToOneFrame(std::span<NamedMesh> meshes,
                             const std::optional<ImageGeometry>& image) {
     CommonFrame common;
-    assumeUnknownFrames(meshes, common);
+    placeUnknownFrames(meshes, image.has_value(), common);
     for (NamedMesh& mesh : meshes) {
         if (image && lacksVolume(mesh)) mesh.file.volume = frameVolume(*mesh.file.frame, *image);
         requireNoLooseVoxels(mesh);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "Common/Resources.h"
 #include "adaptiso/Core/Errors.h"
@@ -19,6 +21,18 @@ inline std::string baseName(const std::filesystem::path& path) {
 /// `reportFailure`: why there is no page, though one is asked for; null when nothing failed.
 inline Json reportFailureJson(const std::string& failure) {
     return failure.empty() ? Json(nullptr) : Json(failure);
+}
+
+/// "ras" and so on, or null where the frame is not known.
+inline Json frameJson(const std::optional<CoordinateFrame>& frame) {
+    return frame ? Json(frameWord(*frame)) : Json(nullptr);
+}
+
+/// `inputCoordinates` of a report's options: words as given; an empty list: as the files say.
+inline Json inputCoordinatesJson(const std::vector<CoordinateFrame>& stated) {
+    Json words = Json::array();
+    for (const CoordinateFrame frame : stated) words.push_back(frameWord(frame));
+    return words;
 }
 
 /// `seconds` of a report: every stage, and their total.

@@ -124,4 +124,12 @@ CLI::Option* addValue(CLI::App& app, const std::string& name, const std::string&
     return option;
 }
 
+CLI::Option* addValues(CLI::App& app, const std::string& name, const std::string& valueName,
+                       const std::function<void(const std::vector<std::string>&)>& take,
+                       const std::string& description) {
+    return app.add_option_function<std::vector<std::string>>(name, take, description)
+        ->type_name(valueName)
+        ->allow_extra_args(false);
+}
+
 }  // namespace adaptiso

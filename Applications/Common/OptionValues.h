@@ -45,6 +45,11 @@ CLI::Option* addValue(CLI::App& app, const std::string& name, const std::string&
                       const std::function<void(const std::string&)>& take,
                       const std::string& description);
 
+/// An option that may be given several times; all its values are given to `take`, as typed.
+CLI::Option* addValues(CLI::App& app, const std::string& name, const std::string& valueName,
+                       const std::function<void(const std::vector<std::string>&)>& take,
+                       const std::string& description);
+
 /// An option that takes a number. \param target  a double, or an optional one
 template <class Target>
 CLI::Option* addNumber(CLI::App& app, const std::string& name, Target& target,

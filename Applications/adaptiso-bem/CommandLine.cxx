@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "Common/CommonFrame.h"
 #include "Common/ImageOptions.h"
 #include "Common/Numbers.h"
 #include "adaptiso/SurfaceChecks/Checks.h"
@@ -175,6 +176,10 @@ void declareInput(CLI::App& app, BemOptions& options) {
                    "SKIN with --layers 4); "
                    "checked, mended where need be, and kept as they are where not")
         ->type_name("MESH...")
+        ->group(kInput);
+    declareInputCoordinates(app, options.inputCoordinates,
+                            "the surfaces of --surfaces or --pial; given once for each, that of "
+                            "each")
         ->group(kInput);
     app.add_option("--volume", options.volume,
                    "With --surfaces: the image they belong to, for tkRAS and voxel coordinates")
@@ -442,6 +447,9 @@ void checkCombinations(const BemOptions& options) {
     require(!layers.withBrain || options.labels.empty() || !options.tissues.csf.empty(),
             "--layers 4 needs --tissue csf=... as well");
     require(options.volume.empty() || !options.surfaces.empty(), "--volume needs --surfaces");
+    require(options.inputCoordinates.empty() || !options.surfaces.empty() || !options.pial.empty(),
+            "--input-coordinates needs --surfaces or --pial");
+    checkInputCoordinates(options.inputCoordinates, options.surfaces.size() + options.pial.size());
     const bool namesTissues = !options.tissues.brain.empty() || options.tissues.othersAreBrain;
     require(options.labels.empty() || namesTissues,
             "--labels needs --preset, or --tissue brain=..., skull=... and scalp=...");

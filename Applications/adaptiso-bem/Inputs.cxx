@@ -59,7 +59,8 @@ HeadBoundaries timed(BemRun& run, const std::string& option, const fs::path& pat
 std::vector<TriangleMesh> readPial(BemRun& run) {
     std::vector<NamedMesh> files;
     for (const fs::path& path : run.options.pial) {
-        files.push_back({path, readMesh(path)});
+        const auto stated = statedFrame(run.options.inputCoordinates, files.size());
+        files.push_back({path, readMesh(path, {.inputCoordinates = stated})});
         run.model.inputs.push_back(
             {baseName(path), "pial surface", std::string(files.back().file.format->name)});
     }
@@ -142,15 +143,20 @@ std::vector<TriangleMesh> readSurfaces(BemRun& run) {
     if (!options.volume.empty()) readMainImage(options.volume, "volume", run);
     std::vector<NamedMesh> files;
     for (const fs::path& path : options.surfaces) {
-        files.push_back({path, readMesh(path, {.keepsFaults = true})});
+        const auto stated = statedFrame(options.inputCoordinates, files.size());
+        files.push_back({path, readMesh(path, {.keepsFaults = true, .inputCoordinates = stated})});
         run.model.inputs.push_back(
             {baseName(path), "surface", std::string(files.back().file.format->name)});
         const MeshFile& file = files.back().file;
         if (file.frame == CoordinateFrame::TkRas && !run.model.tkRasVolume)
             run.model.tkRasVolume = file.volume;
     }
-    const CommonFrame common = bringToOneFrame(files, run.model.image);
+    CommonFrame common = bringToOneFrame(files, run.model.image);
     if (common.frame == CoordinateFrame::TkRas) run.model.tkRasVolume = common.volume;
+    if (!common.isKnown) {
+        common.warnings.back().text +=
+            std::string("; the model's files say scanner RAS mm") + kStateIt;
+    }
     addWarnings(run.model.warnings, common.warnings);
     std::vector<TriangleMesh> surfaces;
     for (NamedMesh& named : files) {

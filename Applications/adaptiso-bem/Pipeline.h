@@ -24,6 +24,8 @@ struct BemOptions {
     std::filesystem::path ct;
     std::vector<std::filesystem::path> surfaces;
 
+    std::vector<CoordinateFrame> inputCoordinates;  ///< of surfaces, or pial; empty: as they say
+
     std::filesystem::path brainMask;          ///< with t1
     std::filesystem::path aseg;               ///< with t1
     std::vector<std::filesystem::path> pial;  ///< with t1, of four layers

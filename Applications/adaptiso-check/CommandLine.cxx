@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "Common/CommonFrame.h"
 #include "Common/ImageOptions.h"
 #include "Common/OptionValues.h"
 #include "Common/PreprocessingOptions.h"
@@ -24,6 +25,9 @@ void declareInput(CLI::App& app, CheckOptions& options) {
     app.add_flag("--nested", options.isNested,
                  "The files are the surfaces of one head, from inside to outside (INNER MIDDLE "
                  "OUTER): check how they lie in each other too")
+        ->group(kInput);
+    declareInputCoordinates(app, options.inputCoordinates,
+                            "all surfaces; given once for each file, that of each")
         ->group(kInput);
     declareVolume(app, options.volume, options.read,
                   "The image that the surfaces were made from; gives a place to tkRAS and voxel "
@@ -114,6 +118,10 @@ void checkCombinations(const CheckOptions& options) {
     }
     if (options.isNested && options.files.size() < 2 && !findsFiles) {
         throw UsageError("--nested: needs at least two files, from inside to outside");
+    }
+    if (!findsFiles) {
+        const bool areRuns = options.batch.isAsked() && !options.isNested;
+        checkInputCoordinates(options.inputCoordinates, areRuns ? 1 : options.files.size());
     }
     if (options.minGapMm && !options.isNested) throw UsageError("--min-gap: needs --nested");
     if (options.isovalue && options.volume.empty()) throw UsageError("--iso: needs --volume");

@@ -9,10 +9,6 @@
 namespace adaptiso {
 namespace {
 
-Json frameJson(const std::optional<CoordinateFrame>& frame) {
-    return frame ? Json(frameWord(*frame)) : Json(nullptr);
-}
-
 Json deviationJson(const std::optional<DistanceStatistics>& deviation) {
     if (!deviation) return nullptr;
     return {{"samples", deviation->samples},
@@ -68,7 +64,8 @@ Json volumeJson(const CheckRun& run) {
 }
 
 Json optionsJson(const CheckOptions& options) {
-    return {{"nested", options.isNested},
+    return {{"inputCoordinates", inputCoordinatesJson(options.inputCoordinates)},
+            {"nested", options.isNested},
             {"profile", toString(options.profileInUse())},
             {"iso", orNull(options.isovalue)},
             {"minGapMm", options.minGapMm.value_or(CheckOptions::kDefaultMinGapMm)},

@@ -145,7 +145,16 @@ private:
     }
 
     void readSurface(NamedMesh& mesh, SurfaceRun& surface) {
-        mesh.file = readMesh(mesh.path, {.keepsFaults = true});
+        const std::size_t number = run_.surfaces.size() - 1;
+        mesh.file = readMesh(mesh.path,
+                             {.keepsFaults = true,
+                              .inputCoordinates = statedFrame(options_.inputCoordinates, number)});
+        if (image_ && !mesh.file.frame) {
+            throw InvalidInput(
+                mesh.path.string() +
+                ": does not say its coordinate frame, so where it lies in the image is not known" +
+                kStateIt);
+        }
         freeMemory(mesh.file.mesh.normals);  // not looked at
         surface.format = mesh.file.format;
         surface.frame = mesh.file.frame;
@@ -168,6 +177,7 @@ private:
     bool areInOneFrame() const {
         return std::all_of(meshes_.begin(), meshes_.end(), [&](const Loaded& loaded) {
             return loaded.mesh.file.frame == meshes_.front().mesh.file.frame &&
+                   (loaded.mesh.file.frame || areOfOneFormat(loaded.mesh, meshes_.front().mesh)) &&
                    loaded.mesh.file.volume == meshes_.front().mesh.file.volume;
         });
     }
@@ -192,7 +202,7 @@ private:
             run_.nestingFrame = meshes_.front().mesh.file.frame;
             if (!areInOneFrame()) {
                 const CommonFrame common = moveToOneFrame();
-                run_.nestingFrame = common.frame;
+                run_.nestingFrame = common.known();
                 run_.toNestingFrame = lpsToFrame(common.frame, common.volume);
             }
             for (std::size_t n = 0; n + 1 < meshes_.size(); ++n) {
@@ -230,7 +240,7 @@ private:
             for (HeadNote& note : judgePlausibility(surfaces, asked)) {
                 std::string subject = nameOf(meshes_[note.surface]);
                 if (note.next) subject += " in " + nameOf(meshes_[*note.next]);
-                ToldNote told{std::move(note), std::move(subject), common.frame, {}};
+                ToldNote told{std::move(note), std::move(subject), common.known(), {}};
                 for (const Vec3& p : told.note.pointsMm) told.placesMm.push_back(toFrame(p));
                 run_.notes.push_back(std::move(told));
             }
@@ -263,7 +273,7 @@ private:
         std::vector<NamedMesh> meshes;
         for (Loaded& loaded : meshes_) meshes.push_back(std::move(loaded.mesh));
         const CommonFrame common = bringToOneFrame(meshes, image_);
-        shown_.frame = common.frame;
+        shown_.frame = common.known();
         for (std::string& line : linesOf(common.warnings)) shown_.notes.push_back(std::move(line));
         for (std::size_t n = 0; n < meshes.size(); ++n) {
             shown_.surfaces.push_back({meshes_[n].number, std::move(meshes[n].file.mesh)});

@@ -9,6 +9,7 @@
 #include "Common/CommonOptions.h"
 #include "Common/ReportOutput.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/Preprocessing/Preprocess.h"
 #include "adaptiso/SurfaceChecks/Checks.h"
 
@@ -16,13 +17,14 @@ namespace adaptiso {
 
 /// What adaptiso-check is asked to do.
 struct CheckOptions : CheckRules {
-    std::vector<std::filesystem::path> files;  ///< one or more
-    BatchOptions batch;                        ///< asked for: a run for each file
-    std::filesystem::path volume;              ///< empty: none
-    ReadOptions read;                          ///< of volume
-    std::optional<double> isovalue;            ///< only together with volume
-    PreprocessOptions preprocessing;           ///< of volume; only together with isovalue
-    bool isSelfTest = false;                   ///< instead of all that; see SelfTest.h
+    std::vector<std::filesystem::path> files;       ///< one or more
+    std::vector<CoordinateFrame> inputCoordinates;  ///< of all, or of each; empty: as they say
+    BatchOptions batch;                             ///< asked for: a run for each file
+    std::filesystem::path volume;                   ///< empty: none
+    ReadOptions read;                               ///< of volume
+    std::optional<double> isovalue;                 ///< only together with volume
+    PreprocessOptions preprocessing;                ///< of volume; only together with isovalue
+    bool isSelfTest = false;                        ///< instead of all that; see SelfTest.h
     ReportOptions report;
     CommonOptions common;
 };

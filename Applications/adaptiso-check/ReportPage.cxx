@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "Common/CommonFrame.h"
 #include "Common/Json.h"
 #include "Common/Numbers.h"
 #include "Common/ReportOutput.h"
@@ -201,6 +202,7 @@ Report makeReport(const CheckRun& run, ShownSurfaces& shown) {
         }
     }
     if (shown.frame == CoordinateFrame::TkRas) report.frame = "FreeSurfer's tkRAS mm";
+    if (!shown.frame) report.frame = kUnsaidFrame;
     for (ShownSurfaces::Shown& surface : shown.surfaces) {
         report.surfaces.push_back({nameOf(run, surface.number), std::move(surface.mesh), {}});
     }

@@ -18,8 +18,9 @@ struct ShownSurfaces {
         TriangleMesh mesh;   ///< LPS mm; triangles and vertices numbered as in the file
     };
     std::vector<Shown> surfaces;
-    CoordinateFrame frame = CoordinateFrame::Ras;  ///< TkRas where the scanner's is not known
-    std::vector<std::string> notes;                ///< what had to be assumed
+    /// TkRas where the scanner's is not known; none where no file says a frame
+    std::optional<CoordinateFrame> frame = CoordinateFrame::Ras;
+    std::vector<std::string> notes;  ///< what had to be assumed
     std::optional<ReadVolume> image;
 };
 

@@ -101,7 +101,7 @@ void printReport(std::ostream& out, const CheckRun& run) {
         printVerdict(out, pair.checks, run);
     }
     if (!run.notes.empty()) {
-        out << "plausibility (" << toString(run.notes.front().frame)
+        out << "plausibility (" << frameText(run.notes.front().frame)
             << "; what is unusual of adults' heads is noted, and may be right)\n";
         printNotes(out, run.notes);
     }

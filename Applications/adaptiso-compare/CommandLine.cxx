@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "Common/CommonFrame.h"
 #include "Common/ImageOptions.h"
 #include "Common/OptionValues.h"
 
@@ -20,6 +21,8 @@ void declareInput(CLI::App& app, CompareOptions& options) {
     app.add_option("B", options.b, "The surface to compare it with: the reference")
         ->type_name("")
         ->required();
+    declareInputCoordinates(app, options.inputCoordinates,
+                            "both surfaces; given twice, that of A and that of B");
 }
 
 void declareDistances(CLI::App& app, CompareOptions& options) {
@@ -91,6 +94,7 @@ void declareCompareOptions(CLI::App& app, CompareOptions& options) {
     declareChecks(app, options);
     declareOutput(app, options);
     declareCommonOptions(app, options.common, "all files are written all the same");
+    app.callback([&options] { checkInputCoordinates(options.inputCoordinates, 2); });
 }
 
 }  // namespace adaptiso::compare

@@ -67,7 +67,8 @@ struct CompareRun {
     const CompareOptions& options;
     SurfaceSummary a, b;
     std::optional<VolumeSummary> volume;
-    CoordinateFrame frame{};  ///< of the points reported and of the coloured surface
+    /// Of the points reported and of the coloured surface; none: the files' own, not known.
+    std::optional<CoordinateFrame> frame;
     AffineTransform toFrame;  ///< from the frame inside the program
     std::optional<double> voxelMm;
     DistanceReport distances;

@@ -13,7 +13,7 @@ namespace {
 Json surfaceJson(const SurfaceSummary& surface) {
     return {{"file", baseName(surface.file)},
             {"format", surface.format->name},
-            {"coordinates", surface.frame ? Json(frameWord(*surface.frame)) : Json(nullptr)},
+            {"coordinates", frameJson(surface.frame)},
             {"triangles", surface.triangles},
             {"vertices", surface.vertices},
             {"areaMm2", number(surface.areaMm2)},
@@ -30,7 +30,8 @@ Json volumeJson(const CompareRun& run) {
 }
 
 Json optionsJson(const CompareOptions& options) {
-    return {{"samples", options.samples},
+    return {{"inputCoordinates", inputCoordinatesJson(options.inputCoordinates)},
+            {"samples", options.samples},
             {"symmetric", options.isSymmetric},
             {"threads", orNull(options.common.threads)},
             {"strict", options.common.isStrict}};
@@ -97,7 +98,7 @@ std::string jsonReport(const CompareRun& run) {
                        {"b", surfaceJson(run.b)},
                        {"volume", volumeJson(run)},
                        {"options", optionsJson(run.options)},
-                       {"coordinates", frameWord(run.frame)},
+                       {"coordinates", frameJson(run.frame)},
                        {"voxelMm", orNull(run.voxelMm)},
                        {"distances",
                         {{"aToB", distancesJson(run, distances.aToB)},

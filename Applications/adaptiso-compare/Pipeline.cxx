@@ -73,8 +73,8 @@ void checkNames(const CompareOptions& options) {
     }
 }
 
-NamedMesh readSurface(const fs::path& path) {
-    NamedMesh surface{path, readMesh(path)};
+NamedMesh readSurface(const fs::path& path, std::optional<CoordinateFrame> stated) {
+    NamedMesh surface{path, readMesh(path, {.inputCoordinates = stated})};
     freeMemory(surface.file.mesh.normals);  // those of the triangles are compared
     return surface;
 }
@@ -119,15 +119,15 @@ void readImage(CompareRun& run) {
 CommonFrame readInputs(CompareRun& run, std::array<NamedMesh, 2>& surfaces) {
     readImage(run);
     auto& [a, b] = surfaces;
-    a = readSurface(run.options.a);
-    b = readSurface(run.options.b);
+    a = readSurface(run.options.a, statedFrame(run.options.inputCoordinates, 0));
+    b = readSurface(run.options.b, statedFrame(run.options.inputCoordinates, 1));
     const auto frameA = a.file.frame, frameB = b.file.frame;
     std::optional<ImageGeometry> image;
     if (run.volume) image = run.volume->geometry;
     CommonFrame common = bringToOneFrame(surfaces, image);
     run.a = summarize(a, frameA);
     run.b = summarize(b, frameB);
-    run.frame = common.frame;
+    run.frame = common.known();
     run.toFrame = lpsToFrame(common.frame, common.volume);
     addWarnings(run.warnings, common.warnings);
     return common;
@@ -176,6 +176,7 @@ void writeColored(CompareRun& run, const TriangleMesh& a, const TriangleMesh& b,
 
     MeshWriteOptions write;
     write.frame = common.frame;
+    write.saysFrame = common.isKnown;
     write.volume = common.volume;
     write.pointArrays.push_back({"DistanceMm", std::move(distances)});
     write.pointArrays.push_back({"DistanceColor", std::move(colors)});

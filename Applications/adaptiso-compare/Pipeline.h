@@ -3,25 +3,28 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "Common/CommonOptions.h"
 #include "Common/ReportOutput.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso::compare {
 
 /// What adaptiso-compare is asked to do.
 struct CompareOptions {
     std::filesystem::path a;
-    std::filesystem::path b;               ///< the reference
-    std::int64_t samples = 200000;         ///< for each direction
-    bool isSymmetric = true;               ///< B to A too
-    std::optional<double> voxelMm;         ///< > 0; not together with volume
-    std::filesystem::path volume;          ///< empty: none
-    ReadOptions read;                      ///< of volume
-    std::filesystem::path colored;         ///< empty: none
-    std::optional<double> maxMeanMm;       ///< >= 0
-    std::optional<double> maxHausdorffMm;  ///< >= 0
+    std::filesystem::path b;                        ///< the reference
+    std::vector<CoordinateFrame> inputCoordinates;  ///< of both, or of each; empty: as they say
+    std::int64_t samples = 200000;                  ///< for each direction
+    bool isSymmetric = true;                        ///< B to A too
+    std::optional<double> voxelMm;                  ///< > 0; not together with volume
+    std::filesystem::path volume;                   ///< empty: none
+    ReadOptions read;                               ///< of volume
+    std::filesystem::path colored;                  ///< empty: none
+    std::optional<double> maxMeanMm;                ///< >= 0
+    std::optional<double> maxHausdorffMm;           ///< >= 0
     ReportOptions report;
     CommonOptions common;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "Common/CommonFrame.h"
 #include "Common/Json.h"
 #include "Common/Numbers.h"
 #include "Common/ReportOutput.h"
@@ -113,6 +114,7 @@ Report makeReport(const CompareRun& run, ShownSurfaces& shown) {
                                formatLength(run.overlap->meanBoundaryOffsetMm, 4) + " mm.");
     }
     if (run.frame == CoordinateFrame::TkRas) report.frame = "FreeSurfer's tkRAS mm";
+    if (!run.frame) report.frame = kUnsaidFrame;
     const auto& limit = run.options.maxHausdorffMm;
     const auto fails = [&](const DistanceStatistics& s) { return limit && s.maxMm > *limit; };
     report.spots.push_back(farthest(run.distances.aToB, a, b, fails(run.distances.aToB)));

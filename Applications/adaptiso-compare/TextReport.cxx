@@ -64,7 +64,8 @@ void printDistances(std::ostream& out, const CompareRun& run) {
     printRow(out, "normals, 95 % within", &DistanceStatistics::p95NormalDeviationDeg, 1, distances);
     const Vec3 farthest = run.toFrame(distances.combined.maxPointMm);
     out << "  farthest at " << formatFixed(farthest.x, 2) << ", " << formatFixed(farthest.y, 2)
-        << ", " << formatFixed(farthest.z, 2) << " (" << toString(run.frame) << ")\n";
+        << ", " << formatFixed(farthest.z, 2) << " ("
+        << (run.frame ? toString(*run.frame) : "frame not said") << ")\n";
 }
 
 void printDifferences(std::ostream& out, const CompareRun& run) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "Common/CommonFrame.h"
 #include "Common/OptionValues.h"
 #include "Common/UsageWords.h"
 #include "OutputNames.h"
@@ -58,6 +59,7 @@ void checkCombinations(const SimplifyCommand& command) {
     if (command.inputs.empty() && !findsInputs) {
         throw UsageError("MESH is missing: the surface to simplify");
     }
+    checkInputCoordinates(command.inputCoordinates, 1);
     checkAim(command.aim);
     const bool hasFolder = !command.batch.outputFolder.empty() || !command.batch.bids.empty();
     if (command.output.empty() && !hasFolder) {
@@ -82,6 +84,7 @@ void declareInput(CLI::App& app, SimplifyCommand& command) {
     app.add_option("MESH", command.inputs,
                    "Triangle surfaces, in any format adaptiso-mesh writes; several make a batch")
         ->type_name("");
+    declareInputCoordinates(app, command.inputCoordinates, "the surfaces")->group(kInput);
     app.add_option("--data", command.data,
                    "Values at the surface's points in a file of their own: FreeSurfer's "
                    "lh.thickness, lh.curv, lh.sulc and the like, lh.aparc.annot, .mgh; GIFTI's "

@@ -1,5 +1,6 @@
 #include "Frames.h"
 
+#include "Common/CommonFrame.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::simplifier {
@@ -17,8 +18,11 @@ FrameChange changeFrame(const MeshFile& input, std::optional<CoordinateFrame> wa
     change.isSaid = input.frame || wanted;
     const CoordinateFrame from = input.frame.value_or(CoordinateFrame::Ras);
     change.frame = wanted.value_or(from);
-    const bool isTakenForRas = !input.frame && (wanted || output.id == MeshFormatId::FreeSurfer);
-    if (isTakenForRas) change.assumed = "does not say its coordinate frame; taken for RAS mm";
+    if (!input.frame && (wanted || output.id == MeshFormatId::FreeSurfer)) {
+        const char* const what = wanted ? "--coordinates" : "FreeSurfer's format";
+        throw InvalidInput("does not say its coordinate frame, which " + std::string(what) +
+                           " needs" + kStateIt);
+    }
     if (change.frame == from) return change;
     for (const CoordinateFrame frame : {from, change.frame}) {
         if (!needsVolume(frame) || input.volume) continue;
@@ -34,7 +38,7 @@ PageFrame pageFrame(const MeshFile& input) {
     const CoordinateFrame frame = input.frame.value_or(CoordinateFrame::Ras);
     if (!needsVolume(frame) || input.volume) {
         return {inverse(lpsToFrame(frame, input.volume)),
-                input.frame ? "scanner RAS mm" : "the file's own frame, taken for RAS mm"};
+                input.frame ? "scanner RAS mm" : kUnsaidFrame};
     }
     return {inverse(lpsToFrame(CoordinateFrame::Ras, std::nullopt)),
             frame == CoordinateFrame::TkRas ? "FreeSurfer's tkRAS mm" : "voxel indices"};

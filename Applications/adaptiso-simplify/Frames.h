@@ -14,7 +14,6 @@ struct FrameChange {
     CoordinateFrame frame{};              ///< of the output
     bool isSaid = true;                   ///< the output may say so
     std::optional<AffineTransform> move;  ///< none: the points stay as they are, to the bit
-    std::string assumed;                  ///< a warning, without the file's name; empty: none
 
     TriangleMesh apply(const TriangleMesh& mesh) const {
         return move ? transformed(mesh, *move) : mesh;
@@ -26,7 +25,9 @@ struct FrameChange {
 
 /// \param input   a file as read
 /// \param wanted  none: the input's frame
-/// \throws InvalidInput  the files does not say of which volume a frame is
+/// \throws InvalidInput  the file does not say its frame, which the output has to know, or the
+/// volume
+///                       that a frame belongs to
 FrameChange changeFrame(const MeshFile& input, std::optional<CoordinateFrame> wanted,
                         const MeshFormat& output);
 

@@ -11,7 +11,7 @@ Json surfaceJson(const SurfaceSummary& surface) {
     const TopologyReport& topology = surface.topology;
     return {{"file", baseName(surface.file)},
             {"format", surface.format->name},
-            {"coordinates", surface.frame ? Json(frameWord(*surface.frame)) : Json(nullptr)},
+            {"coordinates", frameJson(surface.frame)},
             {"triangles", surface.triangles},
             {"vertices", surface.vertices},
             {"components", std::ssize(topology.components)},
@@ -39,7 +39,8 @@ Json inputJson(const SimplifyRun& run) {
 }
 
 Json optionsJson(const SimplifyCommand& command) {
-    return {{"maxErrorMm", orNull(command.aim.maxErrorMm)},
+    return {{"inputCoordinates", inputCoordinatesJson(command.inputCoordinates)},
+            {"maxErrorMm", orNull(command.aim.maxErrorMm)},
             {"triangles", orNull(command.aim.maxTriangles)},
             {"reduction", orNull(command.aim.reduction)},
             {"minAngleDeg", number(command.aim.minAngleDeg)},

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "Common/AtomicOutput.h"
+#include "Common/CommonFrame.h"
 #include "Common/ExitCodes.h"
 #include "Common/InputKind.h"
 #include "Common/Json.h"
@@ -325,9 +326,6 @@ FrameChange chooseFrame(const MeshFile& input, SimplifyRun& run) {
         throw UsageError(run.output.file.string() + ": " + std::string(run.output.format->name) +
                          " holds points in mm only, not voxel indices");
     }
-    if (!change.assumed.empty()) {
-        run.warnings.push_back({"guessed-frame", change.assumed, baseName(run.input.file)});
-    }
     if (change.isSaid) run.output.frame = change.frame;
     return change;
 }
@@ -342,8 +340,11 @@ int runSimplify(const SimplifyCommand& command) {
     checkNames(run);
 
     progress.show(kRead);
-    const MeshFile input =
-        run.timer.time(kRead, [&] { return readMesh(command.input, {.keepsPointArrays = true}); });
+    const MeshFile input = run.timer.time(kRead, [&] {
+        return readMesh(command.input,
+                        {.keepsPointArrays = true,
+                         .inputCoordinates = statedFrame(command.inputCoordinates, 0)});
+    });
     run.input.format = input.format;
     for (const fs::path& data : command.data) requirePointOrder(*input.format, data);
     run.input.frame = input.frame;

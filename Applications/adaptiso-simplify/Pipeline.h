@@ -16,9 +16,10 @@ namespace adaptiso::simplifier {
 
 /// What adaptiso-simplify is asked to do.
 struct SimplifyCommand {
-    std::vector<std::filesystem::path> inputs;  ///< as given
-    std::filesystem::path input;                ///< the one, when it is one
-    std::vector<std::filesystem::path> data;    ///< files of values at its points
+    std::vector<std::filesystem::path> inputs;      ///< as given
+    std::filesystem::path input;                    ///< the one, when it is one
+    std::vector<CoordinateFrame> inputCoordinates;  ///< at most one; empty: as the input says
+    std::vector<std::filesystem::path> data;        ///< files of values at its points
     SimplifyOptions aim;
     bool requiresSound = false;
     std::filesystem::path output;          ///< a file, or a folder; empty: batch.outputFolder

@@ -77,7 +77,12 @@ class Electrodes(BemTest):
         self.path("cap.sfp").write_text("\n".join(lines) + "\n")
         done = self.bem(*self.labels(), "--electrodes", "cap.sfp", *LANDMARKS, "-o", "model")
         self.assert_on_skin(self.table())
-        self.assertIn("cap.sfp does not say its unit; taken for cm", done.stderr)
+        self.assertIn("cap.sfp: does not say its unit; taken for cm", done.stderr)
+
+    def test_a_frame_that_nothing_tells_is_refused(self):
+        self.path("cap.elc").write_text("UnitPosition mm\nPositions\n0 0 80\nLabels\nCz\n")
+        self.fails(BAD_INPUT, "says no coordinate frame.*--electrodes-in ras, lps or tkras",
+                   *self.labels(), "--electrodes", "cap.elc", *LANDMARKS, "-o", "model")
 
     def test_positions_of_the_systems(self):
         for system, count in (("10-20", 21), ("10-10", 73), ("10-05", 277)):

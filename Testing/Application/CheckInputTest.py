@@ -83,11 +83,40 @@ class Input(CheckTest):
         point = report["nesting"]["pairs"][0]["gap"]["innerPointMm"]
         self.assertAlmostEqual(math.dist(point, (10, 20, 30)), 80, delta=1)  # 1: facets' depth
         self.write("inner.off", inner, None)
-        report = self.check("--nested", "inner.off", "outer.off")
-        self.assertRegex(lines(report["warnings"])[0], "inner.off: does not say its coordinate frame")
+        self.refused(BAD_INPUT, "inner.off does not say its coordinate frame, and outer.off is in "
+                     "RAS mm.*--input-coordinates FRAME --input-coordinates ras", "--nested",
+                     "inner.off", "outer.off")
+        report = self.check("--nested", "inner.off", "outer.off", "--input-coordinates", "ras")
+        self.assertTrue(report["passed"])
+        self.assertEqual(report["options"]["inputCoordinates"], ["ras"])
+        self.write("bare.off", icosphere(86, centre=(10, 20, 30)), None)
+        report = self.check("--nested", "inner.off", "bare.off")
+        self.assertTrue(report["passed"])
+        self.assertIsNone(report["nesting"]["pointsIn"])
+        self.assertEqual({note["pointsIn"] for note in report["plausibility"]}, {None})
         self.write("inner.off", inner, "tkRAS mm")
         self.refused(BAD_INPUT, "inner.off is in tkRAS mm and outer.off is in RAS mm.*--volume",
                      "--nested", "inner.off", "outer.off")
+
+    def test_a_surface_without_a_frame_does_not_meet_an_image(self):
+        """As 3D Slicer and others write a sphere of 8 mm at (2, -6, 9) in RAS."""
+        write_nifti(self.path("ball.nii"), ball(24, 8, (1, 1, 1), (-9.5, -17.5, -2.5)))
+        self.write("bare.off", icosphere(8, centre=(2, -6, 9)), None)
+        done = self.run_check("bare.off", "--volume", "ball.nii", "--iso", "100")
+        self.assertEqual(done.returncode, BAD_INPUT)
+        self.assertRegex(done.stderr, "bare.off: does not say its coordinate frame, so where it lies "
+                         "in the image is not known; state it by --input-coordinates ras, lps")
+        self.write("slicer.off", icosphere(8, centre=(-2, 6, 9)), "sideways SPACE=LPS")
+        for name, stated in (("bare.off", ("--input-coordinates", "ras")), ("slicer.off", ())):
+            with self.subTest(name):
+                report = self.check(name, "--volume", "ball.nii", "--iso", "100", *stated)
+                # facets lie below the sphere by 0.3 mm at most, samples of 1 mm by as much
+                self.assertLess(report["surfaces"][0]["isosurface"]["meanMm"], 0.5)
+        lps = self.check("bare.off", "--volume", "ball.nii", "--iso", "100", "--input-coordinates",
+                         "lps")
+        self.assertGreater(lps["surfaces"][0]["isosurface"]["maxMm"], 5)
+        self.refused(USAGE, "--input-coordinates: is given 2 times for 1 surface; give it once",
+                     "bare.off", *["--input-coordinates", "ras"] * 2)
 
     def test_voxel_indices_need_the_image(self):
         write_nifti(self.path("ball.nii"), ball(24, 8, (2, 3, 4)))

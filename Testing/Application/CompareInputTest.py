@@ -24,12 +24,65 @@ class Frames(CompareTest):
         self.assertEqual((report["a"]["coordinates"], report["b"]["coordinates"],
                           report["coordinates"]), ("ras", "lps", "ras"))
 
-    def test_unknown_is_taken_for_the_other_with_a_warning(self):
+    def test_unknown_is_not_compared_with_known(self):
         self.write("bare.off", sphere(10, 24, (3, 5, 7)), None)
-        self.assert_same("ras.off", "bare.off", warnings=["bare.off: does not say .*RAS mm"])
-        self.assert_same("bare.off", "ras.off", warnings=["bare.off: does not say .*RAS mm"])
-        report = self.assert_same("bare.off", "bare.off", warnings=["bare.off and bare.off don't say"])
+        self.write("tk.off", sphere(10, 24, (3, 5, 7)), TKRAS)
+        for names, pattern in (
+                (("ras.off", "bare.off"), "bare.off does not say its coordinate frame, and ras.off "
+                 "is in RAS mm; .*--input-coordinates ras --input-coordinates FRAME"),
+                (("bare.off", "ras.off"), "--input-coordinates FRAME --input-coordinates ras"),
+                (("tk.off", "bare.off"), "--input-coordinates tkras --input-coordinates FRAME")):
+            self.refused(BAD_INPUT, pattern, *names)
+        report = self.assert_same("ras.off", "bare.off", "--input-coordinates", "ras")
+        self.assertEqual(report["options"]["inputCoordinates"], ["ras"])
+        self.assertEqual(report["b"]["coordinates"], "ras")
+
+    def test_unknown_of_one_format_share_a_frame(self):
+        self.write("bare.off", sphere(10, 24, (3, 5, 7)), None)
+        report = self.assert_same("bare.off", "bare.off", "--colored", "c.vtp",
+                                  warnings=["bare.off and bare.off don't say"])
         self.assertIsNone(report["a"]["coordinates"])
+        self.assertIsNone(report["coordinates"])
+        self.assertNotIn(b"CoordinateFrame", self.path("c.vtp").read_bytes())
+        self.assertNotIn(b"SPACE", self.path("c.vtp").read_bytes())
+        self.path("bare.obj").write_text("v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n")
+        self.refused(BAD_INPUT, "bare.off and bare.obj don't say .*different formats.*"
+                     "--input-coordinates ras, lps, tkras or voxel", "bare.off", "bare.obj")
+        write_nifti(self.path("ball.nii"), ball(20, 6, (1, 2, 3), (-40, 5, 11)))
+        self.refused(BAD_INPUT, "so where it lies in the image is not known.*--input-coordinates",
+                     "bare.off", "bare.off", "--volume", "ball.nii")
+
+    def test_frame_is_stated_for_each(self):
+        self.write("bare.off", to_lps(sphere(10, 24, (3, 5, 7))), None)
+        report = self.assert_same("ras.off", "bare.off", "--input-coordinates", "ras",
+                                  "--input-coordinates=lps")
+        self.assertEqual(report["options"]["inputCoordinates"], ["ras", "lps"])
+        self.assertEqual(report["b"]["coordinates"], "lps")
+        # over what the file says: (3, 5, 7) and its image at (-3, -5, 7)
+        report = self.compare("ras.off", "ras.off", "--input-coordinates", "ras",
+                              "--input-coordinates", "lps")
+        self.assertAlmostEqual(report["distances"]["combined"]["maxMm"], 34**0.5 * 2, delta=0.2)
+        self.refused(USAGE, "--input-coordinates: is given 3 times for 2 surfaces", "ras.off",
+                     "ras.off", *["--input-coordinates", "ras"] * 3)
+        self.refused(USAGE, "--input-coordinates up: must be", "ras.off", "ras.off",
+                     "--input-coordinates", "up")
+        self.refused(BAD_INPUT, "voxel indices.*--volume", "ras.off", "ras.off",
+                     "--input-coordinates", "voxel")
+
+    def test_slicers_surfaces_lie_where_they_say(self):
+        def obj(name, mesh, comment):
+            points, triangles = mesh
+            self.path(name).write_text(
+                f"# {comment}\n" + "".join("v %.17g %.17g %.17g\n" % tuple(p) for p in points)
+                + "".join("f %d %d %d\n" % tuple(v + 1 for v in t) for t in triangles))
+        obj("lps.obj", to_lps(sphere(10, 24, (3, 5, 7))), "3D Slicer output. SPACE=LPS")
+        obj("ras.obj", sphere(10, 24, (3, 5, 7)), "3D Slicer output. SPACE=RAS")
+        for name, frame in (("lps.obj", "lps"), ("ras.obj", "ras")):
+            self.assertEqual(self.assert_same("ras.off", name)["b"]["coordinates"], frame)
+        obj("both.obj", sphere(10, 24, (3, 5, 7)), "CoordinateFrame: RAS mm SPACE=LPS")
+        self.refused(BAD_INPUT, "both.obj: it says two coordinate frames.*--input-coordinates",
+                     "ras.off", "both.obj")
+        self.assert_same("ras.off", "both.obj", "--input-coordinates", "ras")
 
     def test_quiet_says_warnings_alone(self):
         self.write("bare.off", sphere(10, 24), None)
@@ -70,7 +123,10 @@ class Frames(CompareTest):
             with self.subTest(name):
                 self.assert_same("ras.vtp", name)
         self.mesh(*make, "-o", "a.tri")  # says no frame
-        self.assert_same("ras.vtp", "a.tri", warnings=["a.tri: does not say"])
+        self.refused(BAD_INPUT, "a.tri does not say", "ras.vtp", "a.tri")
+        self.assert_same("ras.vtp", "a.tri", "--input-coordinates", "ras")
+        self.assert_same("lh.pial", "a.tri", "--input-coordinates", "tkras",
+                         "--input-coordinates", "ras")
         for frame in ("lps", "tkras", "voxel"):
             self.mesh(*make, "--coordinates", frame, "-o", f"{frame}.vtp")
             with self.subTest(frame):

@@ -252,7 +252,8 @@ class InTheFile(SimplifyTest):
                 "off": colors, "stl": nothing, "gii": nothing, "pial": nothing, "tri": nothing}
         for ending, kept in held.items():
             with self.subTest(ending):
-                first = self.simplify("in.ply", "--max-error", "0.2", "-o", f"a.{ending}")
+                first = self.simplify("in.ply", "--max-error", "0.2", "--input-coordinates", "ras",
+                                      "-o", f"a.{ending}")
                 self.assertEqual(first["output"]["values"], kept)
                 left = [name for name in everything if name not in kept]
                 told = [text for text in lines(first["warnings"]) if "left out" in text]

@@ -272,8 +272,18 @@ class Frames(SimplifyTest):
         self.assertEqual(report["warnings"], [])
         self.assertIn(b"valid = 0", self.path("lh.pial").read_bytes())
         self.path("none.ply").write_text(ply(BALL))
-        report = self.simplify("none.ply", "--max-error", "1", "-o", "rh.pial")
-        self.assertRegex(lines(report["warnings"])[0], "^none.ply: does not say its coordinate frame")
+        for out in (("--coordinates", "lps", "-o", "out.vtp"), ("-o", "rh.pial")):
+            self.refused(BAD_INPUT, "none.ply: does not say its coordinate frame.*"
+                         "--input-coordinates", "none.ply", "--max-error", "1", *out)
+        report = self.simplify("none.ply", "--max-error", "1", "--input-coordinates", "lps", "-o",
+                               "lps.off")
+        self.assertEqual(report["options"]["inputCoordinates"], ["lps"])
+        self.assertEqual((report["input"]["coordinates"], report["output"]["coordinates"]),
+                         ("lps", "lps"))
+        self.refused(USAGE, "--input-coordinates: is given 2 times", "none.ply", "--max-error", "1",
+                     *["--input-coordinates", "ras"] * 2, "-o", "out.vtp")
+        self.refused(BAD_INPUT, "tkRAS mm, and does not say the volume", "none.ply", "--max-error",
+                     "1", "--input-coordinates", "tkras", "--coordinates", "ras", "-o", "out.vtp")
 
 
 class Refusals(SimplifyTest):

@@ -29,6 +29,7 @@ class WithWarnings(ApplicationTest):
         write_conflict(self.path("ball.nii"), ball(12, 4))
         write_nifti(self.path("good.nii"), ball(12, 4))
         write_off(self.path("bare.off"), icosphere(40), None)
+        write_off(self.path("ras.off"), icosphere(40))
 
     def run_program(self, program, *arguments):
         return subprocess.run([BIN / program, *map(str, arguments)], cwd=self.folder, text=True,
@@ -39,12 +40,11 @@ class Warnings(WithWarnings):
     # each: program, arguments that bring about one warning, what it says
     RUNS = (("adaptiso-mesh", ("ball.nii", "--iso", "100", "-o", "a.vtp"), CONFLICT),
             ("adaptiso-mesh", ("ball.nii", "--info"), CONFLICT),
-            ("adaptiso-check", ("bare.off", "--volume", "ball.nii"), CONFLICT),
+            ("adaptiso-check", ("ras.off", "--volume", "ball.nii"), CONFLICT),
             ("adaptiso-compare", ("bare.off", "bare.off"),
              "bare.off and bare.off don't say their coordinate frame"),
-            ("adaptiso-simplify", ("bare.off", "--max-error", "1", "--coordinates", "ras", "-o",
-                                   "small.vtp"),
-             "bare.off: does not say its coordinate frame"))
+            ("adaptiso-simplify", ("ras.off", "--triangles", "2", "-o", "small.vtp"),
+             "small.vtp: "))
 
     def test_are_told_with_the_files_name_also_when_quiet(self):
         for program, arguments, pattern in self.RUNS:
@@ -93,13 +93,13 @@ class Warnings(WithWarnings):
         self.assertIn("a.vtp (not written)", done.stdout)
         self.assertEqual(self.path("a.vtp").read_text(), "of an earlier run")
         self.assertEqual(self.names(), ["a.vtp", "ball.nii", "bare.off", "good.nii", "page.html",
-                                        "r.json"])
+                                        "r.json", "ras.off"])
         report = json.loads(self.path("r.json").read_text())
         self.assertEqual(report["surfaces"][0]["output"]["written"], False)
         self.assertIn("--strict: 1 warning", self.path("page.html").read_text())
 
     def test_check_is_not_passed_when_strict_fails(self):
-        done = self.run_program("adaptiso-check", "bare.off", "--volume", "ball.nii", "--strict",
+        done = self.run_program("adaptiso-check", "ras.off", "--volume", "ball.nii", "--strict",
                                 "--json", "-")
         self.assertEqual((done.returncode, json.loads(done.stdout)["passed"]),
                          (CHECK_FAILED, False))
@@ -206,10 +206,10 @@ class Batches(WithWarnings):
         self.assertEqual(rows[0]["outputs"], [])
 
     def test_of_checks_too(self):
-        done = self.run_program("adaptiso-check", "bare.off", "--volume", "ball.nii", "--strict",
+        done = self.run_program("adaptiso-check", "ras.off", "--volume", "ball.nii", "--strict",
                                 "--no-warnings", "--output-dir", "out")
         self.assertEqual(done.returncode, CHECK_FAILED, done.stderr)
-        self.assertRegex(done.stdout, "FAILED  bare.off: --strict: 1 warning")
+        self.assertRegex(done.stdout, "FAILED  ras.off: --strict: 1 warning")
 
 
 if __name__ == "__main__":

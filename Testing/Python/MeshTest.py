@@ -98,8 +98,55 @@ class Files(InFolder):
     def test_a_frame_that_is_not_told_is_warned_of(self):
         sphere().save(self.folder / "a.tri")
         with self.assertLogs("adaptiso", "WARNING") as logs:
-            adaptiso.load(self.folder / "a.tri")
+            mesh = adaptiso.load(self.folder / "a.tri")
         self.assertIn("a.tri: does not say its coordinate frame", logs.output[0])
+        self.assertEqual(mesh.frame, "unknown")
+        self.assertIn("unknown frame", repr(mesh))
+        self.assertEqual(pickle.loads(pickle.dumps(mesh)), mesh)
+        self.assertEqual(adaptiso.simplify(mesh, max_error=0.1).frame, "unknown")
+
+    def test_an_unknown_frame_is_no_guess(self):
+        known = sphere()
+        known.save(self.folder / "a.tri")
+        with self.assertLogs("adaptiso", "WARNING"):
+            mesh = adaptiso.load(self.folder / "a.tri")
+        mesh.save(self.folder / "b.ply")
+        content = (self.folder / "b.ply").read_bytes()
+        self.assertNotIn(b"CoordinateFrame", content)
+        self.assertNotIn(b"SPACE", content)
+        for wrong in (lambda: mesh.save(self.folder / "c.ply", "lps"),
+                      lambda: mesh.save(self.folder / "lh.pial"),
+                      lambda: adaptiso.compare(mesh, known),
+                      lambda: adaptiso.compare(known, self.folder / "a.tri"),
+                      lambda: adaptiso.compare(self.folder / "a.tri", self.folder / "b.ply"),
+                      lambda: adaptiso.check_nested([known, mesh]),
+                      lambda: adaptiso.bem(surfaces=[known, mesh, known])):
+            with self.assertRaisesRegex(adaptiso.Error, "input_coordinates="):
+                wrong()
+        self.assertLess(adaptiso.compare(mesh, mesh).max, 1e-9)
+
+    def test_the_frame_of_a_file_is_stated(self):
+        known = sphere()
+        known.save(self.folder / "a.tri", "lps")
+        mesh = adaptiso.load(self.folder / "a.tri", input_coordinates="lps")
+        self.assertEqual(mesh.frame, "ras")
+        np.testing.assert_allclose(mesh.vertices, known.vertices, atol=1e-7)  # nine digits
+        file = self.folder / "a.tri"
+        self.assertLess(adaptiso.compare(known, file, input_coordinates=[None, "lps"]).max, 1e-6)
+        self.assertTrue(adaptiso.check(file, input_coordinates="lps"))
+        self.assertEqual(adaptiso.simplify(file, max_error=0.1, input_coordinates="lps").frame,
+                         "ras")
+        # over what a file says
+        known.save(self.folder / "a.ply")
+        turned = adaptiso.load(self.folder / "a.ply", input_coordinates="lps")
+        np.testing.assert_array_equal(turned.vertices, known.vertices * [-1, -1, 1])
+        for words, pattern in (("up", "input_coordinates 'up'"), (["lps"], "one for each surface")):
+            with self.assertRaisesRegex(adaptiso.Error, pattern):
+                adaptiso.compare(file, file, input_coordinates=words)
+        with self.assertRaisesRegex(adaptiso.Error, "a mesh in memory has its frame"):
+            adaptiso.compare(known, known, input_coordinates="ras")
+        with self.assertRaisesRegex(adaptiso.Error, "volume="):
+            adaptiso.load(file, input_coordinates="voxel")
 
     @needs("nibabel")
     def test_tkras_without_its_volume_stays_tkras_until_the_volume_is_given(self):

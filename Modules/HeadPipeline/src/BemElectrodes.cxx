@@ -100,10 +100,9 @@ std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
         model.notes.push_back("electrodes: brought to the head by nasion and ears" +
                               (file.frameName.empty() ? "" : " (frame " + file.frameName + ")"));
     } else {
-        move = toLps(CoordinateFrame::Ras, model);
-        model.warnings.push_back({"guessed-frame",
-                                  "does not say its coordinate frame; taken for RAS mm",
-                                  options.fileName});
+        throw InvalidInput(
+            "the file says no coordinate frame, and has no nasion and ears to find it by; state it "
+            "by --electrodes-in ras, lps or tkras (electrodes_in in Python)");
     }
     for (NamedPoint& p : file.points) p.point = move(p.point);
     return file.points;

@@ -41,7 +41,7 @@ Json notesJson(std::span<const ToldNote> notes) {
                         {"of", told.subject},
                         {"outcome", told.note.isNoted ? "noted" : "passed"},
                         {"finding", told.note.finding},
-                        {"pointsIn", frameWord(told.frame)},
+                        {"pointsIn", told.frame ? Json(frameWord(*told.frame)) : Json(nullptr)},
                         {"pointsMm", points}});
     }
     return list;

@@ -18,7 +18,7 @@ from ._arguments import (Progress, Warned, count, flag, is_path, listed, number,
                          path as checked_path, progress as checked_progress, shown,
                          threads as checked_threads, word)
 from ._images import Samples, base_name, read_only, samples_of
-from ._mesh import Mesh, load
+from ._mesh import Mesh, load, require_known_frames, stated_frames
 from ._quality import Check
 
 logger = logging.getLogger("adaptiso")
@@ -316,6 +316,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
         tissues: Union[str, Mapping[str, Sequence[int]], None] = None, head_mask: Any = None,
         probabilities: Optional[Sequence[Any]] = None, ct: Any = None,
         surfaces: Union[Sequence[Any], Mapping[str, Any], None] = None, volume: Any = None,
+        input_coordinates: Union[str, Sequence[Optional[str]], None] = None,
         affine: Any = None, layers: int = 3, vertices: Union[int, Sequence[int], None] = None,
         edge_length: Optional[Tuple[float, float]] = None, meg: bool = False,
         min_gap: Union[float, Sequence[float]] = (2, 2, 1), csf: float = 2, skull: float = 6,
@@ -362,6 +363,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
         vertices and faces; of a dict (as ``HeadModel.surfaces``) its values. Checked, mended where need be, kept as they are where not.
     volume : image, optional
         With `surfaces`: the image they belong to, for tkRAS.
+    input_coordinates : {"ras", "lps", "tkras", "voxel"}, or a sequence of one for each, optional
+        The frame of the files of `surfaces`, or of `pial`, whatever the file says of it.
     affine : array_like of shape (4, 4), optional
         Of images that are plain arrays: voxel indices to scanner RAS mm.
     layers : {3, 4, 1}
@@ -402,7 +405,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
         Electrodes, moved onto the skin: a file (BIDS, ASA .elc, BESA .sfp, FIFF), or places by
         name, scanner RAS mm.
     electrodes_in : {"ras", "lps", "tkras"}, optional
-        The frame of the file. Default: what it says; else by its nasion and ears; else RAS.
+        The frame of the file. Default: what it says; else by its nasion and ears; else
+        it is refused.
     montage : {"10-20", "10-10", "10-05"}, optional
         Instead of `electrodes`: the positions of this system, computed on the skin.
     landmarks : mapping of "nasion", "left_ear", "right_ear" to (float, float, float), or "guess"
@@ -470,7 +474,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
         raise Error("layers 4: a CT does not show where the brain ends and CSF begins")
     preset, lists = _tissues(tissues, labels is not None, count_, head_mask is not None)
     source = _source(t1, brain_mask, aseg, pial, labels, head_mask, probabilities, ct, surfaces,
-                     volume, affine, count_)
+                     volume, input_coordinates, affine, count_)
     with contextlib.ExitStack() as meanwhile:
         for image in source.all_images():
             meanwhile.enter_context(read_only(image.user))
@@ -484,8 +488,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
 
 
 def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, head_mask: Any,
-            probabilities: Any, ct: Any, surfaces: Any, volume: Any, affine: Any,
-            layers: int) -> _Source:
+            probabilities: Any, ct: Any, surfaces: Any, volume: Any,
+            input_coordinates: Any, affine: Any, layers: int) -> _Source:
     """The one that is given. \\raises Error"""
     given = {"t1": t1, "labels": labels, "probabilities": probabilities, "ct": ct,
              "surfaces": surfaces}
@@ -502,11 +506,13 @@ def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, head_ma
         raise Error("pial: needs layers=4")
     if volume is not None and kind != "surfaces":
         raise Error("volume: needs surfaces")
+    if input_coordinates is not None and kind != "surfaces" and pial is None:
+        raise Error("input_coordinates: needs surfaces or pial")
     source = _Source(kind, [], None, None, None, [], [], [], [])
     if kind == "surfaces":
         if volume is not None:
             source.images.append(_image("volume", volume, affine, source))
-        source.surfaces.extend(_surfaces("surfaces", surfaces, source))
+        source.surfaces.extend(_surfaces("surfaces", surfaces, input_coordinates, source))
         if len(source.surfaces) != layers:
             raise Error(f"surfaces: are {len(source.surfaces)}, must be {layers}, from inside out")
         return source
@@ -518,7 +524,7 @@ def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, head_ma
     labelled = None if aseg is None else _image("aseg", aseg, affine, source)
     head = None if head_mask is None else _image("head_mask", head_mask, affine, source)
     if pial is not None:
-        source.pial.extend(_surfaces("pial", pial, source))
+        source.pial.extend(_surfaces("pial", pial, input_coordinates, source))
     return source._replace(mask=mask, aseg=labelled, head_mask=head)
 
 
@@ -535,16 +541,19 @@ def _image(name: str, image: Any, affine: Any, source: _Source) -> Samples:
     return samples
 
 
-def _surfaces(name: str, surfaces: Any, source: _Source) -> List[Mesh]:
+def _surfaces(name: str, surfaces: Any, input_coordinates: Any, source: _Source) -> List[Mesh]:
     role = "surface" if name == "surfaces" else "pial surface"
     meshes = []
-    for surface in listed(name, surfaces.values() if isinstance(surfaces, Mapping) else surfaces):
+    given = listed(name, surfaces.values() if isinstance(surfaces, Mapping) else surfaces)
+    for surface, stated in zip(given, stated_frames(input_coordinates, given)):
+        if stated is not None and not is_path(surface):
+            raise Error("input_coordinates: is for files; a mesh in memory has its frame")
         file = base_name(checked_path(name, surface)) if is_path(surface) else ""
         source.inputs.append([file, role, "file" if file else type(surface).__name__])
         if isinstance(surface, Mesh):
             meshes.append(surface)
         elif file:
-            meshes.append(load(surface))
+            meshes.append(load(surface, input_coordinates=stated))
         elif isinstance(surface, (tuple, list)) and len(surface) == 2:
             meshes.append(Mesh(*surface))
         elif hasattr(surface, "vertices") and hasattr(surface, "faces"):
@@ -552,6 +561,11 @@ def _surfaces(name: str, surfaces: Any, source: _Source) -> List[Mesh]:
         else:
             raise Error(f"{name} {shown(surface)}: must be a Mesh, (vertices, faces), or a file's "
                         "name")
+    require_known_frames([mesh.frame for mesh in meshes],
+                         [f"{name}: number {n + 1}" for n in range(len(meshes))])
+    if source.images and any(mesh.frame == "unknown" for mesh in meshes):
+        raise Error(f"{name}: are of files that don't say their coordinate frame, so where they lie "
+                    "in the image is not known; state it by input_coordinates=")
     if len({mesh.frame for mesh in meshes}) > 1:
         raise Error(f"{name}: are not in one frame; load those in tkras with volume=")
     return meshes

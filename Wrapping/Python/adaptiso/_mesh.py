@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 import logging
-from typing import Any, Dict, Optional, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import is_path, path as checked_path, shown
+from ._arguments import is_path, path as checked_path, shown, word
 from ._images import affine_of, base_name, read
 from ._triangles import Faces, Triangles, Vertices
 
@@ -36,7 +36,8 @@ class Mesh(Triangles[_adaptiso.MeshData]):
     Attributes
     ----------
     frame : str
-        "ras"; "tkras" for a FreeSurfer surface whose volume is not known.
+        "ras"; "tkras" for a FreeSurfer surface whose volume is not known; "unknown" where a file
+        does not say its frame.
 
     Raises
     ------
@@ -133,13 +134,15 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         path : str or path
             The extension chooses the format.
         frame : {"ras", "lps", "tkras", "voxel"}, optional
-            Of the points written. Default: "tkras" for FreeSurfer's formats, else "ras".
+            Of the points written. Default: "tkras" for FreeSurfer's formats, else "ras". A mesh of
+            unknown frame is written as it is, and its file says no frame.
 
         Raises
         ------
         Error
             An unknown extension, a frame that the format can't hold or that needs an image that
-            the mesh does not know, a format that keeps too few digits of the coordinates for a
+            the mesh does not know, a mesh of unknown frame with `frame` or in FreeSurfer's formats,
+            a format that keeps too few digits of the coordinates for a
             surface made here to stay sound or within its bound, a file that can't be written.
         """
         self._save(checked_path("path", path), frame)
@@ -179,14 +182,16 @@ class Mesh(Triangles[_adaptiso.MeshData]):
                                process=False)
 
     def to_gifti(self) -> Any:
-        """The mesh as nibabel's GiftiImage, scanner RAS mm, single precision as GIFTI has it.
+        """The mesh as nibabel's GiftiImage, single precision as GIFTI has it. Only of a mesh in
+        "ras" it says that points are in scanner space.
 
         Needs nibabel."""
         from nibabel import gifti
+        space = "NIFTI_XFORM_SCANNER_ANAT" if self.frame == "ras" else "NIFTI_XFORM_UNKNOWN"
         points = gifti.GiftiDataArray(
             self.vertices.astype(np.float32), intent="NIFTI_INTENT_POINTSET",
             datatype="NIFTI_TYPE_FLOAT32",
-            coordsys=gifti.GiftiCoordSystem("NIFTI_XFORM_SCANNER_ANAT", "NIFTI_XFORM_SCANNER_ANAT"))
+            coordsys=gifti.GiftiCoordSystem(space, space))
         triangles = gifti.GiftiDataArray(
             self.faces.astype(np.int32), intent="NIFTI_INTENT_TRIANGLE",
             datatype="NIFTI_TYPE_INT32")
@@ -217,7 +222,8 @@ class Mesh(Triangles[_adaptiso.MeshData]):
     def __repr__(self) -> str:
         bound = self.error_bound
         told = "" if bound is None else f", within {bound:.4g} mm"
-        frame = {"ras": "RAS mm", "tkras": "tkRAS mm", "lps": "LPS mm"}.get(self.frame, self.frame)
+        frame = {"ras": "RAS mm", "tkras": "tkRAS mm", "lps": "LPS mm",
+                 "unknown": "unknown frame"}.get(self.frame, self.frame)
         return (f"<adaptiso.Mesh of {len(self.faces):,} triangles, {len(self.vertices):,} "
                 f"vertices{told}, {frame}>")
 
@@ -253,40 +259,73 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         return self
 
 
-def load(path: Any, *, volume: Any = None) -> Mesh:
+def load(path: Any, *, volume: Any = None, input_coordinates: Optional[str] = None) -> Mesh:
     """Read a surface file, in any of the formats that `Mesh.save` writes.
 
     Points come in scanner RAS mm, by what the file says of its frame. A FreeSurfer surface without
-    a footer stays in tkRAS (``mesh.frame == "tkras"``) unless `volume` is given; a file that does
-    not say its frame is taken for RAS, and the logger "adaptiso" says so.
+    a footer stays in tkRAS (``mesh.frame == "tkras"``) unless `volume` is given. Points of a file
+    that does not say its frame are as stored (``mesh.frame == "unknown"``), and the logger
+    "adaptiso" says so.
 
     Parameters
     ----------
     path : str or path
     volume : path, nibabel image or Image, optional
         The image that tkRAS and voxel indices refer to.
+    input_coordinates : {"ras", "lps", "tkras", "voxel"}, optional
+        The frame of the file's points, whatever the file says of it. Default: as the file says.
 
     Raises
     ------
     Error
-        The file is missing, damaged, of an unknown format, or in voxels without `volume`.
+        The file is missing, damaged, of an unknown format, in voxels without `volume`, or of
+        unknown frame with it.
     """
     name = checked_path("path", path)
     shape, affine = (None, None) if volume is None else _geometry_of(volume)
-    data, assumed = _adaptiso.read_mesh(name, shape, affine, False)
-    if assumed:
-        logger.warning("%s: %s", base_name(name), assumed)
+    data, warning = _adaptiso.read_mesh(name, shape, affine, False, _stated(input_coordinates))
+    if warning:
+        logger.warning("%s: %s", base_name(name), warning)
     return Mesh._of(data)
 
 
-def mesh_data_of(value: Any, keeps_faults: bool) -> _adaptiso.MeshData:
+def stated_frames(input_coordinates: Any, surfaces: Sequence[Any]) -> List[Optional[str]]:
+    """A word for each surface: of one word for all, or a sequence of words. \\raises Error"""
+    words = ([input_coordinates] * len(surfaces)
+             if input_coordinates is None or isinstance(input_coordinates, str)
+             else list(input_coordinates))
+    if len(words) != len(surfaces):
+        raise Error(f"input_coordinates {shown(input_coordinates)}: must be one word, or one for "
+                    "each surface")
+    return [_stated(each) for each in words]
+
+
+def _stated(input_coordinates: Any) -> Optional[str]:
+    if input_coordinates is None:
+        return None
+    return word("input_coordinates", input_coordinates, ("ras", "lps", "tkras", "voxel"))
+
+
+def require_known_frames(frames: Sequence[str], names: Sequence[str]) -> None:
+    """Frames are all known, or all unknown. \\raises Error"""
+    unknown = [name for frame, name in zip(frames, names) if frame == "unknown"]
+    if unknown and len(unknown) < len(frames):
+        raise Error(f"{unknown[0]}: is of a file that does not say its coordinate frame; state it "
+                    "by input_coordinates=")
+
+
+def mesh_data_of(value: Any, keeps_faults: bool,
+                 input_coordinates: Optional[str] = None) -> _adaptiso.MeshData:
     """A mesh, (vertices, faces), a file's name, or an object with vertices and faces (trimesh's)."""
+    if input_coordinates is not None and not is_path(value):
+        raise Error("input_coordinates: is for files; a mesh in memory has its frame")
     if isinstance(value, Mesh):
         return value._data
     if is_path(value):
         if not keeps_faults:
-            return load(value)._data
-        return _adaptiso.read_mesh(checked_path("mesh", value), None, None, True)[0]
+            return load(value, input_coordinates=input_coordinates)._data
+        return _adaptiso.read_mesh(checked_path("mesh", value), None, None, True,
+                                   input_coordinates)[0]
     if isinstance(value, (tuple, list)) and len(value) == 2:
         vertices, faces = value
     elif hasattr(value, "vertices") and hasattr(value, "faces"):

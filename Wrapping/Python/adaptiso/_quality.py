@@ -10,7 +10,7 @@ from ._adaptiso import Error
 from ._arguments import (Progress, count, flag, is_path, listed, optional_number, path as checked_path,
                          progress as checked_progress, shown, threads as checked_threads, word)
 from ._images import base_name
-from ._mesh import Mesh, mesh_data_of
+from ._mesh import Mesh, mesh_data_of, require_known_frames, stated_frames
 
 PROFILES = ("bem", "print", "view")
 
@@ -132,7 +132,8 @@ class Comparison(_Report):
 
 
 def check(mesh: Any, profile: str = "print", *, min_angle: Optional[float] = None,
-          max_pairs: int = 1000, threads: int = 0) -> Check:
+          max_pairs: int = 1000, input_coordinates: Optional[str] = None,
+          threads: int = 0) -> Check:
     """Check whether a surface is sound: closed, manifold, oriented, without crossing triangles, of
     a plausible size.
 
@@ -146,6 +147,8 @@ def check(mesh: Any, profile: str = "print", *, min_angle: Optional[float] = Non
         Required smallest angle, degrees, 0 to 60.
     max_pairs : int
         Pairs of crossing triangles to list; all are counted.
+    input_coordinates : {"ras", "lps", "tkras", "voxel"}, optional
+        The frame of a file's points, whatever the file says of it.
     threads : int
         0: as many as the machine has.
 
@@ -163,7 +166,7 @@ def check(mesh: Any, profile: str = "print", *, min_angle: Optional[float] = Non
     >>> adaptiso.check((points, faces[:3])).failed
     ['closed']
     """
-    text = _adaptiso.check(mesh_data_of(mesh, keeps_faults=True),
+    text = _adaptiso.check(mesh_data_of(mesh, True, *stated_frames(input_coordinates, [mesh])),
                            word("profile", profile, PROFILES), _min_angle(min_angle),
                            count("max_pairs", max_pairs), checked_threads(threads))
     return Check(json.loads(text))
@@ -172,6 +175,7 @@ def check(mesh: Any, profile: str = "print", *, min_angle: Optional[float] = Non
 def check_nested(meshes: Union[Sequence[Any], Mapping[str, Any]], profile: str = "bem", *,
                  min_gap: Optional[float] = None, min_angle: Optional[float] = None,
                  max_pairs: int = 1000, names: Optional[Sequence[str]] = None,
+                 input_coordinates: Union[str, Sequence[Optional[str]], None] = None,
                  threads: int = 0) -> Check:
     """Check surfaces that lie in each other, and each of them.
 
@@ -185,6 +189,8 @@ def check_nested(meshes: Union[Sequence[Any], Mapping[str, Any]], profile: str =
         Required distance of neighbours, mm; default 0.5, required of "bem" only.
     names : sequence of str, optional
         What findings call them; default the dict's keys, the files' names, or "surface 1" and so on.
+    input_coordinates : {"ras", "lps", "tkras", "voxel"}, or a sequence of one for each, optional
+        The frame of a file's points, whatever the file says of it (None: as it says).
 
     Returns
     -------
@@ -213,8 +219,9 @@ def check_nested(meshes: Union[Sequence[Any], Mapping[str, Any]], profile: str =
     if len(surfaces) < 2:
         raise Error(f"meshes: are {len(surfaces)}, must be two or more")
     told = _names(surfaces, names)
-    data = [mesh_data_of(mesh, keeps_faults=not is_path(mesh)) for mesh in surfaces]
-    _require_one_frame(data, told)
+    data = [mesh_data_of(mesh, not is_path(mesh), stated)
+            for mesh, stated in zip(surfaces, stated_frames(input_coordinates, surfaces))]
+    _require_one_frame(data, surfaces, told)
     text = _adaptiso.check_nested(
         data, told, word("profile", profile, PROFILES),
         optional_number("min_gap", min_gap, "a number from 0, in mm", lambda value: value >= 0),
@@ -222,7 +229,8 @@ def check_nested(meshes: Union[Sequence[Any], Mapping[str, Any]], profile: str =
     return Check(json.loads(text))
 
 
-def compare(a: Any, b: Any, *, samples: int = 200000, symmetric: bool = True, threads: int = 0,
+def compare(a: Any, b: Any, *, samples: int = 200000, symmetric: bool = True,
+            input_coordinates: Union[str, Sequence[Optional[str]], None] = None, threads: int = 0,
             progress: Optional[Progress] = None) -> Comparison:
     """Measure how far apart two surfaces lie.
 
@@ -234,6 +242,8 @@ def compare(a: Any, b: Any, *, samples: int = 200000, symmetric: bool = True, th
         Points spread over a surface, for each direction.
     symmetric : bool
         From b to a too.
+    input_coordinates : {"ras", "lps", "tkras", "voxel"}, or two, optional
+        The frame of a file's points, whatever the file says of it (None: as it says).
     threads : int
         0: as many as the machine has.
     progress : callable, optional
@@ -246,7 +256,7 @@ def compare(a: Any, b: Any, *, samples: int = 200000, symmetric: bool = True, th
     Raises
     ------
     Error
-        A surface without area, or frames that differ.
+        A surface without area, or frames that differ or of which one is not known.
 
     Examples
     --------
@@ -257,8 +267,9 @@ def compare(a: Any, b: Any, *, samples: int = 200000, symmetric: bool = True, th
     >>> round(two.mean, 1)
     1.0
     """
-    data = [mesh_data_of(mesh, keeps_faults=False) for mesh in (a, b)]
-    _require_one_frame(data, ["a", "b"])
+    data = [mesh_data_of(mesh, False, stated)
+            for mesh, stated in zip((a, b), stated_frames(input_coordinates, (a, b)))]
+    _require_one_frame(data, (a, b), ["a", "b"])
     text = _adaptiso.compare(data[0], data[1], count("samples", samples, 1, 10**9),
                              flag("symmetric", symmetric), checked_threads(threads),
                              checked_progress(progress))
@@ -280,7 +291,15 @@ def _names(surfaces: Sequence[Any], names: Optional[Sequence[str]]) -> List[str]
     return told
 
 
-def _require_one_frame(data: Sequence[_adaptiso.MeshData], names: Sequence[str]) -> None:
+def _require_one_frame(data: Sequence[_adaptiso.MeshData], surfaces: Sequence[Any],
+                       names: Sequence[str]) -> None:
+    require_known_frames([mesh.frame for mesh in data], names)
+    endings = {checked_path("mesh", surface).rpartition(".")[2].lower()
+               for surface in surfaces if is_path(surface)}
+    if data[0].frame == "unknown" and len(endings) > 1:
+        raise Error(f"{names[0]} and {names[1]}: are of files that don't say their coordinate "
+                    "frame, and files of different formats may differ in it; state it by "
+                    "input_coordinates=")
     for mesh, name in zip(data, names):
         if mesh.frame != data[0].frame:
             raise Error(f"{names[0]} is in {data[0].frame} and {name} in {mesh.frame}; load the "

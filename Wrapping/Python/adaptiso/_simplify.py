@@ -8,12 +8,13 @@ from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, count, flag, number, optional_number, progress as checked_progress,
                          threads as checked_threads)
-from ._mesh import Mesh, mesh_data_of
+from ._mesh import Mesh, mesh_data_of, stated_frames
 
 
 def simplify(mesh: Any, faces: Any = None, *, max_error: Optional[float] = None,
              triangles: Optional[int] = None, reduction: Optional[float] = None,
-             min_angle: Optional[float] = None, keep_borders: bool = False, threads: int = 0,
+             min_angle: Optional[float] = None, keep_borders: bool = False,
+             input_coordinates: Optional[str] = None, threads: int = 0,
              progress: Optional[Progress] = None) -> Mesh:
     """Give any triangle mesh fewer triangles, within a proved distance.
 
@@ -40,6 +41,8 @@ def simplify(mesh: Any, faces: Any = None, *, max_error: Optional[float] = None,
         triangles.
     keep_borders : bool
         Vertices on open borders stay, bit by bit.
+    input_coordinates : {"ras", "lps", "tkras", "voxel"}, optional
+        The frame of a file's points, whatever the file says of it.
     threads, progress
         As for `surface`.
 
@@ -69,7 +72,8 @@ def simplify(mesh: Any, faces: Any = None, *, max_error: Optional[float] = None,
     """
     if max_error is None and triangles is None and reduction is None:
         raise Error("simplify: one of max_error, triangles and reduction must be given")
-    data = mesh_data_of(mesh if faces is None else (mesh, faces), keeps_faults=False)
+    given = mesh if faces is None else (mesh, faces)
+    data = mesh_data_of(given, False, *stated_frames(input_coordinates, [given]))
     made, found = _adaptiso.simplify_mesh(
         data,
         optional_number("max_error", max_error, "a number above 0", lambda value: value > 0),

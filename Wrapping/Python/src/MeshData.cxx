@@ -24,6 +24,9 @@ void turnXY(std::vector<Vec3>& points) {
 
 namespace {
 
+constexpr const char* kStateIt =
+    "; state it by input_coordinates=\"ras\", \"lps\", \"tkras\" or \"voxel\" where it is read";
+
 /// Both axes turn, so triangles stay as they are.
 void turnXY(TriangleMesh& mesh) {
     python::turnXY(mesh.points);
@@ -191,6 +194,13 @@ std::string MeshData::write(const std::string& path, std::optional<CoordinateFra
     if (options.frame == CoordinateFrame::Voxel && !format.holdsVoxelFrame) {
         throw InvalidInput("frame voxel: " + std::string(format.name) + " holds points in mm only");
     }
+    if (!isFrameKnown_) {
+        if (frame || format.id == MeshFormatId::FreeSurfer) {
+            throw InvalidInput(
+                path + ": the mesh is of a file that does not say its coordinate frame" + kStateIt);
+        }
+        options.saysFrame = false;
+    }
     if (frame_ == CoordinateFrame::TkRas && !image_) {
         if (options.frame != CoordinateFrame::TkRas) {
             throw InvalidInput(
@@ -245,11 +255,17 @@ std::string MeshData::notebook(const std::string& title) const {
 }
 
 std::pair<std::shared_ptr<MeshData>, std::string> readMeshData(
-    const std::string& path, const std::optional<ImageGeometry>& image, bool keepsFaults) {
-    MeshFile file = readMesh(path, {.keepsFaults = keepsFaults});
-    std::string assumed;
-    if (!file.frame) {
-        if (!keepsFaults) assumed = "does not say its coordinate frame; taken for RAS mm";
+    const std::string& path, const std::optional<ImageGeometry>& image, bool keepsFaults,
+    std::optional<CoordinateFrame> stated) {
+    MeshFile file = readMesh(path, {.keepsFaults = keepsFaults, .inputCoordinates = stated});
+    std::string warning;
+    const bool isFrameKnown = file.frame.has_value();
+    if (!isFrameKnown) {
+        if (image) {
+            throw InvalidInput(path + ": does not say its coordinate frame, so where it lies in " +
+                               "the image is not known" + kStateIt);
+        }
+        if (!keepsFaults) warning = "does not say its coordinate frame; points are as stored";
         file.frame = CoordinateFrame::Ras;
     }
     if (!file.volume && image && needsVolume(*file.frame)) {
@@ -269,7 +285,8 @@ std::pair<std::shared_ptr<MeshData>, std::string> readMeshData(
     } else if (file.volume && !isKept) {
         data->setImage(*file.volume);
     }
-    return {data, assumed};
+    data->setFrameKnown(isFrameKnown);
+    return {data, warning};
 }
 
 }  // namespace adaptiso::python

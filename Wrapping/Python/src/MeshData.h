@@ -78,6 +78,9 @@ public:
     /// The surface with x and y turned, without normals: LPS mm of one in RAS.
     TriangleMesh lps() const;
     CoordinateFrame frame() const { return frame_; }
+    /// Else it is of a file that does not say its frame: points as stored, frame() is Ras.
+    bool isFrameKnown() const { return isFrameKnown_; }
+    void setFrameKnown(bool isKnown) { isFrameKnown_ = isKnown; }
     const std::optional<ImageGeometry>& image() const { return image_; }
     void setImage(const ImageGeometry& image) { image_ = image; }
     std::optional<double> errorBoundMm() const { return errorBoundMm_; }
@@ -90,7 +93,8 @@ public:
     /// The bound that the mesh was asked to keep, mm; none: none, or not known.
     void setAskedBoundMm(std::optional<double> bound) { askedBoundMm_ = bound; }
 
-    /// Writes a file in place, in `frame` or in the format's own.
+    /// Writes a file in place, in `frame` or in the format's own. Points of an unknown frame are
+    /// written as they are, and the file says no frame.
     /// \param cellArrays  as MeshWriteOptions has them
     /// \return a warning, without the file's name: the format's digits take the file beyond the
     ///         bound that was asked for; else ""
@@ -104,6 +108,7 @@ public:
 private:
     TriangleMesh mesh_;
     CoordinateFrame frame_ = CoordinateFrame::Ras;
+    bool isFrameKnown_ = true;
     std::optional<ImageGeometry> image_;
     std::optional<double> errorBoundMm_, askedBoundMm_;
     std::optional<SurfaceHistory> history_;
@@ -114,8 +119,11 @@ private:
 /// frame that it says, else as stored.
 /// \param image        that tkRAS and voxel indices refer to, or none
 /// \param keepsFaults  points as stored, with all that is wrong
-/// \return the mesh, and what had to be assumed (empty: nothing)
+/// \param stated       the frame, whatever the file says of it; or none
+/// \return the mesh, and a warning (empty: none)
+/// \throws FileError, InvalidInput  voxel indices without an image; an image and no frame
 std::pair<std::shared_ptr<MeshData>, std::string> readMeshData(
-    const std::string& path, const std::optional<ImageGeometry>& image, bool keepsFaults);
+    const std::string& path, const std::optional<ImageGeometry>& image, bool keepsFaults,
+    std::optional<CoordinateFrame> stated);
 
 }  // namespace adaptiso::python

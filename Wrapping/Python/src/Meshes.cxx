@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,9 @@
 
 namespace adaptiso::python {
 namespace {
+
+/// What Python calls the frame of a mesh whose file does not say one.
+constexpr std::string_view kUnknownFrame = "unknown";
 
 std::optional<ImageGeometry> imageOf(const std::optional<std::vector<std::int64_t>>& shape,
                                      const std::optional<py::array_t<double>>& affine) {
@@ -37,8 +41,12 @@ void declareMeshes(py::module_& module) {
                const std::optional<py::array_t<float, py::array::c_style>>& normals,
                const std::string& frame, const std::optional<std::vector<std::int64_t>>& shape,
                const std::optional<py::array_t<double>>& affine, bool keepsFaults) {
-                return MeshData::fromArrays(points, faces, normals, frameOf(frame),
-                                            imageOf(shape, affine), keepsFaults);
+                const bool isKnown = frame != kUnknownFrame;
+                auto data = MeshData::fromArrays(points, faces, normals,
+                                                 isKnown ? frameOf(frame) : CoordinateFrame::Ras,
+                                                 imageOf(shape, affine), keepsFaults);
+                data->setFrameKnown(isKnown);
+                return data;
             },
             py::arg("vertices"), py::arg("faces"), py::arg("normals") = py::none(),
             py::arg("frame") = "ras", py::arg("shape") = py::none(), py::arg("affine") = py::none(),
@@ -61,7 +69,10 @@ void declareMeshes(py::module_& module) {
         .def_property("error_bound", &MeshData::errorBoundMm, &MeshData::setErrorBoundMm)
         .def_property("report", &MeshData::report, &MeshData::setReport)
         .def_property_readonly("frame",
-                               [](const MeshData& self) { return frameWord(self.frame()); })
+                               [](const MeshData& self) {
+                                   return self.isFrameKnown() ? frameWord(self.frame())
+                                                              : kUnknownFrame;
+                               })
         .def_property_readonly("shape",
                                [](const MeshData& self) -> py::object {
                                    if (!self.image()) return py::none();
@@ -122,12 +133,15 @@ void declareMeshes(py::module_& module) {
     module.def(
         "read_mesh",
         [](const std::string& path, const std::optional<std::vector<std::int64_t>>& shape,
-           const std::optional<py::array_t<double>>& affine, bool keepsFaults) {
+           const std::optional<py::array_t<double>>& affine, bool keepsFaults,
+           const std::optional<std::string>& stated) {
             const std::optional<ImageGeometry> image = imageOf(shape, affine);
+            const auto frame = frameOf(stated);
             const Unlocked unlocked;
-            return readMeshData(path, image, keepsFaults);
+            return readMeshData(path, image, keepsFaults, frame);
         },
-        py::arg("path"), py::arg("shape"), py::arg("affine"), py::arg("keeps_faults"));
+        py::arg("path"), py::arg("shape"), py::arg("affine"), py::arg("keeps_faults"),
+        py::arg("input_coordinates"));
 }
 
 }  // namespace adaptiso::python

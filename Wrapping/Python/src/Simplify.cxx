@@ -33,6 +33,7 @@ py::tuple simplifyMesh(const MeshData& data, SimplifyOptions options, int thread
     auto made =
         std::make_shared<MeshData>(MeshData::asStored(std::move(result.mesh), data.frame()));
     if (data.image()) made->setImage(*data.image());
+    made->setFrameKnown(data.isFrameKnown());
     made->setErrorBoundMm(result.statistics.errorBoundMm);
     made->setAskedBoundMm(options.maxErrorMm);
     return py::make_tuple(std::move(made), toDict(result.statistics));

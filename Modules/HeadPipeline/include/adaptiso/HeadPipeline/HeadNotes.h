@@ -1,6 +1,7 @@
 #pragma once
 
 #include <iosfwd>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,9 +15,10 @@ namespace adaptiso {
 
 /// A question about what is usual of heads, as it is told. Nothing fails by it.
 struct ToldNote {
-    HeadNote note;                                 ///< places in LPS mm
-    std::string subject;                           ///< "inner_skull", "inner_skull in outer_skull"
-    CoordinateFrame frame = CoordinateFrame::Ras;  ///< of the places told
+    HeadNote note;        ///< places in LPS mm
+    std::string subject;  ///< "inner_skull", "inner_skull in outer_skull"
+    /// Of the places told; none: the file's own, not known.
+    std::optional<CoordinateFrame> frame = CoordinateFrame::Ras;
     std::vector<Vec3> placesMm{};
 };
 
