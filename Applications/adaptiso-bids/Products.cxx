@@ -22,13 +22,12 @@ constexpr const char* kIso = "--iso";
 
 /// Options that say what a run reads and writes, and how it runs: of all programs.
 std::vector<std::string> refusedOptions() {
-    return {"output",      "output-dir",    "list",       "bids",          "participant",
-            "jobs",        "skip-existing", "summary",    "report",        "pictures",
-            "json",        "quiet",         "threads",    "no-warnings",   "strict",
-            "help",        "version",       "save-index", "index",         "allow",
-            "list-series", "info",          "show-phi",   "force",         "subjects-dir",
-            "subject",     "dry-run",       "t1",         "probabilities", "ct",
-            "surfaces",    "volume",        "nested",     "self-test"};
+    return {"output",        "output-dir",  "list",          "bids",     "participant",  "jobs",
+            "skip-existing", "summary",     "report",        "pictures", "json",         "quiet",
+            "threads",       "no-warnings", "strict",        "help",     "version",      "allow",
+            "list-series",   "info",        "show-phi",      "force",    "subjects-dir", "subject",
+            "dry-run",       "t1",          "probabilities", "ct",       "surfaces",     "volume",
+            "nested",        "self-test"};
 }
 
 Json sourceJson(const BidsOptions& options, const BatchItem& item, bool isSegmentation) {

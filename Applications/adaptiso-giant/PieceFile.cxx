@@ -9,10 +9,10 @@
 #include <span>
 #include <unordered_map>
 
+#include "Common/Sha256.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Tiles.h"
-#include "adaptiso/SpanSpace/IndexFile.h"
 
 namespace adaptiso {
 namespace {
@@ -21,8 +21,8 @@ using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little, "pieces are little-endian");
 
-constexpr std::string_view kMagic = "ADAPTPC1";
-constexpr std::size_t kSumBytes = 8;
+constexpr std::string_view kMagic = "ADAPTPC2";
+constexpr std::size_t kSumBytes = 64;
 constexpr std::uint64_t kLongestHeader = 1 << 16;
 constexpr std::size_t kComponentBytes = 32, kBorderBytes = 32, kEdgeBytes = 8, kPointBytes = 24,
                       kNormalBytes = 12, kTriangleBytes = 12;
@@ -36,9 +36,9 @@ void put(std::string& bytes, const T& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// XXH64 of the bytes from `begin` on.
+/// Appends the SHA-256 of the bytes from `begin` on.
 void putSum(std::string& bytes, std::size_t begin) {
-    put(bytes, indexChecksum(std::as_bytes(std::span(bytes).subspan(begin))));
+    bytes += sha256Of(std::string_view(bytes).substr(begin));
 }
 
 Json headerOf(const PieceSummary& summary) {
@@ -89,8 +89,7 @@ public:
     /// \pre the bytes from `begin` up to here are those summed
     void checkSum(std::size_t begin) {
         const std::string_view summed = bytes_.substr(begin, at_ - begin);
-        const auto sum = take<std::uint64_t>();
-        if (indexChecksum(std::as_bytes(std::span(summed))) != sum) refusePiece(name_, "checksum");
+        if (takeBytes(kSumBytes) != sha256Of(summed)) refusePiece(name_, "checksum");
     }
     /// The file has room for so many elements.
     std::int64_t countOf(const Json& header, const char* key, std::size_t bytesEach) const {

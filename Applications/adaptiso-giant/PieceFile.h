@@ -49,9 +49,9 @@ struct Piece {
 /// Counts, measures and border of a mesh of continuous indices.
 void summarize(const TriangleMesh& mesh, const ImageGeometry& geometry, PieceSummary& summary);
 
-/// The file's bytes, little-endian: "ADAPTPC1", the length of a JSON header (uint64), the header,
-/// components, border vertices and edges, and XXH64 of all that; then points, normals, triangles,
-/// and XXH64 of those.
+/// The file's bytes, little-endian: "ADAPTPC2", the length of a JSON header (uint64), the header,
+/// components, border vertices and edges, and SHA-256 of all that; then points, normals, triangles,
+/// and SHA-256 of those.
 std::string encodePiece(const Piece& piece);
 
 /// Bytes as a file has them, taken for hostile: all counts, indices and sums are checked.

@@ -18,7 +18,6 @@ constexpr const char* kInput = "Input";
 constexpr const char* kPreprocessing = "Preprocessing (in this order)";
 constexpr const char* kSurface = "Surface";
 constexpr const char* kOutput = "Output";
-constexpr const char* kIndex = "Index";
 constexpr const char* kPieces = "Pieces (of a closed surface)";
 
 std::string knownExtensions() {
@@ -53,10 +52,8 @@ void checkLookingOnly(const MeshOptions& options) {
     if (options.image.showsPhi && !options.image.listsSeries && !options.image.tellsInfo) {
         throw UsageError("--show-phi: is for --list-series and --info");
     }
-    const bool asksForFiles = !options.output.empty() || !options.indexFiles.load.empty() ||
-                              !options.indexFiles.save.empty();
-    if (options.image.tellsInfo && (!options.isovalues.empty() || asksForFiles)) {
-        throw UsageError("--info: makes no surface, so not with --iso, -o, --index, --save-index");
+    if (options.image.tellsInfo && (!options.isovalues.empty() || !options.output.empty())) {
+        throw UsageError("--info: makes no surface, so not with --iso, -o");
     }
 }
 
@@ -66,7 +63,6 @@ void checkPlaceholders(const MeshOptions& options) {
     const std::vector<std::string> forRun{"{name}"}, forSurface{"{iso}", "{isolabel}", "{name}"};
     requirePlaceholders("--output", options.output.parent_path(), forRun);
     requirePlaceholders("--output", options.output.filename(), forSurface);
-    requirePlaceholders("--save-index", options.indexFiles.save, forRun);
     requirePlaceholders("--report", options.report.page, forRun);
     requirePlaceholders("--pictures", options.report.pictures, forRun);
     requirePlaceholders("--summary", options.batch.summary, {});
@@ -189,9 +185,6 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
                       "Where a surface meets the border of the image: closed there (default), or "
                       "left open")
         ->group(kSurface);
-}
-
-void declareIndex(CLI::App& app, MeshOptions& options) {
     addChoice<BlockSearchKind>(app, "--search", options.index.search,
                                {{"kdtree", BlockSearchKind::KdTree},
                                 {"octree", BlockSearchKind::Octree},
@@ -199,18 +192,7 @@ void declareIndex(CLI::App& app, MeshOptions& options) {
                                "How the blocks that a surface touches are found: kd-tree over "
                                "their minima and maxima (default), octree, or a look at every "
                                "block. The surface is the same")
-        ->group(kIndex);
-    CLI::Option* save =
-        app.add_option("--save-index", options.indexFiles.save,
-                       "Keep the index in a file, to be used again for the same image")
-            ->type_name("FILE")
-            ->group(kIndex);
-    app.add_option("--index", options.indexFiles.load,
-                   "Use the index that --save-index has kept, with its block size, border and "
-                   "search; an index of another image is refused")
-        ->type_name("FILE")
-        ->excludes(save)
-        ->group(kIndex);
+        ->group(kSurface);
 }
 
 void declarePieces(CLI::App& app, MeshOptions& options) {
@@ -288,17 +270,12 @@ Program meshProgram() {
 void declareMeshOptions(CLI::App& app, MeshOptions& options) {
     declareInput(app, options);
     declareSurface(app, options);
-    declareIndex(app, options);
     declarePieces(app, options);
     declareOutput(app, options);
     declareBatchOptions(app, options.batch, "the T1w images");
-    declareCommonOptions(app, options.common,
-                         "no surface and no index is then written, reports are");
+    declareCommonOptions(app, options.common, "no surface is then written, reports are");
     app.callback([&app, &options] {
         if (!options.inputs.empty()) options.input = options.inputs.front();
-        options.indexFiles.givesBlockSize = app.count("--block-size") > 0;
-        options.indexFiles.givesBorder = app.count("--border") > 0;
-        options.indexFiles.givesSearch = app.count("--search") > 0;
         checkCombinations(options);
         checkPlaceholders(options);
         if (options.isBatch()) keepRunOptions(app, options.batch);

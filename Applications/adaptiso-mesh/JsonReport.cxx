@@ -34,12 +34,7 @@ Json optionsJson(const MeshOptions& options) {
 }
 
 Json indexJson(const IndexSummary& index) {
-    const bool hasFile = !index.file.empty();
-    return {{"search", toString(index.search)},
-            {"memoryBytes", index.memoryBytes},
-            {"source", index.isLoaded ? "file" : "built"},
-            {"file", hasFile ? Json(baseName(index.file)) : Json(nullptr)},
-            {"fileBytes", hasFile ? Json(index.fileBytes) : Json(nullptr)}};
+    return {{"search", toString(index.search)}, {"memoryBytes", index.memoryBytes}};
 }
 
 Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {

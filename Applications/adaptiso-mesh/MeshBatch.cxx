@@ -35,8 +35,7 @@ int runMeshBatch(const MeshOptions& options) {
     BatchProgram program;
     program.name = "adaptiso-mesh";
     program.inputs = options.inputs;
-    program.outputOptions = {"--output", "--save-index", "--report", "--pictures"};
-    program.inputOptions = {"--index"};
+    program.outputOptions = {"--output", "--report", "--pictures"};
     program.surfaceOption = "--iso";
     program.surfaceFiles = [&options](const std::filesystem::path& output,
                                       const std::vector<std::string>&) {

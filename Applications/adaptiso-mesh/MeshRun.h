@@ -35,14 +35,10 @@ struct InputSummary {
     std::vector<Warning> warnings;
 };
 
-/// What is known of the index over the blocks.
+/// The index over the blocks.
 struct IndexSummary {
     BlockSearchKind search{};
-    std::int64_t blocks = 0;
     std::size_t memoryBytes = 0;
-    std::filesystem::path file;    ///< it was read from or saved to; empty: neither
-    std::uintmax_t fileBytes = 0;  ///< of that file
-    bool isLoaded = false;
 };
 
 /// What is known of one surface once it has been written.
@@ -74,7 +70,7 @@ struct MeshRun {
     std::vector<Warning> warnings{};    ///< all; each names its file
     Verdict verdict{};                  ///< how the run ends, known before the reports are made
 
-    /// --strict makes the warnings failures: neither surfaces nor index are written.
+    /// --strict makes the warnings failures: no surface is written.
     bool failsStrict() const { return adaptiso::failsStrict(options.common, warnings); }
     /// Of the values that the surfaces are made from.
     const ValueRange& range() const { return preprocessed ? preprocessed->range : input.range; }

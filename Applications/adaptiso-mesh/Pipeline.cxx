@@ -18,7 +18,6 @@
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
 #include "Common/Warnings.h"
-#include "IndexSource.h"
 #include "Info.h"
 #include "JsonReport.h"
 #include "MeshBatch.h"
@@ -31,7 +30,7 @@
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
-#include "adaptiso/SpanSpace/IndexFile.h"
+#include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 
 namespace adaptiso {
@@ -97,14 +96,10 @@ void checkOutputs(const MeshOptions& options) {
     if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
         addOutput(files, "--json", options.common.json);
     }
-    if (!options.indexFiles.save.empty()) {
-        addOutput(files, "--save-index", options.indexFiles.save);
-    }
     if (!options.report.page.empty()) addOutput(files, "--report", options.report.page);
     checkReportOutputs(options.report, {});
     for (const fs::path& file : files) {
         checkNotInput(file, options.input);
-        checkNotInput(file, options.indexFiles.load);
         checkOutput(file);
     }
 }
@@ -260,23 +255,6 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     return summary;
 }
 
-/// Writes the index under its temporary name, when it is to be kept, and says what it is.
-IndexSummary keepIndex(const SpanSpaceIndex& index, const VolumeView& volume,
-                       const IndexFiles& files, std::vector<AtomicOutput>& outputs) {
-    IndexSummary summary{
-        index.search(),     index.grid().blockCount(), index.memoryBytes(), files.load, 0,
-        !files.load.empty()};
-    if (!files.save.empty()) {
-        summary.file = files.save;
-        AtomicOutput& output = outputs.emplace_back(files.save);
-        output.writeBytes(encodeIndex(index, volume));
-        summary.fileBytes = fs::file_size(output.temporary());
-    } else if (summary.isLoaded) {
-        summary.fileBytes = fs::file_size(files.load);
-    }
-    return summary;
-}
-
 /// Where a count could not be met. With --max-error as well the bound may end it before: that was
 /// asked for.
 std::optional<Warning> countWarning(const SurfaceSummary& surface, const MeshOptions& options) {
@@ -331,18 +309,16 @@ std::string writtenText(const MeshRun& run) {
 
 }  // namespace
 
-int runMesh(const MeshOptions& asked) {
-    if (asked.isBatch()) return runMeshBatch(asked);
-    if (asked.image.listsSeries) {
-        return runSeriesList(asked.input, asked.image, asked.common, kProgram);
+int runMesh(const MeshOptions& options) {
+    if (options.isBatch()) return runMeshBatch(options);
+    if (options.image.listsSeries) {
+        return runSeriesList(options.input, options.image, options.common, kProgram);
     }
-    if (asked.image.tellsInfo) return runInfo(asked);
-    MeshOptions options = asked;  // a loaded index brings options of its own
+    if (options.image.tellsInfo) return runInfo(options);
     const ThreadLimit threads(options.common);
     ProgressLine progress(options.common.isQuiet);
     MeshRun run{options, {}, {}, {}, {}, {}};
     checkOutputs(options);
-    checkIndexFile(options);
 
     progress.show(kRead);
     ReadVolume read =
@@ -357,8 +333,11 @@ int runMesh(const MeshOptions& asked) {
         run.timer.time(kRead, [&] { return chooseIsovalues(volume, run); });
 
     progress.show(kIndex);
-    const SpanSpaceIndex index =
-        run.timer.time(kIndex, [&] { return prepareIndex(volume, options); });
+    const SpanSpaceIndex index = run.timer.time(kIndex, [&] {
+        return naming(baseName(options.input),
+                      [&] { return SpanSpaceIndex::build(volume, options.index); });
+    });
+    run.index = {index.search(), index.memoryBytes()};
 
     ReportResult page;  // its folder goes, if empty, after what lies in it
     std::vector<AtomicOutput> outputs;
@@ -367,8 +346,6 @@ int runMesh(const MeshOptions& asked) {
             makeSurface(volume, index, isovalues[n], options.isovalues[n], run, progress, outputs));
     }
     warnOfSurfaces(run);
-    run.index = run.timer.time(
-        kWrite, [&] { return keepIndex(index, volume, options.indexFiles, outputs); });
     if (run.failsStrict()) outputs.clear();
     if (options.report.isWanted()) {
         progress.show(kReport);

@@ -24,14 +24,6 @@ struct IsovalueChoice {
     friend bool operator==(const IsovalueChoice&, const IsovalueChoice&) = default;
 };
 
-/// Where the index over the blocks is kept.
-struct IndexFiles {
-    std::filesystem::path load;  ///< empty: the index is built
-    std::filesystem::path save;  ///< empty: it is not kept
-    /// Given on the command line, so that an index that is loaded must agree.
-    bool givesBlockSize = false, givesBorder = false, givesSearch = false;
-};
-
 /// What adaptiso-mesh is asked to do.
 struct MeshOptions {
     std::vector<std::filesystem::path> inputs;  ///< as given
@@ -46,7 +38,6 @@ struct MeshOptions {
     bool mergeWithinBlocks = false;
     AdaptiveOptions adaptive;
     IndexOptions index;
-    IndexFiles indexFiles;
     ComponentSelection selection;
     std::optional<CoordinateFrame> frame;  ///< none: the output format's own
     bool checksCrossings = true;
@@ -61,8 +52,7 @@ struct MeshOptions {
     /// Each input is a run of its own (Batch.h).
     bool isBatch() const {
         return batch.isAsked() || inputs.size() > 1 || namesInput(output) ||
-               namesInput(indexFiles.save) || namesInput(report.page) ||
-               namesInput(report.pictures);
+               namesInput(report.page) || namesInput(report.pictures);
     }
     /// Of every surface, but for the isovalue, normals and progress.
     ExtractionOptions extraction() const {

@@ -70,10 +70,6 @@ void printReport(std::ostream& out, const MeshRun& run) {
             << toString(run.preprocessed->pixelType) << '\n';
     }
     for (const SurfaceSummary& surface : run.surfaces) printSurface(out, run, surface);
-    if (!run.index.file.empty() && !run.index.isLoaded && !run.failsStrict()) {
-        out << oneLine(run.index.file.string()) << ": index for --index ("
-            << toString(run.index.search) << "), " << formatCount(run.index.blocks) << " blocks\n";
-    }
     printTimes(out, run.timer);
 }
 

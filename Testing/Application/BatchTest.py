@@ -118,7 +118,6 @@ class ManyInputs(BatchTest):
     def test_wrong_usage(self):
         for pattern, arguments in (
                 ("--output x.stl: needs {name}", ("a.nii", "b.nii", "-o", "x.stl")),
-                ("--save-index i: needs {name}", ("a.nii", "b.nii", "--save-index", "i")),
                 ("--participant: needs --bids", ("a.nii", "--participant", "1")),
                 ("--bids: finds its inputs itself", ("a.nii", "--bids", ".")),
                 ("--jobs", ("a.nii", "--jobs", "0"))):

@@ -138,8 +138,7 @@ class Info(ApplicationTest):
 
     def test_it_makes_no_surface(self):
         write_nifti(self.path("in.nii"), ball())
-        for option in (["--iso", "100"], ["-o", "a.ply"], ["--save-index", "i"], ["--index", "i"],
-                       ["--list-series"]):
+        for option in (["--iso", "100"], ["-o", "a.ply"], ["--list-series"]):
             with self.subTest(option):
                 self.assert_fails(USAGE, "--info", "in.nii", "--info", *option)
 

@@ -148,13 +148,6 @@ class Preprocessing(ApplicationTest):
         self.assert_fails(BAD_INPUT, "--iso 500: no voxel reaches it; the range of in.nii, "
                           "preprocessed, is 0 to ", "in.nii", "--iso", "500", "--smooth", "1")
 
-    def test_an_index_is_of_the_preprocessed_image(self):
-        write_nifti(self.path("in.nii"), ball())
-        self.mesh("in.nii", "--iso", "100", "--smooth", "1", "--save-index", "i", "-o", "a.ply")
-        self.mesh("in.nii", "--iso", "100", "--smooth", "1", "--index", "i", "-o", "b.ply")
-        self.assertEqual(self.path("a.ply").read_bytes(), self.path("b.ply").read_bytes())
-        self.assert_fails(BAD_INPUT, "i: .*", "in.nii", "--iso", "100", "--index", "i")
-
 
 class Refusals(ApplicationTest):
     def setUp(self):

@@ -85,7 +85,7 @@ class Warnings(WithWarnings):
 
     def test_strict_writes_reports_and_no_surface(self):
         self.path("a.vtp").write_text("of an earlier run")
-        done = self.run_mesh("ball.nii", "--iso", "100", "-o", "a.vtp", "--save-index", "index",
+        done = self.run_mesh("ball.nii", "--iso", "100", "-o", "a.vtp",
                              "--strict", "--json", "r.json", "--report", "page.html")
         self.assertEqual(done.returncode, CHECK_FAILED, done.stderr)
         self.assertRegex(done.stderr.splitlines()[-1], "--strict: 1 warning, so no surface was "

@@ -165,8 +165,6 @@ WRONG = [
     (USAGE, "--profile cake: must be bem, print or view", CHECK, ("a.off", "--profile", "cake")),
     # contradictions
     (USAGE, "--interpolation needs --resample", MESH, (*BALL, "--interpolation", "linear")),
-    (USAGE, "--save-index and --index: give one of the two", MESH,
-     (*BALL, "--index", "a", "--save-index", "b")),
     (USAGE, "--symmetric and --one-sided: give one|--one-sided and --symmetric: give one", COMPARE,
      ("a.off", "a.off", "--one-sided", "--symmetric")),
     (USAGE, "--info and --list-series: give one|--list-series and --info: give one", MESH,

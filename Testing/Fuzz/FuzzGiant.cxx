@@ -11,17 +11,16 @@
 #include <span>
 #include <string>
 
+#include "Common/Sha256.h"
 #include "OneLine.h"
 #include "adaptiso-giant/GiantPlan.h"
 #include "adaptiso-giant/PieceFile.h"
-#include "adaptiso/SpanSpace/IndexFile.h"
 
 namespace {
 
 void seal(std::string& bytes, std::size_t begin, std::size_t end) {
-    const std::uint64_t sum =
-        adaptiso::indexChecksum(std::as_bytes(std::span(bytes).subspan(begin, end - begin)));
-    std::memcpy(bytes.data() + end, &sum, sizeof sum);
+    const std::string sum = adaptiso::sha256Of(std::string_view(bytes).substr(begin, end - begin));
+    bytes.replace(end, sum.size(), sum);
 }
 
 /// Where the first part of a piece ends, without its checksum; 0: nobody knows.
@@ -46,7 +45,7 @@ std::size_t endOfSummary(const std::string& bytes) {
 }
 
 void tryPiece(std::string bytes) {
-    constexpr std::size_t kSum = 8;
+    constexpr std::size_t kSum = 64;
     const std::size_t end = endOfSummary(bytes);
     if (end != 0 && end + 2 * kSum <= bytes.size()) {
         seal(bytes, 0, end);

@@ -10,7 +10,6 @@
 #include "adaptiso-giant/GiantPlan.h"
 #include "adaptiso-giant/PieceFile.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/SpanSpace/IndexFile.h"
 
 namespace adaptiso::fuzz {
 
@@ -22,20 +21,6 @@ void Seeds::add(const std::string& target, std::string_view bytes) {
     stream << bytes;
     stream.close();
     if (!stream) throw FileError(file.string() + ": can't be written");
-}
-
-void addIndexSeeds(Seeds& seeds) {
-    for (unsigned choice = 0; choice < kSmallVolumes; ++choice) {
-        for (const auto search :
-             {BlockSearchKind::KdTree, BlockSearchKind::Octree, BlockSearchKind::Linear}) {
-            const Volume& volume = smallVolume(choice);
-            const IndexOptions options{2, Border::Closed, search};
-            const auto bytes = encodeIndex(SpanSpaceIndex::build(volume, options), volume);
-            seeds.add("index",
-                      std::string(1, static_cast<char>(choice)) +
-                          std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-        }
-    }
 }
 
 void addFenceSeeds(Seeds& seeds) {
@@ -156,7 +141,6 @@ int main(int argc, char** argv) {
         adaptiso::fuzz::addMeshSeeds(seeds);
         adaptiso::fuzz::addZarrSeeds(seeds);
         adaptiso::fuzz::addFenceSeeds(seeds);
-        adaptiso::fuzz::addIndexSeeds(seeds);
         adaptiso::fuzz::addOpenMeegSeeds(seeds);
         adaptiso::fuzz::addLabelSeeds(seeds);
         adaptiso::fuzz::addGiantSeeds(seeds);

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace adaptiso::detail {
@@ -20,10 +19,6 @@ public:
 
     /// Bytes held beside the object itself.
     virtual std::size_t memoryBytes() const = 0;
-
-    /// The arrays that an index file keeps, in its order: minima, maxima and what else cannot be
-    /// had from them in linear time.
-    virtual std::vector<std::span<const std::byte>> arrays() const = 0;
 };
 
 /// Sorts distinct block numbers < blockCount, in O(blocks.size() + blockCount / 64) where there are

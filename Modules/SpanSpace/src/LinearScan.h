@@ -23,10 +23,6 @@ public:
         return count;
     }
     std::size_t memoryBytes() const override { return ranges_.minimum.size() * 2 * sizeof(T); }
-    std::vector<std::span<const std::byte>> arrays() const override {
-        return {std::as_bytes(std::span(ranges_.minimum)),
-                std::as_bytes(std::span(ranges_.maximum))};
-    }
 
 private:
     BlockRanges<T> ranges_;

@@ -97,12 +97,6 @@ std::size_t MinMaxOctree<T>::memoryBytes() const {
     return nodes * 2 * sizeof(T);
 }
 
-template <class T>
-std::vector<std::span<const std::byte>> MinMaxOctree<T>::arrays() const {
-    const BlockRanges<T>& blocks = levels_.front().ranges;
-    return {std::as_bytes(std::span(blocks.minimum)), std::as_bytes(std::span(blocks.maximum))};
-}
-
 template class MinMaxOctree<std::uint8_t>;
 template class MinMaxOctree<std::int8_t>;
 template class MinMaxOctree<std::uint16_t>;

@@ -20,7 +20,6 @@ public:
 
     std::int64_t search(T threshold, std::vector<std::uint32_t>& found) const override;
     std::size_t memoryBytes() const override;
-    std::vector<std::span<const std::byte>> arrays() const override;
 
 private:
     struct Level {

@@ -1,7 +1,6 @@
 #include "SpanTree.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <tuple>
 
@@ -65,11 +64,6 @@ SpanTree<T>::SpanTree(BlockRanges<T> ranges) {
         maximum_[i] = nodes[i].high;
         block_[i] = nodes[i].block;
     }
-    findExtremes();
-}
-
-template <class T>
-void SpanTree<T>::findExtremes() {
     leastMinimum_ = minimum_;
     greatestMaximum_ = maximum_;
     findExtremes(0, size());
@@ -90,84 +84,6 @@ void SpanTree<T>::findExtremes(std::int64_t begin, std::int64_t end) {
     };
     takeIn(begin, root);
     takeIn(root + 1, end);
-}
-
-/// Every node has the ranges of a block.
-template <class T>
-bool SpanTree<T>::holds(const BlockRanges<T>& ranges) const {
-    std::atomic<bool> isSame{true};
-    parallelForPieces(size(), 1 << 14, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) {
-            const std::uint32_t b = block_[i];
-            if (b >= block_.size() || minimum_[i] != ranges.minimum[b] ||
-                maximum_[i] != ranges.maximum[b]) {
-                isSame = false;
-                return;
-            }
-        }
-    });
-    return isSame;
-}
-
-/// Every node stands on its side of each node above it, strictly: by minimum, maximum and block or
-/// by maximum, minimum and block. Then no two nodes are of one block (they would have to differ
-/// where their paths part), and since the median of a set is one element, the tree is the one and
-/// only.
-template <class T>
-struct SpanTree<T>::Order {
-    static constexpr std::int64_t kNone = -1;
-    /// The nodes above, by the coordinate they split, that all of a subtree lies between.
-    struct Between {
-        std::int64_t after = kNone, before = kNone;
-    };
-    const SpanTree& tree;
-
-    bool minimumLess(std::int64_t a, std::int64_t b) const {
-        return std::tie(tree.minimum_[a], tree.maximum_[a], tree.block_[a]) <
-               std::tie(tree.minimum_[b], tree.maximum_[b], tree.block_[b]);
-    }
-    bool maximumLess(std::int64_t a, std::int64_t b) const {
-        return std::tie(tree.maximum_[a], tree.minimum_[a], tree.block_[a]) <
-               std::tie(tree.maximum_[b], tree.minimum_[b], tree.block_[b]);
-    }
-
-    bool keeps(std::int64_t begin, std::int64_t end, bool onMinimum, Between minimum,
-               Between maximum) const {
-        if (begin >= end) return true;
-        const std::int64_t root = begin + (end - begin) / 2;
-        if ((minimum.after != kNone && !minimumLess(minimum.after, root)) ||
-            (minimum.before != kNone && !minimumLess(root, minimum.before)) ||
-            (maximum.after != kNone && !maximumLess(maximum.after, root)) ||
-            (maximum.before != kNone && !maximumLess(root, maximum.before))) {
-            return false;
-        }
-        Between leftMinimum = minimum, leftMaximum = maximum;
-        (onMinimum ? leftMinimum : leftMaximum).before = root;
-        (onMinimum ? minimum : maximum).after = root;
-        bool isLeftKept = false, isRightKept = false;
-        const auto left = [&] {
-            isLeftKept = keeps(begin, root, !onMinimum, leftMinimum, leftMaximum);
-        };
-        const auto right = [&] {
-            isRightKept = keeps(root + 1, end, !onMinimum, minimum, maximum);
-        };
-        inParallelIfLarge(end - begin, left, right);
-        return isLeftKept && isRightKept;
-    }
-};
-
-template <class T>
-std::unique_ptr<SpanTree<T>> SpanTree<T>::restored(BlockRanges<T> nodes,
-                                                   std::vector<std::uint32_t> block,
-                                                   const BlockRanges<T>& ranges) {
-    std::unique_ptr<SpanTree> tree(new SpanTree);
-    tree->minimum_ = std::move(nodes.minimum);
-    tree->maximum_ = std::move(nodes.maximum);
-    tree->block_ = std::move(block);
-    const bool isRight = tree->holds(ranges) && Order{*tree}.keeps(0, tree->size(), true, {}, {});
-    if (!isRight) return nullptr;
-    tree->findExtremes();
-    return tree;
 }
 
 /// The three walks of k-d search. `search` knows nothing yet; `searchMaxMin` runs where every

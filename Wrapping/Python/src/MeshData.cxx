@@ -67,26 +67,23 @@ std::string reportOf(const SurfaceHistory& history, const ImageGeometry& image) 
     std::vector<Warning> warnings;
     addWarnings(warnings, history.origin.warnings,
                 history.origin.file.empty() ? "the image" : history.origin.file);
-    const Json report{{"schema", "adaptiso-mesh/1"},
-                      {"program", {{"name", kProgramName}, {"version", ADAPTISO_VERSION}}},
-                      {"passed", true},
-                      {"exitCode", 0},
-                      {"error", nullptr},
-                      {"warnings", warnings},
-                      {"input", originJson(history, image)},
-                      {"preprocessing", nullptr},
-                      {"options", optionsJson(history)},
-                      {"index",
-                       {{"search", toString(history.index.search)},
-                        {"memoryBytes", history.indexBytes},
-                        {"source", "built"},
-                        {"file", nullptr},
-                        {"fileBytes", nullptr}}},
-                      {"surfaces", Json::array({surface})},
-                      {"failedByWarnings", false},
-                      {"reportFailure", nullptr},
-                      {"seconds", timesJson(history)},
-                      {"peakMemoryMb", history.peakMemoryMb}};
+    const Json report{
+        {"schema", "adaptiso-mesh/1"},
+        {"program", {{"name", kProgramName}, {"version", ADAPTISO_VERSION}}},
+        {"passed", true},
+        {"exitCode", 0},
+        {"error", nullptr},
+        {"warnings", warnings},
+        {"input", originJson(history, image)},
+        {"preprocessing", nullptr},
+        {"options", optionsJson(history)},
+        {"index",
+         {{"search", toString(history.index.search)}, {"memoryBytes", history.indexBytes}}},
+        {"surfaces", Json::array({surface})},
+        {"failedByWarnings", false},
+        {"reportFailure", nullptr},
+        {"seconds", timesJson(history)},
+        {"peakMemoryMb", history.peakMemoryMb}};
     return jsonText(report, -1);
 }
 

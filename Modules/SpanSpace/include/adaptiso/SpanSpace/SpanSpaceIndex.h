@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -67,9 +66,6 @@ public:
     std::size_t memoryBytes() const;
 
 private:
-    friend std::vector<std::byte> encodeIndex(const SpanSpaceIndex&, const VolumeView&);
-    friend SpanSpaceIndex decodeIndex(std::span<const std::byte>, const VolumeView&,
-                                      const std::string&);
     class Impl;
     explicit SpanSpaceIndex(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
