@@ -226,7 +226,6 @@ Report makeReport(const BemRun& run) {
     if (run.shownImage) {
         report.volume = ReportVolume{run.model.inputs.front().role, run.shownImage->volume.view()};
     }
-    report.stageSeconds = run.timer.stages();
     return report;
 }
 

@@ -209,7 +209,6 @@ Report makeReport(const CheckRun& run, ShownSurfaces& shown) {
     if (shown.image) {
         report.volume = ReportVolume{baseName(run.options.volume), shown.image->volume.view()};
     }
-    report.stageSeconds = run.timer.stages();
     return report;
 }
 

@@ -118,19 +118,14 @@ Report makeReport(const CompareRun& run, ShownSurfaces& shown) {
     const auto& limit = run.options.maxHausdorffMm;
     const auto fails = [&](const DistanceStatistics& s) { return limit && s.maxMm > *limit; };
     report.spots.push_back(farthest(run.distances.aToB, a, b, fails(run.distances.aToB)));
-    report.histograms.push_back(
-        {"Distance of the vertices of " + a + " from " + b, "mm", shown.aToBMm});
     if (run.options.isSymmetric) {
         report.spots.push_back(farthest(run.distances.bToA, b, a, fails(run.distances.bToA)));
-        report.histograms.push_back(
-            {"Distance of the vertices of " + b + " from " + a, "mm", shown.bToAMm});
     }
     std::stable_partition(report.spots.begin(), report.spots.end(),
                           [](const ReportSpot& spot) { return spot.isFailure; });
     report.surfaces.push_back({a, std::move(shown.a), std::move(shown.aToBMm)});
     report.surfaces.push_back({b, std::move(shown.b), std::move(shown.bToAMm)});
     if (run.image) report.volume = ReportVolume{baseName(run.options.volume), run.image->view()};
-    report.stageSeconds = run.timer.stages();
     return report;
 }
 

@@ -158,7 +158,6 @@ Report makeReport(const LabelsRun& run, const RegionSurfaces& surfaces,
     report.tables.push_back(regionTable(run, shown));
     tellStrict(report, run.options.common, run.warnings, kNotWritten);
     report.volume = ReportVolume{volumeName, volume};
-    report.stageSeconds = run.timer.stages();
     return report;
 }
 

@@ -142,7 +142,6 @@ Report makeReport(MeshRun& run, const VolumeView& volume) {
     report.warnings = linesOf(run.warnings);
     tellStrict(report, run.options.common, run.warnings, kNotWritten);
     report.volume = ReportVolume{baseName(run.options.input), volume};
-    report.stageSeconds = run.timer.stages();
     return report;
 }
 

@@ -129,16 +129,12 @@ Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh sh
     } else {
         TriangleMesh after = transformed(shown, frame.toLps);
         std::vector<double> distances = vertexDistancesMm(after, before);
-        report.histograms.push_back({"Distance of the vertices of " + baseName(run.output.file) +
-                                         " from " + baseName(run.input.file),
-                                     "mm", distances});
         report.surfaces.push_back(
             {baseName(run.output.file), std::move(after), std::move(distances)});
     }
     report.tables.push_back(surfaceTable(run));
     report.warnings = linesOf(run.warnings);
     tellStrict(report, run.command.common, run.warnings, kNotWritten);
-    report.stageSeconds = run.timer.stages();
     return report;
 }
 

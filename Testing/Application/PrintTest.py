@@ -93,8 +93,8 @@ class Printed(unittest.TestCase):
 
     def assert_whole(self, page):
         sheets, captions, headings = self.printed(page)
-        # places, three directions of slices, three surfaces, histograms, times
-        self.assertEqual(len(captions), 9)
+        # places, three directions of slices, three surfaces
+        self.assertEqual(len(captions), 7)
         self.assertEqual(len(sheets.pictures), len(captions))
         self.assertEqual(sheets.cut(), [])
         self.assertEqual(sheets.parted(captions), [])

@@ -1,6 +1,5 @@
 #include "adaptiso/Report/Pictures.h"
 
-#include "Charts.h"
 #include "Scene.h"
 #include "SlicePictures.h"
 #include "SurfacePictures.h"
@@ -22,9 +21,6 @@ std::vector<Picture> drawPictures(const Report& report) {
             for (std::size_t n = 0; n < scene.surfaces.size(); ++n) add(sixSidesPicture(scene, n));
         }
     }
-    for (std::size_t n = 0; n < report.histograms.size(); ++n) add(histogramPicture(report, n));
-    add(trianglePicture(scene));
-    add(timesPicture(report));
     return pictures;
 }
 

@@ -269,7 +269,6 @@ std::string HeadModelData::page(bool leavesOutFaces) const {
     report.date = reportDate();
     report.leavesOutFaces = leavesOutFaces;
     if (shown_) report.volume = ReportVolume{model_.inputs.front().role, shown_->view};
-    report.stageSeconds = seconds_;
     std::string html;
     runUnlocked(threads_, [&] { html = htmlPage(report, drawPictures(report)); });
     return html;

@@ -23,8 +23,6 @@ struct Picture {
 ///   surface-N                            each surface from six sides, what faces away from the
 ///                                        viewer in red; values in colour, with a colour bar
 ///   regions                              in their stead, of regions: all together
-///   triangles, histogram-N               sizes and smallest angles; the report's own histograms
-///   times                                seconds by stage
 ///
 /// Everything is drawn in memory: no display, no OpenGL. Left is left of the picture, and every
 /// picture says which side is which. Triangles with a corner that is not there or not finite are

@@ -68,13 +68,6 @@ struct ReportVolume {
     VolumeView view;
 };
 
-/// How a quantity is spread.
-struct ReportHistogram {
-    std::string title;  ///< "Distance from a.stl to b.stl"
-    std::string unit;   ///< "mm"
-    std::vector<double> values;
-};
-
 /// Everything that a page tells and shows. Texts are plain (they are escaped where needed) and hold
 /// neither folders nor anything that names a patient: that is for the caller to see to.
 struct Report {
@@ -95,8 +88,6 @@ struct Report {
     /// hundreds. They are drawn together, opaque, and the viewer has a list of them to click.
     bool areRegions = false;
     std::optional<ReportVolume> volume;
-    std::vector<ReportHistogram> histograms;  ///< besides those of the triangles' size and angle
-    std::vector<std::pair<std::string, double>> stageSeconds;
     /// Neither page nor pictures show the image and the surfaces where the face may lie: below a
     /// plane that begins 45 mm below the top of an adult's head at the forehead, half way to the
     /// brows, and falls backwards by 42 degrees. Where the top of a head is not found they show
