@@ -69,14 +69,4 @@ void checkNotInput(const std::filesystem::path& target, const std::filesystem::p
 /// process's limit is an error of writing, not a signal.
 void removeOutputsOnSignals();
 
-/// From now on, when a file that is mapped into memory fails to give its bytes (its disk fails, or
-/// another program has cut it short: SIGBUS), temporary files are removed, one line on stderr names
-/// it, and the program ends with code 3.
-///
-/// \param program  what the line begins with; must live on
-/// \param fileAt   the file mapped at an address, or nullptr where that is none of ours; safe to
-///                 call from a signal handler
-void endWhenAMappedFileFails(const char* program,
-                             const char* (*fileAt)(const void* address) noexcept);
-
 }  // namespace adaptiso

@@ -22,7 +22,6 @@ bool isSeries(const std::string& text) {
 }  // namespace
 
 void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& group) {
-    options.mapFiles = true;  // runApp() answers a disk that fails
     app.add_option_function<std::string>(
            "--series",
            [&options](const std::string& text) {

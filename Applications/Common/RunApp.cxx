@@ -16,7 +16,6 @@
 #include "Common/Temporaries.h"
 #include "Common/UsageWords.h"
 #include "Common/Verdict.h"
-#include "adaptiso/ImageIO/MappedInput.h"
 
 namespace adaptiso {
 
@@ -109,7 +108,6 @@ int runApp(int argc, const char* const* argv, const Program& program,
     removeOutputsOnSignals();
     terminatedProgram = program.name;
     std::set_terminate(endForWantOfThreads);
-    endWhenAMappedFileFails(program.name.c_str(), mappedFileAt);
     rememberReport(argc, argv);
     CLI::App app(program.description, program.name);
     app.formatter(std::make_shared<FoldedHelp>());

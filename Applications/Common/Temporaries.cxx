@@ -9,7 +9,6 @@
 #include <cstring>
 
 #include "Common/AtomicOutput.h"
-#include "Common/ExitCodes.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -66,30 +65,6 @@ void removeTemporariesAndEnd(int signal) {
     }
     removeTemporaries();
     endBySignal(signal);
-}
-
-const char* programName = "";
-const char* (*mappedFileAt)(const void*) noexcept = nullptr;
-
-/// Control characters of a file's name do not reach the terminal. Async-signal-safe.
-void writeToStderr(const char* text) {
-    for (; *text != '\0'; ++text) {
-        const char c = static_cast<unsigned char>(*text) < 0x20 || *text == 0x7f ? ' ' : *text;
-        (void)!write(STDERR_FILENO, &c, 1);
-    }
-}
-
-/// Async-signal-safe. It never returns: the access that failed would only fail again.
-void endForMappedFile(int signal, siginfo_t* info, void*) {
-    removeTemporaries();
-    const char* const file = mappedFileAt(info->si_addr);
-    if (file == nullptr) endBySignal(signal);  // a bug
-    writeToStderr(programName);
-    writeToStderr(": ");
-    writeToStderr(file);
-    writeToStderr(": can't be read any more; its disk failed, or another program has changed it");
-    (void)!write(STDERR_FILENO, "\n", 1);
-    _exit(kExitBadInput);
 }
 
 }  // namespace
@@ -170,16 +145,6 @@ void removeOutputsOnSignals() {
         sigaction(signal, &action, nullptr);
     }
     std::signal(SIGXFSZ, SIG_IGN);
-}
-
-void endWhenAMappedFileFails(const char* program,
-                             const char* (*fileAt)(const void* address) noexcept) {
-    detail::programName = program;
-    detail::mappedFileAt = fileAt;
-    struct sigaction action {};
-    action.sa_sigaction = detail::endForMappedFile;
-    action.sa_flags = SA_SIGINFO | SA_NODEFER;
-    sigaction(SIGBUS, &action, nullptr);
 }
 
 }  // namespace adaptiso

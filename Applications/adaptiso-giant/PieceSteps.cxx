@@ -151,9 +151,7 @@ int runTileStep(const GiantOptions& options) {
     const ThreadLimit threads(options.common);
     const GiantPlan plan = readPlan(options.work);
     const std::vector<Index3> places = chosen(options, plan.tiles, "tile");
-    ReadOptions read = plan.read;
-    read.mapFiles = true;
-    const ImageRegions image = ImageRegions::open(plan.input, read);
+    const ImageRegions image = ImageRegions::open(plan.input, plan.read);
     requireSame(plan, image);
     const TileCut cut = plan.cut();
     return runPieces(

@@ -1,6 +1,4 @@
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -196,47 +194,6 @@ TEST_F(AtomicOutputTest, OtherHardLinksKeepTheOldFile) {
     AtomicOutput::commit(outputs);
     EXPECT_EQ(text(folder_ / "a.txt"), "new");
     EXPECT_EQ(text(folder_ / "b.txt"), "old");
-}
-
-const char* everywhere(const void*) noexcept {
-    return "in\x1bput.nii";
-}
-const char* nowhere(const void*) noexcept {
-    return nullptr;
-}
-
-/// Touches a page of a file that has been cut off since it was mapped.
-void touchLostPage(const fs::path& file) {
-    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-    if (::ftruncate(descriptor, 4096) != 0) std::abort();
-    const auto* const bytes = static_cast<const volatile char*>(
-        ::mmap(nullptr, 4096, PROT_READ, MAP_SHARED, descriptor, 0));
-    if (::ftruncate(descriptor, 0) != 0) std::abort();
-    (void)bytes[0];
-}
-
-/// "Death" in the name: googletest runs it first, while there is one thread.
-using MappedFileDeathTest = AtomicOutputTest;
-
-TEST_F(MappedFileDeathTest, IsOneLineAndExitCodeThreeAndLeavesNothing) {
-    EXPECT_EXIT(
-        {
-            removeOutputsOnSignals();
-            endWhenAMappedFileFails("program", everywhere);
-            const AtomicOutput output(folder_ / "out.ply");
-            touchLostPage(folder_ / "mapped");
-        },
-        ::testing::ExitedWithCode(3), "^program: in put\\.nii: can't be read any more; [^\n]*\n$");
-    EXPECT_EQ(names(), Names{"mapped"});
-}
-
-TEST_F(MappedFileDeathTest, OfAnotherAddressStaysASignal) {
-    EXPECT_EXIT(
-        {
-            endWhenAMappedFileFails("program", nowhere);
-            touchLostPage(folder_ / "mapped");
-        },
-        ::testing::KilledBySignal(SIGBUS), "");
 }
 
 }  // namespace

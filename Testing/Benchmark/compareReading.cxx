@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using adaptiso::ReadOptions;
 
-/// Looks at every sample too, as any use of an image does: a mapped file is only read then.
+/// Looks at every sample too, as any use of an image does.
 template <class T>
 void readWithItk(const fs::path& input) {
     using Image = itk::Image<T, 3>;
@@ -91,19 +91,17 @@ int main(int argc, char** argv) {
     std::string only;
     app.add_option("INPUT", input, "An image file or a DICOM folder")->required();
     app.add_option("--repeats", repeats, "Runs of each way (default: 7)");
-    app.add_option("--only", only, "One run of fenced, unfenced, mapped or itk, with its memory");
+    app.add_option("--only", only, "One run of fenced, unfenced or itk, with its memory");
     CLI11_PARSE(app, argc, argv);
 
-    ReadOptions fenced, unfenced, mapped;
+    ReadOptions fenced, unfenced;
     unfenced.fence = false;
-    mapped.mapFiles = true;
     const auto type = adaptiso::readVolume(input, fenced).volume.view().pixelType();
     const auto ours = [&](const ReadOptions& options) {
         adaptiso::valueRange(adaptiso::readVolume(input, options).volume);
     };
     std::vector<Way> ways{{"unfenced", [&] { ours(unfenced); }, {}, {}},
                           {"fenced", [&] { ours(fenced); }, {}, {}},
-                          {"mapped", [&] { ours(mapped); }, {}, {}},
                           {"itk",
                            [&] {
                                if (type == adaptiso::PixelType::UInt8) {

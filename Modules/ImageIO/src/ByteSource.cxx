@@ -12,7 +12,6 @@
 #include <string_view>
 
 #include "FileFault.h"
-#include "MappedFile.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::detail {
@@ -157,14 +156,6 @@ void ByteSource::skipLine() {
 void ByteSource::skipToLast(std::uint64_t byteCount) {
     if (byteCount > bytesLeft()) refuseTruncated(byteCount - bytesLeft());
     position_ = end_ - byteCount;
-}
-
-std::shared_ptr<const void> ByteSource::map(std::uint64_t byteCount, std::size_t alignment) {
-    if (inflater_ || position_ % alignment != 0) return {};
-    if (byteCount > bytesLeft()) refuseTruncated(byteCount - bytesLeft());
-    std::shared_ptr<const void> bytes = mapFile(file_, *descriptor_, position_, byteCount);
-    if (bytes) position_ += byteCount;
-    return bytes;
 }
 
 ByteTail ByteSource::readTail(std::uint64_t enough) {

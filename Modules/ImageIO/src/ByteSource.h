@@ -49,12 +49,6 @@ public:
     /// To where `byteCount` bytes are left. \pre Raw
     void skipToLast(std::uint64_t byteCount);
 
-    /// The next `byteCount` bytes mapped into memory for reading, in place of read(); empty where
-    /// the data are compressed, do not lie at a multiple of `alignment`, or the file is on a disk
-    /// that can go away (network). See ReadOptions::mapFiles.
-    /// \throws FileError when the data end early
-    std::shared_ptr<const void> map(std::uint64_t byteCount, std::size_t alignment);
-
     /// Reads on to the end, which also checks the checksum of compressed data; of these no more
     /// than `enough` bytes and at least 64 MiB are inflated.
     /// \throws FileError when compressed data are damaged or end early

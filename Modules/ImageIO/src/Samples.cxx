@@ -71,11 +71,6 @@ std::int64_t readInto(std::byte* samples, PixelType type, ByteSource& source,
     });
 }
 
-bool liesAsUsed(const SampleLayout& layout) {
-    return !layout.isScaled && !layout.isInterleaved &&
-           (layout.byteOrder == std::endian::native || bytesPerPixel(layout.stored) == 1);
-}
-
 }  // namespace
 
 std::uint64_t requireProduct(const std::filesystem::path& file, std::uint64_t a, std::uint64_t b) {
@@ -196,13 +191,6 @@ Volume readSamples(const std::filesystem::path& file, ByteSource& source,
     const auto volumesBefore = static_cast<std::uint64_t>(layout.volumeIndex);
     if (!layout.isInterleaved) source.skip(volumesBefore * volumeBytes);
 
-    if (options.mapFiles && liesAsUsed(layout)) {
-        const auto samples = source.map(volumeBytes, bytesPerPixel(layout.stored));
-        if (samples) {
-            source.skip((volumes - 1 - volumesBefore) * volumeBytes);
-            return Volume(VolumeView(samples.get(), layout.stored, geometry), samples);
-        }
-    }
     const PixelType type = layout.isScaled ? floatTypeFor(layout.stored) : layout.stored;
     const std::int64_t count = geometry.voxelCount();
     SampleBuffer samples =

@@ -181,19 +181,6 @@ TEST(MoreThanTheHeaderSays, AllVolumesOfA4DFileCount) {
     }
 }
 
-TEST(MoreThanTheHeaderSays, MappedFilesAreLookedAtToo) {
-    const TempFolder folder;
-    NiftiFile large;
-    large.dim = {3, 256, 256, 64, 1, 1, 1, 1};
-    large.sformCode = 1;
-    large.sform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-    const std::string image(std::size_t{2} * 256 * 256 * 64, '\1');
-    const auto file = writeFile(folder / "x.nii", large.header() + image + image);
-    expectRefusal(file, "1 more image", {.mapFiles = true});
-    writeFile(file, large.header() + image);
-    EXPECT_TRUE(readVolume(file, {.mapFiles = true}).warnings.empty());
-}
-
 TEST(MoreThanTheHeaderSays, ALargerDataFileIsFineWhereTheHeaderPointsIntoIt) {
     const TempFolder folder;
     writeFile(folder / "x.raw", data() + data() + data());

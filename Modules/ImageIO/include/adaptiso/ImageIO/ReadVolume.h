@@ -37,12 +37,6 @@ struct ReadOptions {
     /// crash, hang or hunger becomes a FileError. Without it they run in this process, for callers
     /// that must not fork, or that debug a decoder.
     bool fence = true;
-
-    /// Map large uncompressed files into memory in place of reading them, where their samples can
-    /// be used as they lie, the disk is local, and a lease on the file holds writers back. Reading
-    /// then costs neither time nor memory of its own. Off, because a disk that fails under a mapped
-    /// file raises SIGBUS: only a program can answer that (MappedInput.h), not a library.
-    bool mapFiles = false;
 };
 
 /// A scan as read: the samples in the file's own pixel type, where they lie, and what a user
@@ -101,7 +95,7 @@ struct ReadVolume {
 /// \throws FileError  as well when GDCM's decoder crashes or takes more than it may: 15 s
 ///         and 1 s for each MB of input, 1 GiB and 64 bytes for each byte (ReadOptions::fence)
 /// \post no process or file of this call's is left
-/// Cost: one copy of the samples, or none (ReadOptions::mapFiles), and one DICOM file's; one pass.
+/// Cost: one copy of the samples, and one DICOM file's; one pass.
 ReadVolume readVolume(const std::filesystem::path& input, const ReadOptions& options = {});
 
 }  // namespace adaptiso
