@@ -416,7 +416,6 @@ void declareToolboxes(CLI::App& app, BemOptions& options) {
     addFlag("--brainstorm", files.writesBrainstorm,
             "Brainstorm: tess_innerskull_bem.mat, ... (scanner RAS, metres)");
     addFlag("--simnibs", files.writesSimNibs, "SimNIBS: csf.stl, bone.stl, skin.stl (scanner RAS)");
-    addFlag("--curry", files.writesCurry, "Curry: .s00 (skin) to .s02 (inner skull)");
     addFlag("--besa", files.writesBesa,
             "BESA: head.sfp (landmarks, electrodes, points of the skin)");
     addFlag("--gifti", files.writesGifti, "Viewers: .gii");
@@ -525,7 +524,7 @@ Program bemProgram() {
     return {"adaptiso-bem",
             "Makes the nested surfaces of a boundary element head model (EEG: inner skull, outer "
             "skull,\nouter skin, or the brain within them as well; MEG: inner skull) for MNE, "
-            "FreeSurfer,\nOpenMEEG, FieldTrip, Brainstorm, SimNIBS, Curry and BESA; electrodes and "
+            "FreeSurfer,\nOpenMEEG, FieldTrip, Brainstorm, SimNIBS and BESA; electrodes and "
             "tetrahedra for them.",
             kFooter};
 }

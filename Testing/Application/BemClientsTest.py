@@ -245,7 +245,7 @@ class Toolboxes(SharedFolderTest):
     CONDUCTIVITIES = (0.33, 0.0041, 0.44)
     ARGUMENTS = ("--labels", "seg.nii", "--tissue", "brain=3", "--tissue", "skull=2", "--tissue", "scalp=1", "--vertices",
                  300, "--voxel", 2, "--conductivity", ",".join(map(str, CONDUCTIVITIES)))
-    FORMATS = ("--fif", "--fieldtrip", "--brainstorm", "--simnibs", "--curry")
+    FORMATS = ("--fif", "--fieldtrip", "--brainstorm", "--simnibs")
 
     @classmethod
     def setUpClass(cls):
@@ -320,16 +320,6 @@ class Toolboxes(SharedFolderTest):
         for name, radius in (("csf", 80), ("bone", 86), ("skin", 92)):
             surface = meshio.read(self.path(f"lps/{name}.stl"))
             self.assert_sphere(surface.points, surface.cells_dict["triangle"], radius)  # RAS always
-
-    def test_curry(self):
-        self.model("ras")
-        for name, radius in (("inner_skull.s02", 80), ("outer_skull.s01", 86), ("outer_skin.s00", 92)):
-            text = self.path(f"ras/{name}").read_text()
-            self.assertIn("CoordinateFrame: RAS mm", text)
-            lists = {key: np.array(text.split(f"{key} START_LIST")[1].split(f"{key} END_LIST")[0]
-                                   .split(), float).reshape(-1, 3)
-                     for key in ("LOCATION_LIST", "TRIANGLE_LIST")}
-            self.assert_sphere(lists["LOCATION_LIST"], lists["TRIANGLE_LIST"], radius)
 
     def test_mne_without_a_freesurfer_folder(self):
         self.model("ras")

@@ -49,7 +49,7 @@ class Model(BemTest):
                    for word in ("--tissue", pair)]
         arguments = ("--labels", "seg.nii", *tissues, "--layers", "4", "--voxel", "3",
                      "--closing", "4", "--min-gap", "2,2,1.5")
-        self.bem(*arguments, "--vertices", "162", "--simnibs", "--curry", "--brainstorm", "--fif",
+        self.bem(*arguments, "--vertices", "162", "--simnibs", "--brainstorm", "--fif",
                  "--fieldtrip", "-o", "model")
         names = ("brain", *NAMES)
         report = self.report()

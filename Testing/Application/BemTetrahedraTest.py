@@ -34,49 +34,6 @@ def read_msh22(path):
     return points, [row[5:] for row in rows], [row[3] for row in rows]
 
 
-def take(lines, *wanted):
-    for line in wanted:
-        found = next(lines)
-        assert found == line if line else set(found) == {"="}, found
-
-
-def read_cauchy(path):
-    """By the rules of duneuro/io/cauchy_grid_reader.hh: exact lines, numbers in columns of six."""
-    lines = iter(path.read_text().split("\n"))
-    take(lines, "BOI - GEOMETRIEFILE", "", "", "BOI - STEUERKARTE")
-    counts = {}
-    for line in iter(lambda: next(lines), "EOI - STEUERKARTE"):
-        key, value = line.split(":")
-        counts[key.strip()] = int(value)
-    take(lines, "", "", "BOI - KOORDINATENKARTE")
-    numbers = []
-    while len(numbers) < 3 * counts["ANZAHL DER KNOTEN"]:
-        numbers += map(float, next(lines).split())
-    take(lines, "EOI - KOORDINATENKARTE", "", "", "BOI - ELEMENTKNOTENKARTE")
-    corners = []
-    for _ in range(counts["ANZAHL DER ELEMENTE"]):
-        kind, row = next(lines).split(":")
-        assert kind.strip() == "303" and row[0] == " ", row
-        corners.append([int(row[at:at + 6]) for at in range(1, len(row), 6)])
-    take(lines, "EOI - ELEMENTKNOTENKARTE", "", "", "EOI - GEOMETRIEFILE")
-    return list(zip(*[iter(numbers)] * 3)), corners
-
-
-def read_cauchy_tensors(path):
-    """One conductivity an element; it must be the same in all directions."""
-    lines = iter(path.read_text().split("\n"))
-    take(lines, "BOI - TENSORVALUEFILE", "", "", "BOI - TENSOR")
-    values = []
-    for line in iter(lambda: next(lines), "EOI - TENSOR"):
-        number, *tensor = (line + next(lines)).split()
-        assert int(number) == len(values) + 1, line
-        xx, yy, zz, *others = map(float, tensor)
-        assert xx == yy == zz and others == [0, 0, 0], line
-        values.append(xx)
-    take(lines, "", "", "EOI - TENSORVALUEFILE")
-    return values
-
-
 class Tetrahedra(BemTest):
     def four_layers(self):
         write_nifti(self.path("seg.nii"), head(radii=RADII, values=(4, 1, 2, 3)))
@@ -134,7 +91,7 @@ class Tetrahedra(BemTest):
             self.assertNotIn("Error", done.stdout)
 
     def test_the_files_for_duneuro_hold_the_same(self):
-        """Cauchy's columns as DUNEuro's reader takes them; .dgf's parameters as places in head.cond."""
+        """The parameters of .dgf are places in head.cond."""
         if not MESHERS:
             self.skipTest("needs tetgen or gmsh")
         self.bem(*self.four_layers(), "--tetrahedra", MESHERS[0], "--element-size", "20", "--conductivity",
@@ -143,10 +100,6 @@ class Tetrahedra(BemTest):
         conductivities = [float(line) for line in (folder / "head.cond").read_text().split()]
         self.assertEqual(conductivities, [0.33, 1.79, 0.01, 0.43])
         points, corners, tissues = read_msh22(folder / "head.msh")
-        own_points, own_corners = read_cauchy(folder / "head.geo")
-        self.assertEqual(own_points, points)
-        self.assertEqual(own_corners, corners)
-        self.assertEqual(read_cauchy_tensors(folder / "head.knw"), [conductivities[t - 2] for t in tissues])
         vertices, simplices = (folder / "head.dgf").read_text().split("#\n")[:2]
         rows = [list(map(int, line.split())) for line in simplices.splitlines()[2:]]
         self.assertEqual([row[:4] for row in rows], [[v - 1 for v in row] for row in corners])

@@ -1,15 +1,12 @@
-// libFuzzer target: bytes that claim to be surfaces of the kind that fuzz::ending() says
-// (.fif, .s00). They are refused with a FileError, or all triangles name points that are there and
-// finite.
+// libFuzzer target: bytes that claim to be a FIFF file of surfaces. They are refused with a
+// FileError, or all triangles name points that are there and finite.
 
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
 
-#include "Ending.h"
 #include "OneLine.h"
-#include "adaptiso/MeshIO/CurrySurface.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
 
 namespace {
@@ -30,12 +27,8 @@ void requireSound(const adaptiso::TriangleMesh& mesh) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     try {
-        if (adaptiso::fuzz::ending() == ".fif") {
-            for (const auto& surface : adaptiso::decodeFiffSurfaces(bytes, "input")) {
-                requireSound(surface.mesh);
-            }
-        } else {
-            requireSound(adaptiso::decodeCurrySurface(bytes, "input"));
+        for (const auto& surface : adaptiso::decodeFiffSurfaces(bytes, "input")) {
+            requireSound(surface.mesh);
         }
     } catch (const adaptiso::FileError& refusal) {
         adaptiso::fuzz::requireOneLine(refusal);

@@ -10,7 +10,6 @@
 
 #include "InputFolder.h"
 #include "Seeds.h"
-#include "adaptiso/MeshIO/CurrySurface.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshIO/PointData.h"
@@ -113,8 +112,6 @@ void addSurfaceLists(Seeds& seeds) {
     const FiffSurface surfaces[] = {{4, 0.33, tetrahedron()}, {1, 0.33, tetrahedron()}};
     writeFiffSurfaces(surfaces, folder.path() / "a.fif");
     seeds.add("fif", bytesOf(folder.path() / "a.fif"));
-    writeCurrySurface(tetrahedron(), folder.path() / "a.s00", "CoordinateFrame: RAS mm");
-    seeds.add("curry", bytesOf(folder.path() / "a.s00"));
     const NamedPoint points[] = {{"Cz", PointKind::Electrode, {0, 0, 90}},
                                  {"Nasion", PointKind::Nasion, {0, 95, 0}}};
     const auto tsv = folder.path() / "electrodes.tsv", json = folder.path() / "coordsystem.json";

@@ -259,13 +259,13 @@ class FourLayers(InFolder):
         named = ["--tissue", "brain=1", "--tissue", "csf=2", "--tissue", "skull=3", "--tissue", "scalp=4"]
         program("adaptiso-bem", "--labels", self.folder / "seg.nii", *named, "--layers", 4, *ARGUMENTS,
                 "--montage", "10-20", "--nasion", "0,71,-9", "--left-ear=-70,0,-15", "--right-ear",
-                "70,0,-15", "--fif", "--fieldtrip", "--brainstorm", "--simnibs", "--curry", "--besa",
+                "70,0,-15", "--fif", "--fieldtrip", "--brainstorm", "--simnibs", "--besa",
                 "-o", theirs)
         model = adaptiso.bem(
             labels=self.folder / "seg.nii", tissues=FOUR, layers=4, montage="10-20", head_shape=True,
             landmarks={"nasion": (0, 71, -9), "left_ear": (-70, 0, -15), "right_ear": (70, 0, -15)},
             **QUICK)
-        model.save(ours, fif=True, fieldtrip=True, brainstorm=True, simnibs=True, curry=True, besa=True)
+        model.save(ours, fif=True, fieldtrip=True, brainstorm=True, simnibs=True, besa=True)
         self.assertEqual(sorted(file.name for file in ours.iterdir()),
                          sorted(file.name for file in theirs.iterdir()))
         for file in theirs.iterdir():

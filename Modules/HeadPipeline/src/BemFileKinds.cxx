@@ -7,7 +7,6 @@
 #include "adaptiso/HeadModel/ExportFreeSurfer.h"
 #include "adaptiso/HeadModel/ExportMatlab.h"
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
-#include "adaptiso/MeshIO/CurrySurface.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -136,21 +135,6 @@ BemFileKind simNibsFiles(const Source& source) {
         [](std::size_t, const TriangleMesh& mesh, const fs::path& path) { writeMesh(mesh, path); });
 }
 
-BemFileKind curryFiles(const Source& source) {
-    std::vector<std::string> names;
-    for (std::size_t n = 0; n < source.model.meshes.size(); ++n) {
-        names.push_back(curryName(source.surface(n)));
-    }
-    const CoordinateFrame frame = source.options.frame;
-    return oneEach(
-        wholeModel(source, "*.s0*", source.into(frame)), names,
-        [source, frame](std::size_t n, const TriangleMesh& mesh, const fs::path& path) {
-            writeCurrySurface(toFrame(mesh, frame, source.volume(frame)), path,
-                              std::string(toString(source.surface(n))) + ", " + frameMarker(frame));
-        },
-        readCurrySurface);
-}
-
 /// In Brainstorm's own coordinates where they are known, else in the scanner's.
 BemFileKind brainstormFiles(const Source& source) {
     std::vector<std::string> names;
@@ -255,11 +239,6 @@ std::string brainstormName(HeadSurface surface) {
     return kNames[static_cast<std::size_t>(surface)];
 }
 
-std::string curryName(HeadSurface surface) {
-    constexpr std::array<const char*, kHeadSurfaceCount> kEndings{".s03", ".s02", ".s01", ".s00"};
-    return std::string(toString(surface)) + kEndings[static_cast<std::size_t>(surface)];
-}
-
 std::vector<BemFileKind> bemFileKinds(const BemModel& model, const BemFileOptions& options) {
     const Source source{model, options};
     std::vector<BemFileKind> kinds{freeSurferFiles(source), openMeegFiles(source)};
@@ -273,7 +252,6 @@ std::vector<BemFileKind> bemFileKinds(const BemModel& model, const BemFileOption
     if (options.writesFieldTrip) kinds.push_back(fieldTripFile(source));
     if (options.writesBrainstorm) kinds.push_back(brainstormFiles(source));
     if (options.writesSimNibs) kinds.push_back(simNibsFiles(source));
-    if (options.writesCurry) kinds.push_back(curryFiles(source));
     return kinds;
 }
 

@@ -1,7 +1,6 @@
 #include "adaptiso/HeadPipeline/BemFiles.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -68,13 +67,10 @@ void writeTetrahedra(const BemModel& model, const BemFileOptions& options, const
     writeMsh41(mesh, regions, place(kMsh41File));
     writeVtu(mesh, place(kVtuFile));
     writeDgf(mesh, allTissues(), place(kDgfFile));
-    const std::vector<double> conductivities = tissueConductivities(model.options.conductivities);
     std::string list;
-    for (const double value : conductivities) list += formatNumber(value) + "\n";
+    for (const double value : tissueConductivities(model.options.conductivities))
+        list += formatNumber(value) + "\n";
     writeText(place(kTissueConductivitiesFile), list);
-    if (std::ssize(mesh.points) > kMostCauchyPoints) return;
-    writeCauchy(mesh, place(kCauchyFile));
-    writeCauchyTensors(mesh, allTissues(), conductivities, place(kCauchyTensorsFile));
 }
 
 /// Landmarks first, as BESA wants them.
@@ -93,38 +89,20 @@ void writeBesa(const BemModel& model, const BemFileOptions& options, const Place
 }  // namespace
 
 std::vector<std::string> bemFileNames() {
-    std::vector<std::string> names{"model.geom",
-                                   "model.cond",
-                                   "report.json",
-                                   "spots.png",
-                                   "README.md",
-                                   kFiffModel,
-                                   kFiffDenseHead,
-                                   kFiffSparseHead,
-                                   kFieldTripFile,
-                                   kElectrodesTsv,
-                                   kElectrodesJson,
-                                   kElectrodesElc,
-                                   kElectrodesSfp,
-                                   kElectrodesFif,
-                                   kElectrodesTxt,
-                                   kBesaFile,
-                                   kMsh22File,
-                                   kMsh41File,
-                                   kVtuFile,
-                                   kDgfFile,
-                                   kCauchyFile,
-                                   kCauchyTensorsFile,
-                                   kTissueConductivitiesFile};
+    std::vector<std::string> names{"model.geom",   "model.cond",    "report.json",
+                                   "spots.png",    "README.md",     kFiffModel,
+                                   kFiffDenseHead, kFiffSparseHead, kFieldTripFile,
+                                   kElectrodesTsv, kElectrodesJson, kElectrodesElc,
+                                   kElectrodesSfp, kElectrodesFif,  kElectrodesTxt,
+                                   kBesaFile,      kMsh22File,      kMsh41File,
+                                   kVtuFile,       kDgfFile,        kTissueConductivitiesFile};
     for (std::size_t n = 0; n < kHeadSurfaceCount; ++n) {
         const HeadSurface surface = headSurface(n, kHeadSurfaceCount);
         for (const char* extension : {".surf", ".tri", ".gii", ".vtp"}) {
             names.push_back(bemFileName(surface, extension));
         }
-        for (std::string& name :
-             std::array{simNibsName(surface), brainstormName(surface), curryName(surface)}) {
-            names.push_back(std::move(name));
-        }
+        names.push_back(simNibsName(surface));
+        names.push_back(brainstormName(surface));
     }
     return names;
 }

@@ -52,16 +52,13 @@ std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
     if (options.writesSimNibs) {
         rows += "| `csf.stl`, `bone.stl`, `skin.stl` | SimNIBS | scanner RAS; millimetres |\n";
     }
-    if (options.writesCurry) {
-        rows += "| `*.s0*` | Curry | " + frame + "; millimetres |\n";
-    }
     if (model.tetrahedra) {
         rows +=
             "| `head.msh` (2.2), `head-4.1.msh`, `head.vtu` | SimNIBS and Gmsh, Gmsh, viewers; "
             "tissues "
             "2 brain, 3 CSF, 4 skull, 5 scalp | " +
             frame +
-            "; millimetres |\n| `head.dgf`, `head.geo` with `head.knw` | DUNEuro; `head.cond` has "
+            "; millimetres |\n| `head.dgf` | DUNEuro; `head.cond` has "
             "the "
             "conductivities (S/m) of tissues 0 to 3 of `head.dgf`, of 2 to 5 of `head.msh` | " +
             frame + "; millimetres |\n";

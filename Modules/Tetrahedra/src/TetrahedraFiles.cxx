@@ -59,11 +59,6 @@ private:
     std::string buffer_;
 };
 
-/// Cauchy's files have two such lines between their parts.
-constexpr std::string_view kRule =
-    "===================================================================\n"
-    "===================================================================\n";
-
 /// Names stand in quotes.
 std::string quotable(std::string name) {
     for (char& c : name) {
@@ -188,46 +183,6 @@ void writeDgf(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> reg
         file << a << " " << b << " " << c << " " << d << " " << places.at(mesh.labels[n]) << "\n";
     }
     file << "#\nBoundaryDomain\ndefault 1\n#\n";
-    file.finish();
-}
-
-void writeCauchy(const TetrahedralMesh& mesh, const std::filesystem::path& path) {
-    TextFile file(path);
-    file << "BOI - GEOMETRIEFILE\n"
-         << kRule
-         << "BOI - STEUERKARTE\n  ANZAHL DER KNOTEN             : " << std::ssize(mesh.points)
-         << "\n  ANZAHL DER ELEMENTE           : " << std::ssize(mesh.tetrahedra)
-         << "\n  GEOMETR. STRUKTUR - DIMENSION : 3\nEOI - STEUERKARTE\n"
-         << kRule << "BOI - KOORDINATENKARTE\n";
-    for (std::size_t n = 0; n < mesh.points.size(); ++n) {  // two in a line
-        file << (n % 2 == 0 ? "   " : "     ") << mesh.points[n] << (n % 2 == 0 ? "" : "\n");
-    }
-    if (mesh.points.size() % 2 == 1) file << "\n";
-    file << "EOI - KOORDINATENKARTE\n" << kRule << "BOI - ELEMENTKNOTENKARTE\n";
-    constexpr std::size_t kColumn = 6;
-    for (const auto& t : mesh.tetrahedra) {
-        std::string row = "  303: ";  // a tetrahedron
-        for (const VertexId v : t) {
-            const std::string number = std::to_string(v + 1);
-            row += std::string(kColumn - std::min(kColumn, number.size()), ' ') + number;
-        }
-        file << row << "\n";
-    }
-    file << "EOI - ELEMENTKNOTENKARTE\n" << kRule << "EOI - GEOMETRIEFILE\n";
-    file.finish();
-}
-
-void writeCauchyTensors(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
-                        std::span<const double> conductivities, const std::filesystem::path& path) {
-    const std::map<std::int32_t, std::int64_t> places = placesOf(regions);
-    TextFile file(path);
-    file << "BOI - TENSORVALUEFILE\n" << kRule << "BOI - TENSOR\n";
-    for (std::size_t n = 0; n < mesh.labels.size(); ++n) {
-        const double value = conductivities[static_cast<std::size_t>(places.at(mesh.labels[n]))];
-        file << static_cast<std::int64_t>(n + 1) << " " << Vec3{value, value, value}
-             << "\n 0 0 0\n";
-    }
-    file << "EOI - TENSOR\n" << kRule << "EOI - TENSORVALUEFILE\n";
     file.finish();
 }
 

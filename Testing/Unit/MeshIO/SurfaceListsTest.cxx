@@ -1,4 +1,4 @@
-// FIFF's and Curry's surfaces: what is written comes back, and damage is told in one line.
+// FIFF's surfaces: what is written comes back, and damage is told in one line.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +6,6 @@
 #include "MeshIOTestSupport.h"
 #include "Support/Meshes.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/MeshIO/CurrySurface.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
 #include "adaptiso/MeshIO/PointNormals.h"
 
@@ -102,49 +101,6 @@ TEST(FiffSurfaces, RefuseOtherFramesAndVerticesThatAreNotThere) {
     EXPECT_NE(refusalOf([&] { decodeFiffSurfaces("not a FIFF file at all", "c"); }).find("FIFF"),
               std::string::npos);
     EXPECT_THROW(writeFiffSurfaces({}, temporaryFile("d.fif")), InvalidInput);
-}
-
-TEST(CurrySurface, ComesBack) {
-    const TriangleMesh sphere = icosphere(2, {1, 2, 3}, 80);
-    const auto path = temporaryFile("skin.s00");
-    writeCurrySurface(sphere, path, "skin, CoordinateFrame: RAS mm");
-    const TriangleMesh read = readCurrySurface(path);
-    EXPECT_EQ(read.triangles, sphere.triangles);
-    for (std::size_t v = 0; v < read.points.size(); ++v) {
-        EXPECT_LE(norm(read.points[v] - sphere.points[v]), 1e-6);  // nine digits
-    }
-    EXPECT_THROW(writeCurrySurface(sphere, temporaryFile("b.s00"), "two\nlines"), InvalidInput);
-}
-
-TEST(CurrySurface, PassesOverOtherLists) {
-    const TriangleMesh mesh = decodeCurrySurface(
-        "# by another program\nPOINT_KEYWORDS START\n LIST_NR_ROWS = 4\nPOINT_KEYWORDS END\n"
-        "NORMALS_LIST START_LIST # Do not edit!\n1 0 0\nNORMALS_LIST END_LIST\n"
-        "LOCATION_LIST START_LIST # Do not edit!\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
-        "LOCATION_LIST END_LIST\nTRIANGLE_LIST START_LIST\n0 2 1\n0 1 3\n0 3 2\n1 2 3\n"
-        "TRIANGLE_LIST END_LIST\n",
-        "a.s00");
-    EXPECT_EQ(mesh.points.size(), 4u);
-    EXPECT_EQ(mesh.triangles.size(), 4u);
-}
-
-TEST(CurrySurface, RefusesDamage) {
-    const std::string good =
-        "LOCATION_LIST START_LIST\n0 0 0\n1 0 0\n0 1 0\nLOCATION_LIST END_LIST\n"
-        "TRIANGLE_LIST START_LIST\n0 1 2\nTRIANGLE_LIST END_LIST\n";
-    const auto refused = [&](const std::string& from, const std::string& to) {
-        std::string bytes = good;
-        bytes.replace(bytes.find(from), from.size(), to);
-        return refusalOf([&] { decodeCurrySurface(bytes, "a.s00"); });
-    };
-    EXPECT_NE(refused("0 1 2", "0 1 3").find("point 3 of 3"), std::string::npos);
-    EXPECT_NE(refused("0 1 2", "0 1 -1").find("point -1"), std::string::npos);
-    EXPECT_NE(refused("1 0 0", "1 0 nan").find("finite"), std::string::npos);
-    EXPECT_NE(refused("1 0 0", "1 0 0 0").find("too long"), std::string::npos);
-    EXPECT_NE(refused("1 0 0", "1 0").find("a coordinate"), std::string::npos);
-    EXPECT_NE(refused("TRIANGLE_LIST END_LIST", "").find("no end"), std::string::npos);
-    EXPECT_NE(refused("TRIANGLE_LIST START_LIST", "").find("no points or no triangles"),
-              std::string::npos);
 }
 
 }  // namespace

@@ -44,43 +44,5 @@ TEST(TetrahedraFiles, DgfHasThePlaceOfTheRegion) {
     EXPECT_NE(text.find("Simplex\nparameters 1\n0 1 2 3 2\n0 2 1 4 0\n#\n"), std::string::npos);
 }
 
-/// As DUNEuro's reader takes it: two points a line, corners in columns of six digits from 1.
-TEST(TetrahedraFiles, CauchyKeepsItsColumns) {
-    EXPECT_EQ(written([](const auto& path) { writeCauchy(two(), path); }),
-              "BOI - GEOMETRIEFILE\n"
-              "===================================================================\n"
-              "===================================================================\n"
-              "BOI - STEUERKARTE\n"
-              "  ANZAHL DER KNOTEN             : 5\n"
-              "  ANZAHL DER ELEMENTE           : 2\n"
-              "  GEOMETR. STRUKTUR - DIMENSION : 3\n"
-              "EOI - STEUERKARTE\n"
-              "===================================================================\n"
-              "===================================================================\n"
-              "BOI - KOORDINATENKARTE\n"
-              "   0 0 0     1 0 0\n"
-              "   0 1 0     0 0 1\n"
-              "   0.125 0 -1\n"
-              "EOI - KOORDINATENKARTE\n"
-              "===================================================================\n"
-              "===================================================================\n"
-              "BOI - ELEMENTKNOTENKARTE\n"
-              "  303:      1     2     3     4\n"
-              "  303:      1     3     2     5\n"
-              "EOI - ELEMENTKNOTENKARTE\n"
-              "===================================================================\n"
-              "===================================================================\n"
-              "EOI - GEOMETRIEFILE\n");
-}
-
-TEST(TetrahedraFiles, CauchysTensorsAreNumberedFromOne) {
-    const std::vector<double> conductivities{0.33, 1.79, 0.43};
-    const std::string text = written(
-        [&](const auto& path) { writeCauchyTensors(two(), kRegions, conductivities, path); });
-    EXPECT_NE(text.find("BOI - TENSOR\n1 0.43 0.43 0.43\n 0 0 0\n2 0.33 0.33 0.33\n 0 0 0\n"
-                        "EOI - TENSOR\n"),
-              std::string::npos);
-}
-
 }  // namespace
 }  // namespace adaptiso

@@ -187,8 +187,7 @@ class HeadModel:
 
     def save(self, folder: Any, *, replace: bool = False, units: str = "mm", frame: str = "ras",
              gifti: bool = False, vtp: bool = False, fif: bool = False, fieldtrip: bool = False,
-             brainstorm: bool = False, simnibs: bool = False, curry: bool = False,
-             besa: bool = False) -> None:
+             brainstorm: bool = False, simnibs: bool = False, besa: bool = False) -> None:
         """Write the folder that adaptiso-bem writes: files for FreeSurfer, MNE and OpenMEEG,
         electrodes where there are, a README.md that says how to use them, and report.json.
 
@@ -207,9 +206,9 @@ class HeadModel:
             Of all files but FreeSurfer's (.surf), which are in tkRAS.
         gifti, vtp : bool
             Write .gii and .vtp files too.
-        fif, fieldtrip, brainstorm, simnibs, curry, besa : bool
+        fif, fieldtrip, brainstorm, simnibs, besa : bool
             Write the files of MNE (bem.fif; head-dense.fif and head-sparse.fif of a model made with
-            ``head_shape=True``), FieldTrip, Brainstorm, SimNIBS, Curry and BESA too, as the
+            ``head_shape=True``), FieldTrip, Brainstorm, SimNIBS and BESA too, as the
             program's options of these names do. BESA's needs landmarks.
 
         Raises
@@ -221,8 +220,7 @@ class HeadModel:
         options: Dict[str, Any] = {"units": word("units", units, ("mm", "m")),
                                    "frame": word("frame", frame, ("ras", "lps", "tkras"))}
         for name, value in (("gifti", gifti), ("vtp", vtp), ("fif", fif), ("fieldtrip", fieldtrip),
-                            ("brainstorm", brainstorm), ("simnibs", simnibs), ("curry", curry),
-                            ("besa", besa)):
+                            ("brainstorm", brainstorm), ("simnibs", simnibs), ("besa", besa)):
             options[name] = flag(name, value)
         if not self._data.has_model:
             raise Error("there is no model to save")

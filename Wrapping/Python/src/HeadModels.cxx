@@ -168,7 +168,6 @@ BemFileOptions bemFilesOf(const py::dict& from) {
     options.writesFieldTrip = take<bool>(from, "fieldtrip");
     options.writesBrainstorm = take<bool>(from, "brainstorm");
     options.writesSimNibs = take<bool>(from, "simnibs");
-    options.writesCurry = take<bool>(from, "curry");
     options.writesBesa = take<bool>(from, "besa");
     return options;
 }

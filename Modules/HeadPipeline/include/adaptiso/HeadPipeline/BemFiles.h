@@ -24,7 +24,6 @@ struct BemFileOptions {
     bool writesBrainstorm =
         false;  ///< tess_*_bem.mat: SCS of landmarks that are known, else scanner RAS; metres
     bool writesSimNibs = false;  ///< csf.stl, bone.stl, skin.stl: scanner RAS
-    bool writesCurry = false;    ///< inner_skull.s02, ...
     bool writesBesa = false;     ///< head.sfp: landmarks, electrodes and the skin's points
 };
 
@@ -41,8 +40,6 @@ inline constexpr const char* kMsh22File = "head.msh";
 inline constexpr const char* kMsh41File = "head-4.1.msh";
 inline constexpr const char* kVtuFile = "head.vtu";
 inline constexpr const char* kDgfFile = "head.dgf";
-inline constexpr const char* kCauchyFile = "head.geo";
-inline constexpr const char* kCauchyTensorsFile = "head.knw";
 inline constexpr const char* kTissueConductivitiesFile = "head.cond";
 
 inline constexpr const char* kFiffModel = "bem.fif";
@@ -50,10 +47,9 @@ inline constexpr const char* kFiffDenseHead = "head-dense.fif";
 inline constexpr const char* kFiffSparseHead = "head-sparse.fif";
 inline constexpr const char* kFieldTripFile = "headmodel.mat";
 
-/// Of a surface's file: "csf.stl", "tess_innerskull_bem.mat", "inner_skull.s02".
+/// Of a surface's file: "csf.stl", "tess_innerskull_bem.mat".
 std::string simNibsName(HeadSurface surface);
 std::string brainstormName(HeadSurface surface);
-std::string curryName(HeadSurface surface);
 
 /// Every name that a model's folder may hold.
 std::vector<std::string> bemFileNames();

@@ -24,15 +24,4 @@ void writeVtu(const TetrahedralMesh& mesh, const std::filesystem::path& path);
 void writeDgf(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
               const std::filesystem::path& path);
 
-/// The most points that Cauchy's columns of six digits can number.
-inline constexpr std::int64_t kMostCauchyPoints = 999'999;
-/// The geometry file of Cauchy (SimBio, DUNEuro: .geo), coordinates in mm.
-/// \pre  at most kMostCauchyPoints points
-void writeCauchy(const TetrahedralMesh& mesh, const std::filesystem::path& path);
-/// The conductivity of each element beside it (.knw), as tensors in S/m: DUNEuro brings both files
-/// to S/mm.
-/// \param conductivities  of each of `regions`, S/m
-void writeCauchyTensors(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
-                        std::span<const double> conductivities, const std::filesystem::path& path);
-
 }  // namespace adaptiso
