@@ -12,8 +12,8 @@ namespace adaptiso::fuzz {
 inline const std::string& ending() {
     static const std::string found = [] {
         const std::string_view name = std::string_view(program_invocation_short_name).substr(5);
-        for (const auto& [other, kind] : {std::pair{"shape", ".gii"}, std::pair{"overlay", ".mgh"},
-                                          std::pair{"curry", ".s00"}, std::pair{"dig", ".fif"}}) {
+        for (const auto& [other, kind] :
+             {std::pair{"shape", ".gii"}, std::pair{"overlay", ".mgh"}, std::pair{"dig", ".fif"}}) {
             if (name == other) return std::string(kind);
         }
         return "." + std::string(name);
