@@ -39,8 +39,8 @@ Warning countMissed(const std::string& file, const std::string& what, std::int64
                     std::int64_t wanted, const std::string& kept, double errorBoundMm) {
     return {"count-missed",
             "has " + formatCount(written) + " " + what + ", not " + formatCount(wanted) +
-                " as asked for: these are the fewest reached with " + kept + ", and lie up to " +
-                formatBound(errorBoundMm) + " mm off; more triangles lie closer",
+                " as asked for: keeping " + kept + " left little to gain; they lie up to " +
+                formatBound(errorBoundMm) + " mm off, and more triangles lie closer",
             file};
 }
 

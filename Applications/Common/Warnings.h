@@ -14,9 +14,11 @@ namespace adaptiso {
 void printWarnings(const std::string& program, const CommonOptions& common,
                    std::span<const Warning> warnings);
 
-/// "count-missed", of a surface whose count could not be met: what is written, wanted and kept, and
-/// how far off it is: "has 108 triangles, not 3 as asked for: these are the fewest reached with all
-/// its pieces, and lie up to 0.25 mm off; more triangles lie closer". \param what  "triangles"
+/// The warning "count-missed": "has 108 triangles, not 3 as asked for: keeping all its pieces left
+/// little to gain; they lie up to 0.25 mm off, and more triangles lie closer".
+///
+/// \param what  "triangles"
+///
 /// \param kept  "all its pieces"
 Warning countMissed(const std::string& file, const std::string& what, std::int64_t written,
                     std::int64_t wanted, const std::string& kept, double errorBoundMm);

@@ -30,7 +30,7 @@ void printWalls(std::ostream& out, const LabelsRun& run) {
     if (statistics.wantedTriangles && statistics.mapTriangles > *statistics.wantedTriangles) {
         out << "  " << formatCount(*statistics.wantedTriangles) << " triangles were asked for"
             << (run.isPart() ? " in the whole map" : "")
-            << "; these are the fewest reached with all regions, pieces and junctions\n";
+            << "; keeping all regions, pieces and junctions left little to gain\n";
     }
 }
 

@@ -50,7 +50,7 @@ void printSurface(std::ostream& out, const MeshRun& run, const SurfaceSummary& s
             << " triangles were asked for; "
             << (run.options.adaptive.maxErrorMm
                     ? "the bound of --max-error does not allow as few\n"
-                    : "these are the fewest reached with all its pieces and holes\n");
+                    : "keeping all its pieces and holes left little to gain\n");
     }
     if (surface.insideOutPieces.value_or(0) > 0) {
         out << "  " << counted(*surface.insideOutPieces, "piece") << " inside out\n";

@@ -38,7 +38,7 @@ void printOutput(std::ostream& out, const SimplifyRun& run) {
         out << "  " << formatCount(*run.statistics.wantedTriangles) << " triangles were asked for; "
             << (run.command.aim.maxErrorMm
                     ? "the bound of --max-error does not allow as few\n"
-                    : "these are the fewest reached with all its pieces, holes and borders\n");
+                    : "keeping all its pieces, holes and borders left little to gain\n");
     }
     for (const std::string& name : run.keptArrays) {
         out << "  with the values " << oneLine(name) << '\n';
