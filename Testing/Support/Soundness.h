@@ -15,7 +15,7 @@ namespace adaptiso::testing {
 struct SoundnessOptions {
     /// Boundary edges are allowed, but only with both ends on one border face of this volume: at
     /// index 0 or size - 1 of the same axis, to within 1e-6 of an index.
-    std::optional<ImageGeometry> openAtBorderOf;
+    std::optional<ImageGeometry> openAtBorderOf = {};
     /// nestingOf() of the mesh is to be this.
     std::optional<std::string> nesting = {};
 };

@@ -236,11 +236,11 @@ ByteSource openData(const DataPlace& place, std::uint64_t byteCount, const Image
 }
 
 PlacedVolume readPlaced(const DataPlace& place, const SampleLayout& layout,
-                        const ImageGeometry& geometry, const ReadOptions& options) {
+                        const ImageGeometry& geometry) {
     const std::uint64_t byteCount = bytesOfAll(place, layout, geometry.size);
     return readingData(place, [&] {
         ByteSource source = openData(place, byteCount, ImageExtent::of(layout, geometry.size));
-        Volume volume = readSamples(place.header, source, layout, geometry, options);
+        Volume volume = readSamples(place.header, source, layout, geometry);
         return PlacedVolume{std::move(volume), source.readTail(byteCount + 1)};
     });
 }

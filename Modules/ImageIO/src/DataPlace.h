@@ -59,7 +59,7 @@ struct PlacedVolume {
 
 /// openData() and readSamples(), whose errors this throws.
 PlacedVolume readPlaced(const DataPlace& place, const SampleLayout& layout,
-                        const ImageGeometry& geometry, const ReadOptions& options);
+                        const ImageGeometry& geometry);
 
 /// Compares what follows the samples with what the header says follows: nothing.
 ///

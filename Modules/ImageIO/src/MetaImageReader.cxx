@@ -355,7 +355,7 @@ ReadVolume readMetaImage(const fs::path& file, const ReadOptions& options) {
     const ImageGeometry geometry = geometryOf(file, header, extents, warnings);
     requireUsableGeometry(file, geometry);
     const DataPlace place = placeOf(file, header);
-    PlacedVolume read = readPlaced(place, layout, geometry, options);
+    PlacedVolume read = readPlaced(place, layout, geometry);
     requireFourByteLong(file, type, read.tail, byteCount);
     checkTail(place, read.tail, layout, extents.size, warnings);
     return {std::move(read.volume), "MetaImage", std::move(warnings)};

@@ -139,7 +139,7 @@ ReadVolume readMgh(const fs::path& file, const ReadOptions& options) {
     const ImageGeometry geometry = geometryOf(bytes, size, warnings);
     DataPlace place{file, file, ByteSource::encodingOf(file)};
     place.bytes = kHeaderBytes;
-    PlacedVolume read = readPlaced(place, layout, geometry, options);
+    PlacedVolume read = readPlaced(place, layout, geometry);
     const ImageExtent extent = ImageExtent::of(layout, size);
     const Footer footer = footerOf(read.tail);
     const bool mayBeImage = footer != Footer::Whole && isMoreImage(read.tail.byteCount, extent);

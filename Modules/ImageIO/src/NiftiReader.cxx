@@ -534,7 +534,7 @@ ReadVolume readNifti(const fs::path& input, const ReadOptions& options) {
     DataPlace place{headerFile, dataFile, ByteSource::encodingOf(dataFile)};
     place.bytes = requireDataOffset(headerFile, header);
     if (!header.hasDataInside) place.skipName = "vox_offset";
-    PlacedVolume read = readPlaced(place, layout, geometry, options);
+    PlacedVolume read = readPlaced(place, layout, geometry);
     checkTail(place, read.tail, layout, extents.size, warnings);
     return {std::move(read.volume), header.version == 1 ? "NIfTI-1" : "NIfTI-2",
             std::move(warnings)};

@@ -107,7 +107,7 @@ ReadVolume readNrrd(const fs::path& file, const ReadOptions& options) {
         return {std::move(volume), "NRRD", std::move(warnings)};
     }
     layout.byteOrder = byteOrderOf(file, header, layout.stored);
-    PlacedVolume read = readPlaced(place, layout, geometry, options);
+    PlacedVolume read = readPlaced(place, layout, geometry);
     checkTail(place, read.tail, layout, axes.size, warnings);
     return {std::move(read.volume), "NRRD", std::move(warnings)};
 }

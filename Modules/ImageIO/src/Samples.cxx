@@ -182,8 +182,7 @@ std::int64_t chooseVolume(const std::filesystem::path& file, std::int64_t volume
 }
 
 Volume readSamples(const std::filesystem::path& file, ByteSource& source,
-                   const SampleLayout& layout, const ImageGeometry& geometry,
-                   const ReadOptions& options) {
+                   const SampleLayout& layout, const ImageGeometry& geometry) {
     const std::uint64_t volumeBytes = requireImageBytes(file, geometry.size, layout.stored);
     requireUsableGeometry(file, geometry);
     const auto volumes = static_cast<std::uint64_t>(layout.volumeCount);

@@ -103,12 +103,10 @@ std::int64_t chooseVolume(const std::filesystem::path& file, std::int64_t volume
                           const ReadOptions& options, std::string_view name = "volumes");
 
 /// Reads exactly the geometry's voxels, checks that the file holds the other volumes too, and wraps
-/// the samples up. Maps them instead where the options and the layout allow it. What follows in the
-/// file is `source`'s tail then, which checkTail() judges.
+/// the samples up. What follows in the file is `source`'s tail then.
 /// \throws FileError  samples are missing, or the scaling makes finite ones infinite
 Volume readSamples(const std::filesystem::path& file, ByteSource& source,
-                   const SampleLayout& layout, const ImageGeometry& geometry,
-                   const ReadOptions& options);
+                   const SampleLayout& layout, const ImageGeometry& geometry);
 
 /// A volume that owns `samples`.
 Volume makeVolume(SampleBuffer samples, PixelType type, const ImageGeometry& geometry);

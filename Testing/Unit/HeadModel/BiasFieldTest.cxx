@@ -22,7 +22,8 @@ struct Tissue {
     explicit Tissue(double slope, double bend) {
         for (std::int64_t n = 0; n < grid.voxelCount(); ++n) {
             const std::int64_t i = n % kSide, j = n / kSide % kSide, k = n / (kSide * kSide);
-            const double x = 2.0 * i / (kSide - 1) - 1, z = 2.0 * k / (kSide - 1) - 1;
+            const double x = 2.0 * static_cast<double>(i) / (kSide - 1) - 1,
+                         z = 2.0 * static_cast<double>(k) / (kSide - 1) - 1;
             truth.push_back((i / 6 + j / 6 + k / 6) % 2 == 0 ? 100 : 70);
             values.push_back(static_cast<float>(
                 kAir + truth.back() * std::exp(slope * (x + 0.5 * z) + bend * x * x)));

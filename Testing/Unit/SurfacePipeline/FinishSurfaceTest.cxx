@@ -153,7 +153,8 @@ Volume ballAndSpecks() {
     for (std::int64_t k = 0; k < n; ++k) {
         for (std::int64_t j = 0; j < n; ++j) {
             for (std::int64_t i = 0; i < n; ++i) {
-                const Vec3 p{i - 23.5, j - 23.5, k - 23.5};
+                const Vec3 p{static_cast<double>(i) - 23.5, static_cast<double>(j) - 23.5,
+                             static_cast<double>(k) - 23.5};
                 Vec3 q = p;  // from the nearest speck
                 for (int a = 0; a < 3; ++a) q[a] -= 18 * std::clamp(std::round(p[a] / 18), -1., 1.);
                 samples.push_back(static_cast<float>(std::max(12 - norm(p), 2 - norm(q))));

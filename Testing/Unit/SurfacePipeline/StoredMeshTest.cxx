@@ -179,7 +179,9 @@ TEST(SettleRounding, MeasuresTheRoundingOfTheFile) {
                 EXPECT_LE(norm(stored.points[v] - file.points[v]), 1e-14 * far) << name;
             }
             EXPECT_NEAR(harm.roundingMm, farthestMm, 1e-14 * far) << name << far;
-            if (format.precision == CoordinatePrecision::Float64) EXPECT_EQ(harm.roundingMm, 0);
+            if (format.precision == CoordinatePrecision::Float64) {
+                EXPECT_EQ(harm.roundingMm, 0);
+            }
         }
     }
 }
