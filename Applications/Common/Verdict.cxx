@@ -80,6 +80,7 @@ Json errorJson(const Verdict& verdict) {
 
 /// A report may go there: no other word names it, and nothing is there, or no file, or a report.
 bool mayReplace(const fs::path& path) {
+    if (path.string().find('{') != std::string::npos) return false;  // a placeholder
     std::error_code error;
     const auto whole = [&](const fs::path& name) {
         return fs::weakly_canonical(fs::absolute(name, error), error);

@@ -541,7 +541,12 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
                          kTetrahedra);
     declareToolboxes(app, options);
     declareCommonOptions(app, options.common, "of the model only the report is then written");
-    app.callback([&options] { checkCombinations(options); });
+    app.callback([&options] {
+        checkCombinations(options);
+        for (const CoordinateFrame frame : options.inputCoordinates) {
+            options.model.inputCoordinates.emplace_back(frameWord(frame));
+        }
+    });
 }
 
 }  // namespace adaptiso

@@ -9,7 +9,6 @@ namespace {
 
 Json optionsJson(const BemOptions& options) {
     Json json = bemOptionsJson(options.model);
-    json["inputCoordinates"] = inputCoordinatesJson(options.inputCoordinates);
     json["threads"] = orNull(options.common.threads);
     json["strict"] = options.common.isStrict;
     return json;

@@ -20,16 +20,18 @@ void tellVerdict(const MeshRun& run, Report& report) {
                        ? "Surface of " + baseName(run.options.input)
                        : std::to_string(count) + " surfaces of " + baseName(run.options.input);
     std::int64_t crossings = 0, insideOut = 0;
-    bool isKnown = true, areClosed = true;
+    bool isKnown = true, areClosed = true, areJudged = true;
     for (const SurfaceSummary& surface : run.surfaces) {
         crossings += surface.crossingPairs.value_or(0);
         isKnown = isKnown && surface.crossingPairs.has_value();
         areClosed = areClosed && surface.topology.isClosed();
+        areJudged = areJudged && surface.insideOutPieces.has_value();
         insideOut += surface.insideOutPieces.value_or(0);
     }
     report.headline =
         std::string(count == 1 ? "Written: manifold" : "All written: manifold") +
         (!areClosed       ? " and oriented, open at the image's border"
+         : !areJudged     ? " and closed"
          : insideOut == 0 ? ", closed and facing outward"
                           : ", closed, " + formatCount(insideOut) +
                                 (insideOut == 1 ? " piece" : " pieces") + " inside out");

@@ -66,7 +66,7 @@ class Model(BemTest):
                      "Domain Air: +Scalp"):
             self.assertIn(line, geometry)
         self.assertIn("CSF 1.79", (self.path("model") / "model.cond").read_text())
-        for name in ("gm.stl", "brain.s03", "tess_brain_bem.mat", "brain.surf"):
+        for name in ("gm.stl", "tess_brain_bem.mat", "brain.surf"):
             self.assertTrue((self.path("model") / name).exists(), name)
 
         # without numbers: as many as the layers' thickness asks for, no more than solvers take

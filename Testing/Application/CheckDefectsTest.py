@@ -30,7 +30,7 @@ EXPECTED = {
         ({INNER: ["noUnusedVertices"]}, "1 vertex that no triangle uses; first: vertex 642"),
     "a triangle soup":
         ({INNER: ["closed", "oneComponent", "noDuplicateVertices"]}, "a triangle soup"),
-    "a gap of 0.05 mm": ({FIRST_PAIR: ["minGap"]}, r"smallest 0\.050 mm"),
+    "a gap of 0.05 mm": ({FIRST_PAIR: ["minGap"]}, r"smallest 0\.0498 mm"),
     "a triangle names a vertex twice":
         ({INNER: ["noDegenerateTriangles"]}, "1 names a vertex twice; first: triangle 1280"),
     "two triangles without area, of a collapsed vertex":

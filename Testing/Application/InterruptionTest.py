@@ -105,6 +105,8 @@ class NoResults(AllPrograms):
         self.assert_as_before(before)
 
     def assert_as_before(self, before):
+        for name in ("out/report.json", "out/info.json"):
+            self.take_failure_report(name)
         self.assertEqual(self.contents(), before)
         self.assertEqual(list(self.path("out").iterdir()), [])
 
@@ -259,6 +261,7 @@ class NoRoom(ApplicationTest):
                              "report.json", preexec_fn=self.limited(size))
         self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
         self.assertIn("report.json", done.stderr)
+        self.take_failure_report("report.json")
         self.assertEqual(self.contents(), before)
 
     def small_disk(self, size):

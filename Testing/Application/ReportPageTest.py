@@ -125,7 +125,7 @@ class Contents(ReportTest):
 
     def test_pictures_have_alt_texts_and_are_in_the_page(self):
         images = self.page("sound.off", "--volume", "ball.nii").all("img")
-        self.assertGreaterEqual(len(images), 6)
+        self.assertGreaterEqual(len(images), 5)
         for image in images:
             self.assertTrue(image["alt"])
             self.assertTrue(image["src"].startswith("data:image/png;base64,"))

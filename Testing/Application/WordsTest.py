@@ -270,6 +270,7 @@ class WrongCommandLines(ApplicationTest):
                     self.assertTrue(lines[0].endswith(f" (see {program} --help)"), lines[0])
                 if program != CHECK:  # which prints its table for the other files
                     self.assertEqual(done.stdout, "")
+                self.take_failure_report("r.json")
                 self.assertEqual(self.contents(), before)
 
 

@@ -169,7 +169,8 @@ Json bemOptionsJson(const BemModelOptions& options) {
          {{"brain", options.conductivities.brain},
           {"csf", options.boundaries.withBrain ? Json(options.conductivities.csf) : Json(nullptr)},
           {"skull", options.conductivities.skull},
-          {"scalp", options.conductivities.scalp}}}};
+          {"scalp", options.conductivities.scalp}}},
+        {"inputCoordinates", options.inputCoordinates}};
 }
 
 Json bemModelJson(const BemModel& model) {

@@ -38,6 +38,7 @@ std::string measure(const TriangleMesh& mesh, const FinishOptions& options, Surf
     record.areaMm2 = surfaceArea(mesh);
     if (!record.topology.isClosed()) return faults;
     record.volumeMm3 = enclosedVolume(mesh);
+    if (options.border == Border::Open) return faults;  // a cavity's outer wall may be missing
     record.insideOutPieces = std::ssize(findInsideOutPieces(mesh, record.topology));
     if (options.method == Method::Adaptive && record.insideOutPieces > 0) {
         faults = "pieces inside out: " + std::to_string(*record.insideOutPieces);

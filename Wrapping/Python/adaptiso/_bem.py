@@ -464,6 +464,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
         "voxel": 0.0 if voxel is None else _length("voxel", voxel, 5),
         "conductivity": _conductivities(conductivity, count_),
         "head_shape": flag("head_shape", head_shape),
+        "input_coordinates": [],
         **_electrodes(electrodes, electrodes_in, montage, landmarks, count_),
     }
     given_threads, told = checked_threads(threads), checked_progress(progress)
@@ -473,6 +474,9 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
     preset, lists = _tissues(tissues, labels is not None, count_, head_mask is not None)
     source = _source(t1, brain_mask, aseg, pial, labels, head_mask, probabilities, ct, surfaces,
                      volume, input_coordinates, affine, count_)
+    if input_coordinates is not None:
+        options["input_coordinates"] = ([input_coordinates] if isinstance(input_coordinates, str)
+                                        else [frame for frame in input_coordinates if frame])
     with contextlib.ExitStack() as meanwhile:
         for image in source.all_images():
             meanwhile.enter_context(read_only(image.user))

@@ -123,6 +123,7 @@ BemModelOptions modelOptionsOf(const py::dict& options) {
     model.conductivities = conductivitiesOf(options);
     model.electrodes = electrodesOf(options);
     model.wantsHeadShape = take<bool>(options, "head_shape");
+    model.inputCoordinates = take<std::vector<std::string>>(options, "input_coordinates");
     return model;
 }
 

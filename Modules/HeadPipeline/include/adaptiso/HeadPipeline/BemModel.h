@@ -51,7 +51,8 @@ struct BemModelOptions {
     std::optional<EdgeLengthRange> edgeLengthMm;
     ConductivityModel conductivities;
     ElectrodeOptions electrodes{};
-    bool wantsHeadShape = false;  ///< the skin alone as well, for coregistration
+    bool wantsHeadShape = false;                  ///< the skin alone as well, for coregistration
+    std::vector<std::string> inputCoordinates{};  ///< as stated for files of surfaces, for reports
 
     /// Between neighbours, from inside out.
     std::vector<double> minGapsMm() const;

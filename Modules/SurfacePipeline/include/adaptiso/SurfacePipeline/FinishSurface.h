@@ -39,9 +39,9 @@ struct SurfaceRecord {
     TopologyReport topology;          ///< of what is kept
     double areaMm2 = 0;
     double roundingMm = 0;                        ///< largest move of a point by the file's digits
-    std::optional<double> volumeMm3;              ///< none of an open surface
+    std::optional<double> volumeMm3;              ///< none with an open border
     std::optional<std::int64_t> crossingPairs;    ///< 0 of Method::Adaptive; none when not counted
-    std::optional<std::int64_t> insideOutPieces;  ///< none of an open surface
+    std::optional<std::int64_t> insideOutPieces;  ///< none with an open border
     std::optional<Verification> verification;     ///< none when not asked for
 
     /// The count of maxTriangles or reduction was met; none when none was asked for.
