@@ -7,10 +7,10 @@
 #include <array>
 #include <cerrno>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <vector>
 
-#include "Common/Temporaries.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -57,7 +57,7 @@ std::string sha256Of(std::string_view bytes) {
 std::string sha256OfFile(const std::filesystem::path& path) {
     constexpr std::size_t kPiece = std::size_t{1} << 20;
     const auto fail = [&path] {
-        throw FileError(path.string() + ": can't be read: " + detail::reason());
+        throw FileError(path.string() + ": can't be read: " + std::strerror(errno));
     };
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) fail();
