@@ -40,7 +40,7 @@ struct BatchProgram {
                                          const std::vector<std::string>&,
                                          const std::filesystem::path&)>
         findInBids;
-    /// From the report of a run: what came of it in a few words; the files that it wrote under
+    /// From the report of a run: its result in a few words; the files that it wrote under
     /// --output, without the folders of that ({name} stands for the item's name).
     std::function<std::string(const Json&)> says;
     std::function<std::vector<std::string>(const Json&)> outputs;

@@ -43,8 +43,8 @@ void declareBatchOptions(CLI::App& app, BatchOptions& options, const std::string
     addCount(app, "--jobs", options.jobs, 1, 1024, "Work on N inputs at a time (default: 1)")
         ->group(kGroup);
     app.add_flag("--skip-existing", options.skipsExisting,
-                 "Leave out inputs that an earlier run has finished with the same options, when "
-                 "input and outputs have not changed since; what it said of them is told again")
+                 "Skip inputs already processed with the same options and unchanged files; repeat "
+                 "their results")
         ->group(kGroup);
     app.add_option("--summary", options.summary,
                    "Write a page (HTML) of all runs that have a record in the output folder, with "

@@ -68,7 +68,7 @@ struct KeptRecord {
     std::string version;  ///< of the program and the libraries that it stands on
     bool hasEnded = false;
     BatchRecord run{};
-    std::string says{};  ///< what came of it, in words
+    std::string says{};  ///< the result, in words
     std::string date{};  ///< of the end, or of the beginning when there is none yet: UTC, ISO 8601
     Json asked{};        ///< BatchProgram::asked
     std::vector<KeptOption> options{};

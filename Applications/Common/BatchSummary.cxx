@@ -158,7 +158,7 @@ std::string summaryPage(const std::vector<SummaryRow>& rows, const fs::path& pag
         "</p>\n<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Runs\">"
         "<table><caption>Every run that has a record in this folder; what needs a look comes "
         "first</caption>\n<thead><tr><th>verdict</th><th>name</th><th>program</th><th>input</th>"
-        "<th>what came of it</th><th>files</th><th>picture</th><th>date</th><th>seconds</th></tr>"
+        "<th>result</th><th>files</th><th>picture</th><th>date</th><th>seconds</th></tr>"
         "</thead><tbody>\n";
     for (const SummaryRow& row : rows) text += rowText(row, page);
     return text + "</tbody></table></div>\n</main></body></html>\n";

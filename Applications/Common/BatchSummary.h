@@ -22,7 +22,7 @@ struct SummaryRow {
     std::string name;
     std::string file;
     RunState state = RunState::NotRun;
-    std::string says;  ///< what came of it, or what is wrong
+    std::string says;  ///< the result, or the error
     std::string date;  ///< of the run's end; empty: none
     double seconds = 0;
     std::vector<std::filesystem::path> outputs;

@@ -113,7 +113,7 @@ std::string EarlierRuns::changeOfInputs(std::size_t item, const KeptRecord& reco
     return {};
 }
 
-/// Surfaces, and what is asked for besides; of what else was written nobody wants to know.
+/// Compares surfaces and requested extras; other outputs are ignored.
 std::string EarlierRuns::changeOfOutputs(const BatchItem& item, const KeptRecord& record,
                                          const PlannedRecord& planned, bool trustsTimes) const {
     const auto extras = plan_.extras(item);

@@ -94,17 +94,16 @@ CLI::Option* declareVolume(CLI::App& app, std::filesystem::path& volume, ReadOpt
 
 void declareImageOptions(CLI::App& app, ImageOptions& options, const std::string& group) {
     declareReadOptions(app, options.read, group);
-    CLI::Option* const list =
-        app.add_flag("--list-series", options.listsSeries,
-                     "List the series that a DICOM input holds, and do nothing else")
-            ->group(group);
+    CLI::Option* const list = app.add_flag("--list-series", options.listsSeries,
+                                           "List the series of a DICOM input, then exit")
+                                  ->group(group);
     app.add_flag("--info", options.tellsInfo,
-                 "Tell the image's geometry and values, with thresholds by Otsu's method, and do "
-                 "nothing else; an image that would be refused is refused")
+                 "Print the image's geometry and value statistics, with thresholds by Otsu's "
+                 "method, then exit")
         ->excludes(list)
         ->group(group);
     app.add_flag("--show-phi", options.showsPhi,
-                 "With --list-series and --info: tell UIDs, descriptions and files' names too; "
+                 "With --list-series and --info: print UIDs, descriptions and file names too; "
                  "they may identify the patient")
         ->group(group);
 }

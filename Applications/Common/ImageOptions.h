@@ -21,8 +21,8 @@ struct ImageOptions {
 /// --refuse-missing-chunks). Large images are mapped.
 void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& group);
 
-/// Reads an image as readVolume() does. A surface given for it is told as one, and --series for
-/// what is no DICOM is refused.
+/// Reads an image as readVolume() does. If the file is a surface, the error says so. Refuses
+/// --series unless the input is DICOM.
 /// \throws FileError, InvalidInput
 ReadVolume readImage(const std::filesystem::path& file, const ReadOptions& options);
 

@@ -23,7 +23,7 @@ std::int64_t nanoseconds(const timespec& time) {
     return std::int64_t{time.tv_sec} * kPerSecond + time.tv_nsec;
 }
 
-/// Of nobody's business: what Zarr keeps its metadata in is no such file.
+/// Skips hidden files, except Zarr's metadata.
 bool isHidden(const fs::path& path) {
     const std::string name = path.filename().native();
     return name.starts_with('.') && name != ".zarray" && name != ".zattrs" && name != ".zgroup";

@@ -60,8 +60,8 @@ struct ReportResult {
 /// Makes the report, draws the pictures and writes them, and the page, under temporary names: what
 /// of them is asked for. Program, version and date are filled in.
 ///
-/// A page costs no surface: what goes wrong (no memory, no disk, a fault in the drawing) is told,
-/// not thrown, and `outputs` then are those that came.
+/// A report failure never aborts the run: errors (no memory, no disk, a drawing fault) are
+/// returned, not thrown, and `outputs` stays as it was.
 ReportResult writeReport(const std::function<Report()>& make, const std::string& program,
                          const ReportOptions& options, std::vector<AtomicOutput>& outputs);
 

@@ -53,8 +53,8 @@ void printReport(std::ostream& out, const BemRun& run) {
         out << "nothing written (--dry-run)\n";
     } else {
         const bool holdsModel = run.model.hasModel() && !run.failsStrict();
-        out << run.options.output.string()
-            << (holdsModel ? ": holds the head model" : ": holds the report only") << '\n';
+        out << (holdsModel ? "head model" : "report only") << " written to "
+            << run.options.output.string() << "/\n";
         for (const auto& path : run.subjectFiles) out << path.string() << '\n';
     }
     printTimes(out, run.timer, 1);

@@ -83,7 +83,8 @@ std::vector<std::string> siblingOptions(const std::string& option, const std::st
             return std::find(words.begin(), words.end(), name) != words.end();
         };
         if (isIn(refused)) {
-            throw UsageError(option + " " + shown(part) + ": is the business of adaptiso-bids");
+            throw UsageError(option + " " + shown(part) +
+                             ": is set by adaptiso-bids and cannot be passed on");
         }
         if (!isIn(sibling.options)) {
             throw UsageError(option + " " + shown(part) + ": " + sibling.name +

@@ -388,7 +388,7 @@ class Plausibility(BemTest):
         self.assertRegex(done.stdout, rf"\n\d+ of \d+ checks passed; {len(noted)} of {len(notes)} "
                                       "questions of plausibility noted")
         self.assertIn("\n  noted: inner_skull: volume of the inner skull: ", done.stdout)
-        self.assertRegex(done.stdout, "\nmodel: holds the head model\n")
+        self.assertRegex(done.stdout, "\nhead model written to model/\n")
 
     def test_a_cut_head_is_noted_with_its_place(self):
         # the image ends at z = -66, where the outer skull does; the skin would reach 6 mm lower

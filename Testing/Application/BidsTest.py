@@ -184,7 +184,7 @@ class Participants(BidsTest):
                 (USAGE, "LEVEL", ("both",)),
                 (USAGE, "--surfaces lagrest: adaptiso-mesh has no such option; did you mean largest",
                  ("participant", "--surfaces", "iso=1,lagrest")),
-                (USAGE, "--surfaces output=x: is the business of", ("participant", "--surfaces", "output=x")),
+                (USAGE, "--surfaces output=x: is set by", ("participant", "--surfaces", "output=x")),
                 (USAGE, "--surfaces iso=1: is given twice", ("participant", "--surfaces", "iso=1,iso=1.0")),
                 (USAGE, "--surfaces format=doc", ("participant", "--surfaces", "iso=1,format=doc")),
                 (USAGE, "--bem-options: needs --bem", ("participant", "--bem-options", "meg")),

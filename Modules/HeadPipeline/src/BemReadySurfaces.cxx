@@ -88,7 +88,7 @@ void note(BemModel& model, std::size_t n, const std::string& text) {
 Need tidied(std::size_t n, TriangleMesh& mesh, BemModel& model) {
     const std::size_t vertices = mesh.points.size();
     const std::int64_t dropped = dropUseless(mesh);
-    if (dropped > 0) note(model, n, formatCount(dropped) + " triangles that are none left out");
+    if (dropped > 0) note(model, n, "dropped " + formatCount(dropped) + " invalid triangles");
     if (mesh.triangles.empty()) throw InvalidInput("a surface holds no triangle");
     if (!isBall(mesh)) {
         TriangleMesh whole = merged(mesh), main = withoutIslands(whole);

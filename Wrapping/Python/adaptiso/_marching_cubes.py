@@ -42,7 +42,7 @@ def marching_cubes(volume: Any, level: Optional[float] = None, *, spacing: Any =
         "descent": the object's samples are the larger ones, and faces are clockwise seen from
         outside, as scikit-image has it; "ascent" turns the faces.
     step_size : int
-        Take every so manieth sample along each axis.
+        Take every step_size-th sample along each axis.
     allow_degenerate : bool
         Makes no difference: there are no degenerate triangles.
     method : {"lewiner", "lorensen", "_lorensen"}

@@ -5,8 +5,8 @@
 
 namespace adaptiso {
 
-/// Told how far a long call has come: the stage's name and the part of it done, 0 to 1. Called
-/// from the calling thread only. Empty: nobody listens.
+/// Reports the progress of a long call: the stage's name and the part of it done, 0 to 1. Called
+/// from the calling thread only. May be empty (no progress reporting).
 using ProgressCallback = std::function<void(std::string_view stage, double fraction)>;
 
 }  // namespace adaptiso

@@ -11,7 +11,7 @@
 
 namespace adaptiso {
 
-/// In what a head model is written.
+/// Which files to write for a head model.
 struct BemFileOptions {
     OpenMeegUnit unit = OpenMeegUnit::Millimetres;
     CoordinateFrame frame = CoordinateFrame::Ras;  ///< of all files but FreeSurfer's

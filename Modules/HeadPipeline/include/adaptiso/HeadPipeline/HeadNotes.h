@@ -13,7 +13,7 @@
 
 namespace adaptiso {
 
-/// A question about what is usual of heads, as it is told. Nothing fails by it.
+/// A plausibility note, formatted for output. It never fails a run.
 struct ToldNote {
     HeadNote note;        ///< places in LPS mm
     std::string subject;  ///< "inner_skull", "inner_skull in outer_skull"
