@@ -86,7 +86,7 @@ private:
         }
     }
 
-    /// What an earlier run has made is what this one is asked for, maybe in other words.
+    /// True if an earlier run made what this one asks for, perhaps by other option words.
     void keepWhatIsAsked(std::size_t n, const std::vector<EarlierRecord>& found) const {
         const Planned planned = plan_.records(items_[n]);
         for (std::size_t k = 0; k < found.size(); ++k) {

@@ -53,7 +53,7 @@ struct BatchProgram {
     /// file of --json: its lines go to `jsonLines`.
     bool isPartOfApp = false;
     std::string* jsonLines = nullptr;
-    /// What the caller was asked for, kept in every record; null: nothing of its own.
+    /// The caller's own request, kept in every record; may be null.
     Json asked{};
     /// Before an item is made again what it has left goes, where that is still as it was made.
     bool removesFormer = false;

@@ -45,7 +45,7 @@ std::optional<std::set<std::string>> listedParticipants(const std::filesystem::p
 
 /// The T1w images of a BIDS dataset, sub-*/[ses-*/]anat/*_T1w.nii[.gz], by name; each goes into the
 /// same subfolders of `derivatives`, named by its entities ("sub-01_ses-2_acq-hi").
-/// What .bidsignore leaves out is none. Two files of one name (.nii and .nii.gz) are an item with a
+/// Skips files that .bidsignore lists. Two files of one name (.nii and .nii.gz) are an item with a
 /// fault.
 /// \param participants  labels, with or without "sub-"; empty: all
 /// \throws InvalidInput  no BIDS dataset, no such participant, or one asked for has no such image

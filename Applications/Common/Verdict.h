@@ -37,7 +37,7 @@ Json reportHead(const std::string& schema, const std::string& program, const Ver
 /// \return the exit code
 int printVerdict(const std::string& program, const Verdict& verdict, const std::string& written);
 
-/// What an exception means to whoever started the program.
+/// Exit code and error text of an exception.
 Verdict verdictOf(const std::exception_ptr& thrown);
 
 /// Reads --json from the command line, for a run that fails before its options are known.

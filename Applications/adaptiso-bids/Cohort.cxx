@@ -322,7 +322,7 @@ private:
     Cohort cohort_;
 };
 
-/// Of one product, as askedOf() has it.
+/// The request for one product, as askedOf() returns it.
 void takeAsked(const Json& asked, BidsOptions& options) {
     const std::string product = asked.value("product", ""), list = asked.value("options", "");
     if (product == "surfaces") options.surfaces = list;

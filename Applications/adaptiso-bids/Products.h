@@ -21,7 +21,7 @@ struct Product {
     std::vector<std::string> without;  ///< participants that have nothing to make it of: "sub-03"
 };
 
-/// What adaptiso-bids is asked for of a product, kept in its records: for the group level.
+/// The request for a product, kept in its records for the group level.
 Json askedOf(const BidsOptions& options, const std::string& product);
 
 /// What is asked for but the check, with the images of `subjects`. Its addresses stay.

@@ -67,7 +67,7 @@ struct CompareRun {
     const CompareOptions& options;
     SurfaceSummary a, b;
     std::optional<VolumeSummary> volume;
-    /// Of the points reported and of the coloured surface; none: the files' own, not known.
+    /// Frame of the reported points and of the coloured surface; empty if the files do not say it.
     std::optional<CoordinateFrame> frame;
     AffineTransform toFrame;  ///< from the frame inside the program
     std::optional<double> voxelMm;

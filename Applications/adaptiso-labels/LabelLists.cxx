@@ -27,7 +27,7 @@ bool takeRange(std::string_view text, LabelRange& range) {
     return takeLabel(text, range.last) && text.empty() && range.first <= range.last;
 }
 
-/// What is not meant for numbers, and fits on a line.
+/// True for a short text that is no list of numbers.
 bool takeName(std::string_view text, LabelRange& range) {
     const auto isControl = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
     if (text.find_first_not_of("0123456789+-. ") == std::string_view::npos ||

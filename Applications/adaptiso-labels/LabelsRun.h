@@ -109,7 +109,8 @@ struct LabelsRun {
         }
         return LabelOptions::kDefaultMaxErrorVoxels * leastPlaneDistanceMm(map.geometry);
     }
-    /// Of the distance of the walls, as regions and layers hold them, to the full resolution.
+    /// Bound on the distance between the walls, as regions and layers hold them, and the full
+    /// resolution.
     double errorBoundMm() const { return statistics.errorBoundMm + roundingMm; }
 
     /// The region of a label; nullptr: it is not among those wanted.

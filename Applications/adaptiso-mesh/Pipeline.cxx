@@ -285,7 +285,7 @@ std::optional<Warning> insideOutWarning(const SurfaceSummary& surface) {
                    surface.file.filename().string()};
 }
 
-/// What is to be said of the surfaces as their files hold them.
+/// Adds the warnings about the surfaces as their files hold them.
 void warnOfSurfaces(MeshRun& run) {
     const std::size_t told = run.warnings.size();
     for (const SurfaceSummary& surface : run.surfaces) {

@@ -218,7 +218,7 @@ TakenValues takeValues(const MeshFile& input, const std::vector<PointData>& data
 }
 
 /// Moves what the output's digits would harm, and measures their rounding, in the input's frame.
-/// What harm is left verify() finds.
+/// verify() finds the harm that is left.
 void fitToDigits(TriangleMesh& mesh, const FrameChange& change, SimplifyRun& run) {
     run.roundingMm =
         settleRounding(mesh, run.output.format->precision, change.move.value_or(AffineTransform{}))
@@ -233,7 +233,7 @@ void requireDigits(const SimplifyRun& run) {
     if (fault) throw InvalidInput(baseName(run.output.file) + ": " + *fault);
 }
 
-/// Of doubles on the way to the output's frame and back, at most.
+/// Upper bound on the rounding of doubles on the way to the output's frame and back.
 double frameRoundingMm(const TriangleMesh& mesh, const FrameChange& change) {
     double largest = 0;
     if (!change.move) return largest;

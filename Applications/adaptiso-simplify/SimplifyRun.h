@@ -62,7 +62,7 @@ struct SimplifyRun {
     bool failsSoundness() const { return command.requiresSound && !isSound(findings); }
     /// --strict makes the warnings failures.
     bool failsStrict() const { return adaptiso::failsStrict(command.common, warnings); }
-    /// Of the distance between input and output as written, both ways.
+    /// Bound on the distance between input and output as written, both ways.
     double errorBoundMm() const { return statistics.errorBoundMm + roundingMm; }
     bool writesSurface() const { return !failsSoundness() && !failsStrict(); }
     /// The count of --triangles or --reduction was met; none when none was asked for.

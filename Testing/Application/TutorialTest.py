@@ -24,7 +24,7 @@ class Tutorial(ApplicationTest):
         self.look_at_page(done.stdout)
 
     def look_at_page(self, printed):
-        """What the page says is printed is, to the digit; its pictures are there and small."""
+        """The page's printed lines are the programs', to the digit; its pictures are there and small."""
         self.assertEqual(check_printed(self, "Tutorial.md", printed), 2)
         page = (SOURCE / "Documentation" / "Tutorial.md").read_text()
         pictures = re.findall(r"!\[[^]]+\]\((\S+?)\)", page)

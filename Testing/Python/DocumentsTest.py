@@ -133,7 +133,7 @@ class Pages(InFolder):
 
     @needs("nibabel")
     def test_the_first_example_prints_what_the_page_says(self):
-        """Of ch2 as it is; ADAPTISO_RENEW_PAGES=1 writes the line anew instead."""
+        """Compares the line about ch2; ADAPTISO_RENEW_PAGES=1 writes the line anew instead."""
         page = ROOT / "Documentation" / "Python.md"
         scan = BRAIN.with_name("ch2.nii.gz")
         made = self.run_blocks(blocks_of("Documentation/Python.md", ('"T1.nii.gz"', f'"{scan}"'))[:1])

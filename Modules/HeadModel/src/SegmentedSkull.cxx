@@ -42,7 +42,7 @@ double skullAt(const SegmentedHead& head, const Vec3& pointMm) {
     return sum;
 }
 
-/// Of a vertex of the inner skull.
+/// The skull at a vertex of the inner skull.
 struct Place {
     double areaMm2 = 0;
     double modelMm = 0;      ///< to the outer skull

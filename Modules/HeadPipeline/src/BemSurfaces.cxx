@@ -153,7 +153,7 @@ std::string moveText(std::size_t n, const BemModel& model) {
            ", to keep the least gap";
 }
 
-/// Of a surface that was made anew: where it is not as it was given.
+/// Warns where a remeshed surface differs from the given one.
 void tellRemade(const TriangleMesh& given, std::size_t n, BemModel& model) {
     constexpr double kRemadeMm = 2;  // voxels, smoothing and triangles take less
     const AabbTree tree(model.meshes[n]);
@@ -199,7 +199,7 @@ std::string cm2Text(double mm2) {
     return formatLength(mm2 / 100, 1) + " cm2";
 }
 
-/// What of a model's skull and volumes is not as the segmentation has it.
+/// Warns where the model's skull and volumes differ from the segmentation.
 void compareWithSegmentation(BemModel& model) {
     if (!model.segmented) return;
     const std::size_t first = model.meshes.size() - 3;  // of the surfaces, the brain left out

@@ -74,7 +74,7 @@ OtherImage textImage(std::string_view format, std::string_view head, std::string
     return image;
 }
 
-/// Whether the 12 bytes `before` are the head of DICOM's pixel data, plain and of that length.
+/// True if the 12 bytes `before` are the header of plain DICOM pixel data of that length.
 bool beginsPixelData(std::string_view before, std::uint64_t byteCount) {
     for (const std::endian order : {std::endian::little, std::endian::big}) {
         const HeaderBytes bytes(before, order);

@@ -202,7 +202,7 @@ private:
             if (!isNamedSo && (!foreign || foreign->kind != ForeignKind::StandIn)) continue;
             if (found.empty()) remedy = foreign ? foreign->remedy + ", or remove it" : kGetOrRemove;
             found.push_back(
-                {file, (foreign ? foreign->fault : "is named like a DICOM file but is none") +
+                {file, (foreign ? foreign->fault : "is named like a DICOM file but is not one") +
                            ": a slice would be missing"});
         }
         if (!found.empty() && treatment_ == DamagedFiles::Refuse) {

@@ -33,7 +33,7 @@ struct DicomGroup {
     std::vector<Vec3> framePositions;
     std::string fault;  ///< why its first file can't be read; empty when it can
     std::vector<Warning> warnings;
-    /// What tells it from the other groups, as DICOM's keywords and values: ImageType,
+    /// Values that differ between the groups, by DICOM keyword: ImageType,
     /// ConvolutionKernel, SeriesNumber, ...; Patient, Study and FrameOfReference are numbered.
     std::vector<std::pair<std::string, std::string>> details;
 

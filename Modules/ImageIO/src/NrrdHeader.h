@@ -42,8 +42,8 @@ struct NrrdAxes {
 NrrdHeader readNrrdHeader(const std::filesystem::path& file);
 PixelType pixelTypeOf(const std::filesystem::path& file, const NrrdHeader& header);
 NrrdAxes axesOf(const std::filesystem::path& file, const NrrdHeader& header);
-/// What an axis of volumes counts: "volumes", or the layers of 3D Slicer's segments that overlap,
-/// with their names.
+/// The noun for the items along the axis of volumes: "volumes", or the layers of 3D Slicer's
+/// segments that overlap, with their names.
 std::string volumesNameOf(const NrrdHeader& header);
 ImageGeometry geometryOf(const std::filesystem::path& file, const NrrdHeader& header,
                          const NrrdAxes& axes, std::vector<Warning>& warnings);

@@ -18,7 +18,7 @@ ReadVolume readDicomFile(const std::filesystem::path& file, const ReadOptions& o
 ReadVolume readZarr(const std::filesystem::path& folder, const ReadOptions& options);
 ReadVolume readDicomFolder(const std::filesystem::path& folder, const ReadOptions& options);
 
-/// What the first bytes of a file (inflated, 1024 or all of them) say.
+/// Format by the first bytes of a file (inflated, 1024 or all of them).
 bool looksLikeNifti(std::string_view head);
 bool looksLikeNrrd(std::string_view head);
 bool looksLikeMetaImage(std::string_view head);

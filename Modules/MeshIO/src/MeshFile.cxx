@@ -26,7 +26,7 @@ struct Codec {
     Decoder decode;
 };
 
-/// Of a format that says no frame.
+/// For a format that cannot say a frame.
 MeshFile decodeOpenMeeg(std::string_view bytes, const MeshReadOptions& options) {
     MeshFile file = meshio::decodeOpenMeeg(bytes);
     file.frame = options.inputCoordinates;

@@ -27,7 +27,7 @@ void requirePlausibleSize(std::size_t packedBytes, std::size_t bytes);
 /// promises; damage unless it is exactly `expectedBytes`.
 std::string inflated(std::string_view stream, std::size_t expectedBytes);
 
-/// What a gzip file holds, all its members one after the other, at most the first `most` bytes.
+/// Inflates a gzip file, all its members in turn, up to the first `most` bytes.
 /// Damage where it breaks off before that, or unpacks to more than 256 MiB and a hundred times its
 /// size.
 std::string gunzipped(std::string_view file, std::size_t most);

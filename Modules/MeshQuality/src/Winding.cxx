@@ -17,7 +17,7 @@ namespace adaptiso {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF, kLeftOut = kNone - 1;
-/// Of a piece's area to the power 1.5: a volume below that may be rounding.
+/// Relative to a piece's area to the power 1.5: a smaller volume may be rounding.
 constexpr double kFlatPiece = 1e-9;
 constexpr std::int64_t kGrain = 4096;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -11,7 +11,7 @@
 namespace adaptiso {
 namespace {
 
-/// What breaks a surface's promise, no defect but with an open border open edges; empty: nothing.
+/// Returns the defects of a surface, open edges at an open border aside; empty if sound.
 std::string faultsOf(const TopologyReport& topology, Border border) {
     std::string faults;
     for (int n = 0; n < kTopologyDefectCount; ++n) {

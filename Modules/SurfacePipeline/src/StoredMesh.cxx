@@ -255,7 +255,7 @@ private:
     std::vector<VertexId> moved_;
 };
 
-/// What a format keeps, and what holds more.
+/// The digits that a format keeps, and the formats that hold more.
 std::string digitsOf(const MeshFormat& format) {
     return std::string(format.name) + " keeps " +
            (format.precision == CoordinatePrecision::Float32 ? "24 bits" : "nine digits") +

@@ -256,7 +256,7 @@ TEST(DicomStandIns, WhatIsNamedLikeTheSlicesMustBeDicom) {
     const TempFolder folder;
     writeVolume(folder.path(), 4);
     writeFile(folder / "s7", "no DICOM");
-    expectRefusal(folder.path(), "named like a DICOM file but is none");
+    expectRefusal(folder.path(), "named like a DICOM file but is not one");
     fs::remove(folder / "s7");
     fs::create_directory(folder / "sub");
     writeFile(folder / "sub/s7", "no DICOM");  // not beside them

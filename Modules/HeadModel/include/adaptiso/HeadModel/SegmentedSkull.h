@@ -14,7 +14,7 @@ namespace adaptiso {
 struct SegmentedHead {
     ImageGeometry grid;                 ///< the image's
     std::vector<std::uint8_t> isSkull;  ///< of each voxel
-    /// Of inner skull, outer skull and skin: voxels by their volume, mm3.
+    /// Volumes of inner skull, outer skull and skin by their voxels, mm3.
     std::array<double, 3> enclosedMm3{};
 };
 

@@ -47,7 +47,7 @@ inline constexpr const char* kFiffDenseHead = "head-dense.fif";
 inline constexpr const char* kFiffSparseHead = "head-sparse.fif";
 inline constexpr const char* kFieldTripFile = "headmodel.mat";
 
-/// Of a surface's file: "csf.stl", "tess_innerskull_bem.mat".
+/// File name of a surface: "csf.stl", "tess_innerskull_bem.mat".
 std::string simNibsName(HeadSurface surface);
 std::string brainstormName(HeadSurface surface);
 

@@ -88,7 +88,7 @@ struct BemSurface {
     double volumeMm3 = 0;
     double solidAngleShare = 0;
     Vec3 extentMm;
-    std::optional<SeenSurface> seen{};     ///< of the final mesh; none where nobody looked
+    std::optional<SeenSurface> seen{};     ///< of the final mesh; empty if not measured
     std::optional<double> segmentedMm3{};  ///< what it encloses in the segmentation it is made from
 };
 

@@ -17,7 +17,7 @@ namespace adaptiso {
 struct ToldNote {
     HeadNote note;        ///< places in LPS mm
     std::string subject;  ///< "inner_skull", "inner_skull in outer_skull"
-    /// Of the places told; none: the file's own, not known.
+    /// Frame of the reported places; empty if the file does not say it.
     std::optional<CoordinateFrame> frame = CoordinateFrame::Ras;
     std::vector<Vec3> placesMm{};
 };

@@ -26,7 +26,7 @@ struct DicomSeries {
     bool isLocalizer = false;
     std::optional<std::int64_t> segment;  ///< of a segmentation: its number in the file
     std::string segmentLabel;             ///< ASCII
-    /// What tells it from the others: DICOM's keyword and the value, of ImageType, SeriesNumber,
+    /// Values that differ between the groups, by DICOM keyword: ImageType, SeriesNumber,
     /// ConvolutionKernel, EchoTime, DiffusionBValue, AcquisitionNumber, FrameType; Patient, Study
     /// and FrameOfReference are numbered from 1. Identifies no patient.
     std::vector<std::pair<std::string, std::string>> details;

@@ -99,7 +99,7 @@ struct MeshReadOptions {
     std::filesystem::path folder{};
 };
 
-/// What a file holds, as stored: nothing is moved to another frame, but by GIFTI's matrix to
+/// A file's content as stored: nothing is moved to another frame, but by GIFTI's matrix to
 /// scanner space where the frame that it leads from has no name.
 struct MeshFile {
     /// At least 1 triangle; indices in range and all finite unless options.keepsFaults.

@@ -22,7 +22,7 @@ namespace adaptiso {
 /// one may. \param range  of the volume's samples
 std::optional<std::string> isovalueFault(double isovalue, const ValueRange& range);
 
-/// What measuring a surface against the one at full resolution has found.
+/// Distances measured between a surface and the one at full resolution.
 struct Verification {
     std::int64_t samples = 0;  ///< points at which distances were measured, both ways
     double maxMm = 0;          ///< the largest of them
@@ -49,8 +49,8 @@ struct SurfaceRecord {
         if (!statistics.wantedTriangles) return std::nullopt;
         return topology.triangles <= *statistics.wantedTriangles;
     }
-    /// Of the distance to the surface of marching cubes, both ways, rounding included; none of
-    /// methods that prove none.
+    /// Bound on the distance to the surface of marching cubes, both ways, rounding included; none
+    /// of methods that prove none.
     std::optional<double> errorBoundMm() const {
         if (!statistics.errorBoundMm) return std::nullopt;
         return *statistics.errorBoundMm + roundingMm;

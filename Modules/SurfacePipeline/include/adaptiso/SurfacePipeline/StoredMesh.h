@@ -46,7 +46,7 @@ TriangleMesh asStored(const TriangleMesh& mesh, CoordinatePrecision precision,
 
 /// Why a file of this format would lie beyond a bound by its rounding alone: "STL (binary) keeps 24
 /// bits of a coordinate: points would move by up to 0.23 mm, more than the bound of 0.05 mm; ...".
-/// None where the rounding is less.
+/// Empty where the rounding is less.
 /// \param boundMm  > 0
 std::optional<std::string> roundingFault(double roundingMm, double boundMm,
                                          const MeshFormat& format);
