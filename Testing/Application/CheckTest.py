@@ -141,6 +141,11 @@ class Profiles(CheckTest):
         self.assertEqual(self.check(NAMES[0])["options"]["profile"], "print")
         self.assertEqual(self.check("--nested", *NAMES)["options"]["profile"], "bem")
 
+    def test_a_surface_of_a_micro_ct_fails_as_a_head_alone(self):
+        for profile, verdict in (("print", (True, "undecided")), ("bem", (False, "failed"))):
+            said = self.surface(icosphere(0.015), "--profile", profile)  # mm
+            self.assertEqual((said["passed"], outcome(said, "plausibleSize")), verdict)
+
     def test_handle_may_be_printed_and_a_hole_viewed(self):
         said = self.surface(with_handle(icosphere(80)))
         self.assertEqual((said["passed"], outcome(said, "genusZero")), (True, "failed"))

@@ -23,8 +23,8 @@ struct ImageExtent {
     static ImageExtent of(const SampleLayout& layout, const Index3& size);
 };
 
-/// Whether so many bytes too many are whole pieces, or half of an image and more: more of the image
-/// than its header tells of. Less than that is something else, which harms nothing.
+/// True if the extra bytes are whole slices, or half an image and more: the file holds more of the
+/// image than its header describes. Fewer bytes are harmless.
 bool isMoreImage(std::uint64_t extraBytes, const ImageExtent& extent);
 
 /// A header's word of where its samples lie.

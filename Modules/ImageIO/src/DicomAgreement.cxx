@@ -44,8 +44,8 @@ struct ImageCount {
     std::int64_t stated = 0, there = 0;
 };
 
-/// Of an acquisition that lacks images, beside whole ones; or of all images that state one number,
-/// which may be that of several acquisitions, echoes or series.
+/// Counts the images of the acquisition that lacks some; else of all images that state one number,
+/// which may cover several acquisitions, echoes or series.
 ImageCount countOfAcquisition(const std::vector<DicomFile>& files, const DicomGroup& group) {
     struct Acquisition {
         std::int64_t number, stated;

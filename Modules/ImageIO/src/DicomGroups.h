@@ -28,7 +28,7 @@ struct DicomGroup {
     bool isSegmentation = false;
     std::optional<std::int64_t> segment;  ///< its number in the file
     std::string segmentLabel;             ///< ASCII
-    /// Of a segmentation: where frames of any of its segments lie. Between them slices without a
+    /// Positions of a segmentation's frames, of all its segments. Slices between them without a
     /// frame are empty.
     std::vector<Vec3> framePositions;
     std::string fault;  ///< why its first file can't be read; empty when it can
