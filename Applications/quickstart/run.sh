@@ -26,10 +26,9 @@ fi
 cmake --build --preset release --target adaptiso-mesh
 
 scan=/usr/share/mricron/templates/ch2bet.nii.gz # T1 MRI of one head, skull removed
-isovalue=100                                    # near the border of the white matter
 mkdir -p "$out"
-echo "== meshing and drawing $scan at $isovalue"
-build/release/bin/adaptiso-mesh "$scan" --iso "$isovalue" -o "$out/brain.vtp" \
+echo "== meshing and drawing $scan"
+build/release/bin/adaptiso-mesh "$scan" --iso auto --largest --fill-cavities -o "$out/brain.vtp" \
     --pictures "$out/pictures"
 
 cat <<END

@@ -1,5 +1,6 @@
 """The examples of adaptiso-mesh's README.md and the first session of the project's, run as they stand."""
 
+import json
 import os
 import re
 import subprocess
@@ -10,6 +11,9 @@ from documents import check_printed, commands, run
 from support import BIN, SOURCE, ApplicationTest, ball, main, write_nifti
 
 README = SOURCE / "Applications" / "adaptiso-mesh" / "README.md"
+PROJECT = SOURCE / "README.md"
+SCAN = Path("/usr/share/mricron/templates/ch2bet.nii.gz")
+SCANS = unittest.skipUnless(SCAN.exists(), "mricron-data is not installed")
 
 
 class Readme(ApplicationTest):
@@ -26,19 +30,35 @@ class Readme(ApplicationTest):
                                         "report.json", "smooth.ply"])
         self.assertRegex(done.stdout, r'"triangles": \d+')
 
-    @unittest.skipUnless(Path("/usr/share/mricron/templates/ch2.nii.gz").exists(), "mricron-data is not installed")
+    @SCANS
     def test_first_session_prints_what_the_page_says(self):
-        scan = self.path("study/sub-01/anat/sub-01_T1w.nii")
-        scan.parent.mkdir(parents=True)
-        write_nifti(scan, ball(24, 8))
-        self.path("study/dataset_description.json").write_text('{"Name": "x", "BIDSVersion": "1.8.0"}')
         # Testing/BareMachine runs what installs and builds
         done = run(commands("README.md", marks=True, without=("run.sh", "cmake", "apt-get")), self.folder)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertEqual(check_printed(self, "README.md", done.stdout), 1)
-        written = {"ch2bet-iso100.vtp", "head.stl", "brain-80.ply", "brain-100.ply", "report.json", "full.vtp",
-                   "distance.vtp", "small.vtp", "out", "model", "aal", "check.html"}
+        written = {"brain.vtp", "brain-80.ply", "brain-100.ply", "report.json", "full.vtp", "distance.vtp",
+                   "small.vtp", "model", "aal", "check.html"}
         self.assertLessEqual(written, set(self.names()))
+
+    @SCANS
+    def test_bounds_make_the_triangles_of_the_table_and_the_picture(self):
+        page = PROJECT.read_text()
+        bounds, counts = (re.findall(r"[\d.,]*\d", line) for line in
+                          re.search(r"\| `--max-error`, mm (.*)\n.*\n\| triangles (.*)", page).groups())
+        self.assertEqual(len(bounds), 6)
+        brain = f"adaptiso-mesh {SCAN} --iso auto --largest --fill-cavities -o b.ply --json - -q"
+        made = {}
+        for option in ("--method mc", *(f"--max-error {bound}" for bound in bounds)):
+            report = json.loads(run(f"{brain} {option}", self.folder).stdout)
+            made[option.split()[1]] = f"{report['surfaces'][0]['triangles']:,}"
+        self.assertEqual(counts, [made[bound] for bound in bounds])
+        self.assertIn(f"(full resolution: {made['mc']})", page)
+        told = re.search(r"!\[(.*)\]\(Documentation/gallery/first-screen.png\)", page).group(1)
+        self.assertEqual(re.findall(r"[\d,]+\d", told.replace("0.15", "").replace("0.5", "")),
+                         [made["mc"], made["0.15"], made["0.5"]])
+
+    def test_a_page_to_finish(self):
+        self.assertLessEqual(len(PROJECT.read_text().splitlines()), 150)
 
 
 if __name__ == "__main__":

@@ -97,7 +97,7 @@ class Versions(unittest.TestCase):
         named = set(re.findall(r"adaptiso(?:-dev)?_([\d.]+)_", text("README.md")))
         self.assertEqual(named, {VERSION})
         minor = ".".join(VERSION.split(".")[:2])
-        for place in ("README.md", "Examples/meshScan/CMakeLists.txt"):
+        for place in ("Documentation/Cpp.md", "Examples/meshScan/CMakeLists.txt"):
             self.assertIn(f"find_package(adaptiso {minor} REQUIRED", text(place))
 
 
