@@ -6,6 +6,8 @@
 #
 #   Testing/BareMachine/try.sh [COMMIT [LOG]]       HEAD, /tmp/adaptiso-bare-machine.log
 #   Testing/BareMachine/try.sh --package DEB [LOG]  the package alone, which is there already
+#   Testing/BareMachine/try.sh --archive TGZ [LOG]  the archive of Packaging/archive.sh: unpacked and
+#                                                   used without root on Debian 12, 13 and unstable
 #
 # Works in a folder under /tmp and in mount and process namespaces of its own: when it ends, however
 # it ends, its mounts and processes are gone. It removes the folder and leaves the log. Packages
@@ -23,18 +25,23 @@ if [ "${ADAPTISO_BARE_INSIDE:-}" != yes ]; then
 fi
 
 repository=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
-deb=
-if [ "${1:-}" = --package ]; then
-    deb=$(realpath -e "${2:?"--package needs a .deb"}")
-    shift 2
-    set -- HEAD "$@"
-fi
+what=${1:-}
+given=
+case $what in
+    --package | --archive)
+        given=$(realpath -e "${2:?"$what needs a file"}")
+        shift 2
+        set -- HEAD "$@"
+        ;;
+esac
+deb=$given
 commit=$(git -C "$repository" rev-parse --verify "${1:-HEAD}^{commit}")
 log=$(realpath "${2:-/tmp/adaptiso-bare-machine.log}")
 work=$(mktemp -d /tmp/adaptiso-bare.XXXXXX)
 root=$work/root
 clone=/home/adaptiso
 inside=$clone
+user=  # whom runInside's commands run as; root if empty
 
 removeAll() {
     local status=$?
@@ -58,10 +65,12 @@ aptMirror() {
         2>/dev/null | sed -nE 's/^(URIs:|deb( +\[[^]]*\])?) +([^ ]+\/debian\/?)( .*)?$/\3/p' | head -n 1
 }
 
+# makeRoot [RELEASE]: the minimal Debian in $root, bookworm unless said otherwise.
 makeRoot() {
-    debootstrap --variant=minbase bookworm "$root" "$(aptMirror)"
+    local release=${1:-bookworm} sources
+    debootstrap --variant=minbase "$release" "$root" "$(aptMirror)"
     for sources in /etc/apt/sources.list /etc/apt/sources.list.d/debian.sources; do
-        if [ -e "$sources" ]; then
+        if [ "$release" = bookworm ] && [ -e "$sources" ]; then
             rm -f "$root/etc/apt/sources.list"
             cp "$sources" "$root$sources"
         fi
@@ -90,7 +99,7 @@ runInside() {
     began=$SECONDS
     echo "######## $1: $2"
     env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
-        chroot "$root" bash -c "cd $inside && { $2
+        chroot ${user:+--userspec="$user"} "$root" bash -c "cd $inside && { $2
 }" </dev/null
     seconds=$((SECONDS - began))
     after=$(systemMegabytes)
@@ -131,6 +140,36 @@ tryPackage() {
     fi
 }
 
+# The archive $given on minimal Debians, as a user without rights, who has no other library.
+tryArchive() {
+    local scans=/usr/share/mricron/templates release
+    for release in bookworm trixie sid; do
+        root=$work/$release
+        inside=/home/person
+        makeRoot "$release"
+        mkdir -p "$root$inside"
+        cp "$scans/ch2.nii.gz" "$scans/ch2bet.nii.gz" "$scans/aal.nii.gz" "$root$inside/"
+        chown -R 1000:1000 "$root$inside"
+        cp "$given" "$root/tmp/archive.tar.gz"
+        user=1000:1000
+        runInside "$release: first surface" "tar -xzf /tmp/archive.tar.gz --strip-components=1 &&
+            bin/adaptiso-mesh ch2bet.nii.gz --iso 100 --pictures pictures"
+        runInside "$release: self test" "bin/adaptiso-check --self-test"
+        runInside "$release: session" "export PATH=\$PWD/bin:\$PATH
+            adaptiso-mesh ch2bet.nii.gz --iso 100 --method mc -o full.vtp &&
+            adaptiso-compare ch2bet-iso100.vtp full.vtp --voxel 1 && adaptiso-check full.vtp &&
+            adaptiso-bem --t1 ch2.nii.gz --brain-mask ch2bet.nii.gz -o model --report model.html &&
+            adaptiso-labels aal.nii.gz -o aal &&
+            adaptiso-simplify full.vtp --max-error 0.2 -o small.vtp && adaptiso-bids --version &&
+            adaptiso-giant --version && sha256sum ch2bet-iso100.vtp"
+        user=
+        if [ "$release" = bookworm ]; then  # for whose Python the package is
+            runInside "$release: Python" "apt-get update && apt-get install -y python3-numpy &&
+                PYTHONPATH=python python3 -c 'import adaptiso; print(adaptiso.__version__)'"
+        fi
+    done
+}
+
 # Makes the package of the clone's programs; its name is then in $deb.
 makePackage() {
     runInside "package: make" ". Applications/quickstart/packages.sh &&
@@ -159,9 +198,9 @@ tryAll() {
 }
 
 echo "try.sh: writing $log"
-if [ -n "$deb" ]; then
-    tryPackage >"$log" 2>&1
-else
-    tryAll >"$log" 2>&1
-fi
+case $what in
+    --package) tryPackage >"$log" 2>&1 ;;
+    --archive) tryArchive >"$log" 2>&1 ;;
+    *) tryAll >"$log" 2>&1 ;;
+esac
 cat "$work/summary"

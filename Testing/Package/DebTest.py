@@ -1,4 +1,4 @@
-"""The Debian packages of this build, unpacked into a clean prefix and used from there."""
+"""The Debian packages and the archive of this build, unpacked into a clean folder and used there."""
 
 import gzip
 import json
@@ -31,8 +31,7 @@ PYTHON_MINOR = sys.version_info.minor  # tests are run by the Python that the pa
 
 
 class Packages(ApplicationTest):
-    def setUp(self):
-        super().setUp()
+    def unpack(self):
         self.debs = self.packed("packages")
         self.prefix = self.path("prefix")
         for deb in self.debs.values():
@@ -49,6 +48,7 @@ class Packages(ApplicationTest):
 
     # making packages takes a while: one test looks at them from all sides
     def test_packages_are_whole_and_work_from_a_clean_prefix(self):
+        self.unpack()
         self.assertEqual(sorted(self.debs), ["adaptiso", "libadaptiso-dev", "python3-adaptiso"])
         self.look_at_fields()
         self.look_at_files()
@@ -191,6 +191,26 @@ print(adaptiso.__version__, adaptiso.__file__)
                                env={"PYTHONPATH": str(package), "LANG": "C.UTF-8"}).split()
         self.assertEqual(version, VERSION)
         self.assertEqual(file, str(package / "adaptiso" / "__init__.py"))
+        self.assertEqual(self.path("python.stl").read_bytes(), self.path("ball.stl").read_bytes())
+
+    def test_archive_holds_the_libraries_that_it_needs(self):
+        archive = Path(output(SOURCES / "Packaging" / "archive.sh", BUILD, self.folder,
+                              env={**os.environ, "SOURCE_DATE_EPOCH": str(MOMENT)}).strip())
+        self.assertLess(archive.stat().st_size, 60e6)
+        output("tar", "-xzf", archive, "-C", self.folder)
+        tree = self.path(archive.name.removesuffix(".tar.gz"))
+        runtime = ("libc.so", "libm.so", "libdl.so", "libpthread.so", "librt.so", "libresolv.so")
+        for program in PROGRAMS:
+            for line in output("ldd", tree / "bin" / program, env={"LANG": "C"}).splitlines():
+                library = line.split()[0]
+                if "=>" in line and not library.startswith(runtime):
+                    self.assertIn(f"=> {tree}/", line)
+        only = {"PATH": f"{tree}/bin", "LANG": "C.UTF-8"}
+        write_nifti(self.path("ball.nii"), ball(24, 9))
+        output("adaptiso-mesh", "ball.nii", "--iso", "100", "-o", "ball.stl", cwd=self.folder, env=only)
+        script = "import adaptiso; adaptiso.surface('ball.nii', 100).save('python.stl')"
+        output("/usr/bin/python3", "-B", "-c", script, cwd=self.folder,
+               env={"PYTHONPATH": str(tree / "python"), "LANG": "C.UTF-8"})
         self.assertEqual(self.path("python.stl").read_bytes(), self.path("ball.stl").read_bytes())
 
 
