@@ -11,6 +11,14 @@ cd "$top"
 
 . Applications/quickstart/packages.sh
 installPackages Applications/quickstart/packages.txt Packaging/packages.txt Testing/packages.txt
+# ParaView's Python modules, which exclude VTK's (python3-vtk9) where they are installed; Debian 12's
+# import a function that its Python no longer has
+if [ ! -d build/paraview/usr ]; then
+    mkdir -p build/paraview
+    (cd build/paraview && apt-get download python3-paraview && dpkg-deb -x python3-paraview_*.deb .)
+    sed -i 's/import getargspec/import getfullargspec as getargspec/' \
+        build/paraview/usr/lib/python3/dist-packages/paraview/detail/pythonalgorithm.py
+fi
 
 cmake --log-level=WARNING --preset release
 cmake --build --preset release

@@ -49,7 +49,8 @@ class Packages(ApplicationTest):
     # making packages takes a while: one test looks at them from all sides
     def test_packages_are_whole_and_work_from_a_clean_prefix(self):
         self.unpack()
-        self.assertEqual(sorted(self.debs), ["adaptiso", "libadaptiso-dev", "python3-adaptiso"])
+        self.assertEqual(sorted(self.debs), ["adaptiso", "libadaptiso-dev", "libadaptiso-vtk",
+                                             "python3-adaptiso"])
         self.look_at_fields()
         self.look_at_files()
         self.ask_lintian()
@@ -69,6 +70,9 @@ class Packages(ApplicationTest):
         self.assertNotIn("libvtk", needed)
         self.assertNotIn("-dev", needed)
         self.assertIn("libtbb-dev", self.field("libadaptiso-dev", "Depends"))
+        filters = self.field("libadaptiso-vtk", "Depends")
+        for needed in (f"libadaptiso-dev (= {VERSION})", "libvtk9-dev"):
+            self.assertIn(needed, filters)
         python = self.field("python3-adaptiso", "Depends")
         self.assertIn(f"python3 (>= 3.{PYTHON_MINOR})", python)
         for needed in (f"python3 (<< 3.{PYTHON_MINOR + 1})", "python3-numpy", "libtbb12"):
@@ -90,6 +94,8 @@ class Packages(ApplicationTest):
             self.assertTrue(os.access(cohort / script, os.X_OK), script)
         giant = self.prefix / "usr/share/doc/adaptiso/examples/giant"
         self.assertTrue(os.access(giant / "submit.sh", os.X_OK))
+        for header in ("vtkAdaptisoIsosurface.h", "vtkAdaptisoSimplify.h"):
+            self.assertIn(f"usr/include/adaptiso/VtkAdaptor/{header}", files)
         for package in self.debs:
             self.assertIn(f"usr/share/doc/{package}/copyright", files)
             changes = gzip.decompress(

@@ -47,6 +47,9 @@ def simplify_mesh(mesh: MeshData, max_error: Optional[float], triangles: Optiona
                   reduction: Optional[float], min_angle: float, keep_borders: bool, threads: int,
                   progress: Any) -> Tuple[MeshData, Dict[str, Any]]: ...
 
+def nearest_points(mesh: MeshData, onto: MeshData
+                   ) -> Tuple[npt.NDArray[np.int64], npt.NDArray[np.float64]]: ...
+
 class ArrayVolume:
     def __init__(self, samples: npt.NDArray[Any], affine: npt.NDArray[np.float64],
                  user_shape: Sequence[int], user_affine: npt.NDArray[np.float64]) -> None: ...

@@ -151,23 +151,12 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         """The mesh as a vtkPolyData, in RAS mm; shares the vertices' memory.
 
         Needs Debian's python3-vtk9, or VTK from elsewhere."""
-        from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-        from vtkmodules.vtkCommonCore import vtkPoints
-        from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-        points = vtkPoints()
-        points.SetData(numpy_to_vtk(self.vertices))
-        cells = vtkCellArray()
-        # copies: a vtkCellArray shares such arrays' memory without keeping what owns it
-        cells.SetData(numpy_to_vtkIdTypeArray(np.arange(0, 3 * len(self.faces) + 1, 3), deep=1),
-                      numpy_to_vtkIdTypeArray(self.faces.ravel(), deep=1))
-        mesh = vtkPolyData()
-        mesh.SetPoints(points)
-        mesh.SetPolys(cells)
-        if len(self._data.normals):
-            normals = numpy_to_vtk(self._data.normals)
-            normals.SetName("Normals")
-            mesh.GetPointData().SetNormals(normals)
-        return mesh
+        from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+        from .vtk import fill
+        data = vtkPolyData()
+        fill(data, [self], None, True)
+        return data
 
     def to_pyvista(self) -> Any:
         """The mesh as a pyvista.PolyData, in RAS mm. Needs PyVista."""

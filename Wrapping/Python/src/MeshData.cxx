@@ -17,8 +17,8 @@ namespace adaptiso::python {
 
 void turnXY(std::vector<Vec3>& points) {
     for (Vec3& p : points) {
-        p.x = -p.x;
-        p.y = -p.y;
+        p.x = 0 - p.x;  // no -0, as files have it
+        p.y = 0 - p.y;
     }
 }
 

@@ -1,10 +1,13 @@
 #include "adaptiso/Extraction/Simplify.h"
 
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "Calls.h"
 #include "Declarations.h"
@@ -39,9 +42,25 @@ py::tuple simplifyMesh(const MeshData& data, SimplifyOptions options, int thread
     return py::make_tuple(std::move(made), toDict(result.statistics));
 }
 
+/// Of each vertex of `mesh` the nearest point of `onto`: triangles (n) and corners' weights (n, 3).
+py::tuple nearestOf(const MeshData& mesh, const MeshData& onto) {
+    std::vector<SurfacePoint> places;
+    runUnlocked(0, [&] { places = nearestPoints(mesh.mesh(), onto.mesh()); });
+    const auto count = static_cast<py::ssize_t>(places.size());
+    py::array_t<std::int64_t> triangles(count);
+    py::array_t<double> weights({count, py::ssize_t{3}});
+    for (py::ssize_t n = 0; n < count; ++n) {
+        const SurfacePoint& place = places[static_cast<std::size_t>(n)];
+        triangles.mutable_at(n) = place.triangle;
+        for (int c = 0; c < 3; ++c) weights.mutable_at(n, c) = place.weight[c];
+    }
+    return py::make_tuple(triangles, weights);
+}
+
 }  // namespace
 
 void declareSimplify(py::module_& module) {
+    module.def("nearest_points", nearestOf, py::arg("mesh"), py::arg("onto"));
     module.def(
         "simplify_mesh",
         [](const MeshData& mesh, std::optional<double> maxError,
