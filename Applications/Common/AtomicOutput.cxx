@@ -1,33 +1,175 @@
 #include "Common/AtomicOutput.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstring>
 #include <fstream>
-#include <utility>
 
-#include "Common/FileReplacement.h"
-#include "Common/Temporaries.h"
-#include "Common/TemporaryNames.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
 
-using namespace detail;
+namespace fs = std::filesystem;
+
+/// A file or folder that a signal's handler removes. Records are only ever added to the list,
+/// newest first, so that the handler may walk it at any moment; a folder's files come before it.
+struct detail::Temporary {
+    const std::string path;
+    std::atomic<bool> exists{true};
+    Temporary* next = nullptr;
+};
 
 namespace {
 
-namespace fs = std::filesystem;
+using detail::folderOf, detail::reason, detail::Temporary;
 
-/// Where the file really goes: symbolic links are followed, also to a file that is not there yet.
+std::atomic<Temporary*> newestTemporary{nullptr};
+std::atomic<int> signalsWait{0}, postponedSignal{0}, writingChild{0};
+static_assert(std::atomic<int>::is_always_lock_free, "a signal's handler may use no locks");
+
+void require(bool isGood, const fs::path& target, const std::string& fault) {
+    if (!isGood) throw FileError(target.string() + ": " + fault);
+}
+
+/// Of a system call: the message ends with the text of errno.
+void requireDone(bool isDone, const fs::path& target, const char* fault = "can't be written") {
+    require(isDone, target, isDone ? "" : fault + (": " + reason()));
+}
+
+std::string prefixOf(int process) {
+    return ".adaptiso-" + std::to_string(process) + "-";
+}
+
+/// ".adaptiso-<process>-<n>.part<extension>" beside `final`.
+fs::path newName(const fs::path& final) {
+    static std::atomic<int> count{0};
+    std::string extension = final.extension().string();  // writers choose formats by it
+    if (extension.size() > 40) extension.clear();        // the name could exceed NAME_MAX
+    return folderOf(final) / (prefixOf(getpid()) + std::to_string(count++) + ".part" + extension);
+}
+
+/// Async-signal-safe. A file or an empty folder; the flag falls last, for a handler in between.
+void removeNow(Temporary* temporary) {
+    if (!temporary->exists.load()) return;
+    if (unlink(temporary->path.c_str()) != 0) rmdir(temporary->path.c_str());
+    temporary->exists.store(false);
+}
+
+/// Makes an empty file or folder beside `final`; others may open it only where nothing stands yet
+/// whose permissions it is to take over. \throws FileError  naming `target`
+std::shared_ptr<Temporary> makeTemporary(const fs::path& final, bool isFolder,
+                                         const fs::path& target) {
+    detail::removeLeftTemporaries(folderOf(final), 0);
+    const detail::SignalsWait untilItIsRecorded;
+    const unsigned mode = access(final.c_str(), F_OK) == 0 ? 0700 : 0777;
+    for (;;) {
+        const fs::path path = newName(final);
+        const int made =
+            isFolder ? mkdir(path.c_str(), mode)
+                     : open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode & 0666U);
+        if (made >= 0 && !isFolder) close(made);
+        if (made >= 0) return detail::removedAtEnd(path);
+        // processes of other machines and containers may have the same number
+        requireDone(errno == EEXIST, target, "can't be made");
+    }
+}
+
+/// Async-signal-safe. \pre installed with SA_NODEFER
+void removeTemporariesAndEnd(int signal) {
+    if (signalsWait.load() > 0) {
+        postponedSignal.store(signal);
+        return;
+    }
+    detail::removeTemporaries();
+    std::signal(signal, SIG_DFL);
+    raise(signal);
+}
+
+/// The path with symbolic links resolved, also those to a file that does not exist yet.
 fs::path resolved(const fs::path& target) {
-    constexpr int kMaxLinks = 40;  // as many as Linux follows
     fs::path file = target;
     std::error_code error;
-    for (int n = 0; n < kMaxLinks && fs::is_symlink(file, error); ++n) {
+    for (int n = 0; n < 40 && fs::is_symlink(file, error); ++n) {  // as many as Linux follows
         file = folderOf(file) / fs::read_symlink(file);  // an absolute link replaces the folder
     }
     return file;
+}
+
+/// Gives `temporary` the mode of `final`, which it is about to replace, and its owner and group
+/// where permitted; where the group can't be kept, the new one gets no permissions.
+void keepAttributes(const fs::path& final, const fs::path& temporary) {
+    struct stat old {};
+    if (stat(final.c_str(), &old) != 0) return;
+    constexpr auto kSame = static_cast<uid_t>(-1);
+    const bool keepsGroup = chown(temporary.c_str(), old.st_uid, old.st_gid) == 0 ||
+                            chown(temporary.c_str(), kSame, old.st_gid) == 0;
+    (void)!chmod(temporary.c_str(), old.st_mode & (keepsGroup ? 03777U : 0707U));
+}
+
+/// \param sync  fsync(), or syncfs() for the whole file system
+bool forceToDisk(const fs::path& path, int (*sync)(int) = fsync) {
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool isSynced = file >= 0 && sync(file) == 0;
+    if (file >= 0) close(file);
+    return isSynced;
+}
+
+/// Calls `writer`; its errors name `target` where they name `temporary`.
+void writeNaming(const fs::path& temporary, const fs::path& target,
+                 const std::function<void()>& writer) {
+    const auto renamed = [&](std::string text) {
+        const std::string from = temporary.string(), to = target.string();
+        for (std::size_t at = text.find(from); at != std::string::npos;
+             at = text.find(from, at + to.size())) {
+            text.replace(at, from.size(), to);
+        }
+        return text;
+    };
+    try {
+        writer();
+    } catch (const FileError& error) {
+        throw FileError(renamed(error.what()));
+    } catch (const InvalidInput& error) {
+        throw InvalidInput(renamed(error.what()));
+    }
+}
+
+void writeFile(const fs::path& path, std::span<const std::byte> bytes) {
+    std::ofstream file(path, std::ios::binary | std::ios::trunc);
+    file.write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
+    file.close();
+    requireDone(file.good(), path);
+}
+
+void requireFolder(const fs::path& target, const fs::path& folder) {
+    std::error_code error;
+    require(fs::is_directory(folder, error), target, "there is no folder " + folder.string());
+    requireDone(access(folder.c_str(), W_OK | X_OK) == 0, target, "the folder can't be written");
+}
+
+/// A name in `folder` that is not an own file's nor a folder of them; may be empty.
+std::string foreignName(const fs::path& folder, const OwnNames& ownNames) {
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        const fs::file_status status = entry.symlink_status();
+        if (fs::is_directory(status) && !fs::is_empty(entry.path())) continue;
+        std::string name = entry.path().lexically_relative(folder).generic_string();
+        if (!fs::is_regular_file(status) || !ownNames || !ownNames(name)) return name;
+    }
+    return {};
+}
+
+void renameTo(const fs::path& temporary, const fs::path& final, const fs::path& target) {
+    std::error_code error;
+    fs::rename(temporary, final, error);
+    require(!error, target, "can't be put in place: " + error.message());
+    forceToDisk(folderOf(final));
 }
 
 }  // namespace
@@ -35,59 +177,99 @@ fs::path resolved(const fs::path& target) {
 void makeFolders(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
-    if (error) {
-        throw FileError(folder.string() + ": the folder can't be made (" + error.message() +
-                        "); choose another");
-    }
+    require(!error, folder, "the folder can't be made (" + error.message() + "); choose another");
 }
 
 void checkOutput(const fs::path& target) {
     const fs::path file = resolved(target);
-    const fs::path folder = folderOf(file);
+    requireFolder(target, folderOf(file));
     std::error_code error;
-    if (!fs::is_directory(folder, error)) {
-        throw FileError(target.string() + ": there is no folder " + folder.string());
-    }
-    if (access(folder.c_str(), W_OK | X_OK) != 0) {
-        throw FileError(target.string() + ": the folder can't be written: " + reason());
-    }
     const fs::file_status status = fs::status(file, error);
     if (!fs::exists(status)) return;
-    if (!fs::is_regular_file(status)) {
-        throw FileError(target.string() + ": exists and is not a regular file");
-    }
-    if (access(file.c_str(), W_OK) != 0) {
-        throw FileError(target.string() + ": exists and is write-protected");
-    }
+    require(fs::is_regular_file(status), target, "exists and is not a regular file");
+    require(access(file.c_str(), W_OK) == 0, target, "exists and is write-protected");
 }
 
 void checkNotInput(const fs::path& target, const fs::path& input) {
     std::error_code error;
-    if (fs::equivalent(target, input, error)) {
-        throw FileError(target.string() + ": is the input, which is never overwritten");
+    require(!fs::equivalent(target, input, error), target,
+            "is the input, which is never overwritten");
+}
+
+void removeOutputsOnSignals() {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) {
+        struct sigaction action {};
+        sigaction(signal, nullptr, &action);
+        if (action.sa_handler == SIG_IGN) continue;  // as under nohup
+        action.sa_handler = removeTemporariesAndEnd;
+        action.sa_flags = SA_NODEFER;
+        sigaction(signal, &action, nullptr);
+    }
+    std::signal(SIGXFSZ, SIG_IGN);
+}
+
+namespace detail {
+
+std::shared_ptr<Temporary> removedAtEnd(const fs::path& path) {
+    auto* const temporary = new Temporary{path.string()};  // for as long as a signal may come
+    temporary->next = newestTemporary.load();
+    while (!newestTemporary.compare_exchange_weak(temporary->next, temporary)) {
+    }
+    return {temporary, removeNow};
+}
+
+void removeTemporaries() {
+    if (const int child = writingChild.exchange(0); child > 0) {
+        kill(child, SIGKILL);
+        waitpid(child, nullptr, 0);
+    }
+    for (auto* each = newestTemporary.load(); each != nullptr; each = each->next) removeNow(each);
+}
+
+void removeLeftTemporaries(const fs::path& folder, int process) {
+    const auto dayAgo = fs::file_time_type::clock::now() - std::chrono::hours(24);
+    std::error_code error, ignored;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with(".adaptiso-") || name.find(".part") == std::string::npos) continue;
+        const auto written = entry.last_write_time(error);
+        const bool isOld = !error && written < dayAgo;
+        if (isOld || name.starts_with(prefixOf(process))) fs::remove_all(entry.path(), ignored);
     }
 }
+
+void endFirst(int process) {
+    writingChild.store(process);
+}
+
+SignalsWait::SignalsWait() {
+    ++signalsWait;
+}
+
+SignalsWait::~SignalsWait() {
+    if (--signalsWait > 0) return;
+    if (const int signal = postponedSignal.exchange(0); signal != 0) raise(signal);
+}
+
+fs::path folderOf(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+std::string reason() {
+    return std::strerror(errno);
+}
+
+}  // namespace detail
 
 AtomicOutput::AtomicOutput(const fs::path& target) : target_(target), final_(resolved(target)) {
     checkOutput(target);
-    const SignalsWait untilItIsRemembered;
-    const NewTemporary made = makeTemporaryFile(final_, modeToReplace(final_, 0666), target_);
-    temporary_ = made.path;
-    registration_ = std::make_unique<Registration>(rememberTemporary(temporary_, false), made.lock);
+    record_ = makeTemporary(final_, false, target_);
+    temporary_ = record_->path;
 }
 
-AtomicOutput::~AtomicOutput() = default;
-AtomicOutput::AtomicOutput(AtomicOutput&&) noexcept = default;
-
 void AtomicOutput::write(const std::function<void(const fs::path&)>& writer) {
-    try {
-        writer(temporary_);
-    } catch (const FileError& error) {
-        throw FileError(withTargetsName(error.what(), temporary_, target_));
-    } catch (const InvalidInput& error) {
-        throw InvalidInput(withTargetsName(error.what(), temporary_, target_));
-    }
-    syncToDisk(temporary_, target_);
+    writeNaming(temporary_, target_, [&] { writer(temporary_); });
+    requireDone(forceToDisk(temporary_), target_);
 }
 
 void AtomicOutput::writeText(const std::string& text) {
@@ -95,29 +277,107 @@ void AtomicOutput::writeText(const std::string& text) {
 }
 
 void AtomicOutput::writeBytes(std::span<const std::byte> bytes) {
-    write([&](const fs::path& path) {
-        std::ofstream file(path, std::ios::binary | std::ios::trunc);
-        file.write(reinterpret_cast<const char*>(bytes.data()),
-                   static_cast<std::streamsize>(bytes.size()));
-        file.close();
-        if (!file) throw FileError(path.string() + ": can't be written: " + reason());
-    });
+    write([&](const fs::path& path) { writeFile(path, bytes); });
+}
+
+void AtomicOutput::check(std::span<const AtomicOutput> outputs) {
+    for (const AtomicOutput& output : outputs) {
+        checkOutput(output.target_);
+        require(fs::exists(output.temporary_), output.target_, "its temporary file is gone");
+    }
 }
 
 void AtomicOutput::commit(std::span<AtomicOutput> outputs) {
-    const SignalsWait untilAllAreInPlace;
-    for (const AtomicOutput& output : outputs) checkOutput(output.target_);  // it took a while
-    Replacements replacements;
+    const detail::SignalsWait untilAllAreInPlace;
+    check(outputs);
     for (const AtomicOutput& output : outputs) {
-        if (const int why = replacements.replace(output.temporary_, output.final_); why != 0) {
-            throw FileError(output.target_.string() +
-                            ": can't be put in place: " + std::strerror(why));
-        }
+        keepAttributes(output.final_, output.temporary_);
+        renameTo(output.temporary_, output.final_, output.target_);
+        output.record_->exists.store(false);
     }
-    for (const AtomicOutput& output : outputs) {
-        output.registration_->temporary_.exists.store(false);
+}
+
+AtomicFolder::AtomicFolder(const fs::path& target, const OwnNames& ownNames)
+    : target_(target.has_filename() ? target : folderOf(target)), ownNames_(ownNames) {
+    check(target_, ownNames);
+    records_.push_back(makeTemporary(target_, true, target_));
+    temporary_ = records_.front()->path;
+}
+
+AtomicFolder::~AtomicFolder() {
+    std::error_code ignored;
+    fs::remove_all(temporary_, ignored);
+}
+
+void AtomicFolder::check(const fs::path& path, const OwnNames& ownNames) {
+    const fs::path target = path.has_filename() ? path : folderOf(path);
+    requireFolder(target, folderOf(target));
+    std::error_code error;
+    const fs::file_status status = fs::symlink_status(target, error);
+    if (!fs::exists(status)) return;
+    require(fs::is_directory(status), target, "exists and is no folder");
+    const std::string other = foreignName(target, ownNames);
+    require(other.empty() || ownNames, target,
+            "exists and is not empty; nothing is replaced unless asked for");
+    require(other.empty(), target,
+            "holds " + other + ", which this program does not write; it is not replaced");
+}
+
+fs::path AtomicFolder::place(const std::string& name) {
+    fs::path file = temporary_ / name;
+    const fs::path folder = file.parent_path();
+    if (folder != temporary_ && !fs::exists(folder)) {
+        records_.push_back(detail::removedAtEnd(folder));
+        fill([&] { makeFolders(folder); });
     }
-    replacements.keep();
+    names_.push_back(name);
+    records_.push_back(detail::removedAtEnd(file));
+    return file;
+}
+
+std::vector<std::pair<std::string, std::uintmax_t>> AtomicFolder::files() const {
+    std::vector<std::pair<std::string, std::uintmax_t>> result;
+    for (const std::string& name : names_) {
+        std::error_code error;
+        result.emplace_back(name, fs::file_size(temporary_ / name, error));
+    }
+    return result;
+}
+
+void AtomicFolder::fill(const std::function<void()>& writer) {
+    writeNaming(temporary_, target_, writer);
+}
+
+void AtomicFolder::writeText(const std::string& name, const std::string& text) {
+    const fs::path file = place(name);
+    fill([&] { writeFile(file, std::as_bytes(std::span(text))); });
+}
+
+void AtomicFolder::commit(std::span<AtomicOutput> outputs) {
+    constexpr std::size_t kMany = 64;  // one syncfs() costs less than so many fsync()
+    const bool areMany = names_.size() > kMany;
+    for (const std::string& name : names_) {
+        const fs::path file = temporary_ / name;
+        keepAttributes(target_ / name, file);
+        requireDone(areMany || (forceToDisk(file) && forceToDisk(file.parent_path())), target_);
+    }
+    requireDone(forceToDisk(temporary_, areMany ? syncfs : fsync), target_);
+    const detail::SignalsWait untilAllAreInPlace;
+    check(target_, ownNames_);  // again: it may have changed
+    AtomicOutput::check(outputs);
+    keepAttributes(target_, temporary_);
+    const fs::path former = newName(target_);  // for a moment there is neither
+    std::error_code ignored;
+    fs::rename(target_, former, ignored);
+    try {
+        renameTo(temporary_, target_, target_);
+    } catch (const FileError&) {
+        fs::rename(former, target_, ignored);
+        throw;
+    }
+    fs::remove_all(former, ignored);
+    for (const auto& record : records_) record->exists.store(false);
+    AtomicOutput::commit(outputs);
 }
 
 }  // namespace adaptiso

@@ -1,72 +1,152 @@
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace adaptiso {
 
 namespace detail {
-struct Registration;
+struct Temporary;
 }
 
 /// A file that appears under its name only when it is whole.
 ///
-/// It is written to a temporary name in the same folder (TemporaryNames.h), forced to disk, then
-/// renamed. The temporary goes when the object does without commit(), and, once
-/// removeOutputsOnSignals() has been called, when a signal ends the program. A file that is
-/// replaced leaves its mode, owner and group to the new one (keepAttributes()).
+/// It is written to a temporary name in the same folder, forced to disk, then renamed. The
+/// temporary is removed when the object goes without commit(), and, once removeOutputsOnSignals()
+/// has been called, when a signal ends the program. A file that is replaced passes on its mode, and
+/// its owner and group where permitted.
 class AtomicOutput {
 public:
     /// Makes the temporary file. A symbolic link as target is followed, so that the link stays.
     /// \throws FileError  as checkOutput(), or the file can't be made
     explicit AtomicOutput(const std::filesystem::path& target);
-    ~AtomicOutput();
-    AtomicOutput(AtomicOutput&&) noexcept;
-    AtomicOutput& operator=(AtomicOutput&&) = delete;
+    AtomicOutput(AtomicOutput&&) = default;
 
     const std::filesystem::path& target() const { return target_; }
     const std::filesystem::path& temporary() const { return temporary_; }
 
-    /// Calls `writer` with the temporary's name, then forces what it wrote to disk.
-    /// \throws FileError  when the disk says no. A FileError or InvalidInput of `writer` comes out
-    ///                    with the target's name in place of the temporary's.
+    /// Calls `writer` with the temporary's name, then forces its bytes to disk.
+    /// \throws FileError  the disk refuses. A FileError or InvalidInput of `writer` is rethrown
+    /// with
+    ///                    the target's name in place of the temporary's.
     void write(const std::function<void(const std::filesystem::path&)>& writer);
 
     /// The same for bytes or a text in memory. \throws FileError
     void writeBytes(std::span<const std::byte> bytes);
     void writeText(const std::string& text);
 
-    /// Renames all of `outputs`, or none. Signals wait until that is done.
+    /// Renames `outputs`, once check() has accepted all of them. Signals wait until that is done.
     /// \pre each has been written \throws FileError when a file can't be renamed
     static void commit(std::span<AtomicOutput> outputs);
 
+    /// \throws FileError  a target can't be replaced, or a temporary is gone
+    static void check(std::span<const AtomicOutput> outputs);
+
 private:
-    std::filesystem::path target_;
-    std::filesystem::path final_;  ///< target_, with a symbolic link resolved
+    std::filesystem::path target_, final_;  ///< final_: with a symbolic link resolved
     std::filesystem::path temporary_;
-    std::unique_ptr<detail::Registration> registration_;
+    std::shared_ptr<detail::Temporary> record_;
+};
+
+/// Whether an existing folder that is to be replaced may hold a file, by its path in the folder:
+/// "walls.vtp", "regions/3.vtp". Empty: the folder must be empty or missing.
+using OwnNames = std::function<bool(std::string_view)>;
+
+/// A folder of files, some in subfolders, that appears under its name only when it is whole.
+///
+/// It is filled under a temporary name beside the target, then renamed. Without commit() it is
+/// removed, as AtomicOutput's temporary is.
+class AtomicFolder {
+public:
+    /// Makes the temporary folder. \throws FileError  as check(), or the folder can't be made
+    AtomicFolder(const std::filesystem::path& target, const OwnNames& ownNames);
+    ~AtomicFolder();
+    AtomicFolder(const AtomicFolder&) = delete;
+    AtomicFolder& operator=(const AtomicFolder&) = delete;
+
+    /// Throws when the folder can't be made or replaced. Changes nothing. \throws FileError
+    static void check(const std::filesystem::path& path, const OwnNames& ownNames);
+
+    const std::filesystem::path& target() const { return target_; }
+    /// The temporary name: where the files are until commit().
+    const std::filesystem::path& path() const { return temporary_; }
+
+    /// The path to write a file of this name to, which a signal removes. The name may begin with a
+    /// subfolder ("regions/3.vtp"), which is made. \throws FileError  it can't be made
+    std::filesystem::path place(const std::string& name);
+
+    /// Names and bytes of the files, in the order of their place() calls.
+    std::vector<std::pair<std::string, std::uintmax_t>> files() const;
+
+    /// Calls `writer`. A FileError or InvalidInput of it is rethrown with the target's name in
+    /// place of the temporary's.
+    void fill(const std::function<void()>& writer);
+
+    /// \throws FileError
+    void writeText(const std::string& name, const std::string& text);
+
+    /// Renames the folder, then commits `outputs`, which are checked first. Signals wait until that
+    /// is done. A folder that is replaced is renamed aside, then removed; it passes on its mode,
+    /// and its files theirs to files of the same name. \pre every placed file has been written
+    /// \throws FileError
+    void commit(std::span<AtomicOutput> outputs = {});
+
+private:
+    std::filesystem::path target_, temporary_;
+    OwnNames ownNames_;
+    std::vector<std::string> names_;
+    std::vector<std::shared_ptr<detail::Temporary>> records_;
 };
 
 /// Throws when `target` can't become a regular file: its folder is missing or may not be written,
-/// or the name is that of a folder, a device or a write-protected file. Asks, changes nothing.
+/// or the name is that of a folder, a device or a write-protected file. Changes nothing.
 /// \throws FileError
 void checkOutput(const std::filesystem::path& target);
 
-/// Makes a folder, and those that it lies in, where they are not there.
+/// Makes a folder and its missing parents.
 /// \throws FileError  it can't be made
 void makeFolders(const std::filesystem::path& folder);
 
 /// Throws when writing `target` would overwrite `input`. \throws FileError
 void checkNotInput(const std::filesystem::path& target, const std::filesystem::path& input);
 
-/// From now on SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGPIPE remove temporary files before they end
-/// the program (those that the caller ignores stay ignored), and a file that grows beyond the
-/// process's limit is an error of writing, not a signal.
+/// Makes SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGPIPE remove temporary files before they end the
+/// program (ignored signals stay ignored), and the process's limit of file size a writing error
+/// instead of a signal.
 void removeOutputsOnSignals();
 
+namespace detail {
+
+/// The file or empty folder is removed when the result goes, and when a signal ends the program.
+std::shared_ptr<Temporary> removedAtEnd(const std::filesystem::path& path);
+
+/// Removes all temporaries, before the program ends at once. Async-signal-safe.
+void removeTemporaries();
+
+/// Removes from `folder` the temporaries of a process that has ended, and those that nobody
+/// has written to for a day: their processes were killed.
+void removeLeftTemporaries(const std::filesystem::path& folder, int process);
+
+/// A child process that writes temporaries and so is ended before they are removed; 0 for none.
+void endFirst(int process);
+
+/// Postpones signals while it lives. May be nested.
+struct SignalsWait {
+    SignalsWait();
+    ~SignalsWait();
+    SignalsWait(const SignalsWait&) = delete;
+};
+
+/// The folder that holds `path`; "." for a bare name.
+std::filesystem::path folderOf(const std::filesystem::path& path);
+
+/// The text of errno.
+std::string reason();
+
+}  // namespace detail
 }  // namespace adaptiso

@@ -16,7 +16,6 @@
 #include "Common/Progress.h"
 #include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
-#include "Common/TemporaryNames.h"
 #include "Common/Warnings.h"
 
 namespace adaptiso {
@@ -232,7 +231,7 @@ private:
             record.outputs = plan_.outputs(item, program_.outputs(record.report));
         }
         if (result.signal != 0) {
-            detail::removeLeftTemporaries(item.folder.empty() ? "." : item.folder);
+            detail::removeLeftTemporaries(item.folder.empty() ? "." : item.folder, result.process);
         }
         if (!record.isFinished() && item.fault.empty() && batch_.skipsExisting) {
             // of two batches on one folder the slower may fail where the other has all in place

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "Common/AtomicOutput.h"
-#include "Common/Temporaries.h"
 
 namespace adaptiso {
 namespace {

@@ -10,15 +10,19 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <list>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
-#include "Common/Temporaries.h"
+#include "Common/AtomicOutput.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
 namespace {
+
+namespace fs = std::filesystem;
 
 using Clock = std::chrono::steady_clock;
 
@@ -54,17 +58,17 @@ struct Child {
     ChildResult result{};
 };
 
-/// What the child does between fork and exec: only calls that are safe there.
-[[noreturn]] void becomeProgram(pid_t parent, const char* program, char* const* arguments, int out,
-                                int err) {
+/// Runs in the child between fork and exec, where few calls are safe.
+[[noreturn]] void becomeProgram(pid_t parent, const char* program, char* const* arguments,
+                                const char* folder, int out, int err) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (getppid() != parent) _exit(127);  // it ended before it could be told
+    if (getppid() != parent) _exit(127);  // it has ended already
     const int in = open("/dev/null", O_RDONLY | O_CLOEXEC);
     if (in < 0 || dup2(in, STDIN_FILENO) < 0 || dup2(out, STDOUT_FILENO) < 0 ||
-        dup2(err, STDERR_FILENO) < 0) {
+        dup2(err, STDERR_FILENO) < 0 || (*folder != '\0' && chdir(folder) != 0)) {
         _exit(127);
     }
-    execv(program, arguments);
+    execvp(program, arguments);
     _exit(127);
 }
 
@@ -75,24 +79,28 @@ std::array<Descriptor, 2> makePipe() {
     return {Descriptor(ends[0]), Descriptor(ends[1])};
 }
 
-Child start(const std::string& program, std::size_t number, std::vector<std::string> arguments) {
+Child start(const std::string& program, std::size_t number, std::vector<std::string> arguments,
+            const std::string& folder = {}) {
     std::vector<char*> pointers;
-    std::string name = "adaptiso";
+    std::string name = fs::path(program).filename().string();
     pointers.push_back(name.data());
     for (std::string& argument : arguments) pointers.push_back(argument.data());
     pointers.push_back(nullptr);
 
     std::array<Descriptor, 2> out = makePipe(), err = makePipe();
+    const detail::SignalsWait untilItIsKnown;
     const pid_t parent = getpid();
     const pid_t process = fork();
     if (process < 0) throw std::system_error(errno, std::generic_category(), "fork");
     if (process == 0) {
-        becomeProgram(parent, program.c_str(), pointers.data(), out[1].get(), err[1].get());
+        becomeProgram(parent, program.c_str(), pointers.data(), folder.c_str(), out[1].get(),
+                      err[1].get());
     }
+    if (!folder.empty()) detail::endFirst(process);
     return {number, process, std::move(out[0]), std::move(err[0])};
 }
 
-/// What is there to read; closes the pipe at its end.
+/// Reads all that is available; closes the pipe at its end.
 void drain(Descriptor& from, std::string& to) {
     std::array<char, 65536> buffer;
     while (from.isOpen()) {
@@ -109,8 +117,8 @@ void drain(Descriptor& from, std::string& to) {
     }
 }
 
-/// Waits a moment for output or an end. A process of the child's that outlives it may keep the
-/// pipes open, so ends are looked for too.
+/// Waits a moment for output or an end. A child of the child may outlive it and keep the pipes
+/// open, so the wait is short.
 void waitForAny(const std::list<Child>& children) {
     constexpr int kLongestMs = 100;
     std::vector<pollfd> waited;
@@ -122,7 +130,7 @@ void waitForAny(const std::list<Child>& children) {
     poll(waited.data(), waited.size(), waited.empty() ? 1 : kLongestMs);
 }
 
-/// \return whether the child has ended; its result is then whole
+/// \return whether the child has ended, so that its result is complete
 bool hasEnded(Child& child) {
     drain(child.out, child.result.output);
     drain(child.err, child.result.errors);
@@ -144,17 +152,17 @@ bool hasEnded(Child& child) {
 void runChildren(std::size_t count, int jobs,
                  const std::function<std::vector<std::string>(std::size_t)>& arguments,
                  const std::function<void(std::size_t, ChildResult)>& finished,
-                 const std::filesystem::path& program) {
+                 const fs::path& program) {
     const std::string path = program.empty() ? "/proc/self/exe" : program.string();
-    // a caller that ignores the ends of its children has its children ignore theirs
+    // an ignored SIGCHLD, inherited from the caller, would hide how children end
     signal(SIGCHLD, SIG_DFL);
     std::list<Child> children;
     std::size_t next = 0;
-    std::vector<std::string> waiting;  // arguments of the next; empty: not asked for yet
+    std::vector<std::string> waiting;  // arguments of the next; empty: not fetched yet
     while (next < count || !children.empty()) {
         while (next < count && children.size() < static_cast<std::size_t>(jobs)) {
             if (waiting.empty()) waiting = arguments(next);
-            if (waiting.empty()) {  // not wanted any more
+            if (waiting.empty()) {
                 ++next;
                 continue;
             }
@@ -183,13 +191,55 @@ void runChildren(std::size_t count, int jobs,
     }
 }
 
-ChildResult runChild(const std::filesystem::path& program,
-                     const std::vector<std::string>& arguments) {
-    ChildResult result;
-    runChildren(
-        1, 1, [&](std::size_t) { return arguments; },
-        [&](std::size_t, ChildResult ended) { result = std::move(ended); }, program);
-    return result;
+ChildResult runChild(const fs::path& program, const std::vector<std::string>& arguments,
+                     const fs::path& folder) {
+    std::list<Child> children;
+    children.push_back(start(program.string(), 0, arguments, folder.string()));
+    while (!hasEnded(children.front())) waitForAny(children);
+    detail::endFirst(0);
+    return std::move(children.front().result);
+}
+
+std::string ChildResult::reason() const {
+    if (signal != 0) return "ended by signal " + std::to_string(signal);
+    constexpr std::size_t kLongest = 200;
+    std::string last;
+    std::istringstream lines(errors.empty() ? output : errors);
+    for (std::string line; std::getline(lines, line);) {
+        for (char& c : line) {
+            if (c < ' ' || c > '~') c = ' ';
+        }
+        if (line.find_first_not_of(' ') != std::string::npos) last = line.substr(0, kLongest);
+    }
+    return "exit code " + std::to_string(exitCode) + (last.empty() ? "" : ", '" + last + "'");
+}
+
+bool isInstalled(const std::string& program) {
+    const char* const path = std::getenv("PATH");
+    std::istringstream folders(path != nullptr ? path : "/usr/bin:/bin");
+    for (std::string folder; std::getline(folders, folder, ':');) {
+        const fs::path file = fs::path(folder.empty() ? "." : folder) / program;
+        if (access(file.c_str(), X_OK) == 0) return true;
+    }
+    return false;
+}
+
+fs::path temporaryFolder() {
+    std::error_code error;
+    const fs::path folder = fs::temp_directory_path(error);
+    if (!error && access(folder.c_str(), W_OK | X_OK) == 0) return folder;
+    for (const char* const name : {"TMPDIR", "TMP", "TEMP", "TEMPDIR"}) {  // the library's order
+        const char* const value = std::getenv(name);
+        if (value == nullptr) continue;
+        throw FileError(std::string(name) + " (" + value +
+                        "): is no folder that can be written to; set it to one that can");
+    }
+    throw FileError("/tmp: can't be written to; set TMPDIR to a folder that can");
+}
+
+ScratchFolder::ScratchFolder()
+    : AtomicFolder(temporaryFolder() / ("adaptiso-scratch-" + std::to_string(getpid())), {}) {
+    fs::permissions(path(), fs::perms::owner_all);
 }
 
 }  // namespace adaptiso

@@ -8,8 +8,8 @@
 #include <sstream>
 #include <string_view>
 
+#include "Common/AtomicOutput.h"
 #include "Common/Sha256.h"
-#include "Common/Temporaries.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <vector>
 
+#include "Common/ChildProcess.h"
 #include "Common/OptionValues.h"
-#include "Common/ToolProcess.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -29,7 +29,7 @@ void write(const fs::path& path, const std::string& text) {
 
 void run(const std::string& mesher, const std::vector<std::string>& arguments,
          const ScratchFolder& folder, const char* result) {
-    const ToolResult done = runTool(mesher, arguments, folder);
+    const ChildResult done = runChild(mesher, arguments, folder.path());
     std::error_code error;
     if (done.isGood() && fs::file_size(folder.path() / result, error) > 0 && !error) return;
     throw FileError(mesher + ": made no tetrahedra (" + done.reason() +

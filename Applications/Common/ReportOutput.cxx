@@ -4,8 +4,8 @@
 #include <exception>
 #include <new>
 
+#include "Common/AtomicOutput.h"
 #include "Common/RunApp.h"
-#include "Common/Temporaries.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Report/Page.h"
@@ -47,18 +47,13 @@ void checkReportOutputs(const ReportOptions& options, std::span<const fs::path> 
     if (!fs::exists(options.pictures, error)) checkOutput(options.pictures);  // its folder is there
 }
 
-PictureFolder::PictureFolder(const fs::path& folder) : folder_(folder) {
+PictureFolder::PictureFolder(const fs::path& folder) {
     if (folder.empty()) return;
-    const detail::SignalsWait untilItIsRemembered;
+    const detail::SignalsWait untilItIsRecorded;
     std::error_code error;
-    isMine_ = fs::create_directory(folder, error);
+    const bool isMade = fs::create_directory(folder, error);
     if (error) throw FileError(folder.string() + ": can't be made: " + error.message());
-    if (isMine_) detail::rememberTemporary(folder, true);  // no signal removes what holds something
-}
-
-PictureFolder::~PictureFolder() {
-    std::error_code error;
-    if (isMine_) fs::remove(folder_, error);  // refuses a folder that holds something
+    if (isMade) made_ = detail::removedAtEnd(folder);
 }
 
 namespace {

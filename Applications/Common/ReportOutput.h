@@ -41,13 +41,9 @@ class PictureFolder {
 public:
     /// \throws FileError
     explicit PictureFolder(const std::filesystem::path& folder);
-    ~PictureFolder();
-    PictureFolder(const PictureFolder&) = delete;
-    PictureFolder& operator=(const PictureFolder&) = delete;
 
 private:
-    std::filesystem::path folder_;
-    bool isMine_ = false;
+    std::shared_ptr<detail::Temporary> made_;
 };
 
 /// What became of the page and the pictures.

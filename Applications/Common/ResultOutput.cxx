@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "Common/AtomicOutput.h"
-#include "Common/Temporaries.h"
 #include "Common/Verdict.h"
 #include "adaptiso/Core/Errors.h"
 

@@ -13,7 +13,6 @@
 #include "Common/AtomicOutput.h"
 #include "Common/OptionsJson.h"
 #include "Common/ResultOutput.h"
-#include "Common/Temporaries.h"
 #include "Common/UsageWords.h"
 #include "Common/Verdict.h"
 

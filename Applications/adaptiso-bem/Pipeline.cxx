@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "BemRun.h"
-#include "Common/AtomicFolder.h"
+#include "Common/AtomicOutput.h"
 #include "Common/ExitCodes.h"
 #include "Common/Json.h"
 #include "Common/Naming.h"
@@ -58,8 +58,9 @@ bool hasJsonFile(const BemOptions& options) {
 /// The folder's own names when it may be replaced.
 OwnNames replaceable(const BemOptions& options) {
     if (!options.mayReplace) return {};
-    const std::vector<std::string> names = bemFileNames();
-    return std::vector<std::string_view>(names.begin(), names.end());
+    return [names = bemFileNames()](std::string_view name) {
+        return std::find(names.begin(), names.end(), name) != names.end();
+    };
 }
 
 /// What a subject gets: the folder's files, and their names in SUBJECTS_DIR/SUBJECT/bem.

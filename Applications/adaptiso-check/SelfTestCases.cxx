@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
+#include "Common/ChildProcess.h"
 #include "Common/CommonOptions.h"
 #include "Common/RunApp.h"
-#include "Common/ToolProcess.h"
 #include "SelfTestPhantoms.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"

@@ -2,7 +2,6 @@
 #include <array>
 #include <ostream>
 
-#include "Common/AtomicFolder.h"
 #include "Common/AtomicOutput.h"
 #include "Common/ExitCodes.h"
 #include "Common/Json.h"

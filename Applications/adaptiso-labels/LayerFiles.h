@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "Common/AtomicFolder.h"
+#include "Common/AtomicOutput.h"
 #include "LabelsRun.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Labels/Labels.h"

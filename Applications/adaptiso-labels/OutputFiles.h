@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "Common/AtomicFolder.h"
+#include "Common/AtomicOutput.h"
 #include "LabelsRun.h"
 #include "Regions.h"
 #include "adaptiso/Labels/Labels.h"

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "CheckComplex.h"
-#include "Common/AtomicFolder.h"
 #include "Common/AtomicOutput.h"
 #include "Common/ExitCodes.h"
 #include "Common/ImageOptions.h"

@@ -3,24 +3,20 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "Common/AtomicFolder.h"
+#include "Common/AtomicOutput.h"
 #include "adaptiso/Core/Errors.h"
-
-static bool canExchange = true;
 
 /// In the C library's place: NFS, 9p and FUSE know no flags.
 extern "C" int renameat2(int from, const char* old, int to, const char* made,
                          unsigned flags) noexcept {
-    if (flags == 0 || canExchange) {
-        return static_cast<int>(syscall(SYS_renameat2, from, old, to, made, flags));
-    }
+    if (flags == 0) return static_cast<int>(syscall(SYS_renameat2, from, old, to, made, flags));
     errno = EINVAL;
     return -1;
 }
@@ -60,7 +56,7 @@ protected:
 };
 
 using Names = std::vector<std::string>;
-constexpr std::array<std::string_view, 2> kOwn{"a.txt", "b.txt"};
+const OwnNames kOwn = [](std::string_view name) { return name == "a.txt" || name == "b.txt"; };
 
 TEST_F(AtomicFolderTest, AppearsWithItsCommitAndTheOutputsWithIt) {
     {
@@ -87,6 +83,24 @@ TEST_F(AtomicFolderTest, LeavesNothingWithoutACommit) {
         EXPECT_EQ(names(folder_).size(), 1u);
     }
     EXPECT_EQ(names(folder_), Names{});
+}
+
+TEST_F(AtomicFolderTest, ASignalDuringACommitWaitsForItsEnd) {
+    put(folder_ / "c.txt", "old");
+    const auto interrupted = [&] {
+        removeOutputsOnSignals();
+        AtomicFolder model(folder_ / "model", {});
+        model.writeText("a.txt", "one");
+        std::vector<AtomicOutput> outputs;
+        outputs.emplace_back(folder_ / "c.txt").writeText("new");
+        const detail::SignalsWait asInACommit;
+        std::raise(SIGTERM);
+        model.commit(outputs);
+    };
+    EXPECT_EXIT(interrupted(), ::testing::KilledBySignal(SIGTERM), "");
+    EXPECT_EQ(names(folder_), (Names{"c.txt", "model"}));
+    EXPECT_EQ(text(folder_ / "model" / "a.txt"), "one");
+    EXPECT_EQ(text(folder_ / "c.txt"), "new");
 }
 
 TEST_F(AtomicFolderTest, FillsAnEmptyFolderAndTakesATrailingSlash) {
@@ -138,46 +152,6 @@ TEST_F(AtomicFolderTest, ComesBackWhenAnOutputCanNotBePutInPlace) {
     EXPECT_EQ(text(target / "a.txt"), "old");
 }
 
-/// A file system that can't exchange names.
-class WithoutExchange : public AtomicFolderTest {
-protected:
-    void SetUp() override {
-        AtomicFolderTest::SetUp();
-        canExchange = false;
-        fs::create_directory(folder_ / "model");
-        put(folder_ / "model" / "a.txt", "old");
-    }
-    void TearDown() override {
-        canExchange = true;
-        AtomicFolderTest::TearDown();
-    }
-};
-
-TEST_F(WithoutExchange, FoldersAreReplacedWhole) {
-    {
-        AtomicFolder model(folder_ / "model", kOwn);
-        model.writeText("b.txt", "new");
-        model.commit();
-    }
-    EXPECT_EQ(names(folder_), (Names{"model"}));
-    EXPECT_EQ(names(folder_ / "model"), (Names{"b.txt"}));
-    EXPECT_EQ(text(folder_ / "model" / "b.txt"), "new");
-}
-
-TEST_F(WithoutExchange, FoldersComeBackWhenAnOutputCanNotBePutInPlace) {
-    {
-        AtomicFolder model(folder_ / "model", kOwn);
-        model.writeText("b.txt", "new");
-        std::vector<AtomicOutput> outputs;
-        outputs.emplace_back(folder_ / "c.txt").writeText("three");
-        fs::remove(outputs[0].temporary());
-        EXPECT_THROW(model.commit(outputs), FileError);
-    }
-    EXPECT_EQ(names(folder_), (Names{"model"}));
-    EXPECT_EQ(names(folder_ / "model"), (Names{"a.txt"}));
-    EXPECT_EQ(text(folder_ / "model" / "a.txt"), "old");
-}
-
 TEST_F(AtomicFolderTest, KeepsTheModesOfWhatItReplaces) {
     const fs::path target = folder_ / "model";
     fs::create_directory(target);
@@ -218,6 +192,7 @@ TEST_F(AtomicFolderTest, ASignalRemovesFilesAndFolder) {
         removeOutputsOnSignals();
         AtomicFolder model(folder_ / "model", {});
         model.writeText("a.txt", "one");
+        model.writeText("regions/1.vtp", "two");
         AtomicOutput other(folder_ / "b.txt");
         std::raise(SIGTERM);
     };

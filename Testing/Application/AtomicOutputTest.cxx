@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -134,6 +137,43 @@ TEST_F(AtomicOutputTest, OfSeveralThatCanNotAllBePutInPlaceNoneIs) {
     EXPECT_FALSE(fs::exists(folder_ / "b.txt"));
     outputs.clear();
     EXPECT_EQ(names(), Names{"a.txt"});
+}
+
+/// Makes a temporary file and folder in a process that ends as by SIGKILL. \return its number
+int leave(const fs::path& folder) {
+    const pid_t child = fork();
+    if (child == 0) {
+        auto* const output = new AtomicOutput(folder / "a.txt");
+        output->writeText("half");
+        auto* const model = new AtomicFolder(folder / "model", {});
+        model->writeText("b.txt", "half");
+        _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+    return child;
+}
+
+TEST_F(AtomicOutputTest, TemporariesOfAnEndedProcessAreRemovedByItsNumber) {
+    const int process = leave(folder_);
+    EXPECT_EQ(names().size(), 2u);
+    const AtomicOutput own(folder_ / "c.txt");
+    detail::removeLeftTemporaries(folder_, process);
+    EXPECT_EQ(names(), Names{own.temporary().filename().string()});
+}
+
+TEST_F(AtomicOutputTest, TemporariesOfYesterdayAreRemovedByTheNextOutput) {
+    leave(folder_);
+    std::ofstream(folder_ / ".adaptiso-notes") << "a user's";
+    const AtomicOutput early(folder_ / "c.txt");
+    EXPECT_EQ(names().size(), 4u);  // those of today may be in use
+    const auto yesterday = fs::file_time_type::clock::now() - std::chrono::hours(25);
+    for (const std::string& name : names()) fs::last_write_time(folder_ / name, yesterday);
+    const AtomicOutput next(folder_ / "d.txt");
+    std::vector<std::string> left = names();
+    std::sort(left.begin(), left.end());
+    EXPECT_EQ(left, (Names{next.temporary().filename().string(), ".adaptiso-notes"}));
 }
 
 TEST_F(AtomicOutputTest, LooksAgainBeforeItReplaces) {

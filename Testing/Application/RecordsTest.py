@@ -349,34 +349,17 @@ class LeftByAKill(RecordsTest):
         self.addCleanup(process.kill)
         return process
 
-    def test_go_with_the_next_run(self):
+    def test_go_with_the_first_run_after_a_day(self):
         process = self.start()
         process.kill()
         process.wait()
-        self.assertEqual(len(self.temporaries()), 1)
-        self.mesh("a.nii", "--iso", 100, "-o", "out/a.stl")
-        self.assertEqual(self.temporaries(), [])
-
-    def test_stay_while_their_run_lives(self):
-        self.start()
         self.mesh("a.nii", "--iso", 100, "-o", "out/a.stl")
         self.assertEqual(len(self.temporaries()), 1)
-
-    def test_of_other_machines_and_files_of_other_names_stay(self):
-        process = self.start()
-        process.kill()
-        process.wait()
-        left = self.path("out") / self.temporaries()[0]
-        fields = left.name.removeprefix(".adaptiso-").split(".part")[0].split("-")
-        pid, start, space, boot, machine, count = fields
-        foreign = [f".adaptiso-{pid}-{start}-{space}-00000000-00000000-{count}.part.obj",
-                   f".adaptiso-{pid}-{start}-{space}-00000000--{count}.part.obj",
-                   f".adaptiso-{pid}-{start}-1-{boot}-{machine}-0.part.obj",  # it keeps no lock
-                   f".adaptiso-{pid}-0.part.obj", ".adaptiso-notes"]
-        for name in foreign:
-            left.with_name(name).write_text("")
+        yesterday = time.time() - 25 * 3600
+        os.utime(self.path("out") / self.temporaries()[0], (yesterday, yesterday))
+        self.path("out/.adaptiso-notes").write_text("a user's")
         self.mesh("a.nii", "--iso", 100, "-o", "out/a.stl")
-        self.assertEqual(sorted(self.temporaries()), sorted(foreign))
+        self.assertEqual(self.temporaries(), [".adaptiso-notes"])
 
 
 if __name__ == "__main__":
