@@ -1,4 +1,4 @@
-"""Documentation/Recipes.md, every command of it, on images made here. Needs Debian's python3-nibabel;
+"""Documentation/Recipes.md and the tutorials but that of EEG, every command of them, on images made here. Needs Debian's python3-nibabel;
 exits 77 (skipped) without it."""
 
 import csv
@@ -6,6 +6,8 @@ import importlib.util
 import json
 import subprocess
 import sys
+import unittest
+from pathlib import Path
 
 from documents import commands, run
 from support import ApplicationTest, Image, ball, from_function, main, write_nifti
@@ -39,12 +41,15 @@ class Recipes(ApplicationTest):
         write_nifti(path, image)
         subprocess.run(["gzip", path], check=True)
 
-    def test_commands_run(self):
-        self.make("ct.nii", ct())
-        self.make("atlas.nii", atlas())
+    def make_study(self):
         for subject in ("01", "02"):
             self.make(f"study/sub-{subject}/anat/sub-{subject}_T1w.nii", ball(24, 8))
         self.path("study/dataset_description.json").write_text('{"Name": "x", "BIDSVersion": "1.8.0"}')
+
+    def test_commands_run(self):
+        self.make("ct.nii", ct())
+        self.make("atlas.nii", atlas())
+        self.make_study()
         done = run(commands("Recipes.md"), self.folder)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
@@ -60,9 +65,8 @@ class Recipes(ApplicationTest):
         # a Gaussian of 1 mm, half a voxel, moves the surface by a few hundredths of a voxel
         self.assertAlmostEqual(self.surface("print.stl")["volumeMm3"], volumes[1],
                                delta=0.03 * volumes[1])
-        self.assertEqual(sorted(path.name for path in self.path("regions").glob("*.gii")),
-                         ["label-1.gii", "label-2.gii", "label-7.gii"])
-        self.assertEqual(len(list(self.path("regions").glob("label-*-smooth.ply"))), 3)
+        self.assertEqual(sorted(path.name for path in self.path("regions/regions").iterdir()), ["1.gii", "2.gii", "7.gii"])
+        self.assertEqual(sorted(path.name for path in self.path("two-regions/regions").iterdir()), ["1.vtp", "7.vtp"])
         # both subjects have the same image
         distance = json.loads(self.path("distance.json").read_text())
         self.assertLess(distance["distances"]["combined"]["maxMm"], 1e-12)  # rounding
@@ -75,6 +79,25 @@ class Recipes(ApplicationTest):
             rows = list(csv.DictReader(table, delimiter="\t"))
         self.assertEqual([(row["participant_id"], row["check"]) for row in rows],
                          [("sub-01", "passed"), ("sub-02", "passed")])
+
+    def test_print_tutorial_ends_in_a_solid(self):
+        self.make("ct.nii", ct())
+        done = run(commands("TutorialPrint.md"), self.folder)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("=> passed as print", done.stdout)
+
+    @unittest.skipUnless(Path("/usr/share/mricron/templates/aal.nii.gz").exists(), "mricron-data is not installed")
+    def test_atlas_tutorial_ends_in_regions(self):
+        done = run(commands("TutorialAtlas.md"), self.folder)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"(?m)^37 +Hippocampus_L ")
+        self.assertRegex(done.stdout, r"(?m)^38 +Hippocampus_R ")
+
+    def test_quality_tutorial_ends_in_a_table(self):
+        self.make_study()
+        done = run(commands("TutorialQuality.md"), self.folder)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("qa/quality.tsv and qa/summary.html are written", done.stdout)
 
     def surface(self, name):
         done = run(f"adaptiso-check {name} --profile view --json -", self.folder)

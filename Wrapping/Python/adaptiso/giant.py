@@ -201,8 +201,9 @@ def run(work: Any, image: Any, level: float, output: Any = None, *, workers: int
     ----------
     workers : int
         Tiles at a time, each by a process of its own.
-    work, image, level, method, max_error, side, series, volume_index, zarr_level, channel, time, \\
-all_chunks
+    work, image, level, method, max_error, side
+        As for `plan`.
+    series, volume_index, zarr_level, channel, time, all_chunks
         As for `plan`.
     output, preview, frame, threads
         As for `join`.
