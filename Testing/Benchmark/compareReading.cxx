@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
-#include "adaptiso/ImageIO/ItkImageAdaptor.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/ItkAdaptor/ItkImageAdaptor.h"
 
 namespace {
 

@@ -1,13 +1,12 @@
-// Everything here that needs ITK's slow headers: the adaptors, and files that ITK itself writes.
+// Files that ITK itself writes.
 #include <gtest/gtest.h>
+#include <itkImage.h>
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
 
 #include <algorithm>
 
 #include "Fixtures.h"
-#include "adaptiso/ImageIO/ItkImageAdaptor.h"
-#include "adaptiso/ImageIO/ItkMeshAdaptor.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso::testing {
@@ -87,51 +86,6 @@ TYPED_TEST(ItkWritten, NrrdAndMetaImageComeBackWithTypeSamplesAndGeometry) {
             expectObliqueGeometry(result.volume.view().geometry());
         }
     }
-}
-
-TEST(ItkImageAdaptor, ViewsPixelsInPlace) {
-    const auto image = makeImage<float>();
-    const VolumeView view = viewItkImage(*image);
-    EXPECT_EQ(view.samples(), image->GetBufferPointer());
-    EXPECT_EQ(view.pixelType(), PixelType::Float32);
-    expectObliqueGeometry(view.geometry());
-}
-
-TEST(ItkImageAdaptor, PutsTheOriginAtTheBufferedRegionsFirstVoxel) {
-    auto image = itk::Image<short, 3>::New();
-    image->SetRegions(itk::ImageRegion<3>({{5, 6, 7}}, {{2, 2, 2}}));
-    image->Allocate();
-    expectNear(viewItkImage(*image).geometry().originMm, {5, 6, 7}, 0);
-}
-
-TEST(ItkImageAdaptor, RefusesAnImageWithoutPixels) {
-    const auto image = itk::Image<short, 3>::New();
-    EXPECT_THROW(viewItkImage(*image), InvalidInput);
-}
-
-TEST(ItkMeshAdaptor, KeepsPointsTrianglesAndTheirOrder) {
-    TriangleMesh surface;
-    surface.points = {{0, 0, 0}, {1.1, 0, 0}, {0, 2.2, 0}, {0, 0, 3.3}};
-    surface.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-    const auto mesh = toItkMesh(surface);
-    ASSERT_EQ(mesh->GetNumberOfPoints(), 4U);
-    ASSERT_EQ(mesh->GetNumberOfCells(), 4U);
-    for (std::size_t id = 0; id < 4; ++id) {
-        for (int axis = 0; axis < 3; ++axis) {
-            EXPECT_EQ(mesh->GetPoint(id)[axis], surface.points[id][axis]);
-        }
-        const auto* cell = mesh->GetCells()->GetElement(id);
-        ASSERT_EQ(cell->GetNumberOfPoints(), 3U);
-        for (int corner = 0; corner < 3; ++corner) {
-            EXPECT_EQ(cell->GetPointIds()[corner],
-                      static_cast<itk::IdentifierType>(surface.triangles[id][corner]));
-        }
-    }
-    EXPECT_EQ(toItkMesh<float>(surface)->GetPoint(1)[0], 1.1F);
-}
-
-TEST(ItkMeshAdaptor, TakesTheEmptySurface) {
-    EXPECT_EQ(toItkMesh(TriangleMesh())->GetNumberOfCells(), 0U);
 }
 
 }  // namespace

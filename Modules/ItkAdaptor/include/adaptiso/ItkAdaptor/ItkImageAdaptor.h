@@ -2,6 +2,8 @@
 
 #include <itkImage.h>
 
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/NativePixelType.h"
 #include "adaptiso/Core/Volume.h"
 
 namespace adaptiso {
@@ -28,7 +30,8 @@ VolumeView viewItkImage(const itk::Image<T, 3>& image) {
                 image.GetDirection()(row, axis) * image.GetSpacing()[axis];
         }
     }
-    return VolumeView(image.GetBufferPointer(), geometry);
+    return VolumeView(static_cast<const void*>(image.GetBufferPointer()), nativePixelType<T>(),
+                      geometry);
 }
 
 }  // namespace adaptiso
