@@ -14,6 +14,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -22,6 +23,7 @@ PAGES = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "Applica
          "Testing/Benchmark/README.md", "Testing/Fuzz/README.md", "Wrapping/Python/README.md",
          "Modules/Extraction/src/adaptive/README.md")
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
+TABLE = re.compile(r"(?m)^\{([\w-]+)\}$")
 
 
 def linked(text, page, source, pages):
@@ -42,14 +44,22 @@ def linked(text, page, source, pages):
 
 
 def appendix(folder):
-    """The tables of Documentation/benchmarks, which are CSV files, as one page."""
-    lines = ["# Appendix: all measurements", (folder / "README.md").read_text(encoding="utf-8").partition("\n")[2].strip(), ""]
-    for path in sorted(folder.glob("*.csv")):
-        with path.open(newline="", encoding="utf-8") as file:
+    """The tables of Documentation/benchmarks as one page, with what appendix.toml says of them."""
+    def table(found):
+        with (folder / f"{found[1]}.csv").open(newline="", encoding="utf-8") as file:
             rows = list(csv.reader(file))
-        lines += [f"## {path.stem}", ""]
-        lines += ["| " + " | ".join(row) + " |" for row in [rows[0], ["---"] * len(rows[0]), *rows[1:]]]
-        lines.append("")
+        rows.insert(1, ["---"] * len(rows[0]))
+        return f"*{found[1]}*\n\n" + "\n".join("| " + " | ".join(row) + " |" for row in rows)
+
+    told = tomllib.loads((folder / "appendix.toml").read_text(encoding="utf-8"))["section"]
+    named = {name for section in told for name in TABLE.findall(section["text"])}
+    unnamed = {path.stem for path in folder.glob("*.csv")} - named
+    if unnamed:
+        raise SystemExit(f"appendix.toml names no {', '.join(sorted(unnamed))}")
+    lines = ["# Appendix: all measurements", "The tables behind [Benchmarks](Benchmarks.md).", ""]
+    for section in told[1:]:
+        lines += ["#" * section["level"] + " " + section["title"], TABLE.sub(table, section["text"]), ""]
+    lines[2:2] = [told[0]["text"], ""]
     return "\n".join(lines)
 
 
@@ -114,8 +124,9 @@ def assemble(source, site, python):
     shutil.copy(here / "site.css", site / "_static")
     shutil.copy(here / "conf.py", site)
     shutil.copy(here / "index.md.in", site / "index.md")  # its links are those of the site
-    if (source / "Documentation" / "benchmarks").is_dir():
-        (site / "Documentation" / "Appendix.md").write_text(appendix(source / "Documentation" / "benchmarks"), encoding="utf-8")
+    page = source / "Documentation" / "Appendix.md"
+    (site / "Documentation" / "Appendix.md").write_text(
+        linked(appendix(source / "Documentation" / "benchmarks"), page, source, {*pages, page}), encoding="utf-8")
     by_header(site.parent / "xml")
     modules = headers(source)
     (site / "cpp").mkdir()
