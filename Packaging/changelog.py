@@ -22,9 +22,15 @@ LINE = 79  # columns
 
 
 def items(text):
-    """The paragraphs and "- " items of an entry, each on one line, without Markdown's marks."""
-    parts = re.split(r"\n\s*\n|\n(?=- )", text.strip())
-    return [re.sub(r"\s+", " ", part.removeprefix("- ").replace("`", "")) for part in parts]
+    """The paragraphs and "- " items of an entry, each on one line, without Markdown's marks; an item of a group
+    begins with the group's name: "Added: ..."."""
+    group, found = "", []
+    for part in re.split(r"\n\s*\n|\n(?=- |### )|(?<=^)(?=### )", text.strip()):
+        heading, _, rest = part.strip().partition("\n") if part.startswith("### ") else ("", "", part)
+        group = heading.removeprefix("### ") + ": " if heading else group
+        if rest.strip():
+            found.append(group + re.sub(r"\s+", " ", re.sub(r"`|\*\*|\]\([^)]*\)|\[(?=[^]]*\]\()", "", rest.removeprefix("- "))).strip())
+    return found
 
 
 def entry(package, maintainer, version, date, text):
