@@ -125,7 +125,7 @@ class Info(ApplicationTest):
 
     def test_keys_are_the_documented_ones(self):
         readme = (SOURCE / "Applications" / "adaptiso-mesh" / "README.md").read_text()
-        section = readme.split("## What is told of an image")[1].split("## ")[0]
+        section = readme.split("## What is reported of an image")[1].split("## ")[0]
         documented = {key for row in re.findall(r"^\| (`.*?`) \|", section, re.MULTILINE)
                       for key in re.findall(r"`([^`]+)`", row)}
         Sphere().write(self.path("ct"), range(10, 71, 2))
