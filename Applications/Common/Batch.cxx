@@ -12,11 +12,11 @@
 #include "Common/BatchRows.h"
 #include "Common/Bids.h"
 #include "Common/EarlierRuns.h"
-#include "Common/Numbers.h"
 #include "Common/Progress.h"
-#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
+#include "Common/Verdict.h"
 #include "Common/Warnings.h"
+#include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
 namespace {

@@ -20,38 +20,26 @@ constexpr std::array<std::string_view, 11> kOfTheBatch{
 }  // namespace
 
 void declareBatchOptions(CLI::App& app, BatchOptions& options, const std::string& bidsFinds) {
-    app.add_option("--list", options.list,
-                   "Take the inputs that FILE lists (- for stdin), one a line; a name to use for "
-                   "it may follow after a tab. Lines that begin with # are left out")
-        ->type_name("FILE")
-        ->group(kGroup);
-    app.add_option("--bids", options.bids,
-                   "Take " + bidsFinds + " of a BIDS dataset; write under derivatives/adaptiso")
-        ->type_name("ROOT")
-        ->group(kGroup);
-    app.add_option("--participant", options.participants,
-                   "With --bids: take those of participant LABEL (01 or sub-01) only. Give it "
-                   "several times for several")
-        ->type_name("LABEL")
-        ->allow_extra_args(false)
-        ->group(kGroup);
-    app.add_option("--output-dir", options.outputFolder,
-                   "Write into this folder (made where need be) instead of the current one or "
-                   "derivatives/adaptiso")
-        ->type_name("DIR")
-        ->group(kGroup);
-    addCount(app, "--jobs", options.jobs, 1, 1024, "Work on N inputs at a time (default: 1)")
-        ->group(kGroup);
-    app.add_flag("--skip-existing", options.skipsExisting,
+    const OptionGroup running(app, kGroup);
+    running.text("--list", "FILE", options.list,
+                 "Take the inputs that FILE lists (- for stdin), one a line; a name to use for "
+                 "it may follow after a tab. Lines that begin with # are left out");
+    running.text("--bids", "ROOT", options.bids,
+                 "Take " + bidsFinds + " of a BIDS dataset; write under derivatives/adaptiso");
+    running.text("--participant", "LABEL", options.participants,
+                 "With --bids: take those of participant LABEL (01 or sub-01) only. Give it "
+                 "several times for several");
+    running.text("--output-dir", "DIR", options.outputFolder,
+                 "Write into this folder (made where need be) instead of the current one or "
+                 "derivatives/adaptiso");
+    running.count("--jobs", options.jobs, 1, 1024, "Work on N inputs at a time (default: 1)");
+    running.flag("--skip-existing", options.skipsExisting,
                  "Skip inputs already processed with the same options and unchanged files; repeat "
-                 "their results")
-        ->group(kGroup);
-    app.add_option("--summary", options.summary,
-                   "Write a page (HTML) of all runs that have a record in the output folder, with "
-                   "links to what they made (default with --bids or --output-dir: summary.html "
-                   "there)")
-        ->type_name("FILE")
-        ->group(kGroup);
+                 "their results");
+    running.text("--summary", "FILE", options.summary,
+                 "Write a page (HTML) of all runs that have a record in the output folder, with "
+                 "links to what they made (default with --bids or --output-dir: summary.html "
+                 "there)");
 }
 
 void keepRunOptions(const CLI::App& app, BatchOptions& options) {

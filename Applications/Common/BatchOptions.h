@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "Common/CliNames.h"
 #include "Common/CommonOptions.h"
+#include "Common/RunApp.h"
 
 namespace adaptiso {
 

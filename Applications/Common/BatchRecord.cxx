@@ -10,7 +10,7 @@
 
 #include "Common/AtomicOutput.h"
 #include "Common/CommonOptions.h"
-#include "Common/ExitCodes.h"
+#include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/Verdict.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "Common/CommonOptions.h"
-#include "Common/Numbers.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {

@@ -11,6 +11,10 @@
 namespace adaptiso {
 namespace {
 
+const std::vector<std::string> kFrameWords{"ras", "lps", "tkras", "voxel"};
+constexpr CoordinateFrame kFrames[] = {CoordinateFrame::Ras, CoordinateFrame::Lps,
+                                       CoordinateFrame::TkRas, CoordinateFrame::Voxel};
+
 bool lacksVolume(const NamedMesh& mesh) {
     const bool needsVolume =
         mesh.file.frame == CoordinateFrame::TkRas || mesh.file.frame == CoordinateFrame::Voxel;
@@ -126,22 +130,36 @@ void placeLooseTkRas(std::span<NamedMesh> meshes, CommonFrame& common) {
 
 }  // namespace
 
-CLI::Option* declareInputCoordinates(CLI::App& app, std::vector<CoordinateFrame>& stated,
-                                     const std::string& surfaces) {
-    static const std::vector<std::string> kWords{"ras", "lps", "tkras", "voxel"};
-    static constexpr CoordinateFrame kFrames[] = {CoordinateFrame::Ras, CoordinateFrame::Lps,
-                                                  CoordinateFrame::TkRas, CoordinateFrame::Voxel};
-    const std::string name = "--input-coordinates";
-    const auto take = [&stated, name](const std::vector<std::string>& texts) {
+void declareInputCoordinates(const OptionGroup& group, std::vector<CoordinateFrame>& stated,
+                             const std::string& surfaces) {
+    const auto take = [&stated](const std::vector<std::string>& texts) {
         for (const std::string& text : texts) {
-            stated.push_back(kFrames[parseChoice(name, text, kWords)]);
+            stated.push_back(kFrames[parseChoice("--input-coordinates", text, kFrameWords)]);
         }
     };
-    return addValues(app, name, choiceName(kWords), take,
-                     "The frame of " + surfaces +
-                         ", whatever the file says of it: scanner RAS mm, scanner LPS mm, "
-                         "FreeSurfer's surface RAS mm, or voxel indices (default: as the file "
-                         "says)");
+    group.values("--input-coordinates", choiceName(kFrameWords), take,
+                 "The frame of " + surfaces +
+                     ", whatever the file says of it: scanner RAS mm, scanner LPS mm, "
+                     "FreeSurfer's surface RAS mm, or voxel indices (default: as the file says)");
+}
+
+void declareCoordinates(const OptionGroup& group, const std::function<void(CoordinateFrame)>& take,
+                        const std::string& help, const std::vector<std::string>& words) {
+    const auto choose = [take, words](const std::string& text) {
+        const std::string& word = words[parseChoice("--coordinates", text, words)];
+        take(kFrames[std::ranges::find(kFrameWords, word) - kFrameWords.begin()]);
+    };
+    group.value("--coordinates", choiceName(words), choose, help);
+}
+
+std::string knownExtensions() {
+    std::string list;
+    for (const MeshFormat& format : meshFormats()) {
+        for (const std::string_view extension : format.extensions) {
+            list.append(list.empty() ? "" : " ").append(extension);
+        }
+    }
+    return list;
 }
 
 void checkInputCoordinates(const std::vector<CoordinateFrame>& stated, std::size_t surfaces) {
@@ -175,6 +193,33 @@ CommonFrame bringToOneFrame(std::span<NamedMesh> meshes,
         mesh.file.mesh = fromFrame(mesh.file.mesh, *mesh.file.frame, mesh.file.volume);
     }
     return common;
+}
+
+const MeshFormat& meshFormatOf(const std::filesystem::path& file) {
+    try {
+        return findMeshFormat(file);
+    } catch (const InvalidInput& error) {
+        throw UsageError(error.what());
+    }
+}
+
+CoordinateFrame outputFrame(std::optional<CoordinateFrame> wanted, const MeshFormat& format) {
+    const CoordinateFrame frame = wanted.value_or(defaultFrame(format));
+    if (frame == CoordinateFrame::Voxel && !format.holdsVoxelFrame) {
+        throw UsageError("--coordinates voxel: " + std::string(format.name) +
+                         " holds points in mm only");
+    }
+    return frame;
+}
+
+std::string surfaceHint(const std::filesystem::path& file) {
+    try {
+        readMesh(file, {.keepsFaults = true});
+    } catch (const Error&) {
+        return "";
+    }
+    return "this is a surface, not an image; adaptiso-check, adaptiso-compare and "
+           "adaptiso-simplify take surfaces";
 }
 
 }  // namespace adaptiso

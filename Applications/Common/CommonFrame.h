@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "Common/CliNames.h"
+#include "Common/OptionValues.h"
+#include "Common/RunApp.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -14,10 +16,28 @@
 namespace adaptiso {
 
 /// Adds --input-coordinates, which states the frame of surfaces that are read: once for all of
-/// them, or once for each, in their order. \param surfaces  the surfaces meant, for --help: "A and
-/// B" \return          --input-coordinates
-CLI::Option* declareInputCoordinates(CLI::App& app, std::vector<CoordinateFrame>& stated,
-                                     const std::string& surfaces);
+/// them, or once for each, in their order.
+/// \param surfaces  for --help: "A and B"
+void declareInputCoordinates(const OptionGroup& group, std::vector<CoordinateFrame>& stated,
+                             const std::string& surfaces);
+
+/// Adds --coordinates, the frame of files to write.
+/// \param words  the frames to choose from
+void declareCoordinates(const OptionGroup& group, const std::function<void(CoordinateFrame)>& take,
+                        const std::string& help, const std::vector<std::string>& words);
+
+/// \param target  a CoordinateFrame, or an optional one
+template <class Target>
+void declareCoordinates(const OptionGroup& group, Target& target, const std::string& help,
+                        const std::vector<std::string>& words = {"ras", "lps", "tkras", "voxel"}) {
+    declareCoordinates(
+        group,
+        std::function<void(CoordinateFrame)>([&target](CoordinateFrame frame) { target = frame; }),
+        help, words);
+}
+
+/// The extensions of all mesh formats: ".vtp .vtk ...".
+std::string knownExtensions();
 
 /// \throws UsageError  frames that are neither one for all surfaces nor one for each
 void checkInputCoordinates(const std::vector<CoordinateFrame>& stated, std::size_t surfaces);
@@ -66,5 +86,16 @@ bool areOfOneFormat(const NamedMesh& a, const NamedMesh& b);
 /// \throws InvalidInput  a frame is not said and would be a guess; the frames differ and the files
 ///                       don't say how they relate; voxel indices without an image
 CommonFrame bringToOneFrame(std::span<NamedMesh> meshes, const std::optional<ImageGeometry>& image);
+
+/// The format that the name of a file to write asks for. \throws UsageError  it names none
+const MeshFormat& meshFormatOf(const std::filesystem::path& file);
+
+/// The frame of a file to write: `wanted`, or the format's own.
+/// \throws UsageError  the format cannot hold voxel indices
+CoordinateFrame outputFrame(std::optional<CoordinateFrame> wanted, const MeshFormat& format);
+
+/// A hint for a file that cannot be read as an image: it is a surface, and which programs read
+/// surfaces. Empty if it cannot be read as a surface either.
+std::string surfaceHint(const std::filesystem::path& file);
 
 }  // namespace adaptiso

@@ -6,46 +6,49 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
+#include <latch>
 #include <memory>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 #include "Common/OptionValues.h"
-#include "Common/Threads.h"
 #include "Common/Warnings.h"
 
 namespace adaptiso {
 
 void declareCommonOptions(CLI::App& app, CommonOptions& options, const std::string& strictly) {
-    constexpr const char* kGroup = "Running";
-    addCount(app, "--threads", options.threads, 1, 1024,
-             "Use N threads (default: all of the machine's)")
-        ->group(kGroup);
-    app.add_flag("-q,--quiet", options.isQuiet,
-                 "Print neither progress nor results; warnings and errors still go to stderr")
-        ->group(kGroup);
-    app.add_flag("--no-warnings", options.hidesWarnings,
-                 "Print no warnings; --json and --report hold them all the same")
-        ->group(kGroup);
-    CLI::Option* const strict = app.add_flag(
+    const OptionGroup running(app, "Running");
+    running.count("--threads", options.threads, 1, 1024,
+                  "Use N threads (default: all of the machine's)");
+    running.flag("-q,--quiet", options.isQuiet,
+                 "Print neither progress nor results; warnings and errors still go to stderr");
+    running.flag("--no-warnings", options.hidesWarnings,
+                 "Print no warnings; --json and --report hold them all the same");
+    CLI::Option* const strict = running.flag(
         "--strict", options.isStrict,
         "Fail (exit code 1) when there is any warning, with a line that says which; " + strictly);
-    strict->group(kGroup);
-    addValue(
-        app, "--allow", "CODE[,CODE...]",
-        [&options](const std::string& text) {
-            for (const std::string& code : CLI::detail::split(text, ',')) {
-                options.allowed.push_back(warningCode("--allow", code));
-            }
-        },
-        "Let warnings of these codes pass --strict (Documentation/Warnings.md lists them)")
+    running
+        .value(
+            "--allow", "CODE[,CODE...]",
+            [&options](const std::string& text) {
+                for (const std::string& code : CLI::detail::split(text, ',')) {
+                    options.allowed.push_back(warningCode("--allow", code));
+                }
+            },
+            "Let warnings of these codes pass --strict (Documentation/Warnings.md lists them)")
         ->needs(strict)
-        ->join(',')
-        ->group(kGroup);
-    app.add_option("--json", options.json,
-                   "Write a report to FILE, or to stdout when FILE is -, in place of the text")
-        ->type_name("FILE")
-        ->group(kGroup);
+        ->join(',');
+    running.text("--json", "FILE", options.json,
+                 "Write a report to FILE, or to stdout when FILE is -, in place of the text");
+    declareVersion(app);
+}
+
+void declareVersion(CLI::App& app) {
     app.set_version_flag(
-        "--version", [&app] { return versionText(app.get_name()); }, "Print the version and exit");
+        "-v,--version", [&app] { return versionText(app.get_name()); },
+        "Print the version and exit");
 }
 
 std::string programVersion() {
@@ -86,6 +89,20 @@ ThreadLimit::ThreadLimit(const CommonOptions& options) {
 ThreadLimit::~ThreadLimit() {
     // at the end of a limit oneTBB starts the threads that it was kept from
     if (impl_ && impl_->isForWant) (void)impl_.release();
+}
+
+int startableThreads(int wanted) {
+    std::latch end(1);  // they live at the same time
+    std::vector<std::thread> threads;
+    threads.reserve(static_cast<std::size_t>(wanted));
+    try {
+        while (std::ssize(threads) < wanted) threads.emplace_back([&end] { end.wait(); });
+    } catch (const std::system_error&) {
+        // as many as there are
+    }
+    end.count_down();
+    for (std::thread& thread : threads) thread.join();
+    return static_cast<int>(threads.size());
 }
 
 }  // namespace adaptiso

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "Common/CliNames.h"
+#include "Common/RunApp.h"
 
 namespace adaptiso {
 
-/// What every program takes.
+/// Options of every program.
 struct CommonOptions {
     std::optional<int> threads;  ///< none: as many as the machine has
     bool isQuiet = false;
@@ -25,6 +25,9 @@ struct CommonOptions {
 /// Adds --threads, --quiet, --no-warnings, --strict, --allow, --json and --version.
 /// \param strictly  what --strict means for what the program writes: "no surface is written"
 void declareCommonOptions(CLI::App& app, CommonOptions& options, const std::string& strictly);
+
+/// Adds -v, --version.
+void declareVersion(CLI::App& app);
 
 /// "0.1.0"
 std::string programVersion();
@@ -44,5 +47,9 @@ private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// How many of `wanted` threads can be started beside this one, right now: a limit of processes
+/// (ulimit -u, a container's) or of memory may leave fewer. Starts them and waits for their ends.
+int startableThreads(int wanted);
 
 }  // namespace adaptiso

@@ -3,13 +3,13 @@
 #include <filesystem>
 #include <string>
 
-#include "Common/CliNames.h"
 #include "Common/CommonOptions.h"
+#include "Common/RunApp.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso {
 
-/// What every program that reads an image takes.
+/// Options of every program that reads an image.
 struct ImageOptions {
     ReadOptions read;
     bool listsSeries = false;  ///< list what a DICOM input holds, and do nothing else
@@ -19,7 +19,7 @@ struct ImageOptions {
 
 /// Adds --series, --volume-index, --resample-slices, and those of Zarr (--level, --channel, --time,
 /// --refuse-missing-chunks). Large images are mapped.
-void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& group);
+void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& heading);
 
 /// Reads an image as readVolume() does. If the file is a surface, the error says so. Refuses
 /// --series unless the input is DICOM.
@@ -29,10 +29,10 @@ ReadVolume readImage(const std::filesystem::path& file, const ReadOptions& optio
 /// Adds --volume, an image beside a program's surfaces, and the same options, which then need it.
 /// \return --volume
 CLI::Option* declareVolume(CLI::App& app, std::filesystem::path& volume, ReadOptions& options,
-                           const std::string& description, const std::string& group);
+                           const std::string& description, const std::string& heading);
 
 /// Adds --series, --volume-index, --resample-slices, --list-series, --info and --show-phi.
-void declareImageOptions(CLI::App& app, ImageOptions& options, const std::string& group);
+void declareImageOptions(CLI::App& app, ImageOptions& options, const std::string& heading);
 
 /// Lists the series of `input` on stdout: as text, or as JSON on stdout or in a file, as `common`
 /// says. UIDs, descriptions and files' names are shown only with --show-phi.

@@ -5,18 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "Common/Resources.h"
+#include "Common/Naming.h"  // IWYU pragma: export
+#include "Common/Progress.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Json/Json.h"  // IWYU pragma: export
 
 namespace adaptiso {
-
-/// The last part of a path, never a folder above it; of "." the folder's own name.
-inline std::string baseName(const std::filesystem::path& path) {
-    std::error_code error;
-    if (path.has_filename() && path != "." && path != "..") return path.filename().string();
-    return std::filesystem::canonical(path, error).filename().string();
-}
 
 /// `reportFailure`: why there is no page, though one is asked for; null when nothing failed.
 inline Json reportFailureJson(const std::string& failure) {

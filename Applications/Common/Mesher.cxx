@@ -1,6 +1,5 @@
 #include "Common/Mesher.h"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -59,18 +58,17 @@ TetrahedralMesh byGmsh(const MesherInput& input, double elementMm) {
 }  // namespace
 
 void declareMesherOptions(CLI::App& app, MesherOptions& options, const std::string& files,
-                          const char* group) {
-    addChoice<std::string>(
-        app, "--tetrahedra", options.mesher, {{"tetgen", "tetgen"}, {"gmsh", "gmsh"}},
+                          const char* heading) {
+    const OptionGroup group(app, heading);
+    group.choice<std::string>(
+        "--tetrahedra", options.mesher, {{"tetgen", "tetgen"}, {"gmsh", "gmsh"}},
         "Fill the space between the walls with tetrahedra by this program, which "
         "must be installed: " +
-            files)
-        ->group(group);
-    addNumber(app, "--element-size", options.elementMm, {.least = 0.5, .most = 50, .unit = "mm"},
-              "Longest edge of an equilateral tetrahedron (default: 5); at the walls elements are "
-              "as small as their triangles")
-        ->type_name("MM")
-        ->group(group);
+            files);
+    group.number(
+        "--element-size", "MM", options.elementMm, {.least = 0.5, .most = 50, .unit = "mm"},
+        "Longest edge of an equilateral tetrahedron (default: 5); at the walls elements are "
+        "as small as their triangles");
 }
 
 void requireMesher(const MesherOptions& options) {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "Common/CliNames.h"
+#include "Common/RunApp.h"
 #include "adaptiso/Tetrahedra/MesherFiles.h"
 
 namespace adaptiso {
@@ -17,7 +17,7 @@ struct MesherOptions {
 
 /// Adds --tetrahedra and --element-size. \param files  that are written, for --help
 void declareMesherOptions(CLI::App& app, MesherOptions& options, const std::string& files,
-                          const char* group);
+                          const char* heading);
 
 /// \throws FileError  the mesher asked for is not installed
 void requireMesher(const MesherOptions& options);

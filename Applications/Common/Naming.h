@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <typeinfo>
 #include <utility>
@@ -8,8 +9,16 @@
 
 namespace adaptiso {
 
-/// What `work` returns. What it refuses (InvalidInput) is refused with `subject`, the option or the
-/// file that it is about, before it: the library knows of neither.
+/// The last part of a path, never a folder above it; the folder's own name for ".".
+std::string baseName(const std::filesystem::path& path);
+
+/// The input's name without folder and without the extensions of image files: "brain" of
+/// "scans/brain.nii.gz"; the folder's own name of a folder, however it is written, without
+/// ".zarr" or ".ome.zarr".
+std::string inputStem(const std::filesystem::path& input);
+
+/// Calls `work`. Puts `subject` before the message of an InvalidInput that it throws: the option or
+/// file concerned, which the library does not know. \return what `work` returns
 template <class Work>
 decltype(auto) naming(const std::string& subject, Work&& work) {
     try {

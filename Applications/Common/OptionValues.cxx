@@ -7,9 +7,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "Common/Numbers.h"
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
+#include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
 namespace {
@@ -44,7 +44,7 @@ std::string causeOf(const std::string& text) {
     if (error == std::errc::result_out_of_range && last == end) {
         const std::size_t exponent = text.find_first_of("eE");
         const bool isTiny = exponent != std::string::npos && text[exponent + 1] == '-';
-        return isTiny ? "is too close to 0 to be told from it"
+        return isTiny ? "is too close to 0 for a number here"
                       : "is larger than the largest number there is here, 1.8e308";
     }
     if (hasThousands(text)) return causeOfThousands(text);
@@ -116,20 +116,62 @@ std::string choiceName(const std::vector<std::string>& words) {
     return CLI::detail::join(words, "|");
 }
 
-CLI::Option* addValue(CLI::App& app, const std::string& name, const std::string& valueName,
-                      const std::function<void(const std::string&)>& take,
-                      const std::string& description) {
-    CLI::Option* const option = app.add_option_function<std::string>(name, take, description);
-    if (!valueName.empty()) option->type_name(valueName);
-    return option;
+CLI::Option* OptionGroup::flag(const std::string& name, bool& target,
+                               const std::string& help) const {
+    return app_.add_flag(name, target, help)->group(heading_);
 }
 
-CLI::Option* addValues(CLI::App& app, const std::string& name, const std::string& valueName,
-                       const std::function<void(const std::vector<std::string>&)>& take,
-                       const std::string& description) {
-    return app.add_option_function<std::vector<std::string>>(name, take, description)
+CLI::Option* OptionGroup::flag(const std::string& name, const std::function<void()>& take,
+                               const std::string& help) const {
+    return app_.add_flag_callback(name, take, help)->group(heading_);
+}
+
+CLI::Option* OptionGroup::value(const std::string& name, const std::string& valueName,
+                                const std::function<void(const std::string&)>& take,
+                                const std::string& help) const {
+    return app_.add_option_function<std::string>(name, take, help)
         ->type_name(valueName)
-        ->allow_extra_args(false);
+        ->group(heading_);
+}
+
+CLI::Option* OptionGroup::values(const std::string& name, const std::string& valueName,
+                                 const std::function<void(const std::vector<std::string>&)>& take,
+                                 const std::string& help) const {
+    return app_.add_option_function<std::vector<std::string>>(name, take, help)
+        ->type_name(valueName)
+        ->allow_extra_args(valueName.ends_with("...") || !name.starts_with('-'))
+        ->group(heading_);
+}
+
+void OptionGroup::refused(const std::string& name, const std::string& reason) const {
+    const auto refuse = [reason](const std::vector<std::string>&) { throw UsageError(reason); };
+    app_.add_option_function<std::vector<std::string>>(name, refuse)
+        ->expected(0, 1)
+        ->group(heading_);
+}
+
+CLI::Option* required(CLI::Option* option) {
+    return option->required();
+}
+
+void afterParsing(CLI::App& app, const std::function<void()>& check) {
+    app.callback(check);
+}
+
+bool isGiven(const CLI::App& app, const std::string& name) {
+    return app.get_option(name)->count() > 0;
+}
+
+std::vector<std::string> givenOptions(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->count() > 0) names.push_back(option->get_name(option->get_lnames().empty()));
+    }
+    return names;
+}
+
+void excludeEachOther(CLI::Option* first, CLI::Option* second) {
+    first->excludes(second);
 }
 
 }  // namespace adaptiso

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "Common/CliNames.h"
 #include "Common/Json.h"
+#include "Common/RunApp.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Preprocessing/Preprocess.h"
 
@@ -13,7 +13,7 @@ namespace adaptiso {
 /// Adds --crop, --smooth, --resample and --interpolation, for programs that look at an image's
 /// values. Parsing throws a CLI::ParseError or a UsageError for values that make no sense.
 void declarePreprocessingOptions(CLI::App& app, PreprocessOptions& options,
-                                 const std::string& group);
+                                 const std::string& heading);
 
 /// preprocess(), whose refusals name the option and the file: "--smooth 50: ... (in.nii)".
 /// \throws InvalidInput

@@ -1,10 +1,14 @@
 #include "Common/Progress.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <ostream>
+
+#include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
 
@@ -34,6 +38,39 @@ void ProgressLine::clear() {
 ProgressCallback ProgressLine::callback() {
     if (!isShown_) return {};
     return [this](std::string_view stage, double fraction) { show(stage, fraction); };
+}
+
+double peakMemoryMb() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;  // Linux counts KiB
+}
+
+double StageTimer::seconds(std::string_view stage) const {
+    for (const auto& [name, seconds] : stages_) {
+        if (name == stage) return seconds;
+    }
+    return 0;
+}
+
+void StageTimer::add(std::string_view stage, double seconds) {
+    for (auto& [name, sum] : stages_) {
+        if (name == stage) {
+            sum += seconds;
+            return;
+        }
+    }
+    stages_.emplace_back(stage, seconds);
+}
+
+void printTimes(std::ostream& out, const StageTimer& timer, int decimals) {
+    out << formatFixed(timer.total(), decimals) << " s (";
+    std::string_view separator;
+    for (const auto& [stage, seconds] : timer.stages()) {
+        out << separator << stage << ' ' << formatFixed(seconds, decimals);
+        separator = ", ";
+    }
+    out << "), peak memory " << formatRounded(peakMemoryMb()) << " MB\n";
 }
 
 }  // namespace adaptiso

@@ -1,34 +1,70 @@
 #include "Common/ReportOutput.h"
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <exception>
 #include <new>
 
 #include "Common/AtomicOutput.h"
+#include "Common/OptionValues.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Report/Page.h"
 
 namespace adaptiso {
-
 namespace fs = std::filesystem;
 
-void declareReportOptions(CLI::App& app, ReportOptions& options, const std::string& group) {
-    app.add_option("--report", options.page,
-                   "Write a page to look at: the verdict, numbers, pictures and a viewer, in one "
-                   "HTML file that needs no network")
-        ->type_name("OUT.html")
-        ->group(group);
-    app.add_option("--pictures", options.pictures,
-                   "Write the report's pictures alone, as PNG files, into the folder DIR")
-        ->type_name("DIR")
-        ->group(group);
-    app.add_flag(
-           "--deface-report", options.leavesOutFaces,
-           "Leave the face out of the page and the pictures: what lies in front of and below the "
-           "brain, of the image and of the surfaces")
-        ->group(group);
+namespace {
+
+std::vector<Picture> writePictures(Report report, const std::string& program,
+                                   const ReportOptions& options,
+                                   std::vector<AtomicOutput>& outputs) {
+    report.program = program;
+    report.version = programVersion();
+    report.date = reportDate();
+    report.leavesOutFaces = options.leavesOutFaces;
+    std::vector<Picture> pictures = drawPictures(report);
+    if (!options.pictures.empty()) {
+        for (const Picture& picture : pictures) {
+            outputs.emplace_back(options.pictures / picture.name).writeText(picture.png);
+        }
+    }
+    if (!options.page.empty()) {
+        outputs.emplace_back(options.page).writeText(htmlPage(report, pictures));
+    }
+    return pictures;
+}
+
+constexpr double kNear = 0.06;
+
+bool isFinite(const Vec3& p) {
+    return std::isfinite(squaredNorm(p));
+}
+
+double diagonalOf(const TriangleMesh& mesh) {
+    TriangleMesh finite;
+    std::copy_if(mesh.points.begin(), mesh.points.end(), std::back_inserter(finite.points),
+                 isFinite);
+    if (finite.points.empty()) return 0;
+    const BoundingBox box = boundingBox(finite);
+    return norm(box.size());
+}
+
+}  // namespace
+
+void declareReportOptions(CLI::App& app, ReportOptions& options, const std::string& heading) {
+    const OptionGroup group(app, heading);
+    group.text("--report", "OUT.html", options.page,
+               "Write a page to look at: the verdict, numbers, pictures and a viewer, in one "
+               "HTML file that needs no network");
+    group.text("--pictures", "DIR", options.pictures,
+               "Write the report's pictures alone, as PNG files, into the folder DIR");
+    group.flag(
+        "--deface-report", options.leavesOutFaces,
+        "Leave the face out of the page and the pictures: what lies in front of and below the "
+        "brain, of the image and of the surfaces");
 }
 
 void checkReportOutputs(const ReportOptions& options, std::span<const fs::path> inputs) {
@@ -56,29 +92,6 @@ PictureFolder::PictureFolder(const fs::path& folder) {
     if (isMade) made_ = detail::removedAtEnd(folder);
 }
 
-namespace {
-
-std::vector<Picture> writePictures(Report report, const std::string& program,
-                                   const ReportOptions& options,
-                                   std::vector<AtomicOutput>& outputs) {
-    report.program = program;
-    report.version = programVersion();
-    report.date = reportDate();
-    report.leavesOutFaces = options.leavesOutFaces;
-    std::vector<Picture> pictures = drawPictures(report);
-    if (!options.pictures.empty()) {
-        for (const Picture& picture : pictures) {
-            outputs.emplace_back(options.pictures / picture.name).writeText(picture.png);
-        }
-    }
-    if (!options.page.empty()) {
-        outputs.emplace_back(options.page).writeText(htmlPage(report, pictures));
-    }
-    return pictures;
-}
-
-}  // namespace
-
 ReportResult writeReport(const std::function<Report()>& make, const std::string& program,
                          const ReportOptions& options, std::vector<AtomicOutput>& outputs) {
     ReportResult result;
@@ -92,7 +105,7 @@ ReportResult writeReport(const std::function<Report()>& make, const std::string&
     } catch (const std::exception& error) {
         result.failure = error.what();
     }
-    // JSON tells it too, and holds no folders
+    // JSON reports hold no folders
     for (const fs::path& path : {options.page, options.pictures}) {
         const std::string folder = path.parent_path().string() + "/";
         const std::size_t at = result.failure.find(folder);
@@ -112,6 +125,33 @@ void tellStrict(Report& report, const CommonOptions& common, std::span<const War
     const bool hasFailed = report.verdict == ReportVerdict::Failed;
     report.headline = hasFailed ? report.headline + " " + text : text;
     report.verdict = ReportVerdict::Failed;
+}
+
+SpotClusters::SpotClusters(const TriangleMesh& mesh) : nearMm_(kNear * diagonalOf(mesh)) {}
+
+void SpotClusters::add(const Vec3& p) {
+    if (!isFinite(p)) return;
+    for (auto& [middle, count] : clusters_) {
+        if (norm(middle - p) > nearMm_) continue;
+        ++count;
+        return;
+    }
+    clusters_.push_back({p, 1});
+}
+
+void SpotClusters::tell(const std::string& what, bool isFailure, std::vector<ReportSpot>& spots) {
+    std::stable_sort(clusters_.begin(), clusters_.end(),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
+    for (std::size_t n = 0; n < std::min(clusters_.size(), kMostSpotsOfAKind); ++n) {
+        const auto& [middle, count] = clusters_[n];
+        spots.push_back({count > 1 ? what + " (" + formatCount(count) + " here)" : what, middle,
+                         isFailure, static_cast<int>(n)});
+    }
+}
+
+Vec3 middleOf(const TriangleMesh& mesh, std::int64_t triangle) {
+    const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(triangle)];
+    return (1.0 / 3) * (mesh.points[a] + mesh.points[b] + mesh.points[c]);
 }
 
 }  // namespace adaptiso

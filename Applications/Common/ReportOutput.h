@@ -1,16 +1,19 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "Common/AtomicOutput.h"
-#include "Common/CliNames.h"
 #include "Common/CommonOptions.h"
-#include "Common/Resources.h"
+#include "Common/Progress.h"
+#include "Common/RunApp.h"
+#include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/Report/ImageFacts.h"  // IWYU pragma: export
 #include "adaptiso/Report/Pictures.h"
@@ -18,7 +21,7 @@
 
 namespace adaptiso {
 
-/// What every program takes that can show what it did.
+/// Options of every program that writes a report page.
 struct ReportOptions {
     std::filesystem::path page;      ///< an HTML file; empty: none
     std::filesystem::path pictures;  ///< a folder of PNG files; empty: none
@@ -28,9 +31,9 @@ struct ReportOptions {
 };
 
 /// Adds --report, --pictures and --deface-report.
-void declareReportOptions(CLI::App& app, ReportOptions& options, const std::string& group);
+void declareReportOptions(CLI::App& app, ReportOptions& options, const std::string& heading);
 
-/// Everything about these outputs that can be told before an input is read.
+/// Checks these outputs before an input is read.
 /// \throws FileError
 void checkReportOutputs(const ReportOptions& options,
                         std::span<const std::filesystem::path> inputs);
@@ -46,7 +49,7 @@ private:
     std::shared_ptr<detail::Temporary> made_;
 };
 
-/// What became of the page and the pictures.
+/// The result of writing page and pictures.
 struct ReportResult {
     std::vector<Picture> pictures;
     std::unique_ptr<PictureFolder> folder;  ///< to be kept until all outputs are in place
@@ -65,5 +68,29 @@ ReportResult writeReport(const std::function<Report()>& make, const std::string&
 /// \param consequence  as strictFailure() takes it
 void tellStrict(Report& report, const CommonOptions& common, std::span<const Warning> warnings,
                 const std::string& consequence);
+
+/// The most places of one kind that a page lists.
+inline constexpr std::size_t kMostSpotsOfAKind = 12;
+
+/// Groups defects that lie near each other into one place each.
+class SpotClusters {
+public:
+    /// \param mesh  defects nearer than 6 % of the diagonal of its finite points are one place
+    explicit SpotClusters(const TriangleMesh& mesh);
+
+    /// A defect at `p`; one that is not finite is left out.
+    void add(const Vec3& p);
+
+    /// Adds the places to `spots`, that with the most defects first.
+    /// \param what  "crossing triangles in a.stl"
+    void tell(const std::string& what, bool isFailure, std::vector<ReportSpot>& spots);
+
+private:
+    double nearMm_;
+    std::vector<std::pair<Vec3, std::int64_t>> clusters_;
+};
+
+/// The mean of the triangle's corners.
+Vec3 middleOf(const TriangleMesh& mesh, std::int64_t triangle);
 
 }  // namespace adaptiso

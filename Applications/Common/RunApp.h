@@ -4,11 +4,25 @@
 #include <string>
 #include <string_view>
 
-#include "Common/CliNames.h"
-#include "Common/ExitCodes.h"
 #include "adaptiso/Core/Errors.h"
 
+/// The names of CLI11 that our headers need. CLI11's own header takes the compiler 5 s a file.
+namespace CLI {
+class App;
+class Option;
+class ParseError;
+}  // namespace CLI
+
 namespace adaptiso {
+
+/// Exit codes of all programs.
+enum ExitCode : int {
+    kExitOk = 0,
+    kExitCheckFailed = 1,   ///< the program worked; a check that it was asked for did not pass
+    kExitUsage = 2,         ///< options that make no sense
+    kExitBadInput = 3,      ///< a file or value that can't be used, or too little memory or disk
+    kExitInternalError = 4  ///< a bug
+};
 
 /// The command line asks for something that makes no sense (exit code 2).
 class UsageError : public Error {

@@ -1,10 +1,9 @@
 #include "Common/ImageOptions.h"
 #include "Common/Json.h"
-#include "Common/Numbers.h"
-#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
 #include "Common/Warnings.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 
 namespace adaptiso {
@@ -80,7 +79,7 @@ Json seriesJson(const DicomSeries& series, bool showsPhi) {
     return json;
 }
 
-/// All that the list tells as warnings.
+/// The warnings of all series.
 std::vector<Warning> warningsOf(const DicomListing& listing) {
     std::vector<Warning> warnings = listing.warnings;
     for (const DicomSeries& series : listing.series) {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "Common/CliNames.h"
+#include "Common/RunApp.h"
 
 namespace adaptiso {
 
@@ -31,16 +31,16 @@ std::string alternatives(const std::vector<std::string>& words);
 /// option: its own was forgotten. \pre all options are declared
 void refuseMissingValues(CLI::App& app);
 
-/// Refuses "--name=", after which the parser would take the next word for the value.
-/// \throws UsageError
-void refuseEmptyAssignments(const CLI::App& app, int argc, const char* const* argv);
+/// Refuses "--name=", after which the parser would take the next word for the value, a last option
+/// whose value is missing, and "--flag=value". \throws UsageError
+void refuseMisplacedValues(const CLI::App& app, int argc, const char* const* argv);
 
 /// Refuses the name of an output, the value of `option`, that holds a placeholder ("{iso}") which
 /// is none of `known`. \throws UsageError
 void requirePlaceholders(const std::string& option, const std::filesystem::path& output,
                          const std::vector<std::string>& known);
 
-/// What the parser refuses, in one line that names the option and says what to do.
+/// The message for a parse error: one line that names the option and says what to do.
 std::string inWords(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace adaptiso

@@ -1,7 +1,11 @@
 #include "Common/Verdict.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -14,16 +18,16 @@
 #include <vector>
 
 #include "Common/AtomicOutput.h"
-#include "Common/Numbers.h"
-#include "Common/Resources.h"
-#include "Common/ResultOutput.h"
+#include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
-namespace {
-
 namespace fs = std::filesystem;
+
+namespace {
 
 constexpr const char* kNoThreads =
     "a thread or process could not be started; the limit of processes (ulimit -u) or of memory is "
@@ -211,6 +215,49 @@ void writeFailureReport(const std::string& program, const Verdict& verdict) {
     } catch (const std::exception&) {
         // the error itself is on stderr
     }
+}
+
+void checkReportFile(const CommonOptions& common, const std::filesystem::path& input) {
+    if (!common.wantsJson() || common.wantsJsonOnStdout()) return;
+    checkNotInput(common.json, input);
+    checkOutput(common.json);
+}
+
+void flushResults() {
+    const auto fail = [] {
+        throw FileError("standard output: can't be written: " + detail::reason());
+    };
+    errno = 0;
+    if (!std::cout.flush()) {
+        if (errno == 0) throw FileError("standard output: can't be written");
+        fail();
+    }
+    // some file systems report a full disk only now; pipes and terminals cannot be synced
+    struct stat status {};
+    const bool isFile = fstat(STDOUT_FILENO, &status) == 0 && S_ISREG(status.st_mode);
+    if (isFile && fsync(STDOUT_FILENO) != 0 && errno != EINVAL && errno != EROFS) fail();
+}
+
+void printResults(const CommonOptions& common, const std::string& json,
+                  const std::function<void(std::ostream&)>& printText) {
+    if (common.wantsJsonOnStdout()) {
+        markReported();
+        std::cout << json;
+    } else if (!common.isQuiet) {
+        printText(std::cout);
+    }
+    flushResults();
+}
+
+void deliverReport(const CommonOptions& common, const std::filesystem::path& input,
+                   const std::string& json, const std::function<void(std::ostream&)>& printText) {
+    std::vector<AtomicOutput> outputs;
+    if (common.wantsJson() && !common.wantsJsonOnStdout()) {
+        checkReportFile(common, input);
+        outputs.emplace_back(common.json).writeText(json);
+    }
+    printResults(common, json, printText);
+    AtomicOutput::commit(outputs);
 }
 
 }  // namespace adaptiso

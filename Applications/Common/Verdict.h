@@ -1,12 +1,15 @@
 #pragma once
 
 #include <exception>
+#include <filesystem>
+#include <functional>
+#include <ostream>
 #include <span>
 #include <string>
 
 #include "Common/CommonOptions.h"
-#include "Common/ExitCodes.h"
 #include "Common/Json.h"
+#include "Common/RunApp.h"
 #include "adaptiso/Core/Warning.h"
 
 namespace adaptiso {
@@ -52,5 +55,25 @@ inline constexpr const char* kFailureSchema = "adaptiso-failure/1";
 /// the head alone, of kFailureSchema, with the warnings printed so far. Folders are left
 /// out of the error. Never replaces a file that is no JSON; throws nothing.
 void writeFailureReport(const std::string& program, const Verdict& verdict);
+
+/// Makes sure that what was printed on stdout has arrived, on its disk too if it is a file.
+/// \throws FileError  it has not: no room, or closed
+void flushResults();
+
+/// Prints a run's results on stdout (as text by `printText`, as `json` with --json -, not at all
+/// with --quiet). To be called when all files are whole under their temporary names and before
+/// they get their own: when it throws, or a closed pipe ends the program, there are none.
+/// \throws FileError  as flushResults()
+void printResults(const CommonOptions& common, const std::string& json,
+                  const std::function<void(std::ostream&)>& printText);
+
+/// For programs whose only output is a report.
+/// \throws FileError when the file of --json would overwrite `input` or can't be written
+void checkReportFile(const CommonOptions& common, const std::filesystem::path& input);
+
+/// printResults(), and writes `json` to the file of --json: both or neither.
+/// \throws FileError as checkReportFile() and flushResults()
+void deliverReport(const CommonOptions& common, const std::filesystem::path& input,
+                   const std::string& json, const std::function<void(std::ostream&)>& printText);
 
 }  // namespace adaptiso

@@ -33,7 +33,7 @@ std::string warningCode(const std::string& option, const std::string& text);
 /// kExitCheckFailed.
 bool failsStrict(const CommonOptions& common, std::span<const Warning> warnings);
 
-/// What --strict says of warnings, in one line: "--strict: 2 warnings, so no surface was written:
+/// The message of --strict, in one line: "--strict: 2 warnings, so no surface was written:
 /// ball.nii: ...; ball.nii: ...".
 /// \param consequence  "so no surface was written"; empty: none
 std::string strictFailure(const CommonOptions& common, std::span<const Warning> warnings,

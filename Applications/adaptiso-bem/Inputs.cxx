@@ -1,18 +1,17 @@
-#include "Inputs.h"
-
 #include <optional>
 #include <utility>
 
 #include "Common/CommonFrame.h"
 #include "Common/Json.h"
 #include "Common/Naming.h"
+#include "Run.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/FreeMemory.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
-namespace adaptiso {
+namespace adaptiso::bem {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,7 +32,7 @@ ReadVolume readMainImage(const fs::path& path, const std::string& role, BemRun& 
     return read;
 }
 
-/// The boundaries that `make` finds; what is wrong with the image is told with option and file.
+/// The boundaries that `make` finds. Errors name the option and the file.
 template <class Make>
 HeadBoundaries timed(BemRun& run, const std::string& option, const fs::path& path,
                      const Make& make) {
@@ -117,11 +116,11 @@ HeadBoundaries fromProbabilities(BemRun& run, const BoundaryOptions& boundaries)
 
 }  // namespace
 
-HeadBoundaries boundariesFromImages(BemRun& run, ProgressLine& progress) {
+HeadBoundaries boundariesFromImages(BemRun& run) {
     const BemOptions& options = run.options;
     BoundaryOptions boundaries = options.model.boundaries;
-    boundaries.progress = progress.callback();
-    progress.show("read");
+    boundaries.progress = run.progress.callback();
+    run.progress.show("read");
     HeadBoundaries result;
     if (run.model.source == "t1") {
         result = fromT1(run, boundaries);
@@ -183,4 +182,4 @@ void chooseTkRas(BemRun& run) {
         run.model.tkRasVolume = frameVolume(CoordinateFrame::TkRas, *run.model.image);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::bem

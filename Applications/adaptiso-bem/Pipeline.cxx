@@ -7,26 +7,20 @@
 #include <span>
 #include <utility>
 
-#include "BemRun.h"
 #include "Common/AtomicOutput.h"
-#include "Common/ExitCodes.h"
 #include "Common/Json.h"
+#include "Common/Mesher.h"
 #include "Common/Naming.h"
-#include "Common/Progress.h"
-#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
-#include "Common/Warnings.h"
-#include "Inputs.h"
-#include "JsonReport.h"
-#include "Tetrahedra.h"
-#include "TextReport.h"
+#include "Run.h"
+#include "adaptiso/HeadModel/Tetrahedra.h"
 #include "adaptiso/HeadPipeline/BemElectrodes.h"
 #include "adaptiso/HeadPipeline/BemReport.h"
 #include "adaptiso/HeadPipeline/BemSurfaces.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/PointFiles.h"
 
-namespace adaptiso {
+namespace adaptiso::bem {
 namespace {
 
 namespace fs = std::filesystem;
@@ -51,10 +45,6 @@ std::vector<fs::path> inputsOf(const BemOptions& options) {
     return inputs;
 }
 
-bool hasJsonFile(const BemOptions& options) {
-    return options.common.wantsJson() && !options.common.wantsJsonOnStdout();
-}
-
 /// The folder's own names when it may be replaced.
 OwnNames replaceable(const BemOptions& options) {
     if (!options.mayReplace) return {};
@@ -63,7 +53,7 @@ OwnNames replaceable(const BemOptions& options) {
     };
 }
 
-/// What a subject gets: the folder's files, and their names in SUBJECTS_DIR/SUBJECT/bem.
+/// A file of the model's folder that is copied to SUBJECTS_DIR/SUBJECT/bem.
 struct SubjectFile {
     std::string name;
     fs::path path;
@@ -110,49 +100,32 @@ void checkSubject(const BemOptions& options) {
         if (fs::exists(status) && !options.mayReplace) {
             throw FileError(path.string() + ": exists; --force replaces it");
         }
-        checkOutput(path);
     }
 }
 
-/// Everything about the outputs that can be told before an input is read.
+/// Checks the outputs before an input is read.
 void checkOutputs(const BemOptions& options) {
-    std::vector<fs::path> files = subjectPaths(options);
-    const std::vector<fs::path> inputs = inputsOf(options);
-    checkReportOutputs(options.report, inputs);
-    if (hasJsonFile(options)) {
-        checkOutput(options.common.json);
-        files.push_back(options.common.json);
+    OutputPlan plan(inputsOf(options));
+    if (!options.isDryRun) {
+        plan.checkFolder(options.output);
+        AtomicFolder::check(options.output, replaceable(options));
+        checkSubject(options);
+        for (const fs::path& path : subjectPaths(options)) plan.add("--subject", path);
     }
-    const auto canonical = [](const fs::path& path) {
-        std::error_code error;
-        return fs::weakly_canonical(fs::absolute(path), error);
-    };
-    for (const fs::path& input : inputs) {
-        for (const fs::path& file : files) checkNotInput(file, input);
-        // replacing the folder would take an input in it away
-        if (!options.isDryRun && canonical(input).parent_path() == canonical(options.output)) {
-            throw FileError(options.output.string() +
-                            ": holds an input, which is never overwritten");
-        }
-    }
-    if (options.isDryRun) return;
-    AtomicFolder::check(options.output, replaceable(options));
-    checkSubject(options);
+    plan.check(options.common, options.report);
 }
 
-/// What the images or the surfaces given lead to, dense or as it came.
-std::vector<TriangleMesh> firstSurfaces(BemRun& run, const BemHooks& hooks,
-                                        ProgressLine& progress) {
+/// The first surfaces: extracted from the images (dense), or read and mended.
+std::vector<TriangleMesh> firstSurfaces(BemRun& run, const BemHooks& hooks) {
     if (run.model.source != "surfaces") {
-        return extractSurfaces(boundariesFromImages(run, progress), run.model, hooks);
+        return extractSurfaces(boundariesFromImages(run), run.model, hooks);
     }
-    progress.show("read");
-    std::vector<TriangleMesh> surfaces = run.timer.time("read", [&] { return readSurfaces(run); });
+    std::vector<TriangleMesh> surfaces = run.stage("read", [&] { return readSurfaces(run); });
     return naming("--surfaces",
                   [&] { return mendSurfaces(std::move(surfaces), run.model, hooks); });
 }
 
-/// What is known of electrodes and landmarks before there is a head.
+/// Reads electrodes and landmarks, before there is a head.
 void readElectrodes(BemRun& run) {
     const BemOptions& options = run.options;
     ElectrodeOptions& wanted = run.model.options.electrodes;
@@ -178,17 +151,11 @@ void putElectrodes(BemRun& run, const BemHooks& hooks) {
            [&] { placeElectrodes(run.model, hooks); });
 }
 
-/// Those from number `first` on.
-void tellWarnings(const BemRun& run, std::size_t first = 0) {
-    printWarnings("adaptiso-bem", run.options.common, std::span(run.model.warnings).subspan(first));
-}
-
 /// Files of the model's folder once more, for the subject's own.
-std::vector<AtomicOutput> writeSubject(BemRun& run, const AtomicFolder& folder) {
-    std::vector<AtomicOutput> outputs;
+void writeSubject(BemRun& run, const AtomicFolder& folder) {
     for (const SubjectFile& file : subjectFiles(run.options)) {
         run.subjectFiles.push_back(file.path);
-        outputs.emplace_back(file.path).write([&](const fs::path& path) {
+        run.addOutput(file.path).write([&](const fs::path& path) {
             // the bytes alone: a file that is replaced keeps its mode
             std::ifstream from(folder.path() / file.name, std::ios::binary);
             std::ofstream to(path, std::ios::binary | std::ios::trunc);
@@ -197,7 +164,6 @@ std::vector<AtomicOutput> writeSubject(BemRun& run, const AtomicFolder& folder) 
             if (!from || !to) throw FileError(path.string() + ": can't be written");
         });
     }
-    return outputs;
 }
 
 /// The model's folder, not yet under its name; one that holds nothing when what was written does
@@ -206,14 +172,14 @@ void fillFolder(BemRun& run, std::optional<AtomicFolder>& folder) {
     const BemOptions& options = run.options;
     folder.emplace(options.output, replaceable(options));
     if (!run.model.hasModel() || run.failsStrict()) return;
-    run.timer.time("write", [&] {
+    run.stage("write", [&] {
         folder->fill([&] {
             writeBemFiles(run.model, options.files, "adaptiso-bem " + programVersion(),
                           [&](const std::string& name) { return folder->place(name); });
         });
         run.files = folder->files();
     });
-    run.timer.time("check", [&] { checkBemFiles(folder->path(), options.files, run.model); });
+    run.stage("check", [&] { checkBemFiles(folder->path(), options.files, run.model); });
     if (run.model.hasModel()) return;
     run.files.clear();
     folder.reset();
@@ -222,7 +188,6 @@ void fillFolder(BemRun& run, std::optional<AtomicFolder>& folder) {
 
 Report makeReport(const BemRun& run) {
     Report report = bemReport(run.model, run.files);
-    tellStrict(report, run.options.common, run.model.warnings, "so no model was written");
     if (run.options.isDryRun) report.notes.push_back("Nothing else was written (--dry-run).");
     if (run.shownImage) {
         report.volume = ReportVolume{run.model.inputs.front().role, run.shownImage->volume.view()};
@@ -230,61 +195,72 @@ Report makeReport(const BemRun& run) {
     return report;
 }
 
-/// Shows the run as asked for. Where there is no model and places are known where it failed, a
-/// picture of them goes into the model's folder in its stead.
-/// \param folder  none with --dry-run
-/// \return the folder of pictures, to be kept until all is in place
-std::unique_ptr<PictureFolder> show(BemRun& run, std::vector<AtomicOutput>& outputs,
-                                    std::optional<AtomicFolder>& folder) {
+/// Writes the page and the pictures if asked for. If there is no model, the picture of the places
+/// where it failed goes into the model's folder.
+/// \param folder  empty with --dry-run
+void writePage(BemRun& run, std::optional<AtomicFolder>& folder) {
     const bool showsFailure = folder && !run.model.hasModel();
-    const ReportOptions& asked = run.options.report;
-    if (!asked.isWanted() && !(showsFailure && !run.model.findings.empty())) return nullptr;
-    ReportResult page = run.timer.time("report", [&] {
-        return writeReport([&] { return makeReport(run); }, "adaptiso-bem", asked, outputs);
-    });
-    for (const Picture& picture : page.pictures) {
+    if (!run.options.report.isWanted() && !(showsFailure && !run.model.findings.empty())) return;
+    for (const Picture& picture : run.writePage([&] { return makeReport(run); })) {
         if (showsFailure && picture.name == "spots.png") {
             folder->writeText(picture.name, picture.png);
         }
     }
-    run.verdict.failReport(page.failure);
-    return std::move(page.folder);
 }
 
-/// Writes the folder (the report and a picture alone when there is no model) and all else, and
-/// prints the results, or does nothing of it.
-void write(BemRun& run, ProgressLine& progress) {
+/// Writes the folder (only the report and a picture if there is no model) and all other outputs,
+/// and prints the results, or does none of these.
+void write(BemRun& run) {
     const BemOptions& options = run.options;
-    std::vector<AtomicOutput> outputs;
     std::optional<AtomicFolder> folder;
     if (!options.isDryRun) {
         fillFolder(run, folder);
-        if (run.model.hasModel() && !run.failsStrict()) outputs = writeSubject(run, *folder);
+        if (run.model.hasModel() && !run.failsStrict()) writeSubject(run, *folder);
     }
-    if (run.model.hasModel()) {
-        run.verdict.failStrict(options.common, run.model.warnings, "so no model was written");
-    } else {
+    if (!run.model.hasModel()) {
         run.verdict = {kExitCheckFailed, "no model: " + run.model.failureText()};
     }
-    const std::unique_ptr<PictureFolder> pictures = show(run, outputs, folder);
+    run.takeWarnings();
+    writePage(run, folder);
+    run.settleVerdict();
     const std::string json = jsonReport(run);
     if (folder) folder->writeText("report.json", json);
-    if (hasJsonFile(options)) outputs.emplace_back(options.common.json).writeText(json);
-    progress.clear();
-    printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
-    if (folder) {
-        folder->commit(outputs);
-    } else {
-        AtomicOutput::commit(outputs);
-    }
+    run.deliver([&] { return json; }, [&](std::ostream& out) { printReport(out, run); },
+                folder ? &*folder : nullptr);
+}
+
+void addCheck(BemModel& model, const TetrahedraCheck& check) {
+    model.checks.push_back({"tetrahedra: " + check.name, check.isPassed, check.detail, {}});
+    if (check.isPassed) return;
+    const Vec3 place = model.meshes.front().points.front();
+    model.checks.back().pointMm = place;
+    model.findings.push_back({"tetrahedra: " + check.name + ": " + check.detail, place});
+}
+
+/// Fills the model's layers with tetrahedra by the mesher, run as a program (stage "tetrahedra"),
+/// and checks them; a failed check becomes a finding. \pre run.model.hasModel()
+/// \throws FileError  the mesher is missing, fails, or writes an unreadable file
+void makeTetrahedra(BemRun& run, const BemHooks& hooks) {
+    BemModel& model = run.model;
+    hooks.stage("tetrahedra", [&] {
+        const std::vector<TetrahedraRegion> regions = headRegions(model.meshes);
+        BemTetrahedra made;
+        made.mesher = run.options.tetrahedra.mesher;
+        made.mesh = runMesher(headMesherInput(model.meshes), run.options.tetrahedra);
+        takeRegions(made.mesh, regions);
+        made.report = checkTetrahedra(made.mesh, regions);
+        model.notes.push_back(describeTetrahedra(made.mesh, made.report, made.mesher));
+        for (const TetrahedraCheck& check : judgeTetrahedra(made.report, regions)) {
+            addCheck(model, check);
+        }
+        model.tetrahedra = std::move(made);
+    });
 }
 
 }  // namespace
 
 int runBem(const BemOptions& options) {
-    const ThreadLimit threads(options.common);
-    ProgressLine progress(options.common.isQuiet);
-    BemRun run{options, {}};
+    BemRun run(options);
     run.model.options = options.model;
     run.model.options.wantsHeadShape = options.files.writesFif;
     run.model.source = sourceOf(options);
@@ -292,27 +268,18 @@ int runBem(const BemOptions& options) {
     requireMesher(options.tetrahedra);
     readElectrodes(run);
 
-    const BemHooks hooks{[&](std::string_view stage, const std::function<void()>& work) {
-                             progress.show(stage);
-                             run.timer.time(stage, work);
-                         },
-                         progress.callback()};
-    std::vector<TriangleMesh> dense = firstSurfaces(run, hooks, progress);
+    const BemHooks hooks{
+        [&](std::string_view stage, const std::function<void()>& work) { run.stage(stage, work); },
+        run.progress.callback()};
+    std::vector<TriangleMesh> dense = firstSurfaces(run, hooks);
     chooseTkRas(run);
-    progress.clear();
-    tellWarnings(run);
-    const std::size_t told = run.model.warnings.size();
+    run.takeWarnings();
     finishBemModel(std::move(dense), run.model, hooks);
     putElectrodes(run, hooks);
     if (run.model.hasModel() && options.tetrahedra.isAsked()) makeTetrahedra(run, hooks);
-    progress.clear();
-    tellWarnings(run, told);
-
-    progress.show("write");
-    write(run, progress);
-    const std::string written =
-        options.isDryRun ? "all is done" : options.output.string() + " is written";
-    return printVerdict("adaptiso-bem", run.verdict, written);
+    run.takeWarnings();
+    write(run);
+    return run.end(options.isDryRun ? "all is done" : options.output.string() + " is written");
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::bem

@@ -13,9 +13,9 @@
 #include "adaptiso/HeadPipeline/BemModel.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
-namespace adaptiso {
+namespace adaptiso::bem {
 
-/// What adaptiso-bem is asked to do.
+/// Options of adaptiso-bem.
 struct BemOptions {
     // one of these five
     std::filesystem::path t1;
@@ -55,4 +55,4 @@ struct BemOptions {
 /// \throws UsageError, FileError, InvalidInput  nothing was written then
 int runBem(const BemOptions& options);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::bem

@@ -1,14 +1,468 @@
 #include <malloc.h>
 
-#include "CommandLine.h"
+#include <algorithm>
+#include <charconv>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "Common/CommonFrame.h"
+#include "Common/ImageOptions.h"
+#include "Common/OptionValues.h"
 #include "Common/RunApp.h"
 #include "Pipeline.h"
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
+
+namespace adaptiso::bem {
+namespace {
+
+constexpr const char* kInput = "Input (one of --t1, --labels, --probabilities, --ct, --surfaces)";
+constexpr const char* kHead = "Head";
+constexpr const char* kMesh = "Surfaces";
+constexpr const char* kOutput = "Output";
+constexpr const char* kTetrahedra = "Tetrahedra";
+constexpr const char* kElectrodes = "Electrodes and landmarks";
+constexpr const char* kToolboxes =
+    "Files for other programs, besides those of FreeSurfer and OpenMEEG";
+
+const std::vector<std::string> kPresets{"charm", "headreco", "aseg", "samseg", "totalsegmentator"};
+
+std::vector<std::string> parts(const std::string& text, char separator) {
+    std::vector<std::string> result;
+    std::size_t begin = 0;
+    for (std::size_t end = 0; end != std::string::npos; begin = end + 1) {
+        end = text.find(separator, begin);
+        result.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
+    }
+    return result;
+}
+
+/// Numbers joined by a separator. \throws UsageError  naming option and rule
+std::vector<double> numbers(const std::string& option, const std::string& text, char separator,
+                            std::size_t least, std::size_t most, const std::string& rule) {
+    std::vector<double> values;
+    for (const std::string& part : parts(text, separator)) {
+        const std::optional<double> value = parseFiniteNumber(part);
+        if (!value) throw UsageError(option + " " + text + ": must be " + rule);
+        values.push_back(*value);
+    }
+    if (values.size() < least || values.size() > most) {
+        throw UsageError(option + " " + text + ": must be " + rule);
+    }
+    return values;
+}
+
+/// "brain=1,2,3"
+void addTissue(TissueLabels& tissues, const std::string& text) {
+    const auto refuse = [&] {
+        throw UsageError(
+            "--tissue " + text +
+            ": must be brain, csf, skull or scalp, '=', and labels with commas between "
+            "them: brain=1,2,3");
+    };
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    std::vector<std::int64_t>* const list = name == "brain"   ? &tissues.brain
+                                            : name == "csf"   ? &tissues.csf
+                                            : name == "skull" ? &tissues.skull
+                                            : name == "scalp" ? &tissues.scalp
+                                                              : nullptr;
+    if (equals == std::string::npos || list == nullptr) return refuse();
+    for (const std::string& part : parts(text.substr(equals + 1), ',')) {
+        std::int64_t label = 0;
+        const char* const last = part.data() + part.size();
+        const auto [end, error] = std::from_chars(part.data(), last, label);
+        if (error != std::errc{} || end != last) return refuse();
+        list->push_back(label);
+    }
+}
+
+/// The preset's labels, and those that --tissue names besides.
+void addPreset(TissueLabels& tissues, const TissueLabels& preset) {
+    const auto add = [](std::vector<std::int64_t>& to, const std::vector<std::int64_t>& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    add(tissues.brain, preset.brain);
+    add(tissues.csf, preset.csf);
+    add(tissues.skull, preset.skull);
+    add(tissues.scalp, preset.scalp);
+    tissues.othersAreBrain = preset.othersAreBrain;
+}
+
+void declareInput(CLI::App& app, BemOptions& options) {
+    const OptionGroup input(app, kInput);
+    input.text("--t1", "IMG", options.t1, "A T1-weighted MRI of the whole head");
+    input.text("--brain-mask", "IMG", options.brainMask,
+               "With --t1: the brain, from any brain extraction (a mask, or the T1 with the "
+               "skull removed); without it the brain is guessed");
+    input.text(
+        "--aseg", "IMG", options.aseg,
+        "With --t1: FreeSurfer's or FastSurfer's aseg; serves as brain mask if none is given, "
+        "and with --layers 4 the brain's own surface");
+    input.text(
+        "--pial", "MESH...", options.pial,
+        "With --t1 and --layers 4: the cortex (lh.pial rh.pial), for the brain's own surface");
+    input.text("--labels", "IMG", options.labels,
+               "A segmentation; --tissue or --preset names its tissues");
+    input.values(
+        "--tissue", "NAME=LABELS",
+        [&options](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) addTissue(options.tissues, text);
+        },
+        "Labels of a tissue: brain=1,2,3 (CSF included, or named apart: brain=1,2 csf=3), "
+        "skull=4, "
+        "scalp=5; one --tissue each");
+    input.value(
+        "--preset", choiceName(kPresets),
+        [&options](const std::string& text) {
+            const std::string& name = kPresets[parseChoice("--preset", text, kPresets)];
+            addPreset(options.tissues, tissuePreset(name));
+        },
+        "The labels of SimNIBS's charm or headreco, of FreeSurfer's aseg, of SAMSEG, or of "
+        "TotalSegmentator (task total: brain and skull; with --head-mask)");
+    input.text("--head-mask", "IMG", options.headMask,
+               "With --labels: a mask of all that lies within the skin (TotalSegmentator's body), "
+               "on the same grid; what of it has no tissue counts as scalp");
+    input.text("--probabilities", "IMG...", options.probabilities,
+               "Tissue maps in SPM's order: c1 c2 c3 c4 c5 [c6]");
+    input.text("--ct", "IMG", options.ct, "A CT of the whole head, in Hounsfield units");
+    input.text("--surfaces", "MESH...", options.surfaces,
+               "Ready surfaces, inside out: INNER OUTER SKIN (INNER alone with --meg, BRAIN "
+               "INNER OUTER "
+               "SKIN with --layers 4); "
+               "checked, mended where need be, and kept as they are where not");
+    declareInputCoordinates(input, options.inputCoordinates,
+                            "the surfaces of --surfaces or --pial; given once for each, that of "
+                            "each");
+    input.text("--volume", "IMG", options.volume,
+               "With --surfaces: the image they belong to, for tkRAS and voxel coordinates");
+    declareReadOptions(app, options.read, kInput);
+}
+
+void declareHead(CLI::App& app, BemOptions& options) {
+    const OptionGroup group(app, kHead);
+    BoundaryOptions& head = options.model.boundaries;
+    const auto length = [&](const char* name, double& target, double most, const char* help) {
+        group.number(name, "MM", target, {.least = 0, .most = most, .unit = "mm"}, help);
+    };
+    group.value(
+        "--layers", "1|3|4",
+        [&head](const std::string& text) {
+            const std::size_t choice = parseChoice("--layers", text, {"1", "3", "4"});
+            head.withBrain = choice == 2;
+            if (choice == 0) head.innerSkullOnly = true;
+        },
+        "3 (default): inner skull, outer skull, skin; 4: the brain within the inner skull as "
+        "well, CSF between them; 1: as --meg");
+    group.flag("--meg", head.innerSkullOnly, "The inner skull alone");
+    group.value(
+        "--min-gap", "MM[,MM[,MM]]",
+        [&head](const std::string& text) {
+            const std::vector<double> gaps = numbers("--min-gap", text, ',', 1, 3,
+                                                     "one to three numbers of mm: SKULL,SCALP,CSF");
+            head.minSkullMm = gaps.front();
+            head.minScalpMm = gaps.size() > 1 ? gaps[1] : gaps.front();
+            if (gaps.size() > 2) head.minCsfMm = gaps[2];
+            constexpr double kLeast = CheckRules::kDefaultMinGapMm, kMost = 20;
+            const auto [least, most] = std::minmax_element(gaps.begin(), gaps.end());
+            if (!(*least >= kLeast) || !(*most <= kMost)) {
+                throw UsageError("--min-gap " + text + ": must be " + formatNumber(kLeast) +
+                                 " mm or more, as adaptiso-check wants it, and at most " +
+                                 formatNumber(kMost));
+            }
+        },
+        "Least thickness of skull, scalp and (with --layers 4) CSF, guaranteed (default: 2,2,1)");
+    length("--csf", head.csfMm, 20, "T1: from the brain mask to the inner skull (default: 2)");
+    length("--skull", head.skullMm, 200,
+           "T1: thickness of the skull where the image does not show it (default: 6)");
+    length("--max-skull", head.maxSkullMm, 200,
+           "Bone farther than this from the inner skull (face, neck) counts as scalp (default: "
+           "20)");
+    group.number("--skull-hu", "HU", head.skullHu, {.unit = "HU"},
+                 "CT: isovalue of bone (default: 300)");
+    group.number("--skin-hu", "HU", head.skinHu, {.unit = "HU"},
+                 "CT: isovalue of skin (default: -300)");
+    length("--closing", head.closingMm, 30,
+           "Gaps and canals narrower than twice this are closed (default: 10)");
+    length("--sulci", head.sulciMm, 30,
+           "Sulci of the brain's own surface narrower than twice this are closed (default: 3)");
+    length("--smoothing", head.smoothingMm, 10,
+           "Standard deviation of the Gaussian that boundaries are smoothed with (default: 1.5)");
+    length("--cut-necks", head.cutNecksMm, 20,
+           "Cut off what of the inner skull a ball of this radius can't enter and that reaches "
+           "more than 10 mm, as leaks down a foramen do (default: 8; 0: cut nothing)");
+    length("--voxel", head.stepMm, 5,
+           "Side of the voxels that the head is worked on (default: the image's own if they are "
+           "cubes of 0.7 to 1.5 mm, else 1)");
+}
+
+void declareSurfaces(CLI::App& app, BemOptions& options) {
+    const OptionGroup mesh(app, kMesh);
+    constexpr std::int64_t kMostVertices = 200'000;
+    mesh.values(
+        "--vertices", "N[,N,N]",
+        [&options](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) {
+                for (const std::string& count : parts(text, ',')) {
+                    options.model.vertices.push_back(
+                        parseCount("--vertices", count, 42, kMostVertices));
+                }
+            }
+        },
+        "Vertices of each surface, evenly spread: 642, 1281, 2562 or any number (default: 2562; "
+        "with --layers 4 by the layers' thickness, 10,000 in all at most); or one number for each "
+        "surface, inside out: N,N,N");
+    mesh.count("--most-vertices", options.model.mostVertices, 168, 4 * kMostVertices,
+               "With --layers 4, without --vertices and --edge-length: at most N vertices in all "
+               "(default: 10000)");
+    mesh.value(
+        "--edge-length", "MIN:MAX",
+        [&options](const std::string& text) {
+            const std::vector<double> range =
+                numbers("--edge-length", text, ':', 2, 2, "two lengths in mm: MIN:MAX");
+            if (!(range[0] > 0) || !(range[0] <= range[1])) {
+                throw UsageError("--edge-length " + text + ": must be 0 < MIN <= MAX");
+            }
+            options.model.edgeLengthMm = EdgeLengthRange{range[0], range[1]};
+        },
+        "Adaptive: edges of MIN mm where a surface bends or another is near, up to MAX mm; with "
+        "--vertices lengths are scaled to reach that number");
+    mesh.value(
+        "--conductivity", "BRAIN,[CSF,]SKULL,SCALP",
+        [&options](const std::string& text) {
+            const std::vector<double> values =
+                numbers("--conductivity", text, ',', 3, 4,
+                        "three or four numbers: BRAIN,[CSF,]SKULL,SCALP in S/m");
+            ConductivityModel& sigma = options.model.conductivities;
+            sigma.brain = values.front();
+            options.namesCsf = values.size() == 4;
+            if (options.namesCsf) sigma.csf = values[1];
+            sigma.skull = values[values.size() - 2];
+            sigma.scalp = values.back();
+            try {
+                checkConductivities(options.model.conductivities);
+            } catch (const InvalidInput& error) {
+                throw UsageError("--conductivity " + text + ": " + error.what());
+            }
+        },
+        "Conductivities in S/m (default: 0.3,0.006,0.3; with --layers 4: 0.3,1.79,0.006,0.3)");
+}
+
+void declareOutput(CLI::App& app, BemOptions& options) {
+    const OptionGroup output(app, kOutput);
+    output.text("-o,--output", "DIR", options.output,
+                "The folder to make; it holds the whole model or, when none can be guaranteed, "
+                "report.json alone");
+    output.flag("--force", options.mayReplace,
+                "Replace a folder that this program made, and the subject's surfaces");
+    output.text("--subjects-dir", "DIR", options.subjectsDir,
+                "FreeSurfer's SUBJECTS_DIR: put the .surf files into SUBJECT/bem as well");
+    output.text("--subject", "NAME", options.subject, "The subject's folder in --subjects-dir");
+    output.choice<OpenMeegUnit>(
+        "--units", options.files.unit,
+        {{"mm", OpenMeegUnit::Millimetres}, {"m", OpenMeegUnit::Metres}},
+        "Unit of OpenMEEG's .tri files: mm (default) or m (potentials in volts)");
+    declareCoordinates(output, options.files.frame,
+                       "Frame of all files but FreeSurfer's, which are in tkRAS: scanner RAS "
+                       "(default), scanner LPS, or tkRAS",
+                       {"ras", "lps", "tkras"});
+    output.flag("--dry-run", options.isDryRun,
+                "Do and check everything, write nothing but the reports asked for by name");
+    declareReportOptions(app, options.report, kOutput);
+}
+
+/// "X,Y,Z" in scanner RAS mm
+void addPoint(CLI::App& app, const std::string& name, std::optional<Vec3>& target,
+              const std::string& description) {
+    const OptionGroup group(app, kElectrodes);
+    group.value(
+        name, "X,Y,Z",
+        [&target, name](const std::string& text) {
+            const std::vector<double> p =
+                numbers(name, text, ',', 3, 3, "three numbers of mm: X,Y,Z");
+            target = Vec3{p[0], p[1], p[2]};
+        },
+        description);
+}
+
+void declareElectrodes(CLI::App& app, BemOptions& options) {
+    const OptionGroup group(app, kElectrodes);
+    group.text("--electrodes", "FILE", options.electrodes,
+               "Electrodes, moved onto the skin and written back: BIDS _electrodes.tsv (with its "
+               "_coordsystem.json), ASA .elc, BESA .sfp, FIFF .fif");
+    group.choice<CoordinateFrame>(
+        "--electrodes-in", options.model.electrodes.frame,
+        {{"ras", CoordinateFrame::Ras},
+         {"lps", CoordinateFrame::Lps},
+         {"tkras", CoordinateFrame::TkRas}},
+        "Their frame (default: what the file says; else by its nasion and ears; else scanner "
+        "RAS)");
+    group.choice<PositionSystem>("--montage", options.model.electrodes.positions,
+                                 {{"10-20", PositionSystem::TenTwenty},
+                                  {"10-10", PositionSystem::TenTen},
+                                  {"10-05", PositionSystem::TenFive}},
+                                 "Electrode positions of the 10-20, 10-10 or 10-05 system, "
+                                 "computed on the skin from nasion and ears");
+    addPoint(app, "--nasion", options.nasion,
+             "Nasion, scanner RAS mm (default: the electrodes' file's, else guessed)");
+    addPoint(app, "--left-ear", options.leftEar, "Left preauricular point, the same");
+    addPoint(app, "--right-ear", options.rightEar, "Right preauricular point, the same");
+}
+
+void declareToolboxes(CLI::App& app, BemOptions& options) {
+    const OptionGroup group(app, kToolboxes);
+    BemFileOptions& files = options.files;
+    const auto addFlag = [&](const char* name, bool& target, const char* description) {
+        group.flag(name, target, description);
+    };
+    addFlag("--fif", files.writesFif,
+            "MNE: bem.fif (all surfaces), head-dense.fif and head-sparse.fif (the skin, for "
+            "coregistration); with --subject in the subject's folder too");
+    addFlag("--fieldtrip", files.writesFieldTrip,
+            "FieldTrip: headmodel.mat (bnd, cond, tissue, unit, coordsys)");
+    addFlag("--brainstorm", files.writesBrainstorm,
+            "Brainstorm: tess_innerskull_bem.mat, ... (scanner RAS, metres)");
+    addFlag("--simnibs", files.writesSimNibs, "SimNIBS: csf.stl, bone.stl, skin.stl (scanner RAS)");
+    addFlag("--besa", files.writesBesa,
+            "BESA: head.sfp (landmarks, electrodes, points of the skin)");
+    addFlag("--gifti", files.writesGifti, "Viewers: .gii");
+    addFlag("--vtp", files.writesVtp, "Viewers: .vtp");
+}
+
+/// Checks options against each other.
+void checkCombinations(const BemOptions& options) {
+    const int sources =
+        static_cast<int>(!options.t1.empty()) + static_cast<int>(!options.labels.empty()) +
+        static_cast<int>(!options.probabilities.empty()) + static_cast<int>(!options.ct.empty()) +
+        static_cast<int>(!options.surfaces.empty());
+    const auto require = [](bool isGood, const std::string& message) {
+        if (!isGood) throw UsageError(message);
+    };
+    require(sources == 1,
+            "one of --t1, --labels, --probabilities, --ct, --surfaces must be given, and one only");
+    require(options.brainMask.empty() || !options.t1.empty(), "--brain-mask needs --t1");
+    require(options.aseg.empty() || !options.t1.empty(), "--aseg needs --t1");
+    const BoundaryOptions& layers = options.model.boundaries;
+    require(options.pial.empty() || (!options.t1.empty() && layers.withBrain),
+            "--pial needs --t1 and --layers 4");
+    require(!layers.withBrain || !layers.innerSkullOnly, "--layers 4 and --meg exclude each other");
+    require(
+        !layers.withBrain || options.ct.empty(),
+        "--layers 4 does not go with --ct: a CT does not show where the brain ends and CSF begins");
+    require(layers.withBrain || !options.namesCsf, "--conductivity: four numbers need --layers 4");
+    require(!layers.withBrain || options.labels.empty() || !options.tissues.csf.empty(),
+            "--layers 4 needs --tissue csf=... as well");
+    require(options.volume.empty() || !options.surfaces.empty(), "--volume needs --surfaces");
+    require(options.inputCoordinates.empty() || !options.surfaces.empty() || !options.pial.empty(),
+            "--input-coordinates needs --surfaces or --pial");
+    checkInputCoordinates(options.inputCoordinates, options.surfaces.size() + options.pial.size());
+    const bool namesTissues = !options.tissues.brain.empty() || options.tissues.othersAreBrain;
+    require(options.labels.empty() || namesTissues,
+            "--labels needs --preset, or --tissue brain=..., skull=... and scalp=...");
+    require(options.labels.empty() || options.model.boundaries.innerSkullOnly ||
+                (!options.tissues.skull.empty() &&
+                 (!options.tissues.scalp.empty() || !options.headMask.empty())),
+            "--labels needs --tissue skull=... and scalp=... as well (or --head-mask, or --meg)");
+    require(options.headMask.empty() || !options.labels.empty(), "--head-mask needs --labels");
+    require(
+        !options.labels.empty() || (!namesTissues && options.tissues.csf.empty() &&
+                                    options.tissues.skull.empty() && options.tissues.scalp.empty()),
+        "--tissue and --preset need --labels");
+    require(
+        options.surfaces.empty() || options.surfaces.size() == options.model.surfaceCount(),
+        "--surfaces needs " + std::to_string(options.model.surfaceCount()) + " files, inside out");
+    require(options.model.vertices.size() <= 1 ||
+                options.model.vertices.size() == options.model.surfaceCount(),
+            "--vertices: must be one number, or " + std::to_string(options.model.surfaceCount()) +
+                " with commas between them");
+    const BoundaryOptions& head = options.model.boundaries;
+    require(head.maxSkullMm > head.minSkullMm, "--max-skull must be more than --min-gap");
+    require(
+        options.t1.empty() || (head.skullMm >= head.minSkullMm && head.skullMm <= head.maxSkullMm),
+        "--skull must lie between --min-gap and --max-skull");
+    constexpr double kAirHu = -1000, kSoftTissueHu = 40;
+    require(options.ct.empty() || (head.skinHu > kAirHu && head.skinHu < head.skullHu &&
+                                   head.skullHu > kSoftTissueHu),
+            "--skin-hu must lie above air (-1000 HU) and below --skull-hu, and that above soft "
+            "tissue (40 HU)");
+    const bool namesLandmarks = options.nasion || options.leftEar || options.rightEar;
+    const bool wantsElectrodes =
+        !options.electrodes.empty() || options.model.electrodes.positions || namesLandmarks;
+    require(options.electrodes.empty() || !options.model.electrodes.positions,
+            "--electrodes and --montage exclude each other");
+    require(!namesLandmarks || (options.nasion && options.leftEar && options.rightEar),
+            "--nasion, --left-ear and --right-ear need each other");
+    require(!wantsElectrodes || options.model.hasSkin(),
+            "electrodes and landmarks need a skin: not with --meg");
+    require(!options.model.electrodes.frame || !options.electrodes.empty(),
+            "--electrodes-in needs --electrodes");
+    require(!options.files.writesBesa || options.model.hasSkin(),
+            "--besa needs a skin: not with --meg");
+    require(options.isDryRun || !options.output.empty(), "-o DIR is needed (or --dry-run)");
+    require(options.subject.empty() == options.subjectsDir.empty(),
+            "--subjects-dir and --subject need each other");
+    require(options.subject.find('/') == std::string::npos && options.subject != ".." &&
+                options.subject != ".",
+            "--subject " + options.subject + ": must be the name of a folder");
+}
+
+constexpr const char* kFooter = R"(Examples:
+  adaptiso-bem --t1 T1.nii.gz --brain-mask brain.nii.gz -o model
+      FreeSurfer and OpenMEEG files, README.md and report.json in the folder model
+  adaptiso-bem --t1 T1.mgz --subjects-dir subjects --subject anna -o model
+  adaptiso-bem --t1 T1.mgz --aseg aseg.mgz --pial lh.pial rh.pial --layers 4 -o model
+  adaptiso-bem --labels final_tissues.nii.gz --preset charm --vertices 642 -o model
+  adaptiso-bem --probabilities c1.nii c2.nii c3.nii c4.nii c5.nii -o model
+  adaptiso-bem --ct ct.nii.gz --meg -o model --report model.html
+  adaptiso-bem --surfaces inner.stl outer.stl skin.stl --min-gap 3,2 -o model
+  adaptiso-bem --labels seg.nii.gz --preset charm --layers 4 --tetrahedra tetgen -o model
+  adaptiso-bem --t1 T1.nii.gz --electrodes sub-1_electrodes.tsv -o model
+  adaptiso-bem --t1 T1.nii.gz --montage 10-10 --nasion 0,85,-35 --left-ear=-80,-28,-41 \
+      --right-ear 80,-28,-41 -o model
+  adaptiso-bem --t1 T1.nii.gz --fif --fieldtrip --brainstorm -o model
+
+Exit codes: 0 done, 1 no model could be guaranteed, or a warning with --strict
+(the folder holds report.json alone), 2 wrong usage, 3 bad input (or no memory
+or disk left), 4 internal error. When it is above 1, nothing was written.)";
+
+Program bemProgram() {
+    return {"adaptiso-bem",
+            "Makes the nested surfaces of a boundary element head model (EEG: inner skull, outer "
+            "skull,\nouter skin, or the brain within them as well; MEG: inner skull) for MNE, "
+            "FreeSurfer,\nOpenMEEG, FieldTrip, Brainstorm, SimNIBS and BESA; electrodes and "
+            "tetrahedra for them.",
+            kFooter};
+}
+
+void declareBemOptions(CLI::App& app, BemOptions& options) {
+    declareInput(app, options);
+    declareHead(app, options);
+    declareSurfaces(app, options);
+    declareOutput(app, options);
+    declareElectrodes(app, options);
+    declareMesherOptions(app, options.tetrahedra,
+                         "head.msh (SimNIBS, DUNEuro), head-4.1.msh, head.vtu, head.dgf and "
+                         "head.geo (DUNEuro) with the conductivities",
+                         kTetrahedra);
+    declareToolboxes(app, options);
+    declareCommonOptions(app, options.common, "of the model only the report is then written");
+    afterParsing(app, [&options] {
+        checkCombinations(options);
+        for (const CoordinateFrame frame : options.inputCoordinates) {
+            options.model.inputCoordinates.emplace_back(frameWord(frame));
+        }
+    });
+}
+
+}  // namespace
+}  // namespace adaptiso::bem
 
 int main(int argc, char** argv) {
     // Solids are blocks of tens of MB: mapped each, they go back to the system when freed. glibc
     // would raise its threshold to their size and keep them: 10 % more memory at most.
     constexpr int kMappedBytes = 4 << 20;
     mallopt(M_MMAP_THRESHOLD, kMappedBytes);
-    return adaptiso::runApp(argc, argv, adaptiso::bemProgram(), adaptiso::declareBemOptions,
-                            adaptiso::runBem);
+    return adaptiso::runApp(argc, argv, adaptiso::bem::bemProgram(),
+                            adaptiso::bem::declareBemOptions, adaptiso::bem::runBem);
 }

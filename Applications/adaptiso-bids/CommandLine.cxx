@@ -90,26 +90,20 @@ void declareWhat(CLI::App& app, BidsOptions& options) {
 }
 
 void declareRunning(CLI::App& app, BidsOptions& options) {
-    addNumber(app, "--outlier", options.outlierLimit, {.least = 0, .isAbove = true},
-              "Mark values farther than Z robust standard deviations (1.4826 times the median "
-              "distance from the median) from the cohort's median (default: 3.5)")
-        ->type_name("Z")
-        ->group(kGroupLevel);
-    addNumber(app, "--outlier-percent", options.outlierPercent, {.least = 0, .most = 100},
-              "Mark none that lie nearer to the median than P per cent of it (default: 1)")
-        ->type_name("P")
-        ->group(kGroupLevel);
+    const OptionGroup group(app, kGroupLevel);
+    group.number("--outlier", "Z", options.outlierLimit, {.least = 0, .isAbove = true},
+                 "Mark values farther than Z robust standard deviations (1.4826 times the median "
+                 "distance from the median) from the cohort's median (default: 3.5)");
+    group.number("--outlier-percent", "P", options.outlierPercent, {.least = 0, .most = 100},
+                 "Mark none that lie nearer to the median than P per cent of it (default: 1)");
     app.add_flag("--force", options.force,
                  "Replace a table that was made with options which are neither these nor the "
                  "participant level's")
         ->group(kGroupLevel);
-    addCount(app, "--jobs", options.jobs, 1, 1024,
-             "Participant level: work on N scans at a time (default: 1)")
-        ->group(kRunning);
+    OptionGroup(app, kRunning)
+        .count("--jobs", options.jobs, 1, 1024,
+               "Participant level: work on N scans at a time (default: 1)");
     declareCommonOptions(app, options.common, "what it would have written is not there then");
-    app.set_version_flag(
-        "-v,--version", [&app] { return versionText(app.get_name()); },
-        "Print the version and exit");
 }
 
 void checkCombinations(BidsOptions& options) {

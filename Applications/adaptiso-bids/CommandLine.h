@@ -1,6 +1,5 @@
 #pragma once
 
-#include "Common/CliNames.h"
 #include "Common/RunApp.h"
 #include "Pipeline.h"
 

@@ -8,13 +8,11 @@
 #include "Cohort.h"
 #include "Common/AtomicOutput.h"
 #include "Common/Bids.h"
-#include "Common/ExitCodes.h"
-#include "Common/Numbers.h"
-#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/Verdict.h"
 #include "Levels.h"
+#include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
 namespace {

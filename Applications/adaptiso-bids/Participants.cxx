@@ -3,9 +3,8 @@
 #include <string>
 
 #include "Common/AtomicOutput.h"
-#include "Common/ExitCodes.h"
-#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
+#include "Common/Verdict.h"
 #include "Levels.h"
 #include "Products.h"
 

@@ -5,12 +5,12 @@
 
 #include "Common/BatchPlan.h"
 #include "Common/Bids.h"
-#include "Common/Numbers.h"
 #include "Common/OptionValues.h"
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
 #include "Dataset.h"
 #include "Siblings.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/MeshIO/Formats.h"
 
 namespace adaptiso {

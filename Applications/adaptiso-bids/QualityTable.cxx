@@ -6,8 +6,8 @@
 #include <string_view>
 #include <utility>
 
-#include "Common/Numbers.h"
 #include "Outliers.h"
+#include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
 namespace {

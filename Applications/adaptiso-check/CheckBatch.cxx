@@ -1,9 +1,8 @@
-#include "CheckBatch.h"
-
 #include "Common/Batch.h"
 #include "Common/Bids.h"
+#include "Run.h"
 
-namespace adaptiso {
+namespace adaptiso::checker {
 namespace {
 
 /// The checks that a surface, or a pair of them, failed.
@@ -52,4 +51,4 @@ int runCheckBatch(const CheckOptions& options) {
     return runBatch(program, options.batch, options.common);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::checker

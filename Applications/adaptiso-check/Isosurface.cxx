@@ -1,14 +1,13 @@
-#include "Isosurface.h"
-
 #include <algorithm>
 #include <cmath>
 
-#include "Common/Numbers.h"
+#include "Run.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
-namespace adaptiso {
+namespace adaptiso::checker {
 
 Isosurface extractIsosurface(const VolumeView& volume, double isovalue) {
     Isosurface isosurface;
@@ -41,4 +40,4 @@ std::optional<DistanceStatistics> isosurfaceDeviation(const TriangleMesh& mesh,
     return surfaceDistance(finite, isosurface.mesh, {.isSymmetric = false}).aToB;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::checker

@@ -1,34 +1,23 @@
 #include "Pipeline.h"
 
 #include <algorithm>
-#include <iostream>
 #include <new>
-#include <span>
 #include <utility>
 
-#include "CheckBatch.h"
-#include "CheckRun.h"
-#include "Common/AtomicOutput.h"
 #include "Common/CommonFrame.h"
-#include "Common/ExitCodes.h"
 #include "Common/ImageOptions.h"
 #include "Common/Json.h"
 #include "Common/Naming.h"
-#include "Common/Numbers.h"
 #include "Common/PreprocessingOptions.h"
-#include "Common/Progress.h"
-#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
-#include "Isosurface.h"
-#include "JsonReport.h"
-#include "ReportPage.h"
+#include "Run.h"
 #include "SelfTest.h"
-#include "TextReport.h"
 #include "adaptiso/Core/FreeMemory.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
-namespace adaptiso {
+namespace adaptiso::checker {
 namespace {
 
 namespace fs = std::filesystem;
@@ -43,24 +32,18 @@ constexpr const char* kNesting = "nesting";
 constexpr const char* kIsosurface = "isosurface";
 constexpr const char* kPlausibility = "plausibility";
 
-constexpr const char* kReport = "report";
-
 void checkOutputs(const CheckOptions& options) {
     std::vector<fs::path> inputs = options.files;
-    if (!options.volume.empty()) inputs.push_back(options.volume);
-    checkReportOutputs(options.report, inputs);
-    if (!options.common.wantsJson() || options.common.wantsJsonOnStdout()) return;
-    for (const fs::path& input : inputs) checkNotInput(options.common.json, input);
-    checkOutput(options.common.json);
+    inputs.push_back(options.volume);
+    OutputPlan(inputs).check(options.common, options.report);
 }
 
-/// The whole run: what it works with, and what it finds.
+/// Fills a run.
 class Checker {
 public:
-    Checker(const CheckOptions& options, ProgressLine& progress)
-        : options_(options), progress_(progress), run_(options) {}
+    explicit Checker(CheckRun& run) : options_(run.options), run_(run) {}
 
-    CheckRun check() {
+    void check() {
         readImage();
         for (const fs::path& file : options_.files) {
             checkFile(file);
@@ -77,10 +60,9 @@ public:
             measureDeviations();
             keepForReport();
         }
-        return std::move(run_);
     }
 
-    /// What the report shows; nothing unless one is wanted. After check().
+    /// Surfaces for the report, filled by check(); empty unless a report is wanted.
     ShownSurfaces& shown() { return shown_; }
 
 private:
@@ -89,22 +71,16 @@ private:
         NamedMesh mesh;
     };
 
-    template <class Work>
-    void stage(const char* name, Work&& work) {
-        progress_.show(name);
-        run_.timer.time(name, std::forward<Work>(work));
-    }
-
     void readImage() {
         if (options_.volume.empty()) return;
         std::optional<ReadVolume> read;
-        stage(kRead, [&] { read = adaptiso::readImage(options_.volume, options_.read); });
+        run_.stage(kRead, [&] { read = adaptiso::readImage(options_.volume, options_.read); });
         image_ = read->volume.view().geometry();
         run_.volume = VolumeSummary{read->format, *image_};
         if (options_.report.isWanted()) shown_.image = *read;
         warnOfVolume(read->warnings);
         if (!options_.isovalue) return;
-        stage(kExtract, [&] {
+        run_.stage(kExtract, [&] {
             const Preprocessed prepared =
                 preprocessImage(std::move(read->volume), options_.preprocessing, options_.volume);
             warnOfVolume(prepared.warnings);
@@ -128,15 +104,15 @@ private:
         SurfaceRun& surface = run_.surfaces.back();
         Loaded loaded{number, {file, {}}};
         try {
-            stage(kRead, [&] { readSurface(loaded.mesh, surface); });
+            run_.stage(kRead, [&] { readSurface(loaded.mesh, surface); });
         } catch (const Error& error) {
-            tellUnread(surface, error.what());
+            addUnread(surface, error.what());
             return;
         } catch (const std::bad_alloc&) {
-            tellUnread(surface, file.string() + ": too large for this machine's memory");
+            addUnread(surface, file.string() + ": too large for this machine's memory");
             return;
         }
-        stage(kCheck, [&] {
+        run_.stage(kCheck, [&] {
             surface.facts = measureSurface(
                 loaded.mesh.file.mesh, sizeLimitsOf(options_.profileInUse()), options_.maxPairs);
             surface.checks = judgeSurface(surface.facts, options_);
@@ -167,9 +143,9 @@ private:
         surface.points = mesh.file.frame;
     }
 
-    void tellUnread(SurfaceRun& surface, const std::string& message) {
+    void addUnread(SurfaceRun& surface, const std::string& message) {
         surface.error = message;
-        progress_.clear();
+        run_.progress.clear();
         printError(kProgram, message);
     }
 
@@ -198,7 +174,7 @@ private:
 
     void checkNested() {
         if (meshes_.size() < 2) return;
-        stage(kNesting, [&] {
+        run_.stage(kNesting, [&] {
             run_.nestingFrame = meshes_.front().mesh.file.frame;
             if (!areInOneFrame()) {
                 const CommonFrame common = moveToOneFrame();
@@ -225,7 +201,7 @@ private:
     /// Of a boundary of a head model, or of all of them.
     void askWhatIsUsual() {
         if (options_.profileInUse() != Profile::Bem || meshes_.empty()) return;
-        stage(kPlausibility, [&] {
+        run_.stage(kPlausibility, [&] {
             std::vector<NamedMesh> meshes;
             for (const Loaded& loaded : meshes_) meshes.push_back(loaded.mesh);
             const CommonFrame common = bringToOneFrame(meshes, image_);
@@ -251,7 +227,7 @@ private:
 
     void measureDeviations() {
         if (!isosurface_ || meshes_.empty()) return;
-        stage(kIsosurface, [&] {
+        run_.stage(kIsosurface, [&] {
             moveToOneFrame();
             for (const Loaded& loaded : meshes_) {
                 SurfaceRun& surface = run_.surfaces[loaded.number];
@@ -281,15 +257,14 @@ private:
     }
 
     const CheckOptions& options_;
-    ProgressLine& progress_;
-    CheckRun run_;
+    CheckRun& run_;
     ShownSurfaces shown_;
     std::optional<ImageGeometry> image_;
     std::optional<Isosurface> isosurface_;
     std::vector<Loaded> meshes_;
 };
 
-void tellFailed(const std::string& subject, const std::vector<Check>& checks) {
+void printFailed(const std::string& subject, const std::vector<Check>& checks) {
     for (const Check& check : checks) {
         if (!check.breaksProfile()) continue;
         printError(kProgram, "check failed: " + subject + ": " + std::string(check.name) +
@@ -297,29 +272,23 @@ void tellFailed(const std::string& subject, const std::vector<Check>& checks) {
     }
 }
 
-/// Where no table is printed, what failed is told on stderr.
-void tellFailed(const CheckRun& run) {
+/// Prints failed checks on stderr, for runs that print no table.
+void printFailed(const CheckRun& run) {
     for (const SurfaceRun& surface : run.surfaces) {
-        tellFailed(surface.file.string(), surface.checks);
+        printFailed(surface.file.string(), surface.checks);
     }
     for (const NestingRun& pair : run.nesting) {
-        tellFailed(run.surfaces[pair.inner].file.string() + " in " +
-                       run.surfaces[pair.outer].file.string(),
-                   pair.checks);
+        printFailed(run.surfaces[pair.inner].file.string() + " in " +
+                        run.surfaces[pair.outer].file.string(),
+                    pair.checks);
     }
 }
 
-Verdict verdictOf(const CheckRun& run, const std::string& reportFailure) {
-    Verdict verdict{run.hasPassed() ? kExitOk : kExitCheckFailed};
+Verdict verdictOf(const CheckRun& run) {
     const auto unread = std::ranges::find_if(
         run.surfaces, [](const SurfaceRun& surface) { return !surface.error.empty(); });
-    if (unread != run.surfaces.end()) {
-        verdict = {kExitBadInput, unread->error};
-    } else {
-        verdict.failStrict(run.options.common, run.warnings, "");
-    }
-    verdict.failReport(reportFailure);
-    return verdict;
+    if (unread != run.surfaces.end()) return {kExitBadInput, unread->error};
+    return {run.hasPassed() ? kExitOk : kExitCheckFailed};
 }
 
 }  // namespace
@@ -340,33 +309,19 @@ bool CheckRun::hasPassed() const {
 int runCheck(const CheckOptions& options) {
     if (options.isSelfTest) return runSelfTest(options);
     if (options.batch.isAsked()) return runCheckBatch(options);
-    const ThreadLimit threads(options.common);
-    ProgressLine progress(options.common.isQuiet);
+    CheckRun run(options);
     checkOutputs(options);
-    Checker checker(options, progress);
-    CheckRun run = checker.check();
+    Checker checker(run);
+    checker.check();
 
-    ReportResult page;  // its folder goes, if empty, after what lies in it
-    std::vector<AtomicOutput> outputs;
     if (options.report.isWanted()) {
-        progress.show(kReport);
-        page = run.timer.time(kReport, [&] {
-            return writeReport([&] { return makeReport(run, checker.shown()); }, kProgram,
-                               options.report, outputs);
-        });
+        run.writePage([&] { return makeReport(run, checker.shown()); });
     }
-    run.verdict = verdictOf(run, page.failure);
-    const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
-    if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
-        outputs.emplace_back(options.common.json).writeText(json);
-    }
-    progress.clear();
-    printWarnings(kProgram, options.common, run.warnings);
-    printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
-    AtomicOutput::commit(outputs);
-    if (options.common.isQuiet || options.common.wantsJsonOnStdout()) tellFailed(run);
-    if (run.hasUnreadable()) run.verdict.error.clear();  // told above
-    return printVerdict(kProgram, run.verdict, "the checks are done");
+    run.verdict = verdictOf(run);
+    run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
+    if (options.common.isQuiet || options.common.wantsJsonOnStdout()) printFailed(run);
+    if (run.hasUnreadable()) run.verdict.error.clear();  // printed above
+    return run.end("the checks are done");
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::checker

@@ -13,9 +13,9 @@
 #include "adaptiso/Preprocessing/Preprocess.h"
 #include "adaptiso/SurfaceChecks/Checks.h"
 
-namespace adaptiso {
+namespace adaptiso::checker {
 
-/// What adaptiso-check is asked to do.
+/// Options of adaptiso-check.
 struct CheckOptions : CheckRules {
     std::vector<std::filesystem::path> files;       ///< one or more
     std::vector<CoordinateFrame> inputCoordinates;  ///< of all, or of each; empty: as they say
@@ -38,4 +38,4 @@ struct CheckOptions : CheckRules {
 /// \throws InvalidInput  no surface at the isovalue, or frames that can't be brought together
 int runCheck(const CheckOptions& options);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::checker

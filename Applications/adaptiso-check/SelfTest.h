@@ -1,8 +1,22 @@
 #pragma once
 
-#include "Pipeline.h"
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <iosfwd>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
-namespace adaptiso {
+#include "Common/ProgramRun.h"
+#include "Pipeline.h"
+#include "Support/AnalyticVolumes.h"
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Report/Report.h"
+
+namespace adaptiso::checker {
 
 /// Runs phantoms with known answers through the whole chain and prints, for each quantity, what was
 /// expected, measured and allowed, with machine, version, date and a line to sign. --json and
@@ -11,4 +25,105 @@ namespace adaptiso {
 /// \throws FileError  nothing can be written
 int runSelfTest(const CheckOptions& options);
 
-}  // namespace adaptiso
+namespace selftest {
+
+/// One thing with a known answer, and what came out.
+struct Measurement {
+    std::string subject;   ///< "torus, adaptive"
+    std::string quantity;  ///< "volume"
+    std::string unit;      ///< "mm3"; empty for counts
+    double expected = 0;
+    double tolerance = 0;  ///< 0 for counts
+    double measured = 0;
+    int digits = 0;        ///< decimals to show
+    std::string error{};   ///< what kept it from being measured; empty: nothing
+    bool isYesNo = false;  ///< 1 is yes, 0 is no
+
+    /// Never of what is not a number.
+    bool hasPassed() const { return error.empty() && std::abs(measured - expected) <= tolerance; }
+};
+
+/// All measurements, and surfaces for the page.
+struct SelfTest {
+    std::vector<Measurement> measurements;
+    struct Shown {
+        std::string name;
+        TriangleMesh mesh;  ///< LPS mm
+    };
+    std::vector<Shown> shown;
+
+    bool hasPassed() const;
+    std::size_t failures() const;
+};
+
+/// Makes every phantom, takes it through image file, index, extraction, mesh file and checks as the
+/// programs do, and measures. What goes wrong on the way is a measurement that failed, not an
+/// exception. Files are in a folder of the system's temporary files that goes at the end.
+///
+/// Solids (ball, torus, nested spheres, two bearing balls), each with the methods adaptive and mc;
+/// the same surface by one thread and by all; each mesh format written and read back; the distance
+/// between two surfaces; a defect for every check; files that have to be refused.
+/// \param progress  called with the name of the next case
+/// \throws FileError  there is nowhere to write
+/// Cost: about 3 s on two cores, 200 MB.
+SelfTest runSelfTestCases(const std::function<void(const std::string&)>& progress);
+
+/// A solid whose size is known on paper, and what its tolerances follow from.
+struct Solid {
+    testing::Shape shape;
+    Vec3 centreMm;                ///< LPS
+    double smallestRadiusMm = 0;  ///< of its surface's curvature
+};
+
+Solid ball(const Vec3& centreMm, double radiusMm);
+/// Ring about an axis along z. \pre majorRadiusMm > minorRadiusMm
+Solid ring(const Vec3& centreMm, double majorRadiusMm, double minorRadiusMm);
+
+/// An image in memory, int16 as a CT has it.
+struct Phantom {
+    ImageGeometry geometry;
+    std::vector<std::int16_t> samples;  ///< x fastest
+};
+
+/// testing::obliqueGeometry() with the middle of the image at `centreMm`.
+ImageGeometry obliqueGeometry(const Index3& size, const Vec3& spacingMm, const Vec3& centreMm);
+
+/// Samples of distance: kSurface on the solid's surface, kPerMm more for each mm inwards.
+inline constexpr double kSurface = 1000, kPerMm = 100;
+Phantom distancePhantom(const Solid& solid, const ImageGeometry& geometry);
+
+/// Two steel balls of this diameter (mm) in air as a CT sees them: each sample is the mean over its
+/// voxel, with noise of 20 HU; -1000 in air, 3000 in the balls. 0.5 mm voxels.
+Phantom bearingBalls(double diameterMm);
+inline constexpr double kBallSurface = 1000;  ///< half of a voxel is ball
+
+/// The image as an uncompressed NIfTI-1 file.
+std::string niftiFile(const Phantom& phantom);
+
+/// A mesh with one defect, and the name of the check that has to find it.
+struct PlantedDefect {
+    std::string name;
+    std::string_view key;  ///< Check::key
+    TriangleMesh mesh;
+};
+
+/// One for each check of a single surface.
+/// \param ball  closed and sound, one piece of genus 0, 60 mm wide
+/// \param ring  the same of genus 1
+std::vector<PlantedDefect> plantDefects(const TriangleMesh& ball, const TriangleMesh& ring);
+
+/// The machine, as names and values: host, processor, threads, memory, system, libraries.
+using Machine = std::vector<std::pair<std::string, std::string>>;
+Machine thisMachine();
+
+void printText(std::ostream& out, const SelfTest& test, const Machine& machine,
+               const std::string& date, const StageTimer& timer);
+
+std::string jsonText(const SelfTest& test, const Verdict& verdict, const Machine& machine,
+                     const std::string& date, const StageTimer& timer);
+
+/// The page; takes the surfaces out of `test`.
+Report reportPage(SelfTest& test, const Machine& machine);
+
+}  // namespace selftest
+}  // namespace adaptiso::checker

@@ -1,5 +1,3 @@
-#include "SelfTestCases.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -10,7 +8,8 @@
 #include "Common/ChildProcess.h"
 #include "Common/CommonOptions.h"
 #include "Common/RunApp.h"
-#include "SelfTestPhantoms.h"
+#include "SelfTest.h"
+#include "Support/Meshes.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -23,7 +22,7 @@
 #include "adaptiso/SurfaceChecks/Checks.h"
 #include "adaptiso/SurfaceChecks/SurfaceFacts.h"
 
-namespace adaptiso::selftest {
+namespace adaptiso::checker::selftest {
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,10 +58,11 @@ Vec3 centreOf(const TriangleMesh& mesh) {
 /// How far the farthest vertex, or middle of a triangle, lies from the solid's surface.
 double farthestMm(const TriangleMesh& mesh, const Solid& solid) {
     double farthest = 0;
-    for (const Vec3& p : mesh.points) farthest = std::max(farthest, std::abs(solid.depthMm(p)));
+    for (const Vec3& p : mesh.points)
+        farthest = std::max(farthest, std::abs(solid.shape.depthMm(p)));
     for (const Triangle& t : mesh.triangles) {
         const Vec3 middle = (1.0 / 3) * (mesh.points[t[0]] + mesh.points[t[1]] + mesh.points[t[2]]);
-        farthest = std::max(farthest, std::abs(solid.depthMm(middle)));
+        farthest = std::max(farthest, std::abs(solid.shape.depthMm(middle)));
     }
     return farthest;
 }
@@ -158,7 +158,7 @@ private:
         return fromFrame(file.mesh, file.frame.value_or(CoordinateFrame::Ras));
     }
 
-    /// What the programs do, from the image's file to the mesh's.
+    /// As the programs do it, from the image's file to the mesh's.
     TriangleMesh throughFiles(const Phantom& phantom, double isovalue, Method method) {
         const ReadVolume read = readVolume(writeImage(niftiFile(phantom)));
         return writtenAndRead(extract(read.volume, isovalue, method), ".vtp");
@@ -179,10 +179,11 @@ private:
     void addSolid(const Solid& solid, const ImageGeometry& geometry, Method method,
                   const TriangleMesh& mesh) {
         const double allowed = allowedMm(solid, geometry, method);
-        addSound(mesh, solid.pieces, solid.genus);
+        addSound(mesh, solid.shape.components, solid.shape.genus);
         add("farthest from the solid", "mm", 0, allowed, farthestMm(mesh, solid), 3);
         // a layer as thick as the surface may be off
-        add("volume", "mm3", solid.volumeMm3, solid.areaMm2 * allowed, enclosedVolume(mesh), 0);
+        add("volume", "mm3", *solid.shape.volumeMm3, *solid.shape.areaMm2 * allowed,
+            enclosedVolume(mesh), 0);
         const Vec3 centre = centreOf(mesh);
         add("centre, to the right", "mm", -solid.centreMm.x, allowed, -centre.x, 3);
         add("centre, to the front", "mm", -solid.centreMm.y, allowed, -centre.y, 3);
@@ -195,7 +196,7 @@ private:
 
     void measureBall(Method method) {
         about(named("ball of 40 mm", method), [&] {
-            const Solid solid = sphere({-12, 7, 31}, 20);
+            const Solid solid = ball({-12, 7, 31}, 20);
             const ImageGeometry geometry =
                 obliqueGeometry({54, 54, 34}, {0.9, 0.9, 1.5}, solid.centreMm);
             const TriangleMesh mesh =
@@ -206,7 +207,7 @@ private:
 
     void measureTorus(Method method) {
         about(named("torus of 40 and 16 mm", method), [&] {
-            const Solid solid = torus({25, -40, -8}, 20, 8);
+            const Solid solid = ring({25, -40, -8}, 20, 8);
             const ImageGeometry geometry =
                 obliqueGeometry({84, 84, 60}, {0.8, 0.8, 1}, solid.centreMm);
             TriangleMesh mesh = throughFiles(distancePhantom(solid, geometry), kSurface, method);
@@ -219,7 +220,7 @@ private:
     void measureNested(Method method) {
         about(named("nested spheres", method), [&] {
             constexpr double kInnerMm = 30, kOuterMm = 34;
-            const Solid solid = sphere({0, 0, 0}, kInnerMm);
+            const Solid solid = ball({0, 0, 0}, kInnerMm);
             const ImageGeometry geometry =
                 obliqueGeometry({60, 60, 60}, {1.25, 1.25, 1.25}, solid.centreMm);
             const Phantom phantom = distancePhantom(solid, geometry);
@@ -255,7 +256,7 @@ private:
 
     void compareThreads() {
         about("torus, one thread and all", [&] {
-            const Solid solid = torus({0, 0, 0}, 20, 8);
+            const Solid solid = ring({0, 0, 0}, 20, 8);
             const Phantom phantom =
                 distancePhantom(solid, obliqueGeometry({84, 84, 60}, {0.8, 0.8, 1}, {0, 0, 0}));
             const VolumeView volume(phantom.samples.data(), phantom.geometry);
@@ -275,7 +276,7 @@ private:
         return extract(VolumeView(phantom.samples.data(), phantom.geometry), kSurface,
                        Method::Adaptive, kMinAngleDeg);
     }
-    static TriangleMesh plainBall() { return faultless(sphere({0, 0, 0}, 30)); }
+    static TriangleMesh plainBall() { return faultless(ball({0, 0, 0}, 30)); }
 
     void writeAndRead() {
         const TriangleMesh ball = plainBall();
@@ -294,7 +295,7 @@ private:
 
     void findDefects() {
         const TriangleMesh ball = plainBall();
-        const TriangleMesh ring = faultless(torus({0, 0, 0}, 24, 10));
+        const TriangleMesh handle = faultless(ring({0, 0, 0}, 24, 10));
         CheckRules options;
         options.profile = Profile::Bem;
         about("ball without a defect", [&] {
@@ -304,7 +305,7 @@ private:
             addCount("checks failed", 0,
                      static_cast<double>(failedChecks(judgeSurface(facts, options))));
         });
-        for (PlantedDefect& defect : plantDefects(ball, ring)) {
+        for (PlantedDefect& defect : plantDefects(ball, handle)) {
             about("defect: " + defect.name, [&] {
                 const SurfaceFacts facts =
                     measureSurface(defect.mesh, sizeLimitsOf(Profile::Bem), options.maxPairs);
@@ -321,9 +322,10 @@ private:
         };
         TriangleMesh large = ball;
         for (Vec3& p : large.points) p = 1.2 * p;  // 6 mm outside
-        nest("inner surface through the outer", "noCrossing", translated(ball, {8, 0, 0}), large);
+        nest("inner surface through the outer", "noCrossing", testing::translated(ball, {8, 0, 0}),
+             large);
         nest("inner and outer swapped", "strictlyNested", large, ball);
-        nest("a gap of 0.2 mm", "minGap", translated(ball, {5.8, 0, 0}), large);
+        nest("a gap of 0.2 mm", "minGap", testing::translated(ball, {5.8, 0, 0}), large);
     }
 
     template <class Work>
@@ -340,7 +342,7 @@ private:
     }
 
     void refuseDamaged() {
-        const Solid solid = sphere({0, 0, 0}, 8);
+        const Solid solid = ball({0, 0, 0}, 8);
         const std::string image = niftiFile(
             distancePhantom(solid, obliqueGeometry({24, 24, 24}, {1, 1, 1}, solid.centreMm)));
         addRefused("image cut short",
@@ -384,4 +386,4 @@ SelfTest runSelfTestCases(const std::function<void(const std::string&)>& progres
     return Runner(progress).run();
 }
 
-}  // namespace adaptiso::selftest
+}  // namespace adaptiso::checker::selftest

@@ -1,31 +1,22 @@
-#include "SelfTestPhantoms.h"
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <numbers>
 #include <utility>
 
-namespace adaptiso::selftest {
+#include "SelfTest.h"
+#include "Support/Meshes.h"
+
+namespace adaptiso::checker::selftest {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-
-/// The next of a stream of random numbers [Steele2014, SplitMix64]: the same on every machine.
-std::uint64_t nextRandom(std::uint64_t& state) {
-    std::uint64_t z = (state += 0x9E3779B97F4A7C15U);
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
-    return z ^ (z >> 31);
-}
 
 /// Normally distributed as near as matters here, mean 0, deviation 1: twelve uniform numbers less
 /// six, so that no library's logarithm has a say.
 double nextNoise(std::uint64_t& state) {
     double sum = -6;
     for (int n = 0; n < 12; ++n) {
-        sum += static_cast<double>(nextRandom(state) >> 11) * 0x1.0p-53;
+        sum += static_cast<double>(testing::nextRandom(state) >> 11) * 0x1.0p-53;
     }
     return sum;
 }
@@ -53,7 +44,7 @@ Phantom sampled(const ImageGeometry& geometry, Value&& value) {
 }
 
 /// Share of the voxel at `index` that lies in the solid.
-double shareInside(const Solid& solid, const ImageGeometry& geometry, const Vec3& index) {
+double shareInside(const testing::Shape& solid, const ImageGeometry& geometry, const Vec3& index) {
     constexpr int kSteps = 8;  // along each axis: steps of 0.06 mm
     const double halfDiagonalMm = 0.5 * norm(geometry.spacingMm());
     const double depthMm = solid.depthMm(geometry.toPhysical(index));
@@ -73,33 +64,6 @@ void put(std::string& header, std::size_t at, T value) {
     std::memcpy(header.data() + at, &value, sizeof value);
 }
 
-TriangleMesh together(const TriangleMesh& a, const TriangleMesh& b) {
-    TriangleMesh mesh = a;
-    const auto shift = std::ssize(a.points);
-    mesh.points.insert(mesh.points.end(), b.points.begin(), b.points.end());
-    for (const Triangle& t : b.triangles) {
-        mesh.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
-    }
-    return mesh;
-}
-
-/// The mesh and its image by reflection in its first point, which both share.
-TriangleMesh touchingItselfAtAPoint(const TriangleMesh& mesh) {
-    TriangleMesh other = mesh;
-    for (Vec3& p : other.points) p = 2 * mesh.points.front() - p;
-    flipOrientation(other);
-    TriangleMesh both = together(mesh, other);
-    const VertexId repeated = std::ssize(mesh.points);
-    for (Triangle& t : both.triangles) {
-        for (VertexId& v : t) {
-            if (v == repeated) v = 0;
-            if (v > repeated) --v;
-        }
-    }
-    both.points.erase(both.points.begin() + repeated);
-    return both;
-}
-
 /// The first triangle cut in three from a point close to its first corner.
 TriangleMesh withSlivers(TriangleMesh mesh) {
     const Triangle t = mesh.triangles.front();
@@ -115,49 +79,24 @@ TriangleMesh withSlivers(TriangleMesh mesh) {
 
 }  // namespace
 
-Solid sphere(const Vec3& centreMm, double radiusMm) {
-    Solid solid;
-    solid.depthMm = [=](const Vec3& p) { return radiusMm - norm(p - centreMm); };
-    solid.centreMm = centreMm;
-    solid.volumeMm3 = 4 * kPi / 3 * radiusMm * radiusMm * radiusMm;
-    solid.areaMm2 = 4 * kPi * radiusMm * radiusMm;
-    solid.smallestRadiusMm = radiusMm;
-    return solid;
+Solid ball(const Vec3& centreMm, double radiusMm) {
+    return {testing::sphere(centreMm, radiusMm), centreMm, radiusMm};
 }
 
-Solid torus(const Vec3& centreMm, double majorRadiusMm, double minorRadiusMm) {
-    Solid solid;
-    solid.depthMm = [=](const Vec3& p) {
-        const Vec3 q = p - centreMm;
-        return minorRadiusMm - std::hypot(std::hypot(q.x, q.y) - majorRadiusMm, q.z);
-    };
-    solid.centreMm = centreMm;
-    solid.volumeMm3 = 2 * kPi * kPi * majorRadiusMm * minorRadiusMm * minorRadiusMm;
-    solid.areaMm2 = 4 * kPi * kPi * majorRadiusMm * minorRadiusMm;
-    solid.smallestRadiusMm = std::min(minorRadiusMm, majorRadiusMm - minorRadiusMm);
-    solid.genus = 1;
-    return solid;
+Solid ring(const Vec3& centreMm, double majorRadiusMm, double minorRadiusMm) {
+    return {testing::torus(centreMm, majorRadiusMm, minorRadiusMm), centreMm,
+            std::min(minorRadiusMm, majorRadiusMm - minorRadiusMm)};
 }
 
 ImageGeometry obliqueGeometry(const Index3& size, const Vec3& spacingMm, const Vec3& centreMm) {
-    // turned by 30 degrees about z, then by 20 degrees about x
-    const double c = std::cos(kPi / 6), s = std::sin(kPi / 6);
-    const double d = std::cos(kPi / 9), r = std::sin(kPi / 9);
-    ImageGeometry geometry;
-    geometry.size = size;
-    geometry.indexToPhysical.column = {spacingMm.x * Vec3{c, s * d, s * r},
-                                       spacingMm.y * Vec3{-s, c * d, c * r},
-                                       spacingMm.z * Vec3{0, -r, d}};
-    const Vec3 middle{0.5 * static_cast<double>(size[0] - 1),
-                      0.5 * static_cast<double>(size[1] - 1),
-                      0.5 * static_cast<double>(size[2] - 1)};
-    geometry.originMm = centreMm - geometry.indexToPhysical * middle;
+    ImageGeometry geometry = testing::obliqueGeometry(size, spacingMm);
+    geometry.originMm += centreMm;
     return geometry;
 }
 
 Phantom distancePhantom(const Solid& solid, const ImageGeometry& geometry) {
     return sampled(geometry, [&](const Vec3& index) {
-        return kSurface + kPerMm * solid.depthMm(geometry.toPhysical(index));
+        return kSurface + kPerMm * solid.shape.depthMm(geometry.toPhysical(index));
     });
 }
 
@@ -166,17 +105,12 @@ Phantom bearingBalls(double diameterMm) {
     constexpr double kVoxelMm = 0.5, kGapMm = 3;
     // not on the lattice: a quarter of a voxel beside it along every axis
     const double shift = 0.5 * (diameterMm + kGapMm);
-    const std::array<Solid, 2> balls = {sphere({-shift + 0.12, 0.13, 0.11}, diameterMm / 2),
-                                        sphere({shift + 0.12, 0.13, 0.11}, diameterMm / 2)};
-    ImageGeometry geometry;
+    const std::array balls{testing::sphere({-shift + 0.12, 0.13, 0.11}, diameterMm / 2),
+                           testing::sphere({shift + 0.12, 0.13, 0.11}, diameterMm / 2)};
     const auto voxels = [](double mm) { return static_cast<std::int64_t>(mm / kVoxelMm) + 9; };
-    geometry.size = {voxels(2 * diameterMm + kGapMm), voxels(diameterMm), voxels(diameterMm)};
-    geometry.indexToPhysical = Mat3::diagonal(kVoxelMm, kVoxelMm, kVoxelMm);
-    for (int axis = 0; axis < 3; ++axis) {
-        geometry.originMm[axis] =
-            -0.5 * kVoxelMm *
-            static_cast<double>(geometry.size[static_cast<std::size_t>(axis)] - 1);
-    }
+    const ImageGeometry geometry = testing::centredGeometry(
+        {voxels(2 * diameterMm + kGapMm), voxels(diameterMm), voxels(diameterMm)},
+        {kVoxelMm, kVoxelMm, kVoxelMm});
     std::uint64_t state = 10;
     return sampled(geometry, [&](const Vec3& index) {
         const double share =
@@ -218,61 +152,49 @@ std::string niftiFile(const Phantom& phantom) {
     return file;
 }
 
-TriangleMesh translated(TriangleMesh mesh, const Vec3& byMm) {
-    for (Vec3& p : mesh.points) p += byMm;
-    return mesh;
-}
-
 std::vector<PlantedDefect> plantDefects(const TriangleMesh& ball, const TriangleMesh& ring) {
     std::vector<PlantedDefect> planted;
-    const auto plant = [&](const char* name, std::string_view key, const auto& change) {
-        TriangleMesh mesh = ball;
-        mesh.normals = {};
-        change(mesh);
-        planted.push_back({name, key, std::move(mesh)});
+    TriangleMesh sound = ball;
+    sound.normals = {};
+    const auto plant = [&](const char* name, std::string_view key, const auto& make) {
+        planted.push_back({name, key, make(sound)});
     };
-    plant("a coordinate that is no number", "finiteCoordinates", [](TriangleMesh& mesh) {
-        mesh.points.front().x = std::numeric_limits<double>::quiet_NaN();
-    });
-    plant("a vertex number beyond the last", "indicesInRange",
-          [](TriangleMesh& mesh) { mesh.triangles.front()[0] = std::ssize(mesh.points) + 5; });
-    plant("a triangle missing", "closed", [](TriangleMesh& mesh) { mesh.triangles.pop_back(); });
-    plant("a fin on an edge", "manifoldEdges", [](TriangleMesh& mesh) {
+    plant("a coordinate that is no number", "finiteCoordinates", testing::withNanCoordinate);
+    plant("a vertex number beyond the last", "indicesInRange", testing::withIndexOutOfRange);
+    plant("a triangle missing", "closed", testing::withHole);
+    plant("a fin on an edge", "manifoldEdges", [](TriangleMesh mesh) {
         const Triangle t = mesh.triangles.front();
         mesh.points.push_back(mesh.points[t[0]] + Vec3{100, 0, 0});
         mesh.triangles.push_back({t[0], t[1], std::ssize(mesh.points) - 1});
+        return mesh;
     });
     plant("two balls touching at a vertex", "manifoldVertices",
-          [](TriangleMesh& mesh) { mesh = touchingItselfAtAPoint(mesh); });
-    plant("a triangle turned round", "consistentOrientation", [](TriangleMesh& mesh) {
-        std::swap(mesh.triangles.front()[0], mesh.triangles.front()[1]);
+          [](const TriangleMesh&) { return testing::twoSpheresTouchingAtAVertex(); });
+    plant("a triangle turned round", "consistentOrientation", testing::withFlippedTriangle);
+    plant("inside out", "outward", [](TriangleMesh mesh) {
+        flipOrientation(mesh);
+        return mesh;
     });
-    plant("inside out", "outward", [](TriangleMesh& mesh) { flipOrientation(mesh); });
-    plant("a second piece", "oneComponent", [](TriangleMesh& mesh) {
-        mesh = together(mesh, translated(mesh, {100, 0, 0}));
+    plant("a second piece", "oneComponent", [](const TriangleMesh& mesh) {
+        return testing::merged({mesh, testing::translated(mesh, {100, 0, 0})});
     });
-    plant("a handle", "genusZero", [&](TriangleMesh& mesh) { mesh = ring; });
-    plant("a triangle without area", "noDegenerateTriangles", [](TriangleMesh& mesh) {
-        const Triangle t = mesh.triangles.front();
-        mesh.triangles.push_back({t[0], t[0], t[1]});
-    });
-    plant("a triangle twice", "noDuplicateTriangles",
-          [](TriangleMesh& mesh) { mesh.triangles.push_back(mesh.triangles.front()); });
-    plant("two vertices at one place", "noDuplicateVertices", [](TriangleMesh& mesh) {
+    plant("a handle", "genusZero", [&](const TriangleMesh&) { return ring; });
+    plant("a triangle without area", "noDegenerateTriangles", testing::withRepeatedIndex);
+    plant("a triangle twice", "noDuplicateTriangles", testing::withDuplicateTriangle);
+    plant("two vertices at one place", "noDuplicateVertices", [](TriangleMesh mesh) {
         mesh.points.push_back(mesh.points[mesh.triangles.front()[0]]);
         mesh.triangles.front()[0] = std::ssize(mesh.points) - 1;
+        return mesh;
     });
-    plant("a vertex of no triangle", "noUnusedVertices", [](TriangleMesh& mesh) {
-        mesh.points.push_back({0, 0, 0});
-    });
-    plant("two balls that cross", "noSelfIntersections", [](TriangleMesh& mesh) {
-        mesh = together(mesh, translated(mesh, {10, 0, 0}));
-    });
-    plant("slivers", "minAngle", [](TriangleMesh& mesh) { mesh = withSlivers(mesh); });
-    plant("metres taken for millimetres", "plausibleSize", [](TriangleMesh& mesh) {
+    plant("a vertex of no triangle", "noUnusedVertices", testing::withUnusedVertex);
+    plant("two balls that cross", "noSelfIntersections",
+          [](const TriangleMesh&) { return testing::crossingSpheres(2); });
+    plant("slivers", "minAngle", withSlivers);
+    plant("metres taken for millimetres", "plausibleSize", [](TriangleMesh mesh) {
         for (Vec3& p : mesh.points) p = 0.001 * p;
+        return mesh;
     });
     return planted;
 }
 
-}  // namespace adaptiso::selftest
+}  // namespace adaptiso::checker::selftest

@@ -1,5 +1,3 @@
-#include "SelfTestReport.h"
-
 #include <sys/utsname.h>
 #include <unistd.h>
 
@@ -11,10 +9,11 @@
 
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
-#include "Common/Numbers.h"
 #include "Common/RunApp.h"
+#include "SelfTest.h"
+#include "adaptiso/Core/Numbers.h"
 
-namespace adaptiso::selftest {
+namespace adaptiso::checker::selftest {
 namespace {
 
 constexpr const char* kProgram = "adaptiso-check";
@@ -166,4 +165,4 @@ Report reportPage(SelfTest& test, const Machine& machine) {
     return report;
 }
 
-}  // namespace adaptiso::selftest
+}  // namespace adaptiso::checker::selftest

@@ -1,17 +1,16 @@
-#include "Spots.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string_view>
 
 #include "Common/Json.h"
-#include "Common/Numbers.h"
-#include "Common/SpotClusters.h"
+#include "Common/ReportOutput.h"
+#include "Run.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/MeshQuality/Holes.h"
 #include "adaptiso/MeshQuality/TriangleDistance.h"
 
-namespace adaptiso {
+namespace adaptiso::checker {
 namespace {
 
 constexpr std::size_t kMostMembers = 1000;
@@ -190,4 +189,4 @@ std::vector<ReportSpot> spotsOf(const NestingRun& pair, const std::string& inner
     return spots;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::checker

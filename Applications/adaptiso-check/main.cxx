@@ -1,8 +1,177 @@
-#include "CommandLine.h"
+#include <set>
+#include <string>
+#include <vector>
+
+#include "Common/CommonFrame.h"
+#include "Common/ImageOptions.h"
+#include "Common/OptionValues.h"
+#include "Common/PreprocessingOptions.h"
 #include "Common/RunApp.h"
+#include "Common/UsageWords.h"
 #include "Pipeline.h"
 
+namespace adaptiso::checker {
+namespace {
+
+constexpr const char* kInput = "Input";
+constexpr const char* kPreprocessing = "Preprocessing of the volume for --iso (in this order)";
+constexpr const char* kRequired = "Requirements (exit code 1 when one does not hold)";
+constexpr const char* kOutput = "Output";
+
+void declareInput(CLI::App& app, CheckOptions& options) {
+    const OptionGroup input(app, kInput);
+    OptionGroup(app).text("FILE", "", options.files,
+                          "Triangle surfaces, in any format adaptiso-mesh writes, however broken");
+    input.flag("--nested", options.isNested,
+               "The files are the surfaces of one head, from inside to outside (INNER MIDDLE "
+               "OUTER): check how they lie in each other too");
+    declareInputCoordinates(input, options.inputCoordinates,
+                            "all surfaces; given once for each file, that of each");
+    declareVolume(app, options.volume, options.read,
+                  "The image that the surfaces were made from; gives a place to tkRAS and voxel "
+                  "coordinates",
+                  kInput);
+    input.number("--iso", "V", options.isovalue, {},
+                 "Measure how far the surfaces lie from the volume's isosurface at this value");
+    declarePreprocessingOptions(app, options.preprocessing, kPreprocessing);
+}
+
+void declareRequirements(CLI::App& app, CheckOptions& options) {
+    const OptionGroup required(app, kRequired);
+    required.choice<Profile>(
+        "--profile", options.profile,
+        {{"bem", Profile::Bem}, {"print", Profile::Print}, {"view", Profile::View}},
+        "bem: a boundary of a head model (default with --nested); print: a solid (default); "
+        "view: to look at. See below");
+    const NumberRule length{.least = 0, .unit = "mm"};
+    required.number("--min-gap", "MM", options.minGapMm, length,
+                    "With --nested: smallest gap between neighbours that passes, in any profile "
+                    "(default: 0.5, in bem only)");
+    required.number(
+        "--min-angle", "DEG", options.minAngleDeg, {.least = 0, .most = 60, .unit = "degrees"},
+        "Smallest angle of a triangle that passes, 0 to 60, in any profile (default: 1, in "
+        "bem only)");
+    required.number(
+        "--max-off", "MM", options.maxOffMm, length,
+        "With --iso: largest distance from the isosurface that passes (default: the mean "
+        "within half a voxel)");
+}
+
+void declareSelfTest(CLI::App& app, CheckOptions& options) {
+    const OptionGroup group(app, "Self-test (takes no files)");
+    group.flag("--self-test", options.isSelfTest,
+               "Check this installation instead of files: phantoms whose size is known on paper, "
+               "from image to surface, and a defect for every check; a table to sign");
+}
+
+/// The self-test makes its own input.
+void checkSelfTestAlone(const CLI::App& app) {
+    const std::set<std::string> own{"--self-test", "--json",    "--report", "--pictures",
+                                    "--quiet",     "--threads", "--strict", "--no-warnings"};
+    for (const std::string& name : givenOptions(app)) {
+        if (own.contains(name)) continue;
+        throw UsageError("--self-test: not together with " +
+                         (name.starts_with("-") ? name : "files"));
+    }
+}
+
+void declareOutput(CLI::App& app, CheckOptions& options) {
+    const OptionGroup output(app, kOutput);
+    constexpr std::int64_t kMaxPairs = 1'000'000'000;
+    output.count(
+        "--max-pairs", options.maxPairs, 0, kMaxPairs,
+        "List up to N pairs of triangles that cross in the report (default: 1000); all are "
+        "counted");
+    declareReportOptions(app, options.report, kOutput);
+}
+
+/// Of the names of what is written: {name} stands for an input of a batch.
+void checkPlaceholders(const CheckOptions& options) {
+    const std::vector<std::string> forRun =
+        options.batch.isAsked() ? std::vector<std::string>{"{name}"} : std::vector<std::string>{};
+    requirePlaceholders("--report", options.report.page, forRun);
+    requirePlaceholders("--pictures", options.report.pictures, forRun);
+    requirePlaceholders("--summary", options.batch.summary, {});
+    requirePlaceholders("--output-dir", options.batch.outputFolder, {});
+    requirePlaceholders("--json", options.common.json, {});
+}
+
+/// Checks options against each other.
+void checkCombinations(const CheckOptions& options) {
+    const bool findsFiles = !options.batch.list.empty() || !options.batch.bids.empty();
+    if (options.files.empty() && !findsFiles) {
+        throw UsageError("FILE is missing: the surfaces to check");
+    }
+    if (options.isNested && options.files.size() < 2 && !findsFiles) {
+        throw UsageError("--nested: needs at least two files, from inside to outside");
+    }
+    if (!findsFiles) {
+        const bool areRuns = options.batch.isAsked() && !options.isNested;
+        checkInputCoordinates(options.inputCoordinates, areRuns ? 1 : options.files.size());
+    }
+    if (options.minGapMm && !options.isNested) throw UsageError("--min-gap: needs --nested");
+    if (options.isovalue && options.volume.empty()) throw UsageError("--iso: needs --volume");
+    if (options.maxOffMm && !options.isovalue) throw UsageError("--max-off: needs --iso");
+    if (!options.preprocessing.changesNothing() && !options.isovalue) {
+        throw UsageError("--crop, --smooth, --resample: need --iso");
+    }
+}
+
+constexpr const char* kFooter = R"(Required by the profiles:
+  bem, print, view  coordinates finite; indices in range; orientation consistent
+                    and outward; no duplicate triangle; where asked for: on the
+                    isosurface, strictly nested and nowhere crossing
+  bem, print        closed; edges and vertices manifold; no degenerate triangle;
+                    no self-intersection; a size plausible in mm
+  bem               one component; genus 0; no unused or duplicate vertex; no
+                    angle below 1 degree; MNE's solid angle; a gap of 0.5 mm
+Other findings are reported as "noted".
+
+Two triangles intersect when they have a point in common that is not a corner
+or edge which both share (touching is enough). Decided exactly.
+
+Examples:
+  adaptiso-check surface.stl
+  adaptiso-check --nested inner_skull.surf outer_skull.surf outer_skin.surf
+  adaptiso-check bone.ply --volume ct.nii.gz --iso 250 --json report.json
+  adaptiso-check --nested *.surf --volume T1.mgz --report check.html
+  adaptiso-check --quiet *.vtp || echo 'not all of them are sound'
+  adaptiso-check *.vtp --jobs 4 --output-dir checked --skip-existing
+      a line for each, each in a process of its own; a page checked/summary.html
+  adaptiso-check --self-test --report self-test.html
+
+Exit codes: 0 all that is required holds, 1 something does not, or there is a
+warning with --strict, 2 wrong usage, 3 bad input (or no memory or disk left),
+4 internal error. A file that can't be read does not keep the others from being
+checked; the exit code is then 3.)";
+
+Program checkProgram() {
+    return {"adaptiso-check", "Says whether triangle surfaces are sound, and where they are not.",
+            kFooter};
+}
+
+void declareCheckOptions(CLI::App& app, CheckOptions& options) {
+    declareInput(app, options);
+    declareRequirements(app, options);
+    declareSelfTest(app, options);
+    declareOutput(app, options);
+    declareBatchOptions(app, options.batch, "the surfaces in derivatives/adaptiso");
+    declareCommonOptions(app, options.common, "reports are written all the same");
+    afterParsing(app, [&app, &options] {
+        if (options.isSelfTest) {
+            checkSelfTestAlone(app);
+            return;
+        }
+        checkCombinations(options);
+        checkPlaceholders(options);
+        if (options.batch.isAsked()) keepRunOptions(app, options.batch);
+    });
+}
+
+}  // namespace
+}  // namespace adaptiso::checker
+
 int main(int argc, char** argv) {
-    return adaptiso::runApp(argc, argv, adaptiso::checkProgram(), adaptiso::declareCheckOptions,
-                            adaptiso::runCheck);
+    return adaptiso::runApp(argc, argv, adaptiso::checker::checkProgram(),
+                            adaptiso::checker::declareCheckOptions, adaptiso::checker::runCheck);
 }

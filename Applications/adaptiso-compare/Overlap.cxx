@@ -1,10 +1,9 @@
-#include "Overlap.h"
-
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
 
+#include "Run.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/Predicates.h"
 

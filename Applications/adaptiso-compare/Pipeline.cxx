@@ -3,27 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iostream>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "Common/AtomicOutput.h"
 #include "Common/CommonFrame.h"
-#include "Common/ExitCodes.h"
 #include "Common/ImageOptions.h"
-#include "Common/InputKind.h"
 #include "Common/Json.h"
-#include "Common/Numbers.h"
-#include "Common/Progress.h"
-#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
-#include "Common/Warnings.h"
-#include "CompareRun.h"
-#include "JsonReport.h"
-#include "ReportPage.h"
-#include "TextReport.h"
+#include "Run.h"
 #include "adaptiso/Core/FreeMemory.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
@@ -41,36 +31,18 @@ constexpr const char* kRead = "read";
 constexpr const char* kDistance = "distance";
 constexpr const char* kOverlap = "overlap";
 constexpr const char* kWrite = "write";
-constexpr const char* kReport = "report";
 
-bool areSame(const fs::path& a, const fs::path& b) {
-    return fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b));
-}
-
-/// Everything about the files that can be told from their names.
-void checkNames(const CompareOptions& options) {
-    std::vector<fs::path> inputs{options.a, options.b};
-    if (!options.volume.empty()) inputs.push_back(options.volume);
-    checkReportOutputs(options.report, inputs);
-
-    std::vector<fs::path> outputs;
+/// Checks the outputs before a file is read.
+void checkOutputs(const CompareOptions& options) {
+    const std::array inputs{options.a, options.b, options.volume};
+    OutputPlan plan(inputs);
     if (!options.colored.empty()) {
         if (meshFormatOf(options.colored).id != MeshFormatId::VtkXml) {
             throw UsageError("--colored " + options.colored.string() + ": must be a .vtp file");
         }
-        outputs.push_back(options.colored);
+        plan.add("--colored", options.colored);
     }
-    if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
-        outputs.push_back(options.common.json);
-        if (!options.colored.empty() && areSame(options.colored, options.common.json)) {
-            throw UsageError("--json " + options.common.json +
-                             ": is the name of the coloured surface too");
-        }
-    }
-    for (const fs::path& output : outputs) {
-        for (const fs::path& input : inputs) checkNotInput(output, input);
-        checkOutput(output);
-    }
+    plan.check(options.common, options.report);
 }
 
 NamedMesh readSurface(const fs::path& path, std::optional<CoordinateFrame> stated) {
@@ -168,7 +140,7 @@ std::vector<Color> colorsOf(const std::vector<double>& values, double maximum) {
 
 /// Writes A under its temporary name, with the distances of its vertices to B.
 void writeColored(CompareRun& run, const TriangleMesh& a, const TriangleMesh& b,
-                  const CommonFrame& common, std::vector<AtomicOutput>& outputs) {
+                  const CommonFrame& common) {
     std::vector<double> distances = vertexDistancesMm(a, b);
     ColoredSummary colored;
     colored.maximumMm = *std::max_element(distances.begin(), distances.end());
@@ -180,13 +152,13 @@ void writeColored(CompareRun& run, const TriangleMesh& a, const TriangleMesh& b,
     write.volume = common.volume;
     write.pointArrays.push_back({"DistanceMm", std::move(distances)});
     write.pointArrays.push_back({"DistanceColor", std::move(colors)});
-    AtomicOutput& output = outputs.emplace_back(run.options.colored);
+    AtomicOutput& output = run.addOutput(run.options.colored);
     output.write([&](const fs::path& path) { writeMesh(a, path, write); });
     colored.bytes = fs::file_size(output.temporary());
     run.colored = colored;
 }
 
-/// What the page and the pictures show.
+/// Makes the report that page and pictures show.
 Report describe(const CompareRun& run, TriangleMesh a, TriangleMesh b) {
     ShownSurfaces shown;
     shown.aToBMm = vertexDistancesMm(a, b);
@@ -208,7 +180,7 @@ std::vector<Check> makeChecks(const CompareRun& run) {
     return checks;
 }
 
-/// The value of a failed check in as few digits as tell it from the limit.
+/// The value of a failed check in the fewest digits that differ from the limit.
 std::string digitsApart(const Check& check) {
     const std::string text = formatShort(check.valueMm);
     return parseFiniteNumber(text) <= check.limitMm ? formatNumber(check.valueMm) : text;
@@ -226,58 +198,30 @@ void printFailed(const CompareRun& run) {
 }  // namespace
 
 int runCompare(const CompareOptions& options) {
-    const ThreadLimit threads(options.common);
-    ProgressLine progress(options.common.isQuiet);
     CompareRun run(options);
-    checkNames(options);
+    checkOutputs(options);
 
-    progress.show(kRead);
     std::array<NamedMesh, 2> surfaces;
-    const CommonFrame common = run.timer.time(kRead, [&] { return readInputs(run, surfaces); });
-    const TriangleMesh &a = surfaces[0].file.mesh, &b = surfaces[1].file.mesh;
-
-    progress.show(kDistance);
-    run.distances = run.timer.time(kDistance, [&] {
-        return surfaceDistance(a, b, {options.samples, options.isSymmetric, progress.callback()});
+    const CommonFrame common = run.stage(kRead, [&] { return readInputs(run, surfaces); });
+    TriangleMesh &a = surfaces[0].file.mesh, &b = surfaces[1].file.mesh;
+    run.distances = run.stage(kDistance, [&] {
+        return surfaceDistance(a, b,
+                               {options.samples, options.isSymmetric, run.progress.callback()});
     });
     run.checks = makeChecks(run);
-
-    progress.show(kOverlap);
-    run.timer.time(kOverlap, [&] { measureOverlap(run, a, b); });
-
-    progress.show(kWrite);
-    ReportResult page;  // its folder goes, if empty, after what lies in it
-    std::vector<AtomicOutput> outputs;
-    run.timer.time(kWrite, [&] {
-        if (!options.colored.empty()) writeColored(run, a, b, common, outputs);
+    run.stage(kOverlap, [&] { measureOverlap(run, a, b); });
+    run.stage(kWrite, [&] {
+        if (!options.colored.empty()) writeColored(run, a, b, common);
     });
     if (options.report.isWanted()) {
-        progress.show(kReport);
-        page = run.timer.time(kReport, [&] {
-            return writeReport(
-                [&] {
-                    return describe(run, std::move(surfaces[0].file.mesh),
-                                    std::move(surfaces[1].file.mesh));
-                },
-                kProgram, options.report, outputs);
-        });
+        run.writePage([&] { return describe(run, std::move(a), std::move(b)); });
     }
     const bool havePassed = std::ranges::all_of(run.checks, &Check::hasPassed);
     run.verdict.exitCode = havePassed ? kExitOk : kExitCheckFailed;
-    run.verdict.failStrict(options.common, run.warnings, "");
-    run.verdict.failReport(page.failure);
-    const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
-    if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
-        outputs.emplace_back(options.common.json).writeText(json);
-    }
-    progress.clear();
-    printWarnings(kProgram, options.common, run.warnings);
-    printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
-    AtomicOutput::commit(outputs);
-    const std::string written = options.colored.empty() ? "the distances are measured"
-                                                        : options.colored.string() + " is written";
+    run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
     printFailed(run);
-    return printVerdict(kProgram, run.verdict, written);
+    return run.end(options.colored.empty() ? "the distances are measured"
+                                           : options.colored.string() + " is written");
 }
 
 }  // namespace adaptiso::compare

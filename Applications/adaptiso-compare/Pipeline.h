@@ -12,7 +12,7 @@
 
 namespace adaptiso::compare {
 
-/// What adaptiso-compare is asked to do.
+/// Options of adaptiso-compare.
 struct CompareOptions {
     std::filesystem::path a;
     std::filesystem::path b;                        ///< the reference

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace adaptiso {
+namespace adaptiso::giant {
 
 std::vector<BorderFront::Vertex*> BorderFront::add(const PieceSummary& piece) {
     std::vector<Vertex*> border;
@@ -24,4 +24,4 @@ std::vector<BorderFront::Vertex*> BorderFront::add(const PieceSummary& piece) {
     return border;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

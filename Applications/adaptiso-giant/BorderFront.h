@@ -8,7 +8,7 @@
 #include "PieceFile.h"
 #include "PieceUnion.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 
 /// What pieces so far have in common with pieces to come: the vertices that have an edge whose
 /// other triangle has not been seen. Once it has, the surface is closed around a vertex, no other
@@ -61,4 +61,4 @@ private:
     std::int64_t longest_ = 0;
 };
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

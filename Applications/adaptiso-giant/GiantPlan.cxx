@@ -8,7 +8,7 @@
 
 #include "adaptiso/Core/Errors.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -254,4 +254,4 @@ std::optional<Index3> placeOf(std::string_view id) {
     return place;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

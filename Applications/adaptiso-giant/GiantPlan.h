@@ -14,9 +14,9 @@
 #include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 
-/// What the steps of one surface agree on: the file plan.json of their folder.
+/// The plan that all steps of one surface share: the file plan.json of their folder.
 struct GiantPlan {
     std::string version;          ///< of the program
     std::filesystem::path input;  ///< absolute
@@ -38,7 +38,7 @@ struct GiantPlan {
     /// Of its pieces, those that are the surface: seam boxes, or tiles.
     std::vector<Index3> pieces() const { return isAdaptive() ? seams() : tiles; }
 
-    /// What two plans have in common whose pieces are the same: all but the lists.
+    /// All but the lists: plans with equal identity have equal pieces.
     std::string identity() const;
 
     static std::filesystem::path fileIn(const std::filesystem::path& work);
@@ -57,4 +57,4 @@ std::string idOf(const Index3& place);
 /// none: it is no such id
 std::optional<Index3> placeOf(std::string_view id);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

@@ -1,9 +1,7 @@
-#include "GiantReport.h"
-
 #include "Steps.h"
 #include "adaptiso/Core/Numbers.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 namespace {
 
 constexpr std::size_t kMostRows = 50;  // components in the page's table
@@ -85,4 +83,4 @@ Report giantReport(const GiantPlan& plan, const GiantSurface& surface, const Jso
     return report;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

@@ -6,7 +6,7 @@
 
 #include "adaptiso/Core/Errors.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 
 std::uint32_t GrowingComponents::add(const GiantComponent& sums) {
     if (unused_.empty()) {
@@ -91,4 +91,4 @@ void GrowingComponents::finishAll() {
     keepLargest();
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace adaptiso {
+namespace adaptiso::giant {
 
 /// A component of the whole surface.
 struct GiantComponent {
@@ -16,7 +16,7 @@ struct GiantComponent {
     bool isCavity() const { return volumeMm3 < 0; }
 };
 
-/// What components of all pieces come to.
+/// The components of all pieces together.
 struct GiantTotals {
     std::int64_t count = 0, cavities = 0, genus = 0, vertices = 0;
     double areaMm2 = 0, volumeMm3 = 0;
@@ -59,4 +59,4 @@ private:
     std::vector<GiantComponent> largest_;
 };
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

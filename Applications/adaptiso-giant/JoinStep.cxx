@@ -3,13 +3,10 @@
 #include <ostream>
 
 #include "Common/AtomicOutput.h"
-#include "Common/ExitCodes.h"
 #include "Common/Json.h"
 #include "Common/Progress.h"
-#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
-#include "GiantReport.h"
 #include "PieceJoiner.h"
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
@@ -19,7 +16,7 @@
 #include "adaptiso/MeshIO/PlyStream.h"
 #include "adaptiso/Report/Coarser.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 namespace fs = std::filesystem;
 
 namespace {
@@ -236,4 +233,4 @@ int runJoinStep(const GiantOptions& options, const std::string& key) {
     return printVerdict(kGiantProgram, verdict, "the surface is joined");
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

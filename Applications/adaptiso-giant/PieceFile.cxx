@@ -14,7 +14,7 @@
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Tiles.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -326,4 +326,4 @@ PieceSummary readPieceSummary(const std::filesystem::path& file) {
     return takeSummary(reader, size);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

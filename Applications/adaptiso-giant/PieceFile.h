@@ -10,7 +10,7 @@
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 
 /// A connected part of a piece's surface. Sums over pieces make those of a component.
 struct PieceComponent {
@@ -26,7 +26,7 @@ struct BorderVertex {
     Vec3 index;
 };
 
-/// What a piece's neighbours, and the whole, need to know of it.
+/// The facts of a piece that its neighbours and the join need.
 struct PieceSummary {
     std::string plan;    ///< SHA-256 of GiantPlan::identity()
     std::string stage;   ///< "tile" or "seam"
@@ -62,4 +62,4 @@ Piece readPiece(const std::filesystem::path& file);
 /// The first part of the file alone. \throws FileError
 PieceSummary readPieceSummary(const std::filesystem::path& file);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

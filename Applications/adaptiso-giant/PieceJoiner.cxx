@@ -9,7 +9,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Numbers.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 namespace {
 
 /// Parts of pieces, joined where they have a vertex in common.
@@ -137,4 +137,4 @@ void PieceJoiner::forEachPiece(
     if (next != surface_.vertices || triangles != surface_.triangles) refuseChanged(work_.string());
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

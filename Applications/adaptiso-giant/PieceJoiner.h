@@ -10,9 +10,9 @@
 #include "GrowingComponents.h"
 #include "PieceFile.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 
-/// What pieces make together, found from their summaries alone.
+/// The surface that all pieces form, found from their summaries alone.
 struct GiantSurface {
     std::int64_t vertices = 0, triangles = 0, openEdges = 0;
     std::int64_t pieces = 0, emptyPieces = 0, unchangedPieces = 0;
@@ -48,4 +48,4 @@ private:
     GiantSurface surface_;
 };
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

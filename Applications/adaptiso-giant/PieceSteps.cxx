@@ -6,10 +6,8 @@
 #include <ostream>
 
 #include "Common/AtomicOutput.h"
-#include "Common/ExitCodes.h"
 #include "Common/Json.h"
 #include "Common/Progress.h"
-#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/Verdict.h"
@@ -19,7 +17,7 @@
 #include "adaptiso/Core/Numbers.h"
 #include "adaptiso/ImageIO/ImageRegions.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 namespace fs = std::filesystem;
 
 namespace {
@@ -28,7 +26,7 @@ namespace {
 /// costs more the smaller its share is; a large share costs triangles everywhere.
 constexpr double kTileShare = 0.9;
 
-/// What a step did of the places it was asked for.
+/// The pieces that a step made and found.
 struct StepCounts {
     std::int64_t made = 0, found = 0, triangles = 0;
 };
@@ -180,4 +178,4 @@ int runSeamStep(const GiantOptions& options) {
         });
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

@@ -7,7 +7,7 @@
 
 #include "PieceFile.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 
 /// Places by their bits: vertices on the borders of pieces that have the same are one.
 struct HashOfBits {
@@ -62,4 +62,4 @@ private:
     AtPlace<VertexId> known_;
 };
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

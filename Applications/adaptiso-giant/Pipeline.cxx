@@ -8,7 +8,7 @@
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 namespace fs = std::filesystem;
 
 GiantPlan readPlan(const fs::path& work) {
@@ -67,4 +67,4 @@ int runGiant(const GiantOptions& options) {
     throw InternalError("runGiant: unknown step");
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

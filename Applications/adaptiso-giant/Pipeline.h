@@ -12,12 +12,12 @@
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 
 /// The steps that a surface of a large volume is made in.
 enum class GiantStep { Plan, Tile, Seam, Join, Run };
 
-/// What adaptiso-giant is asked to do.
+/// Options of adaptiso-giant.
 struct GiantOptions {
     GiantStep step{};
     std::filesystem::path work;    ///< folder of the plan and of what the steps leave
@@ -43,4 +43,4 @@ struct GiantOptions {
 /// \throws InternalError  a piece, or what they make together, breaks a promise
 int runGiant(const GiantOptions& options);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

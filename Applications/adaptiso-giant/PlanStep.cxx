@@ -5,10 +5,8 @@
 #include <sstream>
 
 #include "Common/AtomicOutput.h"
-#include "Common/ExitCodes.h"
 #include "Common/ImageOptions.h"
 #include "Common/Json.h"
-#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
 #include "Common/Warnings.h"
@@ -17,12 +15,12 @@
 #include "adaptiso/Core/Numbers.h"
 #include "adaptiso/ImageIO/ImageRegions.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 namespace fs = std::filesystem;
 
 namespace {
 
-/// What a tile is sure not to hold surface, without a look at its samples: all are of one value,
+/// Whether a tile certainly holds no surface, without reading its samples: all are of one value,
 /// and where they are inside the tile does not reach the volume's border.
 bool isEmpty(const ImageRegions& image, const TileCut& cut, const Index3& tile, double isovalue) {
     constexpr double kExact = 9007199254740992.0;  // 2^53: beyond it doubles skip integers
@@ -131,4 +129,4 @@ int runPlanStep(const GiantOptions& options) {
     return printVerdict(kGiantProgram, verdict, "");
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

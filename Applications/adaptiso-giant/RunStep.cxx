@@ -2,13 +2,12 @@
 #include <fstream>
 
 #include "Common/ChildProcess.h"
-#include "Common/ExitCodes.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 namespace {
 
 /// Pieces of one process: few, so that little is lost with it, and enough that starting it costs
@@ -87,4 +86,4 @@ int runAllSteps(const GiantOptions& options) {
     return runJoinStep(options, keyOf(plan));
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

@@ -4,7 +4,7 @@
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 
 std::vector<Index3> tilesAt(const GiantPlan& plan, const Index3& seam) {
     const IndexBox at = plan.cut().tilesOfSeam(seam);
@@ -54,4 +54,4 @@ bool SeamInputs::areChanged(const Index3& seam, const std::string& inputs) {
     return areThere && of(seam) != inputs;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

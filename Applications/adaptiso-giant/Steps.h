@@ -8,13 +8,16 @@
 #include <string>
 #include <vector>
 
+#include "Common/Json.h"
 #include "GiantPlan.h"
 #include "PieceFile.h"
+#include "PieceJoiner.h"
 #include "Pipeline.h"
+#include "adaptiso/Report/Report.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 
-/// What all steps print on stderr before their messages.
+/// The name before all messages on stderr.
 inline constexpr const char* kGiantProgram = "adaptiso-giant";
 
 GiantPlan readPlan(const std::filesystem::path& work);
@@ -61,4 +64,10 @@ int runSeamStep(const GiantOptions& options);
 int runJoinStep(const GiantOptions& options, const std::string& key = {});
 int runAllSteps(const GiantOptions& options);
 
-}  // namespace adaptiso
+/// The report that the page shows.
+/// \param json    the report of the join
+/// \param coarse  a copy of the surface that a browser can show, LPS mm
+Report giantReport(const GiantPlan& plan, const GiantSurface& surface, const Json& json,
+                   TriangleMesh coarse);
+
+}  // namespace adaptiso::giant

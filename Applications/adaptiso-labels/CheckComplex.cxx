@@ -1,17 +1,16 @@
-#include "CheckComplex.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "Common/Numbers.h"
+#include "Regions.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/LabelCentres.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/MeshQuality/Winding.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 namespace {
 
 constexpr std::size_t kMostPlaces = 12;  // to look at, of each check
@@ -20,7 +19,7 @@ Vec3 middleOfTriangle(const std::vector<Vec3>& points, const Triangle& t) {
     return (1.0 / 3) * (points[t[0]] + points[t[1]] + points[t[2]]);
 }
 
-/// What is wrong with a region's surface as such; empty: nothing.
+/// The fault of a region's surface alone; empty if it is sound.
 std::string faultOf(const TriangleMesh& mesh, const TopologyReport& topology,
                     const RegionMeasure& measure) {
     if (topology.triangles == 0) return "has no surface";
@@ -130,10 +129,9 @@ LabelsCheck checkCentres(const LabelComplex& complex, const VolumeView& map, con
 }  // namespace
 
 void checkComplex(const LabelComplex& complex, const RegionSurfaces& surfaces,
-                  const VolumeView& map, LabelsRun& run, ProgressLine& progress) {
+                  const VolumeView& map, LabelsRun& run) {
     const auto stage = [&](const char* name, const auto& check) {
-        progress.show(name);
-        run.checks.push_back(run.timer.time(name, check));
+        run.checks.push_back(run.stage(name, check));
     };
     stage("check", [&] { return checkSurfaces(surfaces, run); });
     stage("check", [&] { return checkSides(complex, run); });
@@ -141,4 +139,4 @@ void checkComplex(const LabelComplex& complex, const RegionSurfaces& surfaces,
     stage("centres", [&] { return checkCentres(complex, map, run); });
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

@@ -1,5 +1,3 @@
-#include "FileRounding.h"
-
 #include <algorithm>
 #include <limits>
 #include <string>
@@ -7,11 +5,12 @@
 #include <vector>
 
 #include "Common/Json.h"
+#include "OutputFiles.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 namespace {
 
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
@@ -103,4 +102,4 @@ LabelComplex asStored(const LabelComplex& complex, const LabelsRun& run) {
     return {std::move(stored.points), std::move(stored.triangles), complex.labels};
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

@@ -8,7 +8,7 @@
 #include "Common/UsageWords.h"
 #include "adaptiso/Core/Text.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 namespace {
 
 /// Takes a number off the beginning of `text`.
@@ -139,4 +139,4 @@ std::map<Label, double> parseConductivities(const std::string& text) {
     return values;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

@@ -8,7 +8,7 @@
 
 #include "adaptiso/Labels/Labels.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 
 /// Labels from `first` to `last`, or those of a name that is still to be looked up.
 struct LabelRange {
@@ -45,4 +45,4 @@ void requireDisjoint(const std::vector<LabelMerge>& merges);
 /// not above 0
 std::map<Label, double> parseConductivities(const std::string& text);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

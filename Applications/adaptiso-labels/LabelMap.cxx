@@ -1,5 +1,3 @@
-#include "LabelMap.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,10 +5,11 @@
 #include <unordered_map>
 #include <utility>
 
-#include "Common/Numbers.h"
+#include "Regions.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Core/Parallel.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 namespace {
 
 using std::int64_t;
@@ -125,4 +124,4 @@ LabelCensus mergeCounts(LabelCensus census, const std::vector<LabelMerge>& merge
     return census;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

@@ -1,11 +1,10 @@
-#include "LabelsBatch.h"
-
 #include "Common/Batch.h"
 #include "Common/Bids.h"
-#include "Common/InputNames.h"
-#include "Common/Numbers.h"
+#include "Common/Naming.h"
+#include "Run.h"
+#include "adaptiso/Core/Numbers.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 namespace {
 
 std::string says(const Json& report) {
@@ -47,4 +46,4 @@ int runLabelsBatch(const LabelsOptions& options) {
     return runBatch(program, options.batch, options.common);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

@@ -1,15 +1,14 @@
-#include "LayerFiles.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <regex>
 
+#include "OutputFiles.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 namespace {
 
 constexpr std::string_view kFolder = "layers/";
@@ -113,4 +112,4 @@ bool isLayerFile(std::string_view name) {
     return std::regex_match(file, own);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

@@ -6,15 +6,14 @@
 #include <functional>
 #include <utility>
 
-#include "Common/Numbers.h"
-#include "LayerFiles.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/LabelFiles.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/Tetrahedra/TetrahedraFiles.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 namespace {
 
 namespace fs = std::filesystem;
@@ -183,4 +182,4 @@ void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, Lab
     });
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

@@ -1,13 +1,56 @@
 #pragma once
 
+#include <array>
+#include <map>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "Common/AtomicOutput.h"
-#include "LabelsRun.h"
 #include "Regions.h"
+#include "Run.h"
+#include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Labels/Labels.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
+
+/// Moves single points of the walls to neighbouring coordinates, so that what is sound is so in
+/// the files of the run as well, whose coordinates have fewer digits. All files have the same
+/// points, so neighbours stay equal. all.surf.gii is left out, with a warning, where its digits do
+/// not do.
+/// \throws InvalidInput  those of the format that was asked for, or of the layers, do not
+void fitToFiles(LabelComplex& complex, LabelsRun& run);
+
+/// The walls with the digits of the regions' files; LPS mm.
+LabelComplex asStored(const LabelComplex& complex, const LabelsRun& run);
+
+/// The walls as OpenMEEG takes them: a mesh for each pair of labels that touch.
+struct LayerMeshes {
+    struct Wall {
+        std::array<Label, 2> labels;  ///< normals point from the first into the second
+        TriangleMesh mesh;            ///< open where it meets other walls
+        std::string name() const;     ///< "wall_1_2"
+    };
+    std::vector<Wall> walls;  ///< by labels
+};
+
+LayerMeshes layerMeshes(const LabelComplex& complex);
+
+/// Domain Description 1.1 with meshes and signed interfaces: the interface of a region is the sum
+/// of its walls, facing outward; a domain lies inside its region's interface, Air outside of that
+/// of all.
+std::string layersGeometry(const LayerMeshes& meshes, const std::vector<Region>& regions);
+
+/// S/m of each region, and 0 of Air. \pre each region has one
+std::string layersConductivities(const std::vector<Region>& regions,
+                                 const std::map<Label, double>& conductivities);
+
+/// Places and writes layers/layers.geom, layers/layers.cond where conductivities were given, and a
+/// .tri for each wall. \pre inside folder.fill()
+void writeLayers(const LabelComplex& complex, const LabelsRun& run, AtomicFolder& folder);
+
+/// "layers/wall_1_2.tri" and the other names that writeLayers() gives.
+bool isLayerFile(std::string_view name);
 
 /// Whether a name in an output folder is of a file that this program writes there.
 bool isOwnFile(std::string_view name);
@@ -31,4 +74,4 @@ void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, Lab
 /// regions.tsv.
 std::string regionsTable(const LabelsRun& run);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

@@ -1,42 +1,29 @@
 #include "Pipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <functional>
 #include <optional>
 #include <set>
-#include <span>
 #include <utility>
 
-#include "CheckComplex.h"
 #include "Common/AtomicOutput.h"
-#include "Common/ExitCodes.h"
+#include "Common/CommonFrame.h"
 #include "Common/ImageOptions.h"
-#include "Common/InputNames.h"
 #include "Common/Json.h"
 #include "Common/Naming.h"
-#include "Common/Numbers.h"
-#include "Common/Progress.h"
-#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
-#include "FileRounding.h"
-#include "JsonReport.h"
-#include "LabelMap.h"
-#include "LabelsBatch.h"
-#include "LabelsRun.h"
 #include "OutputFiles.h"
 #include "Regions.h"
-#include "ReportPage.h"
-#include "Tetrahedra.h"
-#include "TextReport.h"
+#include "Run.h"
+#include "adaptiso/Core/Numbers.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kProgram = "adaptiso-labels";
 
 /// The stages of a run, as progress, `seconds` of the report and README.md name them, beside those
 /// of checkComplex().
@@ -46,7 +33,6 @@ constexpr const char* kFit = "fit";
 constexpr const char* kMeasure = "measure";
 constexpr const char* kTetrahedra = "tetrahedra";
 constexpr const char* kWrite = "write";
-constexpr const char* kReport = "report";
 
 fs::path outputFolder(const LabelsOptions& options) {
     return options.output.empty() ? fs::path(inputStem(options.input) + "-labels") : options.output;
@@ -76,41 +62,13 @@ OwnNames replaceable(const LabelsOptions& options, const fs::path& folder) {
     });
 }
 
-CoordinateFrame frameOf(const LabelsOptions& options, const MeshFormat& format) {
-    const CoordinateFrame frame = options.frame.value_or(defaultFrame(format));
-    if (frame == CoordinateFrame::Voxel && !format.holdsVoxelFrame) {
-        throw UsageError("--coordinates voxel: " + std::string(format.name) +
-                         " holds points in mm only");
-    }
-    return frame;
-}
-
-bool hasJsonFile(const LabelsOptions& options) {
-    return options.common.wantsJson() && !options.common.wantsJsonOnStdout();
-}
-
-/// Everything about the outputs that can be told before the map is read.
+/// Checks the outputs before the map is read.
 void checkOutputs(const LabelsRun& run) {
     const LabelsOptions& options = run.options;
-    std::vector<fs::path> inputs;
-    for (const fs::path& input : {options.input, options.names, options.volume}) {
-        if (!input.empty()) inputs.push_back(input);
-    }
-    const auto canonical = [](const fs::path& path) {
-        std::error_code error;
-        return fs::weakly_canonical(fs::absolute(path), error);
-    };
-    fs::path folder = canonical(run.folder);
-    if (!folder.has_filename()) folder = folder.parent_path();
-    for (const fs::path& input : inputs) {
-        if (hasJsonFile(options)) checkNotInput(options.common.json, input);
-        // replacing the folder would take an input in it away
-        if (canonical(input).parent_path() == folder || canonical(input) == folder) {
-            throw FileError(run.folder.string() + ": holds an input, which is never overwritten");
-        }
-    }
-    if (hasJsonFile(options)) checkOutput(options.common.json);
-    checkReportOutputs(options.report, inputs);
+    const std::array inputs{options.input, options.names, options.volume};
+    OutputPlan plan(inputs);
+    plan.checkFolder(run.folder);
+    plan.check(options.common, options.report);
     AtomicFolder::check(run.folder, replaceable(options, run.folder));
 }
 
@@ -181,14 +139,14 @@ void checkConductivities(const LabelsRun& run) {
     }
 }
 
-LabelComplex extract(const VolumeView& map, LabelsRun& run, ProgressLine& progress) {
+LabelComplex extract(const VolumeView& map, LabelsRun& run) {
     const LabelsOptions& options = run.options;
     LabelOptions extraction;
     extraction.maxErrorMm = options.maxErrorMm;
     extraction.maxTriangles = options.maxTriangles;
     extraction.reduction = options.reduction;
     extraction.minAngleDeg = options.minAngleDeg;
-    extraction.progress = progress.callback();
+    extraction.progress = run.progress.callback();
     if (!options.labels.empty()) {
         for (const Region& region : run.regions) extraction.labels.push_back(region.label);
     }
@@ -234,20 +192,14 @@ std::string failureText(const LabelsRun& run) {
     return text;
 }
 
-/// Writes the page, where one is asked for.
-ReportResult show(LabelsRun& run, const RegionSurfaces& surfaces, const VolumeView& map,
-                  std::vector<AtomicOutput>& outputs) {
+void writePage(LabelsRun& run, const RegionSurfaces& surfaces, const VolumeView& map) {
     const LabelsOptions& options = run.options;
-    if (!options.report.isWanted()) return {};
     std::optional<ReadVolume> behind;
     if (!options.volume.empty()) behind = readImage(options.volume, {});
     const fs::path& file = options.volume.empty() ? options.input : options.volume;
-    ReportResult page = writeReport(
-        [&] {
-            return makeReport(run, surfaces, baseName(file), behind ? behind->volume.view() : map);
-        },
-        kProgram, options.report, outputs);
-    return page;
+    run.writePage([&] {
+        return makeReport(run, surfaces, baseName(file), behind ? behind->volume.view() : map);
+    });
 }
 
 }  // namespace
@@ -255,39 +207,32 @@ ReportResult show(LabelsRun& run, const RegionSurfaces& surfaces, const VolumeVi
 int runLabels(const LabelsOptions& given) {
     if (given.isBatch()) return runLabelsBatch(given);
     LabelsOptions options = given;
-    const ThreadLimit threads(options.common);
-    ProgressLine progress(options.common.isQuiet);
-    LabelsRun run{options, outputFolder(options)};
+    LabelsRun run(options, outputFolder(options));
     run.format = &findMeshFormat("region" + options.format);
-    run.frame = frameOf(options, *run.format);
+    run.frame = outputFrame(options.frame, *run.format);
     checkOutputs(run);
     requireMesher(options.tetrahedra);
 
-    progress.show(kRead);
     LabelCensus census;
-    const Volume volume = run.timer.time(kRead, [&] { return readMap(options, run, census); });
+    const Volume volume = run.stage(kRead, [&] { return readMap(options, run, census); });
     const VolumeView& map = volume.view();
-    run.timer.time(kRead, [&] { nameRegions(chooseLabels(census, options), census, run); });
+    run.stage(kRead, [&] { nameRegions(chooseLabels(census, options), census, run); });
     requireTetrahedraLabels(run);
     checkConductivities(run);
-    progress.clear();
-    printWarnings(kProgram, options.common, run.warnings);
-    const std::size_t told = run.warnings.size();
+    run.printNewWarnings();
 
-    LabelComplex complex = run.timer.time(kExtract, [&] { return extract(map, run, progress); });
-    run.timer.time(kFit, [&] { fitToFiles(complex, run); });
-    progress.show(kMeasure);
-    run.timer.time(kMeasure, [&] { measure(complex, run); });
+    LabelComplex complex = run.stage(kExtract, [&] { return extract(map, run); });
+    run.stage(kFit, [&] { fitToFiles(complex, run); });
+    run.stage(kMeasure, [&] { measure(complex, run); });
     const RegionSurfaces surfaces(complex, run.regions);
     if (run.format->precision == CoordinatePrecision::Float64) {
-        checkComplex(complex, surfaces, map, run, progress);
+        checkComplex(complex, surfaces, map, run);
     } else {
         const LabelComplex stored = asStored(complex, run);
-        checkComplex(stored, RegionSurfaces(stored, run.regions), map, run, progress);
+        checkComplex(stored, RegionSurfaces(stored, run.regions), map, run);
     }
     if (options.tetrahedra.isAsked() && run.holdsPromises()) {
-        progress.show(kTetrahedra);
-        run.timer.time(kTetrahedra, [&] { makeTetrahedra(complex, run); });
+        run.stage(kTetrahedra, [&] { makeTetrahedra(complex, run); });
     }
     warnOfCount(run);
     if (!run.leavesGiftiOut && !fitsGifti(run)) {
@@ -297,41 +242,26 @@ int runLabels(const LabelsOptions& given) {
                                 baseName(options.input)});
     }
 
-    ReportResult page;  // its folder goes, if empty, after what lies in it
-    std::vector<AtomicOutput> outputs;
     std::optional<AtomicFolder> folder;
     if (run.writesFolder()) {
-        progress.show(kWrite);
-        run.timer.time(kWrite, [&] {
+        run.stage(kWrite, [&] {
             folder.emplace(run.folder, replaceable(options, run.folder));
             writeFiles(complex, surfaces, run, *folder);
             folder->writeText("report.json", folderReport(run));
             run.files = folder->files();
         });
     }
-    if (options.report.isWanted()) progress.show(kReport);
-    page = run.timer.time(kReport, [&] { return show(run, surfaces, map, outputs); });
-    run.verdict.failStrict(options.common, run.warnings, kNotWritten);
+    if (options.report.isWanted()) writePage(run, surfaces, map);
     if (!run.holdsPromises()) {
         run.verdict = {kExitCheckFailed, baseName(options.input) +
                                              ": its walls do not keep their promises, so nothing "
                                              "was written: " +
                                              failureText(run)};
     }
-    run.verdict.failReport(page.failure);
-    const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
-    if (hasJsonFile(options)) outputs.emplace_back(options.common.json).writeText(json);
-    progress.clear();
-    printWarnings(kProgram, options.common, std::span(run.warnings).subspan(told));
-    printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
-    if (folder) {
-        folder->commit(outputs);
-    } else {
-        AtomicOutput::commit(outputs);
-    }
-    const std::string written =
-        run.writesFolder() ? run.folder.string() + " is written" : "no surface is written";
-    return printVerdict(kProgram, run.verdict, written);
+    run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); },
+                folder ? &*folder : nullptr);
+    return run.end(run.writesFolder() ? run.folder.string() + " is written"
+                                      : "no surface is written");
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

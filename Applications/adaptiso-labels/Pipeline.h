@@ -16,9 +16,9 @@
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 
-/// What adaptiso-labels is asked to do.
+/// Options of adaptiso-labels.
 struct LabelsOptions {
     std::vector<std::filesystem::path> inputs;  ///< as given
     std::filesystem::path input;                ///< the one, when it is one
@@ -44,11 +44,11 @@ struct LabelsOptions {
     ReportOptions report;
     CommonOptions common;
 
-    /// The name of an output has a place for an input's.
+    /// Whether an output's name holds the placeholder {name}.
     static bool namesInput(const std::filesystem::path& output) {
         return output.string().find("{name}") != std::string::npos;
     }
-    /// Each input is a run of its own (Batch.h).
+    /// Whether each input is a run of its own (Batch.h).
     bool isBatch() const {
         return batch.isAsked() || inputs.size() > 1 || namesInput(output) ||
                namesInput(report.page) || namesInput(report.pictures);
@@ -62,4 +62,4 @@ struct LabelsOptions {
 /// \throws InvalidInput  the image is no label map, or has not the labels asked for
 int runLabels(const LabelsOptions& options);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

@@ -5,11 +5,11 @@
 #include <map>
 
 #include "Common/Json.h"
-#include "Common/Numbers.h"
 #include "Common/UsageWords.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Core/Text.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 namespace {
 
 namespace fs = std::filesystem;
@@ -282,4 +282,4 @@ TriangleMesh RegionSurfaces::surface(std::size_t n) const {
     return mesh;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

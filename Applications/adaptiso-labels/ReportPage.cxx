@@ -1,18 +1,17 @@
-#include "ReportPage.h"
-
 #include <algorithm>
 
 #include "Common/Json.h"
-#include "Common/Numbers.h"
 #include "Common/ReportOutput.h"
+#include "Regions.h"
+#include "adaptiso/Core/Numbers.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 namespace {
 
 /// More regions than that make a page slow to open; the largest are shown.
 constexpr std::size_t kMostShown = 2000;
 
-/// A region's colour, lighter where it could not be told from the page's black ground.
+/// A region's colour, lightened if too dark for the page's black background.
 ReportColor onBlack(const LabelColor& color) {
     constexpr std::uint8_t kDark = 70;
     if (std::ranges::max(color) >= kDark) return color;
@@ -148,7 +147,6 @@ Report makeReport(const LabelsRun& run, const RegionSurfaces& surfaces,
     tellInputs(run, report);
     tellOptions(run, report);
     tellChecks(run, report);
-    report.warnings = linesOf(run.warnings);
     const std::vector<std::size_t> shown = chooseShown(run, report);
     for (const std::size_t n : shown) {
         ReportSurface surface{run.nameOf(run.regions[n].label), surfaces.surface(n)};
@@ -156,9 +154,8 @@ Report makeReport(const LabelsRun& run, const RegionSurfaces& surfaces,
         report.surfaces.push_back(std::move(surface));
     }
     report.tables.push_back(regionTable(run, shown));
-    tellStrict(report, run.options.common, run.warnings, kNotWritten);
     report.volume = ReportVolume{volumeName, volume};
     return report;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

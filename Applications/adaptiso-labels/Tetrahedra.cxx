@@ -1,12 +1,11 @@
-#include "Tetrahedra.h"
-
 #include <utility>
 
 #include "Common/Mesher.h"
+#include "Regions.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Labels/LabelVolumes.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 
 void requireTetrahedraLabels(const LabelsRun& run) {
     if (!run.options.tetrahedra.isAsked()) return;
@@ -39,4 +38,4 @@ void makeTetrahedra(const LabelComplex& complex, LabelsRun& run) {
     run.tetrahedra = std::move(made);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

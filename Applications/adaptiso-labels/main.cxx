@@ -1,10 +1,223 @@
-#include "CommandLine.h"
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "Common/CommonFrame.h"
+#include "Common/ImageOptions.h"
+#include "Common/OptionValues.h"
 #include "Common/RunApp.h"
+#include "Common/UsageWords.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/ReturnMemory.h"
+#include "adaptiso/MeshIO/Formats.h"
+
+namespace adaptiso::labels {
+namespace {
+
+constexpr const char* kInput = "Input";
+constexpr const char* kRegions = "Regions";
+constexpr const char* kWalls = "Walls";
+constexpr const char* kTetrahedra = "Tetrahedra";
+constexpr const char* kOutput = "Output";
+
+std::vector<std::string> knownExtensions() {
+    std::vector<std::string> known;
+    for (const MeshFormat& format : meshFormats()) {
+        for (const std::string_view extension : format.extensions) {
+            known.emplace_back(extension.substr(1));
+        }
+    }
+    return known;
+}
+
+/// "stl" or ".stl" as ".stl". \throws UsageError
+std::string parseFormat(std::string text) {
+    std::ranges::transform(text, text.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    if (text.starts_with('.')) text.erase(0, 1);
+    const std::vector<std::string> known = knownExtensions();
+    return "." + known[parseChoice("--format", text, known)];
+}
+
+/// Checks options against each other.
+void checkCombinations(const LabelsOptions& options) {
+    if (options.inputs.empty() && options.batch.list.empty() && options.batch.bids.empty()) {
+        throw UsageError("SEG is missing: the label map to make surfaces of");
+    }
+    if (!options.volume.empty() && !options.report.isWanted()) {
+        throw UsageError("--volume: is shown on the page; it needs --report or --pictures");
+    }
+    if (options.maxTriangles && options.reduction) {
+        throw UsageError("--triangles and --reduction: are two ways to ask for one count");
+    }
+    if (options.writesLayers && !options.labels.empty()) {
+        throw UsageError(
+            "--layers: needs all regions, as each wall lies between two of them; "
+            "--merge joins those of no interest");
+    }
+    if (options.writesLayers && options.frame == CoordinateFrame::Voxel) {
+        throw UsageError("--coordinates voxel: --layers are in mm only");
+    }
+    if (!options.conductivities.empty() && !options.writesLayers) {
+        throw UsageError("--conductivities: are written with --layers");
+    }
+    requireDisjoint(options.merges);
+    const std::vector<std::string> forRun{"{name}"};
+    requirePlaceholders("--output", options.output, forRun);
+    requirePlaceholders("--report", options.report.page, forRun);
+    requirePlaceholders("--pictures", options.report.pictures, forRun);
+    requirePlaceholders("--summary", options.batch.summary, {});
+    requirePlaceholders("--output-dir", options.batch.outputFolder, {});
+    requirePlaceholders("--json", options.common.json, {});
+}
+
+void declareInput(CLI::App& app, LabelsOptions& options) {
+    const OptionGroup input(app, kInput);
+    OptionGroup(app).text(
+        "INPUT", "", options.inputs,
+        "A 3-D label map (SEG): NIfTI, NRRD, MetaImage, MGH, or a DICOM series, of whole "
+        "numbers, 0 where no region is; several make a batch");
+    declareReadOptions(app, options.read, kInput);
+    input.flag("--any-map", options.takesAnyMap,
+               "Take the image for a label map even if its values change from voxel to voxel, as "
+               "those of a scan do");
+    input.text("--names", "FILE", options.names,
+               "A table of names and colours: BIDS .tsv, FreeSurfer, ITK-SNAP, 3D Slicer, "
+               "MRIcron, FSL, GIFTI or JSON, recognised by content (default: what lies beside "
+               "the image under its name, or is its BIDS dataset's, or is in the image: 3D "
+               "Slicer's segments, the LabelTable of a NIfTI extension)");
+}
+
+void declareRegions(CLI::App& app, LabelsOptions& options) {
+    const OptionGroup regions(app, kRegions);
+    regions.value(
+        "--labels", "LIST",
+        [&options](const std::string& text) {
+            options.labels = parseLabelRanges("--labels", text);
+        },
+        "Write these regions only, by number or name, 1,Hippocampus_L,10-20; their walls are those "
+        "that the whole map gives them");
+    regions.values(
+        "--merge", "NAME=LIST",
+        [&options](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) {
+                options.merges.push_back(parseLabelMerge(text));
+            }
+        },
+        "Take several labels, numbers or names, for one region, Thalamus=10,49, that goes by "
+        "the "
+        "first of them; "
+        "may be given several times");
+}
+
+void declareWalls(CLI::App& app, LabelsOptions& options) {
+    const OptionGroup walls(app, kWalls);
+    walls.number(
+        "--max-error", "MM", options.maxErrorMm, {.least = 0, .unit = "mm"},
+        "No point of a wall at full resolution is farther than MM from the same wall here, "
+        "nor the other way round; 0 writes the full resolution (default, unless a count is "
+        "given: 0.15 of the least distance between planes of voxels)");
+    walls.count("--triangles", options.maxTriangles, 0, kAnyCount,
+                "As near to the full resolution as N triangles in all walls together can be");
+    walls.number("--reduction", "F", options.reduction, {.least = 0, .most = 1},
+                 "The share F of the full resolution's triangles to drop, 0 to 1");
+    walls.number("--min-angle", "DEG", options.minAngleDeg,
+                 {.least = 0, .most = 40, .unit = "degrees"},
+                 "Make no angle below DEG (0 to 40), at the price of more triangles: for meshers "
+                 "(default: 0)");
+}
+
+void declareLayers(CLI::App& app, LabelsOptions& options) {
+    const OptionGroup output(app, kOutput);
+    output.flag("--layers", options.writesLayers,
+                "Write the walls for OpenMEEG too: layers/layers.geom (Domain Description 1.1 with "
+                "meshes and signed interfaces), a .tri for each pair of labels that touch, in mm");
+    output.value(
+        "--conductivities", "LIST",
+        [&options](const std::string& text) { options.conductivities = parseConductivities(text); },
+        "With --layers: S/m of every region, 1=0.33,2=0.0066, for layers/layers.cond");
+}
+
+void declareOutput(CLI::App& app, LabelsOptions& options) {
+    const OptionGroup output(app, kOutput);
+    output.text("-o,--output", "DIR", options.output,
+                "The folder to write, whole or not at all (default: <INPUT>-labels in the "
+                "current folder)");
+    output.flag("--force", options.mayReplace,
+                "Replace a folder that this program wrote; one that holds other files is not");
+    output.value(
+        "--format", choiceName({"vtp", "vtk", "ply", "stl", "obj", "off", "gii", "tri", "surf"}),
+        [&options](const std::string& text) { options.format = parseFormat(text); },
+        "The format of the regions' files (default: vtp)");
+    output.value(
+        "--file-names", choiceName({"number", "name"}),
+        [&options](const std::string& text) {
+            options.namesFiles = parseChoice("--file-names", text, {"number", "name"}) == 1;
+        },
+        "The regions' files go by their labels, regions/17.vtp (default), or by their names, "
+        "regions/Hippocampus_L.vtp");
+    declareCoordinates(output, options.frame,
+                       "The points' frame in all files: scanner RAS mm (default), scanner "
+                       "LPS mm, FreeSurfer's surface RAS mm (default with --format surf), "
+                       "or voxel indices");
+    declareReportOptions(app, options.report, kOutput);
+    output.text("--volume", "IMG", options.volume,
+                "With --report: the image to show behind the regions (default: the label map)");
+}
+
+constexpr const char* kFooter = R"(Examples:
+  adaptiso-labels aseg.mgz -o aseg
+      walls.vtp, regions/<label>.vtp, all.vtm, all.surf.gii and all.label.gii,
+      regions.tsv and report.json in the folder aseg
+  adaptiso-labels aal.nii.gz --max-error 0.3 --report aal.html --volume T1.nii.gz
+      names and colours from aal.nii.txt and aal.nii.lut beside it
+  adaptiso-labels seg.nrrd --names Colors.ctbl --labels 1,2,10-20 --format stl -o seg
+  adaptiso-labels aseg.mgz --merge Thalamus=10,49 --merge Putamen=12,51 -o deep
+  adaptiso-labels seg.nii.gz --tetrahedra tetgen --element-size 3 -o volumes
+      every region in tetrahedra as well, for finite elements
+  adaptiso-labels seg.nii.gz --max-error 0 -o full
+      the full resolution, which the bound is measured against
+  adaptiso-labels head.nii.gz --layers --conductivities 1=0.33,2=0.0066,3=0.33
+      the walls for OpenMEEG as well, in the folder layers
+  adaptiso-labels --bids derivatives/segmentation --skip-existing
+      each *_dseg image a run of its own
+
+Exit codes: 0 done, 1 the walls do not keep what is promised of them, one or
+more of many inputs failed, or a warning with --strict, 2 wrong usage, 3 bad
+input (or no memory or disk left), 4 internal error. When it is not 0, no
+folder was written (of many inputs: none of those that failed).)";
+
+Program labelsProgram() {
+    return {"adaptiso-labels",
+            "Makes surfaces of all regions of a segmentation: neighbours share one wall, and no "
+            "two cross.",
+            kFooter};
+}
+
+void declareLabelsOptions(CLI::App& app, LabelsOptions& options) {
+    declareInput(app, options);
+    declareRegions(app, options);
+    declareWalls(app, options);
+    declareMesherOptions(app, options.tetrahedra,
+                         "tetrahedra.msh, tetrahedra-4.1.msh, tetrahedra.vtu and tetrahedra.dgf",
+                         kTetrahedra);
+    declareOutput(app, options);
+    declareLayers(app, options);
+    declareBatchOptions(app, options.batch, "the label maps, *_dseg");
+    declareCommonOptions(app, options.common, "no folder is then written, reports are");
+    afterParsing(app, [&app, &options] {
+        if (!options.inputs.empty()) options.input = options.inputs.front();
+        checkCombinations(options);
+        if (options.isBatch()) keepRunOptions(app, options.batch);
+    });
+}
+
+}  // namespace
+}  // namespace adaptiso::labels
 
 int main(int argc, char** argv) {
     adaptiso::keepFreedMemory();
-    return adaptiso::runApp(argc, argv, adaptiso::labelsProgram(), adaptiso::declareLabelsOptions,
-                            adaptiso::runLabels);
+    return adaptiso::runApp(argc, argv, adaptiso::labels::labelsProgram(),
+                            adaptiso::labels::declareLabelsOptions, adaptiso::labels::runLabels);
 }

@@ -7,19 +7,17 @@
 #include <iostream>
 #include <numbers>
 
-#include "Common/ExitCodes.h"
 #include "Common/Json.h"
-#include "Common/Numbers.h"
 #include "Common/PreprocessingOptions.h"
 #include "Common/Progress.h"
-#include "Common/ResultOutput.h"
+#include "Common/RunApp.h"
 #include "Common/Verdict.h"
 #include "Common/Warnings.h"
-#include "InfoReport.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
-namespace adaptiso {
+namespace adaptiso::mesher {
 namespace {
 
 double angleDeg(const Vec3& a, const Vec3& b) {
@@ -181,4 +179,4 @@ int runInfo(const MeshOptions& options) {
     return printVerdict("adaptiso-mesh", verdict, "");
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::mesher

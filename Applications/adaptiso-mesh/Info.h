@@ -2,16 +2,18 @@
 
 #include <cstdint>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
+#include "Common/Verdict.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 #include "adaptiso/ImageIO/SampleStatistics.h"
 
-namespace adaptiso {
+namespace adaptiso::mesher {
 
 /// Holds whole numbers.
 bool isInteger(PixelType type);
@@ -27,7 +29,7 @@ struct AxesSummary {
 };
 AxesSummary summarizeAxes(const ImageGeometry& geometry);
 
-/// What --info tells of an image's values.
+/// Statistics of an image's values, for --info.
 struct ValueSummary {
     std::int64_t finite = 0;
     std::int64_t notFinite = 0;                ///< NaN or infinite
@@ -38,7 +40,7 @@ struct ValueSummary {
 inline constexpr double kPercents[] = {0, 0.1, 1, 5, 25, 50, 75, 95, 99, 99.9, 100};
 ValueSummary summarizeValues(const VolumeView& volume);
 
-/// What --info tells.
+/// Content of the --info report.
 struct ImageInfo {
     std::string fault;  ///< why the image is refused, its path left out; the rest is empty then
     std::string format;
@@ -59,4 +61,10 @@ std::vector<Warning> namedWarnings(const MeshOptions& options, const ImageInfo& 
 /// \throws Error  as reading and preprocessing do, once the report has been delivered that says so
 int runInfo(const MeshOptions& options);
 
-}  // namespace adaptiso
+/// --info for people.
+void printInfo(std::ostream& out, const MeshOptions& options, const ImageInfo& info);
+
+/// --info for machines, as README.md documents it.
+std::string infoJson(const MeshOptions& options, const ImageInfo& info, const Verdict& verdict);
+
+}  // namespace adaptiso::mesher

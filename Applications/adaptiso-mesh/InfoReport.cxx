@@ -1,17 +1,16 @@
-#include "InfoReport.h"
-
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
 
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
-#include "Common/Numbers.h"
 #include "Common/PreprocessingOptions.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
+#include "Info.h"
+#include "adaptiso/Core/Numbers.h"
 
-namespace adaptiso {
+namespace adaptiso::mesher {
 namespace {
 
 std::string joined(const Vec3& v, const std::string& separator) {
@@ -194,4 +193,4 @@ std::string infoJson(const MeshOptions& options, const ImageInfo& info, const Ve
     return jsonText(report) + "\n";
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::mesher

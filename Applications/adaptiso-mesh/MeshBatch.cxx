@@ -1,12 +1,10 @@
-#include "MeshBatch.h"
-
 #include "Common/Batch.h"
 #include "Common/Bids.h"
-#include "Common/InputNames.h"
-#include "Common/Numbers.h"
-#include "OutputNames.h"
+#include "Common/Naming.h"
+#include "Run.h"
+#include "adaptiso/Core/Numbers.h"
 
-namespace adaptiso {
+namespace adaptiso::mesher {
 namespace {
 
 std::string says(const Json& report) {
@@ -58,4 +56,4 @@ int runMeshBatch(const MeshOptions& options) {
     return runBatch(program, options.batch, options.common);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::mesher

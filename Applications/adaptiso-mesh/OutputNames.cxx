@@ -1,13 +1,12 @@
-#include "OutputNames.h"
-
 #include <algorithm>
 #include <string_view>
 
 #include "Common/Bids.h"
-#include "Common/InputNames.h"
+#include "Common/Naming.h"
+#include "Run.h"
 #include "adaptiso/Core/Text.h"
 
-namespace adaptiso {
+namespace adaptiso::mesher {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,4 +41,4 @@ fs::path outputPath(const MeshOptions& options, const std::string& isovalue) {
     return insertBeforeExtension(options.output, "-iso" + isovalue);
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::mesher

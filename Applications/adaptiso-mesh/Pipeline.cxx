@@ -2,30 +2,19 @@
 
 #include <algorithm>
 #include <functional>
-#include <iostream>
 #include <optional>
-#include <span>
 #include <utility>
 
-#include "Common/AtomicOutput.h"
-#include "Common/ExitCodes.h"
+#include "Common/CommonFrame.h"
 #include "Common/Json.h"
 #include "Common/Naming.h"
-#include "Common/Numbers.h"
 #include "Common/PreprocessingOptions.h"
-#include "Common/Progress.h"
-#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
 #include "Common/Warnings.h"
 #include "Info.h"
-#include "JsonReport.h"
-#include "MeshBatch.h"
-#include "MeshRun.h"
-#include "OutputNames.h"
-#include "ReportPage.h"
-#include "TextReport.h"
-#include "Verification.h"
+#include "Run.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/FrameTransform.h"
@@ -33,7 +22,7 @@
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 
-namespace adaptiso {
+namespace adaptiso::mesher {
 namespace {
 
 namespace fs = std::filesystem;
@@ -48,7 +37,6 @@ constexpr const char* kIndex = "index";
 constexpr const char* kExtract = "extract";
 constexpr const char* kVerify = "verify";
 constexpr const char* kWrite = "write";
-constexpr const char* kReport = "report";
 
 /// Pairs of triangles that cross, to be shown on the page; all are counted.
 constexpr std::int64_t kMaxShownPairs = 1000;
@@ -57,51 +45,15 @@ std::string isovalueText(const IsovalueChoice& choice) {
     return choice.isAutomatic() ? "auto" : formatNumber(*choice.value);
 }
 
-const MeshFormat& formatOf(const fs::path& path) {
-    try {
-        return findMeshFormat(path);
-    } catch (const InvalidInput& error) {
-        throw UsageError(error.what());
-    }
-}
-
-CoordinateFrame frameOf(const MeshOptions& options, const MeshFormat& format) {
-    const CoordinateFrame frame = options.frame.value_or(defaultFrame(format));
-    if (frame == CoordinateFrame::Voxel && !format.holdsVoxelFrame) {
-        throw UsageError("--coordinates voxel: " + std::string(format.name) +
-                         " holds points in mm only");
-    }
-    return frame;
-}
-
-/// Adds a file that an option names. \throws UsageError when it is one of `files` already
-void addOutput(std::vector<fs::path>& files, const std::string& option, const fs::path& file) {
-    const auto isSame = [&](const fs::path& other) {
-        return fs::weakly_canonical(fs::absolute(other)) ==
-               fs::weakly_canonical(fs::absolute(file));
-    };
-    if (std::any_of(files.begin(), files.end(), isSame)) {
-        throw UsageError(option + " " + file.string() + ": is the name of another output too");
-    }
-    files.push_back(file);
-}
-
-/// Everything about the outputs that can be told before the volume is read.
+/// Checks the outputs before the volume is read.
 void checkOutputs(const MeshOptions& options) {
-    std::vector<fs::path> files;
+    OutputPlan plan({&options.input, 1});
     for (const IsovalueChoice& choice : options.isovalues) {
-        files.push_back(outputPath(options, isovalueText(choice)));
-        frameOf(options, formatOf(files.back()));
+        const fs::path file = outputPath(options, isovalueText(choice));
+        outputFrame(options.frame, meshFormatOf(file));
+        plan.add("--output", file);
     }
-    if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
-        addOutput(files, "--json", options.common.json);
-    }
-    if (!options.report.page.empty()) addOutput(files, "--report", options.report.page);
-    checkReportOutputs(options.report, {});
-    for (const fs::path& file : files) {
-        checkNotInput(file, options.input);
-        checkOutput(file);
-    }
+    plan.check(options.common, options.report);
 }
 
 /// The input, as messages name it: without folders.
@@ -151,10 +103,9 @@ InputSummary summarize(const ReadVolume& read) {
 }
 
 /// The volume to work on.
-Volume prepare(Volume read, MeshRun& run, ProgressLine& progress) {
+Volume prepare(Volume read, MeshRun& run) {
     if (run.options.preprocessing.changesNothing()) return read;
-    progress.show(kPreprocess);
-    return run.timer.time(kPreprocess, [&] {
+    return run.stage(kPreprocess, [&] {
         Preprocessed done =
             preprocessImage(std::move(read), run.options.preprocessing, run.options.input);
         const VolumeView& view = done.volume.view();
@@ -177,13 +128,13 @@ auto choosingPieces(const MeshOptions& options, const Work& work) {
 
 /// The surface before it is finished.
 TriangleMesh extract(const VolumeView& volume, const SpanSpaceIndex& index, MeshRun& run,
-                     ProgressLine& progress, SurfaceSummary& summary) {
+                     SurfaceSummary& summary) {
     const MeshOptions& options = run.options;
-    TriangleMesh mesh = run.timer.time(kExtract, [&] {
+    TriangleMesh mesh = run.stage(kExtract, [&] {
         ExtractionOptions extract = options.extraction();
         extract.isovalue = summary.isovalue;
         extract.computeNormals = summary.format->holdsNormals;
-        extract.progress = progress.callback();
+        extract.progress = run.progress.callback();
         const auto extractor = [&](const ExtractionOptions& each) {
             return naming(inputName(options), [&] { return extractSurface(volume, index, each); });
         };
@@ -199,17 +150,16 @@ TriangleMesh extract(const VolumeView& volume, const SpanSpaceIndex& index, Mesh
 
 /// Makes one surface and writes it under its temporary name.
 SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index, double isovalue,
-                           const IsovalueChoice& choice, MeshRun& run, ProgressLine& progress,
-                           std::vector<AtomicOutput>& outputs) {
+                           const IsovalueChoice& choice, MeshRun& run) {
     const MeshOptions& options = run.options;
     SurfaceSummary summary;
     summary.isovalue = isovalue;
     summary.isAutomatic = choice.isAutomatic();
     summary.file = outputPath(options, formatNumber(isovalue));
-    summary.format = &formatOf(summary.file);
-    summary.frame = frameOf(options, *summary.format);
+    summary.format = &meshFormatOf(summary.file);
+    summary.frame = outputFrame(options.frame, *summary.format);
 
-    TriangleMesh mesh = extract(volume, index, run, progress, summary);
+    TriangleMesh mesh = extract(volume, index, run, summary);
 
     MeshWriteOptions write;
     write.frame = summary.frame;
@@ -218,8 +168,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     const FileDigits digits{summary.format, lpsToFrame(write.frame, write.volume),
                             askedBoundMm(options.extraction(), volume.geometry())};
     if (options.verifies) {
-        progress.show(kVerify);
-        summary.verification = run.timer.time(
+        summary.verification = run.stage(
             kVerify, [&] { return verify(volume, index, mesh, digits, options, summary); });
     }
 
@@ -232,8 +181,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     finish.countsCrossings = options.checksCrossings;
     finish.maxCrossingPairs = isShown ? kMaxShownPairs : 0;
     finish.runStage = [&](std::string_view stage, const std::function<void()>& work) {
-        progress.show(stage);
-        run.timer.time(stage, work);
+        run.stage(stage, work);
     };
     FinishedSurface finished = choosingPieces(options, [&] {
         try {
@@ -243,9 +191,8 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         }
     });
 
-    progress.show(kWrite);
-    run.timer.time(kWrite, [&] {
-        AtomicOutput& output = outputs.emplace_back(summary.file);
+    run.stage(kWrite, [&] {
+        AtomicOutput& output = run.addOutput(summary.file);
         output.write([&](const fs::path& path) { writeMesh(finished.mesh, path, write); });
         summary.bytes = fs::file_size(output.temporary());
     });
@@ -287,14 +234,13 @@ std::optional<Warning> insideOutWarning(const SurfaceSummary& surface) {
 
 /// Adds the warnings about the surfaces as their files hold them.
 void warnOfSurfaces(MeshRun& run) {
-    const std::size_t told = run.warnings.size();
     for (const SurfaceSummary& surface : run.surfaces) {
         for (const auto& warning : {countWarning(surface, run.options), digitsWarning(surface, run),
                                     insideOutWarning(surface)}) {
             if (warning) run.warnings.push_back(*warning);
         }
     }
-    printWarnings(kProgram, run.options.common, std::span(run.warnings).subspan(told));
+    run.printNewWarnings();
 }
 
 /// "brain-100.ply and brain-120.ply are written"
@@ -315,56 +261,33 @@ int runMesh(const MeshOptions& options) {
         return runSeriesList(options.input, options.image, options.common, kProgram);
     }
     if (options.image.tellsInfo) return runInfo(options);
-    const ThreadLimit threads(options.common);
-    ProgressLine progress(options.common.isQuiet);
-    MeshRun run{options, {}, {}, {}, {}, {}};
+    MeshRun run(options);
     checkOutputs(options);
 
-    progress.show(kRead);
     ReadVolume read =
-        run.timer.time(kRead, [&] { return readImage(options.input, options.image.read); });
-    run.input = run.timer.time(kRead, [&] { return summarize(read); });
-    const Volume prepared = prepare(std::move(read.volume), run, progress);
+        run.stage(kRead, [&] { return readImage(options.input, options.image.read); });
+    run.input = run.stage(kRead, [&] { return summarize(read); });
+    const Volume prepared = prepare(std::move(read.volume), run);
     const VolumeView& volume = prepared.view();
-    progress.clear();
     addWarnings(run.warnings, run.input.warnings, inputName(options));
-    printWarnings(kProgram, options.common, run.warnings);
+    run.printNewWarnings();
     const std::vector<double> isovalues =
-        run.timer.time(kRead, [&] { return chooseIsovalues(volume, run); });
+        run.stage(kRead, [&] { return chooseIsovalues(volume, run); });
 
-    progress.show(kIndex);
-    const SpanSpaceIndex index = run.timer.time(kIndex, [&] {
+    const SpanSpaceIndex index = run.stage(kIndex, [&] {
         return naming(baseName(options.input),
                       [&] { return SpanSpaceIndex::build(volume, options.index); });
     });
     run.index = {index.search(), index.memoryBytes()};
 
-    ReportResult page;  // its folder goes, if empty, after what lies in it
-    std::vector<AtomicOutput> outputs;
     for (std::size_t n = 0; n < isovalues.size(); ++n) {
-        run.surfaces.push_back(
-            makeSurface(volume, index, isovalues[n], options.isovalues[n], run, progress, outputs));
+        run.surfaces.push_back(makeSurface(volume, index, isovalues[n], options.isovalues[n], run));
     }
     warnOfSurfaces(run);
-    if (run.failsStrict()) outputs.clear();
-    if (options.report.isWanted()) {
-        progress.show(kReport);
-        page = run.timer.time(kReport, [&] {
-            return writeReport([&] { return makeReport(run, volume); }, kProgram, options.report,
-                               outputs);
-        });
-    }
-    run.verdict.failStrict(options.common, run.warnings, kNotWritten);
-    run.verdict.failReport(page.failure);
-    const std::string json = options.common.wantsJson() ? jsonReport(run) : "";
-    if (options.common.wantsJson() && !options.common.wantsJsonOnStdout()) {
-        outputs.emplace_back(options.common.json).writeText(json);
-    }
-    progress.clear();
-    printResults(options.common, json, [&](std::ostream& out) { printReport(out, run); });
-    AtomicOutput::commit(outputs);
-    return printVerdict(kProgram, run.verdict,
-                        run.failsStrict() ? "no surface is written" : writtenText(run));
+    if (run.failsStrict()) run.dropOutputs();
+    if (options.report.isWanted()) run.writePage([&] { return makeReport(run, volume); });
+    run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
+    return run.end(run.failsStrict() ? "no surface is written" : writtenText(run));
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::mesher

@@ -14,7 +14,7 @@
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/Preprocessing/Preprocess.h"
 
-namespace adaptiso {
+namespace adaptiso::mesher {
 
 /// An isovalue as asked for.
 struct IsovalueChoice {
@@ -24,7 +24,7 @@ struct IsovalueChoice {
     friend bool operator==(const IsovalueChoice&, const IsovalueChoice&) = default;
 };
 
-/// What adaptiso-mesh is asked to do.
+/// Options of adaptiso-mesh.
 struct MeshOptions {
     std::vector<std::filesystem::path> inputs;  ///< as given
     std::filesystem::path input;                ///< the one, when it is one
@@ -45,16 +45,16 @@ struct MeshOptions {
     ReportOptions report;
     CommonOptions common;
 
-    /// The name of an output has a place for an input's.
+    /// Whether an output's name holds the placeholder {name}.
     static bool namesInput(const std::filesystem::path& output) {
         return output.string().find("{name}") != std::string::npos;
     }
-    /// Each input is a run of its own (Batch.h).
+    /// Whether each input is a run of its own (Batch.h).
     bool isBatch() const {
         return batch.isAsked() || inputs.size() > 1 || namesInput(output) ||
                namesInput(report.page) || namesInput(report.pictures);
     }
-    /// Of every surface, but for the isovalue, normals and progress.
+    /// Options for every surface, without isovalue, normals and progress.
     ExtractionOptions extraction() const {
         ExtractionOptions options;
         options.method = method;
@@ -63,14 +63,14 @@ struct MeshOptions {
         options.adaptive = adaptive;
         return options;
     }
-    /// Pieces are asked for that only closed surfaces have.
+    /// Whether the selection of pieces needs closed surfaces.
     bool needsClosedSurfaces() const {
         return selection.fillCavities || selection.minVolumeMm3 > 0;
     }
 };
 
 /// Reads the volume, extracts and checks the surfaces, and writes all of them or none; or lists the
-/// input's series, or tells what the image holds.
+/// input's series, or prints what the image holds.
 /// \return an exit code
 /// \throws UsageError     the output's format is unknown or can't hold the frame
 /// \throws FileError      the input can't be read, the output can't be written
@@ -80,4 +80,4 @@ struct MeshOptions {
 /// \throws InternalError  a surface is not sound
 int runMesh(const MeshOptions& asked);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::mesher

@@ -1,17 +1,16 @@
-#include "Verification.h"
-
 #include <algorithm>
 #include <string>
 
-#include "Common/Numbers.h"
+#include "Run.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/MeshQuality/Winding.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 
-namespace adaptiso {
+namespace adaptiso::mesher {
 namespace {
 
 void require(bool holds, const std::string& what) {
@@ -61,4 +60,4 @@ Verification verify(const VolumeView& volume, const SpanSpaceIndex& index, const
     return {distance.combined.samples, maxMm};
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::mesher

@@ -1,11 +1,10 @@
-#include "Findings.h"
-
 #include <algorithm>
 #include <array>
 #include <limits>
 
-#include "Common/Numbers.h"
-#include "Common/SpotClusters.h"
+#include "Common/ReportOutput.h"
+#include "Run.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
 namespace adaptiso::simplifier {

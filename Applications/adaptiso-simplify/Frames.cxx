@@ -1,6 +1,5 @@
-#include "Frames.h"
-
 #include "Common/CommonFrame.h"
+#include "Run.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::simplifier {

@@ -1,9 +1,8 @@
-#include "OutputNames.h"
-
 #include <algorithm>
 #include <array>
 #include <string_view>
 
+#include "Run.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/Formats.h"

@@ -2,38 +2,21 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
-#include <span>
 #include <utility>
 
-#include "Common/AtomicOutput.h"
 #include "Common/CommonFrame.h"
-#include "Common/ExitCodes.h"
-#include "Common/InputKind.h"
 #include "Common/Json.h"
 #include "Common/Naming.h"
-#include "Common/Numbers.h"
-#include "Common/Progress.h"
-#include "Common/ResultOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
-#include "Frames.h"
-#include "JsonReport.h"
-#include "OutputNames.h"
-#include "PointTransfer.h"
-#include "ReportPage.h"
-#include "SimplifyBatch.h"
-#include "SimplifyRun.h"
-#include "TextReport.h"
-#include "Verification.h"
+#include "Run.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 
 namespace adaptiso::simplifier {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kProgram = "adaptiso-simplify";
 
 /// The stages of a run, as progress, `seconds` of the report and README.md name them.
 constexpr const char* kRead = "read";
@@ -42,7 +25,6 @@ constexpr const char* kSimplify = "simplify";
 constexpr const char* kValues = "values";
 constexpr const char* kWrite = "write";
 constexpr const char* kVerify = "verify";
-constexpr const char* kReport = "report";
 
 /// Values in files of their own belong to points by number.
 void requirePointOrder(const MeshFormat& format, const fs::path& data) {
@@ -51,32 +33,22 @@ void requirePointOrder(const MeshFormat& format, const fs::path& data) {
                      " keeps no order of points, which its values would go by");
 }
 
-/// Everything about the files that can be told from their names.
-void checkNames(SimplifyRun& run) {
+/// Names the outputs and checks them before a file is read.
+void checkOutputs(SimplifyRun& run) {
     const SimplifyCommand& command = run.command;
     run.input.file = command.input;
     run.output.file = surfaceFile(command.output, command.input);
     run.output.format = &meshFormatOf(run.output.file);
-    std::vector<fs::path> inputs{command.input}, outputs{run.output.file};
+    std::vector<fs::path> inputs = command.data;
+    inputs.push_back(command.input);
+    OutputPlan plan(inputs);
+    plan.add("--output", run.output.file);
     for (const fs::path& data : command.data) {
         requirePointOrder(*run.output.format, data);
         run.data.push_back({data, dataFile(data, run.output.file), findPointDataFormat(data)});
-        inputs.push_back(data);
-        outputs.push_back(run.data.back().output);
+        plan.add("--data", run.data.back().output);
     }
-    if (command.common.wantsJson() && !command.common.wantsJsonOnStdout()) {
-        outputs.emplace_back(command.common.json);
-    }
-    if (!command.report.page.empty()) outputs.push_back(command.report.page);
-    checkReportOutputs(command.report, inputs);
-    std::set<fs::path> known;
-    for (const fs::path& output : outputs) {
-        if (!known.insert(fs::weakly_canonical(fs::absolute(output))).second) {
-            throw UsageError(output.string() + ": is the name of another output too");
-        }
-        for (const fs::path& input : inputs) checkNotInput(output, input);
-        checkOutput(output);
-    }
+    plan.check(command.common, command.report);
 }
 
 void summarize(const TriangleMesh& mesh, SurfaceSummary& summary) {
@@ -156,9 +128,9 @@ void warnOfFindings(SimplifyRun& run) {
     }
 }
 
-Simplified simplifySurface(const TriangleMesh& mesh, SimplifyRun& run, ProgressLine& progress) {
+Simplified simplifySurface(const TriangleMesh& mesh, SimplifyRun& run) {
     SimplifyOptions options = run.command.aim;
-    options.progress = progress.callback();
+    options.progress = run.progress.callback();
     Simplified result = naming(baseName(run.input.file), [&] { return simplify(mesh, options); });
     run.statistics = result.statistics;
     if (!run.command.requiresSound) {
@@ -173,7 +145,7 @@ struct TakenValues {
     std::vector<PointData> data;
 };
 
-/// The input's arrays that the output's format holds. Of others a warning tells.
+/// The input's arrays that the output's format holds; a warning names the others.
 std::vector<const PointArray*> heldArrays(const MeshFile& input, SimplifyRun& run) {
     const MeshFormat& format = *run.output.format;
     std::vector<const PointArray*> held;
@@ -245,20 +217,19 @@ double frameRoundingMm(const TriangleMesh& mesh, const FrameChange& change) {
 
 /// Writes surface and values under their temporary names. \return  the surface as it can be read
 MeshFile writeFiles(const TriangleMesh& mesh, TakenValues values, const MeshFile& input,
-                    const FrameChange& change, SimplifyRun& run,
-                    std::vector<AtomicOutput>& outputs) {
+                    const FrameChange& change, SimplifyRun& run) {
     MeshWriteOptions write;
     write.frame = change.frame;
     write.volume = input.volume;
     write.pointArrays = std::move(values.arrays);
     write.isInFrame = true;
     write.saysFrame = change.isSaid;
-    AtomicOutput& output = outputs.emplace_back(run.output.file);
+    AtomicOutput& output = run.addOutput(run.output.file);
     output.write([&](const fs::path& path) { writeMesh(mesh, path, write); });
     const fs::path written = output.temporary();
     run.bytes = fs::file_size(written);
     for (std::size_t n = 0; n < values.data.size(); ++n) {
-        outputs.emplace_back(run.data[n].output).write([&](const fs::path& path) {
+        run.addOutput(run.data[n].output).write([&](const fs::path& path) {
             writePointData(values.data[n], std::ssize(mesh.triangles), path);
         });
     }
@@ -267,21 +238,17 @@ MeshFile writeFiles(const TriangleMesh& mesh, TakenValues values, const MeshFile
 
 /// Everything from the simplified surface on; the surface is then under its temporary name.
 void finish(Simplified result, const MeshFile& input, const std::vector<PointData>& data,
-            const FrameChange& change, SimplifyRun& run, ProgressLine& progress,
-            std::vector<AtomicOutput>& outputs) {
-    progress.show(kValues);
+            const FrameChange& change, SimplifyRun& run) {
     TakenValues values =
-        run.timer.time(kValues, [&] { return takeValues(input, data, result.mesh, run); });
-    progress.show(kWrite);
+        run.stage(kValues, [&] { return takeValues(input, data, result.mesh, run); });
     TriangleMesh settled;
-    MeshFile written = run.timer.time(kWrite, [&] {
+    MeshFile written = run.stage(kWrite, [&] {
         if (!run.output.format->holdsNormals) result.mesh.normals.clear();
         settled = result.mesh;
         fitToDigits(settled, change, run);
-        return writeFiles(change.apply(settled), std::move(values), input, change, run, outputs);
+        return writeFiles(change.apply(settled), std::move(values), input, change, run);
     });
-    progress.show(kVerify);
-    run.timer.time(kVerify, [&] {
+    run.stage(kVerify, [&] {
         summarize(written.mesh, run.output);
         verify({input.mesh, result.mesh, change.undo(std::move(written.mesh)),
                 run.roundingMm + frameRoundingMm(result.mesh, change)},
@@ -299,14 +266,6 @@ std::string refusal(const SimplifyRun& run) {
            ": is not sound, as --require-sound asks for, so no surface was written: " + text;
 }
 
-Verdict verdictOf(const SimplifyRun& run, const std::string& reportFailure) {
-    Verdict verdict;
-    verdict.failStrict(run.command.common, run.warnings, kNotWritten);
-    if (run.failsSoundness()) verdict = {kExitCheckFailed, refusal(run)};
-    verdict.failReport(reportFailure);
-    return verdict;
-}
-
 /// As simplify() does, in the words of the command line.
 void requireProvable(const TriangleMesh& mesh, const SimplifyCommand& command) {
     constexpr double kLeastPart = 1e-12;
@@ -315,7 +274,7 @@ void requireProvable(const TriangleMesh& mesh, const SimplifyCommand& command) {
     if (*command.aim.maxErrorMm >= kLeastPart * norm(box.size())) return;
     throw InvalidInput("--max-error " + formatNumber(*command.aim.maxErrorMm) +
                        ": is less than 1e-12 of the diagonal of " + baseName(command.input) +
-                       ", which its coordinates can't tell; allow more");
+                       ", below the resolution of its coordinates; allow more");
 }
 
 FrameChange chooseFrame(const MeshFile& input, SimplifyRun& run) {
@@ -334,13 +293,10 @@ FrameChange chooseFrame(const MeshFile& input, SimplifyRun& run) {
 
 int runSimplify(const SimplifyCommand& command) {
     if (command.isBatch()) return runSimplifyBatch(command);
-    const ThreadLimit threads(command.common);
-    ProgressLine progress(command.common.isQuiet);
-    SimplifyRun run{command};
-    checkNames(run);
+    SimplifyRun run(command);
+    checkOutputs(run);
 
-    progress.show(kRead);
-    const MeshFile input = run.timer.time(kRead, [&] {
+    const MeshFile input = run.stage(kRead, [&] {
         return readMesh(command.input,
                         {.keepsPointArrays = true,
                          .inputCoordinates = statedFrame(command.inputCoordinates, 0)});
@@ -354,43 +310,27 @@ int runSimplify(const SimplifyCommand& command) {
                            ": its triangles have no area, so there is nothing to simplify");
     }
     requireProvable(input.mesh, command);
-    const std::vector<PointData> data = run.timer.time(kRead, [&] { return readData(run); });
+    const std::vector<PointData> data = run.stage(kRead, [&] { return readData(run); });
     const FrameChange change = chooseFrame(input, run);
-    progress.show(kCheck);
-    run.timer.time(kCheck, [&] { check(input.mesh, run); });
+    run.stage(kCheck, [&] { check(input.mesh, run); });
 
-    ReportResult page;  // its folder goes, if empty, after what lies in it
-    std::vector<AtomicOutput> outputs;
     TriangleMesh shown;
     if (!run.failsSoundness()) {
-        Simplified result =
-            run.timer.time(kSimplify, [&] { return simplifySurface(input.mesh, run, progress); });
+        Simplified result = run.stage(kSimplify, [&] { return simplifySurface(input.mesh, run); });
         if (command.report.isWanted()) shown = result.mesh;
-        finish(std::move(result), input, data, change, run, progress, outputs);
+        finish(std::move(result), input, data, change, run);
         warnOfFindings(run);
         warnOfCount(run);
         warnOfRounding(run);
     }
-    if (!run.writesSurface()) outputs.clear();
+    if (!run.writesSurface()) run.dropOutputs();
     if (command.report.isWanted()) {
-        progress.show(kReport);
-        page = run.timer.time(kReport, [&] {
-            return writeReport([&] { return makeReport(run, input, std::move(shown)); }, kProgram,
-                               command.report, outputs);
-        });
+        run.writePage([&] { return makeReport(run, input, std::move(shown)); });
     }
-    run.verdict = verdictOf(run, page.failure);
-    const std::string json = command.common.wantsJson() ? jsonReport(run) : "";
-    if (command.common.wantsJson() && !command.common.wantsJsonOnStdout()) {
-        outputs.emplace_back(command.common.json).writeText(json);
-    }
-    progress.clear();
-    printWarnings(kProgram, command.common, run.warnings);
-    printResults(command.common, json, [&](std::ostream& out) { printReport(out, run); });
-    AtomicOutput::commit(outputs);
-    const std::string written =
-        run.writesSurface() ? run.output.file.string() + " is written" : "no surface is written";
-    return printVerdict(kProgram, run.verdict, written);
+    if (run.failsSoundness()) run.verdict = {kExitCheckFailed, refusal(run)};
+    run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
+    return run.end(run.writesSurface() ? run.output.file.string() + " is written"
+                                       : "no surface is written");
 }
 
 }  // namespace adaptiso::simplifier

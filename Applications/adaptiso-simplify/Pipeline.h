@@ -14,7 +14,7 @@
 
 namespace adaptiso::simplifier {
 
-/// What adaptiso-simplify is asked to do.
+/// Options of adaptiso-simplify.
 struct SimplifyCommand {
     std::vector<std::filesystem::path> inputs;      ///< as given
     std::filesystem::path input;                    ///< the one, when it is one
@@ -32,7 +32,7 @@ struct SimplifyCommand {
     static bool namesInput(const std::filesystem::path& file) {
         return file.string().find("{name}") != std::string::npos;
     }
-    /// Each input is a run of its own (Batch.h).
+    /// Whether each input is a run of its own (Batch.h).
     bool isBatch() const {
         return batch.isAsked() || inputs.size() > 1 || namesInput(output) ||
                namesInput(report.page) || namesInput(report.pictures) ||

@@ -1,8 +1,8 @@
-#include "PointTransfer.h"
-
 #include <array>
 #include <cmath>
 #include <cstdint>
+
+#include "Run.h"
 
 namespace adaptiso::simplifier {
 

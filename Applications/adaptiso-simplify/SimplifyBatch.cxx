@@ -1,9 +1,7 @@
-#include "SimplifyBatch.h"
-
 #include "Common/Batch.h"
 #include "Common/Bids.h"
-#include "Common/Numbers.h"
-#include "OutputNames.h"
+#include "Run.h"
+#include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso::simplifier {
 namespace {

@@ -1,12 +1,11 @@
-#include "Verification.h"
-
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "Common/Json.h"
-#include "Common/Numbers.h"
+#include "Run.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
@@ -34,7 +33,7 @@ bool isManifoldSurface(const TopologyReport& topology) {
            topology.count(TopologyDefect::DuplicateTriangle) == 0;
 }
 
-/// What is wrong with `topology`, that of the result; empty: nothing.
+/// The fault of `topology`, the result's; empty if there is none.
 std::string topologyFault(const TopologyReport& before, const TopologyReport& topology) {
     const auto hasMore = [&](TopologyDefect defect) {
         return topology.count(defect) > before.count(defect);
@@ -57,7 +56,7 @@ std::int64_t insideOutPieces(const TriangleMesh& mesh, const TopologyReport& top
     return isTold ? std::ssize(findInsideOutPieces(mesh, topology)) : 0;
 }
 
-/// What is wrong with a surface that was made of the run's input; empty: nothing.
+/// The fault of a surface made from the run's input; empty if it is sound.
 std::string soundnessFault(const VerifiedSurface& surface, const TriangleMesh& mesh,
                            const TopologyReport& topology, const SimplifyRun& run) {
     std::string fault = topologyFault(run.input.topology, topology);

@@ -1,7 +1,166 @@
-#include "CommandLine.h"
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "Common/CommonFrame.h"
+#include "Common/OptionValues.h"
 #include "Common/RunApp.h"
+#include "Common/UsageWords.h"
 #include "Pipeline.h"
+#include "Run.h"
 #include "adaptiso/Core/ReturnMemory.h"
+#include "adaptiso/MeshIO/Formats.h"
+
+namespace adaptiso::simplifier {
+namespace {
+
+constexpr const char* kInput = "Input";
+constexpr const char* kAim = "Extent (at least one)";
+constexpr const char* kKept = "Constraints";
+constexpr const char* kOutput = "Output";
+
+void checkAim(const SimplifyOptions& aim) {
+    if (!aim.maxErrorMm && !aim.maxTriangles && !aim.reduction) {
+        throw UsageError("--max-error, --triangles or --reduction is missing: how far to simplify");
+    }
+    if (aim.maxTriangles && aim.reduction) {
+        throw UsageError("--triangles and --reduction: are two ways to ask for one count");
+    }
+}
+
+/// Of the names of what is written and of the files of values: {name} stands for an input of a
+/// batch.
+void checkPlaceholders(const SimplifyCommand& command) {
+    const std::vector<std::string> forRun{"{name}"};
+    for (const std::filesystem::path& data : command.data) {
+        requirePlaceholders("--data", data, forRun);
+    }
+    requirePlaceholders("--output", command.output, forRun);
+    requirePlaceholders("--report", command.report.page, forRun);
+    requirePlaceholders("--pictures", command.report.pictures, forRun);
+    requirePlaceholders("--summary", command.batch.summary, {});
+    requirePlaceholders("--output-dir", command.batch.outputFolder, {});
+    requirePlaceholders("--json", command.common.json, {});
+}
+
+/// Checks options against each other.
+void checkCombinations(const SimplifyCommand& command) {
+    const bool findsInputs = !command.batch.list.empty() || !command.batch.bids.empty();
+    if (command.inputs.empty() && !findsInputs) {
+        throw UsageError("MESH is missing: the surface to simplify");
+    }
+    checkInputCoordinates(command.inputCoordinates, 1);
+    checkAim(command.aim);
+    const bool hasFolder = !command.batch.outputFolder.empty() || !command.batch.bids.empty();
+    if (command.output.empty() && !hasFolder) {
+        throw UsageError("--output is missing: the file to write, or a folder");
+    }
+    if (hasFolder && isFolder(command.output)) {
+        throw UsageError("--output " + command.output.string() +
+                         ": is a folder, and --output-dir or --bids names one; give one of them");
+    }
+}
+
+/// Several surfaces into one folder: --output is then what --output-dir is.
+void takeFolder(SimplifyCommand& command) {
+    if (!isFolder(command.output)) return;
+    command.batch.outputFolder = command.output;
+    command.output.clear();
+    std::erase_if(command.batch.runOptions,
+                  [](const std::string& option) { return option.starts_with("--output="); });
+}
+
+void declareInput(CLI::App& app, SimplifyCommand& command) {
+    const OptionGroup input(app, kInput);
+    OptionGroup(app).text(
+        "MESH", "", command.inputs,
+        "Triangle surfaces, in any format adaptiso-mesh writes; several make a batch");
+    declareInputCoordinates(input, command.inputCoordinates, "the surfaces");
+    input.text("--data", "FILE", command.data,
+               "Values at the surface's points in a file of their own: FreeSurfer's "
+               "lh.thickness, lh.curv, lh.sulc and the like, lh.aparc.annot, .mgh; GIFTI's "
+               ".shape.gii, .func.gii, .label.gii. They are taken to the new points, numbers "
+               "interpolated, labels from the nearest point, and written beside the surface "
+               "under their own names. May be given several times");
+}
+
+void declareAim(CLI::App& app, SimplifyOptions& aim) {
+    const OptionGroup group(app, kAim);
+    group.number("--max-error", "MM", aim.maxErrorMm, {.least = 0, .isAbove = true, .unit = "mm"},
+                 "No point of the surface is farther than MM (a number above 0, in the unit of its "
+                 "coordinates) from the result, nor the other way round");
+    group.count("--triangles", aim.maxTriangles, 0, kAnyCount,
+                "As near to the surface as N triangles can be");
+    group.number("--reduction", "F", aim.reduction, {.least = 0, .most = 1},
+                 "The share F of the triangles to drop, 0 to 1");
+}
+
+void declareKept(CLI::App& app, SimplifyCommand& command) {
+    const OptionGroup kept(app, kKept);
+    kept.number("--min-angle", "DEG", command.aim.minAngleDeg,
+                {.least = 0, .most = 40, .unit = "degrees"},
+                "Make no new angle below DEG, 0 to 40, at the price of more triangles "
+                "(default: 0)");
+    kept.flag("--keep-borders", command.aim.keepBorders,
+              "Leave the points of open borders where they are, to the bit");
+    kept.flag("--require-sound", command.requiresSound,
+              "Refuse (exit code 1, no surface written) a surface that is not closed, "
+              "2-manifold and oriented, that crosses itself, or that has triangles without area "
+              "or twice. Without it such places are reported, and kept as they are");
+}
+
+void declareOutput(CLI::App& app, SimplifyCommand& command) {
+    const OptionGroup output(app, kOutput);
+    output.text("-o,--output", "OUT", command.output,
+                "The file to write, or a folder for files of the inputs' names. {name} in its "
+                "name stands for the input's. The format follows from the extension: " +
+                    knownExtensions());
+    declareCoordinates(output, command.frame,
+                       "The points' frame in the file: scanner RAS mm, scanner LPS mm, "
+                       "FreeSurfer's surface RAS mm, or voxel indices (default: as the "
+                       "input has them)");
+    declareReportOptions(app, command.report, kOutput);
+}
+
+constexpr const char* kFooter = R"(Examples:
+  adaptiso-simplify bone.stl --max-error 0.1 -o small.stl
+  adaptiso-simplify lh.pial --triangles 20000 --data lh.thickness --data lh.aparc.annot -o small/
+      small/lh.pial, small/lh.thickness and small/lh.aparc.annot
+  adaptiso-simplify scan.ply --reduction 0.9 --keep-borders --report scan.html -o scan.vtp
+  adaptiso-simplify *.stl --max-error 0.2 --require-sound --jobs 4 --skip-existing -o small/
+      each a run of its own; a page small/summary.html
+
+Exit codes: 0 done, 1 --require-sound and the surface is not, one or more of
+many inputs failed, or a warning with --strict, 2 wrong usage, 3 bad input (or
+no memory or disk left), 4 internal error. When it is not 0, no surface was
+written (of many inputs: none of those that failed).)";
+
+Program simplifyProgram() {
+    return {"adaptiso-simplify",
+            "Simplifies any triangle surface within a proved distance: what is closed stays "
+            "closed, and nothing new crosses.",
+            kFooter};
+}
+
+void declareSimplifyOptions(CLI::App& app, SimplifyCommand& command) {
+    declareInput(app, command);
+    declareAim(app, command.aim);
+    declareKept(app, command);
+    declareOutput(app, command);
+    declareBatchOptions(app, command.batch, "the surfaces in derivatives/adaptiso");
+    declareCommonOptions(app, command.common, "no surface is then written, reports are");
+    afterParsing(app, [&app, &command] {
+        checkCombinations(command);
+        checkPlaceholders(command);
+        if (!command.inputs.empty()) command.input = command.inputs.front();
+        if (!command.isBatch()) return;
+        keepRunOptions(app, command.batch);
+        takeFolder(command);
+    });
+}
+
+}  // namespace
+}  // namespace adaptiso::simplifier
 
 int main(int argc, char** argv) {
     adaptiso::keepFreedMemory();

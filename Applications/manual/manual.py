@@ -2,7 +2,7 @@
 
     manual.py man|bash|zsh PROGRAM OUTPUT       OUTPUT may end in .gz
 
-Runs `PROGRAM --help-json` (Applications/Common/OptionsJson.h), the source of --help too, so that
+Runs `PROGRAM --help-json` (Applications/Common/RunApp.cxx), the source of --help too, so that
 none of them can say something else. Python's standard library only; the same program gives the same
 bytes.
 """

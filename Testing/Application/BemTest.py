@@ -456,10 +456,12 @@ class BadInput(BemTest):
             "above 0 and at most 10": ("--t1", "a.nii", "-o", "m", "--conductivity", "0.3,0,0.3"),
             "--max-skull must be more": ("--t1", "a.nii", "-o", "m", "--max-skull", "1"),
             "--skull must lie between": ("--t1", "a.nii", "-o", "m", "--skull", "30"),
-            "0 to 20 mm": ("--t1", "a.nii", "-o", "m", "--csf", "-1"),
+            "--csf -1: must be a number from 0 to 20, in mm": ("--t1", "a.nii", "-o", "m", "--csf", "-1"),
             "--vertices": ("--t1", "a.nii", "-o", "m", "--vertices", "3"),
-            "--cut-necks 21: must be 0 to 20 mm": ("--t1", "a.nii", "-o", "m", "--cut-necks", "21"),
-            "--smoothing 11: must be 0 to 10 mm": ("--t1", "a.nii", "-o", "m", "--smoothing", "11"),
+            "--cut-necks 21: must be a number from 0 to 20, in mm":
+                ("--t1", "a.nii", "-o", "m", "--cut-necks", "21"),
+            "--smoothing 11: must be a number from 0 to 10, in mm":
+                ("--t1", "a.nii", "-o", "m", "--smoothing", "11"),
             "--skin-hu must lie above air": ("--ct", "a.nii", "-o", "m", "--skin-hu", "400"),
             "--conductivity 1,2,30: a conductivity of 30 S/m":
                 ("--t1", "a.nii", "-o", "m", "--conductivity", "1,2,30"),

@@ -5,10 +5,9 @@
 #include <map>
 #include <vector>
 
-#include "adaptiso-labels/CheckComplex.h"
 #include "adaptiso-labels/Regions.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 namespace {
 
 /// Two boxes of 2 x 4 x 4 voxels side by side, one voxel from the border; walls are voxel faces.
@@ -83,9 +82,8 @@ protected:
                 if (measure.label == label) region.measure = measure;
             }
         }
-        ProgressLine quiet(true);
         const RegionSurfaces surfaces(complex_, run.regions);
-        checkComplex(complex_, surfaces, {map_.data(), geometry_}, run, quiet);
+        checkComplex(complex_, surfaces, {map_.data(), geometry_}, run);
         std::vector<int> failing;
         for (std::size_t n = 0; n < run.checks.size(); ++n) {
             if (run.checks[n].isPassed) continue;
@@ -157,4 +155,4 @@ TEST_F(LabelsCheckTest, ALostRegionIsFound) {
 }
 
 }  // namespace
-}  // namespace adaptiso
+}  // namespace adaptiso::labels

@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include "Common/Resources.h"
-#include "Common/Threads.h"
+#include "Common/CommonOptions.h"
+#include "Common/Progress.h"
 
 namespace adaptiso {
 namespace {

@@ -146,9 +146,9 @@ WRONG = [
      ("a.off", "--min-angle", "61")),
     (USAGE, "--min-gap x: must be a number, 0 or more, in mm", CHECK,
      ("--nested", "a.off", "a.off", "--min-gap", "x")),
-    (USAGE, "--vertices 3: must be a number from 42 to 200000", BEM,
+    (USAGE, "--vertices 3: must be a whole number from 42 to 200000", BEM,
      ("--t1", "ball.nii", "-o", "m", "--vertices", "3")),
-    (USAGE, "--vertices many: must be a number from 42 to 200000", BEM,
+    (USAGE, "--vertices many: must be a whole number from 42 to 200000", BEM,
      ("--t1", "ball.nii", "-o", "m", "--vertices", "many")),
     # words
     (USAGE, "--method adptive: must be adaptive, boxes, dmc, asc or mc; did you mean adaptive", MESH,

@@ -3,7 +3,7 @@
 #include <exception>
 #include <iostream>
 
-#include "Common/ExitCodes.h"
+#include "Common/RunApp.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ReturnMemory.h"
 

@@ -9,7 +9,7 @@ namespace adaptiso::benchmarks {
 /// line on stderr ("name: what is wrong").
 ///
 /// \param app  with the program's name and options, bound to what `work` sees
-/// \return     an exit code, as the programs of Applications/ exit (Common/ExitCodes.h)
+/// \return     an exit code, as the programs of Applications/ exit (Common/RunApp.h)
 int runBenchmark(CLI::App& app, int argc, const char* const* argv,
                  const std::function<void()>& work);
 

@@ -51,9 +51,9 @@ void tryPiece(std::string bytes) {
         seal(bytes, 0, end);
         seal(bytes, end + kSum, bytes.size() - kSum);
     }
-    const adaptiso::Piece piece = adaptiso::decodePiece(bytes, "piece");
-    const std::string again = adaptiso::encodePiece(piece);
-    const adaptiso::Piece same = adaptiso::decodePiece(again, "piece");
+    const adaptiso::giant::Piece piece = adaptiso::giant::decodePiece(bytes, "piece");
+    const std::string again = adaptiso::giant::encodePiece(piece);
+    const adaptiso::giant::Piece same = adaptiso::giant::decodePiece(again, "piece");
     if (same.mesh.points.size() != piece.mesh.points.size() ||
         same.mesh.triangles != piece.mesh.triangles) {
         std::abort();
@@ -61,8 +61,10 @@ void tryPiece(std::string bytes) {
 }
 
 void tryPlan(const std::string& text) {
-    const std::string again = adaptiso::encodePlan(adaptiso::decodePlan(text, "plan"));
-    if (adaptiso::encodePlan(adaptiso::decodePlan(again, "plan")) != again) std::abort();
+    const std::string again =
+        adaptiso::giant::encodePlan(adaptiso::giant::decodePlan(text, "plan"));
+    if (adaptiso::giant::encodePlan(adaptiso::giant::decodePlan(again, "plan")) != again)
+        std::abort();
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "OneLine.h"
 #include "adaptiso-labels/LabelLists.h"
 
-namespace adaptiso {
+namespace adaptiso::labels {
 namespace {
 
 void requireSound(const LabelRanges& ranges) {
@@ -60,12 +60,12 @@ void tryText(std::uint8_t option, std::string_view text) {
 }
 
 }  // namespace
-}  // namespace adaptiso
+}  // namespace adaptiso::labels
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size == 0) return 0;
     try {
-        adaptiso::tryText(data[0], {reinterpret_cast<const char*>(data) + 1, size - 1});
+        adaptiso::labels::tryText(data[0], {reinterpret_cast<const char*>(data) + 1, size - 1});
     } catch (const adaptiso::UsageError& refusal) {
         adaptiso::fuzz::requireOneLine(refusal);
     }

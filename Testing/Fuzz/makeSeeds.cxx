@@ -91,6 +91,7 @@ void addLabelSeeds(Seeds& seeds) {
 }
 
 void addGiantSeeds(Seeds& seeds) {
+    using namespace giant;
     const VolumeView volume = smallVolume(0).view();
     GiantPlan plan;
     plan.version = "0";

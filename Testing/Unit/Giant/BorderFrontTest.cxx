@@ -7,7 +7,7 @@
 
 #include "adaptiso-giant/BorderFront.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 namespace {
 
 /// Rings of a tube that is bent to a torus, each a piece of its own: `count` of `sides` vertices.
@@ -77,4 +77,4 @@ TEST(BorderFront, APieceThatIsMissingLeavesOpenEdges) {
 }
 
 }  // namespace
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

@@ -8,7 +8,7 @@
 #include "adaptiso-giant/GrowingComponents.h"
 #include "adaptiso/Core/DisjointSets.h"
 
-namespace adaptiso {
+namespace adaptiso::giant {
 namespace {
 
 TEST(GrowingComponents, AreThoseOfAUnionFindThatForgetsNothing) {
@@ -62,4 +62,4 @@ TEST(GrowingComponents, KeepTheLargestAndCountAll) {
 }
 
 }  // namespace
-}  // namespace adaptiso
+}  // namespace adaptiso::giant

@@ -1,3 +1,0 @@
-#pragma once
-
-#include "adaptiso/Core/Numbers.h"  // IWYU pragma: export

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "Common/ProgramRun.h"
+#include "Pipeline.h"
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/HeadModel/HeadBoundaries.h"
+#include "adaptiso/HeadPipeline/BemModel.h"
+
+namespace adaptiso::bem {
+
+/// One run of the program, for the reports.
+struct BemRun : ProgramRun {
+    explicit BemRun(const BemOptions& given)
+        : ProgramRun("adaptiso-bem", given.common, given.report, "so no model was written"),
+          options(given) {}
+
+    const BemOptions& options;
+    BemModel model;
+    std::vector<std::pair<std::string, std::uintmax_t>> files{};  ///< files of the folder, by name
+    std::vector<std::filesystem::path> subjectFiles{};
+    std::optional<ReadVolume> shownImage{};  ///< for the report; none unless one is wanted
+
+    /// Takes over the model's warnings and prints those that are new.
+    void takeWarnings() {
+        warnings = model.warnings;
+        printNewWarnings();
+    }
+};
+
+/// Reads the images asked for and finds the head's boundaries in them. Fills the model's inputs,
+/// warnings of reading, and image.
+/// \throws FileError, InvalidInput
+HeadBoundaries boundariesFromImages(BemRun& run);
+
+/// Reads the surfaces asked for, in LPS mm (bringToOneFrame()), inside out.
+/// \throws FileError, InvalidInput
+std::vector<TriangleMesh> readSurfaces(BemRun& run);
+
+/// Which volume's tkRAS the FreeSurfer files will be in: the subject's own mri/orig.mgz where there
+/// is one, else the image's (frameVolume()), else that of the surfaces read, else none.
+/// \throws FileError
+void chooseTkRas(BemRun& run);
+
+/// The report, as README.md describes it: schema "adaptiso-bem/1". Holds file names without
+/// folders. A number that is not known, or not finite, is null.
+std::string jsonReport(const BemRun& run);
+
+/// Prints the text report: surfaces, gaps, guesses and files written.
+void printReport(std::ostream& out, const BemRun& run);
+
+}  // namespace adaptiso::bem

@@ -1,0 +1,392 @@
+#include <algorithm>
+#include <iomanip>
+#include <ostream>
+#include <string>
+#include <string_view>
+
+#include "Common/CommonFrame.h"
+#include "Common/CommonOptions.h"
+#include "Common/Json.h"
+#include "Common/PreprocessingOptions.h"
+#include "Common/ReportOutput.h"
+#include "Common/Warnings.h"
+#include "Run.h"
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/SurfaceChecks/CheckJson.h"
+
+namespace adaptiso::checker {
+namespace {
+
+Json deviationJson(const std::optional<DistanceStatistics>& deviation) {
+    if (!deviation) return nullptr;
+    return {{"samples", deviation->samples},
+            {"meanMm", number(deviation->meanMm)},
+            {"rmsMm", number(deviation->rmsMm)},
+            {"p95Mm", number(deviation->p95Mm)},
+            {"p99Mm", number(deviation->p99Mm)},
+            {"maxMm", number(deviation->maxMm)},
+            {"maxPointMm", vector(deviation->maxPointMm)}};
+}
+
+/// Why a file can't be read, without the folders of its name.
+std::string errorText(const SurfaceRun& surface) {
+    const std::string path = surface.file.string();
+    const bool namesIt = surface.error.starts_with(path);
+    return namesIt ? baseName(surface.file) + surface.error.substr(path.size()) : surface.error;
+}
+
+Json surfaceJson(const SurfaceRun& surface) {
+    if (!surface.error.empty()) {
+        return {{"file", baseName(surface.file)}, {"error", errorText(surface)}, {"passed", false}};
+    }
+    Json json{{"file", baseName(surface.file)}, {"error", nullptr}};
+    json.update(verdictJson(surface.checks));
+    json["format"] = surface.format->name;
+    json["coordinates"] = frameJson(surface.frame);
+    json["pointsIn"] = frameJson(surface.points);
+    json.update(factsJson(surface.facts));
+    json["isosurface"] = deviationJson(surface.deviation);
+    return json;
+}
+
+Json nestingJson(const CheckRun& run) {
+    if (!run.options.isNested) return nullptr;
+    Json pairs = Json::array();
+    for (const NestingRun& pair : run.nesting) {
+        Json json{{"inner", baseName(run.surfaces[pair.inner].file)},
+                  {"outer", baseName(run.surfaces[pair.outer].file)}};
+        json.update(nestingJson(pair.report, pair.checks, run.toNestingFrame));
+        pairs.push_back(json);
+    }
+    return {{"pointsIn", frameJson(run.nestingFrame)}, {"pairs", pairs}};
+}
+
+Json volumeJson(const CheckRun& run) {
+    if (!run.volume) return nullptr;
+    return {
+        {"file", baseName(run.options.volume)},
+        {"format", run.volume->format},
+        {"sizeVoxels", run.volume->geometry.size},
+        {"spacingMm", vector(run.volume->geometry.spacingMm())},
+        {"preprocessing", preprocessingJson(run.options.preprocessing, run.volume->geometry.size)}};
+}
+
+Json optionsJson(const CheckOptions& options) {
+    return {{"inputCoordinates", inputCoordinatesJson(options.inputCoordinates)},
+            {"nested", options.isNested},
+            {"profile", toString(options.profileInUse())},
+            {"iso", orNull(options.isovalue)},
+            {"minGapMm", options.minGapMm.value_or(CheckOptions::kDefaultMinGapMm)},
+            {"minAngleDeg", options.minAngleDeg.value_or(CheckOptions::kDefaultMinAngleDeg)},
+            {"maxOffMm", orNull(options.maxOffMm)},
+            {"maxPairs", options.maxPairs},
+            {"threads", orNull(options.common.threads)},
+            {"strict", options.common.isStrict}};
+}
+
+std::string_view word(const Check& check) {
+    switch (check.outcome) {
+        case Outcome::Passed:
+            return "ok";
+        case Outcome::Failed:
+            return check.isRequired ? "FAILED" : "noted";
+        case Outcome::Undecided:
+            return "-";
+    }
+    return "";
+}
+
+void printChecks(std::ostream& out, const std::vector<Check>& checks) {
+    for (const Check& check : checks) {
+        out << "  " << std::left << std::setw(24) << check.name;
+        if (check.finding.empty()) {
+            out << word(check) << '\n';
+        } else {
+            out << std::setw(8) << word(check) << check.finding << '\n';
+        }
+    }
+}
+
+void printVerdict(std::ostream& out, const std::vector<Check>& checks, const CheckRun& run) {
+    const auto failed = std::count_if(checks.begin(), checks.end(),
+                                      [](const Check& check) { return check.breaksProfile(); });
+    out << "  => " << (failed == 0 ? "passed" : "FAILED") << " as "
+        << toString(run.options.profileInUse());
+    if (failed > 0) {
+        std::string_view separator = ": ";
+        for (const Check& check : checks) {
+            if (!check.breaksProfile()) continue;
+            out << separator << check.name;
+            separator = ", ";
+        }
+    }
+    out << '\n';
+}
+
+std::string frameText(const std::optional<CoordinateFrame>& frame) {
+    return frame ? std::string(toString(*frame)) : "frame not said";
+}
+
+void printSpread(std::ostream& out, std::string_view name, const Spread& spread, int digits) {
+    out << "  " << std::left << std::setw(24) << name << formatLength(spread.minimum, digits)
+        << " / " << formatLength(spread.median, digits) << " / "
+        << formatLength(spread.maximum, digits) << '\n';
+}
+
+void printFacts(std::ostream& out, const SurfaceFacts& facts) {
+    const auto genus = facts.topology.genus();
+    out << "  area " << formatMeasure(facts.areaMm2) << " mm2";
+    if (facts.volumeMm3) out << ", volume " << formatMeasure(*facts.volumeMm3) << " mm3";
+    out << ", " << formatCount(std::ssize(facts.topology.components)) << " component"
+        << (facts.topology.components.size() == 1 ? "" : "s");
+    if (genus) out << ", genus " << *genus;
+    out << '\n';
+    if (facts.shape.triangles == 0) return;
+    out << "  of triangles            smallest / median / largest\n";
+    printSpread(out, "smallest angle, degrees", facts.shape.minAngleDeg, 2);
+    printSpread(out, "aspect ratio", facts.shape.aspectRatio, 2);
+    printSpread(out, "edge, mm", facts.shape.edgeMm, 3);
+}
+
+void printSurface(std::ostream& out, const SurfaceRun& surface, const CheckRun& run) {
+    out << surface.file.string() << ": ";
+    if (!surface.error.empty()) {
+        out << "NOT READ\n";
+        return;
+    }
+    out << surface.format->name << ", " << frameText(surface.frame) << ", "
+        << formatCount(surface.facts.topology.triangles) << " triangles, "
+        << formatCount(surface.facts.topology.vertices) << " vertices\n";
+    printChecks(out, surface.checks);
+    printFacts(out, surface.facts);
+    printVerdict(out, surface.checks, run);
+}
+
+ReportOutcome outcomeOf(const Check& check) {
+    switch (check.outcome) {
+        case Outcome::Passed:
+            return ReportOutcome::Passed;
+        case Outcome::Failed:
+            return check.isRequired ? ReportOutcome::Failed : ReportOutcome::Noted;
+        case Outcome::Undecided:
+            return ReportOutcome::Undecided;
+    }
+    throw InternalError("outcomeOf: unknown outcome");
+}
+
+void addChecks(const std::string& subject, const std::vector<Check>& checks, Report& report) {
+    for (const Check& check : checks) {
+        report.checks.push_back(
+            {subject, std::string(check.name), outcomeOf(check), check.finding});
+    }
+}
+
+std::string nameOf(const CheckRun& run, std::size_t number) {
+    return baseName(run.surfaces[number].file);
+}
+
+std::string pairName(const CheckRun& run, const NestingRun& pair) {
+    return nameOf(run, pair.inner) + " in " + nameOf(run, pair.outer);
+}
+
+void tellVerdict(const CheckRun& run, Report& report) {
+    const auto unreadable =
+        std::count_if(run.surfaces.begin(), run.surfaces.end(),
+                      [](const SurfaceRun& surface) { return !surface.error.empty(); });
+    const auto failures = std::count_if(
+        report.checks.begin(), report.checks.end(),
+        [](const ReportCheck& check) { return check.outcome == ReportOutcome::Failed; });
+    const std::string profile(toString(run.options.profileInUse()));
+    const std::size_t count = run.surfaces.size();
+    report.title = count == 1 ? "Check of " + nameOf(run, 0)
+                              : "Check of " + std::to_string(count) +
+                                    (run.options.isNested ? " nested surfaces" : " surfaces");
+    report.verdict = run.hasPassed() ? ReportVerdict::Passed : ReportVerdict::Failed;
+    if (run.hasPassed()) {
+        report.headline = "Everything that the profile \"" + profile + "\" requires holds.";
+        const std::int64_t notes = notedCount(run.notes);
+        if (notes > 0) {
+            report.headline += " " + formatCount(notes) +
+                               (notes == 1 ? " thing is" : " things are") +
+                               " unusual of a head model: worth a look.";
+        }
+        return;
+    }
+    if (failures > 0) {
+        report.headline = formatCount(failures) + (failures == 1 ? " check" : " checks") +
+                          " that the profile \"" + profile + "\" requires failed.";
+    }
+    if (unreadable > 0) {
+        report.headline += std::string(report.headline.empty() ? "" : " ") +
+                           formatCount(unreadable) + " of " +
+                           formatCount(std::ssize(run.surfaces)) +
+                           (count == 1 ? " file" : " files") + " could not be read.";
+    }
+}
+
+void tellInputs(const CheckRun& run, Report& report) {
+    for (const SurfaceRun& surface : run.surfaces) {
+        std::string text = baseName(surface.file);
+        if (!surface.error.empty()) {
+            // the message begins with the whole path
+            const std::string path = surface.file.string();
+            text += ": " + (surface.error.starts_with(path + ": ")
+                                ? surface.error.substr(path.size() + 2)
+                                : std::string("could not be read"));
+        } else {
+            text += " (" + std::string(surface.format->name) + ", " +
+                    (surface.frame ? std::string(toString(*surface.frame)) : "frame not said") +
+                    ")";
+        }
+        report.inputs.push_back({"Surface", text});
+    }
+    if (!run.volume) return;
+    const std::vector<ReportFact> facts =
+        imageFacts(baseName(run.options.volume), run.volume->format, run.volume->geometry);
+    report.inputs.insert(report.inputs.end(), facts.begin(), facts.end());
+}
+
+void tellOptions(const CheckRun& run, Report& report) {
+    const CheckOptions& options = run.options;
+    report.options = {{"Profile", std::string(toString(options.profileInUse()))},
+                      {"Nested", options.isNested ? "yes, from inside to outside" : "no"}};
+    if (options.isNested) {
+        report.options.push_back({"Smallest gap", formatNumber(options.minGapMm.value_or(
+                                                      CheckOptions::kDefaultMinGapMm)) +
+                                                      " mm or more"});
+    }
+    const double angleDeg = options.minAngleDeg.value_or(CheckOptions::kDefaultMinAngleDeg);
+    report.options.push_back({"Smallest angle", formatNumber(angleDeg) + "° or more"});
+    if (options.isovalue) report.options.push_back({"Isovalue", formatNumber(*options.isovalue)});
+    if (options.maxOffMm) {
+        report.options.push_back(
+            {"Farthest from the isosurface", formatNumber(*options.maxOffMm) + " mm"});
+    }
+}
+
+ReportTable surfaceTable(const CheckRun& run) {
+    ReportTable table{"Surfaces",
+                      {"Surface", "Triangles", "Vertices", "Pieces", "Genus", "Area, mm²",
+                       "Volume, mm³", "Smallest angle", "Median edge, mm"},
+                      {}};
+    for (const SurfaceRun& surface : run.surfaces) {
+        if (!surface.error.empty()) continue;
+        const SurfaceFacts& facts = surface.facts;
+        const auto genus = facts.topology.genus();
+        table.rows.push_back({baseName(surface.file), formatCount(facts.topology.triangles),
+                              formatCount(facts.topology.vertices),
+                              formatCount(std::ssize(facts.topology.components)),
+                              genus ? formatCount(*genus) : "–", formatMeasure(facts.areaMm2),
+                              facts.volumeMm3 ? formatMeasure(*facts.volumeMm3) : "–",
+                              formatFixed(facts.shape.minAngleDeg.minimum, 2) + "°",
+                              formatLength(facts.shape.edgeMm.median, 2)});
+    }
+    return table;
+}
+
+ReportTable nestingTable(const CheckRun& run) {
+    ReportTable table{"How they lie in each other",
+                      {"Surfaces", "Relation", "Smallest gap, mm", "Crossing pairs"},
+                      {}};
+    for (const NestingRun& pair : run.nesting) {
+        const bool hasGap = pair.report.gap.triangleA >= 0;
+        table.rows.push_back({pairName(run, pair), std::string(toString(pair.report.relation)),
+                              hasGap ? formatLength(pair.report.gap.nearest.distanceMm, 3) : "–",
+                              formatCount(pair.report.crossingPairs)});
+    }
+    return table;
+}
+
+const TriangleMesh* meshOf(const ShownSurfaces& shown, std::size_t number) {
+    for (const ShownSurfaces::Shown& surface : shown.surfaces) {
+        if (surface.number == number) return &surface.mesh;
+    }
+    return nullptr;
+}
+
+void tellSpots(const CheckRun& run, const ShownSurfaces& shown, Report& report) {
+    const auto add = [&](const std::vector<ReportSpot>& spots) {
+        report.spots.insert(report.spots.end(), spots.begin(), spots.end());
+    };
+    for (const NestingRun& pair : run.nesting) {
+        const TriangleMesh *inner = meshOf(shown, pair.inner), *outer = meshOf(shown, pair.outer);
+        if (!inner || !outer) continue;
+        add(spotsOf(pair, nameOf(run, pair.inner), nameOf(run, pair.outer), *inner, *outer));
+    }
+    for (const ShownSurfaces::Shown& surface : shown.surfaces) {
+        add(spotsOf(run.surfaces[surface.number], surface.mesh));
+    }
+    // what fails first, and of that one of every kind
+    std::stable_sort(report.spots.begin(), report.spots.end(),
+                     [](const ReportSpot& a, const ReportSpot& b) {
+                         return std::pair(!a.isFailure, a.rank) < std::pair(!b.isFailure, b.rank);
+                     });
+}
+
+}  // namespace
+
+std::string jsonReport(const CheckRun& run) {
+    Json surfaces = Json::array();
+    for (const SurfaceRun& surface : run.surfaces) surfaces.push_back(surfaceJson(surface));
+    return run.json("adaptiso-check/1", {{"options", optionsJson(run.options)},
+                                         {"volume", volumeJson(run)},
+                                         {"surfaces", surfaces},
+                                         {"nesting", nestingJson(run)},
+                                         {"plausibility", notesJson(run.notes)}});
+}
+
+void printReport(std::ostream& out, const CheckRun& run) {
+    for (const SurfaceRun& surface : run.surfaces) printSurface(out, surface, run);
+    for (const NestingRun& pair : run.nesting) {
+        out << run.surfaces[pair.inner].file.string() << " in "
+            << run.surfaces[pair.outer].file.string() << " (" << frameText(run.nestingFrame)
+            << ")\n";
+        printChecks(out, pair.checks);
+        printVerdict(out, pair.checks, run);
+    }
+    if (!run.notes.empty()) {
+        out << "plausibility (" << frameText(run.notes.front().frame)
+            << "; what is unusual of adults' heads is noted, and may be right)\n";
+        printNotes(out, run.notes);
+    }
+    printTimes(out, run.timer);
+}
+
+Report makeReport(const CheckRun& run, ShownSurfaces& shown) {
+    Report report;
+    for (const NestingRun& pair : run.nesting) addChecks(pairName(run, pair), pair.checks, report);
+    for (const SurfaceRun& surface : run.surfaces) {
+        addChecks(baseName(surface.file), surface.checks, report);
+    }
+    addNotes(run.notes, report);
+    tellVerdict(run, report);
+    tellInputs(run, report);
+    tellOptions(run, report);
+    report.tables.push_back(surfaceTable(run));
+    if (!run.nesting.empty()) report.tables.push_back(nestingTable(run));
+    tellSpots(run, shown, report);
+    report.warnings = linesOf(run.warnings);
+    for (const SurfaceRun& surface : run.surfaces) {
+        if (!surface.points || surface.points == CoordinateFrame::Ras) continue;
+        report.notes.push_back(
+            "Points in the table of checks are as the files have them, those of " +
+            baseName(surface.file) + " in " + std::string(toString(*surface.points)) + ".");
+    }
+    for (const std::string& note : shown.notes) {
+        if (std::find(report.warnings.begin(), report.warnings.end(), note) ==
+            report.warnings.end()) {
+            report.notes.push_back(note);
+        }
+    }
+    if (shown.frame == CoordinateFrame::TkRas) report.frame = "FreeSurfer's tkRAS mm";
+    if (!shown.frame) report.frame = kUnsaidFrame;
+    for (ShownSurfaces::Shown& surface : shown.surfaces) {
+        report.surfaces.push_back({nameOf(run, surface.number), std::move(surface.mesh), {}});
+    }
+    if (shown.image) {
+        report.volume = ReportVolume{baseName(run.options.volume), shown.image->volume.view()};
+    }
+    return report;
+}
+
+}  // namespace adaptiso::checker

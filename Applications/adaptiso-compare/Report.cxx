@@ -1,0 +1,318 @@
+#include <algorithm>
+#include <iomanip>
+#include <ostream>
+#include <string>
+#include <string_view>
+
+#include "Common/CommonFrame.h"
+#include "Common/CommonOptions.h"
+#include "Common/Json.h"
+#include "Common/ReportOutput.h"
+#include "Common/Warnings.h"
+#include "Run.h"
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/SurfaceChecks/DistanceJson.h"
+
+namespace adaptiso::compare {
+namespace {
+
+Json surfaceJson(const SurfaceSummary& surface) {
+    return {{"file", baseName(surface.file)},
+            {"format", surface.format->name},
+            {"coordinates", frameJson(surface.frame)},
+            {"triangles", surface.triangles},
+            {"vertices", surface.vertices},
+            {"areaMm2", number(surface.areaMm2)},
+            {"volumeMm3", orNull(surface.volumeMm3)},
+            {"boundingBoxDiagonalMm", number(surface.diagonalMm)}};
+}
+
+Json volumeJson(const CompareRun& run) {
+    if (!run.volume) return nullptr;
+    return {{"file", baseName(run.options.volume)},
+            {"format", run.volume->format},
+            {"sizeVoxels", run.volume->geometry.size},
+            {"spacingMm", vector(run.volume->geometry.spacingMm())}};
+}
+
+Json optionsJson(const CompareOptions& options) {
+    return {{"inputCoordinates", inputCoordinatesJson(options.inputCoordinates)},
+            {"samples", options.samples},
+            {"symmetric", options.isSymmetric},
+            {"threads", orNull(options.common.threads)},
+            {"strict", options.common.isStrict}};
+}
+
+/// The lengths in another unit of `unitMm`.
+Json lengthsJson(const DistanceStatistics& distances, double unitMm) {
+    return {{"mean", number(distances.meanMm / unitMm)},
+            {"rms", number(distances.rmsMm / unitMm)},
+            {"p95", number(distances.p95Mm / unitMm)},
+            {"p99", number(distances.p99Mm / unitMm)},
+            {"max", number(distances.maxMm / unitMm)}};
+}
+
+Json distancesJson(const CompareRun& run, const DistanceStatistics& distances) {
+    if (distances.samples == 0) return nullptr;
+    Json json = distanceJson(distances, run.toFrame);
+    json["inVoxels"] = run.voxelMm ? lengthsJson(distances, *run.voxelMm) : Json(nullptr);
+    json["percentOfDiagonal"] = lengthsJson(distances, run.b.diagonalMm / 100);
+    return json;
+}
+
+/// A less B, and in per cent of B.
+Json differenceJson(const std::optional<double>& a, const std::optional<double>& b,
+                    const std::string& unit) {
+    const bool isKnown = a && b;
+    return {{unit, isKnown ? number(*a - *b) : Json(nullptr)},
+            {"percent", isKnown ? number((*a - *b) / *b * 100) : Json(nullptr)}};
+}
+
+Json overlapJson(const std::optional<OverlapSummary>& overlap) {
+    if (!overlap) return nullptr;
+    return {{"voxelsA", overlap->voxels.voxelsA},
+            {"voxelsB", overlap->voxels.voxelsB},
+            {"voxelsBoth", overlap->voxels.voxelsBoth},
+            {"dice", number(overlap->voxels.dice())},
+            {"meanBoundaryOffsetMm", number(overlap->meanBoundaryOffsetMm)}};
+}
+
+Json coloredJson(const CompareRun& run) {
+    if (!run.colored) return nullptr;
+    return {{"file", baseName(run.options.colored)},
+            {"maximumMm", number(run.colored->maximumMm)},
+            {"bytes", run.colored->bytes}};
+}
+
+Json checksJson(const std::vector<Check>& checks) {
+    Json list = Json::array();
+    for (const Check& check : checks) {
+        list.push_back({{"name", check.key},
+                        {"limitMm", number(check.limitMm)},
+                        {"valueMm", number(check.valueMm)},
+                        {"passed", check.hasPassed()}});
+    }
+    return list;
+}
+
+std::string signedPercent(double value, double of) {
+    const double percent = (value - of) / of * 100;
+    return (percent > 0 ? "+" : "") + formatFixed(percent, 3) + " %";
+}
+
+void printSurface(std::ostream& out, std::string_view name, const SurfaceSummary& surface) {
+    out << name << "  " << surface.file.string() << ": " << formatCount(surface.triangles)
+        << " triangles, area " << formatMeasure(surface.areaMm2) << " mm2, ";
+    if (surface.volumeMm3) {
+        out << "volume " << formatMeasure(*surface.volumeMm3) << " mm3\n";
+    } else {
+        out << "not closed\n";
+    }
+}
+
+using Length = double DistanceStatistics::*;
+
+/// One row of the table: the same figure of every direction.
+void printRow(std::ostream& out, std::string_view name, Length length, double unit,
+              const DistanceReport& distances) {
+    out << "  " << std::left << std::setw(22) << name << std::right;
+    for (const DistanceStatistics* direction :
+         {&distances.aToB, &distances.bToA, &distances.combined}) {
+        if (direction->samples == 0) continue;
+        out << std::setw(12) << formatLength(direction->*length / unit, 4);
+        if (distances.bToA.samples == 0) break;  // the combined figures are those of A to B
+    }
+    out << '\n';
+}
+
+void printLengths(std::ostream& out, const std::string& unitName, double unit,
+                  const DistanceReport& distances) {
+    printRow(out, "mean, " + unitName, &DistanceStatistics::meanMm, unit, distances);
+    printRow(out, "RMS, " + unitName, &DistanceStatistics::rmsMm, unit, distances);
+    printRow(out, "95 % within, " + unitName, &DistanceStatistics::p95Mm, unit, distances);
+    printRow(out, "99 % within, " + unitName, &DistanceStatistics::p99Mm, unit, distances);
+    printRow(out, "maximum, " + unitName, &DistanceStatistics::maxMm, unit, distances);
+}
+
+void printDistances(std::ostream& out, const CompareRun& run) {
+    const DistanceReport& distances = run.distances;
+    out << "  distance" << std::setw(26) << "A to B";
+    if (run.options.isSymmetric) out << std::setw(12) << "B to A" << std::setw(12) << "both";
+    out << '\n';
+    printLengths(out, "mm", 1, distances);
+    if (run.voxelMm) printLengths(out, "voxels", *run.voxelMm, distances);
+    const double percentMm = run.b.diagonalMm / 100;
+    printRow(out, "mean, % of diagonal", &DistanceStatistics::meanMm, percentMm, distances);
+    printRow(out, "maximum, % of diagonal", &DistanceStatistics::maxMm, percentMm, distances);
+    printRow(out, "normals, mean degrees", &DistanceStatistics::meanNormalDeviationDeg, 1,
+             distances);
+    printRow(out, "normals, 95 % within", &DistanceStatistics::p95NormalDeviationDeg, 1, distances);
+    const Vec3 farthest = run.toFrame(distances.combined.maxPointMm);
+    out << "  farthest at " << formatFixed(farthest.x, 2) << ", " << formatFixed(farthest.y, 2)
+        << ", " << formatFixed(farthest.z, 2) << " ("
+        << (run.frame ? toString(*run.frame) : "frame not said") << ")\n";
+}
+
+void printDifferences(std::ostream& out, const CompareRun& run) {
+    out << "  area of A " << signedPercent(run.a.areaMm2, run.b.areaMm2);
+    if (run.a.volumeMm3 && run.b.volumeMm3) {
+        out << ", volume of A " << signedPercent(*run.a.volumeMm3, *run.b.volumeMm3);
+    }
+    out << " against B\n";
+    if (run.overlap) {
+        out << "  Dice " << formatFixed(run.overlap->voxels.dice(), 5) << ", mean boundary offset "
+            << formatLength(run.overlap->meanBoundaryOffsetMm, 4) << " mm\n";
+    }
+}
+
+void tellVerdict(const CompareRun& run, const std::string& a, const std::string& b,
+                 Report& report) {
+    const DistanceStatistics& distances = run.distances.combined;
+    report.title = "Distance between " + a + " and " + b;
+    report.headline = formatLength(distances.meanMm, 3) + " mm on the mean, " +
+                      formatFixed(distances.p95Mm, 3) + " mm at 95 %, " +
+                      formatLength(distances.maxMm, 3) + " mm at most.";
+    if (run.checks.empty()) return;
+    const bool havePassed = std::all_of(run.checks.begin(), run.checks.end(),
+                                        [](const Check& check) { return check.hasPassed(); });
+    report.verdict = havePassed ? ReportVerdict::Passed : ReportVerdict::Failed;
+    for (const Check& check : run.checks) {
+        report.checks.push_back({a + " and " + b, check.name,
+                                 check.hasPassed() ? ReportOutcome::Passed : ReportOutcome::Failed,
+                                 formatLength(check.valueMm, 4) + " mm, at most " +
+                                     formatNumber(check.limitMm) + " mm"});
+    }
+}
+
+void tellInputs(const CompareRun& run, Report& report) {
+    const auto tell = [&](const char* name, const SurfaceSummary& surface) {
+        report.inputs.push_back(
+            {name, baseName(surface.file) + " (" + std::string(surface.format->name) + ", " +
+                       (surface.frame ? std::string(toString(*surface.frame)) : "frame not said") +
+                       ")"});
+    };
+    tell("A", run.a);
+    tell("B, the reference", run.b);
+    if (!run.volume) return;
+    const std::vector<ReportFact> facts =
+        imageFacts(baseName(run.options.volume), run.volume->format, run.volume->geometry);
+    report.inputs.insert(report.inputs.end(), facts.begin(), facts.end());
+}
+
+void tellOptions(const CompareRun& run, Report& report) {
+    report.options = {{"Points", formatCount(run.options.samples) + " in each direction"},
+                      {"Directions", run.options.isSymmetric ? "A to B and B to A" : "A to B"}};
+    if (run.options.maxMeanMm) {
+        report.options.push_back({"Mean at most", formatNumber(*run.options.maxMeanMm) + " mm"});
+    }
+    if (run.options.maxHausdorffMm) {
+        report.options.push_back(
+            {"All at most", formatNumber(*run.options.maxHausdorffMm) + " mm"});
+    }
+}
+
+ReportTable distanceTable(const CompareRun& run) {
+    ReportTable table{"Distances, mm",
+                      {"Direction", "Mean", "Root mean square", "95 %", "99 %", "Largest",
+                       "Angle between the surfaces, mean"},
+                      {}};
+    const auto add = [&](const std::string& name, const DistanceStatistics& statistics) {
+        table.rows.push_back({name, formatLength(statistics.meanMm, 4),
+                              formatLength(statistics.rmsMm, 4), formatLength(statistics.p95Mm, 4),
+                              formatLength(statistics.p99Mm, 4), formatLength(statistics.maxMm, 4),
+                              formatFixed(statistics.meanNormalDeviationDeg, 2) + "°"});
+    };
+    add("A to B", run.distances.aToB);
+    if (run.options.isSymmetric) {
+        add("B to A", run.distances.bToA);
+        add("both", run.distances.combined);
+    }
+    return table;
+}
+
+ReportTable surfaceTable(const CompareRun& run) {
+    ReportTable table{
+        "Surfaces", {"Surface", "Triangles", "Vertices", "Area, mm²", "Volume, mm³"}, {}};
+    for (const SurfaceSummary* surface : {&run.a, &run.b}) {
+        table.rows.push_back({baseName(surface->file), formatCount(surface->triangles),
+                              formatCount(surface->vertices), formatMeasure(surface->areaMm2),
+                              surface->volumeMm3 ? formatMeasure(*surface->volumeMm3) : "–"});
+    }
+    return table;
+}
+
+ReportSpot farthest(const DistanceStatistics& statistics, const std::string& from,
+                    const std::string& to, bool isFailure) {
+    return {"farthest point of " + from + " from " + to + ", " + formatLength(statistics.maxMm, 3) +
+                " mm",
+            statistics.maxPointMm, isFailure};
+}
+
+}  // namespace
+
+std::string jsonReport(const CompareRun& run) {
+    const DistanceReport& distances = run.distances;
+    return run.json("adaptiso-compare/1",
+                    {{"a", surfaceJson(run.a)},
+                     {"b", surfaceJson(run.b)},
+                     {"volume", volumeJson(run)},
+                     {"options", optionsJson(run.options)},
+                     {"coordinates", frameJson(run.frame)},
+                     {"voxelMm", orNull(run.voxelMm)},
+                     {"distances",
+                      {{"aToB", distancesJson(run, distances.aToB)},
+                       {"bToA", distancesJson(run, distances.bToA)},
+                       {"combined", distancesJson(run, distances.combined)}}},
+                     {"differences",
+                      {{"area", differenceJson(run.a.areaMm2, run.b.areaMm2, "mm2")},
+                       {"volume", differenceJson(run.a.volumeMm3, run.b.volumeMm3, "mm3")}}},
+                     {"overlap", overlapJson(run.overlap)},
+                     {"colored", coloredJson(run)},
+                     {"checks", checksJson(run.checks)}});
+}
+
+void printReport(std::ostream& out, const CompareRun& run) {
+    printSurface(out, "A", run.a);
+    printSurface(out, "B", run.b);
+    printDistances(out, run);
+    printDifferences(out, run);
+    if (run.colored) {
+        out << run.options.colored.string() << ": A with its distances, viridis from 0 to "
+            << formatLength(run.colored->maximumMm, 4) << " mm\n";
+    }
+    printTimes(out, run.timer);
+}
+
+Report makeReport(const CompareRun& run, ShownSurfaces& shown) {
+    std::string a = baseName(run.a.file), b = baseName(run.b.file);
+    if (a == b) {
+        a = "A, " + a;
+        b = "B, " + b;
+    }
+    Report report;
+    tellVerdict(run, a, b, report);
+    tellInputs(run, report);
+    tellOptions(run, report);
+    report.tables = {distanceTable(run), surfaceTable(run)};
+    if (run.overlap) {
+        report.notes.push_back("As solids: Dice " + formatFixed(run.overlap->voxels.dice(), 4) +
+                               ", mean offset of the boundary " +
+                               formatLength(run.overlap->meanBoundaryOffsetMm, 4) + " mm.");
+    }
+    if (run.frame == CoordinateFrame::TkRas) report.frame = "FreeSurfer's tkRAS mm";
+    if (!run.frame) report.frame = kUnsaidFrame;
+    const auto& limit = run.options.maxHausdorffMm;
+    const auto fails = [&](const DistanceStatistics& s) { return limit && s.maxMm > *limit; };
+    report.spots.push_back(farthest(run.distances.aToB, a, b, fails(run.distances.aToB)));
+    if (run.options.isSymmetric) {
+        report.spots.push_back(farthest(run.distances.bToA, b, a, fails(run.distances.bToA)));
+    }
+    std::stable_partition(report.spots.begin(), report.spots.end(),
+                          [](const ReportSpot& spot) { return spot.isFailure; });
+    report.surfaces.push_back({a, std::move(shown.a), std::move(shown.aToBMm)});
+    report.surfaces.push_back({b, std::move(shown.b), std::move(shown.bToAMm)});
+    if (run.image) report.volume = ReportVolume{baseName(run.options.volume), run.image->view()};
+    return report;
+}
+
+}  // namespace adaptiso::compare

@@ -1,0 +1,264 @@
+#include <algorithm>
+#include <ostream>
+#include <string>
+#include <string_view>
+
+#include "Common/CommonOptions.h"
+#include "Common/Json.h"
+#include "Common/PreprocessingOptions.h"
+#include "Common/ReportOutput.h"
+#include "Common/RunApp.h"
+#include "Run.h"
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/SurfacePipeline/SurfaceJson.h"
+
+namespace adaptiso::mesher {
+namespace {
+
+Json inputJson(const MeshRun& run) {
+    const InputSummary& input = run.input;
+    Json json{{"file", baseName(run.options.input)}};
+    json.update(
+        imageJson(input.format, input.geometry, input.pixelType, input.range, input.warnings));
+    return json;
+}
+
+Json preprocessedJson(const MeshRun& run) {
+    if (!run.preprocessed) return nullptr;
+    Json json = preprocessingJson(run.options.preprocessing, run.input.geometry.size);
+    json.update(geometryJson(run.preprocessed->geometry));
+    json["pixelType"] = toString(run.preprocessed->pixelType);
+    json["minimum"] = number(run.preprocessed->range.minimum);
+    json["maximum"] = number(run.preprocessed->range.maximum);
+    return json;
+}
+
+Json optionsJson(const MeshOptions& options) {
+    Json json = surfaceOptionsJson(options.extraction(), options.index, options.selection);
+    json["threads"] = orNull(options.common.threads);
+    json["strict"] = options.common.isStrict;
+    return json;
+}
+
+Json indexJson(const IndexSummary& index) {
+    return {{"search", toString(index.search)}, {"memoryBytes", index.memoryBytes}};
+}
+
+Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {
+    Json json = surfaceJson(surface, run.options.method, run.options.index.blockSize);
+    json["output"] = {{"file", surface.file.filename().string()},
+                      {"format", surface.format->name},
+                      {"coordinates", frameWord(surface.frame)},
+                      {"bytes", surface.bytes},
+                      {"written", !run.failsStrict()}};
+    return json;
+}
+
+/// "1 piece", "3 pieces".
+std::string counted(std::int64_t count, const std::string& what) {
+    return formatCount(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+void printSurface(std::ostream& out, const MeshRun& run, const SurfaceSummary& surface) {
+    const bool isWritten = !run.failsStrict();
+    const TopologyReport& topology = surface.topology;
+    out << oneLine(surface.file.string()) << (isWritten ? "" : " (not written)") << ": isovalue "
+        << (surface.isAutomatic ? formatShort(surface.isovalue) : formatNumber(surface.isovalue))
+        << (surface.isAutomatic ? " (chosen by Otsu's method)" : "") << ", " << surface.format->name
+        << ", " << toString(surface.frame) << '\n';
+    out << "  " << counted(topology.triangles, "triangle") << ", " << formatCount(topology.vertices)
+        << " vertices, " << counted(std::ssize(topology.components), "component")
+        << "; marching cubes makes " << formatCount(surface.statistics.marchingCubesTriangles)
+        << '\n';
+    if (surface.volumeMm3) {
+        out << "  closed, area " << formatMeasure(surface.areaMm2) << " mm2, volume "
+            << formatMeasure(*surface.volumeMm3) << " mm3\n";
+    } else {
+        out << "  open at the border of the image ("
+            << counted(topology.count(TopologyDefect::BoundaryEdge), "edge") << "), area "
+            << formatMeasure(surface.areaMm2) << " mm2\n";
+    }
+    if (const auto boundMm = surface.errorBoundMm()) {
+        out << "  no point farther than " << formatBound(*boundMm)
+            << " mm from the surface of marching cubes, nor "
+            << (surface.isPart ? "the pieces kept of it" : "it") << " from this one (proved";
+        if (surface.verification) {
+            out << "; farthest of " << formatCount(surface.verification->samples)
+                << " points measured: " << formatLength(surface.verification->maxMm, 4) << " mm";
+        }
+        out << ")\n";
+    }
+    if (!surface.countMet().value_or(true)) {
+        out << "  " << formatCount(*surface.statistics.wantedTriangles)
+            << " triangles were asked for; "
+            << (run.options.adaptive.maxErrorMm
+                    ? "the bound of --max-error does not allow as few\n"
+                    : "keeping all its pieces and holes left little to gain\n");
+    }
+    if (surface.insideOutPieces.value_or(0) > 0) {
+        out << "  " << counted(*surface.insideOutPieces, "piece") << " inside out\n";
+    }
+    if (surface.crossingPairs) {
+        out << "  " << counted(*surface.crossingPairs, "pair") << " of triangles cross\n";
+    }
+}
+
+std::string nameOf(const SurfaceSummary& surface) {
+    return surface.file.filename().string();
+}
+
+void tellVerdict(const MeshRun& run, Report& report) {
+    const std::size_t count = run.surfaces.size();
+    report.title = count == 1
+                       ? "Surface of " + baseName(run.options.input)
+                       : std::to_string(count) + " surfaces of " + baseName(run.options.input);
+    std::int64_t crossings = 0, insideOut = 0;
+    bool isKnown = true, areClosed = true, areJudged = true;
+    for (const SurfaceSummary& surface : run.surfaces) {
+        crossings += surface.crossingPairs.value_or(0);
+        isKnown = isKnown && surface.crossingPairs.has_value();
+        areClosed = areClosed && surface.topology.isClosed();
+        areJudged = areJudged && surface.insideOutPieces.has_value();
+        insideOut += surface.insideOutPieces.value_or(0);
+    }
+    report.headline =
+        std::string(count == 1 ? "Written: manifold" : "All written: manifold") +
+        (!areClosed       ? " and oriented, open at the image's border"
+         : !areJudged     ? " and closed"
+         : insideOut == 0 ? ", closed and facing outward"
+                          : ", closed, " + formatCount(insideOut) +
+                                (insideOut == 1 ? " piece" : " pieces") + " inside out");
+    report.headline += !isKnown ? "; crossings were not looked for."
+                       : crossings == 0
+                           ? "; no triangle crosses another."
+                           : "; " + formatCount(crossings) + (crossings == 1 ? " pair" : " pairs") +
+                                 " of triangles cross each other, see below.";
+}
+
+void tellInputs(const MeshRun& run, Report& report) {
+    const InputSummary& input = run.input;
+    report.inputs = imageFacts(baseName(run.options.input), input.format, input.geometry);
+    report.inputs.push_back({"Samples", std::string(toString(input.pixelType)) + ", " +
+                                            formatNumber(input.range.minimum) + " to " +
+                                            formatNumber(input.range.maximum)});
+}
+
+void tellOptions(const MeshRun& run, Report& report) {
+    const MeshOptions& options = run.options;
+    for (const SurfaceSummary& surface : run.surfaces) {
+        report.options.push_back(
+            {"Isovalue", formatNumber(surface.isovalue) +
+                             (surface.isAutomatic ? " (chosen by Otsu's method)" : "")});
+    }
+    report.options.push_back({"Method", std::string(toString(options.method))});
+    if (options.adaptive.maxErrorMm) {
+        report.options.push_back(
+            {"Largest error", formatNumber(*options.adaptive.maxErrorMm) + " mm"});
+    }
+    report.options.push_back(
+        {"At the image's border", options.index.border == Border::Closed ? "closed" : "open"});
+    const ComponentSelection& selection = options.selection;
+    std::string pieces = selection.largestOnly ? "the largest only" : "all";
+    if (selection.minVolumeMm3 > 0) {
+        pieces += ", of " + formatNumber(selection.minVolumeMm3) + " mm³ or more";
+    }
+    if (selection.fillCavities) pieces += ", cavities filled";
+    report.options.push_back({"Pieces kept", pieces});
+}
+
+void tellChecks(const SurfaceSummary& surface, Report& report) {
+    const TopologyReport& topology = surface.topology;
+    const auto add = [&](const std::string& name, bool holds, const std::string& finding) {
+        report.checks.push_back(
+            {nameOf(surface), name, holds ? ReportOutcome::Passed : ReportOutcome::Noted, finding});
+    };
+    // no surface is written that is not manifold, oriented and without degenerate triangles
+    add("manifold and oriented", topology.isManifold() && topology.isOriented(), "");
+    add("closed", topology.isClosed(),
+        topology.isClosed() ? ""
+                            : formatCount(topology.count(TopologyDefect::BoundaryEdge)) +
+                                  " edges at the image's border");
+    if (const auto count = surface.insideOutPieces) {
+        add("facing outward", *count == 0,
+            *count == 0 ? ""
+                        : formatCount(*count) + (*count == 1 ? " piece is" : " pieces are") +
+                              " inside out");
+    }
+    if (!surface.crossingPairs) return;
+    add("no self-intersection", *surface.crossingPairs == 0,
+        *surface.crossingPairs == 0
+            ? ""
+            : formatCount(*surface.crossingPairs) +
+                  (*surface.crossingPairs == 1 ? " pair" : " pairs") + " of triangles cross");
+}
+
+ReportTable surfaceTable(const MeshRun& run) {
+    ReportTable table{
+        "Surfaces",
+        {"File", "Isovalue", "Format, frame", "Triangles", "Marching cubes has", "Vertices",
+         "Pieces", "Genus", "Area, mm²", "Volume, mm³", "Error at most, mm"},
+        {}};
+    for (const SurfaceSummary& surface : run.surfaces) {
+        const auto genus = surface.topology.genus();
+        const auto bound = surface.errorBoundMm();
+        table.rows.push_back(
+            {nameOf(surface), formatNumber(surface.isovalue),
+             std::string(surface.format->name) + ", " + std::string(toString(surface.frame)),
+             formatCount(surface.topology.triangles),
+             formatCount(surface.statistics.marchingCubesTriangles),
+             formatCount(surface.topology.vertices),
+             formatCount(std::ssize(surface.topology.components)),
+             genus ? formatCount(*genus) : "–", formatMeasure(surface.areaMm2),
+             surface.volumeMm3 ? formatMeasure(*surface.volumeMm3) : "–",
+             bound ? formatBound(*bound) : "–"});
+    }
+    return table;
+}
+
+}  // namespace
+
+std::string jsonReport(const MeshRun& run) {
+    Json surfaces = Json::array();
+    for (const SurfaceSummary& surface : run.surfaces) {
+        surfaces.push_back(surfaceJson(run, surface));
+    }
+    return run.json("adaptiso-mesh/1", {{"input", inputJson(run)},
+                                        {"preprocessing", preprocessedJson(run)},
+                                        {"options", optionsJson(run.options)},
+                                        {"index", indexJson(run.index)},
+                                        {"surfaces", surfaces}});
+}
+
+void printReport(std::ostream& out, const MeshRun& run) {
+    if (run.preprocessed) {
+        const Index3& size = run.preprocessed->geometry.size;
+        out << "from " << preprocessingText(run.options.preprocessing, run.input.geometry.size)
+            << ": " << size[0] << " x " << size[1] << " x " << size[2] << " voxels, "
+            << toString(run.preprocessed->pixelType) << '\n';
+    }
+    for (const SurfaceSummary& surface : run.surfaces) printSurface(out, run, surface);
+    printTimes(out, run.timer);
+}
+
+Report makeReport(MeshRun& run, const VolumeView& volume) {
+    Report report;
+    tellVerdict(run, report);
+    tellInputs(run, report);
+    tellOptions(run, report);
+    for (std::size_t n = 0; n < run.surfaces.size(); ++n) {
+        const SurfaceSummary& surface = run.surfaces[n];
+        ShownSurface& shown = run.shown[n];
+        tellChecks(surface, report);
+        SpotClusters clusters(shown.mesh);
+        for (const TrianglePair& pair : shown.crossings) {
+            clusters.add(middleOf(shown.mesh, pair[0]));
+        }
+        clusters.tell("crossing triangles in " + nameOf(surface), false, report.spots);
+        report.surfaces.push_back({nameOf(surface), std::move(shown.mesh)});
+    }
+    report.tables.push_back(surfaceTable(run));
+    report.volume = ReportVolume{baseName(run.options.input), volume};
+    return report;
+}
+
+}  // namespace adaptiso::mesher

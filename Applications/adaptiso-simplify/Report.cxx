@@ -1,0 +1,268 @@
+#include <algorithm>
+#include <ostream>
+#include <string>
+#include <string_view>
+
+#include "Common/CommonOptions.h"
+#include "Common/Json.h"
+#include "Common/ReportOutput.h"
+#include "Common/RunApp.h"
+#include "Run.h"
+#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
+#include "adaptiso/SurfacePipeline/SurfaceJson.h"
+
+namespace adaptiso::simplifier {
+namespace {
+
+Json surfaceJson(const SurfaceSummary& surface) {
+    const TopologyReport& topology = surface.topology;
+    return {{"file", baseName(surface.file)},
+            {"format", surface.format->name},
+            {"coordinates", frameJson(surface.frame)},
+            {"triangles", surface.triangles},
+            {"vertices", surface.vertices},
+            {"components", std::ssize(topology.components)},
+            {"genus", orNull(topology.genus())},
+            {"closed", topology.isClosed()},
+            {"areaMm2", number(surface.areaMm2)}};
+}
+
+Json findingsJson(const std::vector<Finding>& findings) {
+    Json list = Json::array();
+    for (const Finding& finding : findings) {
+        list.push_back({{"what", finding.key},
+                        {"count", finding.count},
+                        {"firstMm", finding.placeMm ? vector(*finding.placeMm) : Json(nullptr)},
+                        {"dropped", finding.isDropped}});
+    }
+    return list;
+}
+
+Json inputJson(const SimplifyRun& run) {
+    Json json = surfaceJson(run.input);
+    json["sound"] = isSound(run.findings);
+    json["findings"] = findingsJson(run.findings);
+    return json;
+}
+
+Json optionsJson(const SimplifyCommand& command) {
+    return {{"inputCoordinates", inputCoordinatesJson(command.inputCoordinates)},
+            {"maxErrorMm", orNull(command.aim.maxErrorMm)},
+            {"triangles", orNull(command.aim.maxTriangles)},
+            {"reduction", orNull(command.aim.reduction)},
+            {"minAngleDeg", number(command.aim.minAngleDeg)},
+            {"keepBorders", command.aim.keepBorders},
+            {"requireSound", command.requiresSound},
+            {"threads", orNull(command.common.threads)},
+            {"strict", command.common.isStrict}};
+}
+
+Json outputJson(const SimplifyRun& run) {
+    if (run.failsSoundness()) return nullptr;
+    Json json = surfaceJson(run.output);
+    json["bytes"] = run.bytes;
+    json["written"] = run.writesSurface();
+    json["wantedTriangles"] = orNull(run.statistics.wantedTriangles);
+    json["countMet"] = orNull(run.countMet());
+    json["errorBoundMm"] = number(run.errorBoundMm());
+    json["adaptive"] = workJson(run.statistics.work);
+    json["roundingMm"] = number(run.roundingMm);
+    json["verification"] = {{"samples", run.verification->samples},
+                            {"maxMm", number(run.verification->maxMm)}};
+    json["values"] = run.keptArrays;
+    return json;
+}
+
+Json dataJson(const SimplifyRun& run) {
+    Json list = Json::array();
+    for (const DataSummary& data : run.data) {
+        list.push_back({{"file", baseName(data.file)},
+                        {"output", baseName(data.output)},
+                        {"format", toString(data.format)},
+                        {"arrays", data.arrays},
+                        {"labels", data.areLabels}});
+    }
+    return list;
+}
+
+std::string frameText(const std::optional<CoordinateFrame>& frame) {
+    return frame ? std::string(toString(*frame)) : "frame not said";
+}
+
+void printInput(std::ostream& out, const SimplifyRun& run) {
+    const SurfaceSummary& input = run.input;
+    out << oneLine(input.file.string()) << ": " << formatCount(input.triangles) << " triangles, "
+        << input.format->name << ", " << frameText(input.frame) << '\n';
+    if (isSound(run.findings)) out << "  closed, 2-manifold, oriented, nothing crosses\n";
+    for (const Finding& finding : run.findings) out << "  " << finding.text() << '\n';
+}
+
+void printOutput(std::ostream& out, const SimplifyRun& run) {
+    const SurfaceSummary& output = run.output;
+    const double percent =
+        100.0 * static_cast<double>(output.triangles) / static_cast<double>(run.input.triangles);
+    out << oneLine(output.file.string()) << (run.writesSurface() ? "" : " (not written)") << ": "
+        << formatCount(output.triangles) << " triangles (" << formatFixed(percent, 1) << " %), "
+        << output.format->name << ", " << frameText(output.frame) << '\n';
+    out << "  no point farther than " << formatBound(run.errorBoundMm())
+        << " mm from the input, nor it from this one (proved; farthest of "
+        << formatCount(run.verification->samples)
+        << " points measured: " << formatLength(run.verification->maxMm, 4) << " mm)\n";
+    if (!run.countMet().value_or(true)) {
+        out << "  " << formatCount(*run.statistics.wantedTriangles) << " triangles were asked for; "
+            << (run.command.aim.maxErrorMm
+                    ? "the bound of --max-error does not allow as few\n"
+                    : "keeping all its pieces, holes and borders left little to gain\n");
+    }
+    for (const std::string& name : run.keptArrays) {
+        out << "  with the values " << oneLine(name) << '\n';
+    }
+}
+
+void tellVerdict(const SimplifyRun& run, Report& report) {
+    report.title = baseName(run.input.file) + " simplified";
+    if (run.failsSoundness()) {
+        report.verdict = ReportVerdict::Failed;
+        report.headline = "Not simplified: the surface is not sound, and it is asked to be.";
+        return;
+    }
+    report.headline = formatCount(run.output.triangles) + " triangles of " +
+                      formatCount(run.input.triangles) + "; no point farther than " +
+                      formatBound(run.errorBoundMm()) +
+                      " mm from the input, nor the other way round.";
+}
+
+void tellInputs(const SimplifyRun& run, Report& report) {
+    const SurfaceSummary& input = run.input;
+    report.inputs.push_back(
+        {"Surface", baseName(input.file) + " (" + std::string(input.format->name) + ", " +
+                        (input.frame ? std::string(toString(*input.frame)) : "frame not said") +
+                        ")"});
+    for (const DataSummary& data : run.data) {
+        report.inputs.push_back(
+            {"Values", baseName(data.file) + " (" + std::string(toString(data.format)) + ")"});
+    }
+}
+
+void tellOptions(const SimplifyCommand& command, Report& report) {
+    const SimplifyOptions& aim = command.aim;
+    if (aim.maxErrorMm) {
+        report.options.push_back({"Largest error", formatNumber(*aim.maxErrorMm) + " mm"});
+    }
+    if (aim.maxTriangles) {
+        report.options.push_back({"Triangles at most", formatCount(*aim.maxTriangles)});
+    }
+    if (aim.reduction) {
+        report.options.push_back({"Share of triangles to drop", formatNumber(*aim.reduction)});
+    }
+    if (aim.minAngleDeg > 0) {
+        report.options.push_back({"Smallest angle", formatNumber(aim.minAngleDeg) + "°"});
+    }
+    report.options.push_back(
+        {"Open borders", aim.keepBorders ? "kept as they are" : "simplified within the bound"});
+}
+
+void tellChecks(const SimplifyRun& run, Report& report) {
+    const auto add = [&](const std::string& subject, const std::string& name, bool holds,
+                         const std::string& finding) {
+        const ReportOutcome bad =
+            run.failsSoundness() ? ReportOutcome::Failed : ReportOutcome::Noted;
+        report.checks.push_back({subject, name, holds ? ReportOutcome::Passed : bad, finding});
+    };
+    const std::string input = baseName(run.input.file);
+    if (isSound(run.findings)) {
+        add(input, "closed, 2-manifold, oriented, not crossing itself", true, "");
+    }
+    for (const Finding& finding : run.findings) {
+        if (finding.isFault) add(input, "sound", false, finding.text());
+    }
+    if (run.failsSoundness()) return;
+    const std::string output = baseName(run.output.file);
+    add(output, "as sound as the input, as written", true, "");
+    add(output, "within the proved distance", true,
+        formatLength(run.verification->maxMm, 4) + " mm at most at " +
+            formatCount(run.verification->samples) + " points, " + formatBound(run.errorBoundMm()) +
+            " mm proved");
+}
+
+ReportTable surfaceTable(const SimplifyRun& run) {
+    ReportTable table{"Surfaces",
+                      {"Surface", "File", "Triangles", "Vertices", "Pieces", "Genus", "Area, mm²"},
+                      {}};
+    const auto add = [&](const SurfaceSummary& surface) {
+        const auto genus = surface.topology.genus();
+        table.rows.push_back({&surface == &run.input ? "read" : "written", baseName(surface.file),
+                              formatCount(surface.triangles), formatCount(surface.vertices),
+                              formatCount(std::ssize(surface.topology.components)),
+                              genus ? formatCount(*genus) : "–", formatMeasure(surface.areaMm2)});
+    };
+    add(run.input);
+    if (!run.failsSoundness()) add(run.output);
+    return table;
+}
+
+void tellSpots(const SimplifyRun& run, const TriangleMesh& input, const PageFrame& frame,
+               Report& report) {
+    const std::string in = " in " + baseName(run.input.file);
+    for (const Finding& finding : run.findings) {
+        if (!finding.placeMm || !finding.isFault) continue;
+        if (finding.key == "crossingTriangles" && !run.statistics.crossingTriangles.empty()) {
+            SpotClusters clusters(input);
+            for (const std::int64_t t : run.statistics.crossingTriangles) {
+                clusters.add(middleOf(input, t));
+            }
+            clusters.tell("crossing triangles" + in, run.failsSoundness(), report.spots);
+            continue;
+        }
+        report.spots.push_back(
+            {finding.what + in, frame.toLps(*finding.placeMm), run.failsSoundness()});
+    }
+}
+
+}  // namespace
+
+std::string jsonReport(const SimplifyRun& run) {
+    return run.json("adaptiso-simplify/1", {{"input", inputJson(run)},
+                                            {"options", optionsJson(run.command)},
+                                            {"output", outputJson(run)},
+                                            {"data", dataJson(run)},
+                                            {"failedBySoundness", run.failsSoundness()}});
+}
+
+void printReport(std::ostream& out, const SimplifyRun& run) {
+    printInput(out, run);
+    if (!run.failsSoundness()) {
+        printOutput(out, run);
+        for (const DataSummary& data : run.data) {
+            out << oneLine(data.output.string()) << (run.writesSurface() ? "" : " (not written)")
+                << ": " << (data.areLabels ? "labels" : "values") << " of "
+                << oneLine(baseName(data.file)) << ", " << toString(data.format) << '\n';
+        }
+    }
+    printTimes(out, run.timer);
+}
+
+Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh shown) {
+    Report report;
+    tellVerdict(run, report);
+    tellInputs(run, report);
+    tellOptions(run.command, report);
+    tellChecks(run, report);
+    const PageFrame frame = pageFrame(input);
+    report.frame = frame.name;
+    TriangleMesh before = transformed(input.mesh, frame.toLps);
+    tellSpots(run, before, frame, report);
+    if (run.failsSoundness()) {
+        report.surfaces.push_back({baseName(run.input.file), std::move(before)});
+    } else {
+        TriangleMesh after = transformed(shown, frame.toLps);
+        std::vector<double> distances = vertexDistancesMm(after, before);
+        report.surfaces.push_back(
+            {baseName(run.output.file), std::move(after), std::move(distances)});
+    }
+    report.tables.push_back(surfaceTable(run));
+    return report;
+}
+
+}  // namespace adaptiso::simplifier

@@ -1,0 +1,207 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "Common/ProgramRun.h"
+#include "Pipeline.h"
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Core/Warning.h"
+#include "adaptiso/Extraction/Simplify.h"
+#include "adaptiso/MeshIO/Formats.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/MeshIO/PointData.h"
+#include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/Report/Report.h"
+#include "adaptiso/SurfacePipeline/FinishSurface.h"
+
+namespace adaptiso::simplifier {
+
+/// A kind of places where a surface is not sound.
+struct Finding {
+    std::string_view key;         ///< of the report: "borderEdges"
+    std::string what;             ///< for people: "open border edge"
+    std::int64_t count = 0;       ///< > 0
+    std::optional<Vec3> placeMm;  ///< of the first of them, as the file has it
+    bool isDropped = false;       ///< else kept as it is
+    bool isFault = true;          ///< the surface is not sound for it
+
+    /// "3 triangles without area, dropped; the first at 1, 2, 3"
+    std::string text() const;
+};
+
+bool isSound(const std::vector<Finding>& findings);
+
+/// The faults of a surface's topology.
+std::vector<Finding> findTopologyFaults(const TopologyReport& topology);
+
+/// Triangles that cross others. \param triangles  their numbers
+std::optional<Finding> crossingFinding(const TriangleMesh& mesh,
+                                       const std::vector<std::int64_t>& triangles);
+
+/// Numbers of the triangles that cross others, ascending, found by MeshQuality.
+std::vector<std::int64_t> findCrossing(const TriangleMesh& mesh);
+
+/// A surface as a file has it.
+struct SurfaceSummary {
+    std::filesystem::path file;
+    const MeshFormat* format = nullptr;
+    std::optional<CoordinateFrame> frame;  ///< none: the file does not say
+    std::int64_t triangles = 0, vertices = 0;
+    TopologyReport topology;
+    double areaMm2 = 0;
+};
+
+/// Values that were taken along in a file of their own.
+struct DataSummary {
+    std::filesystem::path file, output;
+    PointDataFormat format{};
+    std::int64_t arrays = 0;
+    bool areLabels = false;  ///< all of them
+};
+
+/// One run of the program, for the reports.
+struct SimplifyRun : ProgramRun {
+    explicit SimplifyRun(const SimplifyCommand& given)
+        : ProgramRun("adaptiso-simplify", given.common, given.report, "so no surface was written"),
+          command(given) {}
+
+    const SimplifyCommand& command;
+    SurfaceSummary input{};
+    std::vector<Finding> findings{};  ///< what is not sound of the input; empty: it is sound
+    /// Of the result; all of it none (`output.triangles` 0) of a surface that was refused.
+    SurfaceSummary output{};
+    SimplifyStatistics statistics{};
+    double roundingMm = 0;                       ///< largest move of a point by the output's digits
+    std::optional<Verification> verification{};  ///< of the surface as written
+    std::uintmax_t bytes = 0;                    ///< of the output
+    std::vector<std::string> keptArrays{};       ///< values at points in the surface's own file
+    std::vector<DataSummary> data{};
+
+    /// --require-sound, and it is not.
+    bool failsSoundness() const { return command.requiresSound && !isSound(findings); }
+    /// Bound on the distance between input and output as written, both ways.
+    double errorBoundMm() const { return statistics.errorBoundMm + roundingMm; }
+    bool writesSurface() const { return !failsSoundness() && !failsStrict(); }
+    /// The count of --triangles or --reduction was met; none when none was asked for.
+    std::optional<bool> countMet() const {
+        if (!statistics.wantedTriangles) return std::nullopt;
+        return output.triangles <= *statistics.wantedTriangles;
+    }
+};
+
+/// It ends with a slash, or is a folder that is there.
+bool isFolder(const std::filesystem::path& path);
+
+/// The name that stands for {name}: "bone" of "bone.stl", "lh" of "lh.surf.gii"; "lh.pial" of
+/// itself, as FreeSurfer's surfaces are told apart by what stands in an extension's place.
+std::string surfaceName(const std::filesystem::path& input);
+
+/// Where the simplified surface goes: `output`, or the file of the input's name in the folder that
+/// it names.
+std::filesystem::path surfaceFile(const std::filesystem::path& output,
+                                  const std::filesystem::path& input);
+
+/// Where values go: beside the surface, under their own name; where that is the file they are from,
+/// with "simplified" in its name ("lh.simplified.thickness", "a.simplified.shape.gii").
+std::filesystem::path dataFile(const std::filesystem::path& data,
+                               const std::filesystem::path& surface);
+
+/// "sub-01_hemi-L_desc-simplified_pial.surf.gii", BIDS's way to name what was made of a file.
+std::string bidsName(const std::filesystem::path& input);
+
+/// How the points of a file go to those of another.
+struct FrameChange {
+    CoordinateFrame frame{};              ///< of the output
+    bool isSaid = true;                   ///< the output may say so
+    std::optional<AffineTransform> move;  ///< none: the points stay as they are, to the bit
+
+    TriangleMesh apply(const TriangleMesh& mesh) const {
+        return move ? transformed(mesh, *move) : mesh;
+    }
+    TriangleMesh undo(TriangleMesh mesh) const {
+        return move ? transformed(mesh, inverse(*move)) : std::move(mesh);
+    }
+};
+
+/// \param input   a file as read
+/// \param wanted  none: the input's frame
+/// \throws InvalidInput  the file does not say its frame, which the output has to know, or the
+/// volume
+///                       that a frame belongs to
+FrameChange changeFrame(const MeshFile& input, std::optional<CoordinateFrame> wanted,
+                        const MeshFormat& output);
+
+/// A frame that a page can show: LPS mm, or what is like it but for where it lies.
+struct PageFrame {
+    AffineTransform toLps;
+    std::string name;  ///< the frame in which points are reported
+};
+
+PageFrame pageFrame(const MeshFile& input);
+
+/// Takes values at the points of a surface to those of another that lies near it.
+///
+/// Numbers and colours are mixed of the values at the corners of the nearest triangle, by the
+/// barycentric weights of the nearest place on it; a value that is not a number counts only where
+/// its corner has a weight. Whole numbers, which may be labels, are those of the nearest corner of
+/// that triangle.
+class PointTransfer {
+public:
+    /// Both must outlive it. \pre as nearestPoints()
+    PointTransfer(const TriangleMesh& from, const TriangleMesh& to);
+
+    PointArray operator()(const PointArray& array) const;
+    PointData operator()(const PointData& data) const;
+
+private:
+    template <class T>
+    std::vector<T> mixed(const std::vector<T>& values, std::size_t columns) const;
+    template <class T>
+    std::vector<T> nearest(const std::vector<T>& values, std::size_t columns) const;
+    std::vector<Color> mixed(const std::vector<Color>& colors) const;
+    VertexId nearestCorner(std::size_t point) const;
+
+    const TriangleMesh& from_;
+    const TriangleMesh& to_;
+    std::vector<SurfacePoint> places_;  ///< of the points of `to` on `from`
+};
+
+/// A surface as written, and what it is checked against.
+struct VerifiedSurface {
+    const TriangleMesh& input;   ///< as read
+    const TriangleMesh& result;  ///< as computed, in the input's frame
+    TriangleMesh written;        ///< as read again, in the input's frame
+    double roundingMm = 0;       ///< at most, between a point of `result` and of `written`
+};
+
+/// Checks what is promised of the result, as written, by code that it was not made by: a sound
+/// surface has stayed sound, with its pieces and handles, no more triangles cross than before, and
+/// points sampled on either surface lie within the proved bound of the other.
+/// \param run  with the input's topology and findings, and the statistics; gets the output's
+///             topology and the verification
+/// \throws InvalidInput   the format has too few digits for the result
+/// \throws InternalError  a promise is broken
+void verify(const VerifiedSurface& surface, SimplifyRun& run);
+
+/// Runs adaptiso-simplify for each of many surfaces. \return, \throws as runBatch()
+int runSimplifyBatch(const SimplifyCommand& command);
+
+/// The report of --json, as README.md describes it, with a line break at the end.
+std::string jsonReport(const SimplifyRun& run);
+
+/// Prints the text report.
+void printReport(std::ostream& out, const SimplifyRun& run);
+
+/// The report that the page shows.
+/// \param input  as read
+/// \param shown  the result, in the input's frame; empty: the surface was refused
+Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh shown);
+
+}  // namespace adaptiso::simplifier
