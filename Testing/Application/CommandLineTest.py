@@ -1,10 +1,18 @@
 """Options: what is refused as wrong usage (exit code 2), and what the help says."""
 
 import re
+import subprocess
 
-from support import SOURCE, USAGE, ApplicationTest, ball, main, write_nifti
+from support import BIN, SOURCE, USAGE, ApplicationTest, ball, main, write_nifti
 
+PROGRAMS = ("adaptiso-mesh", "adaptiso-labels", "adaptiso-bem", "adaptiso-check",
+            "adaptiso-compare", "adaptiso-simplify", "adaptiso-bids", "adaptiso-giant")
 README = SOURCE / "Applications" / "adaptiso-mesh" / "README.md"
+
+
+def run_program(folder, *command):
+    return subprocess.run([BIN / command[0], *command[1:]], cwd=folder, text=True,
+                          capture_output=True, timeout=120)
 
 
 class WrongUsage(ApplicationTest):
@@ -109,6 +117,56 @@ class Help(ApplicationTest):
         done = self.mesh("--version")
         self.assertRegex(done.stdout, r"^adaptiso-mesh \d+\.\d+\.\d+\n.*ITK \d+\.\d+.*oneTBB \d+\.\d+")
         self.assertEqual(done.stderr, "")
+
+    def test_version_has_the_same_letter_in_every_program(self):
+        for program in ("adaptiso", *PROGRAMS):
+            with self.subTest(program):
+                said = [run_program(self.folder, program, option) for option in ("-v", "--version")]
+                self.assertEqual([done.returncode for done in said], [0, 0])
+                self.assertRegex(said[0].stdout, rf"^{program} \d+\.\d+\.\d+\n")
+                self.assertEqual(said[0].stdout, said[1].stdout)
+
+
+class OneCommand(ApplicationTest):
+    """`adaptiso mesh ...` is `adaptiso-mesh ...`."""
+
+    def test_lists_every_program(self):
+        done = run_program(self.folder, "adaptiso")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        listed = re.findall(r"(?m)^  ([a-z]+)  +\S.*", done.stdout)
+        self.assertEqual(["adaptiso-" + word for word in listed], list(PROGRAMS))
+        self.assertEqual(run_program(self.folder, "adaptiso", "--help").stdout, done.stdout)
+
+    def test_starts_each_program(self):
+        for program in PROGRAMS:
+            with self.subTest(program):
+                word = program.removeprefix("adaptiso-")
+                self.assertEqual(run_program(self.folder, "adaptiso", word, "--help").stdout,
+                                 run_program(self.folder, program, "--help").stdout)
+
+    def test_passes_arguments_output_and_exit_code(self):
+        write_nifti(self.path("ball.nii"), ball(8, 3))
+        done = run_program(self.folder, "adaptiso", "mesh", "ball.nii", "--iso", "100", "-o", "a b.ply")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("a b.ply", done.stdout)
+        run_program(self.folder, "adaptiso-mesh", "ball.nii", "--iso", "100", "-o", "other.ply")
+        self.assertEqual(self.path("a b.ply").read_bytes(), self.path("other.ply").read_bytes())
+        done = run_program(self.folder, "adaptiso", "mesh", "no.nii", "--iso", "100")
+        self.assertEqual(done.returncode, 3)
+        self.assertRegex(done.stderr, "^adaptiso-mesh: ")
+
+    def test_is_found_from_any_folder_and_through_a_link(self):
+        link = self.path("link")
+        link.symlink_to(BIN / "adaptiso")
+        done = subprocess.run([link, "check", "--version"], cwd="/", text=True, capture_output=True)
+        self.assertRegex(done.stdout, "^adaptiso-check ")
+
+    def test_refuses_other_words(self):
+        done = run_program(self.folder, "adaptiso", "mehs", "--iso", "3")
+        self.assertEqual(done.returncode, USAGE)
+        done = run_program(self.folder, "adaptiso", "mehs")
+        self.assertEqual(done.returncode, USAGE)
+        self.assertIn("mehs: there is no such program; did you mean mesh?", done.stderr)
 
 
 if __name__ == "__main__":

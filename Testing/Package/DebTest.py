@@ -14,7 +14,7 @@ BUILD = Path(os.environ["ADAPTISO_BUILD"])
 SOURCES = Path(os.environ["ADAPTISO_SOURCE"])
 VERSION = os.environ["ADAPTISO_VERSION"]
 MOMENT = 1700000000  # s since 1970: 2023-11-14 22:13:20 UTC
-PROGRAMS = ("adaptiso-mesh", "adaptiso-labels", "adaptiso-bem", "adaptiso-check",
+PROGRAMS = ("adaptiso", "adaptiso-mesh", "adaptiso-labels", "adaptiso-bem", "adaptiso-check",
             "adaptiso-compare", "adaptiso-simplify", "adaptiso-bids",
             "adaptiso-giant")
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from support import BIN, ApplicationTest, main
 
 MADE = Path(os.environ["ADAPTISO_BUILD"]) / "Applications" / "manual"
-PROGRAMS = ("adaptiso-mesh", "adaptiso-labels", "adaptiso-bem", "adaptiso-check",
+PROGRAMS = ("adaptiso", "adaptiso-mesh", "adaptiso-labels", "adaptiso-bem", "adaptiso-check",
             "adaptiso-compare", "adaptiso-simplify", "adaptiso-bids",
             "adaptiso-giant")
 

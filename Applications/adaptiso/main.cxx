@@ -1,0 +1,94 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "Common/CommonOptions.h"
+#include "Common/OptionValues.h"
+#include "Common/RunApp.h"
+#include "Common/UsageWords.h"
+
+namespace adaptiso::starter {
+namespace {
+
+struct Entry {
+    const char* word;  ///< the program's name without "adaptiso-"
+    const char* purpose;
+};
+
+constexpr Entry kPrograms[] = {
+    {"mesh", "surfaces of an image at one or more isovalues"},
+    {"labels", "surfaces of all regions of a segmentation"},
+    {"bem", "head models for EEG and MEG"},
+    {"check", "soundness of surfaces, and a self-test"},
+    {"compare", "distances between two surfaces"},
+    {"simplify", "fewer triangles within a stated distance"},
+    {"bids", "all of these for a BIDS dataset"},
+    {"giant", "the surface of a volume larger than memory"},
+};
+
+std::string footer() {
+    std::string text = "Programs:\n";
+    for (const Entry& entry : kPrograms) {
+        const std::string word = entry.word;
+        text += "  " + word + std::string(10 - word.size(), ' ') + entry.purpose + "\n";
+    }
+    return text +
+           "\nExamples:\n"
+           "  adaptiso mesh brain.nii.gz --iso 100\n"
+           "      the same as: adaptiso-mesh brain.nii.gz --iso 100\n"
+           "  adaptiso mesh --help\n\n"
+           "Exit codes: those of the program; 2 when there is no such program.";
+}
+
+struct Options {
+    std::vector<std::filesystem::path> words;
+};
+
+void declareOptions(CLI::App& app, Options& options) {
+    OptionGroup(app).text("PROGRAM", "", options.words, "One of those below, then its arguments");
+    declareVersion(app);
+}
+
+/// \throws UsageError
+int refuse(const Options& options) {
+    std::vector<std::string> words;
+    for (const Entry& entry : kPrograms) words.emplace_back(entry.word);
+    const std::string typed = options.words.empty() ? "" : options.words.front().string();
+    throw UsageError(shown(typed) + ": there is no such program" + suggestion(typed, words));
+}
+
+/// Becomes the program that lies beside this one. \return only if it cannot be started
+int start(const std::string& word, char** argv) {
+    const std::string name = "adaptiso-" + word;
+    std::error_code error;
+    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+    const std::string program = (self.parent_path() / name).string();
+    std::string first = name;
+    argv[1] = first.data();
+    execv(program.c_str(), argv + 1);
+    printError("adaptiso", program + ": can't be started: " + std::strerror(errno));
+    return kExitBadInput;
+}
+
+}  // namespace
+}  // namespace adaptiso::starter
+
+int main(int argc, char** argv) {
+    using namespace adaptiso::starter;
+    const std::string word = argc > 1 ? argv[1] : "--help";
+    const auto names = [&](const Entry& entry) { return word == entry.word; };
+    if (std::ranges::any_of(kPrograms, names)) return start(word, argv);
+    const char* const help[] = {argv[0], "--help"};
+    return adaptiso::runApp(
+        std::max(argc, 2), argc > 1 ? argv : help,
+        {"adaptiso", "Starts the programs of adaptiso: adaptiso mesh ... is adaptiso-mesh ...",
+         footer()},
+        declareOptions, refuse);
+}
