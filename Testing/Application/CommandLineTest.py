@@ -1,5 +1,6 @@
 """Options: what is refused as wrong usage (exit code 2), and what the help says."""
 
+import json
 import re
 import subprocess
 
@@ -112,6 +113,19 @@ class Help(ApplicationTest):
         used = options("\n".join(re.findall(r"`[^`]*`", README.read_text())))
         self.assertEqual(options(self.mesh("--help").stdout) - used, set())
         self.assertEqual(used - options(self.mesh("--help").stdout), set())
+
+    def test_readmes_name_the_options_of_every_program(self):
+        """In the program's README or, for options that it shares, in that of adaptiso-mesh."""
+        def named(program):
+            text = (SOURCE / "Applications" / program / "README.md").read_text()
+            return set(re.findall(r"(?<![\w-])--?[a-z][\w-]*",
+                                  "\n".join(re.findall(r"(?s)```.*?```|`[^`]*`", text))))
+        for program in PROGRAMS:
+            used = named(program) | named("adaptiso-mesh")
+            said = json.loads(run_program(self.folder, program, "--help-json").stdout)
+            for option in said["options"]:
+                if option["names"]:
+                    self.assertTrue(used & set(option["names"]), (program, option["names"]))
 
     def test_version_names_the_libraries(self):
         done = self.mesh("--version")
