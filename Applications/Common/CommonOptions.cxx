@@ -1,8 +1,5 @@
 #include "Common/CommonOptions.h"
 
-#include <tbb/global_control.h>
-#include <tbb/version.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
@@ -15,6 +12,7 @@
 
 #include "Common/OptionValues.h"
 #include "Common/Warnings.h"
+#include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso {
 
@@ -56,19 +54,17 @@ std::string programVersion() {
 }
 
 std::string versionText(const std::string& programName) {
-    return programName + " " + programVersion() +
-           "\nbuilt with ITK " ADAPTISO_ITK_VERSION ", oneTBB " +
-           std::to_string(TBB_VERSION_MAJOR) + "." + std::to_string(TBB_VERSION_MINOR) + ".0";
+    return programName + " " + programVersion() + "\nbuilt with ITK " ADAPTISO_ITK_VERSION ", " +
+           threadingName();
 }
 
 struct ThreadLimit::Impl {
-    tbb::global_control control;
+    ThreadLimitGuard guard;
     bool isForWant;  ///< there are no more
 };
 
 ThreadLimit::ThreadLimit(const CommonOptions& options) {
-    constexpr auto kParallelism = tbb::global_control::max_allowed_parallelism;
-    const int machine = static_cast<int>(tbb::global_control::active_value(kParallelism));
+    const int machine = threadLimit();
     const int asked = options.threads.value_or(machine);
     // oneTBB and ITK start all of the machine's where they can, so that --threads 1 may fail, too
     const int wanted = std::max({asked, machine, 2}) - 1;
@@ -83,7 +79,7 @@ ThreadLimit::ThreadLimit(const CommonOptions& options) {
     } else if (!options.threads) {
         return;
     }
-    impl_.reset(new Impl{{kParallelism, static_cast<std::size_t>(threads)}, isForWant});
+    impl_.reset(new Impl{ThreadLimitGuard(threads), isForWant});
 }
 
 ThreadLimit::~ThreadLimit() {

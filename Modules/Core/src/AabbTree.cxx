@@ -1,7 +1,5 @@
 #include "adaptiso/Core/AabbTree.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -118,7 +116,7 @@ void AabbTree::build(std::vector<Item>& items, const Subtree& subtree) {
                      });
     constexpr std::int64_t kParallelLeaves = 1024;  // below, a task costs more than it saves
     if (subtree.leaves >= kParallelLeaves) {
-        tbb::parallel_invoke([&] { build(items, left); }, [&] { build(items, right); });
+        parallelInvoke([&] { build(items, left); }, [&] { build(items, right); });
     } else {
         build(items, left);
         build(items, right);

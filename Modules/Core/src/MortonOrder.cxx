@@ -1,10 +1,9 @@
 #include "adaptiso/Core/MortonOrder.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 
 #include "adaptiso/Core/HugePages.h"
+#include "adaptiso/Core/ParallelSort.h"
 
 namespace adaptiso::detail {
 
@@ -19,7 +18,7 @@ MortonCurve::MortonCurve(const BoundingBox& box) : low_(box.minimum) {
 
 std::vector<std::uint32_t> sortedByKeys(std::vector<std::uint64_t> keys) {
     constexpr std::int64_t kPiece = 1 << 14;
-    tbb::parallel_sort(keys.begin(), keys.end());
+    parallelSort(keys);
     std::vector<std::uint32_t> numbers;
     assignInHugePages(numbers, keys.size());
     parallelForPieces(std::ssize(keys), kPiece, [&](std::int64_t begin, std::int64_t end) {

@@ -1,7 +1,5 @@
 #include "adaptiso/ImageIO/SampleStatistics.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -11,6 +9,7 @@
 #include <type_traits>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/PerThread.h"
 
 namespace adaptiso {
 namespace {
@@ -67,7 +66,7 @@ using Counts = std::vector<std::int64_t>;  // by digit
 template <class T>
 std::vector<Counts> countDigits(const TypedVolumeView<T>& view,
                                 const std::vector<std::uint64_t>& prefixes, int shift) {
-    tbb::enumerable_thread_specific<std::vector<Counts>> perThread(
+    PerThread<std::vector<Counts>> perThread(
         [&] { return std::vector<Counts>(prefixes.size(), Counts(kDigits, 0)); });
     parallelForPieces(
         view.geometry.voxelCount(), kPiece, [&](std::int64_t begin, std::int64_t end) {
@@ -160,7 +159,7 @@ SampleHistogram sampleHistogram(const VolumeView& volume, double lower, double u
     SampleHistogram histogram{lower, upper, Counts(bins, 0), 0, 0};
     dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
         // the bins, and one on either side
-        tbb::enumerable_thread_specific<Counts> perThread([&] { return Counts(bins + 2, 0); });
+        PerThread<Counts> perThread([&] { return Counts(bins + 2, 0); });
         parallelForPieces(
             view.geometry.voxelCount(), kPiece, [&](std::int64_t begin, std::int64_t end) {
                 Counts& counts = perThread.local();

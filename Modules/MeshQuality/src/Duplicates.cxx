@@ -1,7 +1,5 @@
 #include "adaptiso/MeshQuality/Duplicates.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "RequireIndices.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/ParallelSort.h"
 
 namespace adaptiso {
 namespace {
@@ -24,7 +23,7 @@ std::vector<VertexId> findPlaces(const std::vector<Vec3>& points) {
     for (std::size_t v = 0; v < points.size(); ++v) {
         if (std::isfinite(squaredNorm(points[v]))) order.push_back(static_cast<VertexId>(v));
     }
-    tbb::parallel_sort(order.begin(), order.end(), [&](VertexId l, VertexId r) {
+    parallelSort(order, [&](VertexId l, VertexId r) {
         const Vec3 &a = points[l], &b = points[r];
         return std::tie(a.x, a.y, a.z, l) < std::tie(b.x, b.y, b.z, r);
     });
@@ -48,7 +47,7 @@ std::vector<Seat> findSeats(const TriangleMesh& mesh, const std::vector<VertexId
         if (seat[0] == kNowhere || seat[0] == seat[1] || seat[1] == seat[2]) continue;
         seats.push_back(seat);
     }
-    tbb::parallel_sort(seats.begin(), seats.end());
+    parallelSort(seats);
     return seats;
 }
 

@@ -1,7 +1,5 @@
 #include "adaptiso/MeshQuality/TriangleTree.h"
 
-#include <tbb/task_arena.h>
-
 #include <cmath>
 
 #include "adaptiso/Core/AabbTree.h"
@@ -109,7 +107,7 @@ unsigned TriangleTree::Pairs::LeafBoxes::overlapping(const Box& o) const {
 const TriangleTree& TreeOnDemand::get() {
     std::call_once(isMade_, [&] {
         // while it waits for its own tasks a thread must not take one that asks for the tree
-        tbb::this_task_arena::isolate([&] { tree_ = TriangleTree(of_); });
+        isolated([&] { tree_ = TriangleTree(of_); });
     });
     return tree_;
 }

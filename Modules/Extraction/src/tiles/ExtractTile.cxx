@@ -1,4 +1,3 @@
-#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <array>
@@ -7,6 +6,7 @@
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/PerThread.h"
 #include "adaptiso/Extraction/Tiles.h"
 #include "adaptive/bricks/Bricks.h"
 #include "filling/MeshRepair.h"
@@ -80,9 +80,7 @@ public:
             BrickMesher mesher;
             FineSurface fine;
         };
-        tbb::enumerable_thread_specific<Tools> tools([&] {
-            return Tools{BrickMesher(sampler_, grid_), {}};
-        });
+        PerThread<Tools> tools([&] { return Tools{BrickMesher(sampler_, grid_), {}}; });
         parallelForPieces(std::ssize(bricks_), 1, [&](std::int64_t b, std::int64_t) {
             Brick brick = bricks_[b];
             findBlocks(brick);

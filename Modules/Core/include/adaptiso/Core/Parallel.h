@@ -1,7 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
 
 namespace adaptiso {
 namespace detail {
@@ -25,6 +29,9 @@ struct BodyRef {
 void runPieces(std::int64_t count, std::int64_t grain, BodyRef<std::int64_t, std::int64_t> body);
 void runLargestFirst(std::span<const std::int64_t> sizes, BodyRef<std::int64_t> body);
 void runBoth(BodyRef<> first, BodyRef<> second);
+void runInOrder(std::int64_t count, BodyRef<std::int64_t, std::shared_ptr<void>&> make,
+                BodyRef<void*> take);
+void runIsolated(BodyRef<> body);
 
 }  // namespace detail
 
@@ -43,10 +50,54 @@ void parallelLargestFirst(std::span<const std::int64_t> sizes, const Body& body)
     detail::runLargestFirst(sizes, detail::BodyRef<std::int64_t>::to(body));
 }
 
-/// Calls both, in parallel where a thread is free; they have ended when it returns.
-template <class First, class Second>
-void parallelInvoke(const First& first, const Second& second) {
-    detail::runBoth(detail::BodyRef<>::to(first), detail::BodyRef<>::to(second));
+/// Calls all, in parallel where threads are free; they have ended when it returns.
+template <class First, class Second, class... Others>
+void parallelInvoke(const First& first, const Second& second, const Others&... others) {
+    if constexpr (sizeof...(Others) == 0) {
+        detail::runBoth(detail::BodyRef<>::to(first), detail::BodyRef<>::to(second));
+    } else {
+        const auto rest = [&] { parallelInvoke(second, others...); };
+        detail::runBoth(detail::BodyRef<>::to(first), detail::BodyRef<>::to(rest));
+    }
 }
+
+/// Calls take(make(n)) for n = 0 ... count - 1: `make` in parallel, `take` one at a time in the
+/// order of n. Four results a thread wait at most.
+template <class Make, class Take>
+void parallelInOrder(std::int64_t count, const Make& make, const Take& take) {
+    using Result = std::invoke_result_t<const Make&, std::int64_t>;
+    const auto makeOne = [&](std::int64_t n, std::shared_ptr<void>& result) {
+        result = std::make_shared<Result>(make(n));
+    };
+    const auto takeOne = [&](void* result) { take(std::move(*static_cast<Result*>(result))); };
+    detail::runInOrder(count, detail::BodyRef<std::int64_t, std::shared_ptr<void>&>::to(makeOne),
+                       detail::BodyRef<void*>::to(takeOne));
+}
+
+/// Calls body(). While this thread waits for the tasks of `body` it takes no others: none that
+/// needs a lock it holds.
+template <class Body>
+void isolated(const Body& body) {
+    detail::runIsolated(detail::BodyRef<>::to(body));
+}
+
+/// Threads that parallel work may use, >= 1; 1 where the library is built without oneTBB.
+int threadLimit();
+
+/// Lowers threadLimit() to `threads` >= 1 while it lives.
+class ThreadLimitGuard {
+public:
+    explicit ThreadLimitGuard(int threads);
+    ~ThreadLimitGuard();
+    ThreadLimitGuard(const ThreadLimitGuard&) = delete;
+    ThreadLimitGuard& operator=(const ThreadLimitGuard&) = delete;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// What runs the threads: "oneTBB 2021.8.0", or "one thread".
+std::string threadingName();
 
 }  // namespace adaptiso

@@ -1,7 +1,5 @@
 #include "adaptive/full/MeshParts.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -15,6 +13,7 @@
 #include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/MortonOrder.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/ParallelSort.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/SurfaceProof/HalfEdges.h"
 #include "adaptive/full/FlatTriangles.h"
@@ -196,7 +195,7 @@ private:
         forEach(keys.size(), [&](std::size_t t) {
             keys[t] = std::uint64_t{std::ranges::min(parts_.triangles[t])} << 32 | t;
         });
-        tbb::parallel_sort(keys.begin(), keys.end());
+        parallelSort(keys);
         std::vector<MeshParts::Triangle> triangles(keys.size());
         std::vector<std::uint32_t> input(keys.size());
         forEach(keys.size(), [&](std::size_t i) {

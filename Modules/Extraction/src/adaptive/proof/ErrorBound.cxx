@@ -1,13 +1,12 @@
 #include "adaptive/proof/ErrorBound.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/PerThread.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
@@ -85,7 +84,7 @@ ErrorBound ErrorProof::proveAgain(const SimplifiedSurface& surface, const Surfac
 
 ErrorBound ErrorProof::prove(const SimplifiedSurface& surface, const ProofScope& scope) {
     std::vector<BrickBound> results(bricks_.count());
-    tbb::enumerable_thread_specific<BrickProof> proofs([&] {
+    PerThread<BrickProof> proofs([&] {
         return BrickProof(surface, *lookup_, whole_, sampler_, scope, numbers_, enoughMm_,
                           limitMm_);
     });

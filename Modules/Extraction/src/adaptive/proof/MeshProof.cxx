@@ -166,7 +166,7 @@ template <class F>
 void forEachUnknown(const std::vector<std::uint8_t>& isKnown, std::int64_t piece, std::size_t count,
                     const F& f) {
     const std::size_t begin = static_cast<std::size_t>(piece) * kPiece;
-    for (std::size_t t = begin; t < std::min(count, begin + kPiece); ++t) {
+    for (std::size_t t = begin; t < std::min<std::size_t>(count, begin + kPiece); ++t) {
         if (isKnown.empty() || isKnown[t] == 0) f(t);
     }
 }

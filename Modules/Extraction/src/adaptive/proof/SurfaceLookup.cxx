@@ -1,10 +1,9 @@
 #include "adaptive/proof/SurfaceLookup.h"
 
-#include <tbb/parallel_invoke.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -30,14 +29,14 @@ std::pair<Index3, Index3> SurfaceLookup::placesNear(std::uint64_t t) const {
 SurfaceLookup::SurfaceLookup(const SimplifiedSurface& surface, const Bricks& bricks,
                              const MetricFrame& frame)
     : surface_(surface), bricks_(bricks), frame_(frame) {
-    tbb::parallel_invoke([&] { walkable_.assign(surface.points, surface.triangles); },
-                         [&] {
-                             ofBrick_.assign(bricks_.count(), [&](const auto& give) {
-                                 for (SurfaceState::Number t = 0; t < triangleCount(); ++t) {
-                                     forEachBrickNear(t, [&](std::int64_t b) { give(b, t); });
-                                 }
-                             });
-                         });
+    parallelInvoke([&] { walkable_.assign(surface.points, surface.triangles); },
+                   [&] {
+                       ofBrick_.assign(bricks_.count(), [&](const auto& give) {
+                           for (SurfaceState::Number t = 0; t < triangleCount(); ++t) {
+                               forEachBrickNear(t, [&](std::int64_t b) { give(b, t); });
+                           }
+                       });
+                   });
 }
 
 void SurfaceLookup::update(std::vector<SurfaceState::Number> changed) {
@@ -75,7 +74,7 @@ void SurfaceLookup::update(std::vector<SurfaceState::Number> changed) {
 const TriangleTree& SurfaceLookup::tree() const {
     std::call_once(*treeIsBuilt_, [&] {
         // while it waits for its own tasks a thread must not take one that asks for the tree
-        tbb::this_task_arena::isolate([&] { tree_ = TriangleTree(view()); });
+        isolated([&] { tree_ = TriangleTree(view()); });
     });
     return tree_;
 }

@@ -1,9 +1,5 @@
 #include "adaptive/rounds/BrickRound.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_pipeline.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <unordered_map>
 #include <utility>
@@ -11,6 +7,8 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/Interruption.h"
+#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/PerThread.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
@@ -467,9 +465,7 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
         FineBrick fine;
     };
     if (costs != nullptr) costs->assign(static_cast<std::size_t>(bricks.count()), {});
-    tbb::enumerable_thread_specific<Tools> tools([&] {
-        return Tools{BrickMesher(sampler, bricks.grid()), {}};
-    });
+    PerThread<Tools> tools([&] { return Tools{BrickMesher(sampler, bricks.grid()), {}}; });
     const auto simplified = [&](std::int64_t b) {
         InterruptionCheck::ask();
         Tools& mine = tools.local();
@@ -494,21 +490,8 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
         return brick;
     };
     Joiner joiner(bricks, frame, tolerances);
-    std::int64_t next = 0;
-    // bricks differ in what they take: some wait for the ones before them, so that none waits for
-    // work
-    const auto most = static_cast<std::size_t>(4 * tbb::this_task_arena::max_concurrency());
-    tbb::parallel_pipeline(
-        most,
-        tbb::make_filter<void, std::int64_t>(tbb::filter_mode::serial_in_order,
-                                             [&](tbb::flow_control& control) {
-                                                 if (next == bricks.count()) control.stop();
-                                                 return next++;
-                                             }) &
-            tbb::make_filter<std::int64_t, BrickSurface>(tbb::filter_mode::parallel, simplified) &
-            tbb::make_filter<BrickSurface, void>(
-                tbb::filter_mode::serial_in_order,
-                [&](const BrickSurface& brick) { joiner.add(brick); }));
+    parallelInOrder(bricks.count(), simplified,
+                    [&](const BrickSurface& brick) { joiner.add(brick); });
     tools.clear();
     return joiner.join();
 }

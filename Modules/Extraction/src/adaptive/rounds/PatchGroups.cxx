@@ -1,7 +1,5 @@
 #include "adaptive/rounds/PatchGroups.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -97,13 +95,13 @@ PatchGroups::PatchGroups(const SimplifiedSurface& surface, const PatchCut& cut,
       cubeOfTriangle_(cubesOfTriangles()),
       obstacles_(cubes_.count()) {
     if (hasSettled_) leaveOutSettled();
-    tbb::parallel_invoke([&] { groupVertices(); }, [&] { groupTriangles(); },
-                         [&] {
-                             if (isOne()) return;  // it has them all
-                             samples_ = Groups(count(), surface.samples.size(), [&](std::size_t s) {
-                                 return cubeOfTriangle_[surface.sampleTriangle[s]];
-                             });
-                         });
+    parallelInvoke([&] { groupVertices(); }, [&] { groupTriangles(); },
+                   [&] {
+                       if (isOne()) return;  // it has them all
+                       samples_ = Groups(count(), surface.samples.size(), [&](std::size_t s) {
+                           return cubeOfTriangle_[surface.sampleTriangle[s]];
+                       });
+                   });
 }
 
 std::vector<std::uint32_t> PatchGroups::cubesOfVertices() const {

@@ -1,12 +1,10 @@
 #include "adaptive/rounds/PatchRound.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 
 #include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/PerThread.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
@@ -47,7 +45,7 @@ void removeGone(SimplifiedSurface& surface, const std::vector<Number>& mergedInt
         members.resize(vertices);
         shrinkInHugePages(members);
     };
-    tbb::parallel_invoke(
+    parallelInvoke(
         [&] {
             surface.triangles.resize(triangles);
             shrinkInHugePages(surface.triangles);
@@ -103,7 +101,7 @@ std::optional<PatchTrial> PatchRound::tryOut(const PatchLimits& limits) const {
     PatchTrial trial;
     trial.costs.resize(some.size());
     trial.share = tried / triangles;
-    tbb::enumerable_thread_specific<PatchScratch> scratches;
+    PerThread<PatchScratch> scratches;
     parallelForPieces(std::ssize(some), 1, [&](std::int64_t i, std::int64_t) {
         Patch patch = groups_->take(some[i], scratches.local());
         PatchSimplifier(patch, frame_, limits).collapseEdges(patch.ownTriangles, &trial.costs[i]);
@@ -116,7 +114,7 @@ void PatchRound::run(const PatchWork& work, CollapseCosts* costs) {
     const std::vector<std::int64_t> quota = groups_->shares(work.mostCollapses);
     std::vector<Number> mergedInto;
     if (work.collapses && !surface_.heirs.empty()) mergedInto.resize(surface_.points.size());
-    tbb::enumerable_thread_specific<PatchScratch> scratches;
+    PerThread<PatchScratch> scratches;
     parallelForPieces(
         static_cast<std::int64_t>(groups_->count()), 1, [&](std::int64_t n, std::int64_t) {
             if (groups_->isIdle(n)) return;
