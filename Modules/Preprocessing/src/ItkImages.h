@@ -1,7 +1,6 @@
 #pragma once
 
 #include <itkImage.h>
-#include <tbb/global_control.h>
 
 #include <memory>
 #include <new>
@@ -40,14 +39,6 @@ typename ItkImage<T>::Pointer asItkImage(const T* samples, const ImageGeometry& 
     return image;
 }
 
-/// An ITK image's samples as a volume of `geometry`, which knows its place more exactly.
-template <class T>
-Volume toVolume(const typename ItkImage<T>::Pointer& image, PixelType type,
-                const ImageGeometry& geometry) {
-    return Volume(VolumeView(static_cast<const void*>(image->GetBufferPointer()), type, geometry),
-                  std::make_shared<typename ItkImage<T>::Pointer>(image));
-}
-
 /// Calls `run`, which runs ITK's `name`.
 /// \throws std::bad_alloc, InternalError for what else ITK throws
 template <class Run>
@@ -59,14 +50,6 @@ void runItk(const std::string& name, const Run& run) {
     } catch (const itk::ExceptionObject& error) {
         throw InternalError(name + ": " + error.GetDescription());
     }
-}
-
-/// Runs a filter in as many threads as the rest of the program. \throws  as runItk()
-template <class Filter>
-void runFilter(Filter& filter) {
-    filter.SetNumberOfWorkUnits(static_cast<itk::ThreadIdType>(
-        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
-    runItk(filter.GetNameOfClass(), [&] { filter.Update(); });
 }
 
 }  // namespace adaptiso::detail

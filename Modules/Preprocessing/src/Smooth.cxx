@@ -1,22 +1,20 @@
 #include "adaptiso/Preprocessing/Smooth.h"
 
-#include <itkNeighborhood.h>
-#include <itkNeighborhoodOperatorImageFilter.h>
-#include <itkSmoothingRecursiveGaussianImageFilter.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <sstream>
+#include <type_traits>
+#include <vector>
 
-#include "ItkImages.h"
 #include "LatticeGaussian.h"
+#include "RecursiveGaussian.h"
 #include "SampleTypes.h"
+#include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso {
 namespace {
-
-using Operator = itk::Neighborhood<double, 3>;
 
 void requireUsableSigma(const ImageGeometry& geometry, double sigmaMm) {
     const Vec3 spacing = geometry.spacingMm();
@@ -32,42 +30,52 @@ void requireUsableSigma(const ImageGeometry& geometry, double sigmaMm) {
     throw InvalidInput(message.str());
 }
 
-/// The Gaussian's weights on its line through a box of voxels.
-Operator toOperator(const detail::LatticeGaussian& gaussian) {
+std::int64_t clampedTo(std::int64_t size, std::int64_t index) {
+    return std::clamp<std::int64_t>(index, 0, size - 1);
+}
+
+/// `from` convolved along the lines of one Gaussian; samples beyond the border are those at it.
+template <class F>
+void convolve(const F* from, F* to, const Index3& size, const detail::LatticeGaussian& gaussian) {
     const std::vector<double> weights = detail::discreteGaussian(gaussian.variance);
     const auto reach = static_cast<std::int64_t>(weights.size()) - 1;
-    Operator box;
-    Operator::RadiusType radius;
-    for (int axis = 0; axis < 3; ++axis) {
-        radius[axis] = static_cast<itk::SizeValueType>(reach * std::abs(gaussian.step[axis]));
-    }
-    box.SetRadius(radius);
-    std::fill(box.Begin(), box.End(), 0.0);
-    for (std::int64_t n = -reach; n <= reach; ++n) {
-        Operator::OffsetType offset;
-        for (int axis = 0; axis < 3; ++axis) offset[axis] = n * gaussian.step[axis];
-        box[offset] = weights[static_cast<std::size_t>(std::abs(n))];
-    }
-    return box;
+    const Index3& step = gaussian.step;
+    // products are added in the order of the samples in memory: a sum depends on its order
+    const Index3 upwards{step[2], step[1], step[0]};
+    const std::int64_t sign = upwards < Index3{0, 0, 0} ? -1 : 1;
+    parallelForPieces(size[1] * size[2], 16, [&](std::int64_t begin, std::int64_t end) {
+        std::vector<double> sums(static_cast<std::size_t>(size[0]));
+        for (std::int64_t line = begin; line < end; ++line) {
+            const std::int64_t j = line % size[1], k = line / size[1];
+            std::fill(sums.begin(), sums.end(), 0.0);
+            for (std::int64_t m = -reach; m <= reach; ++m) {
+                const std::int64_t n = sign * m;
+                const double weight = weights[static_cast<std::size_t>(std::abs(n))];
+                const F* const row =
+                    from + size[0] * (clampedTo(size[1], j + n * step[1]) +
+                                      size[1] * clampedTo(size[2], k + n * step[2]));
+                const std::int64_t shift = n * step[0];
+                for (std::int64_t i = 0; i < size[0]; ++i) {
+                    sums[i] += weight * static_cast<double>(row[clampedTo(size[0], i + shift)]);
+                }
+            }
+            std::transform(sums.begin(), sums.end(), to + size[0] * line,
+                           [](double sum) { return static_cast<F>(sum); });
+        }
+    });
 }
 
 template <class F>
 Volume smoothAs(const VolumeView& volume, const std::vector<detail::LatticeGaussian>& gaussians) {
+    const ImageGeometry& geometry = volume.geometry();
     std::shared_ptr<const F> samples = detail::samplesAs<F>(volume);
-    typename detail::ItkImage<F>::Pointer image =
-        detail::asItkImage(samples.get(), volume.geometry());
-    using Filter =
-        itk::NeighborhoodOperatorImageFilter<detail::ItkImage<F>, detail::ItkImage<F>, double>;
     for (const detail::LatticeGaussian& gaussian : gaussians) {
-        const auto filter = Filter::New();
-        filter->SetInput(image);
-        filter->SetOperator(toOperator(gaussian));
-        detail::runFilter(*filter);
-        image = filter->GetOutput();
-        image->DisconnectPipeline();  // so that the image before goes
-        samples.reset();
+        const std::shared_ptr<F> smoothed(new F[static_cast<std::size_t>(geometry.voxelCount())],
+                                          std::default_delete<F[]>());
+        convolve(samples.get(), smoothed.get(), geometry.size, gaussian);
+        samples = smoothed;
     }
-    return detail::toVolume<F>(image, pixelTypeOf<F>(), volume.geometry());
+    return Volume(VolumeView(samples.get(), geometry), samples);
 }
 
 void requireRightAngles(const ImageGeometry& geometry, double sigmaMm) {
@@ -86,13 +94,21 @@ void requireRightAngles(const ImageGeometry& geometry, double sigmaMm) {
 
 template <class F>
 Volume smoothRecursivelyAs(const VolumeView& volume, double sigmaMm) {
+    const ImageGeometry& geometry = volume.geometry();
     const std::shared_ptr<const F> samples = detail::samplesAs<F>(volume);
-    using Image = detail::ItkImage<F>;
-    const auto filter = itk::SmoothingRecursiveGaussianImageFilter<Image, Image>::New();
-    filter->SetInput(detail::asItkImage(samples.get(), volume.geometry()));
-    filter->SetSigma(sigmaMm);
-    detail::runFilter(*filter);
-    return detail::toVolume<F>(filter->GetOutput(), pixelTypeOf<F>(), volume.geometry());
+    const std::size_t count = static_cast<std::size_t>(geometry.voxelCount());
+    const std::shared_ptr<float> smoothed(new float[count], std::default_delete<float[]>());
+    detail::smoothLines(samples.get(), smoothed.get(), geometry, 2, sigmaMm);
+    for (const int axis : {0, 1}) {
+        detail::smoothLines(smoothed.get(), smoothed.get(), geometry, axis, sigmaMm);
+    }
+    if constexpr (std::is_same_v<F, float>) {
+        return Volume(VolumeView(smoothed.get(), geometry), smoothed);
+    } else {
+        const std::shared_ptr<F> wide(new F[count], std::default_delete<F[]>());
+        std::copy_n(smoothed.get(), count, wide.get());
+        return Volume(VolumeView(wide.get(), geometry), wide);
+    }
 }
 
 }  // namespace

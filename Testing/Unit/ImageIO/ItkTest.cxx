@@ -1,12 +1,15 @@
 // Files that ITK itself writes.
 #include <gtest/gtest.h>
+#include <itkHistogram.h>
 #include <itkImage.h>
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
+#include <itkOtsuMultipleThresholdsCalculator.h>
 
 #include <algorithm>
 
 #include "Fixtures.h"
+#include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso::testing {
@@ -84,6 +87,53 @@ TYPED_TEST(ItkWritten, NrrdAndMetaImageComeBackWithTypeSamplesAndGeometry) {
             ASSERT_EQ(result.volume.view().pixelType(), pixelTypeOf<TypeParam>()) << file;
             EXPECT_EQ(samplesIn<TypeParam>(result.volume), countingSamples<TypeParam>(24)) << file;
             expectObliqueGeometry(result.volume.view().geometry());
+        }
+    }
+}
+
+TEST(Otsu, ChoosesTheThresholdsOfItksCalculator) {
+    using Histogram = itk::Statistics::Histogram<double>;
+    for (const int shift : {0, 3, 17, 40}) {
+        std::vector<std::uint8_t> samples;
+        for (int n = 0; n < 4000; ++n) {
+            const int mode = n % 7 < 3   ? 10
+                             : n % 7 < 5 ? 60 + shift
+                             : n % 7 < 6 ? 120
+                                         : 190 - shift;
+            samples.push_back(static_cast<std::uint8_t>(mode + (n * n / 7 + n * shift) % 29));
+        }
+        const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
+        const auto histogram = Histogram::New();
+        histogram->SetMeasurementVectorSize(1);
+        Histogram::SizeType bins(1);
+        bins[0] = static_cast<itk::SizeValueType>(*most - *least + 1);
+        Histogram::MeasurementVectorType lower(1), upper(1);
+        lower[0] = *least - 0.5;
+        upper[0] = *most + 0.5;
+        histogram->Initialize(bins, lower, upper);
+        for (std::size_t bin = 0; bin < bins[0]; ++bin) {
+            histogram->SetFrequency(
+                bin, static_cast<Histogram::AbsoluteFrequencyType>(std::count(
+                         samples.begin(), samples.end(), *least + static_cast<int>(bin))));
+        }
+        const auto count = static_cast<std::int64_t>(samples.size());
+        const auto found =
+            otsuThresholds(Volume::fromSamples(std::vector(samples), {{count, 1, 1}, {}, {}}), 3);
+        ASSERT_EQ(found.size(), 3U);
+        for (int classes = 1; classes <= 3; ++classes) {
+            const auto calculator = itk::OtsuMultipleThresholdsCalculator<Histogram>::New();
+            calculator->SetInputHistogram(histogram);
+            calculator->SetNumberOfThresholds(static_cast<itk::SizeValueType>(classes));
+            calculator->Compute();
+            for (int n = 0; n < classes; ++n) {
+                const double edge = calculator->GetOutput()[n];
+                double below = *least, above = *most;
+                for (const std::uint8_t sample : samples) {
+                    if (sample <= edge) below = std::max<double>(below, sample);
+                    if (sample > edge) above = std::min<double>(above, sample);
+                }
+                EXPECT_EQ(found[classes - 1][n], (below + above) / 2) << shift << ' ' << classes;
+            }
         }
     }
 }

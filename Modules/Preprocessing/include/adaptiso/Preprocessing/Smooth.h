@@ -14,8 +14,7 @@ namespace adaptiso {
 /// tilted gantry adds diagonals. The 1-D kernels are the discrete Gaussian [Lindeberg1990], whose
 /// variance is w for any w, also far below a voxel; they end where 1e-5 of it is left. So the
 /// variance in every direction is sigma^2, but for 1e-5 of it and 1e-6 squared steps. Each is
-/// applied by itk::NeighborhoodOperatorImageFilter; samples beyond the border are those at the
-/// border.
+/// applied to float samples; samples beyond the border are those at the border.
 ///
 /// Labels are blended like any other values.
 /// \param sigmaMm  > 0, at most a quarter of the volume's shortest side
@@ -25,10 +24,10 @@ namespace adaptiso {
 Volume smoothVolume(const VolumeView& volume, double sigmaMm);
 
 /// Nearly the same in a fifth of the time, for any sigmaMm: Deriche's recursive filter along the
-/// axes, by itk::SmoothingRecursiveGaussianImageFilter. It is a Gaussian to about 1 %: its variance
-/// may be off by as much, and its tails swing around 0 by 1e-4 of what they come from. For solids
-/// that are smoothed and cut at a level, not for measuring. Samples beyond the border are those at
-/// the border.
+/// axes, with the numbers of itk::SmoothingRecursiveGaussianImageFilter. It is a Gaussian to about
+/// 1 %: its variance may be off by as much, and its tails swing around 0 by 1e-4 of what they come
+/// from. For solids that are smoothed and cut at a level, not for measuring. Samples beyond the
+/// border are those at the border.
 /// \param sigmaMm  > 0; less than half a voxel is poorly approximated
 /// \return  as smoothVolume
 /// \throws  InvalidInput for another sigmaMm, axes that are not at right angles, fewer than 4
