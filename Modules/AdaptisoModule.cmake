@@ -30,6 +30,11 @@ macro(adaptiso_find_package arguments)
 endmacro()
 
 function(adaptiso_compile_options target)
+    if(EMSCRIPTEN)
+        target_precompile_headers(${target} PRIVATE
+            ${PROJECT_SOURCE_DIR}/Applications/web/LibraryGaps.h <array> <cmath> <cstdint> <filesystem>
+            <functional> <map> <optional> <sstream> <string> <vector>)
+    endif()
     target_compile_options(${target} PRIVATE ${ADAPTISO_WARNINGS}
                            $<$<BOOL:${ADAPTISO_WARNINGS_AS_ERRORS}>:-Werror>)
     if(ADAPTISO_SANITIZE)
@@ -101,7 +106,7 @@ function(adaptiso_module name)
     set(target adaptiso${name})
     add_library(${target})
     add_library(adaptiso::${name} ALIAS ${target})
-    set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+    set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
     target_compile_features(${target} PUBLIC cxx_std_20)
     target_include_directories(${target} PUBLIC
         $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/${name}/include>
@@ -121,6 +126,9 @@ function(adaptiso_module name)
         set_property(GLOBAL APPEND PROPERTY ADAPTISO_USUAL_MODULES ${name})
     endif()
 
+    if(EMSCRIPTEN)
+        return()  # a page is no library to install
+    endif()
     install(TARGETS ${target} EXPORT adaptiso-${name} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
             LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
     install(DIRECTORY ${name}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

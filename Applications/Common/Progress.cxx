@@ -7,12 +7,28 @@
 #include <cmath>
 #include <iostream>
 #include <ostream>
+#include <utility>
 
 #include "adaptiso/Core/Numbers.h"
 
 namespace adaptiso {
+namespace {
 
-ProgressLine::ProgressLine(bool isQuiet) : isShown_(!isQuiet && isatty(STDERR_FILENO) == 1) {}
+std::function<void(const std::string&)> progressObserver;
+
+void show(const std::string& text) {
+    if (progressObserver) return progressObserver(text);
+    std::cerr << "\r\033[K" << text << std::flush;
+}
+
+}  // namespace
+
+void observeProgress(std::function<void(const std::string&)> observer) {
+    progressObserver = std::move(observer);
+}
+
+ProgressLine::ProgressLine(bool isQuiet)
+    : isShown_(!isQuiet && (progressObserver || isatty(STDERR_FILENO) == 1)) {}
 
 void ProgressLine::show(std::string_view stage) {
     write(std::string(stage) + " ...");
@@ -25,13 +41,13 @@ void ProgressLine::show(std::string_view stage, double fraction) {
 
 void ProgressLine::write(const std::string& text) {
     if (!isShown_ || text == written_) return;
-    std::cerr << "\r\033[K" << text << std::flush;
+    adaptiso::show(text);
     written_ = text;
 }
 
 void ProgressLine::clear() {
     if (written_.empty()) return;
-    std::cerr << "\r\033[K" << std::flush;
+    adaptiso::show("");
     written_.clear();
 }
 

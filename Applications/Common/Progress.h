@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <iosfwd>
 #include <string>
 #include <string_view>
@@ -10,6 +11,10 @@
 #include "adaptiso/Core/Progress.h"
 
 namespace adaptiso {
+
+/// Takes what ProgressLine shows ("extract 42 %"; empty when it is wiped) in the place of a
+/// terminal: for a program that runs inside a page.
+void observeProgress(std::function<void(const std::string&)> observer);
 
 /// One line on a terminal's stderr that says what is going on ("extract  42 %"), and nothing at
 /// all when stderr is a file or a pipe, or with --quiet. The line is wiped at the end.

@@ -146,7 +146,7 @@ std::vector<TriangleMesh> mendSurfaces(std::vector<TriangleMesh> surfaces, BemMo
             model.surfaces[n].denseTriangles = std::ssize(surfaces[n].triangles);
             constexpr std::int64_t kLeast = 42, kMost = 10'000;  // what MNE can work with
             model.surfaces[n].ownVertices =
-                std::clamp(std::ssize(surfaces[n].points), kLeast, kMost);
+                std::clamp<std::int64_t>(std::ssize(surfaces[n].points), kLeast, kMost);
         }
         return surfaces;
     }

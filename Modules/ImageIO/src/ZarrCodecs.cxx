@@ -1,10 +1,12 @@
 #include "ZarrCodecs.h"
 
-#include <blosc.h>
 #include <fmt/core.h>
-#include <lz4.h>
 #include <zlib.h>
+#ifndef ADAPTISO_WITHOUT_ZARR_CODECS
+#include <blosc.h>
+#include <lz4.h>
 #include <zstd.h>
+#endif
 
 #include <array>
 #include <bit>
@@ -14,6 +16,7 @@
 #include <string>
 
 #include "FileFault.h"
+#include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -64,6 +67,7 @@ Bytes inflated(const Bytes& packed, std::uint64_t most, const fs::path& file) {
     return out;
 }
 
+#ifndef ADAPTISO_WITHOUT_ZARR_CODECS
 Bytes unzstd(const Bytes& packed, std::uint64_t most, const fs::path& file) {
     Bytes out(static_cast<std::size_t>(most));
     const std::size_t size = ZSTD_decompress(out.data(), out.size(), packed.data(), packed.size());
@@ -135,6 +139,8 @@ Bytes unlz4Stream(const Bytes& packed, std::uint64_t most, const fs::path& file)
     }
 }
 
+#endif
+
 Bytes withoutChecksum(Bytes packed, const fs::path& file) {
     constexpr std::size_t kSum = 4;
     if (packed.size() < kSum) refuse(file, "is too short for its checksum", "get it again");
@@ -153,9 +159,11 @@ ZarrCodec zarrCodecOf(const fs::path& metadata, std::string_view name) {
     std::string_view known = name;
     if (known.starts_with(kNumcodecs)) known.remove_prefix(kNumcodecs.size());
     if (known == "zlib" || known == "gzip") return ZarrCodec::Deflate;
+#ifndef ADAPTISO_WITHOUT_ZARR_CODECS
     if (known == "zstd") return ZarrCodec::Zstd;
     if (known == "blosc") return ZarrCodec::Blosc;
     if (known == "lz4") return ZarrCodec::Lz4;
+#endif
     if (name == "crc32c") return ZarrCodec::Crc32c;
     refuse(metadata, fmt::format("its codec {} is not read here", printable(name)),
            "write the array with raw, gzip, zlib, zstd, blosc or lz4 chunks");
@@ -175,6 +183,7 @@ Bytes unpackZarrChunk(Bytes packed, std::span<const ZarrCodec> codecs, std::uint
             case ZarrCodec::Deflate:
                 packed = inflated(packed, most, file);
                 break;
+#ifndef ADAPTISO_WITHOUT_ZARR_CODECS
             case ZarrCodec::Zstd:
                 packed = unzstd(packed, most, file);
                 break;
@@ -187,9 +196,12 @@ Bytes unpackZarrChunk(Bytes packed, std::span<const ZarrCodec> codecs, std::uint
             case ZarrCodec::Lz4Stream:
                 packed = unlz4Stream(packed, most, file);
                 break;
+#endif
             case ZarrCodec::Crc32c:
                 packed = withoutChecksum(std::move(packed), file);
                 break;
+            default:
+                throw InternalError("unpackZarrChunk: a codec that this build is without");
         }
     }
     if (packed.size() != byteCount) {

@@ -77,8 +77,8 @@ PointData decodeMghData(std::string_view bytes) {
 void encodeMghData(const PointData& data, ByteSink& sink) {
     const bool areLabels = data.arrays.front().areLabels();
     for (const std::int64_t number :
-         {std::int64_t{1}, data.points, std::int64_t{1}, std::int64_t{1}, std::ssize(data.arrays),
-          std::int64_t{areLabels ? Int : Float}}) {
+         {std::int64_t{1}, data.points, std::int64_t{1}, std::int64_t{1},
+          static_cast<std::int64_t>(data.arrays.size()), std::int64_t{areLabels ? Int : Float}}) {
         sink.bigEndian(static_cast<std::int32_t>(number));
     }
     sink << std::string(kHeader - 6 * sizeof(std::int32_t), '\0');

@@ -430,7 +430,7 @@ void encodeNumbers(const std::vector<Row>& rows, ByteSink& sink) {
 
 void encodeFields(const MeshWriteOptions& options, ByteSink& sink) {
     const auto fields = fieldsOf(options);
-    sink << "FIELD FieldData " << std::ssize(fields) << "\n";
+    sink << "FIELD FieldData " << std::int64_t{std::ssize(fields)} << "\n";
     for (const auto& [name, text] : fields) {
         constexpr unsigned kShort = 0xC0;  // a length below 64 follows in this byte
         sink << name << " 1 1 string\n";
@@ -483,7 +483,7 @@ void encodePointData(const MeshRecord& record, ByteSink& sink) {
         encodeNumbers(normals, sink);
     }
     if (arrays.size() < 2) return;
-    sink << "FIELD FieldData " << std::ssize(arrays) - 1 << "\n";
+    sink << "FIELD FieldData " << std::int64_t{std::ssize(arrays) - 1} << "\n";
     for (std::size_t i = 1; i < arrays.size(); ++i) {
         const auto encode = [&]<class Row>(const std::vector<Row>& rows) {
             sink << wordOf(names[i]) << " "
@@ -505,7 +505,7 @@ void encodeVtkLegacy(const MeshRecord& record, ByteSink& sink) {
     sink << "# vtk DataFile Version " << (fits32Bits ? "4.2" : "5.1") << "\n"
          << slicerHeaderLine(record.options) << "\nBINARY\nDATASET POLYDATA\n";
     encodeFields(record.options, sink);
-    sink << "POINTS " << std::ssize(mesh.points) << " double\n";
+    sink << "POINTS " << std::int64_t{std::ssize(mesh.points)} << " double\n";
     encodeNumbers(mesh.points, sink);
     encodeCells(mesh.triangles, fits32Bits, sink);
     encodePointData(record, sink);

@@ -1,0 +1,294 @@
+#include <emscripten.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "Common/ImageOptions.h"
+#include "Common/Progress.h"
+#include "Common/RunApp.h"
+#include "Common/Verdict.h"
+#include "adaptiso-mesh/Info.h"
+#include "adaptiso/Core/Isovalue.h"
+#include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/SpanSpace/SpanSpaceIndex.h"
+
+// main() of each program: CMake gives it this name
+int adaptisoBem(int argc, char** argv);
+int adaptisoCheck(int argc, char** argv);
+int adaptisoCompare(int argc, char** argv);
+int adaptisoLabels(int argc, char** argv);
+int adaptisoMesh(int argc, char** argv);
+int adaptisoSimplify(int argc, char** argv);
+
+/// The page's WebAssembly. main() is that of the programs, chosen by the name they are called by,
+/// so that the page refuses, prints and writes what they do, to the byte. The functions below it
+/// look at an image and at meshes: what a page shows and the programs need not.
+///
+/// An instance runs one program, as a process does, or looks; the page makes another for the next.
+namespace adaptiso::web {
+using namespace mesher;  // Info.h
+namespace {
+
+EM_JS(void, showProgress, (const char* text), {
+    if (Module["onProgress"]) Module["onProgress"](UTF8ToString(text));
+})
+
+/// The text that the function called last answers with: JSON, or a line that says why it failed.
+std::string answer;
+
+/// Runs `work`, which sets `answer`. \return an exit code; other than 0, `answer` is the line that
+/// the program prints
+int answering(const char* program, const std::function<void()>& work) {
+    try {
+        work();
+        return kExitOk;
+    } catch (...) {
+        const Verdict verdict = verdictOf(std::current_exception());
+        answer = std::string(program) + ": " + oneLine(verdict.error);
+        return verdict.exitCode;
+    }
+}
+
+/// A mesh as the page draws it: scanner RAS mm.
+struct ShownMesh {
+    std::vector<float> points, values;  ///< three numbers a point; one value, where there are any
+    std::vector<std::uint32_t> triangles;
+
+    void set(const TriangleMesh& lps) {
+        points.clear();
+        triangles.clear();
+        values.clear();
+        points.reserve(3 * lps.points.size());
+        for (const Vec3& p : lps.points) {
+            for (const double x : {-p.x, -p.y, p.z}) points.push_back(static_cast<float>(x));
+        }
+        triangles.reserve(3 * lps.triangles.size());
+        for (const Triangle& t : lps.triangles) {
+            for (const VertexId v : t) triangles.push_back(static_cast<std::uint32_t>(v));
+        }
+    }
+};
+
+struct OpenImage {
+    ReadVolume read;
+    Volume coarse;  ///< every n-th sample of it, for previews
+    std::optional<SpanSpaceIndex> index;
+    std::vector<std::uint8_t> shades;
+};
+
+std::optional<OpenImage> image;
+ShownMesh shown;
+
+/// Every `step`-th sample along each axis.
+Volume thinned(const VolumeView& volume, std::int64_t step) {
+    ImageGeometry geometry = volume.geometry();
+    for (int axis = 0; axis < 3; ++axis) {
+        geometry.size[axis] = (geometry.size[axis] - 1) / step + 1;
+        geometry.indexToPhysical.column[axis] =
+            static_cast<double>(step) * geometry.indexToPhysical.column[axis];
+    }
+    return dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
+        std::vector<T> samples;
+        samples.reserve(static_cast<std::size_t>(geometry.voxelCount()));
+        for (std::int64_t k = 0; k < view.geometry.size[2]; k += step) {
+            for (std::int64_t j = 0; j < view.geometry.size[1]; j += step) {
+                for (std::int64_t i = 0; i < view.geometry.size[0]; i += step) {
+                    samples.push_back(view.at(i, j, k));
+                }
+            }
+        }
+        return Volume::fromSamples(std::move(samples), geometry);
+    });
+}
+
+/// `volume` itself, or thinned to at most `most` samples.
+Volume withAtMost(const Volume& volume, std::int64_t most, std::int64_t& step) {
+    const auto countAt = [&](std::int64_t n) {
+        std::int64_t count = 1;
+        for (const std::int64_t size : volume.view().geometry().size) count *= (size - 1) / n + 1;
+        return count;
+    };
+    for (step = 1; countAt(step) > most;) ++step;
+    return step == 1 ? volume : thinned(volume, step);
+}
+
+/// Samples as bytes, from black to white.
+std::vector<std::uint8_t> shadesOf(const VolumeView& volume, double black, double white) {
+    return dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
+        std::vector<std::uint8_t> shades(static_cast<std::size_t>(view.geometry.voxelCount()));
+        const double scale = white > black ? 255 / (white - black) : 0;
+        std::transform(view.samples, view.samples + shades.size(), shades.begin(), [&](T sample) {
+            const double shade = (static_cast<double>(sample) - black) * scale;
+            return static_cast<std::uint8_t>(shade > 0 ? std::min(shade + 0.5, 255.0) : 0.0);
+        });
+        return shades;
+    });
+}
+
+Json histogramJson(const ValueSummary& values) {
+    if (!values.histogram) return nullptr;
+    return {{"lower", number(values.histogram->lower)},
+            {"upper", number(values.histogram->upper)},
+            {"counts", values.histogram->counts}};
+}
+
+/// The affine of a NIfTI's sform: three rows, RAS.
+Json affineJson(const ImageGeometry& geometry) {
+    Json rows = Json::array();
+    for (int row = 0; row < 3; ++row) {
+        const double sign = row == 2 ? 1 : -1;
+        for (int axis = 0; axis < 3; ++axis) {
+            rows.push_back(sign * geometry.indexToPhysical.column[axis][row]);
+        }
+        rows.push_back(sign * geometry.originMm[row]);
+    }
+    return rows;
+}
+
+void openImage(const std::string& path, const ReadOptions& options, bool isLabels) {
+    constexpr std::int64_t kMostShown = 16'000'000, kMostPreviewed = 3'000'000;
+    image.reset();
+    image.emplace(OpenImage{readImage(path, options), {}, {}, {}});
+    const VolumeView& view = image->read.volume.view();
+    const ValueSummary values = summarizeValues(view);
+    const auto at = [&](std::size_t n) {
+        return values.percentiles.empty() ? 0 : values.percentiles[n];
+    };
+    constexpr std::size_t kLow = 1, kHigh = std::size(kPercents) - 2;
+    std::int64_t shownStep = 1, previewStep = 1;
+    const Volume seen = withAtMost(image->read.volume, kMostShown, shownStep);
+    const bool isFlat = !(at(kLow) < at(kHigh)) || isLabels;
+    image->shades = shadesOf(seen.view(), isFlat ? at(0) : at(kLow),
+                             isFlat ? at(std::size(kPercents) - 1) : at(kHigh));
+    image->coarse = withAtMost(image->read.volume, kMostPreviewed, previewStep);
+    image->index.emplace(SpanSpaceIndex::build(image->coarse.view(), {}));
+    Json warnings = Json::array();
+    for (const Warning& warning : image->read.warnings) warnings.push_back(warning.text);
+    const ImageGeometry& geometry = view.geometry();
+    answer = jsonText({{"format", image->read.format},
+                       {"geometry", geometryJson(geometry)},
+                       {"orientation", summarizeAxes(geometry).orientation},
+                       {"type", toString(view.pixelType())},
+                       {"bytes", static_cast<double>(geometry.voxelCount()) *
+                                     static_cast<double>(bytesPerPixel(view.pixelType()))},
+                       {"minimum", number(at(0))},
+                       {"maximum", number(at(std::size(kPercents) - 1))},
+                       {"isInteger", isInteger(view.pixelType())},
+                       {"otsu", values.otsu.empty() ? Json(nullptr) : Json(values.otsu[0][0])},
+                       {"histogram", histogramJson(values)},
+                       {"warnings", warnings},
+                       {"shownSize", seen.view().geometry().size},
+                       {"shownAffine", affineJson(seen.view().geometry())},
+                       {"previewStep", previewStep}},
+                      -1);
+}
+
+void preview(double isovalue) {
+    if (!image) throw InvalidInput("no image is open");
+    const VolumeView& view = image->coarse.view();
+    if (const auto fault = isovalueFault(isovalue, valueRange(view))) throw InvalidInput(*fault);
+    ExtractionOptions options;
+    options.isovalue = isovalue;
+    options.method = Method::MarchingCubes;
+    options.computeNormals = false;
+    shown.set(extractSurface(view, *image->index, options).mesh);
+    answer = jsonText({{"triangles", shown.triangles.size() / 3}}, -1);
+}
+
+/// Reads a mesh. Frames that belong to an image are taken for those of the file's own, else of the
+/// image that is open; where there is neither, points stay as they are.
+void openMesh(const std::string& path) {
+    MeshReadOptions options;
+    options.keepsFaults = true;
+    options.keepsPointArrays = true;
+    const MeshFile file = readMesh(path, options);
+    const CoordinateFrame frame = file.frame.value_or(CoordinateFrame::Ras);
+    const bool needsVolume = frame == CoordinateFrame::TkRas || frame == CoordinateFrame::Voxel;
+    std::optional<ImageGeometry> volume = file.volume;
+    if (needsVolume && !volume && image) {
+        volume = frameVolume(frame, image->read.volume.view().geometry());
+    }
+    const bool isKnown = !needsVolume || volume;
+    shown.set(fromFrame(file.mesh, isKnown ? frame : CoordinateFrame::Ras, volume));
+    std::string valuesName;
+    for (const PointArray& array : file.pointArrays) {
+        const auto* const values = std::get_if<std::vector<double>>(&array.values);
+        if (values == nullptr || array.components != 1) continue;
+        shown.values.assign(values->begin(), values->end());
+        valuesName = array.name;
+        break;
+    }
+    answer = jsonText({{"triangles", shown.triangles.size() / 3},
+                       {"points", shown.points.size() / 3},
+                       {"format", file.format->name},
+                       {"frame", file.frame ? Json(frameWord(*file.frame)) : Json(nullptr)},
+                       {"values", valuesName.empty() ? Json(nullptr) : Json(valuesName)}},
+                      -1);
+}
+
+}  // namespace
+}  // namespace adaptiso::web
+
+namespace web = adaptiso::web;
+
+extern "C" {
+
+EMSCRIPTEN_KEEPALIVE const char* adaptisoAnswer() {
+    return web::answer.c_str();
+}
+
+/// \param volumeIndex  < 0: the image holds one volume  \param series  may be empty
+EMSCRIPTEN_KEEPALIVE int adaptisoOpenImage(const char* path, int volumeIndex, const char* series,
+                                           int isLabels) {
+    return web::answering(isLabels != 0 ? "adaptiso-labels" : "adaptiso-mesh", [&] {
+        adaptiso::ReadOptions options;
+        if (volumeIndex >= 0) options.volumeIndex = volumeIndex;
+        if (*series != '\0') options.series = series;
+        web::openImage(path, options, isLabels != 0);
+    });
+}
+
+EMSCRIPTEN_KEEPALIVE int adaptisoPreview(double isovalue) {
+    return web::answering("adaptiso-mesh", [&] { web::preview(isovalue); });
+}
+
+EMSCRIPTEN_KEEPALIVE int adaptisoOpenMesh(const char* path, const char* program) {
+    return web::answering(program, [&] { web::openMesh(path); });
+}
+
+EMSCRIPTEN_KEEPALIVE const std::uint8_t* adaptisoShades() {
+    return web::image ? web::image->shades.data() : nullptr;
+}
+EMSCRIPTEN_KEEPALIVE int adaptisoShadeCount() {
+    return web::image ? static_cast<int>(web::image->shades.size()) : 0;
+}
+EMSCRIPTEN_KEEPALIVE const float* adaptisoPoints() {
+    return web::shown.points.data();
+}
+EMSCRIPTEN_KEEPALIVE const std::uint32_t* adaptisoTriangles() {
+    return web::shown.triangles.data();
+}
+EMSCRIPTEN_KEEPALIVE const float* adaptisoValues() {
+    return web::shown.values.data();
+}
+
+}  // extern "C"
+
+int main(int argc, char** argv) {
+    using Main = int (*)(int, char**);
+    static const std::map<std::string, Main> kPrograms{
+        {"adaptiso-bem", adaptisoBem},         {"adaptiso-check", adaptisoCheck},
+        {"adaptiso-compare", adaptisoCompare}, {"adaptiso-labels", adaptisoLabels},
+        {"adaptiso-mesh", adaptisoMesh},       {"adaptiso-simplify", adaptisoSimplify}};
+    adaptiso::observeProgress([](const std::string& text) { web::showProgress(text.c_str()); });
+    return kPrograms.at(argv[0])(argc, argv);
+}
