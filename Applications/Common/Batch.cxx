@@ -16,7 +16,7 @@
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
 #include "Common/Warnings.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {

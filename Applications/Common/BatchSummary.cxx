@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "Common/CommonOptions.h"
-#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {

@@ -6,7 +6,7 @@
 #include "Common/RunApp.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Json/Json.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso {
 namespace {

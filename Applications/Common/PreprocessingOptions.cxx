@@ -9,7 +9,7 @@
 #include "Common/OptionValues.h"
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {

@@ -9,7 +9,7 @@
 #include <ostream>
 #include <utility>
 
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {

@@ -10,7 +10,7 @@
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/Report/Page.h"
 
 namespace adaptiso {
@@ -39,14 +39,15 @@ std::vector<Picture> writePictures(Report report, const std::string& program,
 
 constexpr double kNear = 0.06;
 
-bool isFinite(const Vec3& p) {
+/// So near that distances between such points do not overflow.
+bool isMeasurable(const Vec3& p) {
     return std::isfinite(squaredNorm(p));
 }
 
 double diagonalOf(const TriangleMesh& mesh) {
     TriangleMesh finite;
     std::copy_if(mesh.points.begin(), mesh.points.end(), std::back_inserter(finite.points),
-                 isFinite);
+                 isMeasurable);
     if (finite.points.empty()) return 0;
     const BoundingBox box = boundingBox(finite);
     return norm(box.size());
@@ -130,7 +131,7 @@ void tellStrict(Report& report, const CommonOptions& common, std::span<const War
 SpotClusters::SpotClusters(const TriangleMesh& mesh) : nearMm_(kNear * diagonalOf(mesh)) {}
 
 void SpotClusters::add(const Vec3& p) {
-    if (!isFinite(p)) return;
+    if (!isMeasurable(p)) return;
     for (auto& [middle, count] : clusters_) {
         if (norm(middle - p) > nearMm_) continue;
         ++count;

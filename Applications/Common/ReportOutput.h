@@ -15,8 +15,8 @@
 #include "Common/RunApp.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Warning.h"
-#include "adaptiso/Report/ImageFacts.h"  // IWYU pragma: export
-#include "adaptiso/Report/Pictures.h"
+#include "adaptiso/Report/Page.h"
+#include "adaptiso/Report/Report.h"  // IWYU pragma: export
 #include "adaptiso/Report/Report.h"
 
 namespace adaptiso {

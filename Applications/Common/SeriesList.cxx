@@ -3,7 +3,7 @@
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
 #include "Common/Warnings.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 
 namespace adaptiso {

@@ -22,7 +22,7 @@
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace fs = std::filesystem;

@@ -6,7 +6,7 @@
 
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {

@@ -6,9 +6,9 @@
 #include "Common/Naming.h"
 #include "Run.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/FreeMemory.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso::bem {

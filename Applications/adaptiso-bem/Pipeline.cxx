@@ -17,7 +17,7 @@
 #include "adaptiso/HeadPipeline/BemElectrodes.h"
 #include "adaptiso/HeadPipeline/BemReport.h"
 #include "adaptiso/HeadPipeline/BemSurfaces.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/PointFiles.h"
 
 namespace adaptiso::bem {

@@ -5,7 +5,7 @@
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Run.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadPipeline/BemJson.h"
 
 namespace adaptiso::bem {

@@ -11,7 +11,7 @@
 #include "Common/OptionValues.h"
 #include "Common/RunApp.h"
 #include "Pipeline.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/SurfaceChecks/Checks.h"
 
 namespace adaptiso::bem {

@@ -12,7 +12,7 @@
 #include "Common/Sha256.h"
 #include "Common/Verdict.h"
 #include "Levels.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {

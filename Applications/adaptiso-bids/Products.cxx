@@ -10,7 +10,7 @@
 #include "Common/UsageWords.h"
 #include "Dataset.h"
 #include "Siblings.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/Formats.h"
 
 namespace adaptiso {

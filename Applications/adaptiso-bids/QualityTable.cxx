@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "Outliers.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {

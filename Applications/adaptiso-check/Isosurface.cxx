@@ -3,7 +3,7 @@
 
 #include "Run.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 

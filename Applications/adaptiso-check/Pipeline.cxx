@@ -13,8 +13,8 @@
 #include "Common/Warnings.h"
 #include "Run.h"
 #include "SelfTest.h"
-#include "adaptiso/Core/FreeMemory.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Memory.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso::checker {

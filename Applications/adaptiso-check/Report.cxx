@@ -11,7 +11,7 @@
 #include "Common/ReportOutput.h"
 #include "Common/Warnings.h"
 #include "Run.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/SurfaceChecks/CheckJson.h"
 
 namespace adaptiso::checker {

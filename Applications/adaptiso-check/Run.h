@@ -17,12 +17,10 @@
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/Report/Report.h"
 #include "adaptiso/SurfaceChecks/Checks.h"
-#include "adaptiso/SurfaceChecks/SurfaceFacts.h"
 
 namespace adaptiso::checker {
 

@@ -13,14 +13,13 @@
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 #include "adaptiso/SurfaceChecks/Checks.h"
-#include "adaptiso/SurfaceChecks/SurfaceFacts.h"
 
 namespace adaptiso::checker::selftest {
 namespace {

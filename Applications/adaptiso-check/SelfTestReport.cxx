@@ -11,7 +11,7 @@
 #include "Common/Json.h"
 #include "Common/RunApp.h"
 #include "SelfTest.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::checker::selftest {
 namespace {

@@ -6,9 +6,9 @@
 #include "Common/Json.h"
 #include "Common/ReportOutput.h"
 #include "Run.h"
-#include "adaptiso/Core/Numbers.h"
-#include "adaptiso/MeshQuality/Holes.h"
-#include "adaptiso/MeshQuality/TriangleDistance.h"
+#include "adaptiso/Core/Text.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
+#include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso::checker {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "Run.h"
+#include "adaptiso/Core/Geometry.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/Core/Predicates.h"
 
 namespace adaptiso::compare {
 namespace {

@@ -12,12 +12,12 @@
 #include "Common/Json.h"
 #include "Common/RunApp.h"
 #include "Run.h"
-#include "adaptiso/Core/FreeMemory.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Memory.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
-#include "adaptiso/Report/ColorMap.h"
+#include "adaptiso/Report/Report.h"
 
 namespace adaptiso::compare {
 namespace {

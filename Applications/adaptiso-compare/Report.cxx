@@ -10,8 +10,8 @@
 #include "Common/ReportOutput.h"
 #include "Common/Warnings.h"
 #include "Run.h"
-#include "adaptiso/Core/Numbers.h"
-#include "adaptiso/SurfaceChecks/DistanceJson.h"
+#include "adaptiso/Core/Text.h"
+#include "adaptiso/SurfaceChecks/CheckJson.h"
 
 namespace adaptiso::compare {
 namespace {

@@ -15,7 +15,6 @@
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/Report/Report.h"
 

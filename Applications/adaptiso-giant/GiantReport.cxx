@@ -1,5 +1,5 @@
 #include "Steps.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::giant {
 namespace {

@@ -10,11 +10,10 @@
 #include "PieceJoiner.h"
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/Core/Text.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/MeshFile.h"
-#include "adaptiso/MeshIO/PlyStream.h"
-#include "adaptiso/Report/Coarser.h"
+#include "adaptiso/Report/Page.h"
 
 namespace adaptiso::giant {
 namespace fs = std::filesystem;

@@ -7,7 +7,7 @@
 #include "BorderFront.h"
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::giant {
 namespace {

@@ -14,7 +14,7 @@
 #include "PieceUnion.h"
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/ImageIO/ImageRegions.h"
 
 namespace adaptiso::giant {

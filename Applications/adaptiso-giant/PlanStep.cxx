@@ -12,7 +12,7 @@
 #include "Common/Warnings.h"
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/ImageIO/ImageRegions.h"
 
 namespace adaptiso::giant {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "Regions.h"
-#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshQuality/LabelCentres.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"

@@ -7,7 +7,7 @@
 #include "Common/Json.h"
 #include "OutputFiles.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 
 namespace adaptiso::labels {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "Regions.h"
-#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::labels {
 namespace {

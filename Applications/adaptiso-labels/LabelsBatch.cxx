@@ -2,7 +2,7 @@
 #include "Common/Bids.h"
 #include "Common/Naming.h"
 #include "Run.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::labels {
 namespace {

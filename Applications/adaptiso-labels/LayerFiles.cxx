@@ -5,7 +5,7 @@
 
 #include "OutputFiles.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso::labels {

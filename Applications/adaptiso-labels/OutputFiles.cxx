@@ -6,12 +6,12 @@
 #include <functional>
 #include <utility>
 
-#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/Core/Text.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/LabelFiles.h"
 #include "adaptiso/MeshIO/MeshFile.h"
-#include "adaptiso/Tetrahedra/TetrahedraFiles.h"
+#include "adaptiso/Tetrahedra/Tetrahedra.h"
 
 namespace adaptiso::labels {
 namespace {

@@ -18,7 +18,7 @@
 #include "OutputFiles.h"
 #include "Regions.h"
 #include "Run.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::labels {
 namespace {

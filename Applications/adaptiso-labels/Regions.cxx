@@ -6,7 +6,6 @@
 
 #include "Common/Json.h"
 #include "Common/UsageWords.h"
-#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso::labels {

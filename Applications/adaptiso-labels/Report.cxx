@@ -6,7 +6,7 @@
 #include "Common/Json.h"
 #include "Common/RunApp.h"
 #include "Run.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadPipeline/TetrahedraJson.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 

@@ -3,7 +3,7 @@
 #include "Common/Json.h"
 #include "Common/ReportOutput.h"
 #include "Regions.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::labels {
 namespace {

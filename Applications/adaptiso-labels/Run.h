@@ -12,7 +12,6 @@
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Volume.h"
-#include "adaptiso/Core/VoxelShape.h"
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/LabelNames/LabelTable.h"
 #include "adaptiso/Labels/Labels.h"

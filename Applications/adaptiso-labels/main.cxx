@@ -8,7 +8,7 @@
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
 #include "Pipeline.h"
-#include "adaptiso/Core/ReturnMemory.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/MeshIO/Formats.h"
 
 namespace adaptiso::labels {

@@ -13,7 +13,7 @@
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
 #include "Common/Warnings.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 

@@ -8,7 +8,7 @@
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "Info.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::mesher {
 namespace {

@@ -9,7 +9,7 @@
 #include "Common/ReportOutput.h"
 #include "Common/RunApp.h"
 #include "Run.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::mesher {

@@ -8,8 +8,8 @@
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
 #include "Pipeline.h"
-#include "adaptiso/Core/Numbers.h"
-#include "adaptiso/Core/ReturnMemory.h"
+#include "adaptiso/Core/Memory.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/Formats.h"
 
 namespace adaptiso::mesher {

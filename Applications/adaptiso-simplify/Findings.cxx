@@ -4,7 +4,7 @@
 
 #include "Common/ReportOutput.h"
 #include "Run.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
 namespace adaptiso::simplifier {

@@ -10,7 +10,7 @@
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "Run.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 
 namespace adaptiso::simplifier {

@@ -1,7 +1,7 @@
 #include "Common/Batch.h"
 #include "Common/Bids.h"
 #include "Run.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::simplifier {
 namespace {

@@ -15,9 +15,9 @@
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
 #include "adaptiso-mesh/Info.h"
-#include "adaptiso/Core/Isovalue.h"
+#include "adaptiso/Core/Volume.h"
 #include "adaptiso/Extraction/Extraction.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 

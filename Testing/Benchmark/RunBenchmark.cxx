@@ -5,7 +5,7 @@
 
 #include "Common/RunApp.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/ReturnMemory.h"
+#include "adaptiso/Core/Memory.h"
 
 namespace adaptiso::benchmarks {
 namespace {

@@ -60,10 +60,6 @@ std::ostream& operator<<(std::ostream& out, const Point& point) {
     return out << point.id << " (" << p.x << ", " << p.y << ", " << p.z << ")";
 }
 
-bool isFinite(const Vec3& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 /// False when indices out of range would make every further look at the mesh unsafe.
 bool checkIndices(const TriangleMesh& mesh, Findings& findings) {
     const auto count = static_cast<VertexId>(mesh.points.size());

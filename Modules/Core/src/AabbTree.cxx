@@ -11,10 +11,6 @@
 namespace adaptiso {
 namespace {
 
-bool isFinite(const Vec3& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 int longestAxis(const BoundingBox& box) {
     const Vec3 size = box.size();
     if (size.x >= size.y && size.x >= size.z) return 0;

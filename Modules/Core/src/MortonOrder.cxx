@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "adaptiso/Core/HugePages.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/ParallelSort.h"
 
 namespace adaptiso::detail {

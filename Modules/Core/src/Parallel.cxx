@@ -13,7 +13,7 @@
 #include <numeric>
 #include <vector>
 
-#include "adaptiso/Core/Interruption.h"
+#include "adaptiso/Core/Progress.h"
 
 /// Core's parallel loops by oneTBB. ParallelSerial.cxx takes the place of this file where there is
 /// none.

@@ -2,8 +2,8 @@
 #include <numeric>
 #include <vector>
 
-#include "adaptiso/Core/Interruption.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Progress.h"
 
 /// Core's parallel loops in one thread, where there is no oneTBB: the same pieces in the same
 /// order.

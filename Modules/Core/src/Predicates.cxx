@@ -4,10 +4,10 @@
 // expansions drop their zeros, so that exact differences (the usual case) cost little.
 //
 // Compiled with -ffp-contract=off: a fused multiply-add would break the error-free transforms.
-#include "adaptiso/Core/Predicates.h"
-
 #include <cmath>
 #include <cstddef>
+
+#include "adaptiso/Core/Geometry.h"
 
 namespace adaptiso {
 namespace {

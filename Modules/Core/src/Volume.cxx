@@ -11,6 +11,22 @@
 
 namespace adaptiso {
 
+double leastPlaneDistanceMm(const ImageGeometry& geometry) {
+    const Mat3 toIndex = transpose(inverse(geometry.indexToPhysical));
+    return 1 /
+           std::max({norm(toIndex.column[0]), norm(toIndex.column[1]), norm(toIndex.column[2])});
+}
+
+void requireNoNeedles(const ImageGeometry& geometry) {
+    constexpr double kMost = 10'000;
+    const Vec3 spacingMm = geometry.spacingMm();
+    const double longestMm = std::max({spacingMm.x, spacingMm.y, spacingMm.z});
+    const double thinMm = leastPlaneDistanceMm(geometry);
+    if (longestMm <= kMost * thinMm) return;
+    throw InvalidInput("a voxel is " + formatShort(longestMm) + " mm long and " +
+                       formatShort(thinMm) + " mm thin, must be at most 10,000 times as long");
+}
+
 std::string_view toString(PixelType type) {
     switch (type) {
         case PixelType::UInt8:
@@ -68,8 +84,8 @@ VolumeView::VolumeView(const void* samples, PixelType type, const ImageGeometry&
     const double volumeMm3 = geometry.voxelVolumeMm3();
     if (!(volumeMm3 > 0) || !std::isfinite(volumeMm3) ||
         !std::isfinite(squaredNorm(geometry.originMm))) {
-        throw InvalidInput("the image's axes span no volume (voxel volume " + shortText(volumeMm3) +
-                           " mm3)");
+        throw InvalidInput("the image's axes span no volume (voxel volume " +
+                           formatShort(volumeMm3) + " mm3)");
     }
 }
 

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "adaptiso/Core/Buckets.h"
-#include "adaptiso/Core/DisjointSets.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {

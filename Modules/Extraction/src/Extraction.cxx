@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/FreeMemory.h"
-#include "adaptiso/Core/VoxelShape.h"
-#include "adaptiso/SpanSpace/BlocksAt.h"
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Memory.h"
+#include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 #include "adaptive/AdaptiveMethod.h"
 #include "boxes/BoxesMethod.h"
 #include "cells/MarchingCubes.h"

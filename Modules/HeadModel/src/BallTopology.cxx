@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Release.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/HeadModel/FractionField.h"
 
 namespace adaptiso::headmodel {
@@ -167,7 +167,7 @@ public:
     std::optional<std::int64_t> pop() {
         for (; top_ >= 0; --top_) {
             if (next_[top_] < waiting_[top_].size()) return waiting_[top_][next_[top_]++];
-            release(waiting_[top_]);
+            freeMemory(waiting_[top_]);
             next_[top_] = 0;
         }
         return std::nullopt;

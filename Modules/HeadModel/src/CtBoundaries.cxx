@@ -8,7 +8,7 @@
 #include "Necks.h"
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Preprocessing/Crop.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso {
 

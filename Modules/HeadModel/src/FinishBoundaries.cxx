@@ -8,7 +8,7 @@
 #include "BallTopology.h"
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Release.h"
+#include "adaptiso/Core/Memory.h"
 
 namespace adaptiso {
 
@@ -206,7 +206,7 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
     result.warnings = std::move(raw.warnings);
     const auto settle = [&](std::vector<float> part, HeadSurface surface) {
         BoxedSolid solid = boxed(part, raw.grid, 3 * options.smoothingMm, nameOf(surface));
-        release(part);  // a head's worth of memory
+        freeMemory(part);  // a head's worth of memory
         solid.field.part = settled(std::move(solid.field.part), solid.field.grid,
                                    options.smoothingMm, nameOf(surface), result.notes);
         return solid;

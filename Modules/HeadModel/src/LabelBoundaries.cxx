@@ -9,7 +9,7 @@
 #include "Necks.h"
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Release.h"
+#include "adaptiso/Core/Memory.h"
 
 namespace adaptiso {
 
@@ -120,7 +120,7 @@ HeadBoundaries boundariesFrom(std::vector<FloatImage> enclosed, std::optional<Fl
         brain.reset();
     }
     requireOrder(enclosed, raw);
-    release(enclosed);  // what follows takes memory of its own
+    freeMemory(enclosed);  // what follows takes memory of its own
     cutNecks(raw, options);
     if (raw.parts.size() > 1) limitOuterSkull(raw, options);
     options.smoothingMm = sigmaFor(image, options);

@@ -13,7 +13,7 @@
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
-#include "adaptiso/MeshQuality/TriangleDistance.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
 
 namespace adaptiso {
 namespace {

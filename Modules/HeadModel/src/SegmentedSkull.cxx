@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "adaptiso/Core/AabbTree.h"
-#include "adaptiso/Core/DisjointSets.h"
+#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso {

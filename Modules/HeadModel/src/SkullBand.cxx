@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/Core/Release.h"
 
 namespace adaptiso::headmodel {
 namespace {
@@ -298,7 +298,7 @@ SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
     const double step = stepMm(grid);
     const std::vector<Ray> rays = raysFrom(innerSkull, grid.size);
     const Mask within = above(innerSkull, kFractionIsovalue);
-    release(innerSkull);  // a head's worth of memory
+    freeMemory(innerSkull);  // a head's worth of memory
     std::vector<Search::Answer> answers = search(rays, t1, grid, skin, levels, options);
 
     SkullBand band;

@@ -3,8 +3,7 @@
 
 #include "ImageSteps.h"
 #include "WorkingGrid.h"
-#include "adaptiso/Preprocessing/Crop.h"
-#include "adaptiso/Preprocessing/Smooth.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso::headmodel {
 

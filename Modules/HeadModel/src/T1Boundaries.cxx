@@ -13,8 +13,8 @@
 #include "SkullBand.h"
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/Core/Release.h"
 
 namespace adaptiso {
 
@@ -278,10 +278,10 @@ Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
     }
     head.levels.air = *air;
     takeBiasOut(head, roughMask, depth, rough);
-    release(depth);
+    freeMemory(depth);
     head.levels.tissue = medianWhere(head.t1, ballAround(middle, head.grid, 35));
     head.skinLevel = skinLevelOf(head, roughMask, head.levels);
-    release(roughMask);
+    freeMemory(roughMask);
     head.mask = headMask(head, head.skinLevel, options.closingMm);
     requireSkull(head);
     findCut(head, image);
@@ -571,7 +571,7 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
         raw.brain = brainSurfacePart(sources, {head.grid, head.t1, head.faces, head.levels, brain},
                                      options, raw.notes, raw.brainSeenMm);
     }
-    release(brain);
+    freeMemory(brain);
     tell(options, "skull", 0);
     SkullBand band =
         findSkullBand(head.t1, head.grid, smoothed(raw.parts[0], head.grid, options.smoothingMm),

@@ -7,8 +7,8 @@
 
 #include "FinishBoundaries.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/Core/Release.h"
 
 namespace adaptiso::headmodel {
 namespace {
@@ -245,7 +245,7 @@ Mask filledAtBorder(const Mask& mask, const std::vector<std::uint8_t>& faces, co
     // where the image goes on beyond the grid, the grid's border is around the head as well
     forEachBorderVoxel(size, [&](std::int64_t voxel) { around[voxel] |= air[voxel]; });
     const Mask outsideAir = componentsWith(around, air, size);
-    release(around);
+    freeMemory(around);
     for (std::size_t n = 0; n < mask.size(); ++n) {
         // from here on the result: the mask, and air that the outside can't reach
         air[n] = mask[n] != 0 || (air[n] != 0 && outsideAir[n] == 0) ? 1 : 0;

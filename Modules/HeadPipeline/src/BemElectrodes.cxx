@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/Core/Text.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso {
 namespace {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "BemFileKinds.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
 #include "adaptiso/HeadPipeline/BemChecks.h"
 #include "adaptiso/HeadPipeline/BemFiles.h"

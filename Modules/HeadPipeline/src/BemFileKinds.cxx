@@ -7,10 +7,9 @@
 #include "adaptiso/HeadModel/ExportFreeSurfer.h"
 #include "adaptiso/HeadModel/ExportMatlab.h"
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshIO/MeshFile.h"
-#include "adaptiso/MeshIO/PointNormals.h"
 
 namespace adaptiso {
 namespace {

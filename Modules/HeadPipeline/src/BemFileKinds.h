@@ -7,7 +7,7 @@
 
 #include "adaptiso/HeadPipeline/BemFiles.h"
 #include "adaptiso/HeadPipeline/BemModel.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso {
 

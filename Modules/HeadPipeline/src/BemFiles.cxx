@@ -9,11 +9,11 @@
 #include "BemFileKinds.h"
 #include "BemReadme.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/PointFiles.h"
-#include "adaptiso/Tetrahedra/TetrahedraFiles.h"
+#include "adaptiso/Tetrahedra/Tetrahedra.h"
 
 namespace adaptiso {
 namespace {

@@ -1,6 +1,6 @@
 #include "adaptiso/HeadPipeline/BemModel.h"
 
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 

@@ -1,6 +1,6 @@
 #include "BemReadme.h"
 
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {

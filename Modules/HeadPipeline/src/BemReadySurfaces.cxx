@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadPipeline/BemChecks.h"
 #include "adaptiso/HeadPipeline/BemSurfaces.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "adaptiso/Core/Numbers.h"
-#include "adaptiso/Report/ImageFacts.h"
+#include "adaptiso/Core/Text.h"
+#include "adaptiso/Report/Report.h"
 
 namespace adaptiso {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/HeadPipeline/BemChecks.h"
 

@@ -4,7 +4,7 @@
 #include <iomanip>
 #include <ostream>
 
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "adaptiso/Core/Interruption.h"
+#include "adaptiso/Core/Progress.h"
 #include "adaptiso/ItkAdaptor/AdaptiveIsosurfaceMeshFilter.h"
 
 namespace adaptiso::detail {

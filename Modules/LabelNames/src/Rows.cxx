@@ -38,15 +38,6 @@ void refuseKind(const std::string& why) {
         why);
 }
 
-std::string printable(std::string_view text) {
-    constexpr std::size_t kMost = 40;
-    std::string result(text.substr(0, kMost));
-    for (char& c : result) {
-        if (c < ' ' || c > '~') c = '?';
-    }
-    return "'" + result + (text.size() > kMost ? "...'" : "'");
-}
-
 std::vector<Line> linesOf(std::string_view text) {
     std::vector<Line> lines;
     std::int64_t number = 0;

@@ -18,9 +18,6 @@ namespace adaptiso::labelnames {
 /// \throws NoLabelTable, without the file's name
 [[noreturn]] void refuseKind(const std::string& why);
 
-/// `text` with what a terminal can't show as '?', cut at 40 characters: for messages.
-std::string printable(std::string_view text);
-
 /// A line that is neither empty nor a comment.
 struct Line {
     std::int64_t number = 0;  ///< from 1

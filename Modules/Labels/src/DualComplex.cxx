@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/Core/Release.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -220,7 +220,7 @@ void findFaces(const LabelGrid& grid, const CellFinder& finder, DualComplex& com
     complex.adjacencies.reserve(all);
     for (auto& own : found) {
         complex.adjacencies.insert(complex.adjacencies.end(), own.begin(), own.end());
-        release(own);
+        freeMemory(own);
     }
     complex.groupCount = complex.cells.empty() ? 0
                                                : complex.cells.back().firstVertex +

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "adaptiso/Core/AabbTree.h"
-#include "adaptiso/Core/DisjointSets.h"
+#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
 

@@ -12,8 +12,8 @@
 #include "SimplifyWalls.h"
 #include "Walls.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Release.h"
-#include "adaptiso/Core/VoxelShape.h"
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Memory.h"
 
 namespace adaptiso {
 namespace {
@@ -99,7 +99,7 @@ std::vector<Vec3> placePoints(const LabelGrid& grid, DualComplex& dual, bool isS
     }
     {
         const Neighbours neighbours = neighboursOf(dual);
-        release(dual.adjacencies);
+        freeMemory(dual.adjacencies);
         points = smooth(rooms, neighbours, std::move(points));
         addPolygons(grid, dual);
         takeBackShift(grid, dual, rooms, neighbours, points);
@@ -125,8 +125,8 @@ LabelResult makeWalls(LabelGrid& grid, const ImageGeometry& geometry, const Labe
     tell(0.2);
     std::vector<Vec3> points = placePoints(grid, dual, options.smooth, statistics);
     appendFacePoints(grid, dual, points);
-    release(dual.cells);
-    release(grid.labels);
+    freeMemory(dual.cells);
+    freeMemory(grid.labels);
     tell(0.6);
     Walls walls = cutPolygons(std::move(dual), grid, std::move(points), geometry);
     statistics.mendedCrossings = walls.mendedCrossings;

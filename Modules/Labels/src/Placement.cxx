@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/Core/Release.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -143,7 +143,7 @@ public:
     }
 
     /// No more steps follow.
-    void end() { release(next_); }
+    void end() { freeMemory(next_); }
 
     Vec3 pointAt(std::size_t v) const { return rooms_[v].corner() + pointOf(points_[v]); }
 

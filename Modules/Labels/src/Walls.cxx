@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/Core/Release.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
 namespace adaptiso::detail {
@@ -75,8 +75,8 @@ public:
                 for (const VertexId v : complex_.cornersOf(complex_.polygons[p])) isAsked[v] = 1;
             }
         }
-        release(useBegin_);
-        release(uses_);
+        freeMemory(useBegin_);
+        freeMemory(uses_);
         return mended;
     }
 
@@ -90,7 +90,7 @@ public:
             triangles += complex_.polygons[p].count - (isFan ? 0 : 2);
             if (isFan) walls.points.push_back(toMm(centreOf(complex_.polygons[p])));
         }
-        release(lattice_);
+        freeMemory(lattice_);
         walls.triangles.reserve(triangles);
         walls.labels.reserve(triangles);
         for (std::size_t p = 0; p < cuts_.size(); ++p) {

@@ -12,8 +12,8 @@
 #include "WallMender.h"
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/Core/VoxelShape.h"
 #include "adaptiso/SurfaceProof/PieceBound.h"
 
 namespace adaptiso::detail {

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "ByteSink.h"
+#include "Bytes.h"
+#include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso::meshio {
@@ -75,5 +79,38 @@ Normal storedNormal(const Vec3& v);
 /// Refuses a polygon that is not a triangle.
 [[noreturn]] void refusePolygon(std::int64_t corners);
 [[noreturn]] void refuseStrips();
+
+/// `bytes` without a UTF-8 byte order mark before them.
+std::string_view withoutMark(std::string_view bytes);
+
+/// Refuses images, surfaces of formats that are not read, and what findForeignContent() knows; says
+/// what reads or converts them. \param head        the first kMeshHeadBytes bytes, unpacked \param
+/// byteCount   of the file, unpacked \param isInflated  the file is gzip \throws FileError "<what
+/// is wrong>; <what to do>"
+void refuseOtherContent(std::string_view head, std::uint64_t byteCount,
+                        const std::filesystem::path& path, bool isInflated);
+
+/// What is a full shade where a number has no decimal point: OBJ's 1, OFF's 255.
+enum class ColorScale { One, Byte };
+
+/// Colours that follow the coordinates of points in a line of text.
+class PointColors {
+public:
+    /// \param areWanted  else nothing is read
+    explicit PointColors(bool areWanted) : areWanted_(areWanted) {}
+
+    /// The next three words, of each point in turn. Where they are no numbers it has no colour.
+    void add(ByteSource& line, ColorScale scale);
+
+    /// "RGB" where each point has one; else nothing.
+    std::vector<PointArray> take(std::size_t points);
+
+private:
+    bool areWanted_;
+    std::vector<Color> colors_;
+};
+
+/// The colours that a format which holds nothing else is to write; null: none.
+const std::vector<Color>* colorsOf(const MeshWriteOptions& options);
 
 }  // namespace adaptiso::meshio

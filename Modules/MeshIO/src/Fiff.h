@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ByteSink.h"
+#include "Bytes.h"
 #include "adaptiso/Core/Geometry.h"
 
 // FIFF, the tagged file of Neuromag and MNE: big-endian tags of kind, type, size, next, data. What

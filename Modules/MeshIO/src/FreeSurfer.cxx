@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include "ByteSource.h"
+#include "Bytes.h"
 #include "Codecs.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso::meshio {
 namespace {

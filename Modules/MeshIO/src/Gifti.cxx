@@ -14,7 +14,7 @@
 
 #include "Codecs.h"
 #include "GiftiArrays.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso::meshio {
 namespace {

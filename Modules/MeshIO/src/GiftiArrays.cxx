@@ -1,6 +1,6 @@
 #include "GiftiArrays.h"
 
-#include "FileBytes.h"
+#include "Bytes.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso::meshio {

@@ -10,9 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "ByteSink.h"
-#include "ByteSource.h"
-#include "Packing.h"
+#include "Bytes.h"
 #include "Xml.h"
 
 namespace adaptiso::meshio {

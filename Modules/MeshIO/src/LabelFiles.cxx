@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "FileBytes.h"
+#include "Bytes.h"
 #include "GiftiArrays.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"

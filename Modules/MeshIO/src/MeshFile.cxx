@@ -5,15 +5,13 @@
 #include <limits>
 #include <new>
 
-#include "ByteSource.h"
+#include "Bytes.h"
 #include "Codecs.h"
-#include "FileBytes.h"
-#include "Packing.h"
-#include "Recognition.h"
+#include "Xml.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/Text.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso {
 namespace {
@@ -79,7 +77,7 @@ std::string findFault(const TriangleMesh& mesh, double limit) {
         for (int axis = 0; axis < 3; ++axis) {
             if (!(std::abs(mesh.points[i][axis]) <= limit)) {
                 return "coordinate " + std::to_string(axis) + " of point " + std::to_string(i) +
-                       " is " + shortText(mesh.points[i][axis]) +
+                       " is " + formatShort(mesh.points[i][axis]) +
                        ", must be finite and within single precision";
             }
         }
@@ -112,7 +110,7 @@ void requireSomething(TriangleMesh& mesh) {
 void requireOneEach(const MeshFile& file) {
     for (const PointArray& array : file.pointArrays) {
         if (array.points() == file.mesh.points.size()) continue;
-        meshio::damaged("its array " + meshio::printable(array.name) + " has values for " +
+        meshio::damaged("its array " + printable(array.name) + " has values for " +
                         std::to_string(array.points()) + " points, not " +
                         std::to_string(file.mesh.points.size()));
     }
@@ -123,7 +121,7 @@ constexpr double kFloatMax = std::numeric_limits<float>::max();
 void requireNeutralName(const std::string& name) {
     for (const char c : name) {
         if (c <= ' ' || c > '~' || c == '/' || c == '\\' || c == '=') {
-            throw InvalidInput("the volume name " + meshio::printable(name) +
+            throw InvalidInput("the volume name " + printable(name) +
                                " must be a file name of printable ASCII without folder, space "
                                "or '='");
         }
@@ -133,9 +131,8 @@ void requireNeutralName(const std::string& name) {
 void requireOneEach(const std::string& array, std::size_t values, std::size_t count,
                     const std::string& what, const std::string& file) {
     if (values == count) return;
-    throw InvalidInput(file + ": the array " + meshio::printable(array) + " has " +
-                       std::to_string(values) + " values for " + std::to_string(count) + " " +
-                       what + ", must be one each");
+    throw InvalidInput(file + ": the array " + printable(array) + " has " + std::to_string(values) +
+                       " values for " + std::to_string(count) + " " + what + ", must be one each");
 }
 
 void requireArrays(const MeshWriteOptions& options, const TriangleMesh& mesh,

@@ -1,10 +1,12 @@
 // OpenMEEG .tri: "- V", V lines "x y z nx ny nz", "- T T T", T lines "i j k" from 0. Normals are
 // part of the format: a reader given three numbers a line takes garbage for the rest.
-#include "ByteSource.h"
+
+#include "Bytes.h"
 #include "Codecs.h"
-#include "adaptiso/MeshIO/PointNormals.h"
+#include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso::meshio {
+
 namespace {
 
 void requireDash(ByteSource& source, std::string_view what) {
@@ -73,3 +75,19 @@ MeshFile decodeOpenMeeg(std::string_view bytes) {
 }
 
 }  // namespace adaptiso::meshio
+
+namespace adaptiso {
+
+std::vector<Normal> areaWeightedNormals(const TriangleMesh& mesh) {
+    std::vector<Vec3> sums(mesh.points.size());
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 area = areaVector2(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
+        for (const VertexId vertex : t) sums[vertex] += area;
+    }
+    std::vector<Normal> normals;
+    normals.reserve(sums.size());
+    for (const Vec3& sum : sums) normals.push_back(toNormal(sum));
+    return normals;
+}
+
+}  // namespace adaptiso

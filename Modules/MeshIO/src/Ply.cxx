@@ -14,10 +14,10 @@
 #include <utility>
 #include <vector>
 
-#include "ByteSource.h"
+#include "Bytes.h"
 #include "Codecs.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/MeshIO/PlyStream.h"
+#include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso::meshio {
 namespace {
@@ -183,7 +183,7 @@ public:
             const double value = real(type);
             constexpr double kExact = 9007199254740992;  // 2^53
             if (!(std::abs(value) <= kExact) || value != std::floor(value)) {
-                malformed("an index or a count is " + shortText(value));
+                malformed("an index or a count is " + formatShort(value));
             }
             return static_cast<std::int64_t>(value);
         }

@@ -5,9 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "ByteSource.h"
+#include "Bytes.h"
 #include "Fiff.h"
-#include "FileBytes.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ByteSource.h"
+#include "Bytes.h"
 #include "Codecs.h"
 
 namespace adaptiso::meshio {

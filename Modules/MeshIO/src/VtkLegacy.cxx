@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "ByteSource.h"
+#include "Bytes.h"
 #include "VtkFiles.h"
 #include "adaptiso/Core/Errors.h"
 

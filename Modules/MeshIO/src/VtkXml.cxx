@@ -8,8 +8,7 @@
 #include <deque>
 #include <vector>
 
-#include "ByteSource.h"
-#include "Packing.h"
+#include "Bytes.h"
 #include "VtkFiles.h"
 #include "Xml.h"
 #include "adaptiso/Core/Errors.h"

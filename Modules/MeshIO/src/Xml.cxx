@@ -1,15 +1,20 @@
 #include "Xml.h"
 
 #include <expat.h>
+#include <zlib.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <exception>
+#include <limits>
 #include <memory>
 
-#include "ByteSource.h"
+#include "Bytes.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::meshio {
+
 namespace {
 
 /// Carries the handler through expat's C callbacks, which exceptions must not cross.
@@ -112,6 +117,134 @@ std::size_t parseXml(std::string_view bytes, XmlHandler& handler) {
         }
     }
     return bytes.size();
+}
+
+namespace {
+
+constexpr std::string_view kAlphabet =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+constexpr std::array<std::int8_t, 256> makeValues() {
+    std::array<std::int8_t, 256> values{};
+    values.fill(-1);
+    for (std::size_t i = 0; i < kAlphabet.size(); ++i) {
+        values[static_cast<unsigned char>(kAlphabet[i])] = static_cast<std::int8_t>(i);
+    }
+    return values;
+}
+constexpr auto kValues = makeValues();
+
+constexpr std::size_t kPiece = std::size_t{1} << 18;
+
+/// zlib counts in 32 bits: data goes through it in pieces.
+uInt nextPiece(std::string_view& bytes, z_stream& stream) {
+    const std::size_t piece = std::min(bytes.size(), std::size_t{1} << 30);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    bytes.remove_prefix(piece);
+    return static_cast<uInt>(piece);
+}
+
+}  // namespace
+
+std::string decodeBase64(std::string_view text) {
+    std::string bytes;
+    bytes.reserve(text.size() / 4 * 3 + 3);
+    std::uint32_t group = 0;
+    int bits = 0;
+    for (const char c : text) {
+        if (c == '=') break;
+        if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
+        const std::int8_t value = kValues[static_cast<unsigned char>(c)];
+        if (value < 0) damaged("its base64 data holds the character " + printable({&c, 1}));
+        group = group << 6 | static_cast<std::uint32_t>(value);
+        bits += 6;
+        if (bits >= 8) {
+            bits -= 8;
+            bytes += static_cast<char>(group >> bits & 0xFF);
+        }
+    }
+    return bytes;
+}
+
+std::string deflated(std::string_view bytes) {
+    z_stream stream{};
+    // numbers of meshes hardly pack better at higher levels, which take several times as long
+    if (deflateInit(&stream, Z_BEST_SPEED) != Z_OK) {
+        throw InternalError("deflated: zlib can't be started");
+    }
+    std::string packed;
+    std::array<char, kPiece> piece;
+    int status = Z_OK;
+    while (status != Z_STREAM_END) {
+        if (stream.avail_in == 0) stream.avail_in = nextPiece(bytes, stream);
+        stream.next_out = reinterpret_cast<Bytef*>(piece.data());
+        stream.avail_out = static_cast<uInt>(piece.size());
+        status = deflate(&stream, bytes.empty() ? Z_FINISH : Z_NO_FLUSH);
+        packed.append(piece.data(), piece.size() - stream.avail_out);
+    }
+    deflateEnd(&stream);
+    return packed;
+}
+
+void requirePlausibleSize(std::size_t packedBytes, std::size_t bytes) {
+    constexpr std::size_t kBombBytes = std::size_t{1} << 28, kBombExpansion = 100;
+    if (bytes > kBombBytes && bytes / kBombExpansion > packedBytes) {
+        malformed("its " + std::to_string(packedBytes) + " compressed bytes claim to hold " +
+                  std::to_string(bytes) + ", as only a decompression bomb does");
+    }
+}
+
+std::string inflated(std::string_view packed, std::size_t expectedBytes) {
+    z_stream stream{};
+    constexpr int kZlibOrGzip = 15 + 32;
+    if (inflateInit2(&stream, kZlibOrGzip) != Z_OK) {
+        throw InternalError("inflated: zlib can't be started");
+    }
+    std::string bytes;
+    std::array<char, kPiece> piece;
+    int status = Z_OK;
+    while (status == Z_OK && bytes.size() <= expectedBytes) {
+        if (stream.avail_in == 0) stream.avail_in = nextPiece(packed, stream);
+        stream.next_out = reinterpret_cast<Bytef*>(piece.data());
+        stream.avail_out = static_cast<uInt>(piece.size());
+        status = inflate(&stream, Z_NO_FLUSH);
+        bytes.append(piece.data(), piece.size() - stream.avail_out);
+    }
+    inflateEnd(&stream);
+    if (status != Z_STREAM_END || bytes.size() != expectedBytes) {
+        damaged("its compressed data unpacks to " + std::to_string(bytes.size()) +
+                " sound bytes, must be " + std::to_string(expectedBytes));
+    }
+    return bytes;
+}
+
+std::string gunzipped(std::string_view file, std::size_t most) {
+    z_stream stream{};
+    constexpr int kGzip = 15 + 16;
+    if (inflateInit2(&stream, kGzip) != Z_OK) {
+        throw InternalError("gunzipped: zlib can't be started");
+    }
+    const std::unique_ptr<z_stream, decltype(&inflateEnd)> end(&stream, &inflateEnd);
+    std::string_view packed = file;
+    std::string bytes;
+    std::array<char, kPiece> piece;
+    while (bytes.size() < most) {
+        if (stream.avail_in == 0) stream.avail_in = nextPiece(packed, stream);
+        stream.next_out = reinterpret_cast<Bytef*>(piece.data());
+        stream.avail_out = static_cast<uInt>(piece.size());
+        const int status = inflate(&stream, Z_NO_FLUSH);
+        bytes.append(piece.data(), piece.size() - stream.avail_out);
+        requirePlausibleSize(file.size(), bytes.size());
+        if (status == Z_OK) continue;
+        if (status != Z_STREAM_END) {
+            damaged("its gzip data break off after " + std::to_string(bytes.size()) +
+                    " unpacked bytes");
+        }
+        const bool hasMore = stream.avail_in > 0 && *stream.next_in == 0x1F;
+        if (!hasMore || inflateReset(&stream) != Z_OK) break;
+    }
+    if (bytes.size() > most) bytes.resize(most);
+    return bytes;
 }
 
 }  // namespace adaptiso::meshio

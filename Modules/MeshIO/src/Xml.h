@@ -1,5 +1,7 @@
 #pragma once
 
+// How XML formats pack binary data: base64 and zlib.
+
 #include <cstddef>
 #include <map>
 #include <string>
@@ -32,5 +34,29 @@ public:
 /// \return  the position at which parsing ended: the '<' of the element at which the handler was
 ///          done, or the end of the bytes
 std::size_t parseXml(std::string_view bytes, XmlHandler& handler);
+
+/// Bytes that `text` spells; white space in it is passed over, decoding stops at padding.
+/// Damage at any other character.
+std::string decodeBase64(std::string_view text);
+
+/// Characters that `bytes` bytes take, padding included.
+constexpr std::size_t base64Length(std::size_t bytes) {
+    return (bytes + 2) / 3 * 4;
+}
+
+std::string deflated(std::string_view bytes);
+
+/// Damage where packed data would grow a hundredfold to more than 256 MiB, which no surface does:
+/// before anything is unpacked.
+void requirePlausibleSize(std::size_t packedBytes, std::size_t bytes);
+
+/// The bytes that a zlib or gzip stream holds. Grows with what comes out, never by what a header
+/// promises; damage unless it is exactly `expectedBytes`.
+std::string inflated(std::string_view stream, std::size_t expectedBytes);
+
+/// Inflates a gzip file, all its members in turn, up to the first `most` bytes.
+/// Damage where it breaks off before that, or unpacks to more than 256 MiB and a hundred times its
+/// size.
+std::string gunzipped(std::string_view file, std::size_t most);
 
 }  // namespace adaptiso::meshio

@@ -1,12 +1,18 @@
 #include "adaptiso/MeshQuality/InsideTest.h"
 
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
 #include <optional>
+#include <vector>
 
-#include "ExactTriangle.h"
-#include "RayHit.h"
+#include "Triangles.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso {
+
 namespace {
 
 bool everyEdgeIsInTwo(const TriangleMesh& mesh) {
@@ -47,6 +53,83 @@ Side InsideTest::sideOf(const Vec3& p) const {
         inside += *isOdd ? 1 : 0;
     }
     return inside >= kMajority ? Side::Inside : Side::Outside;
+}
+
+namespace {
+
+/// Where `p` lies of the line from -> to: 1 left, -1 right, never 0. Ties are broken by moving p by
+/// (e^2, e), e infinitely small; 0 only where from and to are one point.
+int perturbedSide(const Point2& p, const Point2& from, const Point2& to) {
+    const int side = orient2d(from, to, p);
+    if (side != 0) return side;
+    const double along = to[0] - from[0], up = to[1] - from[1];
+    if (along != 0) return along > 0 ? 1 : -1;
+    return up > 0 ? -1 : up < 0 ? 1 : 0;
+}
+
+/// \pre p lies in the triangle's plane
+bool isOnTriangle(const Vec3& p, const Corners& t) {
+    const int axis = axisWithArea(t);
+    if (axis < 0) return false;
+    const Point2 q = dropAxis(p, axis);
+    const Point2 a = dropAxis(t[0], axis), b = dropAxis(t[1], axis), c = dropAxis(t[2], axis);
+    return haveOneSign(orient2d(a, b, q), orient2d(b, c, q), orient2d(c, a, q));
+}
+
+}  // namespace
+
+Hit hitOf(const Vec3& p, const Ray& ray, const Corners& t) {
+    const Point2 q = dropAxis(p, ray.axis);
+    const Point2 a = dropAxis(t[0], ray.axis), b = dropAxis(t[1], ray.axis),
+                 c = dropAxis(t[2], ray.axis);
+    const int height = orient3d(t[0], t[1], t[2], p);
+    if (height == 0 && isOnTriangle(p, t)) return {.isOn = true};
+    const int facing = perturbedSide(q, a, b);  // 1: the normal points along the axis
+    if (facing == 0 || perturbedSide(q, b, c) != facing || perturbedSide(q, c, a) != facing) {
+        return {};
+    }
+    return {.crosses = height * facing * ray.sign < 0};
+}
+
+BoundingBox boxOf(const Vec3& p, const Ray& ray) {
+    BoundingBox box{p, p};
+    (ray.sign > 0 ? box.maximum : box.minimum)[ray.axis] =
+        ray.sign * std::numeric_limits<double>::infinity();
+    return box;
+}
+
+namespace {
+
+/// Signed solid angle of a triangle seen from the origin: positive seen from behind.
+double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const double la = norm(a), lb = norm(b), lc = norm(c);
+    const double triple = dot(a, cross(b, c));
+    return 2 * std::atan2(triple, la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+}
+
+}  // namespace
+
+double solidAngleShare(const TriangleMesh& mesh, const Vec3& p) {
+    requireIndices(mesh, "solidAngleShare");
+    constexpr std::int64_t kGrain = 4096;
+    const std::int64_t count = std::ssize(mesh.triangles);
+    std::vector<double> sums((count + kGrain - 1) / kGrain);
+    parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+        double sum = 0;
+        for (std::int64_t n = begin; n < end; ++n) {
+            const Corners t = cornersOf(mesh, n);
+            sum += solidAngle(t[0] - p, t[1] - p, t[2] - p);
+        }
+        sums[begin / kGrain] = sum;
+    });
+    return std::accumulate(sums.begin(), sums.end(), 0.0) / (4 * std::numbers::pi);
+}
+
+SolidAngleCriterion solidAngleFromMean(const TriangleMesh& mesh) {
+    if (mesh.points.empty()) return {std::numeric_limits<double>::quiet_NaN()};
+    Vec3 sum;
+    for (const Vec3& p : mesh.points) sum += p;
+    return {solidAngleShare(mesh, 1.0 / static_cast<double>(mesh.points.size()) * sum)};
 }
 
 }  // namespace adaptiso

@@ -6,9 +6,9 @@
 #include <tuple>
 
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/FreeMemory.h"
+#include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/Core/Predicates.h"
 
 namespace adaptiso {
 namespace {

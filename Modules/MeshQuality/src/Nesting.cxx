@@ -5,14 +5,13 @@
 #include <optional>
 #include <string>
 
-#include "ExactTriangle.h"
-#include "RequireIndices.h"
+#include "Triangles.h"
 #include "adaptiso/Core/AabbTree.h"
-#include "adaptiso/Core/DisjointSets.h"
+#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/MeshQuality/Duplicates.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
+#include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "ExactTriangle.h"
-#include "adaptiso/Core/Predicates.h"
+#include "Triangles.h"
+#include "adaptiso/Core/Geometry.h"
 
 namespace adaptiso {
 namespace {

@@ -1,25 +1,28 @@
 #include "adaptiso/MeshQuality/Topology.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <string>
 #include <tuple>
 #include <utility>
 
-#include "adaptiso/Core/DisjointSets.h"
-#include "adaptiso/Core/FreeMemory.h"
+#include "Triangles.h"
+#include "adaptiso/Core/Buckets.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/ParallelSort.h"
 
 namespace adaptiso {
+
 namespace {
 
 constexpr double kMinAltitude = 1e-9;  // of the longest edge; checkTopology says why
 constexpr std::int64_t kGrain = 1 << 14;
-
-bool isFinite(const Vec3& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 bool isInRange(const TriangleMesh& mesh, const Triangle& t) {
     const auto count = static_cast<VertexId>(mesh.points.size());
@@ -462,6 +465,155 @@ TopologyReport checkTopology(const TriangleMesh& mesh, const TopologyOptions& op
     }
     for (const SurfaceComponent& component : report.components) report.edges += component.edges;
     return report;
+}
+
+namespace {
+
+constexpr VertexId kNowhere = -1;
+
+/// The smallest number of a vertex at the same place, for every vertex.
+std::vector<VertexId> findPlaces(const std::vector<Vec3>& points) {
+    std::vector<VertexId> place(points.size(), kNowhere), order;
+    order.reserve(points.size());
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        if (std::isfinite(squaredNorm(points[v]))) order.push_back(static_cast<VertexId>(v));
+    }
+    parallelSort(order, [&](VertexId l, VertexId r) {
+        const Vec3 &a = points[l], &b = points[r];
+        return std::tie(a.x, a.y, a.z, l) < std::tie(b.x, b.y, b.z, r);
+    });
+    for (std::size_t n = 0; n < order.size(); ++n) {
+        const bool isNew = n == 0 || points[order[n]] != points[order[n - 1]];
+        place[order[n]] = isNew ? order[n] : place[order[n - 1]];
+    }
+    return place;
+}
+
+/// Three places, ascending, and the triangle's number.
+using Seat = std::array<std::int64_t, 4>;
+
+std::vector<Seat> findSeats(const TriangleMesh& mesh, const std::vector<VertexId>& place) {
+    std::vector<Seat> seats;
+    seats.reserve(mesh.triangles.size());
+    for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
+        const Triangle& t = mesh.triangles[n];
+        Seat seat{place[t[0]], place[t[1]], place[t[2]], static_cast<std::int64_t>(n)};
+        std::sort(seat.begin(), seat.begin() + 3);
+        if (seat[0] == kNowhere || seat[0] == seat[1] || seat[1] == seat[2]) continue;
+        seats.push_back(seat);
+    }
+    parallelSort(seats);
+    return seats;
+}
+
+/// The smallest `count` of `numbers`, ascending.
+void keepFirst(std::vector<std::int64_t>& numbers, std::int64_t count) {
+    std::sort(numbers.begin(), numbers.end());
+    if (std::ssize(numbers) > count) numbers.resize(count);
+}
+
+}  // namespace
+
+DuplicateReport findDuplicates(const TriangleMesh& mesh, const DuplicateOptions& options) {
+    if (options.maxExamples < 0) {
+        throw InvalidInput("findDuplicates: maxExamples is " + std::to_string(options.maxExamples) +
+                           ", must be at least 0");
+    }
+    requireIndices(mesh, "findDuplicates");
+    DuplicateReport report;
+    const std::vector<VertexId> place = findPlaces(mesh.points);
+    for (std::size_t n = 0; n < place.size(); ++n) {
+        const auto v = static_cast<VertexId>(n);
+        if (place[n] != kNowhere && place[n] != v) report.vertices.push_back(v);
+    }
+    const std::vector<Seat> seats = findSeats(mesh, place);
+    for (std::size_t n = 1; n < seats.size(); ++n) {
+        if (std::equal(seats[n].begin(), seats[n].begin() + 3, seats[n - 1].begin())) {
+            report.triangles.push_back(seats[n][3]);
+        }
+    }
+    report.vertexCount = std::ssize(report.vertices);
+    report.triangleCount = std::ssize(report.triangles);
+    keepFirst(report.vertices, options.maxExamples);
+    keepFirst(report.triangles, options.maxExamples);
+    return report;
+}
+
+namespace {
+
+using Edge = std::array<VertexId, 2>;  ///< the smaller number first
+
+/// Edges that lie in one triangle only, ascending.
+std::vector<Edge> boundaryEdges(const TriangleMesh& mesh) {
+    const auto count = static_cast<VertexId>(mesh.points.size());
+    std::vector<Edge> edges;
+    edges.reserve(3 * mesh.triangles.size());
+    for (const Triangle& t : mesh.triangles) {
+        for (const VertexId v : t) {
+            if (v < 0 || v >= count) {
+                throw InvalidInput("findHoles: a triangle names vertex " + std::to_string(v) +
+                                   ", there are " + std::to_string(count));
+            }
+        }
+        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+        for (int n = 0; n < 3; ++n) {
+            const VertexId a = t[n], b = t[(n + 1) % 3];
+            edges.push_back({std::min(a, b), std::max(a, b)});
+        }
+    }
+    std::sort(edges.begin(), edges.end());
+    std::vector<Edge> single;
+    for (std::size_t n = 0; n < edges.size();) {
+        std::size_t end = n + 1;
+        while (end < edges.size() && edges[end] == edges[n]) ++end;
+        if (end == n + 1) single.push_back(edges[n]);
+        n = end;
+    }
+    return single;
+}
+
+/// Sets of vertices; a set goes by its smallest number.
+class VertexSets {
+public:
+    VertexId find(VertexId v) {
+        auto [place, isNew] = parents_.try_emplace(v, v);
+        if (isNew || place->second == v) return v;
+        return place->second = find(place->second);
+    }
+    void join(VertexId a, VertexId b) {
+        a = find(a);
+        b = find(b);
+        parents_[std::max(a, b)] = std::min(a, b);
+    }
+
+private:
+    std::map<VertexId, VertexId> parents_;
+};
+
+}  // namespace
+
+std::vector<Hole> findHoles(const TriangleMesh& mesh) {
+    const std::vector<Edge> edges = boundaryEdges(mesh);
+    VertexSets sets;
+    for (const Edge& edge : edges) sets.join(edge[0], edge[1]);
+    std::map<VertexId, Hole> holes;  // by their smallest vertex
+    for (const Edge& edge : edges) {
+        const Vec3 &a = mesh.points[edge[0]], &b = mesh.points[edge[1]];
+        const double lengthMm = norm(b - a);
+        if (!std::isfinite(lengthMm)) continue;
+        Hole& hole = holes[sets.find(edge[0])];
+        ++hole.edges;
+        hole.lengthMm += lengthMm;
+        hole.middleMm += 0.5 * lengthMm * (a + b);
+    }
+    std::vector<Hole> result;
+    for (auto& [vertex, hole] : holes) {
+        hole.middleMm = hole.lengthMm > 0 ? 1 / hole.lengthMm * hole.middleMm : mesh.points[vertex];
+        result.push_back(hole);
+    }
+    std::stable_sort(result.begin(), result.end(),
+                     [](const Hole& a, const Hole& b) { return a.lengthMm > b.lengthMm; });
+    return result;
 }
 
 }  // namespace adaptiso

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "adaptiso/Core/AabbTree.h"
-#include "adaptiso/Core/HugePages.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/MortonOrder.h"
 #include "adaptiso/Core/Parallel.h"
 

@@ -4,11 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "ExactTriangle.h"
-#include "RayHit.h"
+#include "Triangles.h"
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Buckets.h"
-#include "adaptiso/Core/DisjointSets.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"

@@ -1,14 +1,20 @@
 #include "adaptiso/Preprocessing/Preprocess.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <map>
+#include <memory>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <type_traits>
 #include <utility>
 
-#include "adaptiso/Preprocessing/Smooth.h"
-
 namespace adaptiso {
+
 namespace {
 
 struct DistinctValues {
@@ -115,6 +121,119 @@ Preprocessed preprocess(Volume volume, const PreprocessOptions& options) {
         }
     }
     return {std::move(volume), std::move(warnings)};
+}
+
+namespace {
+
+/// \return  the geometry of what is kept
+ImageGeometry croppedGeometry(const ImageGeometry& whole, const CropRanges& ranges) {
+    ImageGeometry part = whole;
+    Vec3 first;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::int64_t begin = ranges[axis].first;
+        const std::int64_t end = ranges[axis].end.value_or(whole.size[axis]);
+        const auto refuse = [&](const std::string& rule) {
+            throw InvalidInput(std::to_string(begin) + ":" + std::to_string(end) + " along " +
+                               "ijk"[axis] + ": " + rule);
+        };
+        if (begin < 0 || end > whole.size[axis]) {
+            refuse("the image has voxels 0:" + std::to_string(whole.size[axis]));
+        }
+        if (end - begin < 2) refuse("must keep 2 voxels or more");
+        part.size[axis] = end - begin;
+        first[axis] = static_cast<double>(begin);
+    }
+    part.originMm = whole.toPhysical(first);
+    return part;
+}
+
+}  // namespace
+
+Volume cropVolume(const VolumeView& volume, const CropRanges& ranges) {
+    const ImageGeometry part = croppedGeometry(volume.geometry(), ranges);
+    const std::size_t bytes = bytesPerPixel(volume.pixelType());
+    const Index3& size = volume.geometry().size;
+    const auto* const from = static_cast<const std::byte*>(volume.samples());
+    const auto kept = std::make_shared_for_overwrite<std::byte[]>(
+        bytes * static_cast<std::size_t>(part.voxelCount()));
+    std::byte* to = kept.get();
+    for (std::int64_t k = 0; k < part.size[2]; ++k) {
+        for (std::int64_t j = 0; j < part.size[1]; ++j) {
+            const std::int64_t first =
+                ranges[0].first + size[0] * (ranges[1].first + j + size[1] * (ranges[2].first + k));
+            to = std::copy_n(from + bytes * static_cast<std::size_t>(first),
+                             bytes * static_cast<std::size_t>(part.size[0]), to);
+        }
+    }
+    return Volume(VolumeView(kept.get(), volume.pixelType(), part), kept);
+}
+
+namespace {
+
+/// The axes at right angles that are nearest to those of the image, i first.
+std::array<Vec3, 3> rightAngledAxes(const Mat3& indexToPhysical) {
+    std::array<Vec3, 3> axes;
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3 rest = normalized(indexToPhysical.column[axis]);
+        for (int before = 0; before < axis; ++before) {
+            rest = rest - dot(rest, axes[before]) * axes[before];
+        }
+        axes[axis] = normalized(rest);
+    }
+    return axes;
+}
+
+/// Half of what the voxels' centres span along `axis`, mm.
+double halfSpanMm(const ImageGeometry& geometry, const Vec3& axis) {
+    double span = 0;
+    for (int a = 0; a < 3; ++a) {
+        span += static_cast<double>(geometry.size[a] - 1) *
+                std::abs(dot(geometry.indexToPhysical.column[a], axis));
+    }
+    return span / 2;
+}
+
+[[noreturn]] void refuse(double stepMm, const std::string& rule) {
+    std::ostringstream message;
+    message << "voxels of " << stepMm << " mm: " << rule;
+    throw InvalidInput(message.str());
+}
+
+}  // namespace
+
+std::string_view toString(Interpolation interpolation) {
+    switch (interpolation) {
+        case Interpolation::Nearest:
+            return "nearest";
+        case Interpolation::Linear:
+            return "linear";
+        case Interpolation::BSpline:
+            return "bspline";
+    }
+    throw InternalError("toString: unknown interpolation");
+}
+
+ImageGeometry isotropicGrid(const ImageGeometry& geometry, double stepMm) {
+    constexpr double kRounding = 1e-6;  // of a step: 100 mm in steps of 0.1 mm are 1000 of them
+    if (!(stepMm > 0) || !std::isfinite(stepMm)) refuse(stepMm, "must be more than 0 mm");
+    const std::array<Vec3, 3> axes = rightAngledAxes(geometry.indexToPhysical);
+    const Vec3 last{static_cast<double>(geometry.size[0] - 1),
+                    static_cast<double>(geometry.size[1] - 1),
+                    static_cast<double>(geometry.size[2] - 1)};
+    ImageGeometry grid;
+    grid.originMm = geometry.toPhysical(0.5 * last);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double steps = std::floor(2 * halfSpanMm(geometry, axes[axis]) / stepMm + kRounding);
+        if (steps < 1) {
+            refuse(stepMm,
+                   std::string("the image is less than one of them wide along ") + "ijk"[axis]);
+        }
+        if (!(steps < 0x1p40)) refuse(stepMm, "are too many");  // whose product a double holds
+        grid.size[axis] = static_cast<std::int64_t>(steps) + 1;
+        grid.indexToPhysical.column[axis] = stepMm * axes[axis];
+        grid.originMm = grid.originMm - (steps / 2 * stepMm) * axes[axis];
+    }
+    return grid;
 }
 
 }  // namespace adaptiso

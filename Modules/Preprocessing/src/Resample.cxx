@@ -1,5 +1,3 @@
-#include "adaptiso/Preprocessing/Resample.h"
-
 #include <itkBSplineInterpolateImageFunction.h>
 #include <itkLinearInterpolateImageFunction.h>
 #include <unistd.h>
@@ -14,6 +12,7 @@
 #include "ItkImages.h"
 #include "SampleTypes.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso {
 namespace {

@@ -1,4 +1,3 @@
-#include "adaptiso/Preprocessing/Smooth.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +7,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "LatticeGaussian.h"
 #include "RecursiveGaussian.h"
 #include "SampleTypes.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso {
 namespace {

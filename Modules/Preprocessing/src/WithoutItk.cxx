@@ -1,4 +1,4 @@
-#include "adaptiso/Preprocessing/Resample.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 
 /// A build without ITK, whose interpolators resample.
 namespace adaptiso {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "adaptiso/Report/ColorMap.h"
+#include "adaptiso/Report/Report.h"
 
 struct _cairo;
 struct _cairo_surface;

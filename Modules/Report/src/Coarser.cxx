@@ -1,8 +1,6 @@
 // Vertices that lie in one cell of a grid become one [Lindstrom2000], where it is nearest to the
 // planes of the triangles around. Only cells that hold a vertex are kept: what it takes grows with
 // the surface that comes out, not with the cube of the grid.
-#include "adaptiso/Report/Coarser.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,6 +8,7 @@
 #include <unordered_map>
 
 #include "Payload.h"
+#include "adaptiso/Report/Page.h"
 
 namespace adaptiso {
 namespace {

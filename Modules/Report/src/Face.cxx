@@ -1,10 +1,9 @@
-#include "Face.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
+#include "Scene.h"
 #include "Slices.h"
 
 namespace adaptiso {

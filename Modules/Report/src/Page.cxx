@@ -11,7 +11,6 @@
 #include "Scene.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
-#include "adaptiso/Report/Coarser.h"
 
 namespace adaptiso {
 namespace {

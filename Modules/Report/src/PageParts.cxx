@@ -7,7 +7,6 @@
 
 #include "Payload.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {

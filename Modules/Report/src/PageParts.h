@@ -1,10 +1,11 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "Scene.h"
-#include "adaptiso/Report/Pictures.h"
+#include "adaptiso/Report/Page.h"
 #include "adaptiso/Report/Report.h"
 
 namespace adaptiso {

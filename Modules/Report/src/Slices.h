@@ -8,6 +8,7 @@
 #include "Canvas.h"
 #include "Scene.h"
 #include "adaptiso/Core/Volume.h"
+#include "adaptiso/Report/Page.h"
 
 namespace adaptiso {
 
@@ -52,5 +53,11 @@ std::vector<std::uint8_t> sampleSlice(const VolumeView& volume, const ValueRange
 /// the surfaces cut the plane.
 void drawSlice(Canvas& canvas, Pixel corner, const SlicePlane& plane, const Scene& scene,
                const VolumeView* volume, const ValueRange& window, double lineWidth);
+
+/// Twelve slices across the axis through all surfaces, with their contours.
+Picture contourPicture(const Report& report, const Scene& scene, int axis);
+
+/// Three slices through each of the first spots, with the spot ringed. None without spots.
+std::optional<Picture> spotPicture(const Report& report, const Scene& scene);
 
 }  // namespace adaptiso

@@ -5,6 +5,7 @@
 
 #include "Canvas.h"
 #include "Scene.h"
+#include "adaptiso/Report/Page.h"
 
 namespace adaptiso {
 
@@ -45,5 +46,12 @@ VertexNormals vertexNormals(const SceneMesh& mesh);
 /// \param box      what fills the picture, whatever the view
 Rendering render(std::span<const SceneSurface> surfaces, std::span<const VertexNormals> normals,
                  const BoundingBox& box, const View& view, int size);
+
+/// Surface number `n` from six sides, with the spots that can be seen on it ringed; its values in
+/// colour, with a colour bar.
+Picture sixSidesPicture(const Scene& scene, std::size_t n);
+
+/// All surfaces together, each in its colour, likewise.
+Picture regionsPicture(const Scene& scene);
 
 }  // namespace adaptiso

@@ -1,8 +1,7 @@
-#include "MinMaxOctree.h"
-
 #include <algorithm>
 #include <utility>
 
+#include "BlockSearch.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {

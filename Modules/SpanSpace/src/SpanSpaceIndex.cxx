@@ -1,13 +1,33 @@
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
+#include <string>
 #include <variant>
 
-#include "SpanSpaceIndexImpl.h"
-#include "adaptiso/Core/Isovalue.h"
-#include "adaptiso/SpanSpace/BlocksAt.h"
+#include "BlockSearch.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Volume.h"
+#include "adaptiso/SpanSpace/BlockGrid.h"
 
 namespace adaptiso {
+
+class SpanSpaceIndex::Impl {
+public:
+    template <class T>
+    using Search = std::unique_ptr<const detail::BlockSearch<T>>;
+    using AnySearch =
+        std::variant<Search<std::uint8_t>, Search<std::int8_t>, Search<std::uint16_t>,
+                     Search<std::int16_t>, Search<std::uint32_t>, Search<std::int32_t>,
+                     Search<std::uint64_t>, Search<std::int64_t>, Search<float>, Search<double>>;
+
+    BlockGrid grid;
+    PixelType pixelType;
+    BlockSearchKind kind;
+    AnySearch search;
+};
+
 namespace {
+
+using namespace detail;
 
 /// Blocks of a closed grid that hold virtual samples: what an isovalue touches that every sample
 /// of the volume reaches whatever its value.
@@ -40,6 +60,20 @@ BlockQuery query(const BlockGrid& grid, double isovalue, const Search& search) {
     return result;
 }
 
+template <class T>
+std::unique_ptr<const BlockSearch<T>> makeSearch(BlockRanges<T> ranges, const BlockGrid& grid,
+                                                 BlockSearchKind kind) {
+    switch (kind) {
+        case BlockSearchKind::KdTree:
+            return std::make_unique<SpanTree<T>>(std::move(ranges));
+        case BlockSearchKind::Octree:
+            return std::make_unique<MinMaxOctree<T>>(std::move(ranges), grid);
+        case BlockSearchKind::Linear:
+            return std::make_unique<LinearScan<T>>(std::move(ranges));
+    }
+    throw InternalError("SpanSpaceIndex: unknown kind of search");
+}
+
 }  // namespace
 
 std::string_view toString(BlockSearchKind kind) {
@@ -63,9 +97,9 @@ SpanSpaceIndex SpanSpaceIndex::build(const VolumeView& volume, const IndexOption
     const BlockGrid grid =
         BlockGrid::make(volume.geometry().size, options.blockSize, options.border);
     return dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
-        return SpanSpaceIndex(std::make_unique<Impl>(Impl{
-            grid, pixelTypeOf<T>(), options.search,
-            detail::makeSearch<T>(detail::computeBlockRanges(view, grid), grid, options.search)}));
+        return SpanSpaceIndex(std::make_unique<Impl>(
+            Impl{grid, pixelTypeOf<T>(), options.search,
+                 makeSearch<T>(computeBlockRanges(view, grid), grid, options.search)}));
     });
 }
 
@@ -87,7 +121,7 @@ PixelType SpanSpaceIndex::pixelType() const {
 
 BlockQuery SpanSpaceIndex::blocksAt(double isovalue) const {
     return std::visit(
-        [&]<class T>(const std::unique_ptr<const detail::BlockSearch<T>>& search) {
+        [&]<class T>(const Impl::Search<T>& search) {
             return query<T>(impl_->grid, isovalue,
                             [&](T threshold, std::vector<std::uint32_t>& found) {
                                 return search->search(threshold, found);
@@ -99,7 +133,7 @@ BlockQuery SpanSpaceIndex::blocksAt(double isovalue) const {
 BlockQuery findBlocksAt(const VolumeView& volume, const BlockGrid& grid, double isovalue) {
     return dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
         return query<T>(grid, isovalue, [&](T threshold, std::vector<std::uint32_t>& found) {
-            found = detail::blocksAround(view, grid, threshold);
+            found = blocksAround(view, grid, threshold);
             return grid.blockCount();
         });
     });
@@ -107,6 +141,28 @@ BlockQuery findBlocksAt(const VolumeView& volume, const BlockGrid& grid, double 
 
 std::size_t SpanSpaceIndex::memoryBytes() const {
     return std::visit([](const auto& search) { return search->memoryBytes(); }, impl_->search);
+}
+
+BlockGrid BlockGrid::make(const Index3& volumeSize, int blockSize, Border border) {
+    if (blockSize != 2 && blockSize != 4 && blockSize != 8 && blockSize != 16) {
+        throw InvalidInput("BlockGrid: block size " + std::to_string(blockSize) +
+                           ", must be 2, 4, 8 or 16");
+    }
+    BlockGrid grid{blockSize, border, volumeSize, {0, 0, 0}, 0};
+    double count = 1;
+    if (border == Border::Closed) grid.offset = blockSize;
+    for (int axis = 0; axis < 3; ++axis) {
+        // every lattice position that can hold the lower end of a crossed edge lies in a block:
+        // up to the last sample, whose edge to the virtual layer may be crossed
+        const std::int64_t last = grid.offset + volumeSize[axis] - 1;
+        grid.blocks[axis] = last / blockSize + 1;
+        count *= static_cast<double>(grid.blocks[axis]);
+    }
+    if (count >= 4294967296.0) {
+        throw InvalidInput("the image has 2^32 or more blocks of " + std::to_string(blockSize) +
+                           " voxels a side; take a larger block size");
+    }
+    return grid;
 }
 
 }  // namespace adaptiso

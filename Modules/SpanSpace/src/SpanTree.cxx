@@ -1,9 +1,8 @@
-#include "SpanTree.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <tuple>
 
+#include "BlockSearch.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {

@@ -8,6 +8,7 @@
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
+
 namespace {
 
 constexpr std::size_t kMaxComponents = 100;
@@ -220,6 +221,18 @@ Json nestingJson(const NestingReport& report, const std::vector<Check>& checks,
     json["outerVerticesInside"] = report.outerVerticesInside;
     json["gap"] = gapJson(report, toFrame);
     return json;
+}
+
+Json distanceJson(const DistanceStatistics& distances, const AffineTransform& toFrame) {
+    return {{"samples", distances.samples},
+            {"meanMm", number(distances.meanMm)},
+            {"rmsMm", number(distances.rmsMm)},
+            {"p95Mm", number(distances.p95Mm)},
+            {"p99Mm", number(distances.p99Mm)},
+            {"maxMm", number(distances.maxMm)},
+            {"maxPointMm", vector(toFrame(distances.maxPointMm))},
+            {"meanNormalDeviationDeg", number(distances.meanNormalDeviationDeg)},
+            {"p95NormalDeviationDeg", number(distances.p95NormalDeviationDeg)}};
 }
 
 }  // namespace adaptiso

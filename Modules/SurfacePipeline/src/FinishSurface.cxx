@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/VoxelShape.h"
+#include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Extraction/Simplify.h"
 #include "adaptiso/MeshQuality/Winding.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"

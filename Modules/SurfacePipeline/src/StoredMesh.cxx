@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "adaptiso/Core/Numbers.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
 

@@ -9,8 +9,9 @@
 #include <system_error>
 #include <utility>
 
-#include "Volume.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
+#include "adaptiso/Tetrahedra/Tetrahedra.h"
 
 namespace adaptiso {
 namespace {
@@ -26,15 +27,6 @@ std::string text(std::int64_t value) {
 
 std::string text(const Vec3& p) {
     return text(p.x) + " " + text(p.y) + " " + text(p.z);
-}
-
-/// Bytes that are no visible ASCII become question marks: a message is one line.
-std::string printable(std::string_view word) {
-    std::string text(word);
-    for (char& c : text) {
-        if (c < ' ' || c > '~') c = '?';
-    }
-    return text;
 }
 
 /// Numbers between white space; lines that begin with '#' are passed over.
@@ -58,7 +50,7 @@ public:
         Number value{};
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
         if (error != std::errc() || end != word.data() + word.size()) {
-            fail("a number is due where there is '" + printable(word.substr(0, 20)) + "'");
+            fail("a number is due where there is '" + visibleAscii(word.substr(0, 20)) + "'");
         }
         return value;
     }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <exception>
 
-#include "adaptiso/Core/Interruption.h"
+#include "adaptiso/Core/Progress.h"
 
 namespace adaptiso::vtk {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include "adaptiso/Core/DisjointSets.h"
+#include "adaptiso/Core/Buckets.h"
 
 namespace adaptiso::testing {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "adaptiso/Core/FreeMemory.h"
+#include "adaptiso/Core/Memory.h"
 
 namespace adaptiso {
 namespace {

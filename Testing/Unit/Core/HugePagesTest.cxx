@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "adaptiso/Core/HugePages.h"
+#include "adaptiso/Core/Memory.h"
 
 namespace adaptiso {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "Support/AnalyticVolumes.h"
-#include "adaptiso/Core/Predicates.h"
+#include "adaptiso/Core/Geometry.h"
 
 namespace adaptiso {
 namespace {

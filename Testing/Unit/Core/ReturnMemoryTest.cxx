@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "adaptiso/Core/ReturnMemory.h"
+#include "adaptiso/Core/Memory.h"
 
 namespace adaptiso {
 namespace {

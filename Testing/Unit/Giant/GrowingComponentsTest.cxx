@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adaptiso-giant/GrowingComponents.h"
-#include "adaptiso/Core/DisjointSets.h"
+#include "adaptiso/Core/Buckets.h"
 
 namespace adaptiso::giant {
 namespace {

@@ -8,7 +8,7 @@
 #include "ImageSteps.h"
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Preprocessing/Smooth.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso::headmodel {
 namespace {

@@ -16,7 +16,7 @@
 
 #include "MeshIOTestSupport.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/VtkAdaptor/VtkAdaptor.h"
 
 namespace adaptiso {

@@ -2,7 +2,7 @@
 
 #include "MeshIOTestSupport.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso {
 namespace {

@@ -5,7 +5,7 @@
 #include "MeshIOTestSupport.h"
 #include "Support/Soundness.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso {
 namespace {

@@ -7,7 +7,7 @@
 #include "Support/Meshes.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
-#include "adaptiso/MeshIO/PointNormals.h"
+#include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso {
 namespace {

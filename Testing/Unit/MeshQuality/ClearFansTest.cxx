@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "Support/Meshes.h"
-#include "adaptiso/MeshQuality/ClearFans.h"
+#include "adaptiso/MeshQuality/CrossingSearch.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
 namespace adaptiso::testing {

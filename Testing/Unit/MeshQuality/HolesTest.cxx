@@ -4,7 +4,7 @@
 
 #include "Support/Meshes.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/MeshQuality/Holes.h"
+#include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso {
 namespace {

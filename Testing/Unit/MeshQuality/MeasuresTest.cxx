@@ -6,10 +6,9 @@
 
 #include "Support/Meshes.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/MeshQuality/Duplicates.h"
+#include "adaptiso/MeshQuality/InsideTest.h"
 #include "adaptiso/MeshQuality/Shape.h"
-#include "adaptiso/MeshQuality/Size.h"
-#include "adaptiso/MeshQuality/SolidAngle.h"
+#include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/MeshQuality/Winding.h"
 
 namespace adaptiso {

@@ -10,7 +10,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
 #include "adaptiso/MeshQuality/Nesting.h"
-#include "adaptiso/MeshQuality/TriangleDistance.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
 
 namespace adaptiso {
 namespace {

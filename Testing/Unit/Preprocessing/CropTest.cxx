@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "Grids.h"
-#include "adaptiso/Preprocessing/Crop.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso::testing {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "adaptiso/Preprocessing/Smooth.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso {
 namespace {

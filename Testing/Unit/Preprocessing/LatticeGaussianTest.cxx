@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "Grids.h"
-#include "LatticeGaussian.h"
+#include "SampleTypes.h"
 
 namespace adaptiso::testing {
 namespace {

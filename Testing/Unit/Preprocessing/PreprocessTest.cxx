@@ -7,7 +7,6 @@
 #include "Grids.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/Preprocessing/Preprocess.h"
-#include "adaptiso/Preprocessing/Smooth.h"
 
 namespace adaptiso::testing {
 namespace {

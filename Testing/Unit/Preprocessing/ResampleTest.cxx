@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "Grids.h"
-#include "adaptiso/Preprocessing/Resample.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso::testing {
 namespace {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include "Face.h"
 #include "Payload.h"
 #include "Scene.h"
 #include "Support/Meshes.h"

@@ -11,7 +11,7 @@
 #include "Support/AnalyticVolumes.h"
 #include "Support/Meshes.h"
 #include "Support/OperatorNew.h"
-#include "adaptiso/Report/Coarser.h"
+#include "adaptiso/Report/Page.h"
 
 namespace {
 std::atomic<std::size_t> largestBlock{0};  ///< that was asked for, bytes

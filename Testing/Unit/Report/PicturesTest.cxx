@@ -6,7 +6,7 @@
 
 #include "Support/AnalyticVolumes.h"
 #include "Support/Meshes.h"
-#include "adaptiso/Report/Pictures.h"
+#include "adaptiso/Report/Page.h"
 
 namespace adaptiso {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "BlocksByDefinition.h"
-#include "adaptiso/SpanSpace/BlocksAt.h"
+#include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
 namespace adaptiso::testing {
 namespace {

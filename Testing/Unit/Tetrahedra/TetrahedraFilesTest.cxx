@@ -6,7 +6,7 @@
 #include <iterator>
 #include <string>
 
-#include "adaptiso/Tetrahedra/TetrahedraFiles.h"
+#include "adaptiso/Tetrahedra/Tetrahedra.h"
 
 namespace adaptiso {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "Calls.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Numbers.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::python {
 namespace {

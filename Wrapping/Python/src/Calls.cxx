@@ -1,6 +1,7 @@
 #include "Calls.h"
 
 #include <cxxabi.h>
+#include <sys/resource.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
@@ -11,9 +12,10 @@
 #include <memory>
 #include <thread>
 
-#include "adaptiso/Core/Interruption.h"
+#include "adaptiso/Core/Progress.h"
 
 namespace adaptiso::python {
+
 namespace {
 
 /// At least so long between two looks at Python: what looking costs is then nothing.
@@ -168,6 +170,12 @@ void afterForkInChild() {
     if (forkedDuringCall) hasOneThread = true;
     unlockedThreads = 0;  // the child has this thread alone
     workers() = new tbb::task_scheduler_handle{tbb::attach{}};
+}
+
+double peakMemoryMb() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;  // Linux counts KiB
 }
 
 }  // namespace adaptiso::python

@@ -2,6 +2,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <chrono>
 #include <exception>
 #include <functional>
 #include <optional>
@@ -72,5 +73,28 @@ void endCallsOfOtherThreads();
 void beforeFork();
 void afterForkInParent();
 void afterForkInChild();
+
+namespace py = pybind11;
+
+/// What `_adaptiso` offers, by subject; Module.cxx puts it together. Classes come before the
+/// functions that take them.
+
+void declareMeshes(py::module_& module);    ///< MeshData, read_mesh
+void declareSurfaces(py::module_& module);  ///< ArrayVolume, ArrayIndex, build_index, make_surface
+void declareReaders(py::module_& module);   ///< read_image
+void declareChecks(py::module_& module);    ///< check, check_nested, compare
+void declareSimplify(py::module_& module);  ///< simplify_mesh
+void declareHeadModels(py::module_& module);  ///< HeadModelData, make_bem
+void declareLabels(py::module_& module);      ///< LabelData, make_labels
+
+/// Who made it, in reports.
+inline constexpr const char* kProgramName = "adaptiso (Python)";
+
+inline double secondsSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Most memory that this process has had resident so far, MB (10^6 bytes).
+double peakMemoryMb();
 
 }  // namespace adaptiso::python

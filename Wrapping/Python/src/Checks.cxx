@@ -9,15 +9,13 @@
 #include <vector>
 
 #include "Calls.h"
-#include "Declarations.h"
-#include "Judgements.h"
 #include "MeshData.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
-#include "adaptiso/SurfaceChecks/DistanceJson.h"
+#include "adaptiso/SurfaceChecks/CheckJson.h"
 
 namespace adaptiso::python {
 namespace {

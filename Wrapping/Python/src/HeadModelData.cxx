@@ -7,17 +7,15 @@
 #include <fstream>
 
 #include "Calls.h"
-#include "Judgements.h"
-#include "Resources.h"
+#include "Words.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/FreeMemory.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/HeadPipeline/BemElectrodes.h"
 #include "adaptiso/HeadPipeline/BemJson.h"
 #include "adaptiso/HeadPipeline/BemReport.h"
 #include "adaptiso/HeadPipeline/BemSurfaces.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/Report/Page.h"
-#include "adaptiso/Report/Pictures.h"
 
 namespace adaptiso::python {
 namespace {

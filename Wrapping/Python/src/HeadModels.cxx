@@ -9,10 +9,8 @@
 
 #include "Arrays.h"
 #include "Calls.h"
-#include "Declarations.h"
 #include "HeadModelData.h"
 #include "MeshData.h"
-#include "WarningCaster.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/HeadModel/ConductivityModel.h"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "Judgements.h"
+#include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 

@@ -10,9 +10,7 @@
 
 #include "Arrays.h"
 #include "Calls.h"
-#include "Declarations.h"
 #include "LabelData.h"
-#include "WarningCaster.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/LabelNames/LabelTable.h"

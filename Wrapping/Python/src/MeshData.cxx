@@ -4,12 +4,10 @@
 #include <cmath>
 
 #include "Calls.h"
-#include "Resources.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/Report/Page.h"
-#include "adaptiso/Report/Pictures.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 

@@ -10,12 +10,11 @@
 
 #include "Arrays.h"
 #include "Calls.h"
-#include "Declarations.h"
 #include "MeshData.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Json/Json.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso::python {
 namespace {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "Calls.h"
-#include "Declarations.h"
 #include "adaptiso/Core/Errors.h"
 
 PYBIND11_MODULE(_adaptiso, module) {

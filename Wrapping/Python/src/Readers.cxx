@@ -6,8 +6,6 @@
 
 #include "Arrays.h"
 #include "Calls.h"
-#include "Declarations.h"
-#include "WarningCaster.h"
 #ifdef ADAPTISO_PYTHON_READERS
 #include "adaptiso/ImageIO/ReadVolume.h"
 #endif

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "Calls.h"
-#include "Declarations.h"
 #include "MeshData.h"
 
 namespace adaptiso::python {

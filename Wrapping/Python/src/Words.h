@@ -1,12 +1,15 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/Json/Json.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/SurfaceChecks/Checks.h"
 
@@ -30,5 +33,15 @@ Border borderOf(const std::string& word);
 CoordinateFrame frameOf(const std::string& word);
 std::optional<CoordinateFrame> frameOf(const std::optional<std::string>& word);
 Profile profileOf(const std::string& word);
+
+/// What adaptiso-check has in `surfaces` of one: verdict and facts.
+Json surfaceVerdict(const TriangleMesh& mesh, const CheckRules& rules);
+
+/// What adaptiso-check has of nested surfaces: passed, surfaces, nesting.pairs.
+/// \param gapsMm  required of each pair; empty: rules.minGapMm of all
+Json nestedJson(std::span<const TriangleMesh* const> meshes, std::span<const std::string> names,
+                std::span<const double> gapsMm, const CheckRules& rules);
+
+std::string dumped(const Json& json);
 
 }  // namespace adaptiso::python

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/FreeMemory.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/full/VolumeSurface.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "adaptiso/Core/Isovalue.h"
+#include "adaptiso/Core/Volume.h"
 
 namespace adaptiso::detail {
 namespace {

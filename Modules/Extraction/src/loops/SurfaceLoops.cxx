@@ -4,7 +4,7 @@
 #include <limits>
 #include <tuple>
 
-#include "adaptiso/Core/FreeMemory.h"
+#include "adaptiso/Core/Memory.h"
 
 namespace adaptiso::detail {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adaptiso/Core/BoundingBox.h"
-#include "adaptiso/Core/HalvedLeaves.h"
+#include "adaptiso/Core/MortonOrder.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
 namespace adaptiso {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "adaptiso/Core/Geometry.h"
@@ -73,6 +74,18 @@ inline double squaredDistance(const BoundingBox& a, const BoundingBox& b) {
         sum += d * d;
     }
     return sum;
+}
+
+/// A little below a number, in single precision; and a little above.
+inline float floatBelow(double x) {
+    const auto f = static_cast<float>(x);
+    return f - (2 * std::numeric_limits<float>::epsilon() * std::abs(f) +
+                std::numeric_limits<float>::min());
+}
+inline float floatAbove(double x) {
+    const auto f = static_cast<float>(x);
+    return f + (2 * std::numeric_limits<float>::epsilon() * std::abs(f) +
+                std::numeric_limits<float>::min());
 }
 
 }  // namespace adaptiso

@@ -49,4 +49,13 @@ struct ImageGeometry {
     friend bool operator==(const ImageGeometry&, const ImageGeometry&) = default;
 };
 
+/// Distance between neighbouring planes of samples, the least of the three axes.
+double leastPlaneDistanceMm(const ImageGeometry& geometry);
+
+/// Refuses voxels that are needles or flakes, more than 10,000 times as long as thin: searches over
+/// their length by their width would never end, and triangles would be lower than 1e-9 of their
+/// length, which is degenerate. Scans have 300 at most (0.1 mm in planes 30 mm apart).
+/// \throws InvalidInput
+void requireNoNeedles(const ImageGeometry& geometry);
+
 }  // namespace adaptiso

@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "adaptiso/Core/BoundingBox.h"
-#include "adaptiso/Core/HugePages.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso {
+
 namespace detail {
 
 /// A curve through 1,024 cubes a side of a box, halved axis by axis [Morton1966].
@@ -64,5 +65,22 @@ std::vector<std::uint32_t> inMortonOrder(std::size_t count, const BoundingBox& b
                       });
     return detail::sortedByKeys(std::move(keys));
 }
+
+/// A node of a binary tree over a list of leaves, and the leaves below it. Every node halves its
+/// leaves, down to single ones, and the nodes lie in one array in depth-first order: so where
+/// children lie follows from counts alone.
+struct HalvedLeaves {
+    std::int64_t node, firstLeaf, leaves;
+
+    bool isLeaf() const { return leaves == 1; }
+    HalvedLeaves left() const { return {node + 1, firstLeaf, leaves / 2}; }
+    HalvedLeaves right() const {
+        return {node + 2 * (leaves / 2), firstLeaf + leaves / 2, leaves - leaves / 2};
+    }
+
+    /// Nodes left to visit: halving leaves no more than 64 levels, with one node a level left to
+    /// do.
+    using Stack = std::array<HalvedLeaves, 64>;
+};
 
 }  // namespace adaptiso

@@ -1,19 +1,27 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace adaptiso {
 
 /// `value` as a person reads it, in at most six significant digits, in the C locale: "0.333333",
 /// "1.79769e+308", "infinity", "-infinity", "not a number". Zero is "0", whatever its sign.
-std::string shortText(double value);
+std::string formatShort(double value);
 
 /// `text` with A to Z as a to z; other characters stay.
 std::string lowerCase(std::string_view text);
 
 /// `text` without the blanks (of ASCII) around it.
 std::string_view trimmed(std::string_view text);
+
+/// `text` with '?' for every byte that is not visible ASCII or a blank.
+std::string visibleAscii(std::string_view text);
+
+/// visibleAscii() in quotes, cut at 40 characters: for messages.
+std::string printable(std::string_view text);
 
 /// `text` as HTML and XML have it between tags and in quotes; control characters become blanks.
 std::string escapedMarkup(std::string_view text);
@@ -26,5 +34,39 @@ bool isUtf8(std::string_view text);
 
 /// `text` as UTF-8: text that is not is taken for Latin-1.
 std::string toUtf8(std::string_view text);
+
+/// The number that all of `text` is, in the C locale ("100", "-0.5", "+1e3"), whatever the user's.
+/// \return none when it is no number, not finite, or too large for a double
+std::optional<double> parseFiniteNumber(std::string_view text);
+
+/// The shortest decimal text that reads back as `value`, without an exponent unless the number is
+/// below 1e-6 or from 1e15 on: "100000", "0.1", "-200". Zero is "0", whatever its sign.
+std::string formatNumber(double value);
+
+/// `value` with its digits in groups of three: "1,234,567".
+std::string formatCount(long long value);
+
+/// `value` to the nearest whole number, in groups of three; from 1e15 on, and for infinity and
+/// NaN, as formatShort().
+std::string formatRounded(double value);
+
+/// `value` with `digits` decimals: "0.10", never "-0.00"; from 1e15 on, and for infinity and NaN,
+/// as formatShort().
+std::string formatFixed(double value, int digits);
+
+/// A length in mm with `digits` decimals, in three significant digits where that would leave fewer:
+/// "1.50", "0.00015", "1.41e-05"; below 1e-9 mm as formatFixed().
+std::string formatLength(double value, int digits);
+
+/// A bound, as formatLength() but never less than `value` (to 1e-9 of it): 0.15001 is "0.1501" in
+/// four decimals.
+std::string formatBound(double value, int digits = 4);
+
+/// An area or a volume: as formatRounded() from 100 on, below in three significant digits.
+std::string formatMeasure(double value);
+
+/// As formatShort(), with more digits where different numbers would read alike: 1000000.25 and
+/// 1000000.5 are "1000000.2" and "1000000.5".
+std::vector<std::string> formatApart(const std::vector<double>& values);
 
 }  // namespace adaptiso

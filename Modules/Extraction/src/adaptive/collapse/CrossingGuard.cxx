@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "adaptiso/Core/DisjointSets.h"
-#include "adaptiso/Core/Predicates.h"
+#include "adaptiso/Core/Buckets.h"
+#include "adaptiso/Core/Geometry.h"
 #include "adaptiso/MeshQuality/Certificate.h"
 #include "adaptive/Parameters.h"
 

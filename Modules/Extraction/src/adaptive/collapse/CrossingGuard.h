@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "adaptiso/Core/FloatBounds.h"
+#include "adaptiso/Core/BoundingBox.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptive/collapse/ChangedStar.h"
 #include "adaptive/mesh/MetricFrame.h"

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "adaptiso/Core/DisjointSets.h"
+#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/Topology.h"
 

@@ -9,8 +9,7 @@
 #include <string>
 
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/FreeMemory.h"
-#include "adaptiso/Core/HugePages.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/MortonOrder.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/ParallelSort.h"

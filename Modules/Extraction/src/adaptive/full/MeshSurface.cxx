@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "adaptiso/Core/Buckets.h"
-#include "adaptiso/Core/HugePages.h"
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/proof/MeshProof.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "adaptiso/Core/DisjointSets.h"
+#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/MeshQuality/TriangleTree.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "adaptiso/Core/ReturnMemory.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptive/mesh/BrickPrint.h"
 #include "adaptive/mesh/Patch.h"

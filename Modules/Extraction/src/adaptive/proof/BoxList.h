@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "adaptiso/Core/FloatBounds.h"
+#include "adaptiso/Core/BoundingBox.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
 namespace adaptiso::detail {

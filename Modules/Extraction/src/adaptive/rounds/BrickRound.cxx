@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/HugePages.h"
-#include "adaptiso/Core/Interruption.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/PerThread.h"
+#include "adaptiso/Core/Progress.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {

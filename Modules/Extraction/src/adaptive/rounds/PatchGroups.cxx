@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "adaptiso/Core/HugePages.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/Parameters.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "adaptiso/Core/HugePages.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/PerThread.h"
 #include "adaptive/Parameters.h"

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <optional>
 
-#include "adaptiso/Core/FreeMemory.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/rounds/BorderMarks.h"
 

@@ -9,7 +9,6 @@
 #include "adaptiso/HeadModel/ConductivityModel.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
 
 namespace adaptiso {
 

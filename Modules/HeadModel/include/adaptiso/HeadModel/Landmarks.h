@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/PointFiles.h"
 
 namespace adaptiso {

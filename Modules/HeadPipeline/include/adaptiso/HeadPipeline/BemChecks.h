@@ -7,7 +7,7 @@
 
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/HeadPipeline/BemModel.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/SurfaceChecks/Checks.h"
 
 namespace adaptiso {

@@ -4,6 +4,10 @@
 #include <string>
 #include <string_view>
 
+#include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/TriangleMesh.h"
+
 namespace adaptiso {
 
 /// The frame in which a file holds its points. Inside the library it is always Lps.
@@ -34,5 +38,66 @@ std::string_view slicerName(CoordinateFrame frame);
 /// 3D Slicer's mark in header lines and comments, "SPACE=RAS" or "SPACE=LPS"; empty for the other
 /// frames. Slicer takes surfaces without a mark for LPS.
 std::string slicerMarker(CoordinateFrame frame);
+
+/// p -> linear * p + offset.
+struct AffineTransform {
+    Mat3 linear;
+    Vec3 offset;
+
+    constexpr Vec3 operator()(const Vec3& p) const { return linear * p + offset; }
+    friend constexpr bool operator==(const AffineTransform&, const AffineTransform&) = default;
+};
+
+/// First `b`, then `a`.
+constexpr AffineTransform operator*(const AffineTransform& a, const AffineTransform& b) {
+    return {a.linear * b.linear, a(b.offset)};
+}
+/// \pre determinant(a.linear) != 0
+constexpr AffineTransform inverse(const AffineTransform& a) {
+    const Mat3 linear = inverse(a.linear);
+    return {linear, -(linear * a.offset)};
+}
+
+/// Voxel index -> FreeSurfer surface RAS (mm) of a volume of this geometry: FreeSurfer's
+/// vox2ras-tkr (nibabel: MGHHeader.get_vox2ras_tkr), which knows only the volume's size n and
+/// spacing d, not where it lies: x = dx (nx/2 - i), y = dz (k - nz/2), z = dy (ny/2 - j).
+///
+/// Only images whose indices are mirrored in LPS (isMirrored(); FreeSurfer's own "LIA" volumes)
+/// have a tkRAS that is a rigid move of the scanner frame. For the others, which includes most
+/// DICOM images as they come, FreeSurfer's rule makes tkRAS a mirror image of the head. Where
+/// that won't do (MNE's coregistration, FreeSurfer subjects), use conformedGeometry().
+///
+/// \throws InvalidInput  size < 1; axes that are not at right angles (cosine > 1e-4: the scaled
+///                       box of tkRAS can't be sheared)
+AffineTransform indexToTkRas(const ImageGeometry& volume);
+
+/// The geometry of the volume that FreeSurfer makes of this one (`mri_convert --conform`, a
+/// subject's orig.mgz): 256^3 voxels of 1 mm along left, inferior and anterior, around the same
+/// centre. Its tkRAS is scanner RAS less that centre (c_ras), whatever axes the volume has.
+ImageGeometry conformedGeometry(const ImageGeometry& volume);
+
+/// The volume by which programs write and read a frame of this image. It is the image, but for
+/// tkRAS of an image that is not stored as FreeSurfer stores volumes: by its own axes tkRAS would
+/// mirror the head, and MNE and FreeSurfer know the subject by the conformed volume.
+ImageGeometry frameVolume(CoordinateFrame frame, const ImageGeometry& image);
+
+/// Physical LPS mm -> `frame`.
+/// \param volume  needed for TkRas and Voxel, not looked at for the others
+/// \throws InvalidInput  no volume where one is needed, or as indexToTkRas()
+AffineTransform lpsToFrame(CoordinateFrame frame, const std::optional<ImageGeometry>& volume);
+
+/// `mesh` moved by `transform`: points by the matrix, normals by its inverse transpose (unit
+/// length again). A mirroring transform turns the triangles round, so that they stay
+/// counter-clockwise seen from outside; normals still point outside.
+/// \pre determinant(transform.linear) != 0
+TriangleMesh transformed(const TriangleMesh& mesh, const AffineTransform& transform);
+
+/// `mesh` (LPS mm) in `frame`. \throws InvalidInput as lpsToFrame()
+TriangleMesh toFrame(const TriangleMesh& mesh, CoordinateFrame frame,
+                     const std::optional<ImageGeometry>& volume = std::nullopt);
+
+/// `mesh` (in `frame`) in LPS mm. \throws InvalidInput as lpsToFrame()
+TriangleMesh fromFrame(const TriangleMesh& mesh, CoordinateFrame frame,
+                       const std::optional<ImageGeometry>& volume = std::nullopt);
 
 }  // namespace adaptiso

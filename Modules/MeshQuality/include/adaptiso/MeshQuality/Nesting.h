@@ -6,7 +6,7 @@
 
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
-#include "adaptiso/MeshQuality/TriangleDistance.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
 
 namespace adaptiso {
 

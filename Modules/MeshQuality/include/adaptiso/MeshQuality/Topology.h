@@ -111,4 +111,40 @@ bool isDegenerate(const TriangleMesh& mesh, const Triangle& triangle);
 /// checkTopology's SurfaceComponent::firstVertex); its own when no triangle uses it.
 std::vector<VertexId> findComponentRoots(const TriangleMesh& mesh);
 
+struct DuplicateOptions {
+    std::int64_t maxExamples = 5;  ///< numbers of each kind to name; all are counted
+};
+
+/// What a mesh has more than once at the very same place (0 and -0 are one).
+struct DuplicateReport {
+    std::int64_t vertexCount = 0;         ///< vertices at the place of one with a smaller number
+    std::vector<VertexId> vertices;       ///< the first of them, ascending
+    std::int64_t triangleCount = 0;       ///< triangles on the corners of one with a smaller number
+    std::vector<std::int64_t> triangles;  ///< the first of them, ascending
+};
+
+/// Vertices with equal coordinates, and triangles whose corners lie at the same three places,
+/// whatever their numbers and whichever way round. Only what is equal to the bit counts: vertices
+/// that nearly coincide are short edges (measureShape). Points and triangles that are not finite
+/// have no place; triangles with less than three places are left to checkTopology.
+/// \pre triangles name points that are there, options.maxExamples >= 0 \throws InvalidInput
+/// Cost: O(V log V + T log T), in parallel; 16 bytes a vertex and 32 a triangle of memory.
+DuplicateReport findDuplicates(const TriangleMesh& mesh, const DuplicateOptions& options = {});
+
+/// A stretch of border: edges that lie in one triangle only and hang together by their corners.
+struct Hole {
+    std::int64_t edges = 0;
+    double lengthMm = 0;  ///< of all of them
+    Vec3 middleMm;        ///< mean of the edges' middles, weighted by their length
+};
+
+/// The holes of a surface, the longest border first, of equals the one with the smaller vertex
+/// number. The rim of an open sheet is one too: what is missing can't be told from what never was.
+///
+/// Triangles that name a vertex twice have no edges here, as checkTopology has it; edges with a
+/// corner that is not finite are left out.
+/// \pre triangles name points that are there \throws InvalidInput otherwise
+/// Cost: O(T log T); 48 bytes a triangle of memory.
+std::vector<Hole> findHoles(const TriangleMesh& mesh);
+
 }  // namespace adaptiso

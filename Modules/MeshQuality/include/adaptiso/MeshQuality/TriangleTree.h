@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "adaptiso/Core/HalvedLeaves.h"
+#include "adaptiso/Core/MortonOrder.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
 namespace adaptiso {

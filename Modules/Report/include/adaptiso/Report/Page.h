@@ -1,12 +1,36 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "adaptiso/Report/Pictures.h"
+#include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Report/Report.h"
 
 namespace adaptiso {
+
+/// A PNG file.
+struct Picture {
+    std::string name;     ///< "contours-axial.png"
+    std::string title;    ///< for people
+    std::string altText;  ///< what is to be seen, for those who can't
+    std::string png;      ///< the file's bytes
+    int width = 0, height = 0;
+};
+
+/// Every picture that the report has the data for, in the order of the page:
+///   contours-axial, -coronal, -sagittal  where the surfaces cut slices of the image, as MNE's
+///                                        plot_bem shows them
+///   spots                                three slices through each of the first spots
+///   surface-N                            each surface from six sides, what faces away from the
+///                                        viewer in red; values in colour, with a colour bar
+///   regions                              in their stead, of regions: all together
+///
+/// Everything is drawn in memory: no display, no OpenGL. Left is left of the picture, and every
+/// picture says which side is which. Triangles with a corner that is not there or not finite are
+/// left out. The same report gives the same bytes, whatever the number of threads.
+/// \pre spots are finite  \throws InternalError  Cairo refuses
+std::vector<Picture> drawPictures(const Report& report);
 
 struct PageOptions {
     /// Samples and triangles that the viewer gets at most; beyond, the image is averaged down and
@@ -36,5 +60,20 @@ std::string notebookHtml(const Report& report, const Picture& picture,
 
 /// The viewer was built in; else pages say that it is missing.
 bool hasViewer();
+
+/// A coarser surface, to be looked at: `mesh` itself where it has no more than `maxTriangles`, else
+/// vertices that lie in one cell of a grid become one [Lindstrom2000]. No vertex moves out of its
+/// cell; thin parts may join. Triangles with a corner that is not there or not finite are left out.
+///
+/// \param mesh  LPS mm; may be broken in any way
+/// \return at most `maxTriangles`, without normals; the same for any number of threads
+/// Cost: some passes over the mesh; 20 bytes for each of its vertices and 250 for each of the
+/// result's.
+TriangleMesh coarserMesh(const TriangleMesh& mesh, std::int64_t maxTriangles);
+
+/// How many of `maxTriangles` each surface gets: the same for all, but none more than it has; what
+/// small ones leave goes to the others.
+std::vector<std::int64_t> shareTriangles(const std::vector<std::int64_t>& counts,
+                                         std::int64_t maxTriangles);
 
 }  // namespace adaptiso

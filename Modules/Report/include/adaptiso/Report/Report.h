@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -7,11 +8,22 @@
 #include <vector>
 
 #include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
-#include "adaptiso/Report/ColorMap.h"
 
 namespace adaptiso {
+
+/// An RGB colour.
+using ReportColor = std::array<std::uint8_t, 3>;
+
+/// The colour map viridis, dark violet at 0 to yellow at 1: ten samples of matplotlib's table,
+/// linear in between. Values beyond 0 and 1 get the end's colour, NaN that of 0.
+ReportColor viridis(double part);
+
+/// The colour of surface number `n` in pictures and in the viewer: told apart with any colour
+/// vision [Okabe2008], light enough for a black ground. The seventh is the first again.
+ReportColor surfaceColor(std::size_t n);
 
 /// What a report says first.
 enum class ReportVerdict {
@@ -97,5 +109,9 @@ struct Report {
 
 /// Now, in UTC: "2026-11-21 09:20 UTC"; the time that SOURCE_DATE_EPOCH says, where it is set.
 std::string reportDate();
+
+/// Size, voxel and format of an image, in words.
+std::vector<ReportFact> imageFacts(const std::string& name, const std::string& format,
+                                   const ImageGeometry& geometry);
 
 }  // namespace adaptiso

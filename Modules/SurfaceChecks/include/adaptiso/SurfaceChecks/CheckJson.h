@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "adaptiso/Json/Json.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshQuality/Nesting.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/SurfaceChecks/Checks.h"
-#include "adaptiso/SurfaceChecks/SurfaceFacts.h"
 
 namespace adaptiso {
 
@@ -24,5 +24,9 @@ Json factsJson(const SurfaceFacts& facts);
 /// \param toFrame  takes points of the report to the frame to tell them in
 Json nestingJson(const NestingReport& report, const std::vector<Check>& checks,
                  const AffineTransform& toFrame);
+
+/// An entry of `distances` of the report adaptiso-compare/1, in millimetres.
+/// \param toFrame  takes points of the report to the frame to tell them in
+Json distanceJson(const DistanceStatistics& distances, const AffineTransform& toFrame);
 
 }  // namespace adaptiso

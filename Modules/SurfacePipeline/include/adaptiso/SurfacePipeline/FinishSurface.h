@@ -11,8 +11,8 @@
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
 

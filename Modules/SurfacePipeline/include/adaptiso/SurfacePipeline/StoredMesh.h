@@ -6,8 +6,8 @@
 
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Warning.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
-#include "adaptiso/MeshIO/FrameTransform.h"
 
 namespace adaptiso {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "adaptiso/Core/HugePages.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {

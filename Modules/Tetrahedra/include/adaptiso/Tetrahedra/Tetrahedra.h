@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -65,5 +66,26 @@ TetrahedralMesh transformed(TetrahedralMesh mesh, const Mat3& linear, const Vec3
 /// label; points that no element needs any more go. What a mesher fills besides is a space that
 /// regions enclose.
 void takeRegions(TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions);
+
+/// Writes tetrahedra with their regions. Numbers have nine digits; the same mesh gives the same
+/// bytes. \throws FileError  a file can't be written
+///
+/// Gmsh's .msh 2.2 (SimNIBS, DUNEuro) and 4.1, text; regions are physical volumes with names.
+void writeMsh22(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
+                const std::filesystem::path& path);
+void writeMsh41(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
+                const std::filesystem::path& path);
+/// VTK's .vtu, text, with the array "tissue" of labels.
+void writeVtu(const TetrahedralMesh& mesh, const std::filesystem::path& path);
+/// DUNE's .dgf. Its one parameter is the place of the region in `regions`, from 0: DUNEuro takes it
+/// for a place in a list of conductivities.
+void writeDgf(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
+              const std::filesystem::path& path);
+
+/// Positive where d lies on the side of a, b, c from which these are seen clockwise.
+inline double volumeOf(const TetrahedralMesh& mesh, const std::array<VertexId, 4>& t) {
+    const Vec3& a = mesh.points[t[0]];
+    return dot(cross(mesh.points[t[1]] - a, mesh.points[t[2]] - a), mesh.points[t[3]] - a) / 6;
+}
 
 }  // namespace adaptiso

@@ -1,13 +1,33 @@
-#include "ByteSource.h"
+#include "Bytes.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
+#include <fstream>
 #include <limits>
+#include <system_error>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/ForeignContent.h"
 
 namespace adaptiso::meshio {
+
+ByteSink& ByteSink::operator<<(std::int64_t number) {
+    char text[24];
+    const auto end = std::to_chars(text, text + sizeof(text), number).ptr;
+    return *this << std::string_view(text, static_cast<std::size_t>(end - text));
+}
+
+ByteSink& ByteSink::operator<<(double number) {
+    char text[40];
+    const auto end = std::to_chars(text, text + sizeof(text), number + 0.0,  // + 0.0: no "-0"
+                                   std::chars_format::general, 9)
+                         .ptr;
+    return *this << std::string_view(text, static_cast<std::size_t>(end - text));
+}
+
 namespace {
 
 constexpr bool isSpace(char c) {
@@ -146,18 +166,64 @@ double toReal(std::string_view word, std::string_view what) {
 float toFloat(double value, std::string_view what) {
     if (std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max()) {
         unsupported(
-            std::string(what) + " is " + shortText(value) + ", too large for single precision",
+            std::string(what) + " is " + formatShort(value) + ", too large for single precision",
             "repair the mesh");
     }
     return static_cast<float>(value);
 }
 
-std::string printable(std::string_view text) {
-    std::string shown(text.substr(0, 40));
-    for (char& c : shown) {
-        if (c < ' ' || c > '~') c = '?';
+namespace {
+
+std::string systemReason() {
+    return errno != 0 ? std::strerror(errno) : "unknown reason";
+}
+
+}  // namespace
+
+std::string readBytes(const std::filesystem::path& path, std::uint64_t most) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status)) {
+        if (const auto foreign = findForeignContent(path)) {  // a link of git-annex
+            throw FileError(path.string() + ": " + foreign->fault + "; " + foreign->remedy);
+        }
+        throw FileError(path.string() + ": no such file; check the name");
     }
-    return "'" + shown + (text.size() > 40 ? "...'" : "'");
+    if (!fs::is_regular_file(status)) {
+        throw FileError(path.string() + ": not a regular file; give a file on disk");
+    }
+    errno = 0;
+    std::ifstream stream(path, std::ios::binary);
+    const std::uintmax_t size = std::min<std::uintmax_t>(most, fs::file_size(path, error));
+    if (!stream || error) {
+        throw FileError(path.string() + ": can't be opened (" + systemReason() +
+                        "); check its permissions");
+    }
+    std::string bytes(size, '\0');
+    stream.read(bytes.data(), static_cast<std::streamsize>(size));
+    if (static_cast<std::uintmax_t>(stream.gcount()) != size) {
+        throw FileError(path.string() + ": only " + std::to_string(stream.gcount()) + " of " +
+                        std::to_string(size) + " bytes can be read; check the disk");
+    }
+    return bytes;
+}
+
+void writeBytes(const std::filesystem::path& path, const std::function<void(ByteSink&)>& write) {
+    errno = 0;
+    std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+    if (!stream) {
+        throw FileError(path.string() + ": can't be made (" + systemReason() +
+                        "); check that the folder exists and may be written to");
+    }
+    ByteSink sink(stream);
+    write(sink);
+    sink.finish();
+    stream.close();
+    if (!stream) {
+        throw FileError(path.string() + ": can't be written (" + systemReason() +
+                        "); free space on the disk or write elsewhere");
+    }
 }
 
 }  // namespace adaptiso::meshio

@@ -1,8 +1,9 @@
-#include "adaptiso/Core/Interruption.h"
+#include "adaptiso/Core/Progress.h"
 
 #include <chrono>
 
 namespace adaptiso {
+
 namespace {
 
 constexpr double kEverySeconds = 0.1;
