@@ -74,16 +74,13 @@ void addLabelSeeds(Seeds& seeds) {
     seeds.add("labels",
               "NRRD0004\nSegment0_Name:=a\nSegment0_LabelValue:=3\nSegment0_Layer:=0\n"
               "Segment0_Color:=1 0.5 0\nSegment1_ID:=b\n\n");
-    for (const char* const text :
-         {"<LabelTable><Label Key=\"1\" Red=\"1\" Green=\"0\" Blue=\"0\">a</Label></LabelTable>",
-          "atr_name=\"VALUE_LABEL_DTABLE\">\"&lt;VALUE_LABEL_DTABLE&gt;&quot;1&quot; "
-          "&quot;a&quot;"}) {
-        std::string nifti = "\x5c\1" + std::string(342, '\0') + std::string("n+1\0\1\0\0\0", 8);
-        const auto size = static_cast<char>((std::string_view(text).size() + 8 + 15) / 16 * 16);
-        nifti += size + std::string("\0\0\0\36\0\0\0", 7) + text;
-        nifti.resize(352 + static_cast<unsigned char>(size), '\0');
-        seeds.add("labels", nifti);
-    }
+    const std::string table =
+        "<LabelTable><Label Key=\"1\" Red=\"1\" Green=\"0\" Blue=\"0\">a</Label></LabelTable>";
+    std::string nifti = "\x5c\1" + std::string(342, '\0') + std::string("n+1\0\1\0\0\0", 8);
+    const auto size = static_cast<char>((table.size() + 8 + 15) / 16 * 16);
+    nifti += size + std::string("\0\0\0\36\0\0\0", 7) + table;
+    nifti.resize(352 + static_cast<unsigned char>(size), '\0');
+    seeds.add("labels", nifti);
     for (const char* const text : {"01,2,10-20", "0-5--2,2147483647", "1Thalamus=10,49",
                                    "1a=1-3\nb=4\na=b=5,6", "21=0.33,2=0.0066", "2-7=1e-3"}) {
         seeds.add("lists", text);

@@ -1,4 +1,4 @@
-// Tables with one separator between fields: BIDS (tabs), 3D Slicer (commas), nii2mesh (semicolons).
+// Tables with one separator between fields: BIDS (tabs) and 3D Slicer (commas).
 #include <algorithm>
 #include <array>
 
@@ -72,7 +72,7 @@ Columns columnsOf(const Fields& header) {
 }
 
 char separatorOf(std::string_view line) {
-    for (const char separator : {'\t', ';', ','}) {
+    for (const char separator : {'\t', ','}) {
         if (line.find(separator) != std::string_view::npos) return separator;
     }
     return '\0';
@@ -119,7 +119,6 @@ LabelTable decodeDelimited(std::string_view text) {
     const bool hasHeader = columns.isTable();
     if (!hasHeader) columns = {.index = 0, .name = 1};
     Collector found(separator == '\t'                         ? "BIDS"
-                    : separator == ';'                        ? "nii2mesh"
                     : findColumn(header, {"labelvalue"}) >= 0 ? "3D Slicer"
                                                               : "comma-separated");
     for (std::size_t n = hasHeader ? 1 : 0; n < lines.size(); ++n) {

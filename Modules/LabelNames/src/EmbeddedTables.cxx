@@ -1,5 +1,5 @@
-// Tables inside label images: 3D Slicer's segments in a NRRD header, Connectome's LabelTable and
-// AFNI's VALUE_LABEL_DTABLE in a NIfTI extension.
+// Tables inside label images: 3D Slicer's segments in a NRRD header, and Connectome's LabelTable in
+// a NIfTI extension, which TotalSegmentator writes too.
 #include <zlib.h>
 
 #include <algorithm>
@@ -115,50 +115,6 @@ T loaded(std::string_view bytes, std::size_t at, bool isSwapped) {
     return std::bit_cast<T>(raw);
 }
 
-/// The entities of XML.
-std::string withoutEntities(std::string_view text) {
-    constexpr std::pair<std::string_view, char> kEntities[] = {
-        {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}, {"&amp;", '&'}};
-    std::string result;
-    while (!text.empty()) {
-        const auto* const found = std::ranges::find_if(
-            kEntities, [&](const auto& entity) { return text.starts_with(entity.first); });
-        const bool isEntity = found != std::end(kEntities);
-        result += isEntity ? found->second : text.front();
-        text.remove_prefix(isEntity ? found->first.size() : 1);
-    }
-    return result;
-}
-
-/// AFNI's rows of "value" "name", in quotes, as text within text.
-LabelTable decodeAfni(std::string_view extension) {
-    const std::size_t name = extension.find("VALUE_LABEL_DTABLE");
-    std::string_view text = extension.substr(name);
-    text = text.substr(0, text.find("</AFNI_atr>"));
-    const std::string inner = withoutEntities(text);
-    const std::size_t start = inner.find("<VALUE_LABEL_DTABLE");
-    std::string_view rows = inner;
-    rows = start == std::string::npos ? std::string_view() : rows.substr(start);
-    rows = rows.substr(std::min(rows.find('>'), rows.size()));
-    rows = rows.substr(0, rows.find('<'));
-    std::vector<std::string_view> words;
-    for (std::size_t at = rows.find('"'); at != std::string_view::npos;) {
-        const std::size_t end = rows.find('"', at + 1);
-        if (end == std::string_view::npos) break;
-        words.push_back(rows.substr(at + 1, end - at - 1));
-        at = rows.find('"', end + 1);
-    }
-    Collector found("AFNI");
-    for (std::size_t n = 0; n + 1 < words.size(); n += 2) {
-        const Line line{static_cast<std::int64_t>(n / 2 + 1), rows};
-        LabelEntry entry;
-        entry.value = valueOf(words[n], line);
-        entry.name = toUtf8(words[n + 1]);
-        found.add(std::move(entry));
-    }
-    return found.finish();
-}
-
 /// GIFTI's LabelTable of a volume: that of its number, or the only one.
 LabelTable decodeConnectome(std::string_view extension, std::int64_t volume) {
     constexpr std::string_view kBegin = "<LabelTable", kEnd = "</LabelTable>";
@@ -195,11 +151,8 @@ LabelTable decodeExtensions(std::string_view bytes, std::int64_t volume) {
         const std::string_view extension = bytes.substr(at + 8, static_cast<std::size_t>(size) - 8);
         at += static_cast<std::size_t>(size);
         const std::string_view text = extension.substr(0, extension.find('\0'));
-        if (text.find("<LabelTable") != std::string_view::npos) {
-            LabelTable table = decodeConnectome(text, volume);
-            if (!table.entries.empty()) return table;
-        }
-        if (text.find("VALUE_LABEL_DTABLE") != std::string_view::npos) return decodeAfni(text);
+        LabelTable table = decodeConnectome(text, volume);
+        if (!table.entries.empty()) return table;
     }
     return {};
 }

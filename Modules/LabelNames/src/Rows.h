@@ -30,7 +30,7 @@ std::vector<Line> linesOf(std::string_view text);
 /// "line 7: "
 std::string place(const Line& line);
 
-/// What `line` says is a label. \throws FileError "line 7: the index is x, must be a whole number
+/// `word` as a label. \throws FileError "line 7: the index is x, must be a whole number
 /// that 32 bits hold"
 std::int32_t valueOf(std::string_view word, const Line& line);
 
@@ -42,7 +42,7 @@ std::optional<double> realNumber(std::string_view word);
 /// Red, green or blue, 0 to 255. \throws FileError naming the line
 std::uint8_t channelOf(std::string_view word, const Line& line);
 
-/// "#ff8000" or "ff8000"; nothing where it is no such text.
+/// "#ff8000" or "ff8000"; empty for other text.
 std::optional<LabelColor> parseHex(std::string_view text);
 
 /// Collects entries; those listed twice become a warning.
@@ -53,7 +53,7 @@ public:
     /// Names lose blanks around them and control characters.
     void add(LabelEntry entry);
 
-    /// Entries by value. \throws FileError  there is none
+    /// Entries by value. \throws FileError  no entry
     LabelTable finish();
 
     void setFormat(std::string format) { table_.format = std::move(format); }
@@ -71,7 +71,7 @@ LabelTable decodeSpaced(std::string_view text);     ///< words with blanks betwe
 LabelTable decodeXml(std::string_view text);
 LabelTable decodeJson(std::string_view text);
 
-/// Whether the first line of `text` has a separator that fields have between them.
+/// True if the first line of `text` has fields with a separator between them.
 bool isDelimited(std::string_view text);
 
 }  // namespace adaptiso::labelnames

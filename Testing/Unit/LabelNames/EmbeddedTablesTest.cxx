@@ -89,18 +89,6 @@ TEST(NiftiExtensions, GiveConnectomesLabelTable) {
     EXPECT_TRUE(decodeEmbeddedTable(niftiWith(kConnectome, false, 380)).entries.empty());
 }
 
-TEST(NiftiExtensions, GiveAfnisLabels) {
-    const std::string afni =
-        "<AFNI_attributes><AFNI_atr ni_type=\"String\" ni_dimen=\"1\" "
-        "atr_name=\"VALUE_LABEL_DTABLE\" >\n"
-        "\"&lt;VALUE_LABEL_DTABLE ni_type=&quot;2*String&quot; ni_dimen=&quot;2&quot; &gt;\n"
-        "&quot;17&quot; &quot;Left &amp;amp; deep&quot;\n&quot;4&quot; &quot;b&quot;\n"
-        "&lt;/VALUE_LABEL_DTABLE&gt;\"</AFNI_atr></AFNI_attributes>";
-    const LabelTable table = decodeEmbeddedTable(niftiWith(afni));
-    EXPECT_EQ(table.format, "AFNI");
-    EXPECT_EQ(table.entries, (Entries{{4, "b", "", {}}, {17, "Left &amp; deep", "", {}}}));
-}
-
 TEST(NiftiExtensions, CutOffOrWildAreErrorsOrNothing) {
     const std::string sound = niftiWith(kConnectome);
     for (std::size_t length = 0; length < sound.size(); ++length) {

@@ -100,11 +100,6 @@ TEST(LabelTable, ReadsMricronsColors) {
     EXPECT_THROW(decoded(std::string(768, '\0')), NoLabelTable);
 }
 
-TEST(LabelTable, ReadsNii2meshsSemicolons) {
-    EXPECT_EQ(entryOf(decoded("1;Precentral L;2001\n2;Precentral R;2002\n"), 1).name,
-              "Precentral L");
-}
-
 TEST(LabelTable, ReadsGifti) {
     const LabelTable table = decoded(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<GIFTI Version=\"1.0\"><MetaData/>\n"
