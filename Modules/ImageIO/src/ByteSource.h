@@ -11,7 +11,7 @@
 
 namespace adaptiso::detail {
 
-/// What a file holds behind the last byte that was read.
+/// Content of a file behind the last byte that was read.
 struct ByteTail {
     std::uint64_t byteCount = 0;   ///< inflated where the data are compressed
     bool isZeros = true;           ///< no more than 64 KiB, all of them 0: padding
@@ -32,7 +32,7 @@ public:
     static Encoding encodingOf(const std::filesystem::path& file);
     static ByteSource openPlainOrGzip(const std::filesystem::path& file);
 
-    /// Of the next byte in the file. \pre Raw
+    /// Position of the next byte in the file. \pre Raw
     std::uint64_t position() const { return position_; }
 
     /// \throws FileError when `byteCount` bytes can't possibly follow, or when compressed data are

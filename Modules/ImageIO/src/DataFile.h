@@ -23,7 +23,7 @@ std::filesystem::path requireDataFile(const std::filesystem::path& headerFile,
 void requireOwnFolder(const std::filesystem::path& headerFile,
                       const std::filesystem::path& dataFile);
 
-/// The same of a file of a dataset that is a folder: it is there, or a link, or below a link, to a
+/// The same for a file of a dataset that is a folder: it is there, or a link, or below a link, to a
 /// file in the folder or in .git/annex/objects of a folder above it.
 ///
 /// \throws FileError when `dataFile` lies elsewhere

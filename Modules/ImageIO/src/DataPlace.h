@@ -61,7 +61,7 @@ struct PlacedVolume {
 PlacedVolume readPlaced(const DataPlace& place, const SampleLayout& layout,
                         const ImageGeometry& geometry);
 
-/// Compares what follows the samples with what the header says follows: nothing.
+/// Checks that nothing follows the samples, as the header promises.
 ///
 /// A warning is added for anything but padding with zeros behind compressed data.
 /// \throws FileError  the data file is of another kind (a picture, an archive); the samples were

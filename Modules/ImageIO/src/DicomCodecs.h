@@ -12,7 +12,7 @@ namespace adaptiso::detail {
 
 enum class DicomCodec { None, Rle, Jpeg, Jpeg2000 };  ///< Jpeg: JPEG-LS too
 
-/// Whether these first bytes of a fragment begin a frame; RLE does not tell.
+/// True if these first bytes of a fragment begin a frame; unknown for RLE.
 bool beginsDicomCodestream(std::string_view head, DicomCodec codec);
 
 /// One frame of run-length coded bytes (PS3.5, annex G) to `format`'s samples.

@@ -13,7 +13,7 @@ struct DicomFile {
     DicomHeader header;
 };
 
-/// What a DICOM file's header says of its pixels (PS3.3, C.7.6.3.1).
+/// Pixel description in a DICOM file's header (PS3.3, C.7.6.3.1).
 struct DicomPixelFormat {
     std::int64_t columns = 0, rows = 0, frames = 1;
     PixelType stored = PixelType::UInt16;

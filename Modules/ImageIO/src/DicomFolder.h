@@ -25,7 +25,7 @@ std::string withoutName(const std::string& message, const std::filesystem::path&
 /// \throws FileError when it is no gzip file, or a damaged one
 bool isGzippedDicom(const std::filesystem::path& file);
 
-/// What to do about a file that is damaged.
+/// Policy for damaged files.
 enum class DamagedFiles { Refuse, List };
 
 /// Walks through all of a folder, subfolders too. Links to files are followed, links to folders and

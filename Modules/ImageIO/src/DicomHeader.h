@@ -119,7 +119,7 @@ struct DicomDataset {
 /// ASCII as it is, all else as '?': what character set it is in is not looked at.
 std::string plainDicomText(std::string_view text);
 
-/// Where the pixels are, in DicomBytes' positions.
+/// Place of the pixels, in DicomBytes' positions.
 struct DicomPixelData {
     bool isEncapsulated = false;
     bool isWords = false;      ///< value representation OW: big endian swaps pairs of bytes

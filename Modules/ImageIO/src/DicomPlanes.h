@@ -12,11 +12,11 @@
 
 namespace adaptiso::detail {
 
-/// What tells the volumes of one series apart where several images lie at one place.
+/// Criterion that separates the volumes of one series where several images lie at one place.
 enum class DicomLabel { Echo, TimePoint, CardiacPhase, Diffusion, Acquisition };
 inline constexpr std::size_t kDicomLabels = 5;
 
-/// Where one slice lies, as its header says; what is missing stays empty. A file is one plane, an
+/// Position of one slice from its header; missing values stay empty. A file is one plane, an
 /// enhanced multi-frame file a plane for each frame, a Siemens mosaic one for each tile.
 struct DicomPlane {
     std::size_t file = 0;

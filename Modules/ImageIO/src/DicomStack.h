@@ -22,7 +22,7 @@ struct SliceBlend {
 struct DicomStack {
     std::vector<DicomPlane> planes;
     ImageGeometry geometry;
-    /// How each of the geometry's slices is made where the planes are uneven; else empty, and the
+    /// Recipe for each of the geometry's slices where the planes are uneven; else empty, and the
     /// planes are the slices.
     std::vector<SliceBlend> blends;
     /// The slice that each plane is, where slices without a plane are empty (0); else empty.

@@ -9,7 +9,7 @@
 
 #include "adaptiso/ImageIO/ReadVolume.h"
 
-/// Where code that can't be trusted runs: GDCM and ITK assert(), abort(), loop and overrun buffers
+/// Runs untrusted code: GDCM and ITK assert(), abort(), loop and overrun buffers
 /// on odd files. Decisions/0003-decoders-behind-a-fence.md says why it is a forked child.
 namespace adaptiso::detail {
 

@@ -12,7 +12,7 @@
 
 namespace adaptiso::detail {
 
-/// What a child behind a fence tells its parent: a volume's description, or what it threw.
+/// Answer of a fenced child to its parent: a volume's description, or the error it threw.
 struct FenceAnswer {
     enum class Kind : std::uint32_t {
         Volume,
@@ -32,7 +32,7 @@ struct FenceAnswer {
     std::vector<Warning> warnings;
 };
 
-/// No longer answer is believed.
+/// Longer answers are refused.
 inline constexpr std::size_t kLongestAnswer = std::size_t{1} << 20;
 
 std::string packFenceAnswer(const FenceAnswer& answer);

@@ -10,7 +10,7 @@
 
 namespace adaptiso::detail {
 
-/// What a child behind a fence is given.
+/// Input of a fenced child.
 struct FenceChildSetup {
     int answerPipe;             ///< to write the answer into
     int sharedMemory;           ///< a memfd that the samples go into

@@ -9,7 +9,7 @@
 
 namespace adaptiso::detail {
 
-/// What a codestream's own header says.
+/// Description of a codestream from its own header.
 struct Codestream {
     std::int64_t columns = 0, rows = 0;
     int components = 0, precision = 0;

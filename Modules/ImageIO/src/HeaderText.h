@@ -10,7 +10,7 @@
 
 #include "adaptiso/Core/Text.h"
 
-/// What NRRD's and MetaImage's text headers share.
+/// Shared by the text headers of NRRD and MetaImage.
 namespace adaptiso::detail {
 
 /// Cut at blanks.
@@ -19,7 +19,7 @@ std::vector<std::string_view> words(std::string_view text);
 /// All of `text` as one number; nothing else, no NaN or infinity for integers.
 std::optional<double> parseNumber(std::string_view text);
 std::optional<std::int64_t> parseInteger(std::string_view text);
-/// The same as T, any integer type of samples; nothing where T can't hold it.
+/// The same as T, any integer type of samples; empty if T can't hold it.
 template <class T>
 std::optional<T> parseNumberAs(std::string_view text);
 

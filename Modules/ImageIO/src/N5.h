@@ -26,7 +26,7 @@ std::optional<ZarrArray> readN5Array(const ZarrStore& store, const std::string& 
 /// The array at the root of a store, or one resolution of a group as n5-viewer, BigDataViewer and
 /// neuroglancer have it: a voxel of a coarser one is the mean of those that it stands for, so that
 /// its middle lies (factor - 1) / 2 of theirs further in. None: it holds neither.
-/// \throws FileError  there is no such level, or nothing says how coarse it is
+/// \throws FileError  no such level, or its resolution is unknown
 std::optional<ZarrScene> findN5Scene(const ZarrStore& store, std::int64_t level);
 
 /// A block, with the header that says how large it is, as a chunk that is not cut off at the

@@ -24,8 +24,8 @@ bool looksLikeNrrd(std::string_view head);
 bool looksLikeMetaImage(std::string_view head);
 bool looksLikeDicom(std::string_view head);
 
-/// Where the samples of a NIfTI or MGH file begin, by its first bytes; 0 for a .hdr, which holds no
-/// samples. Empty if it is no such file.
+/// Position of the samples of a NIfTI or MGH file, from its first bytes; 0 for a .hdr, which holds
+/// no samples. Empty if it is no such file.
 std::optional<std::uint64_t> niftiSamplesAt(std::string_view head);
 std::optional<std::uint64_t> mghSamplesAt(std::string_view head);
 

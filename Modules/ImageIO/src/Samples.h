@@ -84,7 +84,7 @@ void requireUsableGeometry(const std::filesystem::path& file, const ImageGeometr
 /// Turns every sample's bytes round where the file's byte order is not this machine's.
 void swapBytes(std::byte* samples, std::uint64_t byteCount, std::size_t bytesPerSample);
 
-/// How a file stores its samples and what has to become of them.
+/// Stored form of a file's samples and the conversion they need.
 struct SampleLayout {
     PixelType stored = PixelType::UInt8;
     std::endian byteOrder = std::endian::native;

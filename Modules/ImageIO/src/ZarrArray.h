@@ -18,7 +18,7 @@ namespace adaptiso::detail {
 /// An index, a size or a stride for each dimension of an array.
 using ZarrIndex = std::vector<std::uint64_t>;
 
-/// How the samples of a chunk become bytes.
+/// Codecs that turn the samples of a chunk into bytes.
 struct ZarrEncoding {
     std::vector<std::size_t> order;  ///< dimensions of the array, the slowest first
     std::endian byteOrder = std::endian::little;
@@ -33,7 +33,7 @@ struct ZarrSharding {
     bool isIndexAtEnd = true;
 };
 
-/// What the metadata of an array say, of version 2 (.zarray) or 3 (zarr.json), or of N5.
+/// Metadata of an array, of version 2 (.zarray) or 3 (zarr.json), or of N5.
 struct ZarrArray {
     int version = 3;
     bool isN5 = false;  ///< each chunk has a header; keys name the fastest dimension first

@@ -10,7 +10,7 @@
 
 namespace adaptiso::detail {
 
-/// What a chunk's bytes are packed with, from outside in.
+/// Compression of a chunk's bytes, from outside in.
 /// Lz4Stream is N5's, of blocks as lz4-java writes them.
 enum class ZarrCodec { Deflate, Zstd, Blosc, Lz4, Lz4Stream, Crc32c };
 
@@ -26,7 +26,7 @@ std::vector<std::byte> unpackZarrChunk(std::vector<std::byte> packed,
                                        std::span<const ZarrCodec> codecs, std::uint64_t byteCount,
                                        const std::filesystem::path& file);
 
-/// What `byteCount` bytes may take packed, at the worst: more can only be a fault.
+/// The most that `byteCount` bytes may take when packed; more is a fault.
 std::uint64_t zarrPackedLimit(std::uint64_t byteCount);
 
 /// CRC-32C (Castagnoli), as iSCSI has it [RFC3720].

@@ -14,7 +14,7 @@
 
 namespace adaptiso::detail {
 
-/// Which dimensions of an array are x, y and z, and where the others are cut.
+/// The dimensions of an array that are x, y and z, and the positions where the others are cut.
 struct ZarrCut {
     std::array<std::size_t, 3> space{};  ///< dimension of x, y, z
     ZarrIndex fixed;                     ///< index in each other dimension
@@ -41,7 +41,7 @@ struct ZarrRegion {
     Index3 first{0, 0, 0}, size{0, 0, 0};
 };
 
-/// What was read of an image.
+/// The part of an image that was read.
 struct ZarrPart {
     Volume volume;  ///< with the part's own place
     std::int64_t chunks = 0, missing = 0;

@@ -12,7 +12,7 @@
 
 namespace adaptiso::detail {
 
-/// What a dimension of an array is.
+/// Meaning of an array's dimension.
 struct ZarrAxis {
     enum class Kind { Space, Channel, Time, Other };
     Kind kind = Kind::Other;
@@ -24,13 +24,13 @@ struct ZarrAxis {
 struct ZarrScene {
     std::string format;                ///< "Zarr 2", "OME-Zarr 0.4"
     std::string path;                  ///< of the array
-    std::vector<ZarrAxis> axes;        ///< of its dimensions; empty: nothing says what they are
+    std::vector<ZarrAxis> axes;        ///< of its dimensions; may be empty (unknown)
     std::vector<double> scale, shift;  ///< of each dimension, in its units: scale * index + shift
     std::int64_t levels = 1;
     std::vector<Warning> warnings;
 };
 
-/// What lies at the root of a store: an array, the multiscales of an OME-Zarr of version 0.4 or
+/// Content at the root of a store: an array, the multiscales of an OME-Zarr of version 0.4 or
 /// 0.5, or what N5 has of both. \param level  of resolution, 0 the finest \throws FileError  it
 /// holds neither, is of another version, or has not that level
 ZarrScene findZarrScene(const ZarrStore& store, std::int64_t level);

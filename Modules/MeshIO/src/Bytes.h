@@ -125,7 +125,7 @@ private:
     std::size_t position_ = 0;
 };
 
-/// Where a comment begins: '#' at the start of a word; npos if there is none.
+/// Start of a comment, '#' at the start of a word; npos if there is none.
 std::size_t findComment(std::string_view line);
 
 /// The number that `word` spells, all of it, whatever the locale; fails otherwise. Whole numbers

@@ -13,7 +13,7 @@
 
 namespace adaptiso::meshio {
 
-/// What an encoder writes: a mesh already in `options.frame`, checked by writeMesh().
+/// Input of an encoder: a mesh already in `options.frame`, checked by writeMesh().
 struct MeshRecord {
     const TriangleMesh& mesh;
     const MeshWriteOptions& options;
@@ -42,13 +42,13 @@ MeshFile decodeGifti(std::string_view bytes, const MeshReadOptions& options);
 MeshFile decodeFreeSurfer(std::string_view bytes, const MeshReadOptions& options);
 MeshFile decodeOpenMeeg(std::string_view bytes);
 
-/// Who wrote the file and, unless it is not to say so, in which frame, on one line:
+/// The writer and, if options.saysFrame, the frame, on one line:
 /// "adaptiso surface, CoordinateFrame: RAS mm".
 std::string headerLine(const MeshWriteOptions& options);
 /// The same with 3D Slicer's mark, in formats that Slicer reads: "..., SPACE=RAS".
 std::string slicerHeaderLine(const MeshWriteOptions& options);
 
-/// Collects what a file says of its frame. Marks that contradict each other are refused; none is
+/// Collects the marks of a file's frame. Contradicting marks are refused; no mark is
 /// looked at where options.inputCoordinates states the frame.
 class FrameMarks {
 public:
@@ -90,16 +90,16 @@ std::string_view withoutMark(std::string_view bytes);
 void refuseOtherContent(std::string_view head, std::uint64_t byteCount,
                         const std::filesystem::path& path, bool isInflated);
 
-/// What is a full shade where a number has no decimal point: OBJ's 1, OFF's 255.
+/// Full shade of a number without a decimal point: OBJ's 1, OFF's 255.
 enum class ColorScale { One, Byte };
 
-/// Colours that follow the coordinates of points in a line of text.
+/// Collects colours that follow the coordinates of points in lines of text.
 class PointColors {
 public:
     /// \param areWanted  else nothing is read
     explicit PointColors(bool areWanted) : areWanted_(areWanted) {}
 
-    /// The next three words, of each point in turn. Where they are no numbers it has no colour.
+    /// Reads the next three words, for each point in turn. Other words: the point has no colour.
     void add(ByteSource& line, ColorScale scale);
 
     /// "RGB" where each point has one; else nothing.
@@ -110,7 +110,7 @@ private:
     std::vector<Color> colors_;
 };
 
-/// The colours that a format which holds nothing else is to write; null: none.
+/// The colours to write in a format that holds no other arrays; may be null.
 const std::vector<Color>* colorsOf(const MeshWriteOptions& options);
 
 }  // namespace adaptiso::meshio

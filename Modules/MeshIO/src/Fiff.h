@@ -38,7 +38,7 @@ struct Block {
     std::size_t parent = 0;
 };
 
-/// What a file holds, in its order. Blocks are numbered as they begin, the file itself is 0.
+/// The tags of a file, in its order. Blocks are numbered as they begin, the file itself is 0.
 struct Content {
     std::vector<Tag> tags;
     std::vector<Block> blocks;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What GIFTI surfaces and GIFTI data have in common: arrays of numbers in XML.
+// Arrays of numbers in XML, for GIFTI surfaces and GIFTI data.
 
 #include <bit>
 #include <cstdint>
@@ -39,7 +39,7 @@ struct GiftiShape {
 
 GiftiShape shapeOf(const XmlAttributes& attributes, std::string_view what);
 
-/// The encoding says that numbers are packed (true), or base64 alone. \throws FileError  neither
+/// True if the encoding packs numbers, false for base64 alone. \throws FileError  otherwise
 bool isPackedGifti(const std::string& encoding, std::string_view what);
 
 /// The numbers of an array in the order in which they are stored.

@@ -1,6 +1,6 @@
 #pragma once
 
-// What both of VTK's formats have in common: the texts they hold, and numbers by their types.
+// Shared by both of VTK's formats: the texts they hold, and numbers by their types.
 
 #include <cstdint>
 #include <set>
@@ -30,7 +30,7 @@ inline std::vector<std::pair<std::string_view, std::string_view>> fieldsOf(
     return fields;
 }
 
-/// Adds what a string array of field data says of the frame.
+/// Adds the frame that a string array of field data names.
 inline void addField(std::string_view name, std::string_view text, FrameMarks& marks) {
     if (name == kFrameFieldName) marks.add(parseCoordinateFrame(text));
     if (name != kSlicerFieldName) return;
@@ -51,7 +51,7 @@ std::vector<std::string> arrayNames(const std::vector<Array>& arrays) {
     return names;
 }
 
-/// What the formats call numbers of a type.
+/// Names of a number's type in the two formats.
 struct NumberType {
     std::string_view inXml, inLegacy;
 };
@@ -95,7 +95,7 @@ auto numberOf(const Row& row) {
 template <class Row>
 using NumberOf = decltype(numberOf(std::declval<Row>()));
 
-/// How many numbers a row of an array has, which is `components` numbers of a plain list.
+/// Numbers in a row of an array; `components` for a plain list.
 template <class Row>
 constexpr int rowComponents(int components) {
     return std::is_arithmetic_v<Row> ? components : 3;

@@ -1,6 +1,6 @@
 #pragma once
 
-// How XML formats pack binary data: base64 and zlib.
+// XML (expat), and the ways XML formats pack binary data: base64 and zlib.
 
 #include <cstddef>
 #include <map>
@@ -17,7 +17,7 @@ const std::string& requireAttribute(const XmlAttributes& attributes, std::string
 std::string attributeOr(const XmlAttributes& attributes, std::string_view name,
                         std::string_view otherwise);
 
-/// What parseXml() calls, in document order.
+/// Called by parseXml(), in document order.
 class XmlHandler {
 public:
     virtual ~XmlHandler() = default;

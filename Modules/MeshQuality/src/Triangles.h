@@ -14,7 +14,7 @@
 
 namespace adaptiso {
 
-// What the exact tests of this module share.
+// Shared by the exact tests of this module.
 
 /// `p` seen along an axis.
 inline Point2 dropAxis(const Vec3& p, int axis) {
@@ -51,12 +51,12 @@ struct Hit {
     bool crosses = false;  ///< the ray passes through
 };
 
-/// What a ray from `p` does to a triangle, decided exactly. Ties are broken by moving the ray
+/// Meeting of a ray from `p` and a triangle, decided exactly. Ties are broken by moving the ray
 /// sideways by (e^2, e), e infinitely small, so that of the triangles round an edge or a corner it
 /// crosses those that a ray beside it does. \pre p and the corners are finite
 Hit hitOf(const Vec3& p, const Ray& ray, const Corners& t);
 
-/// All that the ray passes.
+/// Box of all that the ray passes.
 BoundingBox boxOf(const Vec3& p, const Ray& ray);
 
 /// \throws InvalidInput naming `function` when a triangle names a point that is not there

@@ -8,7 +8,7 @@
 
 #include "adaptiso/Core/Volume.h"
 
-/// What the filters share. ITK's headers are slow to compile: for few .cxx files.
+/// Shared by the filters. ITK's headers are slow to compile: for few .cxx files.
 namespace adaptiso::detail {
 
 template <class T>

@@ -46,7 +46,7 @@ public:
 
     double textWidth(const std::string& text, double size);
 
-    /// What is drawn until restore() stays inside the rectangle.
+    /// Keeps drawing inside the rectangle until restore().
     void clip(Pixel corner, double width, double height);
     void restore();
 

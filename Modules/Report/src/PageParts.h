@@ -18,7 +18,7 @@ std::string escaped(const std::string& text);
 /// \param label  what it is, for people who hear the page
 std::string scrollable(const std::string& label, const std::string& html);
 
-/// Which of the required checks failed, for the banner: the first three by name.
+/// The required checks that failed, for the banner: the first three by name.
 std::string failuresHtml(const Report& report);
 /// The warnings, for the banner: the first three; notesHtml() has the others.
 std::string warningsHtml(const Report& report);

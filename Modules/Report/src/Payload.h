@@ -12,7 +12,7 @@ namespace adaptiso {
 /// gzip without a date, so that the same bytes give the same. \throws InternalError
 std::string gzip(std::string_view bytes);
 
-/// The image as a NIfTI-1 file of 8 bits a sample, black to white as greyWindow() says: with at
+/// The image as a NIfTI-1 file of 8 bits a sample, black to white as greyWindow() gives: with at
 /// most `maxVoxels` samples, means of blocks of the image's where that has more. RAS; the header
 /// holds geometry alone. Black where `face` (if not null) hides the middle of a block.
 std::string niftiOf(const VolumeView& volume, std::int64_t maxVoxels,

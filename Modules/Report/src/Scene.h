@@ -63,17 +63,17 @@ private:
     void keepAllBut(std::vector<bool> left);
 
     std::shared_ptr<const TriangleMesh> lps_;
-    std::shared_ptr<const std::vector<bool>> left_;  ///< of each triangle; none: all are drawn
+    std::shared_ptr<const std::vector<bool>> left_;  ///< of each triangle; null: all are drawn
     std::int64_t count_ = 0;
 };
 
 /// Area, mm2, of the triangles that are drawn.
 double surfaceArea(const SceneMesh& mesh);
 
-/// Of the triangles that are drawn. Without any, minimum > maximum.
+/// Box of the triangles that are drawn; empty without any.
 BoundingBox boxOf(const SceneMesh& mesh);
 
-/// What lies inside closed surfaces, in cells of 1 mm.
+/// The inside of closed surfaces, in cells of 1 mm.
 class Inside {
 public:
     /// \param surface  fills where a line along z enters and leaves it; lines that meet it an odd
@@ -93,7 +93,7 @@ private:
 /// to the brows, and falls backwards by 42 degrees; for heads of another length than 180 mm, as
 /// measured in the upper 50 mm, in proportion. Heads that look up or down by 20 degrees keep their
 /// brows, eyes, nose, mouth and chin below it. No part of the face lies in the upper 50 mm, so
-/// nothing of the face tells where the plane is.
+/// the plane's place does not depend on the face.
 class FaceCut {
 public:
     /// Finds the head in the image, else in the surfaces. What lies inside a surface that
@@ -102,7 +102,7 @@ public:
 
     bool hides(const Vec3& rasMm) const;
 
-    /// Where the head lies could not be told, so everything is hidden but what stays.
+    /// The head was not found, so everything is hidden but what stays.
     bool hidesAll() const { return !plane_; }
     const std::string& reason() const { return reason_; }  ///< of hidesAll()
     double belowTopMm() const;                             ///< where the plane begins
@@ -112,7 +112,7 @@ private:
     struct Plane {
         double topMm, frontMm, scale;
     };
-    /// What the upper part of a head tells, RAS.
+    /// Extent of a head's upper part, RAS.
     struct Vault {
         double topMm, frontMm, backMm;
     };
@@ -133,7 +133,7 @@ struct SceneSurface {
     std::span<const double> valuesMm;  ///< of the vertices, or empty
     double largestValueMm = 0;         ///< of all surfaces: one scale of colours
     std::int64_t triangles = 0;        ///< of the surface as given
-    /// Where valuesMm lie when not in the report.
+    /// Storage of valuesMm when not in the report.
     std::shared_ptr<const std::vector<double>> ownValues{};
 };
 
@@ -143,12 +143,12 @@ struct SceneSpot {
     bool isFailure = true;
 };
 
-/// What there is to see, in RAS mm.
+/// Surfaces and spots to draw, in RAS mm.
 struct Scene {
     std::vector<SceneSurface> surfaces;
     std::vector<SceneSpot> spots;
     BoundingBox box;                        ///< of all surfaces; of the image when there is none
-    std::shared_ptr<const FaceCut> face{};  ///< what is left out; none: nothing
+    std::shared_ptr<const FaceCut> face{};  ///< part left out; may be null
 
     bool isEmpty() const { return surfaces.empty(); }
     bool hasTriangles() const;
@@ -161,8 +161,8 @@ Scene makeScene(Report&&) = delete;
 /// The line, RAS mm, in which a triangle meets a plane.
 using Segment = std::array<Vec3, 2>;
 
-/// Where `mesh` meets the plane on which coordinate `axis` is `atMm`. Corners on the plane count as
-/// above it, so that a closed surface gives closed curves.
+/// Section of `mesh` with the plane on which coordinate `axis` is `atMm`. Corners on the plane
+/// count as above it, so that a closed surface gives closed curves.
 std::vector<Segment> cutByPlane(const SceneMesh& mesh, int axis, double atMm);
 
 }  // namespace adaptiso

@@ -38,7 +38,7 @@ struct SlicePlane {
 
 /// "axial", "coronal", "sagittal"
 const char* sliceName(int axis);
-/// What lies to the left, right, top and bottom of such a slice: "L", "R", "A", "P"...
+/// Sides at the left, right, top and bottom of such a slice: "L", "R", "A", "P"...
 struct SliceSides {
     const char *left, *right, *top, *bottom;
 };

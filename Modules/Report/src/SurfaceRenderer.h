@@ -22,7 +22,7 @@ struct View {
 /// Front, back, left, right, top, bottom.
 const std::array<View, 6>& sixViews();
 
-/// What a view shows, `size` pixels a side.
+/// Picture of a view, `size` pixels a side.
 struct Rendering {
     int size = 0;
     Vec3 middle;  ///< of the picture
@@ -31,7 +31,7 @@ struct Rendering {
     std::vector<double> depthMm;  ///< of the nearest surface, towards the viewer; -inf: none
 
     Pixel toPixel(const Vec3& p, const View& view) const;
-    /// Nothing lies more than `toleranceMm` before `p`, and something not much behind it.
+    /// True if nothing lies more than `toleranceMm` before `p`, and something close behind it.
     bool isSeen(const Vec3& p, const View& view, double toleranceMm) const;
 };
 

@@ -27,7 +27,7 @@ template <class T>
 std::vector<std::uint32_t> blocksAround(const TypedVolumeView<T>& volume, const BlockGrid& grid,
                                         T threshold);
 
-/// What finds the blocks that a threshold touches: one contract, so that the ways to search can
+/// Finds the blocks that a threshold touches: one contract, so that the ways to search can
 /// stand in for each other and be compared.
 template <class T>
 class BlockSearch {

@@ -53,7 +53,7 @@ public:
     void forEachOverlap(const BoundingBox& box, const Visit& visit) const;
 
     /// Calls visit(triangle) for every triangle that may lie within a distance of `box`, nearer
-    /// ones first by and large: all triangles of the leaves whose boxes do. squaredReachMm2() says
+    /// ones first by and large: all triangles of the leaves whose boxes do. squaredReachMm2() gives
     /// the distance's square; it is asked at every box, so that it may shrink as the search goes
     /// on.
     template <class Reach, class Visit>

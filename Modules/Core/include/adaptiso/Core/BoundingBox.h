@@ -14,7 +14,7 @@ struct BoundingBox {
     Vec3 minimum;
     Vec3 maximum;
 
-    /// Of nothing: what is added to it is all that it holds.
+    /// An empty box: holds what is added, nothing else.
     static BoundingBox empty() {
         constexpr double kInfinity = std::numeric_limits<double>::infinity();
         return {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};

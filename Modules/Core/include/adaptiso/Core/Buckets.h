@@ -25,7 +25,7 @@ public:
         assign(count, giveAll);
     }
 
-    /// As the constructor; uses the memory that is there.
+    /// Like the constructor, within the memory already held.
     template <class GiveAll>
     void assign(std::size_t count, const GiveAll& giveAll) {
         assignInHugePages(begin_, count + 2);
@@ -40,7 +40,7 @@ public:
     std::span<Item> of(std::size_t bucket) {
         return {items_.data() + begin_[bucket], items_.data() + begin_[bucket + 1]};
     }
-    /// Of the buckets from `first` up to `end`, which lie side by side.
+    /// Items of the buckets from `first` up to `end`, which lie side by side.
     std::span<const Item> of(std::size_t first, std::size_t end) const {
         return {items_.data() + begin_[first], items_.data() + begin_[end]};
     }

@@ -8,7 +8,7 @@
 
 namespace adaptiso {
 
-/// Content that is not what a data file's name says.
+/// Content that does not belong in a data file of its name.
 enum class ForeignKind {
     StandIn,  ///< the data are elsewhere: a pointer, a placeholder, an error page, zeros, nothing
     Packed,   ///< an archive or a packed file
@@ -21,7 +21,7 @@ struct ForeignContent {
     std::string remedy;  ///< "fetch them: git lfs pull"
 };
 
-/// How many first bytes foreignContentOf() looks at.
+/// Number of first bytes that foreignContentOf() looks at.
 inline constexpr std::size_t kForeignHeadBytes = 1024;
 
 /// Recognises what no reader of this library reads, by the first bytes of a file.
@@ -35,7 +35,7 @@ std::optional<ForeignContent> foreignContentOf(std::string_view head,
                                                const std::filesystem::path& file,
                                                bool isInflated = false);
 
-/// The same of a file on disk; nothing is inflated. Links of git-annex to content that was not
+/// The same for a file on disk; nothing is inflated. Links of git-annex to content that was not
 /// fetched, placeholders of cloud folders (by name) and files of zeros alone, whatever their
 /// length, are recognised too. Never opens pipes or devices. \return  empty for other missing or
 /// unreadable files

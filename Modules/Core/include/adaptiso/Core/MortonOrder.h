@@ -18,7 +18,7 @@ class MortonCurve {
 public:
     explicit MortonCurve(const BoundingBox& box);
 
-    /// Of the cube that a point lies in: 30 bits.
+    /// Key of the cube that a point lies in: 30 bits.
     std::uint64_t placeOf(const Vec3& point) const {
         const Vec3 p = unit_ * (point - low_);
         return along(p.x) << 2 | along(p.y) << 1 | along(p.z);

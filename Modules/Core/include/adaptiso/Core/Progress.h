@@ -9,7 +9,7 @@ namespace adaptiso {
 /// from the calling thread only. May be empty (no progress reporting).
 using ProgressCallback = std::function<void(std::string_view stage, double fraction)>;
 
-/// Lets long work be ended from outside, also where it tells no progress: as long as one of these
+/// Lets long work be ended from outside, also where it reports no progress: as long as one of these
 /// lives, parallel loops call its function now and then on the thread that made it. What the
 /// function throws ends the loop and comes out of the work, as a lack of memory does.
 class InterruptionCheck {

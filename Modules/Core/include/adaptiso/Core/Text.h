@@ -23,20 +23,20 @@ std::string visibleAscii(std::string_view text);
 /// visibleAscii() in quotes, cut at 40 characters: for messages.
 std::string printable(std::string_view text);
 
-/// `text` as HTML and XML have it between tags and in quotes; control characters become blanks.
+/// `text` escaped for HTML and XML, between tags and in quotes; control characters become blanks.
 std::string escapedMarkup(std::string_view text);
 
 /// Base64 with padding, in one line (RFC 4648).
 std::string encodeBase64(std::string_view bytes);
 
-/// Whether `text` is UTF-8 as RFC 3629 has it.
+/// True if `text` is UTF-8 (RFC 3629).
 bool isUtf8(std::string_view text);
 
-/// `text` as UTF-8: text that is not is taken for Latin-1.
+/// `text` as UTF-8; other encodings are taken for Latin-1.
 std::string toUtf8(std::string_view text);
 
-/// The number that all of `text` is, in the C locale ("100", "-0.5", "+1e3"), whatever the user's.
-/// \return none when it is no number, not finite, or too large for a double
+/// Parses all of `text` as a number, in the C locale ("100", "-0.5", "+1e3"), whatever the user's.
+/// \return empty if it is no number, not finite, or too large for a double
 std::optional<double> parseFiniteNumber(std::string_view text);
 
 /// The shortest decimal text that reads back as `value`, without an exponent unless the number is
@@ -65,7 +65,7 @@ std::string formatBound(double value, int digits = 4);
 /// An area or a volume: as formatRounded() from 100 on, below in three significant digits.
 std::string formatMeasure(double value);
 
-/// As formatShort(), with more digits where different numbers would read alike: 1000000.25 and
+/// Like formatShort(), with more digits where different numbers would look alike: 1000000.25 and
 /// 1000000.5 are "1000000.2" and "1000000.5".
 std::vector<std::string> formatApart(const std::vector<double>& values);
 

@@ -12,7 +12,7 @@ namespace adaptiso {
 /// Number of a vertex; 64 bits, so that no volume is too large (and as VTK keeps them).
 using VertexId = std::int64_t;
 using Triangle = std::array<VertexId, 3>;
-/// Of a triangle, in its order.
+/// Corners of a triangle, in its order.
 using Corners = std::array<Vec3, 3>;
 
 /// A triangle surface: V points, T triangles, and V normals or none.
@@ -47,7 +47,7 @@ inline Corners cornersOf(const TriangleMesh& mesh, std::int64_t triangle) {
             mesh.points[static_cast<std::size_t>(c)]};
 }
 
-/// Of all points, used or not.
+/// Box of all points, used or not.
 /// \pre the mesh has a point \throws InvalidInput otherwise
 BoundingBox boundingBox(const TriangleMesh& mesh);
 

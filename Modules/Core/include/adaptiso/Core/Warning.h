@@ -30,7 +30,7 @@ std::span<const WarningCode> warningCodes();
 void addWarnings(std::vector<Warning>& warnings, std::span<const Warning> more,
                  const std::string& file = {});
 
-/// Each as line() has it.
+/// line() of each warning.
 std::vector<std::string> linesOf(std::span<const Warning> warnings);
 
 }  // namespace adaptiso

@@ -31,11 +31,11 @@ public:
     const std::vector<Warning>& warnings() const;
     bool readsParts() const;  ///< no more is in memory than what is asked for
 
-    /// What all samples of a part are, where that is known without reading: no chunk of it is
+    /// The value of all samples of a part, where known without reading: no chunk of it is
     /// there. NaN is no answer.
     std::optional<double> constantIn(const Index3& first, const Index3& size) const;
 
-    /// Size and time of change of the files that hold a part, so that a change can be told; and
+    /// Size and time of change of the files that hold a part, to detect changes; and
     /// which of them are not there. A line each.
     std::string stampOf(const Index3& first, const Index3& size) const;
 

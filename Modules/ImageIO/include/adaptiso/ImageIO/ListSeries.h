@@ -21,7 +21,7 @@ struct DicomSeries {
     std::string orientation;  ///< "axial", "coronal", "sagittal", "unknown"
     std::int64_t columns = 0, rows = 0;
     std::int64_t slices = 0;   ///< of one volume; of a series that can't be read: its images
-    std::int64_t volumes = 1;  ///< more than 1: 4-D; 0: can't be told apart
+    std::int64_t volumes = 1;  ///< more than 1: 4-D; 0: can't be separated
     Vec3 spacingMm;            ///< between columns, rows, slices; 0: unknown
     bool isLocalizer = false;
     std::optional<std::int64_t> segment;  ///< of a segmentation: its number in the file

@@ -12,21 +12,21 @@
 namespace adaptiso {
 
 struct ReadOptions {
-    /// Which of a DICOM folder's image groups to read: its number (from 1) in the list that a
+    /// The DICOM folder's image group to read: its number (from 1) in the list that a
     /// refusal prints and listSeries() returns, or its SeriesInstanceUID. Unset: the folder must
     /// hold one volume; localizers, segmentations beside a scan and other stray images are left
     /// aside with a warning.
     std::optional<std::string> series{};
 
-    /// Which volume of a 4-D image to read, counted from 0. Unset: the image must hold one.
+    /// The volume of a 4-D image to read, counted from 0. Unset: the image must hold one.
     std::optional<std::int64_t> volumeIndex{};
 
-    /// Which resolution of an OME-Zarr to read, 0 the finest (unset), and which of its channels and
+    /// The resolution of an OME-Zarr to read, 0 the finest (unset), and its channel and
     /// time points, counted from 0. Unset: it must hold one.
     std::optional<std::int64_t> level{}, channel{}, timePoint{};
 
     /// A chunk of a Zarr that is not there (ENOENT) holds the fill value, by its specification, and
-    /// a warning tells how many there are. Set: they are refused.
+    /// a warning gives their number. Set: they are refused.
     bool refusesMissingChunks = false;
 
     /// DICOM slices that lie unevenly are blended linearly, each from its two neighbours, onto even

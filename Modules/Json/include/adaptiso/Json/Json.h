@@ -43,7 +43,7 @@ inline void to_json(Json& json, const Warning& warning) {
             {"text", warning.text}};
 }
 
-/// As to_json() wrote it. \throws Json::exception  it did not
+/// Reads what to_json() wrote. \throws Json::exception  for anything else
 inline void from_json(const Json& json, Warning& warning) {
     json.at("code").get_to(warning.code);
     json.at("text").get_to(warning.text);

@@ -22,10 +22,10 @@ enum class CoordinateFrame {
 /// The name written into files: "RAS mm", "LPS mm", "tkRAS mm", "voxel indices".
 std::string_view toString(CoordinateFrame frame);
 
-/// What comments and header lines say: "CoordinateFrame: RAS mm".
+/// Mark in comments and header lines: "CoordinateFrame: RAS mm".
 std::string frameMarker(CoordinateFrame frame);
 
-/// The frame that a text names with frameMarker()'s words, wherever they stand in it.
+/// The frame of the first frameMarker() in a text.
 std::optional<CoordinateFrame> findFrameMarker(std::string_view text);
 
 /// The frame of this name (as toString() gives it), if it is one.

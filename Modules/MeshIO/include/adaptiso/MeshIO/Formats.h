@@ -11,21 +11,21 @@ namespace adaptiso {
 
 enum class MeshFormatId { VtkXml, VtkLegacy, Ply, Stl, Obj, Off, Gifti, FreeSurfer, OpenMeeg };
 
-/// How finely a format keeps a coordinate.
+/// Precision of a format's coordinates.
 enum class CoordinatePrecision {
     Float64,     ///< the very double
     Float32,     ///< rounded to single precision: 24 bits, 8 nm at 100 mm
     NineDigits,  ///< text of nine significant digits: 0.1 nm at 100 mm
 };
 
-/// What one file format can hold. Every format here is both read and written.
+/// Capabilities of a file format. Every format here is both read and written.
 struct MeshFormat {
     MeshFormatId id;
     std::string_view name;                         ///< for people: "STL (binary)"
     std::span<const std::string_view> extensions;  ///< lower case, with the dot
     CoordinatePrecision precision;
     bool holdsNormals;         ///< normals given to writeMesh() come back from readMesh()
-    bool holdsFrame;           ///< the file says its coordinate frame
+    bool holdsFrame;           ///< the file names its coordinate frame
     bool holdsVoxelFrame;      ///< its points may be voxel indices rather than mm
     bool holdsVolumeGeometry;  ///< the geometry of the volume comes back (CoordinateFrame::TkRas)
     bool holdsPointArrays;     ///< values at points come back (MeshReadOptions::keepsPointArrays)
@@ -42,14 +42,14 @@ std::span<const MeshFormat> meshFormats();
 /// \throws InvalidInput  no format has this extension; the message lists those that are known
 const MeshFormat& findMeshFormat(const std::filesystem::path& path);
 
-/// How many first bytes recognizeMeshFormat() looks at.
+/// Number of first bytes that recognizeMeshFormat() looks at.
 inline constexpr std::size_t kMeshHeadBytes = std::size_t{1} << 16;
 
 /// The format of a surface by its content, whatever the file's name.
 ///
 /// \param head       the file's first kMeshHeadBytes bytes, all of a shorter file; unpacked
 /// \param byteCount  of the whole file
-/// \return           null where content does not tell: STL that is cut off, OFF without its word
+/// \return           null if unrecognisable: STL that is cut off, OFF without its word
 const MeshFormat* recognizeMeshFormat(std::string_view head, std::uint64_t byteCount);
 
 /// The frame that users of a format expect: tkRAS of FreeSurfer surfaces, scanner RAS otherwise.

@@ -58,7 +58,7 @@ struct MeshWriteOptions {
     /// The mesh is in `frame` already, as readMesh() gives it, and is written as it is. TkRas and
     /// Voxel then do without `volume`.
     bool isInFrame = false;
-    /// The file says which frame it holds, where its format can.
+    /// Names the frame in the file, where its format can.
     bool saysFrame = true;
 };
 

@@ -32,7 +32,7 @@ struct PointValues {
     std::string intent;
     std::variant<std::vector<float>, std::vector<std::int32_t>> values;
     std::int64_t columns = 1;  ///< numbers for each point, one after the other
-    /// GIFTI: "Name" and what says which part of the brain it is.
+    /// GIFTI: "Name" and the part of the brain.
     std::vector<std::pair<std::string, std::string>> metadata;
 
     bool areLabels() const { return std::holds_alternative<std::vector<std::int32_t>>(values); }
@@ -45,7 +45,7 @@ struct PointLabel {
     std::optional<std::array<double, 4>> rgba;  ///< 0 to 1
 };
 
-/// What a file of values at points holds.
+/// Content of a file of values at points.
 struct PointData {
     PointDataFormat format{};
     std::int64_t points = 0;
@@ -72,7 +72,7 @@ PointData readPointData(const std::filesystem::path& path);
 PointData decodePointData(std::string_view bytes, PointDataFormat format, std::string_view name);
 
 /// Writes values at points: the same data give the same bytes.
-/// \param triangles  of the surface: a curv file says how many
+/// \param triangles  of the surface: a curv file holds their number
 /// \throws InvalidInput  no points or arrays, values that are not one a point and column, more than
 ///                       the format can count; curv: not one array of numbers; annot: not one of
 ///                       labels, or a table that is damaged; mgh: columns, or numbers beside labels

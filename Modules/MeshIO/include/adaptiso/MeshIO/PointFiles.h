@@ -12,7 +12,7 @@
 
 namespace adaptiso {
 
-/// What a digitized point is.
+/// Kind of a digitized point.
 enum class PointKind { Nasion, LeftEar, RightEar, Electrode, Other };
 
 struct NamedPoint {
@@ -26,7 +26,7 @@ struct PointFile {
     std::vector<NamedPoint> points;        ///< in mm where the unit is known
     std::string format;                    ///< "BIDS electrodes", "ASA .elc", ...
     bool saysUnit = false;                 ///< else the numbers are as stored
-    std::optional<CoordinateFrame> frame;  ///< none: not said, or one of its own (see frameName)
+    std::optional<CoordinateFrame> frame;  ///< empty: unknown, or one of its own (frameName)
     std::string frameName;                 ///< as the file calls it; may be empty
 };
 
@@ -36,14 +36,14 @@ struct PointFile {
 ///                    landmarks from the _coordsystem.json beside it: EEGCoordinateSystem,
 ///                    EEGCoordinateUnits, AnatomicalLandmarkCoordinates (NAS, LPA, RPA)
 ///   .elc             of ASA: UnitPosition, Positions, Labels
-///   .sfp             of BESA and EGI: name x y z; it says no unit
+///   .sfp             of BESA and EGI: name x y z, without a unit
 ///   .fif             FIFF's digitizer block: metres, in head or MRI coordinates
-/// Landmarks are told by their names (NAS, Nz, fidNz, LPA, fidT9, ...), upper case or lower.
+/// Landmarks are recognised by name (NAS, Nz, fidNz, LPA, fidT9, ...), upper case or lower.
 /// Files are taken for hostile: at most 100,000 points, none of them not finite.
 /// \throws FileError  "<file>: what is wrong; what to do"
 PointFile readPoints(const std::filesystem::path& path);
 
-/// The same from bytes in memory; of BIDS without and with the bytes of _coordsystem.json.
+/// The same from bytes in memory; for BIDS with the bytes of _coordsystem.json, if any.
 /// \param extension  ".tsv", ".elc", ".sfp" or ".fif"
 PointFile decodePoints(std::string_view bytes, std::string_view extension, std::string_view name,
                        const std::optional<std::string>& coordinateSystem = std::nullopt);

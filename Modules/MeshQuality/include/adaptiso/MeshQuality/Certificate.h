@@ -8,7 +8,7 @@
 
 namespace adaptiso {
 
-/// Of 0.8 degrees: triangles at an edge with a smaller angle between them count as folded.
+/// Squared sine of 0.8 degrees: triangles that meet at a smaller angle count as folded.
 inline constexpr double kSquaredSineOfFold = 1.95e-4;
 
 // Conservative proofs that two triangles of a mesh do not cross: `true` is certain, `false` means
@@ -27,7 +27,7 @@ bool touchAtVertexOnly(const Corners& a, const Corners& b, double gap);
 /// \param squaredSine  of the angle
 bool touchAtEdgeOnly(const Corners& a, const Corners& b, double squaredSine = kSquaredSineOfFold);
 
-/// Whichever of the three it is of two triangles of a mesh, by the numbers of their corners.
+/// The test of the three above that fits two triangles of a mesh, by the numbers of their corners.
 template <class Id>
 bool areClear(std::span<const Vec3> points, const std::array<Id, 3>& s, const std::array<Id, 3>& t,
               double gap, double squaredSine = kSquaredSineOfFold) {

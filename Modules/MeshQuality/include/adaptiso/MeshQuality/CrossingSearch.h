@@ -14,9 +14,9 @@
 
 namespace adaptiso {
 
-/// Which vertices of a mesh have a fan of triangles all round that is clear of itself: seen along
-/// one direction all of them are upright and go round the vertex once. No two triangles of such a
-/// fan cross (see trianglesCross()). What is no such fan may be clear all the same.
+/// Finds the vertices of a mesh with a fan of triangles all round that is clear of itself: seen
+/// along one direction all of them are upright and go round the vertex once. No two triangles of
+/// such a fan cross (see trianglesCross()). What is no such fan may be clear all the same.
 ///
 /// Cost: O(T), in parallel; 28 bytes a triangle while it is made, then one byte a vertex.
 class ClearFans {

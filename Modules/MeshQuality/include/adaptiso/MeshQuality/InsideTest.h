@@ -26,7 +26,7 @@ public:
     /// On: on a triangle, to the bit. \pre p is finite
     Side sideOf(const Vec3& p) const;
 
-    /// Every edge lies in exactly two triangles of finite corners: one ray tells.
+    /// Every edge lies in exactly two triangles of finite corners: one ray is enough.
     bool isClosed() const { return isClosed_; }
 
 private:

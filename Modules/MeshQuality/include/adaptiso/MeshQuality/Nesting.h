@@ -10,7 +10,7 @@
 
 namespace adaptiso {
 
-/// How two surfaces lie to each other.
+/// Relation of two surfaces.
 enum class NestingRelation {
     Nested,     ///< the inner one lies strictly inside the outer one
     Crossing,   ///< they cross or touch
@@ -42,7 +42,7 @@ struct NestingReport {
     bool isStrictlyNested() const { return relation == NestingRelation::Nested; }
 };
 
-/// Whether `inner` lies strictly inside `outer`, and how far from it.
+/// Checks that `inner` lies strictly inside `outer`, and measures the gap.
 ///
 /// All of it is exact (trianglesMeet, InsideTest) but for distances, which are rounded. Inside is
 /// by the even-odd rule; a surface that is there twice as a whole, which has no inside by it,

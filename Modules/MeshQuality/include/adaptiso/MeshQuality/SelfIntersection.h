@@ -10,7 +10,7 @@
 
 namespace adaptiso {
 
-/// Whether two triangles cross, decided exactly (orient2d, orient3d).
+/// True if two triangles cross, decided exactly (orient2d, orient3d).
 ///
 /// Triangles are closed: they cross when they have a point in common, be it one that touches.
 /// Corners at the same place are shared, whatever their numbers (so an unwelded mesh is not all
@@ -21,7 +21,7 @@ namespace adaptiso {
 /// A triangle whose corners lie exactly on a line crosses nothing. \pre corners are finite
 bool trianglesCross(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// Whether two triangles of different surfaces have a point in common, decided exactly: touching
+/// True if two triangles of different surfaces share a point, decided exactly: touching
 /// is enough, also at a corner or along an edge that both have. A triangle whose corners lie
 /// exactly on a line meets nothing. \pre corners are finite
 bool trianglesMeet(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
@@ -54,10 +54,10 @@ std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh);
 /// Of a triangle that may cross any other.
 inline constexpr std::uint64_t kNoCell = ~std::uint64_t{0};
 
-/// The same of a mesh of which it is known that triangles of different cells do not cross, as where
-/// marching cubes put them there: such pairs are not looked at.
-/// \param cells  of each triangle; kNoCell: it may cross any other. Empty: each may
-/// Cost: without triangles in cells, that of CrossingSearch; where all are in cells, O(T)
+/// The same for a mesh of which it is known that triangles of different cells do not cross, as
+/// where marching cubes put them there: such pairs are not looked at. \param cells  of each
+/// triangle; kNoCell: it may cross any other. Empty: each may Cost: without triangles in cells,
+/// that of CrossingSearch; where all are in cells, O(T)
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh,
                                             std::span<const std::uint64_t> cells);
 

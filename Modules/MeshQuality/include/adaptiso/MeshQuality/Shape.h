@@ -8,7 +8,7 @@
 
 namespace adaptiso {
 
-/// How a quantity is spread over a mesh. Percentiles are by nearest rank: the smallest value that
+/// Spread of a quantity over a mesh. Percentiles are by nearest rank: the smallest value that
 /// at least that part does not exceed.
 struct Spread {
     double minimum = 0, p1 = 0, p5 = 0, median = 0, mean = 0, p99 = 0, maximum = 0;
@@ -32,7 +32,7 @@ struct ShapeReport {
 /// Cost: O(T); 40 bytes a triangle of memory.
 ShapeReport measureShape(const TriangleMesh& mesh);
 
-/// What sizes of a surface in mm are believed.
+/// Plausible sizes of a surface in mm.
 struct SizeLimits {
     double minExtentMm = 0;         ///< of every side of the bounding box
     double minLargestExtentMm = 1;  ///< of its longest side
@@ -52,7 +52,7 @@ struct SizeReport {
     std::optional<LengthUnit> guess;  ///< where not plausible: the unit that would make it so
 };
 
-/// Whether `mesh`, its numbers taken for millimetres, has a plausible size.
+/// Judges the size of `mesh`, its numbers taken for millimetres.
 /// \pre triangles name points that are there \throws InvalidInput otherwise
 SizeReport judgeSize(const TriangleMesh& mesh, const SizeLimits& limits);
 

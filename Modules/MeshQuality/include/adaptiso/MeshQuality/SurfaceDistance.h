@@ -14,10 +14,10 @@ namespace adaptiso {
 struct DistanceOptions {
     std::int64_t samples = 200000;  ///< points on a surface, for each direction; >= 1
     bool isSymmetric = true;        ///< B to A too
-    ProgressCallback progress{};    ///< told when a direction is done; may be empty
+    ProgressCallback progress{};    ///< called when a direction is done; may be empty
 };
 
-/// How far the points of one surface lie from another. Percentiles are by nearest rank: the
+/// Distances of the points of one surface from another. Percentiles are by nearest rank: the
 /// smallest value that at least that part of the samples does not exceed.
 struct DistanceStatistics {
     std::int64_t samples = 0;  ///< points spread over the area
@@ -34,7 +34,7 @@ struct DistanceStatistics {
 struct DistanceReport {
     DistanceStatistics aToB;
     DistanceStatistics bToA;  ///< zero samples unless options.isSymmetric
-    /// Of the samples of all directions together, as many from A as from B; maxMm is then the
+    /// Over the samples of all directions, as many from A as from B; maxMm is then the
     /// (symmetric) Hausdorff distance. Equals aToB unless options.isSymmetric.
     DistanceStatistics combined;
 };

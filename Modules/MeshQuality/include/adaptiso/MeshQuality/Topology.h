@@ -10,7 +10,7 @@
 
 namespace adaptiso {
 
-/// What can be wrong with a mesh as a surface.
+/// Defects of a mesh as a surface.
 enum class TopologyDefect {
     BoundaryEdge,        ///< an edge in one triangle
     NonManifoldEdge,     ///< an edge in more than two
@@ -27,7 +27,7 @@ inline constexpr int kTopologyDefectCount = 9;
 /// "boundary edge", "non-manifold vertex", ...
 std::string_view toString(TopologyDefect defect);
 
-/// Where a defect is.
+/// Place of a defect.
 struct TopologyExample {
     TopologyDefect defect;
     std::int64_t triangle = -1;                    ///< triangle number; -1: not of a triangle
@@ -80,7 +80,7 @@ struct TopologyReport {
         return isClosed() && isManifold() && isOriented() &&
                count(TopologyDefect::IndexOutOfRange) == 0;
     }
-    /// No defect of any kind.
+    /// True without any defect.
     bool isSound() const;
     /// Genus of all pieces together. \return none when a piece has none
     std::optional<std::int64_t> genus() const;
@@ -90,7 +90,7 @@ struct TopologyOptions {
     int maxExamplesPerDefect = 5;
 };
 
-/// What `mesh` is as a surface: closed, manifold, oriented, in how many pieces, of what genus.
+/// Checks `mesh` as a surface: closed, manifold, oriented, number of pieces, genus.
 ///
 /// A triangle is degenerate when it names a vertex twice, or when its smallest altitude is at most
 /// 1e-9 of its longest edge. That is far above what rounding makes of a true zero (1e-12 for edges
@@ -115,7 +115,7 @@ struct DuplicateOptions {
     std::int64_t maxExamples = 5;  ///< numbers of each kind to name; all are counted
 };
 
-/// What a mesh has more than once at the very same place (0 and -0 are one).
+/// Vertices and triangles that coincide exactly with others (0 and -0 are equal).
 struct DuplicateReport {
     std::int64_t vertexCount = 0;         ///< vertices at the place of one with a smaller number
     std::vector<VertexId> vertices;       ///< the first of them, ascending
@@ -139,7 +139,7 @@ struct Hole {
 };
 
 /// The holes of a surface, the longest border first, of equals the one with the smaller vertex
-/// number. The rim of an open sheet is one too: what is missing can't be told from what never was.
+/// number. The rim of an open sheet counts as a hole too.
 ///
 /// Triangles that name a vertex twice have no edges here, as checkTopology has it; edges with a
 /// corner that is not finite are left out.

@@ -45,7 +45,7 @@ public:
         return (std::ssize(order_) + kLeafTriangles - 1) / kLeafTriangles;
     }
 
-    /// To the nearest triangle, or `most` where there is none as near.
+    /// Distance to the nearest triangle, or `most` if all are farther.
     double squaredDistance(const Vec3& p, const TriangleView& of,
                            double most = std::numeric_limits<double>::infinity()) const;
 

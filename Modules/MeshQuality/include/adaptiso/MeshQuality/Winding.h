@@ -30,7 +30,7 @@ struct InsideOutPieces {
     std::vector<std::int64_t> triangles;  ///< of those inside out, ascending
 };
 
-/// As above, of a surface whose pieces do not cross: how many are inside out.
+/// The same for a surface whose pieces do not cross: counts those inside out.
 /// \param isLeftOut  of each point: the piece that it is of is neither judged nor around others,
 ///                   such as an open one. Empty: none is
 /// \pre  the other pieces are closed, oriented and finite, triangles name points that are there

@@ -21,7 +21,7 @@ struct IndexRange {
     friend bool operator==(const IndexRange&, const IndexRange&) = default;
 };
 
-/// What to keep along i, j and k.
+/// Ranges to keep along i, j and k.
 using CropRanges = std::array<IndexRange, 3>;
 
 /// The part of a volume within ranges of voxel indices. Every voxel keeps its place in space: the
@@ -54,7 +54,7 @@ ImageGeometry isotropicGrid(const ImageGeometry& geometry, double stepMm);
 
 /// Samples a volume on isotropicGrid() (itk::ResampleImageFilter).
 ///
-/// Nothing is smoothed before: for steps larger than the voxels smooth first (half a step is
+/// Does not smooth: for steps larger than the voxels smooth first (half a step is
 /// enough), or detail finer than the step turns into noise. Points of the grid that lie outside a
 /// sheared image get its smallest value.
 /// \return  Nearest: the same type; else float32, or float64 for samples that float32 can't hold
@@ -76,7 +76,7 @@ struct PreprocessOptions {
 
 enum class PreprocessStep { Crop, Smooth, Resample };
 
-/// The volume can't take a step. The message says why, and names no function.
+/// A step that is impossible for the volume. The message gives the reason, without a function.
 class PreprocessError : public InvalidInput {
 public:
     PreprocessError(PreprocessStep step, const std::string& message)

@@ -27,7 +27,7 @@ struct Picture {
 ///   regions                              in their stead, of regions: all together
 ///
 /// Everything is drawn in memory: no display, no OpenGL. Left is left of the picture, and every
-/// picture says which side is which. Triangles with a corner that is not there or not finite are
+/// picture names the sides. Triangles with a corner that is not there or not finite are
 /// left out. The same report gives the same bytes, whatever the number of threads.
 /// \pre spots are finite  \throws InternalError  Cairo refuses
 std::vector<Picture> drawPictures(const Report& report);
@@ -51,7 +51,7 @@ std::string htmlPage(const Report& report, const std::vector<Picture>& pictures,
 /// The surfaces and the image of a report in the viewer, as a part of another page: a notebook's.
 ///
 /// The viewer is a page in a frame of its own, which can reach nothing else and loads nothing.
-/// Where scripts or frames are off, as in a notebook that is not trusted, the picture is seen in
+/// Where scripts or frames are off, as in an untrusted notebook, the picture is shown in
 /// its place. Below stands the report's title, and that the viewer shows the surfaces coarser than
 /// they are, where it does.
 /// \return HTML, UTF-8; about 1.6 MB, and 25 bytes a triangle
@@ -71,7 +71,7 @@ bool hasViewer();
 /// result's.
 TriangleMesh coarserMesh(const TriangleMesh& mesh, std::int64_t maxTriangles);
 
-/// How many of `maxTriangles` each surface gets: the same for all, but none more than it has; what
+/// Share of `maxTriangles` for each surface: equal, but never more than it has; what
 /// small ones leave goes to the others.
 std::vector<std::int64_t> shareTriangles(const std::vector<std::int64_t>& counts,
                                          std::int64_t maxTriangles);

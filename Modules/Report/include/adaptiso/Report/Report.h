@@ -21,11 +21,11 @@ using ReportColor = std::array<std::uint8_t, 3>;
 /// linear in between. Values beyond 0 and 1 get the end's colour, NaN that of 0.
 ReportColor viridis(double part);
 
-/// The colour of surface number `n` in pictures and in the viewer: told apart with any colour
+/// The colour of surface number `n` in pictures and in the viewer: distinct with any colour
 /// vision [Okabe2008], light enough for a black ground. The seventh is the first again.
 ReportColor surfaceColor(std::size_t n);
 
-/// What a report says first.
+/// Verdict at the top of a report.
 enum class ReportVerdict {
     Passed,  ///< all that was required holds
     Failed,  ///< something that was required does not
@@ -80,7 +80,7 @@ struct ReportVolume {
     VolumeView view;
 };
 
-/// Everything that a page tells and shows. Texts are plain (they are escaped where needed) and hold
+/// Content of a page. Texts are plain (they are escaped where needed) and hold
 /// neither folders nor anything that names a patient: that is for the caller to see to.
 struct Report {
     std::string program, version;
@@ -88,7 +88,7 @@ struct Report {
     std::string title;  ///< "Check of 3 surfaces"
     ReportVerdict verdict = ReportVerdict::Done;
     std::string headline;                  ///< "2 of 21 checks that are required failed"
-    std::string frame = "scanner RAS mm";  ///< of the points told: LPS with x and y turned round
+    std::string frame = "scanner RAS mm";  ///< of the points: LPS with x and y turned round
     std::vector<ReportFact> inputs, options;
     std::vector<ReportCheck> checks;
     std::vector<ReportSpot> spots;
@@ -107,7 +107,7 @@ struct Report {
     bool leavesOutFaces = false;
 };
 
-/// Now, in UTC: "2026-11-21 09:20 UTC"; the time that SOURCE_DATE_EPOCH says, where it is set.
+/// Now, in UTC: "2026-11-21 09:20 UTC"; the time of SOURCE_DATE_EPOCH, where it is set.
 std::string reportDate();
 
 /// Size, voxel and format of an image, in words.

@@ -6,13 +6,13 @@
 
 namespace adaptiso {
 
-/// What happens where a surface meets the border of the volume.
+/// Treatment of a surface at the border of the volume.
 enum class Border {
     Closed,  ///< closed, as if a layer of outside samples lay around the volume
     Open     ///< left open there
 };
 
-/// How a volume is cut into initial blocks of N x N x N cells, (N+1)^3 samples; neighbours share
+/// Division of a volume into initial blocks of N x N x N cells, (N+1)^3 samples; neighbours share
 /// a layer of samples (thesis, chapter 3).
 ///
 /// Blocks lie in a lattice that starts at sample index -offset: in a closed grid one layer of

@@ -12,7 +12,7 @@
 
 namespace adaptiso {
 
-/// How the blocks of an isovalue are found. All give the same blocks in the same order.
+/// Methods to find the blocks of an isovalue. All give the same blocks in the same order.
 enum class BlockSearchKind {
     KdTree,  ///< kd-tree over span space [Livnat1996; thesis 4.1]
     Octree,  ///< branch-on-need octree of minima and maxima [Wilhelms1992]
@@ -28,7 +28,7 @@ struct IndexOptions {
     BlockSearchKind search = BlockSearchKind::KdTree;
 };
 
-/// The blocks that an isovalue touches, and what it cost to find them.
+/// The blocks that an isovalue touches, and the cost of finding them.
 struct BlockQuery {
     std::vector<std::uint32_t> blocks;  ///< block numbers of the grid, ascending
     std::int64_t nodesVisited = 0;      ///< nodes of the index whose range was looked at

@@ -21,12 +21,12 @@ Json verdictJson(const std::vector<Check>& checks);
 Json factsJson(const SurfaceFacts& facts);
 
 /// An entry of adaptiso-check's `nesting.pairs`, from passed on.
-/// \param toFrame  takes points of the report to the frame to tell them in
+/// \param toFrame  takes points of the report to the frame of the output
 Json nestingJson(const NestingReport& report, const std::vector<Check>& checks,
                  const AffineTransform& toFrame);
 
 /// An entry of `distances` of the report adaptiso-compare/1, in millimetres.
-/// \param toFrame  takes points of the report to the frame to tell them in
+/// \param toFrame  takes points of the report to the frame of the output
 Json distanceJson(const DistanceStatistics& distances, const AffineTransform& toFrame);
 
 }  // namespace adaptiso

@@ -17,7 +17,7 @@
 
 namespace adaptiso {
 
-/// All that is measured of one surface. What is required of it is another matter (Checks.h).
+/// Measures of one surface, for the checks below.
 struct SurfaceFacts {
     TopologyReport topology;
     std::int64_t repeatedIndexTriangles = 0;  ///< of the degenerate ones, those that name a vertex
@@ -28,23 +28,23 @@ struct SurfaceFacts {
     ShapeReport shape;
     SizeReport size;
     SolidAngleCriterion solidAngle;
-    /// Numbers of the pieces that are the wrong way round; none where that can't be told: the
+    /// Numbers of the pieces that are the wrong way round; empty if that is undefined: the
     /// surface is open, not manifold, not oriented, or not finite.
     std::optional<std::vector<std::int64_t>> insideOut;
     double areaMm2 = 0;               ///< of the triangles with finite corners
-    std::optional<double> volumeMm3;  ///< none unless closed, manifold and oriented
+    std::optional<double> volumeMm3;  ///< empty unless closed, manifold and oriented
 
     /// Every triangle has its corners for itself, though they lie at places of others.
     bool isSoup() const;
 };
 
-/// Triangles of `mesh` that name points which aren't there are made to name one, added at the end,
+/// Gives triangles that name missing points a new point instead, added to `mesh` at the end,
 /// that is not finite: no number of a triangle changes, and later measures leave them out.
 /// \param maxPairs  of triangles that cross, to list
 SurfaceFacts measureSurface(TriangleMesh& mesh, const SizeLimits& sizeLimits,
                             std::int64_t maxPairs);
 
-/// What a surface is for, which says what is required of it.
+/// Use of a surface, which determines the required checks.
 enum class Profile {
     Bem,    ///< a boundary of a head model
     Print,  ///< a solid to print or to compute with
@@ -54,16 +54,16 @@ enum class Profile {
 /// "bem", "print", "view"
 std::string_view toString(Profile profile);
 
-/// What sizes are believed of a surface for this use.
+/// Plausible sizes of a surface for this use.
 SizeLimits sizeLimitsOf(Profile profile);
 
-/// What is asked of surfaces.
+/// Options of the checks.
 struct CheckRules {
     bool isNested = false;              ///< they lie in each other, the innermost first
-    std::optional<Profile> profile;     ///< none: Bem when nested, else Print
-    std::optional<double> minGapMm;     ///< none: kDefaultMinGapMm, required of Bem only
-    std::optional<double> minAngleDeg;  ///< none: kDefaultMinAngleDeg, required of Bem only
-    std::optional<double> maxOffMm;     ///< none: half a voxel on the mean
+    std::optional<Profile> profile;     ///< default: Bem when nested, else Print
+    std::optional<double> minGapMm;     ///< default: kDefaultMinGapMm, required of Bem only
+    std::optional<double> minAngleDeg;  ///< default: kDefaultMinAngleDeg, required of Bem only
+    std::optional<double> maxOffMm;     ///< default: half a voxel on the mean
     std::int64_t maxPairs = 1000;       ///< of triangles that cross, to list
 
     static constexpr double kDefaultMinGapMm = 0.5;   // thinner than any bone of the skull
@@ -80,7 +80,7 @@ enum class Outcome {
     Undecided  ///< makes no sense of this surface: the genus of an open one
 };
 
-/// One question that was asked of a surface, or of two, and the answer.
+/// A check of a surface, or of two, and its outcome.
 struct Check {
     std::string_view key;   ///< of the report: "selfIntersections"
     std::string_view name;  ///< for people: "no self-intersection"
@@ -92,20 +92,20 @@ struct Check {
     bool breaksProfile() const { return isRequired && hasFailed(); }
 };
 
-/// None that is required has failed.
+/// True if no required check failed.
 bool allHold(const std::vector<Check>& checks);
 
-/// The questions asked of one surface, in the order of the table in adaptiso-check's README.md.
+/// The checks of one surface, in the order of the table in adaptiso-check's README.md.
 std::vector<Check> judgeSurface(const SurfaceFacts& facts, const CheckRules& rules);
 
-/// Whether the surface lies on the isosurface.
-/// \param deviation  none: it has no area to measure
+/// Checks that the surface lies on the isosurface.
+/// \param deviation  empty if the surface has no area to measure
 Check judgeDeviation(const std::optional<DistanceStatistics>& deviation, double voxelMm,
                      const CheckRules& rules);
 
-/// The questions asked of two surfaces of which one should lie in the other.
+/// The checks of two surfaces of which one should lie in the other.
 /// \param inner, outer  their names
-/// \param toFrame       takes points of the report to the frame to tell them in
+/// \param toFrame       takes points of the report to the frame of the output
 std::vector<Check> judgeNesting(const NestingReport& report, const std::string& inner,
                                 const std::string& outer, const AffineTransform& toFrame,
                                 const CheckRules& rules);

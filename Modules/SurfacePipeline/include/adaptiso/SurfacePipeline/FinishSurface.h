@@ -95,7 +95,7 @@ struct FinishOptions {
     std::optional<FileDigits> digits{};  ///< none: the surface is no file's, or not yet
 };
 
-/// No piece of a surface is as large as asked for.
+/// Thrown if no piece of a surface is as large as asked for.
 class NothingLeft : public InvalidInput {
 public:
     using InvalidInput::InvalidInput;

@@ -11,7 +11,7 @@
 
 namespace adaptiso {
 
-/// What a file's rounding of coordinates makes of a mesh that has none of it.
+/// Defects that a file's rounding of coordinates adds to a mesh.
 struct RoundingHarm {
     std::int64_t flatTriangles = 0;  ///< that lose their area
     std::int64_t mergedPoints = 0;   ///< that come to lie on another

@@ -19,7 +19,7 @@ struct MesherVolume {
     Vec3 insideMm;                    ///< a point in it
 };
 
-/// What a mesher fills: walls, each once, that do not cross (a piecewise linear complex), and the
+/// Input of a mesher: walls, each once, that do not cross (a piecewise linear complex), and the
 /// spaces between them.
 struct MesherInput {
     std::vector<Vec3> points;
@@ -42,8 +42,9 @@ std::string tetgenInput(const MesherInput& input, double elementMm);
 std::string gmshWalls(const MesherInput& input);
 std::string gmshScript(const MesherInput& input, std::string_view wallsFile, double elementMm);
 
-/// What tetgen wrote (.node, .ele with attributes) or gmsh (.msh 2.2); labels are the numbers of
-/// regions. Elements of negative volume are turned. \throws FileError  "<name>: what is wrong"
+/// Reads the output of tetgen (.node, .ele with attributes) or gmsh (.msh 2.2); labels are the
+/// numbers of regions. Elements of negative volume are turned. \throws FileError  "<name>: what is
+/// wrong"
 TetrahedralMesh decodeTetgen(std::string_view nodes, std::string_view elements,
                              std::string_view name);
 TetrahedralMesh decodeGmsh(std::string_view bytes, std::string_view name);

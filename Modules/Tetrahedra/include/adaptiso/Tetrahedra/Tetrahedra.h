@@ -19,7 +19,7 @@ struct TetrahedralMesh {
     std::vector<std::int32_t> labels;                 ///< one a tetrahedron: a region's number
 };
 
-/// What is to be filled: a tissue of a head, a region of a label map.
+/// A region to fill: a tissue of a head, a region of a label map.
 struct TetrahedraRegion {
     std::int32_t label = 0;
     std::string name;
@@ -27,7 +27,7 @@ struct TetrahedraRegion {
     double wallsMm2 = 0;  ///< their area
 };
 
-/// What is known of tetrahedra.
+/// Measures of tetrahedra.
 struct TetrahedraReport {
     std::int64_t unlabelled = 0;                     ///< of none of the regions
     std::int64_t flat = 0;                           ///< of volume 0 or less
@@ -42,13 +42,13 @@ struct TetrahedraReport {
 TetrahedraReport checkTetrahedra(const TetrahedralMesh& mesh,
                                  std::span<const TetrahedraRegion> regions);
 
-/// A promise about tetrahedra, kept or not.
+/// A check of tetrahedra.
 struct TetrahedraCheck {
     std::string name;  ///< "none flat or inverted"
     bool isPassed = false;
     std::string detail;
 };
-/// What must hold before tetrahedra are of use: each is of a region, none is flat or inverted, and
+/// Conditions for useful tetrahedra: each belongs to a region, none is flat or inverted, and
 /// each region has the volume within its walls: to 0.01 %, and to a thousandth of a mm of the
 /// walls, as tetgen takes facets that meet at less than 0.1 degrees for one.
 std::vector<TetrahedraCheck> judgeTetrahedra(const TetrahedraReport& report,
