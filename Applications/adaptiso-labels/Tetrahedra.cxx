@@ -3,7 +3,7 @@
 #include "Common/Mesher.h"
 #include "Regions.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Labels/LabelVolumes.h"
+#include "adaptiso/Labels/Labels.h"
 
 namespace adaptiso::labels {
 

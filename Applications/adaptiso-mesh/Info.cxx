@@ -14,8 +14,8 @@
 #include "Common/Verdict.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Text.h"
-#include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/ImageIO/SampleStatistics.h"
 
 namespace adaptiso::mesher {
 namespace {

@@ -4,8 +4,8 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
-#include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/ImageIO/SampleStatistics.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
 int main(int argc, char** argv) {

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
+
+#include "DicomHeader.h"
 
 namespace adaptiso::detail {
 
@@ -34,5 +38,15 @@ private:
     std::string window_;
     std::uint64_t windowStart_ = 0;
 };
+
+/// How a value stands in the file; not every transfer syntax says so.
+enum class DicomValueKind { Text, UInt16, UInt32, Float64, Digest };
+
+/// The kind of a value that DicomDataset keeps; nothing for all others.
+std::optional<DicomValueKind> wantedDicomValue(DicomTag tag);
+bool isWantedDicomSequence(DicomTag tag);
+
+/// A value's bytes as text: binary numbers as "1\\2.5".
+std::string dicomText(std::string bytes, DicomValueKind kind, std::endian order);
 
 }  // namespace adaptiso::detail

@@ -4,7 +4,6 @@
 #include <set>
 
 #include "DicomGroups.h"
-#include "DicomVolumes.h"
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "adaptiso/Core/Errors.h"

@@ -6,7 +6,7 @@
 
 #include "FileFault.h"
 #include "GdcmDecoder.h"
-#include "HeaderBytes.h"
+#include "HeaderText.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;

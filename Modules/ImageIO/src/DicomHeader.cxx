@@ -6,9 +6,8 @@
 #include <array>
 
 #include "DicomBytes.h"
-#include "DicomElements.h"
 #include "FileFault.h"
-#include "HeaderBytes.h"
+#include "HeaderText.h"
 #include "Readers.h"
 
 // DICOM PS3.5, chapter 7 (data elements, sequences) and annex A.4 (encapsulated pixel data).

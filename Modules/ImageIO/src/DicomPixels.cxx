@@ -10,7 +10,6 @@
 
 #include "DataPlace.h"
 #include "FileFault.h"
-#include "HeaderBytes.h"
 #include "HeaderText.h"
 #include "Samples.h"
 

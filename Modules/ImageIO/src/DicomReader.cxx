@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "DicomAgreement.h"
 #include "DicomDecoding.h"
 #include "DicomFolder.h"
 #include "DicomGroups.h"
 #include "DicomStack.h"
-#include "DicomVolumes.h"
 #include "Fence.h"
 #include "FileFault.h"
 #include "HeaderText.h"

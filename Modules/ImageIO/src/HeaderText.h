@@ -1,7 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -25,5 +29,28 @@ std::optional<T> parseNumberAs(std::string_view text);
 
 /// The first bytes of a file, at most `most` of them.
 std::string readHead(const std::filesystem::path& file, std::size_t most);
+
+/// Numbers at fixed places of a binary header, in either byte order.
+class HeaderBytes {
+public:
+    HeaderBytes(std::string_view bytes, std::endian order)
+        : bytes_(bytes), swap_(order != std::endian::native) {}
+
+    /// \pre offset + sizeof(T) <= size()
+    template <class T>
+    T at(std::size_t offset) const {
+        char raw[sizeof(T)] = {};
+        bytes_.copy(raw, sizeof(T), offset);
+        if (swap_) std::reverse(raw, raw + sizeof(T));
+        T value;
+        std::memcpy(&value, raw, sizeof(T));
+        return value;
+    }
+    std::size_t size() const { return bytes_.size(); }
+
+private:
+    std::string_view bytes_;
+    bool swap_;
+};
 
 }  // namespace adaptiso::detail

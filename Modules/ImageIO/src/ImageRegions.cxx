@@ -67,7 +67,7 @@ public:
             isAbsent = isAbsent && fileStamp(image_.store.root() / key).empty();
         });
         if (!isAbsent || options_.refusesMissingChunks) return std::nullopt;
-        const double fill = detail::withPixelType(type, [&]<class T>(T value) {
+        const double fill = withPixelType(type, [&]<class T>(T value) {
             std::memcpy(&value, image_.array.fill.data(), sizeof value);
             return static_cast<double>(value);
         });

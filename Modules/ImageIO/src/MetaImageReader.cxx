@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 
-#include "DataFile.h"
 #include "DataPlace.h"
 #include "FileFault.h"
 #include "HeaderText.h"

@@ -5,7 +5,7 @@
 
 #include "DataPlace.h"
 #include "FileFault.h"
-#include "HeaderBytes.h"
+#include "HeaderText.h"
 #include "Readers.h"
 #include "Samples.h"
 

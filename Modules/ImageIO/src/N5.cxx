@@ -1,5 +1,3 @@
-#include "N5.h"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -8,7 +6,8 @@
 #include <numeric>
 
 #include "FileFault.h"
-#include "ZarrJson.h"
+#include "ZarrArray.h"
+#include "ZarrStore.h"
 #include "adaptiso/Core/Errors.h"
 
 // N5's specification (its README, file format 2.5): dimensions from the fastest on, big-endian

@@ -6,10 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "DataFile.h"
 #include "DataPlace.h"
 #include "FileFault.h"
-#include "HeaderBytes.h"
+#include "HeaderText.h"
 #include "Readers.h"
 #include "Samples.h"
 

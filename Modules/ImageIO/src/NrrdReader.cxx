@@ -5,12 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "DataFile.h"
 #include "DataPlace.h"
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "NrrdHeader.h"
-#include "NrrdText.h"
 #include "Readers.h"
 #include "Samples.h"
 

@@ -1,4 +1,3 @@
-#include "adaptiso/ImageIO/Otsu.h"
 
 #include <algorithm>
 #include <array>

@@ -21,34 +21,6 @@ namespace adaptiso::detail {
 /// Memory for samples: uninitialised, aligned for any pixel type, owned.
 using SampleBuffer = std::shared_ptr<std::byte[]>;
 
-/// Calls `f(T{})` with the C++ type of `type`: the readers' one dispatch over pixel types.
-template <class F>
-decltype(auto) withPixelType(PixelType type, F&& f) {
-    switch (type) {
-        case PixelType::UInt8:
-            return f(std::uint8_t{});
-        case PixelType::Int8:
-            return f(std::int8_t{});
-        case PixelType::UInt16:
-            return f(std::uint16_t{});
-        case PixelType::Int16:
-            return f(std::int16_t{});
-        case PixelType::UInt32:
-            return f(std::uint32_t{});
-        case PixelType::Int32:
-            return f(std::int32_t{});
-        case PixelType::UInt64:
-            return f(std::uint64_t{});
-        case PixelType::Int64:
-            return f(std::int64_t{});
-        case PixelType::Float32:
-            return f(float{});
-        case PixelType::Float64:
-            return f(double{});
-    }
-    throw InternalError("withPixelType: unknown pixel type");
-}
-
 /// float32 holds every value of `stored`, or else float64.
 inline PixelType floatTypeFor(PixelType stored) {
     return bytesPerPixel(stored) <= 2 || stored == PixelType::Float32 ? PixelType::Float32

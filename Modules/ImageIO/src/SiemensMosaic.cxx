@@ -5,7 +5,6 @@
 
 #include "DicomPlanes.h"
 #include "FileFault.h"
-#include "HeaderBytes.h"
 #include "HeaderText.h"
 
 // Siemens writes all slices of an EPI volume as tiles of one image; how many there are and which

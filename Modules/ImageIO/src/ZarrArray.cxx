@@ -12,9 +12,8 @@
 #include <string_view>
 
 #include "FileFault.h"
-#include "N5.h"
 #include "Samples.h"
-#include "ZarrJson.h"
+#include "ZarrStore.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;

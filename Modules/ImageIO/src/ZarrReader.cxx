@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "FileFault.h"
-#include "N5.h"
 #include "Readers.h"
 #include "Samples.h"
+#include "ZarrArray.h"
 #include "ZarrImage.h"
 #include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/Parallel.h"

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "FileFault.h"
-#include "N5.h"
-#include "ZarrJson.h"
+#include "ZarrArray.h"
+#include "ZarrStore.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;

@@ -1,5 +1,3 @@
-#include "adaptiso/Labels/LabelVolumes.h"
-
 #include <algorithm>
 #include <array>
 #include <map>
@@ -10,6 +8,7 @@
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Labels/Labels.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
 
 namespace adaptiso {

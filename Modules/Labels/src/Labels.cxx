@@ -7,10 +7,8 @@
 #include <utility>
 
 #include "DualComplex.h"
-#include "LabelGrid.h"
 #include "Placement.h"
-#include "SimplifyWalls.h"
-#include "Walls.h"
+#include "WholeWalls.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Memory.h"

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "DualComplex.h"
-#include "LabelGrid.h"
 #include "adaptiso/Core/Geometry.h"
 
 namespace adaptiso::detail {

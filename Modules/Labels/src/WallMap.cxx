@@ -1,10 +1,9 @@
-#include "WallMap.h"
-
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <tuple>
 
+#include "WallMender.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso::detail {

@@ -4,7 +4,6 @@
 #include <numeric>
 #include <utility>
 
-#include "WallMap.h"
 #include "adaptiso/MeshQuality/CrossingSearch.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 

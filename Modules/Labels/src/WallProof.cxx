@@ -1,6 +1,7 @@
 #include "WallProof.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <unordered_map>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "adaptiso/SurfaceProof/PieceBound.h"
 
 namespace adaptiso::detail {
+
 namespace {
 
 constexpr std::int64_t kPiece = 256;
@@ -185,6 +187,33 @@ WallBound proveNear(const WallMesh& mesh, const std::vector<WallMesh::Id>& trian
         all.witnesses.insert(all.witnesses.end(), own.witnesses.begin(), own.witnesses.end());
     }
     return all;
+}
+
+SpaceCells::SpaceCells(const BoundingBox& box, double cellMm, std::int64_t most)
+    : low_(box.minimum) {
+    const Vec3 side = box.size();
+    const double longest = std::max({side.x, side.y, side.z});
+    double cell = std::max(cellMm, 1e-6 * longest);
+    if (!(cell > 0)) return;  // a point
+    for (;; cell *= 1.25) {
+        perMm_ = 1 / cell;
+        for (int axis = 0; axis < 3; ++axis) {
+            size_[axis] = static_cast<std::int64_t>(side[axis] * perMm_) + 1;
+        }
+        if (count() <= most) return;
+    }
+}
+
+SpaceCells::Range SpaceCells::rangeOf(const BoundingBox& box) const {
+    Range range;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto at = [&](double x) {
+            const double last = static_cast<double>(size_[axis] - 1);
+            return static_cast<std::int64_t>(std::clamp((x - low_[axis]) * perMm_, 0.0, last));
+        };
+        range[axis] = {at(box.minimum[axis]), at(box.maximum[axis])};
+    }
+    return range;
 }
 
 }  // namespace adaptiso::detail

@@ -1,10 +1,9 @@
-#include "Walls.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include "DualComplex.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"

@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "IdNumbers.h"
 #include "WallCollapser.h"
 #include "WallMender.h"
 #include "adaptiso/Core/Buckets.h"
@@ -17,7 +16,46 @@
 #include "adaptiso/SurfaceProof/PieceBound.h"
 
 namespace adaptiso::detail {
+
 namespace {
+
+/// Numbers things from 0 on in the order in which they come. Memory goes with how many there are,
+/// not with how large their own numbers are.
+class IdNumbers {
+public:
+    using Id = std::uint32_t;
+    static constexpr Id kNone = ~Id{0};
+
+    /// The number of a thing; a new one gets the next.
+    Id numberOf(Id id) {
+        if (2 * ids_.size() >= table_.size()) grow();
+        Id& at = table_[placeOf(id)];
+        if (at == kNone) {
+            at = static_cast<Id>(ids_.size());
+            ids_.push_back(id);
+        }
+        return at;
+    }
+    /// kNone for a thing that never came.
+    Id find(Id id) const { return table_.empty() ? kNone : table_[placeOf(id)]; }
+    /// The ids, in order of appearance.
+    const std::vector<Id>& ids() const { return ids_; }
+
+private:
+    std::size_t placeOf(Id id) const {
+        const std::size_t mask = table_.size() - 1;
+        std::size_t at = (id * std::uint64_t{0x9E3779B97F4A7C15} >> 32) & mask;
+        while (table_[at] != kNone && ids_[table_[at]] != id) at = (at + 1) & mask;
+        return at;
+    }
+    void grow() {
+        table_.assign(table_.empty() ? 64 : 2 * table_.size(), kNone);
+        for (std::size_t n = 0; n < ids_.size(); ++n) table_[placeOf(ids_[n])] = static_cast<Id>(n);
+    }
+
+    std::vector<Id> ids_;
+    std::vector<Id> table_;  ///< a power of two of places
+};
 
 using Id = std::uint32_t;
 constexpr Id kNone = IdNumbers::kNone;
@@ -447,6 +485,45 @@ LabelComplex WholeWalls::complex() const {
         out.labels.push_back(walls_[t.wall]);
     }
     return out;
+}
+
+namespace {
+
+/// Sides of the cubes that are simplified side by side, in voxels: few enough triangles to stay in
+/// a processor's own memory, enough that few reach out of the cube.
+constexpr double kCubeVoxels = 64;
+/// Where the limit is large, so are the triangles: the least side, of the limit.
+constexpr double kCubeLimits = 24;
+
+}  // namespace
+
+SimplifiedWalls simplifyWalls(LabelComplex&& full, const ImageGeometry& geometry,
+                              const SimplifyOptions& options) {
+    const double h = std::cbrt(geometry.voxelVolumeMm3());
+    const auto tell = [&](double part) {
+        if (options.progress) options.progress("simplify", part);
+    };
+    WallAim aim;
+    aim.limitMm = options.maxErrorMm.value_or(0.05 * h);
+    aim.mayGrow = !options.maxErrorMm;
+    aim.minAngleDeg = options.minAngleDeg;
+    aim.enough = options.maxTriangles.value_or(0);
+    SimplifiedWalls walls;
+    WholeWalls whole(std::move(full), geometry);
+    if (options.maxTriangles) {  // which edges are the cheapest is asked of all
+        const auto all = static_cast<double>(
+            std::max({geometry.size[0], geometry.size[1], geometry.size[2]}) + 1);
+        walls.errorBoundMm = whole.simplify(CubeCut(geometry.size, 2 * all, false), aim);
+    } else {
+        const double side = std::max(kCubeVoxels, kCubeLimits * aim.limitMm / h);
+        const CubeCut cut(geometry.size, side, false), shifted(geometry.size, side, true);
+        walls.errorBoundMm = whole.simplify(cut, aim);
+        tell(0.6);
+        if (cut.count() > 1) whole.simplify(shifted, aim);
+    }
+    walls.complex = whole.complex();
+    tell(1);
+    return walls;
 }
 
 }  // namespace adaptiso::detail

@@ -9,7 +9,7 @@
 #include <algorithm>
 
 #include "Fixtures.h"
-#include "adaptiso/ImageIO/Otsu.h"
+#include "adaptiso/ImageIO/SampleStatistics.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso::testing {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/ImageIO/Otsu.h"
+#include "adaptiso/ImageIO/SampleStatistics.h"
 
 namespace adaptiso {
 namespace {

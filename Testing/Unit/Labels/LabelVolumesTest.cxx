@@ -6,7 +6,7 @@
 #include <set>
 
 #include "adaptiso/Core/Volume.h"
-#include "adaptiso/Labels/LabelVolumes.h"
+#include "adaptiso/Labels/Labels.h"
 
 namespace adaptiso {
 namespace {

@@ -16,7 +16,6 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Extraction/Extraction.h"
-#include "adaptiso/ImageIO/Otsu.h"
 #include "adaptiso/ImageIO/SampleStatistics.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 #include "adaptiso/SurfacePipeline/FinishSurface.h"

@@ -109,32 +109,39 @@ private:
     ImageGeometry geometry_;
 };
 
+/// Calls `f(T{})` with the C++ type of `type`.
+template <class F>
+decltype(auto) withPixelType(PixelType type, F&& f) {
+    switch (type) {
+        case PixelType::UInt8:
+            return f(std::uint8_t{});
+        case PixelType::Int8:
+            return f(std::int8_t{});
+        case PixelType::UInt16:
+            return f(std::uint16_t{});
+        case PixelType::Int16:
+            return f(std::int16_t{});
+        case PixelType::UInt32:
+            return f(std::uint32_t{});
+        case PixelType::Int32:
+            return f(std::int32_t{});
+        case PixelType::UInt64:
+            return f(std::uint64_t{});
+        case PixelType::Int64:
+            return f(std::int64_t{});
+        case PixelType::Float32:
+            return f(float{});
+        case PixelType::Float64:
+            return f(double{});
+    }
+    throw InternalError("withPixelType: unknown pixel type");
+}
+
 /// Calls `f` with the TypedVolumeView of the volume's own pixel type and returns what it returns.
 template <class F>
 decltype(auto) dispatchPixelType(const VolumeView& volume, F&& f) {
-    switch (volume.pixelType()) {
-        case PixelType::UInt8:
-            return f(volume.as<std::uint8_t>());
-        case PixelType::Int8:
-            return f(volume.as<std::int8_t>());
-        case PixelType::UInt16:
-            return f(volume.as<std::uint16_t>());
-        case PixelType::Int16:
-            return f(volume.as<std::int16_t>());
-        case PixelType::UInt32:
-            return f(volume.as<std::uint32_t>());
-        case PixelType::Int32:
-            return f(volume.as<std::int32_t>());
-        case PixelType::UInt64:
-            return f(volume.as<std::uint64_t>());
-        case PixelType::Int64:
-            return f(volume.as<std::int64_t>());
-        case PixelType::Float32:
-            return f(volume.as<float>());
-        case PixelType::Float64:
-            return f(volume.as<double>());
-    }
-    throw InternalError("dispatchPixelType: unknown pixel type");
+    return withPixelType(volume.pixelType(),
+                         [&]<class T>(T) -> decltype(auto) { return f(volume.as<T>()); });
 }
 
 /// An image that owns its samples, whoever allocated them (an ITK image, a vector, a mapped file).
