@@ -56,8 +56,6 @@ public:
     /// Entries by value. \throws FileError  no entry
     LabelTable finish();
 
-    void setFormat(std::string format) { table_.format = std::move(format); }
-
 private:
     LabelTable table_;
     std::map<std::int32_t, std::size_t> places_;

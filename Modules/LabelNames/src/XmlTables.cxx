@@ -1,32 +1,31 @@
-// The LabelTable of a GIFTI file, and FSL's atlases, both in XML (expat).
-#include <expat.h>
-
+// The LabelTable of a GIFTI file, and FSL's atlases, both in XML.
 #include <algorithm>
-#include <exception>
-#include <memory>
+#include <utility>
+#include <vector>
 
 #include "Rows.h"
+#include "adaptiso/MeshIO/Xml.h"
 
 namespace adaptiso::labelnames {
 namespace {
 
 /// Collects what both formats have: elements of a label with attributes and a name.
-class Labels {
+class Labels final : public meshio::XmlHandler {
 public:
-    using Attributes = std::map<std::string, std::string, std::less<>>;
+    using Attributes = meshio::XmlAttributes;
 
-    void start(const std::string& element, Attributes attributes) {
+    void onStart(const std::string& element, const Attributes& attributes) override {
         if (depth_++ == 0) {
             isGifti = element == "GIFTI";
             if (!isGifti && element != "atlas") refuseKind("its XML is a " + printable(element));
         }
         text_.clear();
         if (element == (isGifti ? "Label" : "label")) {
-            attributes_ = std::move(attributes);
+            attributes_ = attributes;
             isInLabel_ = true;
         }
     }
-    void end(const std::string& element) {
+    void onEnd(const std::string& element) override {
         --depth_;
         if (element == "type") isProbabilistic_ = lowerCase(trimmed(text_)) != "label";
         if (isInLabel_ && element == (isGifti ? "Label" : "label")) {
@@ -35,8 +34,8 @@ public:
         }
         text_.clear();
     }
-    void text(std::string_view more) {
-        constexpr std::size_t kLongest = 1 << 16;  // data of a GIFTI file is none of ours
+    void onText(std::string_view more) override {
+        constexpr std::size_t kLongest = 1 << 16;  // skips the data of a GIFTI file
         if (text_.size() < kLongest) text_ += more.substr(0, kLongest);
     }
 
@@ -95,65 +94,12 @@ private:
     std::vector<std::pair<Attributes, std::string>> rows_;
 };
 
-/// Carries Labels through expat's C callbacks, which exceptions must not cross.
-struct Bridge {
-    XML_Parser parser;
-    Labels labels{};
-    std::exception_ptr exception{};
-
-    template <class F>
-    static void guarded(void* self, F&& call) {
-        Bridge& bridge = *static_cast<Bridge*>(self);
-        if (bridge.exception) return;
-        try {
-            call(bridge.labels);
-        } catch (...) {
-            bridge.exception = std::current_exception();
-            XML_StopParser(bridge.parser, XML_FALSE);
-        }
-    }
-    static void XMLCALL onStart(void* self, const XML_Char* name, const XML_Char** pairs) {
-        guarded(self, [&](Labels& labels) {
-            Labels::Attributes attributes;
-            for (; *pairs != nullptr; pairs += 2) attributes[pairs[0]] = pairs[1];
-            labels.start(name, std::move(attributes));
-        });
-    }
-    static void XMLCALL onEnd(void* self, const XML_Char* name) {
-        guarded(self, [&](Labels& labels) { labels.end(name); });
-    }
-    static void XMLCALL onText(void* self, const XML_Char* text, int length) {
-        guarded(self, [&](Labels& labels) {
-            labels.text({text, static_cast<std::size_t>(length)});
-        });
-    }
-    static void XMLCALL onEntity(void* self, const XML_Char*, int, const XML_Char*, int,
-                                 const XML_Char*, const XML_Char*, const XML_Char*,
-                                 const XML_Char*) {
-        guarded(self, [](Labels&) { damaged("its XML declares entities, which none needs"); });
-    }
-};
-
 }  // namespace
 
 LabelTable decodeXml(std::string_view text) {
-    const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(
-        XML_ParserCreate(nullptr), &XML_ParserFree);
-    if (!parser) throw InternalError("decodeXml: expat can't be started");
-    Bridge bridge{parser.get()};
-    XML_SetUserData(parser.get(), &bridge);
-    XML_SetElementHandler(parser.get(), &Bridge::onStart, &Bridge::onEnd);
-    XML_SetCharacterDataHandler(parser.get(), &Bridge::onText);
-    XML_SetEntityDeclHandler(parser.get(), &Bridge::onEntity);
-    const XML_Status status =  // readLabelTable() has bounded the size
-        XML_Parse(parser.get(), text.data(), static_cast<int>(text.size()), XML_TRUE);
-    if (bridge.exception) std::rethrow_exception(bridge.exception);
-    if (status != XML_STATUS_OK) {
-        damaged("its XML breaks off in line " +
-                std::to_string(XML_GetCurrentLineNumber(parser.get())) + " (" +
-                XML_ErrorString(XML_GetErrorCode(parser.get())) + ")");
-    }
-    return bridge.labels.finish();
+    Labels labels;
+    meshio::parseXml(text, labels);
+    return labels.finish();
 }
 
 }  // namespace adaptiso::labelnames

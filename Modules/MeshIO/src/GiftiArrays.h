@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "Bytes.h"
-#include "Xml.h"
+#include "adaptiso/MeshIO/Xml.h"
 
 namespace adaptiso::meshio {
 

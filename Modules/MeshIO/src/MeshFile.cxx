@@ -7,11 +7,11 @@
 
 #include "Bytes.h"
 #include "Codecs.h"
-#include "Xml.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/MeshIO/Xml.h"
 
 namespace adaptiso {
 namespace {

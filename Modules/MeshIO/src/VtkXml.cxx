@@ -10,9 +10,9 @@
 
 #include "Bytes.h"
 #include "VtkFiles.h"
-#include "Xml.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/MeshIO/Xml.h"
 
 namespace adaptiso::meshio {
 namespace {

@@ -1,4 +1,4 @@
-#include "Xml.h"
+#include "adaptiso/MeshIO/Xml.h"
 
 #include <expat.h>
 #include <zlib.h>
