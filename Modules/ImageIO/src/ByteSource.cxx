@@ -31,7 +31,7 @@ void take(std::string_view bytes, ByteTail& tail) {
     tail.head += bytes.substr(0, kTailHead - std::min(kTailHead, tail.head.size()));
 }
 
-/// Whether `bytes` inflate, as far as they go.
+/// True if `bytes` inflate, as far as they go.
 bool beginsStream(std::string& bytes) {
     z_stream stream{};
     constexpr int kGzipOrZlib = MAX_WBITS + 32;

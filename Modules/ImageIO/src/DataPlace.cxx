@@ -56,7 +56,8 @@ struct OtherImage {
     bool isPacked = false;                   ///< they are compressed there
 };
 
-/// Of NRRD and MetaImage. \param last  the line of the header's end begins with it; may be empty
+/// Content of NRRD and MetaImage. \param last  the line of the header's end begins with it; may be
+/// empty
 OtherImage textImage(std::string_view format, std::string_view head, std::string_view last) {
     OtherImage image{format, {}};
     for (std::size_t begin = 0; begin < head.size();) {
@@ -216,7 +217,7 @@ ByteSource openData(const DataPlace& place, std::uint64_t byteCount, const Image
     if (place.countsFromEnd) {
         source.requireRoomFor(byteCount);
         const std::uint64_t all = reopen().readTail(byteCount + extent.whole).byteCount;
-        at = all - std::min(all, byteCount);  // reading tells what is missing
+        at = all - std::min(all, byteCount);  // reading reports the missing bytes
         checkBytesBefore(place.file, at, extent);
     }
     const std::uint64_t before = isDeflated ? 0 : streamAt - place.begin;

@@ -97,7 +97,7 @@ std::optional<Codestream> findJpeg2000Header(std::string_view stream) {
                       bytes.at<std::uint16_t>(40), (depth & 0x7F) + 1, (depth & 0x80) != 0};
 }
 
-/// What GDCM decoded, in words of the codestream's own width, in `format`'s wider ones.
+/// Widens GDCM's output from the codestream's word width to that of `format`.
 void widen(const std::vector<std::byte>& decoded, bool isSigned, std::size_t wordBytes,
            std::vector<std::byte>& samples) {
     const std::size_t count = decoded.size();

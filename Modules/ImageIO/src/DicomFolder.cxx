@@ -48,7 +48,7 @@ bool isHidden(const fs::path& path) {
     return path.filename().native().starts_with('.');
 }
 
-/// Which objects hold an image is known of DICOM's own classes; of a vendor's, Rows says.
+/// True for objects with an image: known for DICOM's own classes; a vendor's have Rows.
 enum class ObjectKind { Image, NoImage, VendorsWithoutImage };
 
 ObjectKind objectKind(const DicomHeader& header) {

@@ -188,7 +188,7 @@ bool isLoneSlice(const DicomGroup& group) {
            !group.isLocalizer && !group.isSecondary && !group.isSegmentation;
 }
 
-/// Lone slices that can only be of one series: UIDs differ, all else that tells series apart
+/// Lone slices that can only be of one series: UIDs differ, all else that separates series
 /// agrees.
 bool areOneSeries(const DicomGroup& a, const DicomGroup& b, const std::vector<DicomFile>& files) {
     const auto isShared = [&](DicomTag tag) {

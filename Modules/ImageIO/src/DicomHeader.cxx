@@ -51,7 +51,7 @@ public:
     }
 
 private:
-    /// Of the data set itself: its length changes where it turns out to be deflated.
+    /// Bytes of the data set itself: their length changes where it turns out to be deflated.
     static constexpr std::uint64_t kToTheEnd = ~std::uint64_t{0};
 
     std::uint64_t limit(std::uint64_t end) const { return std::min(end, bytes_.size()); }

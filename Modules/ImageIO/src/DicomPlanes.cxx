@@ -20,7 +20,7 @@ std::optional<Vec3> unitVector(const std::vector<double>& numbers, std::size_t f
 }
 
 /// Where the attributes of one plane stand: a functional group's items, or the data set itself;
-/// nullptr where there is none.
+/// nullptr if missing.
 struct PlaneSources {
     const DicomDataset *position, *orientation, *measures, *transformation;
 };

@@ -268,7 +268,7 @@ namespace {
 
 constexpr const char* kRemedy = "get the series again, or give its slices of one kind";
 
-/// How many slices say what.
+/// Counts the slices for each answer.
 using Votes = std::map<std::string, std::size_t>;
 
 /// "HU (20 slices) and US (1 slice)"

@@ -78,7 +78,7 @@ public:
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;
 
-    /// Kills the child if it still runs. \return how it ended, as waitpid() tells; 0 if unknown
+    /// Kills the child if it still runs. \return its status from waitpid(); 0 if unknown
     int end() {
         if (pid_ < 0) return status_;
         ::kill(pid_, SIGKILL);  // changes nothing for one that has ended
@@ -86,7 +86,7 @@ public:
         do {
             done = ::waitpid(pid_, &status_, 0);
         } while (done < 0 && errno == EINTR);
-        if (done < 0) status_ = 0;  // whoever ignores SIGCHLD is told nothing
+        if (done < 0) status_ = 0;  // SIGCHLD is ignored: the status is lost
         pid_ = -1;
         return status_;
     }
@@ -103,7 +103,7 @@ private:
            "free memory or processes");
 }
 
-/// What comes through the pipe until the child closes it. \return false at the deadline
+/// Reads the pipe until the child closes it. \return false at the deadline
 bool collect(int pipe, Clock::time_point deadline, std::string& answer) {
     std::vector<char> piece(std::size_t{1} << 16);
     for (;;) {

@@ -95,7 +95,7 @@ public:
     }
 
 private:
-    /// What the metadata say of samples that no chunk and no geometry says.
+    /// Metadata about samples that neither chunks nor the geometry give.
     std::string encodingText() const {
         const detail::ZarrArray& array = image_.array;
         std::string text = "fill";

@@ -60,8 +60,8 @@ ImageGeometry geometryOf(const HeaderBytes& bytes, const Index3& size,
     return {size, toLps * (centre - ras * half), toLps * ras};
 }
 
-/// What mghWrite puts behind the samples: four or five numbers of the scan (TR, flip angle, TE, TI,
-/// field of view), and tags, each with its length.
+/// Footer that mghWrite puts behind the samples: four or five numbers of the scan (TR, flip angle,
+/// TE, TI, field of view), and tags, each with its length.
 enum class Footer { Whole, OpenEnded, CutOff, None };
 
 Footer footerOf(const ByteTail& tail) {

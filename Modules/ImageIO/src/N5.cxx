@@ -30,7 +30,7 @@ bool isArray(const ZarrJson& attributes) {
            !memberOf(attributes, "blockSize").is_null();
 }
 
-/// What may be another program's file: no more than whether it is N5's is asked.
+/// Reads a file that may be another program's: only to recognise N5.
 ZarrJson looked(const ZarrStore& store, const std::string& path) {
     try {
         return ZarrJson::parse(store.readText(attributesOf(path)).value_or(""), nullptr, false);
@@ -224,7 +224,7 @@ void takeResolution(const fs::path& file, const ZarrJson& own, const ZarrJson& g
     }
 }
 
-/// How many voxels of the finest resolution one of this is long, along each axis.
+/// Voxels of the finest resolution along one of this, for each axis.
 std::vector<double> factorsOf(const fs::path& file, const ZarrJson& own, const ZarrJson& group,
                               std::int64_t level, std::size_t rank) {
     const ZarrJson& factors = memberOf(own, "downsamplingFactors");

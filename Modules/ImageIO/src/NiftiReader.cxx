@@ -337,7 +337,7 @@ ImageGeometry toLpsMm(const Affine& ras, double scale, const Index3& size) {
     return {size, toLps * ras.origin, toLps * ras.axes};
 }
 
-/// Which sides of the head `b` has where `a` has the opposite ones, as text to append.
+/// The sides of the head that `a` and `b` exchange, as text to append.
 std::string exchangedSides(const ImageGeometry& a, const ImageGeometry& b) {
     constexpr std::array<std::string_view, 3> kSides = {"left and right", "front and back",
                                                         "top and bottom"};

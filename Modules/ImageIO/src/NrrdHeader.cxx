@@ -31,7 +31,7 @@ std::string canonicalName(std::string_view name) {
     return canonical == "centerings" ? "centers" : canonical;
 }
 
-/// What turns a point of the named space into LPS.
+/// Signs that turn a point of the named space into LPS.
 Mat3 spaceToLps(const fs::path& file, std::string_view name) {
     const std::string space = lowerCase(name);
     if (space == "left-posterior-superior" || space == "lps") return Mat3::diagonal(1, 1, 1);
@@ -108,7 +108,7 @@ std::vector<std::string> kindsOf(const NrrdHeader& header, std::size_t axisCount
     return kinds;
 }
 
-/// Of four axes, the one that is no direction in space.
+/// The one of four axes that is no direction in space.
 std::size_t findVolumeAxis(const fs::path& file, const NrrdHeader& header,
                            const std::vector<std::string>& kinds) {
     std::vector<std::size_t> candidates;
@@ -411,7 +411,7 @@ std::optional<T> sampleOf(std::string_view word) {
     if constexpr (std::is_integral_v<T>) {
         if (const auto whole = parseNumberAs<T>(word)) return whole;
         const auto value = parseNumber(word);  // 12.0, 1e3
-        // 2^53: what a double tells apart
+        // 2^53: exact in double
         if (!value || *value != std::floor(*value) || std::abs(*value) > 9007199254740992.0) {
             return std::nullopt;
         }

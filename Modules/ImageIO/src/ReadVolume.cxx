@@ -48,7 +48,7 @@ std::int64_t countVoxels(const TypedVolumeView<T>& view, Predicate isOdd) {
     return count;
 }
 
-/// What isovalues, which are doubles, can't be compared with as the user may think.
+/// Warns of samples that isovalues, which are doubles, can't be compared with exactly.
 void warnOfOddSamples(ReadVolume& read) {
     dispatchPixelType(read.volume, [&]<class T>(const TypedVolumeView<T>& view) {
         if constexpr (std::is_floating_point_v<T>) {

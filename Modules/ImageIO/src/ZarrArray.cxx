@@ -160,7 +160,7 @@ std::endian byteOrderOf(const fs::path& file, const ZarrJson& codec) {
     return std::endian::big;
 }
 
-/// Of the dimensions as they were before this transposition.
+/// Order of the dimensions before this transposition.
 std::vector<std::size_t> orderOf(const fs::path& file, const ZarrJson& codec, std::size_t rank) {
     const ZarrJson& order = memberOf(memberOf(codec, "configuration"), "order");
     if (order == "C") return orderC(rank);
@@ -245,7 +245,7 @@ ZarrEncoding encodingOf(const fs::path& file, const ZarrJson& codecs, std::size_
     return encoding;
 }
 
-/// What a reader must understand to read the array.
+/// Features that a reader must support to read the array.
 void requireKnownMembers(const fs::path& file, const ZarrJson& json) {
     static const std::set<std::string> kKnown{"zarr_format",     "node_type",
                                               "shape",           "data_type",

@@ -87,7 +87,7 @@ Bytes unblosc(const Bytes& packed, std::uint64_t most, const fs::path& file) {
     return out;
 }
 
-/// As numcodecs has it: the size, then one block.
+/// numcodecs' form: the size, then one block.
 Bytes unlz4(const Bytes& packed, std::uint64_t most, const fs::path& file) {
     constexpr std::size_t kHeader = 4;
     constexpr auto kMost = static_cast<std::size_t>(std::numeric_limits<int>::max());
@@ -102,7 +102,7 @@ Bytes unlz4(const Bytes& packed, std::uint64_t most, const fs::path& file) {
     return out;
 }
 
-/// As lz4-java has it: blocks with a header each, and one of no bytes at the end. Their checksums
+/// lz4-java's form: blocks with a header each, and one of no bytes at the end. Their checksums
 /// (XXH32) are not looked at.
 Bytes unlz4Stream(const Bytes& packed, std::uint64_t most, const fs::path& file) {
     constexpr std::string_view kMagic = "LZ4Block";

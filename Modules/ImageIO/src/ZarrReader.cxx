@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The index asked for in a dimension that is none of space.
+/// The index asked for in a dimension other than x, y and z.
 std::uint64_t chosenIndex(const fs::path& root, const ZarrAxis& axis, std::uint64_t extent,
                           const ReadOptions& options) {
     const bool isChannel = axis.kind == ZarrAxis::Kind::Channel;
@@ -189,7 +189,7 @@ public:
         }
     }
 
-    /// Of files that hold chunks: of each axis.
+    /// Files that hold chunks, along each axis.
     const std::array<std::uint64_t, 3>& files() const { return touched_.counts(); }
     std::int64_t missing() const { return missing_; }
     std::int64_t chunks() const { return chunks_; }
@@ -220,7 +220,7 @@ private:
 
     std::uint64_t chunkBytes() const { return array_.chunkSamples() * sampleBytes_; }
 
-    /// A chunk that lies in a file, or the fill value where there is none.
+    /// A chunk from its file, or the fill value if missing.
     void addChunk(const std::optional<ZarrFile>& file, std::uint64_t offset, std::uint64_t size,
                   const ZarrIndex& first) {
         if (!file) {
@@ -263,7 +263,7 @@ private:
         }
     }
 
-    /// As large as its metadata may say, it is filled at once.
+    /// Filled at once, however large its metadata claim it to be.
     void addMissingShard(const ZarrIndex& first) {
         std::int64_t count = 1;
         for (std::size_t axis = 0; axis < 3; ++axis) {

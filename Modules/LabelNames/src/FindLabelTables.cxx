@@ -103,7 +103,7 @@ bool hasNames(const LabelTable& table) {
                                [](const auto& entry) { return !entry.name.empty(); });
 }
 
-/// What `more` knows and `table` does not: colours, and where `table` is empty all of it.
+/// Adds to `table` what is missing from `more`: colours, or all if `table` is empty.
 void addTo(LabelTable& table, LabelTable more) {
     if (table.entries.empty()) {
         table.format = more.format;
@@ -154,7 +154,7 @@ FoundLabelTables findLabelTables(const fs::path& image, std::int64_t volume) {
         } catch (const NoLabelTable&) {
             // something else of that name
         } catch (const FileError& fault) {
-            // the file's own name, without folders: what is told may be passed on
+            // the file's own name, without folders: reports may be passed on
             const std::string said = fault.what(), whole = path.string();
             warnings.push_back(
                 {"names-not-used",

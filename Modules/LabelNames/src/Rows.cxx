@@ -69,7 +69,7 @@ std::optional<double> realNumber(std::string_view word) {
 
 std::optional<std::int64_t> wholeNumber(std::string_view word) {
     const std::optional<double> value = realNumber(word);
-    constexpr double kMost = 1e15;  // that a double tells apart from its neighbours
+    constexpr double kMost = 1e15;  // exact in double
     if (!value || *value != std::floor(*value) || std::abs(*value) > kMost) return std::nullopt;
     return static_cast<std::int64_t>(*value);
 }

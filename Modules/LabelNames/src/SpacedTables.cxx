@@ -42,7 +42,7 @@ bool isColorTable(const std::vector<Row>& rows, std::ptrdiff_t numbers) {
                std::all_of(row.words.end() - numbers, row.words.end(),
                            [](auto word) { return realNumber(word).has_value(); });
     };
-    // one row with a fault is told as such, not as a file of another kind
+    // one row with a fault is reported as such, not as a file of another kind
     return 2 * std::ranges::count_if(rows, endsInColor) > std::ssize(rows);
 }
 

@@ -49,7 +49,7 @@ struct EdgeRing {
 };
 const EdgeRing& edgeRing(int kind);
 
-/// How the walls in a cell hang together: its tetrahedra in groups, one vertex each.
+/// Connection of the walls in a cell: its tetrahedra in groups, one vertex each.
 ///
 /// The pieces of wall inside a group's tetrahedra are what a cone from one point over the walls on
 /// their border is, and so are those on what two groups share: one vertex a group keeps the
@@ -66,7 +66,7 @@ struct CellPattern {
     bool isWhole() const { return groups == 1 && size[0] == kTetrahedra; }
 };
 
-/// Which corners of a cell have equal labels, as a number below kPatterns.
+/// The corners of a cell with equal labels, as a number below kPatterns.
 inline constexpr int kPatterns = 40320;
 template <class T>
 int patternCode(const std::array<T, 8>& labels) {

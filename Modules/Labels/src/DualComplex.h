@@ -24,7 +24,7 @@ struct LabelGrid {
     Index3 indexOf(std::int64_t place) const {
         return {place % size[0], place / size[0] % size[1], place / (size[0] * size[1])};
     }
-    /// How far a cell's corner c is behind its first.
+    /// Offset of a cell's corner c from its first.
     std::int64_t step(int c) const {
         return (c & 1) + size[0] * ((c >> 1 & 1) + size[1] * (c >> 2));
     }
@@ -64,7 +64,7 @@ struct Adjacency {
 /// polygon for each of its edges between two labels, one vertex for each group of tetrahedra.
 ///
 /// Where the tetrahedra of two groups are not convex together, what joins their vertices bends at
-/// a point on the face that they share. Polygons that would have less than three corners are none.
+/// a point on the face that they share. Polygons of less than three corners are left out.
 struct DualComplex {
     struct Polygon {
         std::int64_t place;  ///< where its lattice edge begins

@@ -134,7 +134,7 @@ LabelResult makeWalls(LabelGrid& grid, const ImageGeometry& geometry, const Labe
     return result;
 }
 
-/// What the options ask for; none: the full walls.
+/// The goal that the options ask for; empty: the full walls.
 std::optional<SimplifyOptions> simplification(const LabelOptions& options,
                                               const ImageGeometry& geometry,
                                               std::int64_t fullTriangles) {

@@ -45,7 +45,7 @@ double partOfWay(double from, double to, double least) {
     return to >= least ? 1 : (from - least) / (from - to);
 }
 
-/// Where a vertex lies in its cell; the fourth number is none. Four single numbers are added at
+/// Place of a vertex in its cell; the fourth number is unused. Four single numbers are added at
 /// once.
 using Local __attribute__((vector_size(16))) = float;
 
@@ -77,8 +77,8 @@ constexpr int kRoundsAtOnce = 150, kRounds = 60;
 constexpr double kInward = 0.6, kPassBand = 0.005;
 constexpr double kOutward = 1 / (kPassBand - 1 / kInward);
 
-/// What rounds leave of a wave, by 1 - k, k being how far a vertex of it lies from the middle of
-/// its neighbours, as a series of Chebyshev polynomials: far fewer steps than rounds.
+/// Amplitude of a wave after the rounds, by 1 - k, k being how far a vertex of it lies from the
+/// middle of its neighbours, as a series of Chebyshev polynomials: far fewer steps than rounds.
 std::vector<double> seriesOf(int rounds) {
     constexpr int kSamples = 128;
     constexpr double kLeast = 5e-4;

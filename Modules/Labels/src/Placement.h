@@ -9,7 +9,7 @@
 
 namespace adaptiso::detail {
 
-/// How near to the border of the room that it has a vertex may come, in voxels. Distances below are
+/// Least distance of a vertex to the border of its room, in voxels. Distances below are
 /// lost in rounding only far beyond the size of any image.
 inline constexpr double kLeastGap = 1.0 / 64;
 

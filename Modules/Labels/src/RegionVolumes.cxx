@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-/// Labels as numbers from 0 on, ascending; 0, the outside, is none.
+/// Labels as numbers from 0 on, ascending, without 0, the outside.
 class RegionNumbers {
 public:
     explicit RegionNumbers(const DualComplex& complex) {

@@ -18,7 +18,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// not tried. At 1 there are 2.5 % fewer triangles for a seventh more time (aal).
 constexpr double kMostMean2 = 0.5;
 
-/// Of a triangle's smallest angle.
+/// Cosine of a triangle's smallest angle.
 double largestCosine(const std::array<Vec3, 3>& c) {
     double largest = -1;
     for (int n = 0; n < 3; ++n) {
@@ -468,7 +468,7 @@ constexpr double kMargin = 1e-4;
 /// Cosine below which a line of voxel centres counts as parallel to a plane.
 constexpr double kParallel = 1e-12;
 
-/// What lies on one side of a plane: dot(normal, p) >= least. Normals may have any length.
+/// Half-space: dot(normal, p) >= least. Normals may have any length.
 struct HalfSpace {
     Vec3 normal;
     double least;

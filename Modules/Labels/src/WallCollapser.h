@@ -57,7 +57,7 @@ public:
         return {s.home, s.tightness, s.slot};
     }
 
-    /// Of the full walls: a triangle, those at a vertex, samples that are assigned to one of the
+    /// From the full walls: a triangle, those at a vertex, samples that are assigned to one of the
     /// mesh.
     const WallTriangle& fullTriangle(Id full) const { return patch_.fullTriangles[full]; }
     std::span<const Id> fullAround(Id sample) const {
@@ -75,7 +75,7 @@ public:
 
     void undo(Id change);
 
-    /// What did not collapse so far may, with another limit.
+    /// Allows edges that did not collapse so far to try again, with another limit.
     void tryAllAgain();
 
     /// Samples of a triangle of the full walls, or near one of the mesh, are held tighter.

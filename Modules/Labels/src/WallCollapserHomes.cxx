@@ -38,7 +38,7 @@ WallCollapser::Plane::Plane(const std::array<Vec3, 3>& corners) : corner(corners
     normal = std::sqrt(by) * cross(e, f);
 }
 
-/// What replaces the star.
+/// The triangles that replace the star.
 void WallCollapser::findParts(Id u, Id v, const Plan& plan) {
     parts_.clear();
     curveParts_.clear();
@@ -90,7 +90,7 @@ double WallCollapser::homeOnWall(const Vec3& p, Id wall, std::size_t first, doub
     return best2;
 }
 
-/// The same of a sample on a curve, of a triangle of the star.
+/// The same for a sample on a curve, of a triangle of the star.
 double WallCollapser::homeOnCurve(const Vec3& p, Id u, Id v, const Plan& plan, std::size_t i,
                                   NewHome& home) {
     const auto& t = mesh_.triangle(star_[i]);

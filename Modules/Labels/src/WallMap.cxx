@@ -54,7 +54,7 @@ public:
 
     std::span<const Map::Part> parts() const { return map_.parts(); }
 
-    /// Of the last triangle: calls f(place) for those that the image of a side passes.
+    /// Calls f(place) for the places that the image of a side of the last triangle passes.
     template <class F>
     void forEachAlong(int side, const F& f) const {
         if (hasFoot_[side]) f(foot_[side].vertex.imageTriangle);
@@ -139,7 +139,7 @@ private:
         return known.isThere;
     }
 
-    /// \return false when there is none
+    /// \return false if there are no more
     bool findFoot(Id v, Id wall, Foot& foot) const {
         const Vec3& point = mesh_.point(v);
         const SampleHome home = whole_.collapser_.homeOf(v);

@@ -163,7 +163,7 @@ void WallMender::keepWitnesses(const std::vector<Id>& full, const WallBound& bou
     }
 }
 
-/// What was taken away where triangles of the full walls lie too far from what is there now.
+/// Collapses to undo where triangles of the full walls lie too far from the present ones.
 void WallMender::blameNear(const std::vector<WallPlace>& places) {
     std::vector<Id> unexplained;
     for (const WallPlace& place : places) {

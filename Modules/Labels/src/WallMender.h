@@ -24,10 +24,10 @@ public:
     /// Keeps references to both. \param to  of the collapser's mesh
     WallMap(const WallCollapser& collapser, const WallSurface& to);
 
-    /// What was made of triangles of the full walls, in turn.
+    /// Results for triangles of the full walls, in turn.
     struct Result {
         std::vector<std::uint8_t> isMapped;
-        /// How many triangles of the mesh (numbers) each goes to, and these.
+        /// Number of the mesh's triangles that each goes to, and their numbers.
         std::vector<Id> witnessCounts, witnesses;
     };
     /// \param full  numbers \param areAll  all of a patch whose walls began as the full ones
@@ -61,7 +61,7 @@ private:
 /// Proves what the collapses made, and takes back what breaks a promise.
 class WallMender {
 public:
-    /// What was there before the collapses is taken for proved. \param collapser  must live as long
+    /// The state before the collapses counts as proved. \param collapser  must live as long
     WallMender(WallCollapser& collapser, double limitMm, bool mayGrow);
 
     double boundMm() const { return boundMm_; }
@@ -99,7 +99,7 @@ private:
     std::vector<std::uint8_t> isProved_;      ///< of triangles: within the limit of the full walls
     std::vector<std::uint8_t> isLast_;        ///< of triangles: alive when last proved
     std::vector<std::uint8_t> isFullProved_;  ///< of triangles of the full walls
-    /// Of triangles of the full walls, since they were proved: what they lie near.
+    /// Near triangles of triangles of the full walls, since they were proved.
     struct Witnesses {
         Id begin = 0, count = 0;
     };

@@ -40,7 +40,7 @@ struct WallPatch {
     // the walls at full resolution
     std::vector<Vec3> fullPoints;
     std::vector<WallTriangle> fullTriangles;
-    // the walls as they are; where there are none, the full ones are
+    // the present walls; if empty, the full ones are
     std::vector<Vec3> points;
     std::vector<WallKind> kinds;
     std::vector<Quadric> quadrics;
@@ -76,7 +76,7 @@ public:
 
     Id fullPoints() const { return fullPoints_; }
     Id fullTriangles() const { return fullTriangles_; }
-    /// What the walls had when they began: numbers from here on.
+    /// Counts of the walls at the beginning: new numbers go on from here.
     Id firstPoint() const { return firstPoint_; }
     Id firstTriangle() const { return firstTriangle_; }
     std::size_t pointCount() const { return points_.size(); }

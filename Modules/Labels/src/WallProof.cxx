@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kPiece = 256;
 
-/// How many triangles a walk may visit: some, and more for large triangles.
+/// Most triangles that a walk may visit: some, and more for large triangles.
 constexpr int kLeastSteps = 60;
 constexpr double kStepsPerTriangle = 12, kMostSteps = 1e5;
 
@@ -102,15 +102,15 @@ public:
         }
     }
 
-    /// Of the last triangle: what lies near it.
+    /// Triangles near the last one.
     std::vector<Id>& witnesses() { return witnesses_; }
     bool isBeyond() const { return isBeyond_; }
     const std::vector<Id>& nearWhatIsBeyond() const { return beyond_; }
-    /// Of all so far.
+    /// The same for all so far.
     double boundMm() const { return enoughMm_; }
 
 private:
-    /// What the walk could not prove, by all that lies near it.
+    /// Proves what the walk could not, by all that lies near.
     void provePart(const Corners& part, Id wall) {
         PieceBound own(enoughMm_);
         for (double reachMm = enoughMm_; own.nearby().empty(); reachMm *= 4) {

@@ -168,7 +168,7 @@ public:
     WallSurface(const WallSurface&) = delete;
 
     std::size_t count() const { return numbers_.size(); }
-    /// Of the mesh's triangle n here.
+    /// Place of the mesh's triangle n here.
     Id numberOf(std::size_t n) const { return numbers_[n]; }
     const std::vector<Id>& numbers() const { return numbers_; }
     /// Its place here; kNone: not here.
@@ -196,12 +196,12 @@ struct WallPlace {
     std::vector<WallMesh::Id> near;
 };
 
-/// What was proved of some triangles.
+/// Proof for some triangles.
 struct WallBound {
     double largestMm = 0;  ///< of all that is not in `beyond`, and of that without a limit
     std::vector<WallPlace> beyond;
-    /// Of each triangle in turn, where asked for: how many triangles of `to` (numbers) it was shown
-    /// to lie near, and these. While they are there, what was proved of it holds.
+    /// For each triangle in turn, where asked for: how many triangles of `to` (numbers) it was
+    /// shown to lie near, and these. While they are there, what was proved of it holds.
     std::vector<WallMesh::Id> witnessCounts, witnesses;
 };
 

@@ -16,7 +16,7 @@ constexpr std::int64_t kPiece = 4096;
 
 using Polygon = DualComplex::Polygon;
 
-/// How a polygon is cut.
+/// Cut of a polygon.
 enum class Cut : std::uint8_t { First, Second, Fan };  ///< diagonal 0-2, 1-3, none
 
 /// The altitude on the longest side is so small a part of it that the triangle is as good as none.

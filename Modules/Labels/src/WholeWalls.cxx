@@ -71,7 +71,7 @@ void collapseAll(WallCollapser& collapser, double limitMm, std::int64_t enough) 
     }
 }
 
-/// Of the vertices of the full walls, to the triangles that they are assigned to.
+/// Distance of the vertices of the full walls to the triangles that they are assigned to.
 double largestSampleDistance(const WallCollapser& collapser) {
     const WallMesh& mesh = collapser.mesh();
     double largest = 0;
@@ -153,7 +153,7 @@ Vec3 CubeCut::highOf(std::int64_t number) const {
     return high;
 }
 
-/// What lies in each cube.
+/// Content of each cube.
 struct WholeWalls::Lists {
     std::vector<Id> cubeOf;           ///< of each vertex
     std::vector<std::uint8_t> isOwn;  ///< of each triangle: in one cube
@@ -163,14 +163,14 @@ struct WholeWalls::Lists {
     Buckets<Id> samples;              ///< of each triangle
 };
 
-/// What things of a patch are called in the whole.
+/// Numbers of a patch's things in the whole.
 struct WholeWalls::Numbers {
     IdNumbers vertices, triangles;          ///< of the walls as they are
     IdNumbers fullVertices, fullTriangles;  ///< of the full ones
     std::size_t ownTriangles = 0;           ///< come first
 };
 
-/// What became of the walls in a cube.
+/// Result for the walls in a cube.
 struct WholeWalls::Made {
     std::vector<Vec3> points;
     std::vector<WallKind> kinds;
@@ -327,7 +327,7 @@ WallPatch WholeWalls::patchOf(const CubeCut& cut, const Lists& lists, std::int64
     return patch;
 }
 
-/// What a patch needs of the full walls, where the walls are no longer these.
+/// The part of the full walls that a patch needs, where the walls are no longer these.
 void WholeWalls::addFull(const Lists& lists, std::int64_t cube, WallPatch& patch,
                          Numbers& numbers) const {
     const auto addTriangle = [&](Id t) {
@@ -510,7 +510,7 @@ SimplifiedWalls simplifyWalls(LabelComplex&& full, const ImageGeometry& geometry
     aim.enough = options.maxTriangles.value_or(0);
     SimplifiedWalls walls;
     WholeWalls whole(std::move(full), geometry);
-    if (options.maxTriangles) {  // which edges are the cheapest is asked of all
+    if (options.maxTriangles) {  // the cheapest edges are chosen among all
         const auto all = static_cast<double>(
             std::max({geometry.size[0], geometry.size[1], geometry.size[2]}) + 1);
         walls.errorBoundMm = whole.simplify(CubeCut(geometry.size, 2 * all, false), aim);

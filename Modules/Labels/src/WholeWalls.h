@@ -12,7 +12,7 @@
 
 namespace adaptiso::detail {
 
-/// How far walls are simplified.
+/// Goals of simplification.
 struct WallAim {
     double limitMm = 0;       ///< between them and the full ones, both ways
     bool mayGrow = false;     ///< the limit may be passed; the bound then says by how much
@@ -20,14 +20,14 @@ struct WallAim {
     double minAngleDeg = 0;   ///< no smaller one is made
 };
 
-/// How space is cut into cubes, by planes across each axis of the image.
+/// Division of space into cubes, by planes across each axis of the image.
 class CubeCut {
 public:
     /// \param side  voxels, more or less \param isShifted  cut half-way between the other planes
     CubeCut(const Index3& size, double side, bool isShifted);
 
     std::int64_t count() const { return count_[0] * count_[1] * count_[2]; }
-    /// Of a cube along an axis, that of a coordinate in voxels.
+    /// Number of a cube along an axis, from a coordinate in voxels.
     std::int64_t along(int axis, double x) const;
     std::int64_t number(const Index3& cube) const {
         return cube[0] + count_[0] * (cube[1] + count_[1] * cube[2]);

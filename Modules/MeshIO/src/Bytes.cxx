@@ -41,8 +41,8 @@ bool spells(std::string_view word, T& value) {
     return error == std::errc() && stop == word.data() + word.size();
 }
 
-/// As from_chars() has it, or with Fortran's exponent ("1.5D+02"), or as Visual C++ writes what is
-/// not finite ("-1.#IND").
+/// A number for from_chars(), or with Fortran's exponent ("1.5D+02"), or as Visual C++ writes what
+/// is not finite ("-1.#IND").
 bool spellsReal(std::string_view word, double& value) {
     if (spells(word, value)) return true;
     if (word.find('#') != std::string_view::npos) {

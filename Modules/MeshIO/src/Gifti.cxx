@@ -31,7 +31,7 @@ AffineTransform toRas(CoordinateFrame frame, const std::optional<ImageGeometry>&
     return kFlip * inverse(lpsToFrame(frame, volume));
 }
 
-/// Metadata of the points: the volume whose tkRAS they are in, with all that FreeSurfer asks for.
+/// Metadata of the points: the volume whose tkRAS they are in, with all that FreeSurfer needs.
 void encodeVolume(const MeshWriteOptions& options, ByteSink& sink) {
     if (!options.saysFrame || options.frame != CoordinateFrame::TkRas || !options.volume) {
         sink << "<MetaData/>\n";
@@ -166,7 +166,7 @@ private:
     std::string name_;
 };
 
-/// The volume that VolGeom tells of; nothing where that is not all there. Where the volume lies
+/// The volume in VolGeom; empty if incomplete. Where the volume lies
 /// depends on its axes and centre alone: without a size it is FreeSurfer's, 256 voxels of 1 mm, and
 /// without axes they are those of FreeSurfer's volumes, as niivue and fMRIPrep have it.
 std::optional<ImageGeometry> volumeOf(const Metadata& metadata) {
@@ -219,7 +219,7 @@ bool isWorld(std::string_view space) {
     return space.starts_with("NIFTI_XFORM_") && space != kUnknownSpace;
 }
 
-/// As FreeSurfer writes both: to a tenth of a millimetre in a head.
+/// Equal to FreeSurfer's digits: to a tenth of a millimetre in a head.
 bool areAlike(const AffineTransform& a, const AffineTransform& b) {
     constexpr double kHeadMm = 200, kSlackMm = 0.1;
     double apart = norm(a.offset - b.offset);

@@ -55,7 +55,7 @@ Codec codecOf(MeshFormatId id) {
     throw InternalError("codecOf: unknown mesh format");
 }
 
-/// What is wrong with the normals of `mesh`, or an empty text.
+/// The fault of `mesh`'s normals, or an empty text.
 std::string findNormalsFault(const TriangleMesh& mesh) {
     if (!mesh.normals.empty() && mesh.normals.size() != mesh.points.size()) {
         return "it has " + std::to_string(mesh.normals.size()) + " normals for " +
@@ -69,7 +69,7 @@ std::string findNormalsFault(const TriangleMesh& mesh) {
     return {};
 }
 
-/// What is wrong with `mesh`, or an empty text. Coordinates must be in [-limit, limit].
+/// The fault of `mesh`, or an empty text. Coordinates must be in [-limit, limit].
 std::string findFault(const TriangleMesh& mesh, double limit) {
     if (mesh.triangles.empty()) return "it has no triangle";
     const auto points = static_cast<VertexId>(mesh.points.size());
@@ -100,7 +100,7 @@ std::string findFault(const TriangleMesh& mesh, double limit) {
                         "give a surface of triangles");
 }
 
-/// What even a mesh that may be broken must have.
+/// Requirements even for a mesh that may be broken.
 void requireSomething(TriangleMesh& mesh) {
     if (mesh.triangles.empty() || mesh.points.empty()) refuseEmpty(mesh);
     if (!findNormalsFault(mesh).empty()) mesh.normals.clear();
@@ -331,7 +331,7 @@ MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& opti
                         ": this is a folder, not a surface; of the images in one "
                         "adaptiso-mesh makes surfaces");
     }
-    // images may be large: the head tells
+    // images may be large: the head is enough
     const std::string head = meshio::readBytes(path, kMeshHeadBytes);
     const std::uint64_t byteCount = std::filesystem::file_size(path, error);
     if (!head.starts_with(kGzipMagic) && !recognizeMeshFormat(head, byteCount)) {

@@ -68,7 +68,7 @@ Vec3 readVec(ByteSource& line, std::string_view what) {
 /// From a number in a face (from 1, or negative: back from the last) to an index from 0.
 std::int64_t resolved(std::string_view word, std::size_t count, std::string_view what) {
     const std::int64_t number = toInteger(word, what);
-    if (number >= 0) return number - 1;  // 0 is none: -1 is refused below or by decodeMesh()
+    if (number >= 0) return number - 1;  // 0 is invalid: -1 is refused below or by decodeMesh()
     return static_cast<std::int64_t>(count) + number;
 }
 

@@ -29,7 +29,7 @@ namespace {
 
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-/// What a reader needs of the metadata; the rest may name people, places and dates.
+/// Keeps the metadata that readers need; the rest may name people, places and dates.
 bool isKept(std::string_view name, bool isOfArray) {
     return name.starts_with("AnatomicalStructure") || (isOfArray && name == "Name");
 }
@@ -351,7 +351,7 @@ void skipText(ByteSource& source) {
     source.take(static_cast<std::size_t>(length));
 }
 
-/// Damage unless the table is whole. What may follow it is nobody's.
+/// Damage unless the table is whole. Bytes behind it are ignored.
 void requireTable(std::string_view table) {
     ByteSource source(table);
     if (source.atEnd() || source.number<std::int32_t>(kBig) == 0) return;
@@ -403,7 +403,7 @@ void encodeAnnot(const PointData& data, ByteSink& sink) {
     sink << data.annotTable;
 }
 
-/// What is wrong with data to be written, or just read; empty: nothing.
+/// The fault of data to be written, or just read; may be empty.
 std::string faultOf(const PointData& data) {
     constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
     if (data.points < 1) return "it holds no values";
@@ -463,7 +463,7 @@ PointData decode(std::string_view bytes, PointDataFormat format) {
     throw InternalError("decodePointData: unknown format of values at points");
 }
 
-/// What to do with a file that has values at points in a form that is not read; empty: it may be
+/// Advice for a file that has values at points in a form that is not read; empty: it may be
 /// one that is.
 std::string adviceFor(const std::filesystem::path& path) {
     const std::string extension = lowerCase(path.extension().string());

@@ -92,7 +92,7 @@ Vec3 vectorOf(const Json& value) {
     return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
 }
 
-/// What _coordsystem.json says of the points read, and its landmarks.
+/// Adds unit, frame and landmarks from _coordsystem.json.
 void applyCoordinateSystem(const std::string& text, PointFile& file) {
     const Json json = Json::parse(text, nullptr, false);
     if (!json.is_object()) damaged("its coordinate system (_coordsystem.json) is no JSON object");

@@ -131,7 +131,7 @@ MeshFile decodeText(ByteSource source, FrameMarks marks) {
 }
 
 /// Programs write binary files with headers that begin with "solid", and text that begins with
-/// "SOLID" or a blank line: the size tells, and zero bytes, which text has none of.
+/// "SOLID" or a blank line: recognised by the size, and by zero bytes, which no text has.
 bool looksBinary(std::string_view bytes) {
     if (bytes.size() >= kHeaderBytes + 4) {
         const auto count = loadAs<std::uint32_t>(bytes.data() + kHeaderBytes, std::endian::little);

@@ -40,7 +40,7 @@ public:
         if (path_.size() < arrayDepth_) array_ = nullptr;
     }
     void onText(std::string_view text) override {
-        // text of elements inside an array (InformationKey) is none of its data
+        // text of elements inside an array (InformationKey) is not its data
         if (array_ != nullptr && path_.size() == arrayDepth_) array_->text.append(text);
     }
     bool isDone() const override { return !appended.empty(); }
@@ -277,7 +277,7 @@ private:
     bool isCompressed_ = false;
 };
 
-/// What follows the '_' of the AppendedData element that begins at `position`.
+/// Bytes behind the '_' of the AppendedData element that begins at `position`.
 std::string_view findAppendedData(std::string_view bytes, std::size_t position) {
     const std::size_t end = bytes.find('>', position);
     const std::size_t mark = end == std::string_view::npos ? end : bytes.find('_', end);

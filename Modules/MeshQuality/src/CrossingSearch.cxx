@@ -58,7 +58,7 @@ struct FiniteTriangles {
     TriangleView view(const TriangleMesh& of) const { return {of.points, triangles}; }
 };
 
-/// What rounding of coordinates in a box may hide.
+/// Distance that rounding of coordinates in a box may hide.
 double roundingIn(const BoundingBox& box) {
     return 1e-13 * (norm(box.maximum) + norm(box.minimum));
 }
@@ -255,7 +255,7 @@ constexpr double kLeastCosine = 0.02;
 constexpr std::int64_t kMostTriangles = 24;
 
 /// Puts the triangles around a vertex into one ring.
-/// \return false where they are none
+/// \return false for no such fan
 bool sortRound(std::span<std::array<std::uint32_t, 2>> sectors) {
     for (auto next = sectors.begin() + 1; next != sectors.end(); ++next) {
         const auto found = std::find_if(next, sectors.end(),

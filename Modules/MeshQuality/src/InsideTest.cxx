@@ -25,7 +25,7 @@ bool everyEdgeIsInTwo(const TriangleMesh& mesh) {
     return true;
 }
 
-/// Whether the ray crosses an odd number of triangles; none when `p` is on one.
+/// True if the ray crosses an odd number of triangles; empty when `p` is on one.
 std::optional<bool> crossesOddly(const Vec3& p, const Ray& ray, const TriangleMesh& mesh,
                                  const AabbTree& tree) {
     bool isOdd = false, isOn = false;

@@ -117,7 +117,7 @@ std::vector<Crossing> findCrossings(const LabelledWalls& walls, const ImageGeome
     return all;
 }
 
-/// How often more each region has been entered than left; those where it is 0 are left out.
+/// Entries minus exits of each region, without zeros.
 class Depths {
 public:
     explicit Depths(const std::vector<int32_t>& regions) : regions_(regions) {}

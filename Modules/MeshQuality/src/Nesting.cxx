@@ -139,7 +139,7 @@ SideCounts countSides(const std::vector<VertexId>& spokesmen, const std::vector<
     return counts;
 }
 
-/// How far the farthest vertex that is used and not inside lies from the other surface.
+/// Distance of the farthest vertex that is used and not inside from the other surface.
 double farthestOutMm(const Surface& surface, const Surface& other,
                      const std::vector<VertexId>& spokesmen, const std::vector<Side>& sides) {
     const std::int64_t count = std::ssize(sides);

@@ -67,8 +67,9 @@ bool crossWithoutSharing(const Corners& a, const Corners& b) {
     return false;
 }
 
-/// What triangles share besides their corner v reaches from v to a side opposite it: on the way
-/// out from v, a point leaves one of the two first. \pre a[0] == b[0], nothing else is shared
+/// A section that triangles share besides their corner v reaches from v to a side opposite it: on
+/// the way out from v, a point leaves one of the two first. \pre a[0] == b[0], nothing else is
+/// shared
 bool crossBeyondCorner(const Corners& a, const Corners& b) {
     const int b1 = orient3d(a[0], a[1], a[2], b[1]), b2 = orient3d(a[0], a[1], a[2], b[2]);
     if (b1 * b2 > 0) return false;

@@ -99,7 +99,7 @@ struct Farthest {
     Vec3 pointMm;
 };
 
-/// What the samples of one direction, or of both, give.
+/// Statistics of the samples of one direction, or of both.
 struct Measurements {
     std::vector<double> distancesMm;
     std::vector<double> deviationsDeg;
@@ -324,7 +324,7 @@ Best commonPoint(const Corners& a, const Corners& b) {
     return best;
 }
 
-/// Whether a slab across the line along `across` that lies between the triangles is thicker than
+/// True if a slab across the line along `across` that lies between the triangles is thicker than
 /// the root of `squaredReach`.
 bool isSlabThicker(const Vec3& across, const Corners& a, const Corners& b, double squaredReach) {
     const double high = std::max(std::max(dot(across, a[0]), dot(across, a[1])), dot(across, a[2]));
@@ -340,7 +340,7 @@ const Vec3& support(const Corners& t, const Vec3& along) {
     return h0 >= h1 ? (h0 >= h2 ? t[0] : t[2]) : (h1 >= h2 ? t[1] : t[2]);
 }
 
-/// Whether two triangles surely lie further apart than the root of `squaredReach`: first steps of
+/// True if two triangles surely lie further apart than the root of `squaredReach`: first steps of
 /// [Gilbert1988]. Tight for triangles that face each other, where boxes are not.
 bool areFartherThan(double squaredReach, const Corners& a, const Corners& b) {
     const Vec3 across = (b[0] + b[1] + b[2]) - (a[0] + a[1] + a[2]);

@@ -69,7 +69,7 @@ VertexTriangles<Number> collectVertexTriangles(const TriangleMesh& mesh) {
     return result;
 }
 
-/// What the triangles round one vertex say. Edges are counted at their lower end, duplicates at
+/// Checks the triangles round one vertex. Edges are counted at their lower end, duplicates at
 /// the lowest corner, so that each counts once.
 struct VertexFacts {
     std::uint32_t edges = 0;

@@ -106,7 +106,7 @@ unsigned TriangleTree::Pairs::LeafBoxes::overlapping(const Box& o) const {
 
 const TriangleTree& TreeOnDemand::get() {
     std::call_once(isMade_, [&] {
-        // while it waits for its own tasks a thread must not take one that asks for the tree
+        // while it waits for its own tasks a thread must not take one that needs the tree
         isolated([&] { tree_ = TriangleTree(of_); });
     });
     return tree_;

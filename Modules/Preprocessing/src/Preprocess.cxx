@@ -86,7 +86,7 @@ bool leavesImage(const ImageGeometry& grid, const ImageGeometry& image) {
     return false;
 }
 
-/// What a step makes. \throws PreprocessError when it can't be done
+/// Runs a step. \throws PreprocessError if it is impossible
 template <class Work>
 Volume take(PreprocessStep step, Work&& work) {
     try {

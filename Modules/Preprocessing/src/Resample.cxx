@@ -62,7 +62,7 @@ void forEachVoxel(const ImageGeometry& geometry, const ImageGeometry& grid, cons
     });
 }
 
-/// What lies around the image: its smallest value; 0 for one of NaN alone.
+/// Value around the image: its smallest; 0 for one of NaN alone.
 template <class T>
 T smallest(const T* samples, std::int64_t count) {
     T result = std::numeric_limits<T>::max();

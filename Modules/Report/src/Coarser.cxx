@@ -15,7 +15,7 @@ namespace {
 
 using CellId = std::int32_t;
 
-/// Which cell each vertex lies in.
+/// Cell of each vertex.
 struct Cells {
     std::vector<CellId> ofVertex;  ///< -1: of no triangle
     std::vector<Vec3> middle;      ///< RAS
@@ -110,7 +110,7 @@ struct Quadric {
     }
 };
 
-/// What becomes one vertex.
+/// Sum over the vertices that become one.
 struct Cluster {
     Quadric quadric;
     Vec3 sum;  ///< of its vertices, from the cell's middle

@@ -153,7 +153,7 @@ void addViewerScripts(std::string& html) {
     html += "</script>\n";
 }
 
-/// As addViewerScripts(), with niivue's script packed: a third of its size.
+/// Like addViewerScripts(), with niivue's script packed: a third of its size.
 std::string packedViewerScripts() {
     static const std::string packed = encodeBase64(gzip(embedded::niivueJs()));
     return dataElement("niivue", "text/plain", packed) +

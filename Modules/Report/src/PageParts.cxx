@@ -61,7 +61,7 @@ std::string checkTable(const std::string& label, const std::vector<const ReportC
     return scrollable(label, html + "</tbody>\n</table>");
 }
 
-/// How many of its items a list in the banner shows.
+/// Items that a list in the banner shows.
 constexpr std::size_t kNamed = 3;
 
 /// A list in the banner of the first kNamed `items` of `count`. The others stand at `anchor`.

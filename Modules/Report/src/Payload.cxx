@@ -59,7 +59,7 @@ std::string nifti(const ImageGeometry& geometry, const std::vector<std::uint8_t>
     return bytes;
 }
 
-/// How many samples of the image become one, along each axis: those become as cubic as may be.
+/// Samples of the image that become one, along each axis, as cubic as possible.
 Index3 blockSize(const ImageGeometry& image, std::int64_t maxVoxels) {
     constexpr std::int64_t kLongest = 32767;  // of a NIfTI-1 file
     Index3 block{1, 1, 1};
@@ -175,7 +175,7 @@ std::string blankNifti(const BoundingBox& box) {
     const double longest = std::max({extent.x, extent.y, extent.z, 1e-6});
     Vec3 step;
     for (int axis = 0; axis < 3; ++axis) step[axis] = (extent[axis] + 0.1 * longest) / (kSide - 1);
-    // columns of a RAS image, told in LPS
+    // columns of a RAS image, in LPS
     geometry.indexToPhysical = Mat3::diagonal(-step.x, -step.y, step.z);
     const Vec3 middle = 0.5 * (box.minimum + box.maximum);
     geometry.originMm = lpsToRas(middle - 0.5 * double(kSide - 1) * step);

@@ -46,7 +46,7 @@ std::vector<std::uint32_t> blocksAtBorder(const BlockGrid& grid) {
     return found;
 }
 
-/// What `search` finds for an isovalue that some values of T reach and others do not.
+/// Result of `search` for an isovalue that some values of T reach and others do not.
 /// \param search  (threshold, found) -> ranges looked at
 template <class T, class Search>
 BlockQuery query(const BlockGrid& grid, double isovalue, const Search& search) {

@@ -47,7 +47,7 @@ bool areSame(const TriangleMesh& mesh, const TriangleMesh& file, VertexId a, Ver
     return file.points[a] == file.points[b] && mesh.points[a] != mesh.points[b];
 }
 
-/// Of one mesh, and of the same as a file holds it.
+/// Compares a mesh with the same mesh as a file holds it.
 class Settling {
 public:
     /// \param exact  in the file's frame
@@ -90,7 +90,7 @@ public:
     const Vec3& at(VertexId v) const { return file_.points[v]; }
 
 private:
-    /// What the file has and the mesh has not.
+    /// Defects of the file that the mesh has not.
     struct Troubles {
         std::vector<std::int64_t> flat;               ///< triangles
         std::vector<std::array<VertexId, 2>> merged;  ///< points at one place
@@ -193,7 +193,7 @@ private:
         return true;
     }
 
-    /// How far apart coordinates are there, at most.
+    /// Largest distance between neighbouring coordinates there.
     double ulpAt(VertexId v) const {
         double most = 0;
         for (int a = 0; a < 3; ++a) {
@@ -224,7 +224,7 @@ private:
         }
     }
 
-    /// Of a vertex's triangles: the pairs that cross, and more than any number of them where the
+    /// Crossing pairs among a vertex's triangles, and more than any number of them where the
     /// vertex lies on another, and again where a triangle has no area.
     std::int64_t harmOf(VertexId v, const std::vector<std::int64_t>& star,
                         const std::vector<std::int64_t>& near) const {

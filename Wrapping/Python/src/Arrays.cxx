@@ -40,7 +40,7 @@ double turned(double value) {
     return value == 0 ? 0 : -value;
 }
 
-/// Squares of lengths and volumes must be numbers, and voxels be told apart where they lie.
+/// Squares of lengths and volumes must be finite, and the places of voxels distinct.
 void requireCountable(const ImageGeometry& geometry) {
     constexpr double kMostMm = 1e30, kMostVoxels = 1e10;
     const Vec3 spacingMm = geometry.spacingMm();

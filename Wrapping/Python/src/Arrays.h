@@ -46,7 +46,7 @@ struct ArrayVolume {
 /// read-only.
 py::array toArray(const Volume& volume);
 
-/// Rows of three numbers that `owner` keeps; nobody may write to them.
+/// Rows of three numbers that `owner` keeps; read-only.
 template <class Value, class Row>
 py::array viewRows(const std::vector<Row>& rows, const py::object& owner) {
     static_assert(sizeof(Row) == 3 * sizeof(Value));

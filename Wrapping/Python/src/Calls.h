@@ -36,7 +36,7 @@ private:
 /// thread. Ctrl+C ends the call, as of a Watcher.
 void runUnlocked(int threads, const std::function<void()>& work);
 
-/// Tells Python how far a call has come, and sees to it that Ctrl+C ends it. An exception, of the
+/// Reports progress to Python, and lets Ctrl+C end a call. An exception, of the
 /// callback or of a signal's handler, ends the C++ call and comes out of rethrow().
 class Watcher {
 public:
@@ -46,7 +46,8 @@ public:
     /// To be called without the lock. \throws Stopped
     ProgressCallback callback();
 
-    /// Asks for signals, and tells `callback` a stage; with the lock or without. \throws Stopped
+    /// Checks for signals, and reports a stage to `callback`; with the lock or without. \throws
+    /// Stopped
     void tell(std::string_view stage, double fraction);
 
     /// Runs `work` without the lock; raises in Python what stopped it.
@@ -68,7 +69,7 @@ private:
 /// later raise SystemExit, which ends a thread without a word.
 void endCallsOfOtherThreads();
 
-/// What has to be done around fork(), for os.register_at_fork: workers end before it and come back
+/// Hooks around fork(), for os.register_at_fork: workers end before it and come back
 /// when they are needed, in the parent and in the child.
 void beforeFork();
 void afterForkInParent();
@@ -76,7 +77,7 @@ void afterForkInChild();
 
 namespace py = pybind11;
 
-/// What `_adaptiso` offers, by subject; Module.cxx puts it together. Classes come before the
+/// Declarations of `_adaptiso`, by subject; Module.cxx calls them. Classes come before the
 /// functions that take them.
 
 void declareMeshes(py::module_& module);    ///< MeshData, read_mesh
@@ -87,7 +88,7 @@ void declareSimplify(py::module_& module);  ///< simplify_mesh
 void declareHeadModels(py::module_& module);  ///< HeadModelData, make_bem
 void declareLabels(py::module_& module);      ///< LabelData, make_labels
 
-/// Who made it, in reports.
+/// The program's name in reports.
 inline constexpr const char* kProgramName = "adaptiso (Python)";
 
 inline double secondsSince(std::chrono::steady_clock::time_point start) {

@@ -48,7 +48,7 @@ std::string checkNested(const std::vector<std::shared_ptr<MeshData>>& meshes,
     return text;
 }
 
-/// What adaptiso-compare tells of one of the two.
+/// adaptiso-compare's entry for one of the two.
 Json measuresOf(const TriangleMesh& mesh, const char* name) {
     const double areaMm2 = surfaceArea(mesh);
     if (!(areaMm2 > 0)) {

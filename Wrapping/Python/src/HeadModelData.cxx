@@ -33,7 +33,7 @@ void addSeconds(std::vector<std::pair<std::string, double>>& stages, std::string
     }
 }
 
-/// tkRAS whose volume nothing tells.
+/// tkRAS of an unknown volume.
 bool isLooseTkRas(const MeshData& surface) {
     return surface.frame() == CoordinateFrame::TkRas && !surface.image();
 }
@@ -77,7 +77,7 @@ HeadBoundaries boundariesOf(const HeadSources& sources, const BoundaryOptions& o
     return boundariesFromCt(views.front(), options);
 }
 
-/// What is wrong with an image, told with the name of the argument.
+/// Faults of an image, with the name of the argument.
 HeadBoundaries namedBoundaries(const HeadSources& sources, const BoundaryOptions& options) {
     try {
         return boundariesOf(sources, options);
@@ -107,7 +107,7 @@ std::vector<TriangleMesh> readyMeshes(const HeadSources& sources, BemModel& mode
     return meshes;
 }
 
-/// What the sources lead to, dense or as it came.
+/// The sources' surfaces, dense or as given.
 std::vector<TriangleMesh> firstSurfaces(const HeadSources& sources, BemModel& model,
                                         const BemHooks& hooks) {
     if (sources.source != "surfaces") {

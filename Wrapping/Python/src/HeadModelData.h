@@ -20,7 +20,7 @@ namespace adaptiso::python {
 
 namespace py = pybind11;
 
-/// What a head model is made from: images, or ready surfaces.
+/// Input of a head model: images, or ready surfaces.
 struct HeadSources {
     std::string source;  ///< "t1", "labels", "probabilities", "ct", "surfaces"
     std::vector<std::shared_ptr<ArrayVolume>> images;  ///< with surfaces: the one they belong to
@@ -33,7 +33,7 @@ struct HeadSources {
     std::vector<Warning> warnings;                    ///< of reading
 };
 
-/// A head model, or why there is none.
+/// A head model, or the reason for its absence.
 class HeadModelData {
 public:
     /// Makes a head model as adaptiso-bem does, from the samples on.
@@ -48,14 +48,14 @@ public:
     /// from.
     std::vector<std::shared_ptr<MeshData>> surfaces() const;
 
-    /// What `adaptiso-check --nested --profile bem` finds, with the gaps asked for; JSON.
+    /// Result of `adaptiso-check --nested --profile bem`, with the gaps asked for; JSON.
     std::string check(int threads) const;
 
     /// The report adaptiso-bem/1.
     std::string report(const BemFileOptions& options) const;
 
     /// Writes the model's files into a folder that is there, and report.json; reads them back and
-    /// asks them the same once more.
+    /// checks them again.
     /// \throws InvalidInput  they don't keep what is promised
     void write(const std::filesystem::path& folder, const BemFileOptions& options) const;
 

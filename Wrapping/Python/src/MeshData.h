@@ -22,14 +22,14 @@ namespace adaptiso::python {
 
 namespace py = pybind11;
 
-/// Where an image came from, as a report tells it.
+/// Origin of an image, for reports.
 struct ImageOrigin {
     std::string file;    ///< without folders; empty: an array
     std::string format;  ///< "NIfTI-1", "array", ...
     std::vector<Warning> warnings;
 };
 
-/// How a surface was made: what the program's JSON report is written from.
+/// History of a surface, for the program's JSON report.
 struct SurfaceHistory {
     SurfaceRecord record;
     ExtractionOptions extraction;  ///< without its callback

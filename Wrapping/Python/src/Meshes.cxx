@@ -19,7 +19,7 @@
 namespace adaptiso::python {
 namespace {
 
-/// What Python calls the frame of a mesh whose file does not say one.
+/// Python's word for the frame of a mesh whose file does not name one.
 constexpr std::string_view kUnknownFrame = "unknown";
 
 std::optional<ImageGeometry> imageOf(const std::optional<std::vector<std::int64_t>>& shape,

@@ -41,7 +41,7 @@ std::shared_ptr<ArrayIndex> buildIndex(const ArrayVolume& volume, const IndexOpt
     return built;
 }
 
-/// What surface() and Index.surface() take, apart from the image.
+/// Arguments of surface() and Index.surface(), apart from the image.
 struct SurfaceRequest {
     std::optional<double> level;  ///< none: Otsu's method chooses
     std::string method;
@@ -101,7 +101,7 @@ double levelOf(const SurfaceRequest& request, const VolumeView& volume, const Va
     return *request.level;
 }
 
-/// What of the history is known before there is a surface.
+/// The history's part that is known before the surface.
 /// \param built  an index, or null
 SurfaceHistory historyOf(const SurfaceRequest& request, const ArrayIndex* built, Border border,
                          const ImageOrigin& origin) {

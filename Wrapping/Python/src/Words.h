@@ -34,10 +34,10 @@ CoordinateFrame frameOf(const std::string& word);
 std::optional<CoordinateFrame> frameOf(const std::optional<std::string>& word);
 Profile profileOf(const std::string& word);
 
-/// What adaptiso-check has in `surfaces` of one: verdict and facts.
+/// An entry of adaptiso-check's `surfaces`: verdict and facts.
 Json surfaceVerdict(const TriangleMesh& mesh, const CheckRules& rules);
 
-/// What adaptiso-check has of nested surfaces: passed, surfaces, nesting.pairs.
+/// adaptiso-check's report of nested surfaces: passed, surfaces, nesting.pairs.
 /// \param gapsMm  required of each pair; empty: rules.minGapMm of all
 Json nestedJson(std::span<const TriangleMesh* const> meshes, std::span<const std::string> names,
                 std::span<const double> gapsMm, const CheckRules& rules);

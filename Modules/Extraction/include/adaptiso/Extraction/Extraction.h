@@ -27,7 +27,8 @@ std::string_view toString(Method method);
 /// What Method::Adaptive aims at. With neither bound nor count the bound is
 /// kDefaultMaxErrorVoxels; with both, triangles are dropped until either stops it.
 struct AdaptiveOptions {
-    /// Of the least distance between planes of samples. Chosen by measurement: Decisions/0006.
+    /// Fraction of the least distance between planes of samples. Chosen by measurement:
+    /// Decisions/0006.
     static constexpr double kDefaultMaxErrorVoxels = 0.15;
 
     /// Two-sided: no point of the surface of MarchingCubes is farther from the mesh, no point of

@@ -73,7 +73,7 @@ void SurfaceLookup::update(std::vector<SurfaceState::Number> changed) {
 
 const TriangleTree& SurfaceLookup::tree() const {
     std::call_once(*treeIsBuilt_, [&] {
-        // while it waits for its own tasks a thread must not take one that asks for the tree
+        // while it waits for its own tasks a thread must not take one that needs the tree
         isolated([&] { tree_ = TriangleTree(view()); });
     });
     return tree_;

@@ -28,7 +28,7 @@ struct LabelComplex {
 };
 
 struct LabelOptions {
-    /// Of the least distance between planes of samples.
+    /// Fraction of the least distance between planes of samples.
     static constexpr double kDefaultMaxErrorVoxels = 0.15;
 
     /// Two-sided distance to the full-resolution walls, mm, of each wall to itself. 0: these walls
@@ -52,7 +52,7 @@ struct LabelStatistics {
     std::int64_t fullTriangles = 0;  ///< of the full-resolution walls of the whole map
     std::int64_t mapTriangles = 0;   ///< of the whole map's walls as they were made
     std::int64_t cells = 0;          ///< cubes between eight voxel centres that a wall runs through
-    /// Of these: kept in several parts, as one vertex would pinch a region.
+    /// Part of these: kept in several parts, as one vertex would pinch a region.
     std::int64_t dividedCells = 0;
     /// Vertices that smoothing left at the limit of what the labels allow.
     std::int64_t heldVertices = 0;
@@ -94,7 +94,7 @@ std::vector<Label> findLabels(const VolumeView& volume);
 /// the complex's order. Empty for a label that no triangle has.
 TriangleMesh regionSurface(const LabelComplex& complex, Label label);
 
-/// What a region shares with another one.
+/// Wall that a region shares with another one.
 struct RegionContact {
     Label label = 0;
     std::int64_t triangles = 0;
@@ -117,7 +117,7 @@ struct RegionMeasure {
     friend bool operator==(const RegionMeasure&, const RegionMeasure&) = default;
 };
 
-/// The measures of every region that has triangles, by label; 0 is none.
+/// The measures of every region that has triangles, by label; 0 is no region.
 ///
 /// In a complex of chosen regions the others have but the walls that they share with these: their
 /// measures are left out by naming the ones that are whole.
@@ -127,9 +127,9 @@ std::vector<RegionMeasure> measureRegions(const LabelComplex& complex,
 
 /// The spaces between the walls of a complex, as meshers take them: each piece of a region is a
 /// volume of its own, with a point in it; regions are numbered from 1 in the order of `labels`.
-/// Walls are told apart by the pieces on their sides. What other labels enclose is no volume.
-/// \param labels  regions wanted, ascending, each with all its walls in the complex
-/// Cost: O(T log T), and for each cavity of a region of several pieces a look at these
+/// Walls are distinguished by the pieces on their sides. Space that other labels enclose is no
+/// volume. \param labels  regions wanted, ascending, each with all its walls in the complex Cost:
+/// O(T log T), and for each cavity of a region of several pieces a look at these
 MesherInput labelMesherInput(const LabelComplex& complex, const std::vector<Label>& labels);
 
 }  // namespace adaptiso
