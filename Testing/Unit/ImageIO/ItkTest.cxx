@@ -9,8 +9,8 @@
 #include <algorithm>
 
 #include "Fixtures.h"
-#include "adaptiso/ImageIO/SampleStatistics.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/ImageIO/SampleStatistics.h"
 
 namespace adaptiso::testing {
 namespace {

@@ -1,5 +1,7 @@
 #include "adaptiso/Labels/Labels.h"
 
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <memory>
@@ -10,12 +12,156 @@
 
 #include "Arrays.h"
 #include "Calls.h"
-#include "LabelData.h"
+#include "MeshData.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Json/Json.h"
 #include "adaptiso/LabelNames/LabelTable.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::python {
+
+namespace py = pybind11;
+
+/// The walls of a label map whose arrays Python looks at, in scanner RAS mm: LPS with the signs of
+/// x and y turned in place.
+class LabelData {
+public:
+    /// \param result  LPS mm \param labels  of regions that are whole; empty: all are
+    static std::shared_ptr<LabelData> fromLps(LabelResult result, const ImageGeometry& image,
+                                              const std::vector<Label>& labels);
+
+    /// \param points  n x 3, RAS mm \param faces  m x 3 \param labels  m x 2; all are copied
+    /// \throws InvalidInput  shapes, faces out of range
+    static std::shared_ptr<LabelData> fromArrays(
+        const py::array_t<double, py::array::c_style>& points,
+        const py::array_t<std::int64_t, py::array::c_style>& faces,
+        const py::array_t<Label, py::array::c_style>& labels, const ImageGeometry& image,
+        std::string report);
+
+    const LabelComplex& complex() const { return complex_; }
+    const ImageGeometry& image() const { return image_; }
+
+    /// The surface of one region: closed, outward, its points those of the walls, to the bit.
+    std::shared_ptr<MeshData> region(Label label) const;
+
+    /// All walls as one mesh.
+    std::shared_ptr<MeshData> walls() const;
+
+    /// Bound, statistics, and the measures of the regions; JSON.
+    const std::string& report() const { return report_; }
+
+    /// walls.vtp of adaptiso-labels. \return as MeshData::write()
+    std::string write(const std::string& path, std::optional<CoordinateFrame> frame) const;
+
+private:
+    LabelComplex complex_;
+    ImageGeometry image_;
+    std::string report_;
+};
+
+namespace {
+
+Json regionJson(const RegionMeasure& measure) {
+    Json neighbours = Json::array();
+    for (const RegionContact& contact : measure.neighbours) {
+        neighbours.push_back({{"label", contact.label},
+                              {"triangles", contact.triangles},
+                              {"areaMm2", number(contact.areaMm2)}});
+    }
+    return {{"label", measure.label},
+            {"volumeMm3", number(measure.volumeMm3)},
+            {"areaMm2", number(measure.areaMm2)},
+            {"vertices", measure.vertices},
+            {"triangles", measure.triangles},
+            {"eulerCharacteristic", measure.eulerCharacteristic},
+            {"components", measure.components},
+            {"neighbours", neighbours}};
+}
+
+Json reportJson(const LabelResult& result, const std::vector<Label>& labels) {
+    const LabelStatistics& statistics = result.statistics;
+    Json regions = Json::array();
+    for (const RegionMeasure& measure : measureRegions(result.complex, labels)) {
+        regions.push_back(regionJson(measure));
+    }
+    return {{"walls",
+             {{"points", result.complex.points.size()},
+              {"triangles", result.complex.triangles.size()},
+              {"mapTriangles", statistics.mapTriangles},
+              {"fullTriangles", statistics.fullTriangles},
+              {"wantedTriangles", orNull(statistics.wantedTriangles)},
+              {"errorBoundMm", number(statistics.errorBoundMm)},
+              {"cells", statistics.cells},
+              {"dividedCells", statistics.dividedCells},
+              {"heldVertices", statistics.heldVertices},
+              {"mendedCrossings", statistics.mendedCrossings}}},
+            {"regions", regions}};
+}
+
+}  // namespace
+
+std::shared_ptr<LabelData> LabelData::fromLps(LabelResult result, const ImageGeometry& image,
+                                              const std::vector<Label>& labels) {
+    auto data = std::make_shared<LabelData>();
+    data->report_ = dumped(reportJson(result, labels));
+    data->complex_ = std::move(result.complex);
+    turnXY(data->complex_.points);
+    data->image_ = image;
+    return data;
+}
+
+std::shared_ptr<LabelData> LabelData::fromArrays(
+    const py::array_t<double, py::array::c_style>& points,
+    const py::array_t<std::int64_t, py::array::c_style>& faces,
+    const py::array_t<Label, py::array::c_style>& labels, const ImageGeometry& image,
+    std::string report) {
+    const auto mesh = MeshData::fromArrays(points, faces, std::nullopt, CoordinateFrame::Ras,
+                                           std::nullopt, false);
+    if (labels.ndim() != 2 || labels.shape(1) != 2 || labels.shape(0) != faces.shape(0)) {
+        throw InvalidInput("labels: must be two for each face");
+    }
+    auto data = std::make_shared<LabelData>();
+    data->complex_.points = mesh->mesh().points;
+    data->complex_.triangles = mesh->mesh().triangles;
+    const auto table = labels.unchecked<2>();
+    for (py::ssize_t t = 0; t < labels.shape(0); ++t) {
+        data->complex_.labels.push_back({table(t, 0), table(t, 1)});
+    }
+    data->image_ = image;
+    data->report_ = std::move(report);
+    return data;
+}
+
+std::shared_ptr<MeshData> LabelData::region(Label label) const {
+    TriangleMesh mesh = regionSurface(complex_, label);
+    if (mesh.triangles.empty()) {
+        throw InvalidInput("label " + std::to_string(label) + ": has no surface here");
+    }
+    auto data =
+        std::make_shared<MeshData>(MeshData::asStored(std::move(mesh), CoordinateFrame::Ras));
+    data->setImage(image_);
+    return data;
+}
+
+std::shared_ptr<MeshData> LabelData::walls() const {
+    auto data = std::make_shared<MeshData>(
+        MeshData::asStored({complex_.points, {}, complex_.triangles}, CoordinateFrame::Ras));
+    data->setImage(image_);
+    return data;
+}
+
+std::string LabelData::write(const std::string& path, std::optional<CoordinateFrame> frame) const {
+    std::vector<CellArray> arrays{{"label0", {}}, {"label1", {}}};
+    for (std::size_t side = 0; side < arrays.size(); ++side) {
+        arrays[side].values.reserve(complex_.labels.size());
+        for (const auto& labels : complex_.labels) arrays[side].values.push_back(labels[side]);
+    }
+    return walls()->write(path, frame, std::move(arrays));
+}
+
 namespace {
 
 /// \param subject  of messages: the file, or "image"
