@@ -51,11 +51,17 @@ class Readme(ApplicationTest):
         for option in ("--method mc", *(f"--max-error {bound}" for bound in bounds)):
             report = json.loads(run(f"{brain} {option}", self.folder).stdout)
             made[option.split()[1]] = f"{report['surfaces'][0]['triangles']:,}"
-        self.assertEqual(counts, [made[bound] for bound in bounds])
-        self.assertIn(f"(full resolution: {made['mc']})", page)
         told = re.search(r"!\[(.*)\]\(Documentation/gallery/first-screen.png\)", page).group(1)
-        self.assertEqual(re.findall(r"[\d,]+\d", told.replace("0.15", "").replace("0.5", "")),
-                         [made["mc"], made["0.15"], made["0.5"]])
+        pictured = re.findall(r"[\d,]+\d", told.replace("0.15", "").replace("0.5", ""))
+        full = re.search(r"\(full resolution: ([\d,]+)\)", page).group(1)
+        before = [full, *counts, *pictured]
+        after = [made["mc"], *(made[bound] for bound in bounds), made["mc"], made["0.15"], made["0.5"]]
+        if os.environ.get("ADAPTISO_RENEW_PAGES"):  # draw.py then draws the picture anew
+            for old, new in zip(before, after):
+                page = page.replace(old, new)
+            PROJECT.write_text(page)
+        else:
+            self.assertEqual(before, after)
 
     def test_a_page_to_finish(self):
         self.assertLessEqual(len(PROJECT.read_text().splitlines()), 150)
