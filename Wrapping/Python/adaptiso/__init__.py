@@ -5,7 +5,7 @@
 >>> mesh.vertices.dtype, mesh.faces.dtype
 (dtype('float64'), dtype('int64'))
 
-Points are in scanner RAS millimetres. What can't be used raises `adaptiso.Error`, a ValueError
+Points are in scanner RAS millimetres. Unusable input raises `adaptiso.Error`, a ValueError
 whose message is one line. C++ works without the interpreter's lock, so threads run side by side;
 Ctrl+C ends a call. Nothing is printed: warnings go to the logger "adaptiso".
 """

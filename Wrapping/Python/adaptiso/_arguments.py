@@ -21,7 +21,7 @@ class Warned(str):
     Attributes
     ----------
     code : str
-        What it is about, as Documentation/Warnings.md lists; never changes.
+        Its kind, as listed in Documentation/Warnings.md; never changes.
     file : str
         The file's name; empty where it concerns none, or several.
     text : str

@@ -46,7 +46,7 @@ class NoModel(Error):
     Attributes
     ----------
     model : HeadModel
-        What it was tried from: its ``surfaces``, ``report`` and ``report_html()`` show the places.
+        The model's input: its ``surfaces``, ``report`` and ``report_html()`` show the places.
     """
 
     def __init__(self, message: str, model: "HeadModel") -> None:
@@ -58,7 +58,7 @@ class NoModel(Error):
 
 
 class _Carried:
-    """What pickle carries of a model, in the place of C++'s: not the image, nor how it was made."""
+    """A pickled model's data, in place of C++'s: without the image and the way it was made."""
 
     def __init__(self, state: Dict[str, Any]) -> None:
         self.state = state
@@ -111,7 +111,7 @@ class HeadModel:
     check : Check
         That this is so, found anew.
     report : dict
-        What was made, measured and checked: the report adaptiso-bem/1, points in LPS mm.
+        Surfaces, measures and checks: the report adaptiso-bem/1, points in LPS mm.
     """
 
     __slots__ = ("_data", "_surfaces", "_check", "_report", "_conductivity", "_threads",
@@ -147,7 +147,7 @@ class HeadModel:
 
     @property
     def check(self) -> Check:
-        """What `adaptiso.check_nested` finds with the profile "bem" and the gaps asked for."""
+        """Result of `adaptiso.check_nested` with the profile "bem" and the gaps asked for."""
         if self._check is None:
             self._check = Check(json.loads(self._data.check(self._threads)))
         return self._check
@@ -275,13 +275,13 @@ class HeadModel:
     def __repr__(self) -> str:
         if not self._data.has_model:
             return f"<adaptiso.HeadModel: none: {self._data.failure}>"
-        told = ", ".join(f"{name} of {len(mesh.vertices):,} vertices"
+        sizes = ", ".join(f"{name} of {len(mesh.vertices):,} vertices"
                          for name, mesh in self.surfaces.items())
-        return f"<adaptiso.HeadModel: {told}>"
+        return f"<adaptiso.HeadModel: {sizes}>"
 
 
 class _Source(NamedTuple):
-    """What a model is made from, as C++ takes it."""
+    """Input of a model, for C++."""
 
     kind: str
     images: List[Samples]
@@ -294,7 +294,7 @@ class _Source(NamedTuple):
     warnings: List[Warned]
 
     def as_dict(self, preset: str, tissues: Dict[str, List[int]]) -> Dict[str, Any]:
-        """What C++ takes."""
+        """Arguments for C++."""
         return {"kind": self.kind, "images": [image.volume for image in self.images],
                 "brain_mask": None if self.mask is None else self.mask.volume,
                 "aseg": None if self.aseg is None else self.aseg.volume,
@@ -328,7 +328,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
     """Make the nested surfaces of a head model: inner skull, outer skull, outer skin, and with four
     layers the brain; electrodes on the skin.
 
-    What the program adaptiso-bem does: the same samples and options give the same surfaces, to the
+    Does what the program adaptiso-bem does: the same samples and options give the same surfaces, to the
     byte, for any number of threads. One of `t1`, `labels`, `probabilities`, `ct` and `surfaces` is
     given; images as for `surface`.
 
@@ -340,7 +340,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
         With `t1`: the brain, from any brain extraction (a mask, or the T1 with the skull removed).
         Without it the brain is guessed, good enough for a clean T1; look at the result.
     aseg : image, optional
-        With `t1`: FreeSurfer's or FastSurfer's aseg: the brain mask where there is none, and with
+        With `t1`: FreeSurfer's or FastSurfer's aseg: the brain mask where `brain_mask` is missing, and with
         four layers the brain's own surface.
     pial : sequence, optional
         With `t1` and four layers: the cortex, as `surfaces`: ``["lh.pial", "rh.pial"]``.
@@ -467,7 +467,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
         "input_coordinates": [],
         **_electrodes(electrodes, electrodes_in, montage, landmarks, count_),
     }
-    given_threads, told = checked_threads(threads), checked_progress(progress)
+    given_threads, callback = checked_threads(threads), checked_progress(progress)
     _require_thicknesses(options, t1 is not None, ct is not None)
     if count_ == 4 and ct is not None:
         raise Error("layers 4: a CT does not show where the brain ends and CSF begins")
@@ -480,7 +480,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
     with contextlib.ExitStack() as meanwhile:
         for image in source.all_images():
             meanwhile.enter_context(read_only(image.user))
-        data = _adaptiso.make_bem(source.as_dict(preset, lists), options, given_threads, told)
+        data = _adaptiso.make_bem(source.as_dict(preset, lists), options, given_threads, callback)
     for warning in data.warnings[len(source.warnings):]:
         logger.warning("bem: %s", warning)
     model = HeadModel(data, options["conductivity"], given_threads)
@@ -492,7 +492,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
 def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, head_mask: Any,
             probabilities: Any, ct: Any, surfaces: Any, volume: Any,
             input_coordinates: Any, affine: Any, layers: int) -> _Source:
-    """The one that is given. \\raises Error"""
+    """The input that is given. \\raises Error"""
     given = {"t1": t1, "labels": labels, "probabilities": probabilities, "ct": ct,
              "surfaces": surfaces}
     kinds = [kind for kind, value in given.items() if value is not None]
@@ -535,8 +535,8 @@ def _image(name: str, image: Any, affine: Any, source: _Source) -> Samples:
     try:
         samples = samples_of(image, affine if isinstance(image, np.ndarray) else None, True)
     except Error as error:
-        told = str(error)
-        raise Error(name + told[5:] if told.startswith("image") else f"{name}: {told}") from None
+        text = str(error)
+        raise Error(name + text[5:] if text.startswith("image") else f"{name}: {text}") from None
     role = name.replace("_", " ")
     source.inputs.append([samples.file, role, samples.format])
     source.warnings.extend(warning.of(samples.file or role) for warning in samples.warnings)
@@ -589,7 +589,7 @@ def _layers(layers: Any, meg: Any) -> int:
 
 
 def _conductivities(value: Any, layers: int) -> Tuple[float, ...]:
-    """Of brain, CSF, skull, scalp. \\raises Error"""
+    """Conductivities of brain, CSF, skull, scalp. \\raises Error"""
     values = [number("conductivity", part) for part in listed("conductivity", value)]
     if len(values) == 3:
         values.insert(1, _CSF)
@@ -626,7 +626,7 @@ def _exactly(size: int, name: str, value: Any) -> List[Any]:
 
 def _electrodes(electrodes: Any, frame: Any, montage: Any, landmarks: Any,
                 layers: int) -> Dict[str, Any]:
-    """What C++ takes of electrodes and landmarks. \\raises Error"""
+    """Electrodes and landmarks, for C++. \\raises Error"""
     options: Dict[str, Any] = {"electrodes": None, "electrodes_name": "", "electrodes_in": None,
                                "montage": None, "landmarks": None,
                                "guesses_landmarks": landmarks == "guess"}
@@ -678,7 +678,7 @@ def _edge_length(value: Any) -> Optional[Tuple[float, float]]:
 
 
 def _require_thicknesses(options: Dict[str, Any], is_t1: bool, is_ct: bool) -> None:
-    """What one option alone can't tell. \\raises Error"""
+    """Checks options against each other. \\raises Error"""
     least, most = options["min_gap"][0], options["max_skull"]
     if not most > least:
         raise Error("max_skull: must be more than min_gap")

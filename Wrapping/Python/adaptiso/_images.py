@@ -42,7 +42,7 @@ class Image(NamedTuple):
     affine : ndarray, shape (4, 4)
         Takes voxel indices (i, j, k, 1) to scanner RAS millimetres.
     warnings : list of str
-        What one should know about the reading, one line each; each has a `code` as well
+        Doubts about the reading, one line each; each has a `code` as well
         (Documentation/Warnings.md).
     format : str
         "NIfTI-1", "NRRD", "MetaImage", "MGH", "DICOM", ...
@@ -104,7 +104,7 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
     Raises
     ------
     Error
-        The file is missing, damaged, of an unknown format, or its geometry can't be told.
+        The file is missing, damaged, of an unknown format, or without geometry.
 
     Examples
     --------
@@ -151,7 +151,7 @@ def _in_python(message: str) -> str:
 
 
 def _read_by_nibabel(name: str, volume_index: Optional[int], wants_more: bool) -> Image:
-    """What `read` gives in a package that was built without readers (ADAPTISO_PYTHON_READERS)."""
+    """Result of `read` in a package built without readers (ADAPTISO_PYTHON_READERS)."""
     if wants_more:
         raise Error(f"{name}: DICOM and Zarr are not read by this build of adaptiso")
     if not os.path.exists(name):
@@ -367,7 +367,7 @@ def _look_away(array: Array) -> None:
 
 @contextlib.contextmanager
 def read_only(array: Array) -> Iterator[None]:
-    """While this lasts nobody writes to `array` by mistake."""
+    """Write-protects `array` meanwhile."""
     is_held = _look_at(array)
     try:
         yield
@@ -377,6 +377,6 @@ def read_only(array: Array) -> Iterator[None]:
 
 
 def keep_read_only(array: Array, owner: Any) -> None:
-    """As long as `owner` lives nobody writes to `array` by mistake."""
+    """Write-protects `array` as long as `owner` lives."""
     if _look_at(array):
         weakref.finalize(owner, _look_away, array)

@@ -21,7 +21,7 @@ from ._triangles import Triangles
 logger = logging.getLogger("adaptiso")
 
 LabelArray = npt.NDArray[np.int32]
-#: Labels beyond these are not told apart by single precision; 0 is the outside.
+#: Larger labels coincide in single precision; 0 is the outside.
 _MOST = 2147483520
 
 
@@ -212,7 +212,7 @@ class _Names:
         self.table = dict(table)
 
     def of(self, label: int) -> Tuple[str, Tuple[int, int, int]]:
-        """What `label` is called, and its colour."""
+        """Name and colour of `label`."""
         name, color = self.table.get(label, ("", None))
         if color is None:
             red, green, blue = _adaptiso.label_color(label)

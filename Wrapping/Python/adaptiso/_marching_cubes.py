@@ -63,7 +63,7 @@ def marching_cubes(volume: Any, level: Optional[float] = None, *, spacing: Any =
     Raises
     ------
     Error
-        What can't be used (a ValueError); NoSurface (a RuntimeError too) where no triangle comes.
+        Unusable input (a ValueError); NoSurface (a RuntimeError too) for a result without triangles.
 
     Examples
     --------
@@ -149,7 +149,7 @@ def _extracted(samples: Array, isovalue: float) -> Triangles:
 
 
 def _where(mask: Array, step: int, vertices: Array, faces: Array, normals: Array) -> Triangles:
-    """What lies in cells whose last corner is in the mask."""
+    """Keeps the part in cells whose last corner is in the mask."""
     cells = np.floor(vertices[faces].mean(axis=1)).astype(np.int64)
     kept = faces[_in_mask(mask, step, cells)]
     used, numbers = np.unique(kept, return_inverse=True)
@@ -163,7 +163,7 @@ def _in_mask(mask: Array, step: int, cells: Array) -> Array:
 
 
 def _values(samples: Array, vertices: Array, mask: Optional[Array], step: int) -> Array:
-    """Of every vertex the largest range of samples in a cell of the mask that it belongs to."""
+    """For every vertex the largest range of samples in a cell of the mask that it belongs to."""
     last = np.array(samples.shape) - 2
     first = np.clip(np.ceil(vertices).astype(np.int64) - 1, 0, last)
     second = np.clip(np.floor(vertices).astype(np.int64), 0, last)

@@ -21,8 +21,8 @@ logger = logging.getLogger("adaptiso")
 class Mesh(Triangles[_adaptiso.MeshData]):
     """A triangle surface in scanner RAS millimetres.
 
-    What `surface`, `Index.surface` and `load` return; of arrays of one's own ``Mesh(vertices,
-    faces)`` makes one. Nothing of it changes, so threads may share it, and copies are not needed.
+    Returned by `surface`, `Index.surface` and `load`, and made of arrays by ``Mesh(vertices,
+    faces)``. Nothing of it changes, so threads may share it, and copies are not needed.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         if self._normals is None:
             normals = self._data.normals.astype(np.float64)
             normals.flags.writeable = False
-            self._normals = normals.view()  # of which nobody can make it writable again
+            self._normals = normals.view()  # which can't be made writable again
         return self._normals
 
     @property
@@ -210,20 +210,20 @@ class Mesh(Triangles[_adaptiso.MeshData]):
 
     def __repr__(self) -> str:
         bound = self.error_bound
-        told = "" if bound is None else f", within {bound:.4g} mm"
+        within = "" if bound is None else f", within {bound:.4g} mm"
         frame = {"ras": "RAS mm", "tkras": "tkRAS mm", "lps": "LPS mm",
                  "unknown": "unknown frame"}.get(self.frame, self.frame)
         return (f"<adaptiso.Mesh of {len(self.faces):,} triangles, {len(self.vertices):,} "
-                f"vertices{told}, {frame}>")
+                f"vertices{within}, {frame}>")
 
     def _repr_html_(self) -> str:
         """The mesh in a viewer, for notebooks: needs no network, and 1.6 to 3 MB. A mesh of more
         than 40,000 triangles is shown coarser, which the line below it says. Where scripts are off
         (a notebook that is not trusted) there is a picture from six sides."""
-        told = repr(self)[1:-1]
+        title = repr(self)[1:-1]
         if len(self.faces) == 0:
-            return f"<p>{told}</p>"
-        return self._data.notebook(told)
+            return f"<p>{title}</p>"
+        return self._data.notebook(title)
 
     def __eq__(self, other: object) -> bool:
         """The same vertices, faces and normals in the same frame."""

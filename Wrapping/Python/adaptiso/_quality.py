@@ -1,4 +1,4 @@
-"""Whether meshes are sound, lie in each other, and how far apart they are."""
+"""Checks of meshes: soundness, nesting, distance."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class _Report:
 
 
 class Check(_Report):
-    """What `check` and `check_nested` found; true when all that is required holds.
+    """Result of `check` and `check_nested`; true when all required checks hold.
 
     Attributes
     ----------
@@ -142,7 +142,7 @@ def check(mesh: Any, profile: str = "print", *, min_angle: Optional[float] = Non
     mesh : Mesh, (vertices, faces), path, or an object with vertices and faces
         mm, in any frame; may be broken in any way.
     profile : {"bem", "print", "view"}
-        What the surface is for, which says what is required of it.
+        Use of the surface, which determines the required checks.
     min_angle : float, optional
         Required smallest angle, degrees, 0 to 60.
     max_pairs : int
@@ -188,7 +188,7 @@ def check_nested(meshes: Union[Sequence[Any], Mapping[str, Any]], profile: str =
     min_gap : float, optional
         Required distance of neighbours, mm; default 0.5, required of "bem" only.
     names : sequence of str, optional
-        What findings call them; default the dict's keys, the files' names, or "surface 1" and so on.
+        Their names in findings; default the dict's keys, the files' names, or "surface 1" and so on.
     input_coordinates : {"ras", "lps", "tkras", "voxel"}, or a sequence of one for each, optional
         The frame of a file's points, whatever the file says of it (None: as it says).
 

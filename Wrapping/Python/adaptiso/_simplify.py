@@ -37,7 +37,7 @@ def simplify(mesh: Any, faces: Any = None, *, max_error: Optional[float] = None,
         Share of the triangles to drop, 0 to 1. One of these three must be given; with several,
         triangles are dropped until any of them ends it.
     min_angle : float, optional
-        Make no angle below this, 0 to 40 degrees, where there is none, at the price of more
+        Make no angle below this, 0 to 40 degrees, except those that are there, at the price of more
         triangles.
     keep_borders : bool
         Vertices on open borders stay, bit by bit.

@@ -45,7 +45,7 @@ def surface(image: Any, level: Union[float, str], *, max_error: Optional[float] 
     reduction : float, optional
         Share of marching cubes' triangles to drop, 0 to 1.
     min_angle : float, optional
-        Make no angle below this, 0 to 40 degrees, where there is none, at the price of more
+        Make no angle below this, 0 to 40 degrees, except those that are there, at the price of more
         triangles.
     method : {"adaptive", "boxes", "dmc", "asc", "mc"}
         "mc" is marching cubes at full resolution. The four options above are for "adaptive".
@@ -160,7 +160,7 @@ def _unpickled(array: Any, affine: Any, file: str, kind: str, warnings: List[War
 def _options(level: Any, max_error: Any, triangles: Any, reduction: Any, min_angle: Any,
              method: Any, largest: Any, min_volume: Any, fill_cavities: Any, threads: Any,
              progress: Any) -> Dict[str, Any]:
-    """What C++ takes. \\raises Error"""
+    """Arguments for C++. \\raises Error"""
     if isinstance(level, str) and level != "auto":
         raise Error(f"level {level!r}: must be a number or 'auto'")
     return {

@@ -1,4 +1,4 @@
-"""What a mesh and the walls of a label map have in common: views of what C++ owns, and files."""
+"""Shared by meshes and the walls of label maps: views of C++'s memory, and files."""
 
 from __future__ import annotations
 
