@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "FenceAnswer.h"
+#include "Fence.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace adaptiso::detail;

@@ -4,7 +4,7 @@
 #include <exception>
 #include <fstream>
 
-#include "FenceAnswer.h"
+#include "Fence.h"
 #include "Seeds.h"
 #include "SmallVolume.h"
 #include "adaptiso-giant/GiantPlan.h"

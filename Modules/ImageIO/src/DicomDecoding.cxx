@@ -1,5 +1,3 @@
-#include "DicomDecoding.h"
-
 #include <fmt/core.h>
 
 #include <algorithm>

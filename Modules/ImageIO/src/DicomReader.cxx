@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "DicomDecoding.h"
 #include "DicomFolder.h"
 #include "DicomGroups.h"
+#include "DicomPixels.h"
 #include "DicomStack.h"
 #include "Fence.h"
 #include "FileFault.h"

@@ -17,8 +17,6 @@
 #include <string>
 #include <vector>
 
-#include "FenceAnswer.h"
-#include "FenceChild.h"
 #include "FileFault.h"
 #include "Samples.h"
 

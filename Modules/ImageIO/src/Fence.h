@@ -1,12 +1,22 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Volume.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 /// Runs untrusted code: GDCM and ITK assert(), abort(), loop and overrun buffers
@@ -46,5 +56,46 @@ std::shared_ptr<std::byte[]> allocateSharedBytes(std::uint64_t byteCount);
 
 /// The machine's memory and swap space.
 std::uint64_t machineMemoryBytes();
+
+/// Answer of a fenced child to its parent: a volume's description, or the error it threw.
+struct FenceAnswer {
+    enum class Kind : std::uint32_t {
+        Volume,
+        FileError,
+        InvalidInput,
+        InternalError,
+        OutOfMemory,
+        UnknownError
+    };
+    Kind kind = Kind::UnknownError;
+    std::string message;  ///< of an error
+
+    PixelType pixelType = PixelType::UInt8;
+    ImageGeometry geometry;
+    std::uint64_t offset = 0, byteCount = 0;  ///< of the samples in the shared memory
+    std::string format;
+    std::vector<Warning> warnings;
+};
+
+/// Longer answers are refused.
+inline constexpr std::size_t kLongestAnswer = std::size_t{1} << 20;
+
+std::string packFenceAnswer(const FenceAnswer& answer);
+
+/// \param bytes  from a process whose memory may be damaged: anything at all
+/// \return nothing unless `bytes` is one whole answer. Control characters of texts become blanks.
+std::optional<FenceAnswer> parseFenceAnswer(std::string_view bytes);
+
+/// Input of a fenced child.
+struct FenceChildSetup {
+    int answerPipe;             ///< to write the answer into
+    int sharedMemory;           ///< a memfd that the samples go into
+    std::span<char> blameNote;  ///< shared with the parent, zeros
+    std::uint64_t memoryBytes;  ///< the limit
+};
+
+/// Forks. The child fences itself in, calls `read`, writes a FenceAnswer and ends.
+/// \return the child's id to the parent, -1 with errno when it can't be made. Never to the child.
+pid_t forkFenceChild(const FenceChildSetup& setup, const std::function<ReadVolume()>& read);
 
 }  // namespace adaptiso::detail

@@ -1,8 +1,8 @@
-#include "FenceAnswer.h"
-
 #include <algorithm>
 #include <cstring>
 #include <type_traits>
+
+#include "Fence.h"
 
 namespace adaptiso::detail {
 namespace {

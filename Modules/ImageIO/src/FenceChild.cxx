@@ -1,5 +1,3 @@
-#include "FenceChild.h"
-
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -17,7 +15,6 @@
 #include <string>
 
 #include "Fence.h"
-#include "FenceAnswer.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::detail {

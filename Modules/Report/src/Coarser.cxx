@@ -7,7 +7,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "Payload.h"
+#include "PageParts.h"
 #include "adaptiso/Report/Page.h"
 
 namespace adaptiso {

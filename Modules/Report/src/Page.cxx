@@ -7,7 +7,6 @@
 
 #include "PageFiles.h"
 #include "PageParts.h"
-#include "Payload.h"
 #include "Scene.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "Payload.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 

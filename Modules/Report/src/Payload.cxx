@@ -1,5 +1,3 @@
-#include "Payload.h"
-
 #include <zlib.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "PageParts.h"
 #include "Slices.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"

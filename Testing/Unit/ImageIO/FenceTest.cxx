@@ -17,7 +17,6 @@
 #include <thread>
 
 #include "Fence.h"
-#include "FenceAnswer.h"
 #include "Fixtures.h"
 #include "Samples.h"
 #include "adaptiso/Core/Errors.h"

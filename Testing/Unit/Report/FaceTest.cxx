@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "Payload.h"
+#include "PageParts.h"
 #include "Scene.h"
 #include "Support/Meshes.h"
 

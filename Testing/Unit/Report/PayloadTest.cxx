@@ -7,7 +7,7 @@
 #include <cstring>
 #include <numbers>
 
-#include "Payload.h"
+#include "PageParts.h"
 #include "Support/AnalyticVolumes.h"
 #include "Support/Meshes.h"
 #include "Support/OperatorNew.h"
