@@ -41,7 +41,7 @@ void requireInFolder(const std::filesystem::path& folder, const std::filesystem:
 
 /// Bytes of an image as its header has it.
 struct ImageExtent {
-    std::uint64_t piece = 0;  ///< what a wrong size would be off by a multiple of: a slice, a row
+    std::uint64_t piece = 0;  ///< a slice or a row: wrong sizes are off by a multiple of it
     std::uint64_t whole = 0;  ///< one volume, one image
 
     /// Slices and volumes of `layout`.

@@ -39,7 +39,7 @@ private:
     std::uint64_t windowStart_ = 0;
 };
 
-/// How a value stands in the file; not every transfer syntax says so.
+/// Representation of a value in the file; unknown in some transfer syntaxes.
 enum class DicomValueKind { Text, UInt16, UInt32, Float64, Digest };
 
 /// The kind of a value that DicomDataset keeps; nothing for all others.

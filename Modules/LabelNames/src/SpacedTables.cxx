@@ -99,8 +99,8 @@ LabelTable decodeSnap(const std::vector<Row>& rows) {
     return found.finish();
 }
 
-/// Whether the last word of every row is a number that is no part of its name: the names are told
-/// apart without it ("Precentral_L 2001", unlike "Area 44").
+/// True if the last word of every row is a number that is no part of its name: the names are
+/// distinct without it ("Precentral_L 2001", unlike "Area 44").
 bool endsInCode(const std::vector<Row>& rows) {
     std::set<std::string> names;
     for (const Row& row : rows) {

@@ -36,7 +36,7 @@ Vec3 heldIn(const Room& room, const Vec3& p);
 std::vector<Vec3> startPoints(const LabelGrid& grid, const DualComplex& complex,
                               const std::vector<Room>& rooms);
 
-/// Of each vertex, the neighbours that it is smoothed by: on junctions those along them only.
+/// Neighbours that each vertex is smoothed by: on junctions those along them only.
 struct Neighbours {
     std::vector<std::uint32_t> begin;
     std::vector<std::uint32_t> of;

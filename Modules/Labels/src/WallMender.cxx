@@ -237,7 +237,7 @@ std::vector<WallMender::Id> WallMender::unprovedTriangles() const {
     return unproved;
 }
 
-/// Of the full walls.
+/// Those of the full walls.
 std::vector<WallMender::Id> WallMender::unprovedFull() const {
     std::vector<Id> unproved;
     for (Id t = 0; t < mesh_.fullTriangles(); ++t) {

@@ -26,7 +26,7 @@ struct WallTriangle {
 struct SampleHome {
     static constexpr std::uint8_t kOnWall = 3;
 
-    std::uint32_t triangle = ~std::uint32_t{0};  ///< none at first
+    std::uint32_t triangle = ~std::uint32_t{0};  ///< unset at first
     float tightness = 0.8F;  ///< part of the limit that it may use: between samples it may be more
     std::uint8_t slot = kOnWall;  ///< or the edge, on a curve, by the corner that it starts from
 };

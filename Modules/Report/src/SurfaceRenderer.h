@@ -14,7 +14,7 @@ struct View {
     const char* name;                  ///< "from the front"
     Vec3 toViewer;                     ///< unit
     Vec3 up;                           ///< unit
-    const char *leftSide, *rightSide;  ///< what lies there in the picture: "R", "L"
+    const char *leftSide, *rightSide;  ///< sides of the picture: "R", "L"
 
     Vec3 right() const { return cross(up, toViewer); }
 };

@@ -41,7 +41,7 @@ py::tuple simplifyMesh(const MeshData& data, SimplifyOptions options, int thread
     return py::make_tuple(std::move(made), toDict(result.statistics));
 }
 
-/// Of each vertex of `mesh` the nearest point of `onto`: triangles (n) and corners' weights (n, 3).
+/// Nearest point of `onto` for each vertex of `mesh`: triangles (n) and corners' weights (n, 3).
 py::tuple nearestOf(const MeshData& mesh, const MeshData& onto) {
     std::vector<SurfacePoint> places;
     runUnlocked(0, [&] { places = nearestPoints(mesh.mesh(), onto.mesh()); });

@@ -43,7 +43,7 @@ std::shared_ptr<ArrayIndex> buildIndex(const ArrayVolume& volume, const IndexOpt
 
 /// Arguments of surface() and Index.surface(), apart from the image.
 struct SurfaceRequest {
-    std::optional<double> level;  ///< none: Otsu's method chooses
+    std::optional<double> level;  ///< empty: Otsu's method chooses
     std::string method;
     std::optional<double> maxErrorMm;
     std::optional<std::int64_t> maxTriangles;

@@ -97,7 +97,7 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// What runs the threads: "oneTBB 2021.8.0", or "one thread".
+/// Name of the thread library: "oneTBB 2021.8.0", or "one thread".
 std::string threadingName();
 
 }  // namespace adaptiso

@@ -33,7 +33,7 @@ double surfaceArea(const TriangleMesh& mesh);
 /// Signed volume (mm3) that a closed surface encloses: positive where normals point outward.
 double enclosedVolume(const TriangleMesh& mesh);
 
-/// Of a triangle.
+/// Box of a triangle.
 inline BoundingBox boxOf(const Corners& corners) {
     BoundingBox box{corners[0], corners[0]};
     box.add(corners[1]);

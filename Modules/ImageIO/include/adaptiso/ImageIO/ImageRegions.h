@@ -14,8 +14,8 @@ namespace adaptiso {
 
 /// An image that is read part by part, for those that are too large to be held.
 ///
-/// Of a Zarr no more than the chunks that a part touches is read; other formats are read as a
-/// whole when opened.
+/// Zarr is read chunk by chunk, as far as a part touches them; other formats are read as a whole
+/// when opened.
 class ImageRegions {
 public:
     /// \throws FileError, InvalidInput  as readVolume(), but for what chunks hold

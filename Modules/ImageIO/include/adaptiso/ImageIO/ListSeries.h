@@ -31,7 +31,7 @@ struct DicomSeries {
     /// and FrameOfReference are numbered from 1. Identifies no patient.
     std::vector<std::pair<std::string, std::string>> details;
     std::string fault;  ///< why it can't be read (a file's name may be in it); empty: it can
-    std::vector<Warning> warnings;  ///< what reading it would warn of
+    std::vector<Warning> warnings;  ///< those of reading it
 
     bool isReadable() const { return fault.empty(); }
 };

@@ -107,8 +107,8 @@ struct MeshFile {
     /// At least 1 triangle; indices in range and all finite unless options.keepsFaults.
     TriangleMesh mesh;
     std::optional<CoordinateFrame> frame;  ///< if the file says so
-    /// Of frame TkRas: from a FreeSurfer surface's footer, or FreeSurfer's VolGeom in GIFTI. Of
-    /// frame Voxel: by GIFTI's matrix to scanner space (without a size).
+    /// For frame TkRas from a FreeSurfer surface's footer, or FreeSurfer's VolGeom in GIFTI; for
+    /// frame Voxel by GIFTI's matrix to scanner space (without a size).
     std::optional<ImageGeometry> volume;
     /// One value a point each; names hold no control characters. PLY's red, green and blue are one
     /// array of colours, "RGB", and so are those of OBJ and OFF. Arrays of text are passed over.

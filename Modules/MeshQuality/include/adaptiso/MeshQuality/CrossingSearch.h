@@ -100,7 +100,7 @@ private:
     bool cross(std::uint32_t a, std::uint32_t b) const;
 
     TriangleView mesh_;
-    double gap_;  ///< what rounding of coordinates may hide
+    double gap_;  ///< distance that rounding may hide
     TriangleTree tree_;
     std::optional<ClearFans> fans_;
 };

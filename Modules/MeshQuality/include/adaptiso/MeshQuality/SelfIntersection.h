@@ -51,7 +51,7 @@ SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
 /// findSelfIntersections() has it.
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh);
 
-/// Of a triangle that may cross any other.
+/// Cell of a triangle that may cross any other.
 inline constexpr std::uint64_t kNoCell = ~std::uint64_t{0};
 
 /// The same for a mesh of which it is known that triangles of different cells do not cross, as

@@ -225,7 +225,7 @@ void TriangleTree::Pairs::forEach(std::int64_t begin, std::int64_t end, const Vi
     }
 }
 
-/// Of two triangles of a leaf.
+/// Pairs within a leaf.
 template <class Visit>
 void TriangleTree::Pairs::forEachIn(std::int64_t number, const Visit& visit) const {
     const auto triangles = tree_.leaf(number);
@@ -236,7 +236,7 @@ void TriangleTree::Pairs::forEachIn(std::int64_t number, const Visit& visit) con
     }
 }
 
-/// Of a triangle of a leaf and one of another.
+/// Pairs of a triangle of a leaf and one of another.
 /// \param own, box  around the leaves
 template <class Visit>
 void TriangleTree::Pairs::forEachBetween(std::int64_t number, const Box& own, std::int64_t other,

@@ -16,7 +16,7 @@ namespace adaptiso {
 /// Voxel indices first, first + 1, ... up to but not including `end`.
 struct IndexRange {
     std::int64_t first = 0;
-    std::optional<std::int64_t> end;  ///< none: the end of the axis
+    std::optional<std::int64_t> end;  ///< default: the end of the axis
 
     friend bool operator==(const IndexRange&, const IndexRange&) = default;
 };

@@ -13,7 +13,7 @@ namespace adaptiso {
 struct Picture {
     std::string name;     ///< "contours-axial.png"
     std::string title;    ///< for people
-    std::string altText;  ///< what is to be seen, for those who can't
+    std::string altText;  ///< the picture in words, for screen readers
     std::string png;      ///< the file's bytes
     int width = 0, height = 0;
 };

@@ -71,7 +71,7 @@ struct ReportSurface {
     std::vector<double> valuesMm{};
     /// Closed and around the brain alone: neither it nor what it holds shows a face.
     bool isWithinSkull = false;
-    std::optional<ReportColor> color{};  ///< none: surfaceColor() of its number
+    std::optional<ReportColor> color{};  ///< default: surfaceColor() of its number
 };
 
 /// The image that the surfaces belong to. The samples must live as long as the report.

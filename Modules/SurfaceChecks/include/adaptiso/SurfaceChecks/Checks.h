@@ -86,7 +86,7 @@ struct Check {
     std::string_view name;  ///< for people: "no self-intersection"
     bool isRequired = false;
     Outcome outcome = Outcome::Passed;
-    std::string finding;  ///< what was found, and where; may be empty when passed
+    std::string finding;  ///< result and place; may be empty when passed
 
     bool hasFailed() const { return outcome == Outcome::Failed; }
     bool breaksProfile() const { return isRequired && hasFailed(); }

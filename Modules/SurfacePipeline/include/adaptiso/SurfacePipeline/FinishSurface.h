@@ -36,13 +36,13 @@ struct SurfaceRecord {
                                       ///< else all
     bool choseFirst = false;          ///< pieces, before they were simplified
     bool isPart = false;              ///< pieces were dropped
-    TopologyReport topology;          ///< of what is kept
+    TopologyReport topology;          ///< of the kept pieces
     double areaMm2 = 0;
     double roundingMm = 0;                        ///< largest move of a point by the file's digits
-    std::optional<double> volumeMm3;              ///< none with an open border
+    std::optional<double> volumeMm3;              ///< empty with an open border
     std::optional<std::int64_t> crossingPairs;    ///< 0 of Method::Adaptive; none when not counted
-    std::optional<std::int64_t> insideOutPieces;  ///< none with an open border
-    std::optional<Verification> verification;     ///< none when not asked for
+    std::optional<std::int64_t> insideOutPieces;  ///< empty with an open border
+    std::optional<Verification> verification;     ///< empty when not asked for
 
     /// The count of maxTriangles or reduction was met; none when none was asked for.
     std::optional<bool> countMet() const {
@@ -92,7 +92,7 @@ struct FinishOptions {
     bool countsCrossings = true;         ///< Method::Adaptive has none, whether counted or not
     std::int64_t maxCrossingPairs = 0;   ///< to list
     StageRunner runStage{};              ///< empty: the work is called and nothing else
-    std::optional<FileDigits> digits{};  ///< none: the surface is no file's, or not yet
+    std::optional<FileDigits> digits{};  ///< empty before the file is chosen
 };
 
 /// Thrown if no piece of a surface is as large as asked for.
