@@ -49,7 +49,7 @@ ImageGeometry standInVolume() {
     return conformedGeometry({{256, 256, 256}, {-128, -128, -128}, {}});
 }
 
-/// How to state the frames of `meshes`: of all at once where none is known, else of each.
+/// Advice to state the frames of `meshes`: once for all if every frame is unknown, else for each.
 std::string adviceFor(std::span<const NamedMesh> meshes, bool areAllUnknown) {
     if (areAllUnknown) return kStateIt;
     std::string text = "; state both by";

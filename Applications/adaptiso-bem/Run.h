@@ -26,7 +26,7 @@ struct BemRun : ProgramRun {
     BemModel model;
     std::vector<std::pair<std::string, std::uintmax_t>> files{};  ///< files of the folder, by name
     std::vector<std::filesystem::path> subjectFiles{};
-    std::optional<ReadVolume> shownImage{};  ///< for the report; none unless one is wanted
+    std::optional<ReadVolume> shownImage{};  ///< for the report; empty unless one is wanted
 
     /// Takes over the model's warnings and prints those that are new.
     void takeWarnings() {

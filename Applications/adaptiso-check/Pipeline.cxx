@@ -198,7 +198,7 @@ private:
                          outer.mesh.path.filename().string(), run_.toNestingFrame, options_);
     }
 
-    /// Of a boundary of a head model, or of all of them.
+    /// Checks the plausibility of a head model's boundary, or of all of them.
     void askWhatIsUsual() {
         if (options_.profileInUse() != Profile::Bem || meshes_.empty()) return;
         run_.stage(kPlausibility, [&] {

@@ -189,7 +189,7 @@ std::string pairName(const CheckRun& run, const NestingRun& pair) {
     return nameOf(run, pair.inner) + " in " + nameOf(run, pair.outer);
 }
 
-void tellVerdict(const CheckRun& run, Report& report) {
+void addVerdict(const CheckRun& run, Report& report) {
     const auto unreadable =
         std::count_if(run.surfaces.begin(), run.surfaces.end(),
                       [](const SurfaceRun& surface) { return !surface.error.empty(); });
@@ -224,7 +224,7 @@ void tellVerdict(const CheckRun& run, Report& report) {
     }
 }
 
-void tellInputs(const CheckRun& run, Report& report) {
+void addInputs(const CheckRun& run, Report& report) {
     for (const SurfaceRun& surface : run.surfaces) {
         std::string text = baseName(surface.file);
         if (!surface.error.empty()) {
@@ -246,7 +246,7 @@ void tellInputs(const CheckRun& run, Report& report) {
     report.inputs.insert(report.inputs.end(), facts.begin(), facts.end());
 }
 
-void tellOptions(const CheckRun& run, Report& report) {
+void addOptions(const CheckRun& run, Report& report) {
     const CheckOptions& options = run.options;
     report.options = {{"Profile", std::string(toString(options.profileInUse()))},
                       {"Nested", options.isNested ? "yes, from inside to outside" : "no"}};
@@ -304,7 +304,7 @@ const TriangleMesh* meshOf(const ShownSurfaces& shown, std::size_t number) {
     return nullptr;
 }
 
-void tellSpots(const CheckRun& run, const ShownSurfaces& shown, Report& report) {
+void addSpots(const CheckRun& run, const ShownSurfaces& shown, Report& report) {
     const auto add = [&](const std::vector<ReportSpot>& spots) {
         report.spots.insert(report.spots.end(), spots.begin(), spots.end());
     };
@@ -359,12 +359,12 @@ Report makeReport(const CheckRun& run, ShownSurfaces& shown) {
         addChecks(baseName(surface.file), surface.checks, report);
     }
     addNotes(run.notes, report);
-    tellVerdict(run, report);
-    tellInputs(run, report);
-    tellOptions(run, report);
+    addVerdict(run, report);
+    addInputs(run, report);
+    addOptions(run, report);
     report.tables.push_back(surfaceTable(run));
     if (!run.nesting.empty()) report.tables.push_back(nestingTable(run));
-    tellSpots(run, shown, report);
+    addSpots(run, shown, report);
     report.warnings = linesOf(run.warnings);
     for (const SurfaceRun& surface : run.surfaces) {
         if (!surface.points || surface.points == CoordinateFrame::Ras) continue;

@@ -35,8 +35,8 @@ struct SurfaceRun {
     std::filesystem::path file;
     std::string error;  ///< why it can't be read; the rest is empty then
     const MeshFormat* format = nullptr;
-    std::optional<CoordinateFrame> frame;   ///< as the file has it; none: it does not say
-    std::optional<CoordinateFrame> points;  ///< of the points reported; none: the file's, unknown
+    std::optional<CoordinateFrame> frame;   ///< as the file has it; empty: it does not say
+    std::optional<CoordinateFrame> points;  ///< of the points reported; empty: the file's, unknown
     SurfaceFacts facts;
     /// Distance to the isosurface; its point in that of `points`, or RAS. None: not asked for, or
     /// not to be measured.
@@ -60,7 +60,7 @@ struct CheckRun : ProgramRun {
     std::optional<VolumeSummary> volume;
     std::vector<SurfaceRun> surfaces;
     std::vector<NestingRun> nesting;
-    std::optional<CoordinateFrame> nestingFrame;  ///< of the points in nesting; none: not known
+    std::optional<CoordinateFrame> nestingFrame;  ///< of the points in nesting; empty: not known
     AffineTransform toNestingFrame;               ///< from that in which it was measured
     std::vector<ToldNote> notes;  ///< of head models: what is unusual, asked by the profile bem
 
@@ -80,7 +80,7 @@ Isosurface extractIsosurface(const VolumeView& volume, double isovalue);
 
 /// How far the surface lies from the isosurface: points spread over its area, and its vertices.
 /// \param mesh  LPS mm; triangles with a corner that is not finite are left out
-/// \return none when nothing with area is left
+/// \return empty when nothing with area is left
 std::optional<DistanceStatistics> isosurfaceDeviation(const TriangleMesh& mesh,
                                                       const Isosurface& isosurface);
 
@@ -102,7 +102,7 @@ struct ShownSurfaces {
         TriangleMesh mesh;   ///< LPS mm; triangles and vertices numbered as in the file
     };
     std::vector<Shown> surfaces;
-    /// TkRas where the scanner's is not known; none where no file says a frame
+    /// TkRas if the scanner's frame is unknown; empty if no file states a frame
     std::optional<CoordinateFrame> frame = CoordinateFrame::Ras;
     std::vector<std::string> notes;  ///< what had to be assumed
     std::optional<ReadVolume> image;

@@ -57,7 +57,7 @@ struct SelfTest {
 };
 
 /// Makes every phantom, takes it through image file, index, extraction, mesh file and checks as the
-/// programs do, and measures. What goes wrong on the way is a measurement that failed, not an
+/// programs do, and measures. An error on the way becomes a failed measurement, not an
 /// exception. Files are in a folder of the system's temporary files that goes at the end.
 ///
 /// Solids (ball, torus, nested spheres, two bearing balls), each with the methods adaptive and mc;

@@ -85,7 +85,7 @@ void declareOutput(CLI::App& app, CheckOptions& options) {
     declareReportOptions(app, options.report, kOutput);
 }
 
-/// Of the names of what is written: {name} stands for an input of a batch.
+/// Checks placeholders in outputs' names: {name} is an input of a batch.
 void checkPlaceholders(const CheckOptions& options) {
     const std::vector<std::string> forRun =
         options.batch.isAsked() ? std::vector<std::string>{"{name}"} : std::vector<std::string>{};

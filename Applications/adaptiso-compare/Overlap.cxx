@@ -107,7 +107,7 @@ private:
         const Vec3 normal = areaVector2(a, b, c);
         const double i = a.x - (normal.y * (row[0] - a.y) + normal.z * (row[1] - a.z)) / normal.x;
         const auto [low, high] = std::minmax({a.x, b.x, c.x});
-        // a triangle seen edge-on: its plane does not tell, its corners do
+        // a triangle seen edge-on: its corners decide, not its plane
         return std::isfinite(i) ? std::clamp(i, low, high) : low;
     }
 

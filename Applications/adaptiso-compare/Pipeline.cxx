@@ -72,7 +72,7 @@ SurfaceSummary summarize(const NamedMesh& surface, std::optional<CoordinateFrame
     return summary;
 }
 
-/// Of a cube as large as a voxel.
+/// The side of a cube as large as a voxel.
 double meanVoxelSideMm(const ImageGeometry& geometry) {
     return std::cbrt(geometry.voxelVolumeMm3());
 }

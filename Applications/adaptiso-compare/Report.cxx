@@ -165,8 +165,7 @@ void printDifferences(std::ostream& out, const CompareRun& run) {
     }
 }
 
-void tellVerdict(const CompareRun& run, const std::string& a, const std::string& b,
-                 Report& report) {
+void addVerdict(const CompareRun& run, const std::string& a, const std::string& b, Report& report) {
     const DistanceStatistics& distances = run.distances.combined;
     report.title = "Distance between " + a + " and " + b;
     report.headline = formatLength(distances.meanMm, 3) + " mm on the mean, " +
@@ -184,7 +183,7 @@ void tellVerdict(const CompareRun& run, const std::string& a, const std::string&
     }
 }
 
-void tellInputs(const CompareRun& run, Report& report) {
+void addInputs(const CompareRun& run, Report& report) {
     const auto tell = [&](const char* name, const SurfaceSummary& surface) {
         report.inputs.push_back(
             {name, baseName(surface.file) + " (" + std::string(surface.format->name) + ", " +
@@ -199,7 +198,7 @@ void tellInputs(const CompareRun& run, Report& report) {
     report.inputs.insert(report.inputs.end(), facts.begin(), facts.end());
 }
 
-void tellOptions(const CompareRun& run, Report& report) {
+void addOptions(const CompareRun& run, Report& report) {
     report.options = {{"Points", formatCount(run.options.samples) + " in each direction"},
                       {"Directions", run.options.isSymmetric ? "A to B and B to A" : "A to B"}};
     if (run.options.maxMeanMm) {
@@ -290,9 +289,9 @@ Report makeReport(const CompareRun& run, ShownSurfaces& shown) {
         b = "B, " + b;
     }
     Report report;
-    tellVerdict(run, a, b, report);
-    tellInputs(run, report);
-    tellOptions(run, report);
+    addVerdict(run, a, b, report);
+    addInputs(run, report);
+    addOptions(run, report);
     report.tables = {distanceTable(run), surfaceTable(run)};
     if (run.overlap) {
         report.notes.push_back("As solids: Dice " + formatFixed(run.overlap->voxels.dice(), 4) +

@@ -53,11 +53,11 @@ Overlap voxelOverlap(const TriangleMesh& a, const TriangleMesh& b, const ImageGe
 struct SurfaceSummary {
     std::filesystem::path file;
     const MeshFormat* format = nullptr;
-    std::optional<CoordinateFrame> frame;  ///< none: the file does not say
+    std::optional<CoordinateFrame> frame;  ///< empty: the file does not say
     std::int64_t triangles = 0;
     std::int64_t vertices = 0;
     double areaMm2 = 0;
-    std::optional<double> volumeMm3;  ///< none unless closed and oriented
+    std::optional<double> volumeMm3;  ///< empty unless closed and oriented
     double diagonalMm = 0;            ///< of the bounding box
 };
 
@@ -105,7 +105,7 @@ struct CompareRun : ProgramRun {
     std::optional<OverlapSummary> overlap;
     std::optional<ColoredSummary> colored;
     std::vector<Check> checks;
-    std::optional<Volume> image;  ///< for the page; none unless one is wanted
+    std::optional<Volume> image;  ///< for the page; empty unless one is wanted
 };
 
 /// The report that --json asks for, as README.md describes it: schema "adaptiso-compare/1". Holds

@@ -10,7 +10,7 @@
 
 namespace adaptiso::giant {
 
-/// What pieces so far have in common with pieces to come: the vertices that have an edge whose
+/// The border between pieces read and pieces to come: the vertices that have an edge whose
 /// other triangle has not been seen. Once it has, the surface is closed around a vertex, no other
 /// piece has it, and it is forgotten. So of pieces that come layer by layer about a layer's borders
 /// are held, however many layers there are: 150 bytes for each of their vertices.

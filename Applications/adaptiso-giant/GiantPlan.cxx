@@ -61,7 +61,7 @@ Json identityJson(const GiantPlan& plan) {
                     "); make it again with: adaptiso-giant plan");
 }
 
-/// Reads what encodePlan() writes, and believes none of it.
+/// Reads the output of encodePlan() and validates every value.
 class PlanReader {
 public:
     PlanReader(const Json& json, const std::string& name) : json_(json), name_(name) {}

@@ -35,7 +35,7 @@ struct GiantPlan {
     bool isAdaptive() const { return method == Method::Adaptive; }
     /// The seam boxes that lie in these tiles; none but of Method::Adaptive.
     std::vector<Index3> seams() const;
-    /// Of its pieces, those that are the surface: seam boxes, or tiles.
+    /// The pieces that form the surface: seam boxes, or tiles.
     std::vector<Index3> pieces() const { return isAdaptive() ? seams() : tiles; }
 
     /// All but the lists: plans with equal identity have equal pieces.
@@ -54,7 +54,7 @@ std::array<std::int64_t, 3> orderOf(const Index3& place);
 
 /// "3_0_12"
 std::string idOf(const Index3& place);
-/// none: it is no such id
+/// Empty if the text is no such id.
 std::optional<Index3> placeOf(std::string_view id);
 
 }  // namespace adaptiso::giant

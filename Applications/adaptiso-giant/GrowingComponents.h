@@ -10,7 +10,7 @@ struct GiantComponent {
     std::int64_t vertices = 0, triangles = 0;
     double areaMm2 = 0, volumeMm3 = 0;
     std::int64_t firstPart = 0;  ///< of all pieces' components, the first that is in it
-    /// Of a closed component.
+    /// Measures of a closed component.
     std::int64_t eulerNumber() const { return vertices - triangles / 2; }
     std::int64_t genus() const { return (2 - eulerNumber()) / 2; }
     bool isCavity() const { return volumeMm3 < 0; }

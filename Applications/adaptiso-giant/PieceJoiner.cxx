@@ -62,7 +62,7 @@ PieceJoiner::PieceJoiner(const std::filesystem::path& work, const GiantPlan& pla
     joinPieces();
 }
 
-/// All at once, so that what is missing is told whole. Whether they are sound is seen later.
+/// Reads all at once, so that one message lists every missing piece. Soundness is checked later.
 void PieceJoiner::requirePieces() const {
     std::int64_t missing = 0;
     std::string first;

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Of the bound, what the first pass may use; the second has the rest. It changes little, and that
+/// The share of the bound for the first pass; the second gets the rest. It changes little, and that
 /// costs more the smaller its share is; a large share costs triangles everywhere.
 constexpr double kTileShare = 0.9;
 

@@ -27,7 +27,7 @@ std::vector<Ids> grouped(const std::vector<Index3>& places, std::size_t workers)
     return groups;
 }
 
-/// Of a child's errors, without the name of this program, which is put before it anew.
+/// The first line of a child's errors, without the program's name, which is printed again.
 std::string firstLine(const std::string& errors) {
     const std::string name = std::string(kGiantProgram) + ": ";
     const std::size_t begin = errors.starts_with(name) ? name.size() : 0;

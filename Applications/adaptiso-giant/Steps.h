@@ -36,7 +36,7 @@ std::optional<PieceSummary> findPiece(const std::filesystem::path& work, const s
 /// The tiles of the plan that a seam box lies in.
 std::vector<Index3> tilesAt(const GiantPlan& plan, const Index3& seam);
 
-/// What seam boxes are made of: the inputs of their tiles. It remembers two layers of tiles, so ask
+/// The inputs of seam boxes: those of their tiles. It remembers two layers of tiles, so ask
 /// in the plan's order.
 class SeamInputs {
 public:
@@ -44,7 +44,7 @@ public:
 
     /// SHA-256 of the tiles' names and inputs. \throws FileError  one is missing
     std::string of(const Index3& seam);
-    /// The same, compared; tiles that are not there any more can't tell.
+    /// Whether they differ from `inputs`; false if a tile is gone.
     bool areChanged(const Index3& seam, const std::string& inputs);
 
 private:

@@ -43,7 +43,7 @@ std::string faultText(const TypedVolumeView<T>& view, const Index3& at) {
                            : ", which is no whole number, so this is no label map");
 }
 
-/// Of one layer.
+/// The census of one layer.
 template <class T>
 void countLayer(const TypedVolumeView<T>& view, int64_t k, Counts& counts) {
     const Index3& size = view.geometry.size;

@@ -16,7 +16,7 @@ std::string says(const Json& report) {
            formatCount(report.at("walls").at("triangles").get<long long>()) + " triangles";
 }
 
-/// What is of the whole; the regions' own files are as many as there are regions.
+/// The files of the whole map, without those of single regions.
 std::vector<std::string> outputs(const Json& report) {
     std::vector<std::string> files;
     const Json output = report.value("output", Json::object());

@@ -39,7 +39,7 @@ struct LabelsOptions {
     bool mayReplace = false;
     bool namesFiles = false;               ///< of regions by their names, else by their labels
     std::string format = ".vtp";           ///< of the regions' files, an extension
-    std::optional<CoordinateFrame> frame;  ///< none: the format's own
+    std::optional<CoordinateFrame> frame;  ///< empty: the format's own
     std::filesystem::path volume;          ///< shown behind the regions; empty: the input
     ReportOptions report;
     CommonOptions common;

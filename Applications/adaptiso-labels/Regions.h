@@ -30,7 +30,7 @@ struct LabelCensus {
 ///                       that 32 bits don't hold
 LabelCensus countLabels(const VolumeView& image);
 
-/// The map with merged labels as one; the very volume when there are none.
+/// The map with merged labels as one; the same volume when no labels are merged.
 Volume mergeLabels(Volume map, const std::vector<LabelMerge>& merges);
 
 /// The census of that map.
@@ -45,11 +45,11 @@ Label mergedNumber(Label label, const std::vector<LabelMerge>& merges);
 void resolveNames(LabelsOptions& options);
 
 /// The labels to take: all of the map's, or those of --labels.
-/// \throws InvalidInput  the map has none of a range that is asked for
+/// \throws InvalidInput  the map has no label of a requested range
 std::vector<Label> chooseLabels(const LabelCensus& census, const LabelsOptions& options);
 
-/// Names and colours for the regions of `labels`, in run.regions; warns of what has none.
-/// \throws FileError  the table of --names
+/// Names and colours for the regions of `labels`, in run.regions; warns about labels without a
+/// name. \throws FileError  the table of --names
 void nameRegions(const std::vector<Label>& labels, const LabelCensus& census, LabelsRun& run);
 
 /// The surfaces of the regions of a complex, one at a time, without looking at all walls for each.
@@ -58,8 +58,8 @@ public:
     /// \param complex  must live as long
     RegionSurfaces(const LabelComplex& complex, const std::vector<Region>& regions);
 
-    /// Of the n-th region: closed, outward; its points are the complex's, to the bit, in their
-    /// order, and so are its triangles. May be called from several threads.
+    /// The n-th region's surface: closed, outward; its points are the complex's, to the bit, in
+    /// their order, and so are its triangles. May be called from several threads.
     TriangleMesh surface(std::size_t n) const;
 
 private:

@@ -22,7 +22,7 @@ ReportColor onBlack(const LabelColor& color) {
     return lighter;
 }
 
-void tellVerdict(const LabelsRun& run, Report& report) {
+void addVerdict(const LabelsRun& run, Report& report) {
     const std::size_t count = run.regions.size();
     report.title = formatCount(static_cast<std::int64_t>(count)) +
                    (count == 1 ? " region of " : " regions of ") + baseName(run.options.input);
@@ -36,7 +36,7 @@ void tellVerdict(const LabelsRun& run, Report& report) {
     report.headline = "Not written: the walls do not keep what is promised of them.";
 }
 
-void tellInputs(const LabelsRun& run, Report& report) {
+void addInputs(const LabelsRun& run, Report& report) {
     const MapSummary& map = run.map;
     report.inputs = imageFacts(baseName(run.options.input), map.format, map.geometry);
     report.inputs.push_back(
@@ -47,7 +47,7 @@ void tellInputs(const LabelsRun& run, Report& report) {
         {"Names", names.empty() ? "none found" : names + " (" + run.names.format + ")"});
 }
 
-void tellOptions(const LabelsRun& run, Report& report) {
+void addOptions(const LabelsRun& run, Report& report) {
     const LabelsOptions& options = run.options;
     const auto add = [&](const std::string& name, const std::string& value) {
         report.options.push_back({name, value});
@@ -79,7 +79,7 @@ void tellOptions(const LabelsRun& run, Report& report) {
     add("Format, frame", std::string(run.format->name) + ", " + std::string(toString(run.frame)));
 }
 
-void tellChecks(const LabelsRun& run, Report& report) {
+void addFindings(const LabelsRun& run, Report& report) {
     for (const LabelsCheck& check : run.checks) {
         report.checks.push_back({"all walls", check.name,
                                  check.isPassed ? ReportOutcome::Passed : ReportOutcome::Failed,
@@ -143,10 +143,10 @@ Report makeReport(const LabelsRun& run, const RegionSurfaces& surfaces,
                   const std::string& volumeName, const VolumeView& volume) {
     Report report;
     report.areRegions = true;
-    tellVerdict(run, report);
-    tellInputs(run, report);
-    tellOptions(run, report);
-    tellChecks(run, report);
+    addVerdict(run, report);
+    addInputs(run, report);
+    addOptions(run, report);
+    addFindings(run, report);
     const std::vector<std::size_t> shown = chooseShown(run, report);
     for (const std::size_t n : shown) {
         ReportSurface surface{run.nameOf(run.regions[n].label), surfaces.surface(n)};

@@ -96,7 +96,7 @@ struct LabelsRun : ProgramRun {
     bool isPart() const { return !options.labels.empty(); }
     bool writesFolder() const { return holdsPromises() && !failsStrict(); }
 
-    /// The bound that the walls are to keep; none with a count alone, or at full resolution.
+    /// The bound that the walls must keep; empty with a count alone and at full resolution.
     std::optional<double> askedBoundMm() const {
         if (options.maxErrorMm == 0.0) return std::nullopt;
         if (options.maxErrorMm || options.maxTriangles || options.reduction) {

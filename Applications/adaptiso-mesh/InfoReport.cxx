@@ -32,7 +32,7 @@ std::string bar(std::int64_t count, std::int64_t most) {
     return std::string(static_cast<std::size_t>(std::max(1.0, std::round(length))), '#');
 }
 
-/// \param isInteger  bins begin half-way between whole numbers; their first is told
+/// \param isInteger  bins begin half-way between whole numbers; prints their first whole number
 void printHistogram(std::ostream& out, const SampleHistogram& histogram, bool isInteger) {
     constexpr std::size_t kMostRows = 32;
     const std::size_t bins = histogram.counts.size();

@@ -18,7 +18,7 @@ namespace adaptiso::mesher {
 
 /// An isovalue as asked for.
 struct IsovalueChoice {
-    std::optional<double> value;  ///< none: chosen by Otsu's method
+    std::optional<double> value;  ///< empty: chosen by Otsu's method
 
     bool isAutomatic() const { return !value; }
     friend bool operator==(const IsovalueChoice&, const IsovalueChoice&) = default;
@@ -39,7 +39,7 @@ struct MeshOptions {
     AdaptiveOptions adaptive;
     IndexOptions index;
     ComponentSelection selection;
-    std::optional<CoordinateFrame> frame;  ///< none: the output format's own
+    std::optional<CoordinateFrame> frame;  ///< empty: the output format's own
     bool checksCrossings = true;
     bool verifies = false;  ///< checks the method adaptive's promises by other means, too
     ReportOptions report;

@@ -107,7 +107,7 @@ std::string nameOf(const SurfaceSummary& surface) {
     return surface.file.filename().string();
 }
 
-void tellVerdict(const MeshRun& run, Report& report) {
+void addVerdict(const MeshRun& run, Report& report) {
     const std::size_t count = run.surfaces.size();
     report.title = count == 1
                        ? "Surface of " + baseName(run.options.input)
@@ -135,7 +135,7 @@ void tellVerdict(const MeshRun& run, Report& report) {
                                  " of triangles cross each other, see below.";
 }
 
-void tellInputs(const MeshRun& run, Report& report) {
+void addInputs(const MeshRun& run, Report& report) {
     const InputSummary& input = run.input;
     report.inputs = imageFacts(baseName(run.options.input), input.format, input.geometry);
     report.inputs.push_back({"Samples", std::string(toString(input.pixelType)) + ", " +
@@ -143,7 +143,7 @@ void tellInputs(const MeshRun& run, Report& report) {
                                             formatNumber(input.range.maximum)});
 }
 
-void tellOptions(const MeshRun& run, Report& report) {
+void addOptions(const MeshRun& run, Report& report) {
     const MeshOptions& options = run.options;
     for (const SurfaceSummary& surface : run.surfaces) {
         report.options.push_back(
@@ -166,7 +166,7 @@ void tellOptions(const MeshRun& run, Report& report) {
     report.options.push_back({"Pieces kept", pieces});
 }
 
-void tellChecks(const SurfaceSummary& surface, Report& report) {
+void addFindings(const SurfaceSummary& surface, Report& report) {
     const TopologyReport& topology = surface.topology;
     const auto add = [&](const std::string& name, bool holds, const std::string& finding) {
         report.checks.push_back(
@@ -242,13 +242,13 @@ void printReport(std::ostream& out, const MeshRun& run) {
 
 Report makeReport(MeshRun& run, const VolumeView& volume) {
     Report report;
-    tellVerdict(run, report);
-    tellInputs(run, report);
-    tellOptions(run, report);
+    addVerdict(run, report);
+    addInputs(run, report);
+    addOptions(run, report);
     for (std::size_t n = 0; n < run.surfaces.size(); ++n) {
         const SurfaceSummary& surface = run.surfaces[n];
         ShownSurface& shown = run.shown[n];
-        tellChecks(surface, report);
+        addFindings(surface, report);
         SpotClusters clusters(shown.mesh);
         for (const TrianglePair& pair : shown.crossings) {
             clusters.add(middleOf(shown.mesh, pair[0]));

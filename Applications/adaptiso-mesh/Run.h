@@ -70,7 +70,7 @@ struct MeshRun : ProgramRun {
     std::vector<SurfaceSummary> surfaces;
     std::vector<ShownSurface> shown{};  ///< for the page; empty unless one is wanted
 
-    /// Of the values that the surfaces are made from.
+    /// The range of the values that the surfaces are made from.
     const ValueRange& range() const { return preprocessed ? preprocessed->range : input.range; }
 };
 

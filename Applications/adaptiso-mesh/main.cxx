@@ -37,7 +37,7 @@ std::vector<IsovalueChoice> parseIsovalues(const std::vector<std::string>& texts
     return choices;
 }
 
-/// Of the options that make no surface.
+/// Checks options that make no surface.
 void checkLookingOnly(const MeshOptions& options) {
     if (options.image.showsPhi && !options.image.listsSeries && !options.image.tellsInfo) {
         throw UsageError("--show-phi: is for --list-series and --info");
@@ -47,7 +47,7 @@ void checkLookingOnly(const MeshOptions& options) {
     }
 }
 
-/// Of the names of what is written: {name} stands for an input of a batch, {iso} in the surface's
+/// Checks placeholders in outputs' names: {name} is an input of a batch, {iso} in the surface's
 /// name for the isovalue.
 void checkPlaceholders(const MeshOptions& options) {
     const std::vector<std::string> forRun{"{name}"}, forSurface{"{iso}", "{isolabel}", "{name}"};

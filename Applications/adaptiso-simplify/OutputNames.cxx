@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMark = "simplified";
 
-/// Length of an ending of two parts; 0: the name has none.
+/// Length of an ending of two parts; 0 without one.
 std::size_t twoPartEnding(const std::string& name) {
     constexpr std::array<std::string_view, 4> kEndings{".surf.gii", ".shape.gii", ".func.gii",
                                                        ".label.gii"};

@@ -81,8 +81,8 @@ void addCrossing(const TriangleMesh& mesh, const std::vector<std::int64_t>& tria
     findings.insert(at, std::move(*crossing));
 }
 
-/// What is not sound of the input. What crosses is looked for only where that may end the run;
-/// else simplify() tells.
+/// Finds the input's faults. Crossings are looked for only where they may end the run; otherwise
+/// simplify() reports them.
 void check(const TriangleMesh& mesh, SimplifyRun& run) {
     run.input.topology = checkTopology(mesh);
     run.findings = findTopologyFaults(run.input.topology);

@@ -23,7 +23,7 @@ struct SimplifyCommand {
     SimplifyOptions aim;
     bool requiresSound = false;
     std::filesystem::path output;          ///< a file, or a folder; empty: batch.outputFolder
-    std::optional<CoordinateFrame> frame;  ///< none: the input's own
+    std::optional<CoordinateFrame> frame;  ///< empty: the input's own
     BatchOptions batch;
     ReportOptions report;
     CommonOptions common;

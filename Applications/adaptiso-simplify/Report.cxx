@@ -120,7 +120,7 @@ void printOutput(std::ostream& out, const SimplifyRun& run) {
     }
 }
 
-void tellVerdict(const SimplifyRun& run, Report& report) {
+void addVerdict(const SimplifyRun& run, Report& report) {
     report.title = baseName(run.input.file) + " simplified";
     if (run.failsSoundness()) {
         report.verdict = ReportVerdict::Failed;
@@ -133,7 +133,7 @@ void tellVerdict(const SimplifyRun& run, Report& report) {
                       " mm from the input, nor the other way round.";
 }
 
-void tellInputs(const SimplifyRun& run, Report& report) {
+void addInputs(const SimplifyRun& run, Report& report) {
     const SurfaceSummary& input = run.input;
     report.inputs.push_back(
         {"Surface", baseName(input.file) + " (" + std::string(input.format->name) + ", " +
@@ -145,7 +145,7 @@ void tellInputs(const SimplifyRun& run, Report& report) {
     }
 }
 
-void tellOptions(const SimplifyCommand& command, Report& report) {
+void addOptions(const SimplifyCommand& command, Report& report) {
     const SimplifyOptions& aim = command.aim;
     if (aim.maxErrorMm) {
         report.options.push_back({"Largest error", formatNumber(*aim.maxErrorMm) + " mm"});
@@ -163,7 +163,7 @@ void tellOptions(const SimplifyCommand& command, Report& report) {
         {"Open borders", aim.keepBorders ? "kept as they are" : "simplified within the bound"});
 }
 
-void tellChecks(const SimplifyRun& run, Report& report) {
+void addFindings(const SimplifyRun& run, Report& report) {
     const auto add = [&](const std::string& subject, const std::string& name, bool holds,
                          const std::string& finding) {
         const ReportOutcome bad =
@@ -202,8 +202,8 @@ ReportTable surfaceTable(const SimplifyRun& run) {
     return table;
 }
 
-void tellSpots(const SimplifyRun& run, const TriangleMesh& input, const PageFrame& frame,
-               Report& report) {
+void addSpots(const SimplifyRun& run, const TriangleMesh& input, const PageFrame& frame,
+              Report& report) {
     const std::string in = " in " + baseName(run.input.file);
     for (const Finding& finding : run.findings) {
         if (!finding.placeMm || !finding.isFault) continue;
@@ -245,14 +245,14 @@ void printReport(std::ostream& out, const SimplifyRun& run) {
 
 Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh shown) {
     Report report;
-    tellVerdict(run, report);
-    tellInputs(run, report);
-    tellOptions(run.command, report);
-    tellChecks(run, report);
+    addVerdict(run, report);
+    addInputs(run, report);
+    addOptions(run.command, report);
+    addFindings(run, report);
     const PageFrame frame = pageFrame(input);
     report.frame = frame.name;
     TriangleMesh before = transformed(input.mesh, frame.toLps);
-    tellSpots(run, before, frame, report);
+    addSpots(run, before, frame, report);
     if (run.failsSoundness()) {
         report.surfaces.push_back({baseName(run.input.file), std::move(before)});
     } else {

@@ -52,7 +52,7 @@ std::vector<std::int64_t> findCrossing(const TriangleMesh& mesh);
 struct SurfaceSummary {
     std::filesystem::path file;
     const MeshFormat* format = nullptr;
-    std::optional<CoordinateFrame> frame;  ///< none: the file does not say
+    std::optional<CoordinateFrame> frame;  ///< empty: the file does not say
     std::int64_t triangles = 0, vertices = 0;
     TopologyReport topology;
     double areaMm2 = 0;
@@ -75,7 +75,7 @@ struct SimplifyRun : ProgramRun {
     const SimplifyCommand& command;
     SurfaceSummary input{};
     std::vector<Finding> findings{};  ///< what is not sound of the input; empty: it is sound
-    /// Of the result; all of it none (`output.triangles` 0) of a surface that was refused.
+    /// The result; empty (`output.triangles` 0) if the surface was refused.
     SurfaceSummary output{};
     SimplifyStatistics statistics{};
     double roundingMm = 0;                       ///< largest move of a point by the output's digits
@@ -89,7 +89,7 @@ struct SimplifyRun : ProgramRun {
     /// Bound on the distance between input and output as written, both ways.
     double errorBoundMm() const { return statistics.errorBoundMm + roundingMm; }
     bool writesSurface() const { return !failsSoundness() && !failsStrict(); }
-    /// The count of --triangles or --reduction was met; none when none was asked for.
+    /// The count of --triangles or --reduction was met; empty if no count was given.
     std::optional<bool> countMet() const {
         if (!statistics.wantedTriangles) return std::nullopt;
         return output.triangles <= *statistics.wantedTriangles;
@@ -100,7 +100,7 @@ struct SimplifyRun : ProgramRun {
 bool isFolder(const std::filesystem::path& path);
 
 /// The name that stands for {name}: "bone" of "bone.stl", "lh" of "lh.surf.gii"; "lh.pial" of
-/// itself, as FreeSurfer's surfaces are told apart by what stands in an extension's place.
+/// itself, as FreeSurfer tells its surfaces apart by the extension.
 std::string surfaceName(const std::filesystem::path& input);
 
 /// Where the simplified surface goes: `output`, or the file of the input's name in the folder that
@@ -120,7 +120,7 @@ std::string bidsName(const std::filesystem::path& input);
 struct FrameChange {
     CoordinateFrame frame{};              ///< of the output
     bool isSaid = true;                   ///< the output may say so
-    std::optional<AffineTransform> move;  ///< none: the points stay as they are, to the bit
+    std::optional<AffineTransform> move;  ///< empty: the points stay as they are, to the bit
 
     TriangleMesh apply(const TriangleMesh& mesh) const {
         return move ? transformed(mesh, *move) : mesh;
@@ -131,7 +131,7 @@ struct FrameChange {
 };
 
 /// \param input   a file as read
-/// \param wanted  none: the input's frame
+/// \param wanted  empty: the input's frame
 /// \throws InvalidInput  the file does not say its frame, which the output has to know, or the
 /// volume
 ///                       that a frame belongs to

@@ -22,7 +22,7 @@ std::vector<std::string> outputs(const Json& report) {
     return files;
 }
 
-/// What this program has made is not simplified again.
+/// Files that this program made are not simplified again.
 std::vector<BatchItem> findSurfaces(const std::filesystem::path& root,
                                     const std::vector<std::string>& participants,
                                     const std::filesystem::path& derivatives) {

@@ -28,7 +28,7 @@ void checkAim(const SimplifyOptions& aim) {
     }
 }
 
-/// Of the names of what is written and of the files of values: {name} stands for an input of a
+/// Checks placeholders in the names of outputs and of files of values: {name} is an input of a
 /// batch.
 void checkPlaceholders(const SimplifyCommand& command) {
     const std::vector<std::string> forRun{"{name}"};
