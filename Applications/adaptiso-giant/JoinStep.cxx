@@ -1,10 +1,9 @@
 #include <algorithm>
-#include <array>
 #include <ostream>
 
 #include "Common/AtomicOutput.h"
 #include "Common/Json.h"
-#include "Common/Progress.h"
+#include "Common/ProgramRun.h"
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
 #include "PieceJoiner.h"
@@ -178,10 +177,10 @@ int runJoinStep(const GiantOptions& options, const std::string& key) {
                            "its own");
     }
     const bool isPieces = options.output.extension() == ".pvtp";
-    for (const fs::path& file : {options.output, options.preview}) {
-        if (!file.empty()) checkOutput(file);
-    }
-    checkReportOutputs(options.report, std::array{plan.input});
+    OutputPlan planned({&plan.input, 1});
+    if (!options.output.empty()) planned.add("--output", options.output);
+    if (!options.preview.empty()) planned.add("--preview", options.preview);
+    planned.check(options.common, options.report);
     if (isPieces) AtomicFolder::check(piecesFolder(options.output), OwnNames(isPieceName));
     ProgressLine progress(options.common.isQuiet);
     progress.show("join");

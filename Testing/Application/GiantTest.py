@@ -303,6 +303,8 @@ class Refusals(GiantTest):
     def test_bad_input(self):
         self.refuse(BAD_INPUT, "there is no plan", "tile", "work")
         self.plan("work", "--method", "mc")
+        self.refuse(USAGE, "--preview ./a.ply: is the name of another output too", "join", "work",
+                    "-o", "a.ply", "--preview", "./a.ply")
         self.refuse(USAGE, "9_9_9: the plan has no tile", "tile", "work", "9_9_9")
         self.refuse(USAGE, "whose tiles need none", "seam", "work")
         self.path("work/plan.json").write_text('{"schema": "adaptiso-giant-plan/1"}')

@@ -118,6 +118,23 @@ class Mistakes(WithInputs):
             self.fails(BAD_INPUT, program, *self.command(program, out=out))
         self.assertEqual(self.path("taken").read_text(), "mine")
 
+    def test_two_outputs_of_one_name(self):
+        """However the name is spelt; nothing is written."""
+        self.path("there").mkdir()
+        for program in PROGRAMS:
+            if program in ("adaptiso-giant", "adaptiso-bids"):
+                continue
+            with self.subTest(program):
+                command = [*self.command(program), "--json", "there/../x.html"]
+                if program != "adaptiso-check":
+                    command += ["--report", "x.html"]
+                else:
+                    command[command.index("--report") + 1] = "x.html"
+                done = self.run_program(program, *command)
+                self.assertEqual(done.returncode, USAGE, done.stderr)
+                self.assertIn("x.html: is the name of another output too", done.stderr)
+                self.assertFalse(self.path("x.html").exists())
+
     def test_a_folder_of_others_is_kept(self):
         self.path("full").mkdir()
         self.path("full/mine.txt").write_text("mine")
