@@ -14,6 +14,7 @@
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
+#include "Programs.h"
 #include "adaptiso-mesh/Info.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Extraction/Extraction.h"
@@ -21,13 +22,9 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
-// main() of each program: CMake gives it this name
-int adaptisoBem(int argc, char** argv);
-int adaptisoCheck(int argc, char** argv);
-int adaptisoCompare(int argc, char** argv);
-int adaptisoLabels(int argc, char** argv);
-int adaptisoMesh(int argc, char** argv);
-int adaptisoSimplify(int argc, char** argv);
+EM_JS(void, showProgress, (const char* text), {
+    if (Module["onProgress"]) Module["onProgress"](UTF8ToString(text));
+})
 
 /// The page's WebAssembly. main() is that of the programs, chosen by the name they are called by,
 /// so that the page refuses, prints and writes what they do, to the byte. The functions below it
@@ -37,10 +34,6 @@ int adaptisoSimplify(int argc, char** argv);
 namespace adaptiso::web {
 using namespace mesher;  // Info.h
 namespace {
-
-EM_JS(void, showProgress, (const char* text), {
-    if (Module["onProgress"]) Module["onProgress"](UTF8ToString(text));
-})
 
 /// The text that the function called last answers with: JSON, or a line that says why it failed.
 std::string answer;
@@ -284,11 +277,6 @@ EMSCRIPTEN_KEEPALIVE const float* adaptisoValues() {
 }  // extern "C"
 
 int main(int argc, char** argv) {
-    using Main = int (*)(int, char**);
-    static const std::map<std::string, Main> kPrograms{
-        {"adaptiso-bem", adaptisoBem},         {"adaptiso-check", adaptisoCheck},
-        {"adaptiso-compare", adaptisoCompare}, {"adaptiso-labels", adaptisoLabels},
-        {"adaptiso-mesh", adaptisoMesh},       {"adaptiso-simplify", adaptisoSimplify}};
-    adaptiso::observeProgress([](const std::string& text) { web::showProgress(text.c_str()); });
+    adaptiso::observeProgress([](const std::string& text) { showProgress(text.c_str()); });
     return kPrograms.at(argv[0])(argc, argv);
 }

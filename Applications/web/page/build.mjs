@@ -1,0 +1,35 @@
+// Bundles the page into one file: node build.mjs BUILD-FOLDER VERSION, where BUILD-FOLDER holds adaptiso.js and
+// adaptiso.wasm.
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { gzipSync } from "node:zlib";
+import { build } from "esbuild";
+
+const [folder, version] = process.argv.slice(2);
+const here = import.meta.dirname ?? new URL(".", import.meta.url).pathname;
+
+async function bundle(entry, format, options = {}) {
+  const result = await build({ entryPoints: [join(here, entry)], bundle: true, minify: true, write: false, format,
+    target: "es2022", legalComments: "none", define: { __VERSION__: JSON.stringify(version) }, ...options });
+  return result.outputFiles[0].text.replaceAll('"__VERSION__"', JSON.stringify(version));
+}
+
+const packed = (bytes) => gzipSync(bytes, { level: 9 }).toString("base64");
+const read = (path) => readFileSync(path);
+const inScript = (text) => text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
+
+const kRun = `<div class="progress" hidden><p class="stage" aria-live="polite"></p><progress max="100" aria-label="Progress"></progress></div>
+    <p class="refusal" role="alert" hidden></p><div class="result" hidden></div>`;
+const worker = `${read(join(folder, "adaptiso.js"))}\n${await bundle("src/worker.ts", "iife")}`;
+const parts = {
+  STYLE: read(join(here, "src/page.css")).toString(),
+  RUN: kRun,
+  WASM: packed(read(join(folder, "adaptiso.wasm"))),
+  WORKER: packed(worker),
+  NIIVUE: packed(inScript(await bundle("node_modules/@niivue/niivue/dist/index.js", "iife", { globalName: "niivue" }))),
+  SCRIPT: inScript(await bundle("src/main.ts", "iife")),
+};
+const page = read(join(here, "src/page.html")).toString().replace(/\{\{([A-Z]+)\}\}/g, (_, name) => parts[name]);
+writeFileSync(join(folder, "adaptiso.html"), page);
+console.log(`${join(folder, "adaptiso.html")}: ${(page.length / 1e6).toFixed(2)} MB`);
+for (const [name, text] of Object.entries(parts)) console.log(`  ${name}: ${(text.length / 1e6).toFixed(2)} MB`);

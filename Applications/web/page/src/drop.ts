@@ -1,0 +1,61 @@
+/** Files as people give them: dropped, chosen, or a folder. */
+import type { InputFile } from "./protocol";
+
+async function filesOfEntry(entry: FileSystemEntry, path: string): Promise<InputFile[]> {
+  if (entry.isFile) {
+    const file = await new Promise<File>((resolve, reject) => (entry as FileSystemFileEntry).file(resolve, reject));
+    return [{ path: path + file.name, data: file }];
+  }
+  const reader = (entry as FileSystemDirectoryEntry).createReader(), files: InputFile[] = [];
+  for (;;) {  // a hundred at a time
+    const some = await new Promise<FileSystemEntry[]>((resolve, reject) => reader.readEntries(resolve, reject));
+    if (some.length === 0) return files;
+    for (const each of some) files.push(...await filesOfEntry(each, `${path}${entry.name}/`));
+  }
+}
+
+export async function filesOf(data: DataTransfer): Promise<InputFile[]> {
+  const entries = [...data.items].map((item) => item.webkitGetAsEntry?.() ?? null);
+  if (entries.some((entry) => entry !== null)) {
+    const found = await Promise.all(entries.map((entry) => entry === null ? [] : filesOfEntry(entry, "")));
+    return found.flat();
+  }
+  return [...data.files].map((file) => ({ path: file.name, data: file }));
+}
+
+/** Calls `take` with what is dropped on `zone` or chosen with one of its inputs. */
+export function takeFiles(zone: HTMLElement, take: (files: InputFile[]) => void): void {
+  zone.addEventListener("dragover", (event) => { event.preventDefault(); zone.classList.add("over"); });
+  zone.addEventListener("dragleave", () => zone.classList.remove("over"));
+  zone.addEventListener("drop", async (event) => {
+    event.preventDefault();
+    zone.classList.remove("over");
+    if (event.dataTransfer !== null) take(await filesOf(event.dataTransfer));
+  });
+  for (const input of zone.querySelectorAll<HTMLInputElement>("input[type=file]")) {
+    input.addEventListener("change", () => {
+      const files = [...input.files ?? []].map((file) => ({ path: file.webkitRelativePath || file.name, data: file }));
+      if (files.length > 0) take(files);
+      input.value = "";
+    });
+  }
+}
+
+/** What a program is given for them: the file, the header of several, or the folder that holds them. */
+export function inputPath(files: InputFile[]): string {
+  const first = files[0].path.split("/")[0];
+  if (files.every((file) => file.path.startsWith(`${first}/`))) return first;
+  if (files.length === 1) return files[0].path;
+  const header = files.find((file) => /\.(hdr|nhdr|mhd)$/i.test(file.path));
+  return header?.path ?? "";
+}
+
+/** Slices that were chosen as files are put into a folder. */
+export function asInput(files: InputFile[]): { files: InputFile[]; path: string } {
+  const path = inputPath(files);
+  if (path !== "") return { files, path };
+  return { files: files.map((file) => ({ path: `slices/${file.path}`, data: file.data })), path: "slices" };
+}
+
+export const stemOf = (path: string): string =>
+  path.split("/").at(-1)?.replace(/\.gz$/i, "").replace(/\.[^.]*$/, "") || "surface";

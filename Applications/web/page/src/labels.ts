@@ -1,0 +1,84 @@
+/** The tab Labels: adaptiso-labels of a segmentation. */
+import { byId, formatCount, make } from "./dom";
+import { takeFiles } from "./drop";
+import type { InputFile, RunResult } from "./protocol";
+import type { Scan } from "./scan";
+import { isChecked, kReport, number, type Page, reportOf, type Run, Task } from "./task";
+import type { Color, Surface } from "./view";
+import { zip } from "./zip";
+
+interface Region { label: number; name: string; isNamed: boolean; color: unknown; voxels: number; volumeMm3: number;
+  triangles: number; file: string }
+interface LabelsReport { regions: Region[]; walls: { triangles: number; errorBoundMm: number } }
+
+/** A label's colour where its table has none: golden steps around the circle of hues. */
+function colorOf(region: Region, n: number): Color {
+  const given = region.color;
+  if (typeof given === "string" && /^#[0-9a-f]{6}/i.test(given)) {
+    return [1, 3, 5].map((at) => Number.parseInt(given.slice(at, at + 2), 16)) as Color;
+  }
+  if (Array.isArray(given) && given.length >= 3) return given.slice(0, 3) as Color;
+  const hue = n * 0.618 % 1;
+  return [0, 1 / 3, 2 / 3].map((shift) => Math.round(160 + 90 * Math.cos(2 * Math.PI * (hue + shift)))) as Color;
+}
+
+export class LabelsTab {
+  private readonly task: Task;
+  private names: InputFile | undefined;
+
+  constructor(private readonly page: Page, private readonly scan: Scan) {
+    this.task = new Task("labels", page);
+    takeFiles(byId("labels-drop"), async (files) => {
+      this.task.part(".result").hidden = true;
+      this.task.refuse(await scan.open(files, true));
+    });
+    takeFiles(byId("names-drop"), ([file]) => { this.names = file; byId("names-name").textContent = file.path; });
+    byId("labels-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
+  }
+
+  private runOf(): Run {
+    const scan = this.scan, files = [...scan.files], args = [scan.path, ...scan.readArgs];
+    if (this.names !== undefined) {
+      files.push({ ...this.names, path: `names/${this.names.path}` });
+      args.push("--names", `names/${this.names.path}`);
+    }
+    if (number("labels-error") !== "") args.push("--max-error", number("labels-error"));
+    if (number("labels-list") !== "") args.push("--labels", number("labels-list"));
+    if (isChecked("file-names")) args.push("--file-names", "name");
+    args.push("--format", byId<HTMLSelectElement>("labels-format").value, "-o", "regions-of-map", "--json", kReport);
+    return { program: "adaptiso-labels", args, files,
+      shownArgs: args.map((arg) => arg.startsWith("names/") ? arg.slice("names/".length) : arg) };
+  }
+
+  async make(): Promise<void> {
+    if (this.scan.facts === undefined) return this.task.refuse("Give a label map first.");
+    const run = this.runOf(), done = await this.task.run(run);
+    if (done !== undefined && done.exitCode === 0) await this.show(run, done);
+  }
+
+  private async show(run: Run, done: RunResult): Promise<void> {
+    const report = reportOf(done) as unknown as LabelsReport, { regions } = report;
+    const files = done.files.filter((file) => file.path.startsWith("regions-of-map/"));
+    const list = make("ul", { className: "regions" });
+    await this.task.show(`${formatCount(regions.length)} regions, ${formatCount(report.walls.triangles)} triangles; no wall farther than `
+      + `${Number(report.walls.errorBoundMm.toPrecision(3))} mm (proved); closed; 0 pairs cross`, run, done, [], [list]);
+    this.task.addSave(`Save all regions (${files.length} files, zip)`, "regions.zip", () => zip(files), true);
+    const surfaces: Surface[] = [];
+    for (const [n, region] of regions.entries()) {
+      const color = colorOf(region, n), index = surfaces.length;
+      const file = files.find((each) => each.path.endsWith(region.file));
+      if (file === undefined) continue;
+      const name = region.name || `label ${region.label}`;
+      const opened = await this.scan.looker.mesh({ path: `shown/${file.path.split("/").at(-1)}`, data: file.bytes.slice() },
+        "adaptiso-labels");
+      surfaces.push({ name, shape: opened.shape, color, opacity: 1 });
+      const box = make("input", { type: "checkbox", checked: true });
+      box.addEventListener("change", async () => (await this.page.view())?.setShown(index, box.checked));
+      const swatch = make("span", { className: "swatch" });
+      swatch.style.background = `rgb(${color.join(" ")})`;
+      list.append(make("li", {}, make("label", {}, box, swatch, ` ${name}: ${formatCount(Math.round(region.volumeMm3))} mm³`)));
+    }
+    await (await this.page.view())?.showSurfaces(surfaces);
+    document.body.dataset.shown = "regions";
+  }
+}

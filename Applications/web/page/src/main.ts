@@ -1,0 +1,71 @@
+/** The page. Everything heavy is kept packed in the file and unpacked when it is first wanted. */
+import { byId } from "./dom";
+import { takeFiles } from "./drop";
+import { Engine } from "./engine";
+import { HeadTab } from "./head";
+import { LabelsTab } from "./labels";
+import { MeshTab } from "./mesh";
+import { unpackBytes, unpackText } from "./packed";
+import { Scan } from "./scan";
+import { CheckTab, CompareTab, SimplifyTab } from "./surfaces";
+import { kVersion, type Page } from "./task";
+import { View } from "./view";
+
+function makeEngine(): Engine {
+  const url = unpackText("worker").then((code) => URL.createObjectURL(new Blob([code], { type: "text/javascript" })));
+  return new Engine(url, unpackBytes("wasm").then((bytes) => WebAssembly.compile(bytes)));
+}
+
+async function makeView(): Promise<View | undefined> {
+  try {
+    document.head.append(Object.assign(document.createElement("script"), { textContent: await unpackText("niivue") }));
+    const library = (globalThis as unknown as { niivue: typeof import("@niivue/niivue") }).niivue;
+    return await View.make(library, byId<HTMLCanvasElement>("gl"), byId<HTMLCanvasElement>("outlines"), byId("position"));
+  } catch (error) {
+    byId("viewer-missing").textContent = (error as Error).message;
+    byId("viewer-missing").hidden = false;
+    return undefined;
+  }
+}
+
+/** Tabs as the ARIA practices have them: arrows move, Home and End jump. */
+function listenToTabs(): void {
+  const tabs = [...document.querySelectorAll<HTMLButtonElement>("[role=tab]")];
+  const choose = (chosen: HTMLButtonElement): void => {
+    for (const tab of tabs) {
+      tab.setAttribute("aria-selected", String(tab === chosen));
+      tab.tabIndex = tab === chosen ? 0 : -1;
+      byId(tab.getAttribute("aria-controls") ?? "").hidden = tab !== chosen;
+    }
+  };
+  for (const [n, tab] of tabs.entries()) {
+    tab.addEventListener("click", () => choose(tab));
+    tab.addEventListener("keydown", (event) => {
+      const next = { ArrowRight: n + 1, ArrowLeft: n - 1, Home: 0, End: tabs.length - 1 }[event.key];
+      if (next === undefined) return;
+      event.preventDefault();
+      const chosen = tabs[(next + tabs.length) % tabs.length];
+      choose(chosen);
+      chosen.focus();
+    });
+  }
+}
+
+function start(): void {
+  const engine = makeEngine();
+  let view: Promise<View | undefined> | undefined;
+  const page: Page = { engine, view: () => (view ??= makeView()) };
+  const scan = new Scan(page), mesh = new MeshTab(page, scan);
+  new HeadTab(page, scan);
+  new LabelsTab(page, scan);
+  new CheckTab(page);
+  new SimplifyTab(page);
+  new CompareTab(page);
+  listenToTabs();
+  byId("version").textContent = kVersion;
+  // what misses a drop zone must not take the page away; on the tab Mesh it is a scan
+  takeFiles(document.body, (files) => { if (!byId("mesh").hidden && files.length > 0) void mesh.open(files); });
+  document.body.dataset.ready = "true";
+}
+
+start();

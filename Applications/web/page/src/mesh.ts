@@ -1,0 +1,157 @@
+/** The tab Mesh: an isosurface of the scan. */
+import { byId, formatCount } from "./dom";
+import { stemOf, takeFiles } from "./drop";
+import { Cancelled } from "./engine";
+import { Histogram } from "./histogram";
+import { exampleHead } from "./nifti";
+import type { InputFile, RunResult, Shape } from "./protocol";
+import { memoryOf, type Scan } from "./scan";
+import { isChecked, kMostMemory, kReport, number, outputsOf, type Page, reportOf, type Run, Task, tooLarge } from "./task";
+import type { Color } from "./view";
+
+const kColor: Color = [240, 190, 120], kPreview: Color = [110, 190, 240];
+interface SurfaceReport { triangles: number; errorBoundMm: number | null; componentCount: number;
+  soundness: { closed: boolean; crossingPairs: number | null } }
+
+export class MeshTab {
+  private readonly task: Task;
+  private readonly histogram: Histogram;
+  private previewTriangles = 0;
+  private wanted: number | undefined;
+  private isPreviewing = false;
+
+  constructor(private readonly page: Page, private readonly scan: Scan) {
+    this.task = new Task("mesh", page);
+    this.histogram = new Histogram(byId<HTMLCanvasElement>("histogram"), (value) => this.setIsovalue(this.rounded(value)));
+    takeFiles(byId("drop"), (files) => this.open(files));
+    byId("example").addEventListener("click", () => this.openExample());
+    byId("auto").addEventListener("click", () => { if (scan.facts?.otsu != null) this.setIsovalue(scan.facts.otsu); });
+    byId("iso").addEventListener("change", () => this.setIsovalue(Number(number("iso"))));
+    byId("iso-slider").addEventListener("input", () => this.setIsovalue(this.rounded(Number(number("iso-slider")))));
+    byId("mesh-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
+    for (const id of ["by-distance", "by-count"]) byId(id).addEventListener("change", () => this.showSize());
+    scan.onOpen(() => this.opened());
+    this.showSize();
+  }
+
+  async open(files: InputFile[]): Promise<void> {
+    this.task.cancel();
+    this.scan.volumeIndex = number("volume-index") === "" ? -1 : Number(number("volume-index"));
+    this.scan.series = number("series");
+    this.setReady(false);
+    this.task.part(".result").hidden = true;
+    this.task.refuse(await this.scan.open(files));
+  }
+
+  async openExample(): Promise<void> {
+    await this.open([{ path: "example.nii", data: exampleHead() }]);
+    await this.make();
+  }
+
+  private opened(): void {
+    const facts = this.scan.facts;
+    if (facts === undefined) return;
+    this.setReady(true);
+    const slider = byId<HTMLInputElement>("iso-slider");
+    slider.min = String(facts.histogram?.lower ?? facts.minimum);
+    slider.max = String(facts.histogram?.upper ?? facts.maximum);
+    slider.step = String((Number(slider.max) - Number(slider.min)) / 500 || 1);
+    const least = Math.min(...facts.geometry.spacingMm);
+    byId<HTMLInputElement>("max-error").placeholder = String(Number((0.15 * least).toPrecision(3)));
+    this.histogram.show(facts);
+    this.setIsovalue(facts.otsu ?? (facts.minimum + facts.maximum) / 2);
+  }
+
+  private setReady(isReady: boolean): void {
+    byId("mesh-options").toggleAttribute("disabled", !isReady);
+    byId("scan-tools").hidden = !isReady;
+  }
+
+  private showSize(): void {
+    byId<HTMLInputElement>("max-error").disabled = isChecked("by-count");
+    byId<HTMLInputElement>("triangles").disabled = !isChecked("by-count");
+  }
+
+  /** No more digits than the slider has steps for. */
+  private rounded(value: number): number {
+    const facts = this.scan.facts;
+    const range = facts === undefined ? 1 : facts.maximum - facts.minimum;
+    const digits = Math.max(0, Math.ceil(Math.log10(500 / Math.max(range, 1e-300))));
+    return Number(value.toFixed(Math.min(digits, 20)));
+  }
+
+  private setIsovalue(value: number): void {
+    byId<HTMLInputElement>("iso").value = String(value);
+    byId<HTMLInputElement>("iso-slider").value = String(value);
+    this.histogram.mark(value);
+    this.wanted = value;
+    void this.preview();
+  }
+
+  /** The preview follows the slider: one at a time, the latest wish next. */
+  private async preview(): Promise<void> {
+    if (this.isPreviewing) return;
+    this.isPreviewing = true;
+    try {
+      while (this.wanted !== undefined) {
+        const isovalue = this.wanted, begin = performance.now();
+        this.wanted = undefined;
+        try {
+          const shape = await this.scan.looker.preview(isovalue);
+          this.previewTriangles = shape.triangles.length / 3;
+          const view = await this.page.view();
+          await view?.showSurfaces([{ name: "preview", shape, color: kPreview, opacity: 1 }]);
+          const step = this.scan.facts?.previewStep ?? 1;
+          byId("preview").textContent = `Preview: ${formatCount(this.previewTriangles)} triangles of marching cubes`
+            + (step > 1 ? `, of every ${step}${step === 2 ? "nd" : step === 3 ? "rd" : "th"} voxel` : "");
+          byId("preview").dataset.milliseconds = String(Math.round(performance.now() - begin));
+        } catch (error) {
+          if (!(error instanceof Cancelled)) byId("preview").textContent = (error as Error).message;
+        }
+      }
+    } finally {
+      this.isPreviewing = false;
+    }
+  }
+
+  private runOf(): Run {
+    const scan = this.scan, format = byId<HTMLSelectElement>("format").value, frame = byId<HTMLSelectElement>("frame").value;
+    const args = [scan.path, ...scan.readArgs, "--iso", number("iso")];
+    if (number("smooth") !== "") args.push("--smooth", number("smooth"));
+    if (isChecked("by-count")) args.push("--triangles", number("triangles"));
+    else if (number("max-error") !== "") args.push("--max-error", number("max-error"));
+    if (isChecked("largest")) args.push("--largest");
+    if (isChecked("fill")) args.push("--fill-cavities");
+    if (frame !== "") args.push("--coordinates", frame);
+    args.push("-o", `${stemOf(scan.path)}${format}`, "--json", kReport);
+    return { program: "adaptiso-mesh", args, files: scan.files };
+  }
+
+  async make(): Promise<void> {
+    const { facts } = this.scan;
+    if (facts === undefined) return this.task.refuse("Give a scan first.");
+    const need = memoryOf(facts, this.previewTriangles);
+    if (need > kMostMemory) return this.task.refuse(tooLarge(this.scan.path, need, "adaptiso-mesh"));
+    const run = this.runOf(), done = await this.task.run(run);
+    if (done === undefined || done.exitCode !== 0) return;
+    await this.show(run, done);
+  }
+
+  private async show(run: Run, done: RunResult): Promise<void> {
+    const [output] = outputsOf(done);
+    const { surfaces: [surface] } = reportOf(done) as { surfaces: SurfaceReport[] };
+    const title = [`${formatCount(surface.triangles)} triangles`,
+      ...(surface.errorBoundMm === null ? [] : [`no point farther than ${Number(surface.errorBoundMm.toPrecision(3))} mm (proved)`]),
+      surface.soundness.closed ? "closed" : "open",
+      `${surface.soundness.crossingPairs ?? 0} pairs cross`,
+      `${formatCount(surface.componentCount)} piece${surface.componentCount === 1 ? "" : "s"}`].join("; ");
+    await this.task.show(title, run, done, [output]);
+    this.task.addSave(`Save ${output.path}`, output.path, () => output.bytes, true);
+    const report = done.files.find((file) => file.path === kReport);
+    if (report !== undefined) this.task.addSave("Save the report (JSON)", `${stemOf(this.scan.path)}.json`, () => report.bytes);
+    const shape: Shape = (await this.scan.looker.mesh({ path: `shown/${output.path}`, data: output.bytes.slice() }, "adaptiso-mesh")).shape;
+    const view = await this.page.view();
+    await view?.showSurfaces([{ name: output.path, shape, color: kColor, opacity: 1 }]);
+    document.body.dataset.shown = output.path;
+  }
+}

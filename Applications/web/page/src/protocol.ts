@@ -1,0 +1,63 @@
+/** What the page and its workers say to each other. */
+
+/** A file of a job, at its path in the job's folder. */
+export interface InputFile { path: string; data: Blob | Uint8Array }
+export interface OutputFile { path: string; bytes: Uint8Array }
+
+export interface RunRequest {
+  kind: "run";
+  program: string;
+  args: string[];
+  files: InputFile[];
+  /** Folders are made first; every file that is new afterwards is an output. */
+  folders: string[];
+}
+
+export interface OpenRequest {
+  kind: "open";
+  files: InputFile[];
+  path: string;
+  volumeIndex: number;
+  series: string;
+  isLabels: boolean;
+}
+export interface PreviewRequest { kind: "preview"; isovalue: number }
+export interface MeshRequest { kind: "mesh"; file: InputFile; program: string }
+
+export type Request = RunRequest | OpenRequest | PreviewRequest | MeshRequest;
+export interface Message { id: number; module?: WebAssembly.Module; request: Request }
+
+export interface RunResult {
+  exitCode: number;
+  stdout: string;
+  stderr: string;
+  files: OutputFile[];
+  memoryBytes: number;
+  seconds: number;
+}
+
+/** adaptisoOpenImage()'s answer (Web.cxx). */
+export interface ImageFacts {
+  format: string;
+  geometry: { sizeVoxels: number[]; spacingMm: number[]; originMm: number[] };
+  orientation: string;
+  type: string;
+  bytes: number;
+  minimum: number;
+  maximum: number;
+  isInteger: boolean;
+  otsu: number | null;
+  histogram: { lower: number; upper: number; counts: number[] } | null;
+  warnings: string[];
+  shownSize: number[];
+  shownAffine: number[];
+  previewStep: number;
+}
+export interface Shape { points: Float32Array; triangles: Uint32Array; values: Float32Array | null }
+export interface OpenedImage { facts: ImageFacts; shades: Uint8Array }
+export interface OpenedMesh { shape: Shape; format: string; frame: string | null; valuesName: string | null }
+
+export type Reply =
+  | { id: number; kind: "progress"; text: string }
+  | { id: number; kind: "done"; result: RunResult | OpenedImage | OpenedMesh | Shape }
+  | { id: number; kind: "refused"; line: string; exitCode: number };

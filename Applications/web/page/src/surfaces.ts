@@ -1,0 +1,156 @@
+/** The tabs Check, Simplify and Compare: of meshes that are there. */
+import { byId, formatCount, make } from "./dom";
+import { stemOf, takeFiles } from "./drop";
+import { type Looker, Refused } from "./engine";
+import type { InputFile, OpenedMesh, Shape } from "./protocol";
+import { kReport, number, outputsOf, type Page, reportOf, type Run, Task } from "./task";
+import type { Color, Surface } from "./view";
+
+const kColor: Color = [240, 190, 120], kOther: Color = [110, 190, 240];
+
+async function bytesOf(file: InputFile): Promise<Uint8Array> {
+  return file.data instanceof Blob ? new Uint8Array(await file.data.arrayBuffer()) : file.data.slice();
+}
+
+/** A tab of meshes: what they share. */
+class Meshes {
+  readonly task: Task;
+  readonly files: InputFile[] = [];
+  private readonly looker: Looker;
+
+  constructor(id: string, readonly page: Page, most: number, make: () => Promise<void>) {
+    this.task = new Task(id, page);
+    this.looker = page.engine.looker();
+    takeFiles(byId(`${id}-drop`), async (given) => {
+      this.files.push(...given);
+      this.files.splice(0, Math.max(0, this.files.length - most));
+      byId(`${id}-names`).textContent = this.files.map((file) => file.path).join(", ");
+      this.task.part(".result").hidden = true;
+      this.task.refuse("");
+      await this.show(this.files);
+    });
+    byId(`${id}-form`).addEventListener("submit", (event) => { event.preventDefault(); void make(); });
+  }
+
+  async open(file: InputFile): Promise<OpenedMesh> {
+    return this.looker.mesh({ path: `shown/${file.path.split("/").at(-1)}`, data: await bytesOf(file) }, `adaptiso-${this.task.id}`);
+  }
+
+  /** What can be read; the program says what can't. */
+  async show(files: InputFile[], paint?: (shape: Shape) => Uint8Array | undefined): Promise<void> {
+    const surfaces: Surface[] = [];
+    for (const [n, file] of files.entries()) {
+      try {
+        const { shape } = await this.open(file);
+        surfaces.push({ name: file.path, shape, color: n % 2 === 0 ? kColor : kOther, opacity: 1, colors: paint?.(shape) });
+      } catch (error) {
+        if (error instanceof Refused) this.task.refuse(error.line.replace("shown/", ""));
+      }
+    }
+    const view = await this.page.view();
+    if (surfaces.length === 0) return;
+    await view?.clear();
+    await view?.showSurfaces(surfaces);
+    document.body.dataset.shown = files.map((file) => file.path).join(" ");
+  }
+}
+
+interface CheckReport { surfaces: { file: string; error: string | null; passed: boolean; triangles: number; failed: string[];
+  checks: { name: string; required: boolean; outcome: string; finding: string }[];
+  examples: { defect: string; pointMm: number[] | null }[] }[] }
+
+export class CheckTab {
+  private readonly meshes: Meshes;
+  constructor(page: Page) { this.meshes = new Meshes("check", page, 8, () => this.make()); }
+
+  private async make(): Promise<void> {
+    const { task, files, page } = this.meshes;
+    if (files.length === 0) return task.refuse("Give a mesh first.");
+    const args = files.map((file) => file.path);
+    if (byId<HTMLInputElement>("nested").checked) args.push("--nested");
+    args.push("--profile", byId<HTMLSelectElement>("profile").value, "--json", kReport);
+    const run: Run = { program: "adaptiso-check", args, files }, done = await task.run(run);
+    const report = done === undefined ? undefined : reportOf(done) as unknown as CheckReport | undefined;
+    if (done === undefined || report?.surfaces === undefined) return;
+    const bad = report.surfaces.filter((surface) => !surface.passed).length;
+    const title = bad === 0 ? `${formatCount(report.surfaces.length)} of ${formatCount(report.surfaces.length)} surfaces pass`
+      : `${formatCount(bad)} of ${formatCount(report.surfaces.length)} surfaces fail`;
+    const details = report.surfaces.map((surface) => {
+      const list = make("ul", { className: "checks" });
+      for (const check of surface.checks ?? []) {
+        list.append(make("li", { className: check.outcome },
+          `${check.outcome === "passed" ? "✓" : check.outcome === "failed" ? "✗" : "?"} ${check.name}`
+          + `${check.finding === "" ? "" : `: ${check.finding}`}`));
+      }
+      const places = make("p", { className: "saves" });
+      for (const example of (surface.examples ?? []).slice(0, 12)) {
+        if (example.pointMm === null) continue;
+        const point = example.pointMm, button = make("button", { type: "button" }, `Show ${example.defect}`);
+        button.addEventListener("click", async () => (await page.view())?.moveTo(point));
+        places.append(button);
+      }
+      return make("details", { open: !surface.passed }, make("summary", {}, `${surface.file}: ${surface.error ?? (surface.passed
+        ? "passes" : `fails ${surface.failed.join(", ")}`)}`), list, places);
+    });
+    await task.show(title, run, done, [], details);
+    const file = done.files.find((each) => each.path === kReport);
+    if (file !== undefined) task.addSave("Save the report (JSON)", "check.json", () => file.bytes, true);
+  }
+}
+
+export class SimplifyTab {
+  private readonly meshes: Meshes;
+  constructor(page: Page) { this.meshes = new Meshes("simplify", page, 1, () => this.make()); }
+
+  private async make(): Promise<void> {
+    const { task, files } = this.meshes;
+    if (files.length === 0) return task.refuse("Give a mesh first.");
+    const [file] = files, format = byId<HTMLSelectElement>("simplify-format").value;
+    const args = [file.path];
+    if (number("simplify-error") !== "") args.push("--max-error", number("simplify-error"));
+    if (number("simplify-triangles") !== "") args.push("--triangles", number("simplify-triangles"));
+    const output = `${stemOf(file.path)}-simple${format}`;
+    args.push("-o", output, "--json", kReport);
+    const run: Run = { program: "adaptiso-simplify", args, files }, done = await task.run(run);
+    if (done === undefined || done.exitCode !== 0) return;
+    const report = reportOf(done) as { input: { triangles: number }; output: { triangles: number; errorBoundMm: number | null } };
+    const [result] = outputsOf(done);
+    await task.show(`${formatCount(report.output.triangles)} triangles of ${formatCount(report.input.triangles)}`
+      + (report.output.errorBoundMm === null ? "" : `; no point farther than ${Number(report.output.errorBoundMm.toPrecision(3))} mm (proved)`),
+      run, done, [result]);
+    task.addSave(`Save ${result.path}`, result.path, () => result.bytes, true);
+    await this.meshes.show([{ path: result.path, data: result.bytes }]);
+  }
+}
+
+/** Viridis, sampled. */
+const kViridis = [[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141], [39, 173, 129], [92, 200, 99],
+  [170, 220, 50], [253, 231, 37]];
+
+export class CompareTab {
+  private readonly meshes: Meshes;
+  constructor(page: Page) { this.meshes = new Meshes("compare", page, 2, () => this.make()); }
+
+  private async make(): Promise<void> {
+    const { task, files } = this.meshes;
+    if (files.length !== 2) return task.refuse("Give two meshes first.");
+    const given = files.map((file, n) => ({ ...file, path: files[0].path === files[1].path ? `${"ab"[n]}/${file.path}` : file.path }));
+    const args = [...given.map((file) => file.path), "--colored", "distance.vtp", "--json", kReport];
+    const run: Run = { program: "adaptiso-compare", args, files: given }, done = await task.run(run);
+    if (done === undefined || done.exitCode !== 0) return;
+    const { combined, aToB } = (reportOf(done) as { distances: Record<string, { meanMm: number; p95Mm: number; maxMm: number } | null> }).distances;
+    const all = combined ?? aToB, mm = (value: number): string => `${Number(value.toPrecision(3))} mm`;
+    if (all === null) return;
+    await task.show(`mean ${mm(all.meanMm)}, 95 % within ${mm(all.p95Mm)}, maximum ${mm(all.maxMm)}`, run, done, outputsOf(done));
+    const [colored] = outputsOf(done);
+    task.addSave(`Save ${colored.path}`, colored.path, () => colored.bytes, true);
+    await this.meshes.show([{ path: colored.path, data: colored.bytes }], (shape) => {
+      if (shape.values === null) return undefined;
+      const most = shape.values.reduce((a, b) => Math.max(a, Math.abs(b)), 0) || 1, colors = new Uint8Array(4 * shape.values.length);
+      shape.values.forEach((value, n) => {
+        colors.set([...kViridis[Math.round(Math.min(1, Math.abs(value) / most) * (kViridis.length - 1))], 255], 4 * n);
+      });
+      return colors;
+    });
+  }
+}

@@ -1,0 +1,152 @@
+/** What all tabs share: a form, a run of a program with its progress, and what comes out of it. */
+import { byId, copy, formatBytes, formatCount, make, quoted, save, sha256 } from "./dom";
+import { Cancelled, type Engine, type Job, Refused } from "./engine";
+import type { InputFile, OutputFile, RunResult } from "./protocol";
+import type { View } from "./view";
+
+export const kVersion = "__VERSION__";
+
+export interface Page {
+  engine: Engine;
+  view(): Promise<View | undefined>;
+}
+
+export interface Run {
+  program: string;
+  args: string[];
+  files: InputFile[];
+  folders?: string[];
+  /** Of the command: what stands for a file or folder that was dropped without its path. */
+  shownArgs?: string[];
+}
+
+/** A step of a run as programs name it, and how far it is: "extract 42 %". */
+function parseProgress(text: string): { stage: string; percent: number | undefined } {
+  const found = /^(.*?) (?:(\d+) %|\.\.\.)$/.exec(text);
+  return { stage: found?.[1] ?? text, percent: found?.[2] === undefined ? undefined : Number(found[2]) };
+}
+
+/** The parts of a tab that a run fills: <section id="tab"> holds .go, .cancel, .progress, .refusal, .result. */
+export class Task {
+  private job: Job | undefined;
+  private readonly section: HTMLElement;
+  constructor(readonly id: string, readonly page: Page) {
+    this.section = byId(id);
+    this.part<HTMLButtonElement>(".cancel").addEventListener("click", () => this.cancel());
+  }
+
+  part<T extends HTMLElement = HTMLElement>(selector: string): T {
+    const found = this.section.querySelector<T>(selector);
+    if (found === null) throw new Error(`no ${selector} in #${this.id}`);
+    return found;
+  }
+
+  get isRunning(): boolean { return this.job !== undefined; }
+  cancel(): void { this.job?.cancel(); }
+
+  refuse(line: string): void {
+    const box = this.part(".refusal");
+    box.textContent = line;
+    box.hidden = line === "";
+  }
+
+  /** \return nothing where it was cancelled or refused, which the tab then says */
+  async run(run: Run): Promise<RunResult | undefined> {
+    this.cancel();
+    this.refuse("");
+    const result = this.part(".result"), progress = this.part(".progress");
+    result.hidden = true;
+    result.replaceChildren();
+    this.setRunning(true);
+    const bar = this.part<HTMLProgressElement>("progress"), stage = this.part(".stage");
+    stage.textContent = "start";
+    bar.removeAttribute("value");
+    progress.hidden = false;
+    const job = this.page.engine.run(run.program, [...run.args], run.files, run.folders ?? [], (text) => {
+      if (text === "") return;
+      const step = parseProgress(text);
+      stage.textContent = step.stage;
+      if (step.percent === undefined) bar.removeAttribute("value"); else bar.value = step.percent;
+    });
+    this.job = job;
+    try {
+      const done = await job.result;
+      const lines = done.stderr.split("\n").filter((line) => line !== "");
+      const error = done.exitCode === 0 ? undefined : lines.at(-1);
+      if (error !== undefined) this.refuse(error);
+      return done;
+    } catch (error) {
+      if (error instanceof Cancelled) this.refuse("Cancelled.");
+      else this.refuse(error instanceof Refused ? error.line : String(error));
+      return undefined;
+    } finally {
+      if (this.job === job) {
+        this.job = undefined;
+        progress.hidden = true;
+        this.setRunning(false);
+      }
+    }
+  }
+
+  private setRunning(isRunning: boolean): void {
+    this.part<HTMLButtonElement>(".go").disabled = isRunning;
+    this.part<HTMLButtonElement>(".cancel").hidden = !isRunning;
+    document.body.dataset.running = isRunning ? this.id : "";
+  }
+
+  /** The verdict, the command, and the files to save. */
+  async show(title: string, run: Run, done: RunResult, files: OutputFile[], details: (Node | string)[] = []): Promise<void> {
+    const command = [run.program, ...(run.shownArgs ?? run.args).map(quoted)].join(" ");
+    const sums = await Promise.all(files.map((file) => sha256(file.bytes)));
+    const verdict = [title, `adaptiso ${kVersion}`,
+      ...(files.length === 1 ? [`SHA-256 ${sums[0]}`] : [])].join("; ");
+    const warnings = done.stderr.split("\n").filter((line) => line.includes("warning: "))
+      .map((line) => line.replace(/^.*?warning: /, ""));
+    this.part(".result").replaceChildren(
+      make("p", { className: "verdict" }, make("strong", {}, title)),
+      ...details,
+      ...(warnings.length > 0 ? [make("ul", { className: "warnings" }, ...warnings.map((text) => make("li", {}, text)))] : []),
+      copyLine("Verdict", verdict), copyLine("The same bytes by", command),
+      make("p", { className: "cost" },
+        `${done.seconds.toFixed(1)} s, ${formatBytes(done.memoryBytes)} of memory. Nothing was sent.`));
+    this.part(".result").hidden = false;
+    document.body.dataset.done = this.id;
+  }
+
+  addSave(label: string, name: string, data: () => Blob | Uint8Array, isMain = false): void {
+    const button = make("button", { type: "button", className: isMain ? "main" : "" }, label);
+    button.addEventListener("click", () => save(name, data()));
+    let row = this.part(".result").querySelector(".saves");
+    if (row === null) {
+      row = make("p", { className: "saves" });
+      this.part(".result").querySelector(".verdict")?.after(row);
+    }
+    row.append(button);
+  }
+}
+
+function copyLine(label: string, text: string): HTMLElement {
+  const button = make("button", { type: "button" }, "Copy");
+  button.setAttribute("aria-label", `Copy: ${label}`);
+  button.addEventListener("click", () => copy(text, button));
+  return make("div", { className: "copy" }, make("span", { className: "label" }, label), make("code", {}, text), button);
+}
+
+/** The report that --json wrote. */
+export function reportOf(done: RunResult): Record<string, unknown> | undefined {
+  const file = done.files.find((each) => each.path === kReport);
+  return file === undefined ? undefined : JSON.parse(new TextDecoder().decode(file.bytes));
+}
+export const kReport = "report.json";
+export const outputsOf = (done: RunResult): OutputFile[] => done.files.filter((file) => file.path !== kReport);
+
+/** 4 GB is all that a page's memory can be. */
+export const kMostMemory = 3.6e9;
+
+export function tooLarge(what: string, bytes: number, program: string): string {
+  return `${what} needs about ${formatBytes(bytes)} of memory, and a page has 4 GB: use ${program}`;
+}
+
+export function number(id: string): string { return byId<HTMLInputElement>(id).value.trim(); }
+export function isChecked(id: string): boolean { return byId<HTMLInputElement>(id).checked; }
+export { formatCount };

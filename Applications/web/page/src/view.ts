@@ -1,0 +1,268 @@
+/**
+ * Slices and 3-D by niivue. niivue draws; this adds the outlines of the meshes on the slices, a mesh shader
+ * that shows the inside, and the keys. Points are scanner RAS mm throughout.
+ */
+import type { Niivue, NVMesh } from "@niivue/niivue";
+import type { Shape } from "./protocol";
+
+export type Color = [number, number, number];
+export interface Surface { name: string; shape: Shape; color: Color; opacity: number; colors?: Uint8Array }
+
+interface Drawn { mesh: NVMesh; surface: Surface; isShown: boolean; cuts: { at: number; points: Float32Array }[] }
+interface Plane { normal: number[]; at: number }
+interface Tile { axCorSag: number; leftTopWidthHeight: number[]; leftTopMM: number[]; fovMM: number[] }
+
+/** Of a tile: the axis it is cut across, and those that run across and up it. */
+const kAxes: Record<number, [number, number, number]> = { 0: [2, 0, 1], 1: [1, 0, 2], 2: [0, 1, 2] };
+const kShader = `#version 300 es
+precision highp int;
+precision highp float;
+uniform float opacity;
+in vec4 vClr;
+in vec3 vN;
+out vec4 color;
+void main() {
+  if (!gl_FrontFacing && opacity < 0.99) discard;
+  vec3 base = gl_FrontFacing ? vClr.rgb : vec3(0.84, 0.27, 0.25);
+  float light = 0.3 + 0.7 * abs(dot(normalize(vN), normalize(vec3(-0.35, 0.45, -0.9))));
+  color = vec4(base * light, opacity);
+}`;
+
+/** A mesh as an MZ3 file: what niivue reads fastest. */
+function mz3(surface: Surface): ArrayBuffer {
+  const { points, triangles } = surface.shape, count = points.length / 3;
+  const hasColors = surface.colors !== undefined;
+  const bytes = new ArrayBuffer(16 + 4 * triangles.length + 4 * points.length + (hasColors ? 4 * count : 0));
+  const view = new DataView(bytes);
+  view.setUint16(0, 0x5a4d, true);
+  view.setUint16(2, hasColors ? 7 : 3, true);
+  view.setUint32(4, triangles.length / 3, true);
+  view.setUint32(8, count, true);
+  new Uint32Array(bytes, 16, triangles.length).set(triangles);
+  new Float32Array(bytes, 16 + 4 * triangles.length, points.length).set(points);
+  if (surface.colors) new Uint8Array(bytes, 16 + 4 * (triangles.length + points.length)).set(surface.colors);
+  return bytes;
+}
+
+/** Where a mesh meets a plane: pairs of points, flat. */
+function cutOf({ points, triangles }: Shape, { normal, at }: Plane): Float32Array {
+  const heights = new Float32Array(points.length / 3), found: number[] = [];
+  for (let n = 0; n < heights.length; ++n) {
+    heights[n] = normal[0] * points[3 * n] + normal[1] * points[3 * n + 1] + normal[2] * points[3 * n + 2];
+  }
+  for (let t = 0; t < triangles.length; t += 3) {
+    for (let side = 0; side < 3; ++side) {
+      const from = triangles[t + side], to = triangles[t + (side + 1) % 3];
+      if ((heights[from] >= at) === (heights[to] >= at)) continue;
+      const part = (at - heights[from]) / (heights[to] - heights[from]);
+      for (let k = 0; k < 3; ++k) found.push(points[3 * from + k] + part * (points[3 * to + k] - points[3 * from + k]));
+    }
+  }
+  return Float32Array.from(found);
+}
+
+export class View {
+  private readonly nv: Niivue;
+  private readonly shader: number;
+  private drawn: Drawn[] = [];
+  private turn = Promise.resolve();
+
+  private constructor(private readonly library: typeof import("@niivue/niivue"), private readonly canvas: HTMLCanvasElement,
+      private readonly layer: HTMLCanvasElement, private readonly position: HTMLElement, nv: Niivue) {
+    this.nv = nv;
+    this.shader = nv.setCustomMeshShader(kShader, "adaptiso");
+    this.hook();
+    canvas.addEventListener("keydown", (event) => this.step(event), true);
+  }
+
+  /** \throws Error where there is no WebGL 2 */
+  static async make(library: typeof import("@niivue/niivue"), canvas: HTMLCanvasElement, layer: HTMLCanvasElement,
+      position: HTMLElement): Promise<View> {
+    if (document.createElement("canvas").getContext("webgl2") === null) {
+      throw new Error("Slices and 3-D need WebGL 2, which this browser does not have or has turned off. Meshes are made all the same.");
+    }
+    const nv = new library.Niivue({ logLevel: "error", dragAndDropEnabled: false, isSliceMM: true, meshThicknessOn2D: 0,
+      multiplanarShowRender: library.SHOW_RENDER.ALWAYS, multiplanarLayout: library.MULTIPLANAR_TYPE.GRID,
+      multiplanarPadPixels: 4, isOrientCube: false, show3Dcrosshair: true, crosshairWidth: 0.35,
+      crosshairWidthUnit: "percent", crosshairColor: [1, 0.28, 0.28, 0.8], crosshairGap: 3, backColor: [0, 0, 0, 1],
+      fontColor: [0.75, 0.78, 0.82, 1], dragMode: library.DRAG_MODE.pan });
+    await nv.attachToCanvas(canvas, true);
+    const view = new View(library, canvas, layer, position, nv);
+    nv.setSliceType(library.SLICE_TYPE.MULTIPLANAR);
+    nv.setRenderAzimuthElevation(145, 12);
+    return view;
+  }
+
+  /** One change at a time, in the order asked for. */
+  private next(work: () => Promise<void>): Promise<void> {
+    const done = this.turn.then(work);
+    this.turn = done.catch(() => {});
+    return done;
+  }
+
+  showImage(file: Uint8Array<ArrayBuffer>, isLabels: boolean): Promise<void> {
+    return this.next(async () => {
+      this.clearMeshes();
+      for (const volume of [...this.nv.volumes]) this.nv.removeVolume(volume);
+      const blob = new File([file], "image.nii");
+      const volume = await this.library.NVImage.loadFromFile({ file: blob, name: "image.nii",
+        colormap: isLabels ? "actc" : "gray", cal_min: 0, cal_max: 255 } as never);
+      this.nv.addVolume(volume);
+      this.nv.updateGLVolume();
+      this.moveTo([0, 1, 2].map((axis) => (this.nv.frac2mm([0.5, 0.5, 0.5] as never) as unknown as number[])[axis]));
+    });
+  }
+
+  showSurfaces(surfaces: Surface[]): Promise<void> {
+    return this.next(async () => {
+      if (this.nv.volumes.length === 0) await this.showBlank(surfaces);
+      const made: Drawn[] = [];
+      for (const surface of surfaces) {
+        const mesh = await this.library.NVMesh.readMesh(mz3(surface), "surface.mz3", this.nv.gl, surface.opacity,
+          new Uint8Array([...surface.color, 255]), true);
+        mesh.meshShaderIndex = this.shader;
+        made.push({ mesh, surface, isShown: true, cuts: [] });
+      }
+      this.clearMeshes();
+      for (const one of made) this.nv.meshes.push(one.mesh);
+      this.drawn = made;
+      this.nv.updateGLVolume();
+    });
+  }
+
+  setShown(index: number, isShown: boolean): void {
+    const one = this.drawn[index];
+    if (one === undefined) return;
+    one.isShown = isShown;
+    one.mesh.visible = isShown;
+    this.nv.drawScene();
+  }
+
+  moveTo(point: number[]): void {
+    this.nv.scene.crosshairPos = this.nv.mm2frac(point as never);
+    this.nv.drawScene();
+  }
+
+  clear(): Promise<void> {
+    return this.next(async () => {
+      this.clearMeshes();
+      for (const volume of [...this.nv.volumes]) this.nv.removeVolume(volume);
+      this.nv.drawScene();
+    });
+  }
+
+  private clearMeshes(): void {
+    for (const { mesh } of this.drawn) this.nv.removeMesh(mesh);
+    this.drawn = [];
+  }
+
+  /** A black image around meshes that have none. */
+  private async showBlank(surfaces: Surface[]): Promise<void> {
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    for (const { shape } of surfaces) {
+      for (let n = 0; n < shape.points.length; ++n) {
+        const value = shape.points[n];
+        if (!Number.isFinite(value)) continue;
+        low[n % 3] = Math.min(low[n % 3], value);
+        high[n % 3] = Math.max(high[n % 3], value);
+      }
+    }
+    if (!low.every(Number.isFinite)) return;
+    const kSize = 24, { nifti } = await import("./nifti");
+    const steps = low.map((value, axis) => Math.max(1e-3, (high[axis] - value) * 1.2 / (kSize - 1)));
+    const first = low.map((value, axis) => (value + high[axis]) / 2 - steps[axis] * (kSize - 1) / 2);
+    const file = nifti([kSize, kSize, kSize], [steps[0], 0, 0, first[0], 0, steps[1], 0, first[1], 0, 0, steps[2], first[2]],
+      new Uint8Array(kSize ** 3));
+    this.nv.addVolume(await this.library.NVImage.loadFromFile({ file: new File([file], "blank.nii"), name: "blank.nii",
+      colormap: "gray", cal_min: 0, cal_max: 255 } as never));
+  }
+
+  private hook(): void {
+    const nv = this.nv as unknown as Record<string, unknown> & { gl: WebGL2RenderingContext };
+    const drawMesh = (nv.drawMesh3D as (...given: unknown[]) => unknown).bind(nv);
+    const drawScene = (nv.drawScene as (...given: unknown[]) => unknown).bind(nv);
+    nv.drawMesh3D = (...given: unknown[]) => {
+      const gl = nv.gl, enable = gl.enable;  // niivue leaves out what faces away; here it is to be seen
+      gl.enable = (what) => what === gl.CULL_FACE ? gl.disable(what) : enable.call(gl, what);
+      try {
+        return drawMesh(...given);
+      } finally {
+        gl.enable = enable;
+      }
+    };
+    nv.drawImage3D = () => {};
+    nv.drawScene = (...given: unknown[]) => {
+      const result = drawScene(...given);
+      this.drawOutlines();
+      const text = this.nv.volumes.length === 0 ? "" : this.crosshair().map((v) => v.toFixed(1)).join(", ");
+      this.position.textContent = text === "" ? "" : `${text} mm (RAS)`;
+      return result;
+    };
+  }
+
+  private crosshair(): number[] {
+    return Array.from(this.nv.frac2mm(this.nv.scene.crosshairPos) as unknown as number[]).slice(0, 3);
+  }
+
+  /** The plane of voxels that a tile shows: oblique where the image is. */
+  private planeOf(axis: number): Plane {
+    const share = (point: number[]): number => (this.nv.mm2frac(point as never) as unknown as number[])[axis];
+    const zero = share([0, 0, 0]);
+    return { normal: [[100, 0, 0], [0, 100, 0], [0, 0, 100]].map((end) => (share(end) - zero) / 100),
+      at: (this.nv.scene.crosshairPos as unknown as number[])[axis] - zero };
+  }
+
+  private drawOutlines(): void {
+    const { canvas, layer } = this;
+    if (layer.width !== canvas.width || layer.height !== canvas.height) {
+      layer.width = canvas.width;
+      layer.height = canvas.height;
+    }
+    const context = layer.getContext("2d");
+    if (context === null) return;
+    context.clearRect(0, 0, layer.width, layer.height);
+    if (this.nv.volumes.length === 0) return;
+    const pixel = canvas.width / Math.max(1, canvas.clientWidth);
+    for (const tile of (this.nv as unknown as { screenSlices: Tile[] }).screenSlices) {
+      if (!(tile.axCorSag in kAxes) || !(tile.fovMM?.length > 1)) continue;
+      const [left, top, width, height] = tile.leftTopWidthHeight, [axis, across, up] = kAxes[tile.axCorSag];
+      const plane = this.planeOf(axis);
+      const toX = (mm: number): number => left + width * (mm - tile.leftTopMM[0]) / tile.fovMM[0];
+      const toY = (mm: number): number => top + height * (1 - (mm - tile.leftTopMM[1]) / tile.fovMM[1]);
+      context.save();
+      context.beginPath();
+      context.rect(left, top, width, height);
+      context.clip();
+      context.lineCap = "round";
+      const outlines = this.drawn.filter((one) => one.isShown).map((one) => {
+        if (one.cuts[axis]?.at !== plane.at) one.cuts[axis] = { at: plane.at, points: cutOf(one.surface.shape, plane) };
+        const points = one.cuts[axis].points, path = new Path2D();
+        for (let n = 0; n + 5 < points.length; n += 6) {
+          path.moveTo(toX(points[n + across]), toY(points[n + up]));
+          path.lineTo(toX(points[n + 3 + across]), toY(points[n + 3 + up]));
+        }
+        return { path, color: `rgb(${one.surface.color.join(" ")})` };
+      });
+      context.strokeStyle = "black";  // on bright tissue a line is seen by its dark rim
+      context.lineWidth = 3.5 * pixel;
+      for (const { path } of outlines) context.stroke(path);
+      context.lineWidth = 1.5 * pixel;
+      for (const { path, color } of outlines) {
+        context.strokeStyle = color;
+        context.stroke(path);
+      }
+      context.restore();
+    }
+  }
+
+  private step(event: KeyboardEvent): void {
+    const steps: Record<string, number[]> = { ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowUp: [0, 1, 0],
+      ArrowDown: [0, -1, 0], PageUp: [0, 0, 1], PageDown: [0, 0, -1] };
+    const step = steps[event.key];
+    if (step === undefined || this.nv.volumes.length === 0) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    const far = event.shiftKey ? 10 : 1;
+    this.moveTo(this.crosshair().map((value, axis) => value + far * step[axis]));
+  }
+}

@@ -1,0 +1,224 @@
+import assert from "node:assert/strict";
+import { createHash } from "node:crypto";
+import { readFileSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { after, before, describe, it } from "node:test";
+import { balls, ended, give, headLabels, kBrowsers, kPage, makeFolder, native, openPage, picture, press, saved, textOf,
+  writeNifti } from "./support.mjs";
+
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+
+/** Files of a ZIP archive that are stored as they are. */
+function unzip(bytes) {
+  const files = new Map();
+  for (let at = 0; bytes.readUInt32LE(at) === 0x04034b50;) {
+    const size = bytes.readUInt32LE(at + 18), name = bytes.readUInt16LE(at + 26), begin = at + 30 + name;
+    files.set(bytes.toString("utf8", at + 30, begin), bytes.subarray(begin, begin + size));
+    at = begin + size;
+  }
+  return files;
+}
+
+describe("the file", () => {
+  it("is one of 4 MB at most that forbids itself to connect", () => {
+    const text = readFileSync(kPage, "utf8");
+    assert.ok(text.length <= 4e6, `${text.length} bytes`);
+    const policy = /Content-Security-Policy" content="([^"]*)"/.exec(text)[1];
+    assert.match(policy, /default-src 'none'/);
+    assert.match(policy, /connect-src data: blob:(;|$)/);
+  });
+});
+
+for (const browserName of kBrowsers) {
+  describe(`the page in ${browserName}`, () => {
+    let open, page, folder;
+    before(async () => {
+      open = await openPage(browserName);
+      ({ page } = open);
+      folder = makeFolder();
+      writeNifti(join(folder, "balls.nii"), [48, 48, 48], balls);
+    });
+    after(async () => {
+      await open.browser.close();
+      assert.deepEqual(open.requests, [], "requests left the page");
+      assert.deepEqual(open.errors, []);
+    });
+
+    it("shows a result of the example by one click", async () => {
+      await press(page, "#example");
+      assert.equal(await ended(page, "mesh"), "");
+      assert.match(await textOf(page, "#mesh .verdict"), /^[\d,]+ triangles; no point farther than 0\.3 mm \(proved\); closed; 0 pairs cross/);
+      await page.waitForFunction(() => document.body.dataset.shown === "example.stl", { timeout: 60_000 });
+      await picture(page, `${browserName}-example`);
+    });
+
+    it("saves the bytes that the program writes, in every format", async () => {
+      await give(page, "#scan-files", join(folder, "balls.nii"));
+      await page.waitForFunction(() => document.body.dataset.scan === "balls.nii");
+      for (const format of [".stl", ".ply", ".obj", ".gii", ".vtp", ".surf", ".vtk", ".off"]) {
+        await page.select("#format", format);
+        await press(page, "#mesh .go");
+        assert.equal(await ended(page, "mesh"), "");
+        const bytes = await saved(page, open.downloads, "#mesh .saves .main", `balls${format}`);
+        const command = (await textOf(page, "#mesh .copy:nth-of-type(2) code")).split(" ");
+        assert.equal(native(folder, ...command).status, 0, command.join(" "));
+        assert.deepEqual(bytes, readFileSync(join(folder, `balls${format}`)), format);
+        const verdict = await textOf(page, "#mesh .copy code");
+        assert.ok(verdict.includes(createHash("sha256").update(bytes).digest("hex")), verdict);
+      }
+    });
+
+    it("makes the same bytes with every option of the form", async () => {
+      await page.select("#format", ".ply");
+      await page.select("#frame", "lps");
+      for (const id of ["#by-count", "#largest", "#fill"]) await press(page, id);
+      await page.$eval("#triangles", (input) => { input.value = "3000"; });
+      await page.$eval("#smooth", (input) => { input.value = "0.8"; });
+      await press(page, "#mesh .go");
+      assert.equal(await ended(page, "mesh"), "");
+      const bytes = await saved(page, open.downloads, "#mesh .saves .main", "balls.ply");
+      const command = (await textOf(page, "#mesh .copy:nth-of-type(2) code")).split(" ");
+      assert.ok(command.includes("--triangles") && command.includes("--smooth") && command.includes("--largest"));
+      assert.equal(native(folder, ...command).status, 0);
+      assert.deepEqual(bytes, readFileSync(join(folder, "balls.ply")));
+      for (const id of ["#by-distance", "#largest", "#fill"]) await press(page, id);
+      await page.$eval("#smooth", (input) => { input.value = ""; });
+    });
+
+    it("refuses what the programs refuse, with the same line", async () => {
+      writeFileSync(join(folder, "empty.nii"), "");
+      writeFileSync(join(folder, "cut.nii"), readFileSync(join(folder, "balls.nii")).subarray(0, 20_000));
+      writeFileSync(join(folder, "page.nii.gz"), "<!DOCTYPE html><html><body>404</body></html>");
+      writeNifti(join(folder, "four.nii"), [6, 6, 6, 3], () => 1);
+      writeNifti(join(folder, "rgb.nii"), [6, 6, 6], () => 1, [[70, "Int16LE", 128], [72, "Int16LE", 24]], 3);
+      writeNifti(join(folder, "singular.nii"), [6, 6, 6], () => 1, [[280, "FloatLE", 0]]);
+      for (const name of ["empty.nii", "cut.nii", "page.nii.gz", "four.nii", "rgb.nii", "singular.nii"]) {
+        await page.$eval("#mesh .refusal", (element) => { element.hidden = true; element.textContent = ""; });
+        await give(page, "#scan-files", join(folder, name));
+        await page.waitForFunction(() => document.querySelector("#mesh .refusal").hidden === false, { timeout: 60_000 });
+        const { status, line } = native(folder, "adaptiso-mesh", name, "--iso", "1", "-o", "x.stl");
+        assert.equal(status, 3, name);
+        assert.equal(await textOf(page, "#mesh .refusal"), line);
+      }
+    });
+
+    it("cancels within 0.2 s, and makes the mesh again", async () => {
+      writeNifti(join(folder, "large.nii"), [160, 160, 160], (i, j, k) => balls(i % 48, j % 48, k % 48));
+      await give(page, "#scan-files", join(folder, "large.nii"));
+      await page.waitForFunction(() => document.body.dataset.scan === "large.nii", { timeout: 120_000 });
+      await press(page, "#mesh .go");
+      await page.waitForFunction(() => document.querySelector("#mesh .stage").textContent !== "start", { timeout: 120_000 });
+      const milliseconds = await page.evaluate(async () => {
+        const begin = performance.now();
+        document.querySelector("#mesh .cancel").click();
+        while (document.querySelector("#mesh .go").disabled) await new Promise((done) => setTimeout(done, 5));
+        return performance.now() - begin;
+      });
+      assert.ok(milliseconds < 200, `${milliseconds} ms`);
+      await give(page, "#scan-files", join(folder, "balls.nii"));
+      await page.waitForFunction(() => document.body.dataset.scan === "balls.nii", { timeout: 120_000 });
+      await press(page, "#mesh .go");
+      assert.equal(await ended(page, "mesh"), "");
+    });
+
+    it("makes a head model of labels: the program's files", async () => {
+      writeNifti(join(folder, "seg.nii"), [85, 85, 85], headLabels,
+        [280, 300, 320].map((at) => [at, "FloatLE", 2]).concat([[80, "FloatLE", 2], [84, "FloatLE", 2], [88, "FloatLE", 2]]));
+      await press(page, "#tab-mesh");
+      await give(page, "#scan-files", join(folder, "seg.nii"));
+      await page.waitForFunction(() => document.body.dataset.scan === "seg.nii", { timeout: 120_000 });
+      await press(page, "#tab-head");
+      await page.select("#source", "labels");
+      await page.$eval("#tissues", (input) => { input.value = "brain=1 skull=2 scalp=3"; });
+      await page.$eval("#vertices", (input) => { input.value = "642"; });
+      await press(page, "#head .go");
+      assert.equal(await ended(page, "head", 600_000), "");
+      const files = unzip(await saved(page, open.downloads, "#head .saves .main", "model.zip"));
+      const command = (await textOf(page, "#head .copy:nth-of-type(2) code")).split(" ");
+      assert.equal(native(folder, ...command).status, 0);
+      for (const name of ["inner_skull.surf", "outer_skull.surf", "outer_skin.surf", "bem.fif", "model.geom", "inner_skull.tri"]) {
+        assert.deepEqual(files.get(`model/${name}`), readFileSync(join(folder, "model", name)), name);
+      }
+      await picture(page, `${browserName}-head`);
+    });
+
+    it("makes all regions of labels: the program's files", async () => {
+      await press(page, "#tab-labels");
+      await give(page, "#labels-file", join(folder, "seg.nii"));
+      await page.waitForFunction(() => document.body.dataset.scan === "seg.nii");
+      await page.select("#labels-format", "stl");
+      await press(page, "#labels .go");
+      assert.equal(await ended(page, "labels", 600_000), "");
+      const files = unzip(await saved(page, open.downloads, "#labels .saves .main", "regions.zip"));
+      const command = (await textOf(page, "#labels .copy:nth-of-type(2) code")).split(" ");
+      assert.equal(native(folder, ...command).status, 0);
+      assert.ok(files.size > 4);
+      for (const [name, bytes] of files) {
+        if (!name.endsWith("report.json")) assert.deepEqual(bytes, readFileSync(join(folder, name)), name);
+      }
+      await picture(page, `${browserName}-labels`);
+    });
+
+    it("checks, simplifies and compares meshes as the programs do", async () => {
+      await press(page, "#tab-check");
+      await give(page, "#check-files", join(folder, "balls.ply"));
+      await page.waitForFunction(() => document.querySelector("#check-names").textContent !== "");
+      await press(page, "#check .go");
+      await ended(page, "check");
+      const report = JSON.parse((await saved(page, open.downloads, "#check .saves .main", "check.json")).toString());
+      native(folder, "adaptiso-check", "balls.ply", "--json", "native.json");
+      assert.deepEqual(report.surfaces, JSON.parse(readFileSync(join(folder, "native.json"))).surfaces);
+
+      await press(page, "#tab-simplify");
+      await give(page, "#simplify-files", join(folder, "balls.ply"));
+      await page.$eval("#simplify-error", (input) => { input.value = "0.3"; });
+      await press(page, "#simplify .go");
+      assert.equal(await ended(page, "simplify"), "");
+      const bytes = await saved(page, open.downloads, "#simplify .saves .main", "balls-simple.stl");
+      assert.equal(native(folder, ...(await textOf(page, "#simplify .copy:nth-of-type(2) code")).split(" ")).status, 0);
+      assert.deepEqual(bytes, readFileSync(join(folder, "balls-simple.stl")));
+
+      await press(page, "#tab-compare");
+      await give(page, "#compare-files", join(folder, "balls.ply"), join(folder, "balls-simple.stl"));
+      await press(page, "#compare .go");
+      assert.equal(await ended(page, "compare"), "");
+      const colored = await saved(page, open.downloads, "#compare .saves .main", "distance.vtp");
+      assert.equal(native(folder, ...(await textOf(page, "#compare .copy:nth-of-type(2) code")).split(" ")).status, 0);
+      assert.deepEqual(colored, readFileSync(join(folder, "distance.vtp")));
+      await picture(page, `${browserName}-compare`);
+    });
+
+    it("gives axe nothing to find in any tab, wide or narrow, light or dark", async () => {
+      await page.evaluate(axe);
+      for (const [width, scheme] of [[1280, "light"], [390, "dark"]]) {
+        await page.setViewport({ width, height: 844 });
+        if (browserName === "chrome") await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
+        for (const tab of ["mesh", "head", "labels", "check", "simplify", "compare"]) {
+          await press(page, `#tab-${tab}`);
+          const found = await page.evaluate(async () => (await globalThis.axe.run()).violations
+            .map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target.join(" ")).join(", ")}`));
+          assert.deepEqual(found, [], `${tab} at ${width}`);
+          const wider = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+          assert.ok(wider <= 0, `${tab} at ${width} is ${wider} px too wide`);
+        }
+        await press(page, "#tab-mesh");
+        await picture(page, `${browserName}-${width}-${scheme}`);
+      }
+      await page.setViewport({ width: 1280, height: 900 });
+    });
+
+    it("is used by the keyboard alone", async () => {
+      await page.focus("#tab-mesh");
+      await page.keyboard.press("ArrowRight");
+      assert.equal(await page.evaluate(() => document.activeElement.id), "tab-head");
+      assert.equal(await page.$eval("#head", (element) => element.hidden), false);
+      await page.keyboard.press("Home");
+      assert.equal(await page.$eval("#mesh", (element) => element.hidden), false);
+      await page.focus("#example");
+      await page.keyboard.press("Enter");
+      await page.waitForFunction(() => document.body.dataset.running === "mesh", { timeout: 60_000 });
+      assert.equal(await ended(page, "mesh"), "");
+    });
+  });
+}

@@ -1,0 +1,116 @@
+// What the tests share: browsers, inputs made here, and the native programs.
+import { spawnSync } from "node:child_process";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+import puppeteer from "puppeteer-core";
+
+const kTop = resolve(import.meta.dirname ?? ".", "../../../..");
+export const kPage = process.env.ADAPTISO_PAGE ?? join(kTop, "build/web/adaptiso.html");
+const kPrograms = process.env.ADAPTISO_PROGRAMS ?? join(kTop, "build/release/bin");
+export const kPictures = process.env.ADAPTISO_PICTURES ?? join(kTop, "build/web/pictures");
+export const kBrowsers = (process.env.ADAPTISO_BROWSERS ?? "chrome,firefox").split(",");
+const kExecutables = { chrome: "/usr/bin/chromium", firefox: "/usr/bin/firefox-esr" };
+
+/** A page of the file as people open it, what it asks the network for, and where it saves. */
+export async function openPage(browserName, { width = 1280, height = 900, isDark = false } = {}) {
+  const downloads = mkdtempSync(join(tmpdir(), "adaptiso-page-"));
+  const browser = await puppeteer.launch({ browser: browserName, executablePath: kExecutables[browserName], headless: true,
+    protocolTimeout: 600_000, timeout: 120_000,
+    args: browserName === "chrome" ? ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] : [],
+    extraPrefsFirefox: { "browser.download.folderList": 2, "browser.download.dir": downloads,
+      "browser.download.useDownloadDir": true, "browser.helperApps.neverAsk.saveToDisk": "application/octet-stream",
+      "webgl.force-enabled": true },
+    ...(browserName === "chrome" ? { downloadBehavior: { policy: "allow", downloadPath: downloads } } : {}) });
+  const page = await browser.newPage();
+  await page.setViewport({ width, height });
+  if (isDark) await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: "dark" }]);
+  const requests = [], errors = [];
+  page.on("request", (request) => {
+    if (!/^(file|data|blob|about):/.test(request.url())) requests.push(request.url());
+  });
+  page.on("pageerror", (error) => errors.push(String(error)));
+  await page.goto(pathToFileURL(kPage).href);
+  await page.waitForSelector("body[data-ready=true]");
+  return { browser, page, downloads, requests, errors };
+}
+
+export async function give(page, selector, ...files) {
+  const input = await page.$(selector);
+  await input.uploadFile(...files);
+}
+
+/** Waits for the run of a tab to end. \return its refusal; empty where there is none */
+export async function ended(page, tab, timeout = 300_000) {
+  await page.waitForFunction((id) => document.querySelector(`#${id} .go`).disabled === false
+    && (document.querySelector(`#${id} .result`).hidden === false || document.querySelector(`#${id} .refusal`).hidden === false),
+    { timeout, polling: 50 }, tab);
+  return page.$eval(`#${tab} .refusal`, (element) => (element.hidden ? "" : element.textContent));
+}
+
+export const press = (page, selector) => page.$eval(selector, (element) => element.click());
+export const textOf = (page, selector) => page.$eval(selector, (element) => element.textContent);
+
+/** The file that a button saves. */
+export async function saved(page, downloads, selector, name) {
+  await press(page, selector);
+  const path = join(downloads, name);
+  for (let n = 0; n < 300; ++n) {
+    if (existsSync(path) && !existsSync(`${path}.part`) && !existsSync(`${path}.crdownload`)) {
+      const bytes = readFileSync(path);
+      if (bytes.length > 0) return bytes;
+    }
+    await new Promise((done) => setTimeout(done, 100));
+  }
+  throw new Error(`${name} was not saved`);
+}
+
+/** Runs a native program in `folder`. */
+export function native(folder, program, ...args) {
+  const { status, stderr, error } = spawnSync(join(kPrograms, program), args, { cwd: folder, encoding: "utf8" });
+  if (error) throw error;
+  return { status, line: stderr.trim().split("\n").at(-1) };
+}
+
+export function makeFolder() { return mkdtempSync(join(tmpdir(), "adaptiso-test-")); }
+
+export async function picture(page, name) {
+  mkdirSync(kPictures, { recursive: true });
+  await page.screenshot({ path: join(kPictures, `${name}.png`) });
+}
+
+/** A NIfTI of unsigned bytes. \param changes  [offset, type, value] of its header */
+export function writeNifti(path, size, sample, changes = [], bytesEach = 1) {
+  const count = size.reduce((a, b) => a * b, 1), bytes = Buffer.alloc(352 + count * bytesEach);
+  bytes.writeInt32LE(348, 0);
+  bytes.writeInt16LE(size.length, 40);
+  for (let axis = 0; axis < 7; ++axis) bytes.writeInt16LE(size[axis] ?? 1, 42 + 2 * axis);
+  for (let axis = 0; axis < 4; ++axis) bytes.writeFloatLE(1, 76 + 4 * axis);
+  bytes.writeInt16LE(2, 70);
+  bytes.writeInt16LE(8, 72);
+  bytes.writeFloatLE(352, 108);
+  bytes[123] = 2;
+  bytes.writeInt16LE(1, 254);
+  [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0].forEach((value, n) => { bytes.writeFloatLE(value, 280 + 4 * n); });
+  bytes.write("n+1", 344, "latin1");
+  for (let n = 0; n < count; ++n) {
+    bytes[352 + n * bytesEach] = sample(n % size[0], Math.floor(n / size[0]) % size[1], Math.floor(n / size[0] / size[1]) % (size[2] ?? 1));
+  }
+  for (const [offset, type, value] of changes) bytes[`write${type}`](value, offset);
+  writeFileSync(path, bytes);
+}
+
+/** Two overlapping balls with a cavity, bumpy. */
+export function balls(i, j, k) {
+  const d = (x, y, z) => Math.hypot(i - x, j - y, k - z);
+  const bumps = 2 * Math.sin(i / 2.3) * Math.cos(j / 1.9) * Math.sin(k / 2.7);
+  const inside = Math.max(15 - d(20, 22, 24), 10 - d(33, 25, 24)) + bumps, cavity = 5 - d(19, 22, 24);
+  return Math.max(0, Math.min(255, Math.round(120 + 14 * Math.min(inside, -cavity))));
+}
+
+/** Brain, skull and scalp as labels 1, 2, 3: balls of 62, 70 and 78 mm at 2 mm. */
+export function headLabels(i, j, k) {
+  const d = 2 * Math.hypot(i - 42, j - 42, k - 42);
+  return d < 62 ? 1 : d < 70 ? 2 : d < 78 ? 3 : 0;
+}

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Installs what it needs and builds the page: build/web/adaptiso.html, one file. Debian 12, as root or
+# with sudo, and Node 20 or later with npm. Running it again is harmless.
+#
+#   Applications/web/run.sh            the page
+#   Applications/web/run.sh --test     the page, then its tests in Chromium and Firefox
+set -euo pipefail
+
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+cd "$top"
+
+. Applications/quickstart/packages.sh
+installPackages Applications/web/packages.txt
+
+node=$(node --version 2>/dev/null || echo v0)
+if [[ ${node#v} != 2[0-9]* && ${node#v} != [3-9][0-9]* ]] || ! command -v npm >/dev/null; then
+    echo "Applications/web/run.sh: needs Node 20 or later with npm, found ${node} (https://nodejs.org)" >&2
+    exit 1
+fi
+
+export NODE_PATH=/usr/share/nodejs  # acorn, which Emscripten's linker needs, for a Node that is not Debian's
+cmake --log-level=WARNING --preset web
+cmake --build --preset web --target adaptisoWeb
+cd Applications/web/page
+npm ci --ignore-scripts --no-audit --no-fund --silent
+npm run --silent check
+version=$(sed -n 's/^project(adaptiso VERSION \([0-9.]*\).*/\1/p' "$top/CMakeLists.txt")
+node build.mjs "$top/build/web" "$version"
+if [[ ${1:-} == --test ]]; then
+    node --test --test-concurrency=1 test/
+fi
