@@ -12,7 +12,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Shortage.h"
 
 namespace adaptiso {
 
@@ -40,7 +40,9 @@ void require(bool isGood, const fs::path& target, const std::string& fault) {
 
 /// Of a system call: the message ends with the text of errno.
 void requireDone(bool isDone, const fs::path& target, const char* fault = "can't be written") {
-    require(isDone, target, isDone ? "" : fault + (": " + reason()));
+    if (isDone) return;
+    if (isShortage(errno)) throw Shortage(target.string() + ": " + fault + ": " + reason());
+    require(false, target, fault + (": " + reason()));
 }
 
 std::string prefixOf(int process) {
@@ -133,8 +135,10 @@ void writeNaming(const fs::path& temporary, const fs::path& target,
         return text;
     };
     try {
+        errno = 0;
         writer();
     } catch (const FileError& error) {
+        if (isShortage(errno)) throw Shortage(renamed(error.what()));  // writers say it in words
         throw FileError(renamed(error.what()));
     } catch (const InvalidInput& error) {
         throw InvalidInput(renamed(error.what()));

@@ -2,18 +2,19 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <iostream>
+#include <map>
 #include <optional>
-#include <utility>
+#include <sstream>
+#include <string_view>
+#include <thread>
 
-#include "Common/AtomicOutput.h"
-#include "Common/BatchPlan.h"
-#include "Common/BatchRecord.h"
-#include "Common/BatchRows.h"
+#include "Common/BatchSummary.h"
 #include "Common/Bids.h"
-#include "Common/EarlierRuns.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
+#include "Common/Sha256.h"
 #include "Common/Verdict.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Text.h"
@@ -23,415 +24,720 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view kName = "{name}";
+constexpr const char* kOutput = "--output";
+
+bool isIn(const std::vector<std::string>& words, const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::string replaced(std::string text, std::string_view place, std::string_view by) {
+    for (std::size_t at = text.find(place); at != std::string::npos;
+         at = text.find(place, at + by.size())) {
+        text.replace(at, place.size(), by);
+    }
+    return text;
+}
+
+/// "--output" and its value, of "--output=value".
+std::pair<std::string, std::string> split(const std::string& option) {
+    const std::size_t equals = option.find('=');
+    if (equals == std::string::npos) return {option, ""};
+    return {option.substr(0, equals), option.substr(equals + 1)};
+}
+
+fs::path folderOfBatch(const BatchOptions& batch) {
+    if (!batch.outputFolder.empty() || batch.bids.empty()) return batch.outputFolder;
+    return batch.bids / "derivatives" / "adaptiso";
+}
+
+// ---- items
+
+std::string folderName(const fs::path& file) {
+    const fs::path folder = fs::weakly_canonical(fs::absolute(file)).parent_path();
+    return folder.has_filename() ? folder.filename().string() : "surfaces";
+}
+
+/// An input a line, with a name after a tab where one is given; with `areOneItem` the surfaces of
+/// one head, with tabs between.
+std::vector<BatchItem> readList(const fs::path& list, bool areOneItem, const NameInput& nameOf) {
+    const std::string option = "--list " + list.string();
+    std::ifstream file;
+    if (list != "-") file.open(list);
+    if (!file || fs::is_directory(list)) throw FileError(option + ": can't be read");
+    std::istream& in = list == "-" ? std::cin : file;
+    std::vector<BatchItem> items;
+    for (std::string line; std::getline(in, line);) {
+        if (line.ends_with('\r')) line.pop_back();
+        if (line.starts_with('#')) continue;
+        std::vector<std::string> parts;
+        std::istringstream stream(line);
+        for (std::string part; std::getline(stream, part, '\t');) {
+            if (!part.empty()) parts.push_back(part);
+        }
+        if (parts.empty()) continue;
+        BatchItem item;
+        if (areOneItem) {
+            item = {folderName(parts[0]), {parts.begin(), parts.end()}};
+        } else if (parts.size() <= 2) {
+            item = {parts.size() == 2 ? parts[1] : nameOf(parts[0]), {parts[0]}};
+        } else {
+            throw InvalidInput(option + ": '" + line +
+                               "' has more than two parts: an input and its name");
+        }
+        if (item.name.find('/') != std::string::npos || item.name == "." || item.name == "..") {
+            throw InvalidInput(option + ": '" + item.name + "' is no name for files");
+        }
+        items.push_back(std::move(item));
+    }
+    if (in.bad()) throw FileError(option + ": can't be read");
+    if (items.empty()) throw InvalidInput(option + ": names no input");
+    return items;
+}
+
+// ---- what programs report
+
+/// "closed, manifold" of what failed in a check, after `subject` if given.
+void addFailed(const Json& checked, const std::string& subject, std::string& text) {
+    std::string failed;
+    for (const Json& name : checked.value("failed", Json::array())) {
+        failed += (failed.empty() ? "" : ", ") + name.get<std::string>();
+    }
+    if (failed.empty()) return;
+    text += (text.empty() ? "" : "; ") + (subject.empty() ? "" : subject + ": ") + failed;
+}
+
+std::string checkResult(const Json& report) {
+    std::string text;
+    const Json surfaces = report.value("surfaces", Json::array());
+    for (const Json& surface : surfaces) {
+        addFailed(surface, surfaces.size() == 1 ? "" : surface.value("file", ""), text);
+    }
+    if (const Json nesting = report.value("nesting", Json()); nesting.is_object()) {
+        for (const Json& pair : nesting.at("pairs")) {
+            addFailed(pair, pair.value("inner", "") + " in " + pair.value("outer", ""), text);
+        }
+    }
+    return text.empty() ? "all that is required holds" : text;
+}
+
+std::string meshResult(const Json& report) {
+    std::string text;
+    for (const Json& surface : report.value("surfaces", Json::array())) {
+        text += (text.empty() ? "" : "; ") + surface.at("output").at("file").get<std::string>() +
+                ", " + formatCount(surface.at("triangles").get<long long>()) + " triangles at " +
+                formatShort(surface.at("isovalue").get<double>());
+    }
+    return text;
+}
+
+std::string labelsResult(const Json& report) {
+    if (!report.contains("walls")) return {};
+    for (const Json& check : report.value("checks", Json::array())) {
+        if (!check.value("passed", true)) return "failed: " + check.at("name").get<std::string>();
+    }
+    return formatCount(static_cast<long long>(report.at("regions").size())) + " regions, " +
+           formatCount(report.at("walls").at("triangles").get<long long>()) + " triangles";
+}
+
+std::string bemResult(const Json& report) {
+    if (report.value("model", false)) {
+        return "a model of " + std::to_string(report.at("surfaces").size()) + " surfaces";
+    }
+    const Json findings = report.value("findings", Json::array());
+    return "no model: " + (findings.empty() ? std::string("it could not be guaranteed")
+                                            : findings[0].at("what").get<std::string>());
+}
+
+std::string simplifyResult(const Json& report) {
+    if (!report.contains("output")) return {};
+    if (report.value("failedBySoundness", false)) return "is not sound";
+    return formatCount(report.at("output").at("triangles").get<long long>()) + " triangles of " +
+           formatCount(report.at("input").at("triangles").get<long long>());
+}
+
+/// The result of a run that reached one, in a few words.
+std::string resultOf(const std::string& program, const Json& report) {
+    if (program == "adaptiso-mesh") return meshResult(report);
+    if (program == "adaptiso-check") return checkResult(report);
+    if (program == "adaptiso-labels") return labelsResult(report);
+    if (program == "adaptiso-bem") return bemResult(report);
+    return simplifyResult(report);
+}
+
+/// Names of the files written under --output; within the folder `folder` where it names one.
+std::vector<std::string> outputsOf(const std::string& program, const Json& report,
+                                   const std::string& folder) {
+    std::vector<std::string> files;
+    const Json output = report.value("output", Json::object());
+    if (program == "adaptiso-mesh") {
+        for (const Json& surface : report.value("surfaces", Json::array())) {
+            const Json& file = surface.at("output");
+            if (file.value("written", true)) files.push_back(file.at("file"));
+        }
+    } else if (program == "adaptiso-simplify" && output.value("written", false)) {
+        files.push_back(output.at("file"));
+        for (const Json& data : report.at("data")) files.push_back(data.at("output"));
+    } else if ((program == "adaptiso-labels" && output.value("written", false)) ||
+               (program == "adaptiso-bem" && report.value("model", false))) {
+        for (const Json& file : output.at("files")) {
+            files.push_back(folder + "/" + file.at("file").get<std::string>());
+        }
+    }
+    return files;
+}
+
+// ---- running
+
+RecordedFile described(const std::string& option, const std::string& name, const fs::path& path) {
+    RecordedFile file;
+    file.file = name;
+    try {
+        file = describeFile(name, path);
+    } catch (const FileError&) {
+        // without a checksum it will count as changed
+    }
+    file.option = option;
+    return file;
+}
+
+/// What a run reads, with checksums; empty if it can't be read, which the run will report.
+std::vector<RecordedFile> describedInputs(const PlannedRun& run, const fs::path& folder) {
+    std::vector<RecordedFile> inputs;
+    try {
+        for (const fs::path& path : run.inputs) {
+            inputs.push_back(describeInput(path, folder));
+            if (folder.empty()) continue;
+            const fs::path file = fs::absolute(path).lexically_normal();
+            const std::string inFolder =
+                file.lexically_relative(fs::absolute(folder).lexically_normal()).string();
+            if (inFolder.empty() || inFolder.starts_with("..")) continue;
+            inputs.back().place =
+                file.lexically_relative(fs::absolute(run.item.folder).lexically_normal()).string();
+        }
+    } catch (const FileError&) {
+        inputs.clear();
+    }
+    return inputs;
+}
+
 class BatchRun {
 public:
-    BatchRun(const BatchProgram& program, const BatchOptions& batch, const CommonOptions& common)
+    BatchRun(const BatchProgram& program, const std::vector<PlannedRun>& runs,
+             const BatchOptions& batch, const BatchRunning& running, const CommonOptions& common)
         : program_(program),
+          runs_(runs),
           batch_(batch),
+          running_(running),
           common_(common),
-          plan_(program, batch, common),
-          items_(plan_.items()),
-          records_(items_.size()),
-          reasons_(items_.size()),
-          earlier_(program, plan_),
-          expected_(findExpected()),
+          keepsRecords_(program.keepsRecords || !running.folder.empty()),
+          ended_(runs.size()),
+          reasons_(runs.size()),
+          areCurrent_(runs.size()),
+          inputs_(runs.size()),
           progress_(common.isQuiet) {}
 
-    int run() {
+    std::vector<RunRecord> run() {
         try {
-            return runAll();
+            runAll();
         } catch (...) {
-            removeUnused();
+            removeAnnounced();
             throw;
         }
+        std::vector<RunRecord> records;
+        for (auto& record : ended_) records.push_back(std::move(*record));
+        return records;
     }
 
 private:
-    using Planned = std::vector<PlannedRecord>;
-
-    int runAll() {
-        if (batch_.skipsExisting) findEarlierRuns();
+    void runAll() {
         std::vector<std::size_t> waiting;
-        for (std::size_t n = 0; n < items_.size(); ++n) {
-            if (!records_[n]) waiting.push_back(n);
+        for (std::size_t n = 0; n < runs_.size(); ++n) {
+            if (!takeEarlier(n, false)) waiting.push_back(n);
         }
-        announce(waiting);
+        for (const std::size_t n : waiting) announce(n);
         writePage();
-        tellThoseNext();
-        std::erase_if(waiting, [&](std::size_t n) { return failsUnrun(n); });
+        printNext();
+        for (const std::size_t n : waiting) {
+            if (runs_[n].item.fault.empty()) continue;
+            finish(n, {.exitCode = kExitBadInput, .errors = runs_[n].item.fault});
+        }
         runChildren(
             waiting.size(), batch_.jobs.value_or(1),
             [&](std::size_t n) { return start(waiting[n]); },
             [&](std::size_t n, const ChildResult& result) { finish(waiting[n], result); },
             program_.executable);
         progress_.clear();
-        writeFiles();
-        if (!common_.isQuiet && !common_.wantsJsonOnStdout() && !program_.isPartOfApp) {
-            printTotals();
-        }
-        flushResults();
-        return failedCount() == 0 ? kExitOk : kExitCheckFailed;
+        writePage();
     }
 
-    void findEarlierRuns() {
-        for (std::size_t n = 0; n < items_.size(); ++n) {
-            if (!items_[n].fault.empty()) continue;
-            std::vector<EarlierRecord> found = earlier_.look(n);
-            if (EarlierRuns::areDone(found)) {
-                keepWhatIsAsked(n, found);
-                records_[n] = together(found);
-            }
-            reasons_[n] = EarlierRuns::reasonOf(found);
+    /// With --skip-existing, takes the result of an earlier run, or of another batch meanwhile.
+    bool takeEarlier(std::size_t n, bool trustsTimes) {
+        if (!batch_.skipsExisting || !runs_[n].item.fault.empty()) return false;
+        EarlierRun earlier = findEarlierRun(program_, runs_[n], running_.folder, trustsTimes);
+        if (!trustsTimes) {  // the first look, before its record says that it is running
+            reasons_[n] = earlier.isThere ? earlier.why : "";
+            areCurrent_[n] = earlier.isCurrent;
         }
-    }
-
-    /// True if an earlier run made what this one asks for, perhaps by other option words.
-    void keepWhatIsAsked(std::size_t n, const std::vector<EarlierRecord>& found) const {
-        const Planned planned = plan_.records(items_[n]);
-        for (std::size_t k = 0; k < found.size(); ++k) {
-            if (program_.asked.is_null() || found[k].record->asked == program_.asked) continue;
-            KeptRecord record = *found[k].record;
-            record.asked = program_.asked;
-            writeRecord(planned[k].file, record);
+        if (!earlier.why.empty()) return false;
+        if (!program_.asked.is_null() && earlier.record.asked != program_.asked) {
+            earlier.record.asked = program_.asked;  // the same result, in other words
+            writeRecord(runs_[n].record, earlier.record);
         }
-    }
-
-    /// An item with a fault fails alone. \return whether it has one
-    bool failsUnrun(std::size_t n) {
-        if (items_[n].fault.empty()) return false;
-        start(n);
-        ChildResult result;
-        result.exitCode = kExitBadInput;
-        result.errors = items_[n].fault;
-        finish(n, result);
+        earlier.record.isOfEarlierRun = true;
+        ended_[n] = std::move(earlier.record);
         return true;
     }
 
-    /// The run that made all of `found`, or would have.
-    static BatchRecord together(std::vector<EarlierRecord>& found) {
-        BatchRecord run = std::move(found.front().record->run);
-        for (std::size_t n = 1; n < found.size(); ++n) {
-            BatchRecord& other = found[n].record->run;
-            run.outputs.insert(run.outputs.end(), other.outputs.begin(), other.outputs.end());
-            if (run.report.contains(kSurfaces) && other.report.contains(kSurfaces)) {
-                for (const Json& surface : other.report[kSurfaces]) {
-                    run.report[kSurfaces].push_back(surface);
-                }
-            }
-        }
-        run.isOfEarlierRun = true;
-        return run;
-    }
-
-    /// What has no record gets one that says that it has not ended: if this batch is killed, nobody
-    /// who builds the page takes what it left for all.
-    void announce(const std::vector<std::size_t>& waiting) {
-        if (!plan_.keepsRecords()) return;
-        for (const std::size_t n : waiting) {
-            if (!items_[n].folder.empty()) makeFolders(items_[n].folder);
-            for (const PlannedRecord& planned : plan_.records(items_[n])) {
-                if (fs::exists(planned.file)) continue;
-                writeRecord(planned.file, newRecord(n, planned));
-                announced_.push_back(planned);
-            }
-        }
-    }
-
-    /// This batch ends before its time, and lives to tell: of what it has announced and not made
-    /// nothing stays.
-    void removeUnused() const {
-        for (const PlannedRecord& planned : announced_) {
-            std::error_code error;
-            if (!planned.surface.empty() && fs::exists(planned.surface, error)) continue;
-            RecordFault fault = RecordFault::None;
-            const std::optional<KeptRecord> record = readRecord(planned.file, fault);
-            if (record && !record->hasEnded) fs::remove(planned.file, error);
-        }
-    }
-
-    /// Another batch on this folder has made it since this one has looked.
-    bool isMadeMeanwhile(std::size_t n) {
-        constexpr bool kTrustsTimes = true;
-        std::vector<EarlierRecord> found = earlier_.look(n, kTrustsTimes);
-        if (!EarlierRuns::areDone(found)) return false;
-        records_[n] = together(found);
-        tellThoseNext();
-        return true;
-    }
-
-    /// \return none: there is nothing to do any more
-    std::vector<std::string> start(std::size_t n) {
-        const BatchItem& item = items_[n];
-        if (item.fault.empty() && batch_.skipsExisting && isMadeMeanwhile(n)) return {};
-        if (!item.folder.empty()) makeFolders(item.folder);
-        earlier_.forgetInputs(n);  // they may have changed since they were looked at
-        if (program_.removesFormer) removeFormerOutputs(n);
-        earlier_.inputs(n);
-        if (plan_.keepsRecords()) {
-            removeFormerRecord(item);
-            for (const auto& [file, record] : notFinished(n)) writeRecord(file, record);
-        }
-        return plan_.arguments(item);
-    }
-
-    /// Versions before this one kept one record for each input.
-    void removeFormerRecord(const BatchItem& item) const {
-        const fs::path file = item.folder / (item.name + "." + program_.name + ".json");
-        RecordFault fault = RecordFault::None;
-        readRecord(file, fault);
-        if (fault == RecordFault::OfAnotherVersion) fs::remove(file);
-    }
-
-    /// What a run has made that would come out otherwise now: if the run to come fails, or ends
-    /// before its time, no file of an old input or of old options stands for it.
-    void removeFormerOutputs(std::size_t n) {
-        const BatchItem& item = items_[n];
-        std::vector<EarlierRecord> found = earlier_.look(n);
-        for (const EarlierRecord& one : found) {
-            if (!one.record || one.why.empty()) continue;  // what is as it should be stays
-            for (const KeptOutput& output : one.record->outputs) {
-                const fs::path path = item.folder / output.file.file;
-                constexpr bool kTrustsTimes = false;
-                if (changeOf(output.file, path, kTrustsTimes) != FileChange::None) continue;
-                std::error_code error;
-                fs::remove(path, error);
-                for (fs::path folder = path.parent_path(); folder != item.folder && !error;
-                     folder = folder.parent_path()) {
-                    if (!fs::is_empty(folder, error) || !fs::remove(folder, error)) break;
-                }
-            }
-        }
-    }
-
-    KeptRecord newRecord(std::size_t n, const PlannedRecord& planned) const {
-        KeptRecord record{program_.name, program_.versionText()};
-        record.run.name = items_[n].name;
-        for (const fs::path& input : items_[n].inputs) {
-            record.run.files.push_back(baseName(input));
-        }
+    RunRecord newRecord(std::size_t n) const {
+        const PlannedRun& run = runs_[n];
+        RunRecord record{program_.name, program_.version};
+        if (record.version.empty()) record.version = versionText(program_.name);
+        record.name = run.item.name;
+        for (const fs::path& input : run.item.inputs) record.files.push_back(baseName(input));
         record.date = recordDate();
         record.asked = program_.asked;
-        record.options = planned.options;
+        record.options = run.options;
         return record;
     }
 
-    Records notFinished(std::size_t n) const {
-        Records records;
-        for (const PlannedRecord& planned : plan_.records(items_[n])) {
-            records.emplace(planned.file, newRecord(n, planned));
+    /// Leaves a record of a run to come, so that pages name it even if this batch is killed.
+    void announce(std::size_t n) {
+        if (!keepsRecords_) return;
+        if (!runs_[n].item.folder.empty()) makeFolders(runs_[n].item.folder);
+        if (fs::exists(runs_[n].record)) return;
+        writeRecord(runs_[n].record, newRecord(n));
+        announced_.push_back(runs_[n].record);
+    }
+
+    void removeAnnounced() const {
+        RunRecord record;
+        std::error_code error;
+        for (const fs::path& file : announced_) {
+            const bool isRead = readRecord(file, record) == RecordFault::None;
+            if (isRead && !record.hasEnded) fs::remove(file, error);
         }
-        return records;
+    }
+
+    /// \return the arguments; empty: there is nothing left to do
+    std::vector<std::string> start(std::size_t n) {
+        const PlannedRun& run = runs_[n];
+        if (ended_[n]) return {};
+        constexpr bool kTrustsTimes = true;
+        if (takeEarlier(n, kTrustsTimes)) {
+            printNext();
+            return {};
+        }
+        if (!run.item.folder.empty()) makeFolders(run.item.folder);
+        if (program_.removesFormer && !areCurrent_[n]) removeFormer(run);
+        inputs_[n] = describedInputs(run, running_.folder);
+        if (keepsRecords_) writeRecord(run.record, newRecord(n));
+        return run.arguments;
+    }
+
+    /// Files that were edited since stay.
+    void removeFormer(const PlannedRun& run) const {
+        RunRecord former;
+        if (readRecord(run.record, former) != RecordFault::None) return;
+        for (const RecordedFile& output : former.recordedOutputs) {
+            const fs::path path = run.item.folder / output.file;
+            std::error_code error;
+            if (!changeOf(output, path, false).empty()) continue;
+            fs::remove(path, error);
+            for (fs::path folder = path.parent_path(); folder != run.item.folder && !error;
+                 folder = folder.parent_path()) {
+                if (!fs::is_empty(folder, error) || !fs::remove(folder, error)) break;
+            }
+        }
     }
 
     void finish(std::size_t n, const ChildResult& result) {
-        const BatchItem& item = items_[n];
-        BatchRecord record = recordOf(item, result, program_.name);
+        const PlannedRun& run = runs_[n];
+        const fs::path folder = run.item.folder.empty() ? fs::path(".") : run.item.folder;
+        RunRecord record = newRecord(n);
         record.madeAgain = reasons_[n];
-        if (record.report.is_object()) {
-            record.outputs = plan_.outputs(item, program_.outputs(record.report));
+        addResult(result, run.item.inputs, record);
+        if (result.signal != 0) detail::removeLeftTemporaries(folder, result.process);
+        // of two batches in one folder the slower may fail where the other has finished
+        constexpr bool kTrustsTimes = true;
+        if (record.isFinished() || !takeEarlier(n, kTrustsTimes)) {
+            addFiles(n, record);
+            if (keepsRecords_) writeRecord(run.record, record);
+            ended_[n] = std::move(record);
         }
-        if (result.signal != 0) {
-            detail::removeLeftTemporaries(item.folder.empty() ? "." : item.folder, result.process);
-        }
-        if (!record.isFinished() && item.fault.empty() && batch_.skipsExisting) {
-            // of two batches on one folder the slower may fail where the other has all in place
-            earlier_.forgetInputs(n);
-            std::vector<EarlierRecord> found = earlier_.look(n);
-            if (EarlierRuns::areDone(found)) record = together(found);
-        }
-        if (!record.isOfEarlierRun) keep(n, record);
-        if (program_.ended) program_.ended(item, record);
-        records_[n] = std::move(record);
-        tellThoseNext();
+        printNext();
         constexpr std::chrono::seconds kBetweenPages(30);
         if (Clock::now() - pageWritten_ > kBetweenPages) writePage();
     }
 
-    void keep(std::size_t n, const BatchRecord& run) {
-        const Planned planned = plan_.records(items_[n]);
-        const std::vector<KeptInput> inputs = earlier_.unchangedInputs(n);
-        const std::vector<KeptOutput> extras =
-            run.isFinished() ? keptExtras(items_[n]) : std::vector<KeptOutput>{};
-        for (std::size_t k = 0; k < planned.size(); ++k) {
-            KeptRecord record = newRecord(n, planned[k]);
-            record.hasEnded = true;
-            record.run = planned.size() > 1 ? partOf(run, k) : run;
-            record.says = says(record.run);
-            record.inputs = inputs;
-            for (const std::string& output : record.run.outputs) {
-                record.outputs.push_back({kOutputOption, kept(output, items_[n].folder / output)});
-            }
-            if (record.run.hasPassed()) addSidecars(items_[n], record);
-            record.outputs.insert(record.outputs.end(), extras.begin(), extras.end());
-            if (plan_.keepsRecords()) {
-                writeRecord(planned[k].file, record);
-            } else {
-                own_[planned[k].file] = std::move(record);
+    /// Inputs and outputs with checksums; and the result in words.
+    void addFiles(std::size_t n, RunRecord& record) const {
+        const PlannedRun& run = runs_[n];
+        record.inputs = inputs_[n];
+        for (std::size_t k = 0; k < record.inputs.size(); ++k) {
+            // changed meanwhile: the run may have read either content
+            if (!hasTimes(record.inputs[k], run.inputs[k], running_.folder)) {
+                record.inputs[k].sha256.clear();
             }
         }
-    }
-
-    /// Beside what the run has made, and part of it: "a.json" of "a.vtp" and of the folder "a".
-    void addSidecars(const BatchItem& item, KeptRecord& record) const {
-        if (!program_.sidecar || record.run.outputs.empty()) return;
-        const std::string& made = record.run.outputs.front();
-        const std::string top = made.substr(0, made.find('/'));
-        const std::string name = top.substr(0, top.find('.')) + ".json";
-        std::vector<AtomicOutput> outputs;
-        outputs.emplace_back(item.folder / name)
-            .writeText(jsonText(program_.sidecar(item, record.run.report)) + "\n");
-        AtomicOutput::commit(outputs);
-        record.outputs.push_back({kOutputOption, kept(name, item.folder / name)});
-    }
-
-    /// What tells of the n-th surface.
-    static BatchRecord partOf(const BatchRecord& run, std::size_t n) {
-        BatchRecord part = run;
-        if (n < run.outputs.size()) part.outputs = {run.outputs[n]};
-        if (run.report.is_object() && run.report.contains(kSurfaces) &&
-            n < run.report[kSurfaces].size()) {
-            part.report[kSurfaces] = Json::array({run.report[kSurfaces][n]});
+        record.says = says(record);
+        if (!record.report.is_object()) return;
+        const auto add = [&](const std::string& option, const std::string& name) {
+            record.recordedOutputs.push_back(described(option, name, run.item.folder / name));
+        };
+        const std::string folder = run.outputFolder.filename().string();
+        for (const std::string& file : outputsOf(program_.name, record.report, folder)) {
+            record.outputs.push_back((run.outputFolder.parent_path() / file).string());
+            add(kOutput, record.outputs.back());
         }
-        return part;
-    }
-
-    /// A file that can't be read is one that will have changed.
-    static KeptFile kept(const std::string& name, const fs::path& path) {
-        try {
-            return keptFile(name, path);
-        } catch (const FileError&) {
-            KeptFile file;
-            file.file = name;
-            return file;
+        if (record.hasPassed() && program_.sidecar) {
+            std::vector<Json> parts{record.report};  // one for each surface
+            for (std::size_t k = 0; program_.surfaceFiles && k < record.outputs.size(); ++k) {
+                parts.resize(k + 1, record.report);
+                parts[k]["surfaces"] = Json::array({record.report.at("surfaces").at(k)});
+            }
+            const std::vector<std::string> made = record.outputs;
+            for (std::size_t k = 0; k < std::min(parts.size(), made.size()); ++k) {
+                // "a.json" beside "a.vtp" and beside the folder "a"
+                const std::string top = *fs::path(made[k]).begin();
+                const std::string name = top.substr(0, top.find('.')) + ".json";
+                writeWhole(run.item.folder / name,
+                           jsonText(program_.sidecar(run.item, parts[k])) + "\n");
+                add(kOutput, name);
+            }
         }
-    }
-
-    std::vector<KeptOutput> keptExtras(const BatchItem& item) const {
-        std::vector<KeptOutput> outputs;
-        for (const auto& [option, path] : plan_.extras(item)) {
-            std::vector<fs::path> files{path};
-            if (fs::is_directory(path)) files = filesOfInput(path, {});
-            for (const fs::path& file : files) {
+        if (!record.isFinished()) return;
+        for (const auto& [option, path] : run.extras) {
+            for (const fs::path& file : filesOfInput(path, {})) {
                 if (!fs::exists(file)) continue;
-                const std::string name =
-                    file.lexically_proximate(item.folder.empty() ? "." : item.folder).string();
-                outputs.push_back({option, kept(name, file)});
+                const fs::path base = run.item.folder.empty() ? "." : run.item.folder;
+                add(option, file.lexically_proximate(base).string());
             }
         }
-        return outputs;
     }
 
-    std::string says(const BatchRecord& record) const {
+    std::string says(const RunRecord& record) const {
         if (!record.error.empty()) return record.error;
         if (!record.report.is_object()) return "";
-        if (!record.report.value("failedByWarnings", false)) return program_.says(record.report);
+        if (!record.report.value("failedByWarnings", false)) {
+            return resultOf(program_.name, record.report);
+        }
         return strictFailure(common_, record.warnings, "");
     }
 
-    /// Tells of the items whose turn has come: in the order of the inputs, whatever ended first.
-    void tellThoseNext() {
+    /// Reports the runs whose turn has come: in the order of the inputs, whichever ended first.
+    void printNext() {
         progress_.clear();
-        for (; told_ < items_.size() && records_[told_]; ++told_)
-            tell(items_[told_], *records_[told_]);
-        if (told_ < items_.size()) {
-            progress_.show(std::to_string(told_) + " of " + std::to_string(items_.size()));
+        for (; printed_ < runs_.size() && ended_[printed_]; ++printed_) {
+            print(runs_[printed_].item, *ended_[printed_]);
+        }
+        if (printed_ < runs_.size()) {
+            progress_.show(std::to_string(printed_) + " of " + std::to_string(runs_.size()));
         }
     }
 
-    void tell(const BatchItem& item, const BatchRecord& record) {
+    void print(const BatchItem& item, const RunRecord& record) const {
         const std::string name = item.inputs.front().string();
         printWarnings(program_.name, common_, record.warnings);
-        if (common_.wantsJson()) {
-            const std::string line = jsonText(toJson(record, program_.name), -1) + "\n";
-            if (common_.wantsJsonOnStdout())
-                std::cout << line << std::flush;
-            else
-                jsonLines_ += line;
-        }
+        const std::string line = jsonText(lineJson(record), -1) + "\n";
+        if (common_.wantsJsonOnStdout()) std::cout << line << std::flush;
+        if (running_.jsonLines != nullptr) *running_.jsonLines += line;
         if (common_.isQuiet || common_.wantsJsonOnStdout()) {
-            if (!record.hasPassed())
+            if (!record.hasPassed()) {
                 printError(program_.name, "failed: " + name + ": " + says(record));
+            }
             return;
         }
-        std::cout << (!record.hasPassed()     ? "FAILED"
-                      : record.isOfEarlierRun ? "before"
-                                              : "done  ")
-                  << "  " << name << ": " << says(record) << ", " << formatFixed(record.seconds, 2)
-                  << " s" << (record.madeAgain.empty() ? "" : "; made again: " + record.madeAgain)
+        const char* const state = !record.hasPassed()     ? "FAILED"
+                                  : record.isOfEarlierRun ? "before"
+                                                          : "done  ";
+        std::cout << state << "  " << name << ": " << says(record) << ", "
+                  << formatFixed(record.seconds, 2) << " s"
+                  << (record.madeAgain.empty() ? "" : "; made again: " + record.madeAgain)
                   << std::endl;
     }
 
-    std::size_t failedCount() const {
-        return static_cast<std::size_t>(
-            std::count_if(records_.begin(), records_.end(),
-                          [](const auto& record) { return !record->hasPassed(); }));
-    }
-
-    void printTotals() const {
-        const auto before = std::count_if(records_.begin(), records_.end(), [](const auto& record) {
-            return record->isOfEarlierRun;
-        });
-        std::cout << items_.size() << " input" << (items_.size() == 1 ? "" : "s") << ", "
-                  << failedCount() << " failed";
-        if (before > 0) std::cout << ", " << before << " of an earlier run";
-        std::cout << '\n';
-    }
-
-    /// The page as of now: what of this batch has not ended counts as not finished.
+    /// The page as of now, on which runs that have not ended are not finished.
     void writePage() {
         pageWritten_ = Clock::now();
-        if (plan_.summary().empty()) return;
-        Records own = own_;
-        for (std::size_t n = 0; n < items_.size(); ++n) {
-            if (!records_[n]) own.merge(notFinished(n));
+        if (running_.summary.empty()) return;
+        std::map<fs::path, RunRecord> own;
+        for (std::size_t n = 0; n < runs_.size(); ++n) {
+            if (!ended_[n]) own.emplace(runs_[n].record, newRecord(n));
+            if (ended_[n] && !keepsRecords_) own.emplace(runs_[n].record, *ended_[n]);
         }
-        writeSummary(plan_.summary(), {plan_.folder(), !batch_.bids.empty()}, own, expected_);
-    }
-
-    void writeFiles() {
-        writePage();
-        if (program_.jsonLines != nullptr) *program_.jsonLines += jsonLines_;
-        if (!common_.wantsJson() || common_.wantsJsonOnStdout() || program_.isPartOfApp) return;
-        std::vector<AtomicOutput> outputs;
-        outputs.emplace_back(common_.json).writeText(jsonLines_);
-        AtomicOutput::commit(outputs);
-    }
-
-    /// The scans of a BIDS dataset, all of which a reader of the page expects there.
-    std::vector<BatchItem> findExpected() const {
-        if (batch_.bids.empty() || program_.isPartOfApp) return {};
-        try {
-            return findBidsScans(batch_.bids, {}, plan_.folder());
-        } catch (const InvalidInput&) {
-            return {};  // surfaces alone are here
-        }
+        writeSummary(running_.summary, running_.folder, running_.isBids, own, running_.expected);
     }
 
     using Clock = std::chrono::steady_clock;
 
-    static constexpr const char* kSurfaces = "surfaces";
-
     const BatchProgram& program_;
+    const std::vector<PlannedRun>& runs_;
     const BatchOptions& batch_;
+    const BatchRunning& running_;
     const CommonOptions& common_;
-    const BatchPlan plan_;
-    const std::vector<BatchItem>& items_;
-    std::vector<std::optional<BatchRecord>> records_;  ///< none: not ended yet
-    std::vector<std::string> reasons_;  ///< why it is made again; empty: it was not made before
-    EarlierRuns earlier_;
-    Records own_;        ///< that are kept in no file
-    Planned announced_;  ///< whose records were not there before
-    const std::vector<BatchItem> expected_;
+    const bool keepsRecords_;
+    std::vector<std::optional<RunRecord>> ended_;    ///< empty while it has not ended
+    std::vector<std::string> reasons_;               ///< to run again
+    std::vector<bool> areCurrent_;                   ///< EarlierRun::isCurrent
+    std::vector<std::vector<RecordedFile>> inputs_;  ///< as of the run's start
+    std::vector<fs::path> announced_;                ///< records that were not there before
     Clock::time_point pageWritten_{};
     ProgressLine progress_;
-    std::size_t told_ = 0;
-    std::string jsonLines_;
+    std::size_t printed_ = 0;
 };
+
+std::string differenceOf(const std::vector<RecordedOption>& before,
+                         const std::vector<RecordedOption>& now) {
+    const bool haveSameNames =
+        std::ranges::equal(before, now, {}, &RecordedOption::name, &RecordedOption::name);
+    if (!haveSameNames) return "other options were given";
+    const auto [was, is] = std::ranges::mismatch(before, now);
+    return is == now.end() ? "" : "another " + is->name + " was given";
+}
+
+std::string changeOfInputs(const PlannedRun& run, const RunRecord& record, const fs::path& folder,
+                           bool trustsTimes) {
+    bool areSame = trustsTimes && run.inputs.size() == record.inputs.size();
+    for (std::size_t k = 0; areSame && k < run.inputs.size(); ++k) {
+        areSame =
+            !record.inputs[k].sha256.empty() && hasTimes(record.inputs[k], run.inputs[k], folder);
+    }
+    if (areSame) return {};
+    const std::vector<RecordedFile> now = describedInputs(run, folder);
+    if (now.size() != record.inputs.size()) return "its input can't be read, or could not";
+    for (std::size_t k = 0; k < now.size(); ++k) {
+        if (!isSameContent(record.inputs[k], now[k])) {
+            return "the input " + now[k].file + " has changed";
+        }
+    }
+    return {};
+}
+
+/// Compares surfaces and requested extras; other outputs are ignored.
+std::string changeOfOutputs(const PlannedRun& run, const RunRecord& record, bool trustsTimes) {
+    for (const auto& [option, path] : run.extras) {
+        const fs::path wanted = path.lexically_normal(), folder = wanted / "";
+        const bool isRecorded =
+            std::ranges::any_of(record.recordedOutputs, [&](const RecordedFile& output) {
+                const fs::path file = (run.item.folder / output.file).lexically_normal();
+                return output.option == option &&
+                       (file == wanted || file.parent_path() / "" == folder);
+            });
+        if (!isRecorded) return wanted.filename().string() + " was not made";
+    }
+    if (!run.surfaces.empty() && record.outputs.empty()) return "it holds no surface";
+    for (const RecordedFile& output : record.recordedOutputs) {
+        const bool isAsked =
+            output.option == kOutput || std::ranges::any_of(run.extras, [&](const auto& extra) {
+                return extra.first == output.option;
+            });
+        const fs::path path = run.item.folder / output.file;
+        const std::string change = isAsked ? changeOf(output, path, trustsTimes) : "";
+        if (!change.empty()) return path.filename().string() + " " + change;
+    }
+    return {};
+}
+
+void checkOptions(const BatchProgram& program, const BatchOptions& batch) {
+    const auto require = [](bool isGood, const std::string& message) {
+        if (!isGood) throw UsageError(message);
+    };
+    require(!batch.skipsExisting || program.keepsRecords || !folderOfBatch(batch).empty(),
+            "--skip-existing: needs --output-dir, where records are kept");
+    for (const std::string& option : batch.runOptions) {
+        const auto [name, value] = split(option);
+        if (!isIn(program.outputOptions, name)) continue;
+        const std::string given = name + " " + value;
+        require(value.find(kName) != std::string::npos,
+                given + ": needs {name} in it, or the runs for all inputs would write the same");
+        require(batch.bids.empty() || !fs::path(value).has_parent_path(),
+                given + ": with --bids a name without folders");
+    }
+}
 
 }  // namespace
 
-int runBatch(const BatchProgram& program, const BatchOptions& batch, const CommonOptions& common) {
-    return BatchRun(program, batch, common).run();
+std::vector<BatchItem> findBatchItems(const BatchOptions& batch,
+                                      const std::vector<fs::path>& inputs, const NameInput& nameOf,
+                                      const FindInBids& findInBids, bool areOneItem) {
+    const fs::path folder = folderOfBatch(batch);
+    if (!batch.bids.empty()) {
+        if (!inputs.empty() || !batch.list.empty()) {
+            throw UsageError("--bids: finds its inputs itself; none may be given besides");
+        }
+        if (areOneItem) {
+            throw UsageError(
+                "--nested: not with --bids; name the surfaces of each head in a "
+                "--list");
+        }
+        return findInBids(batch.bids, batch.participants, folder);
+    }
+    if (!batch.participants.empty()) throw UsageError("--participant: needs --bids");
+    std::vector<BatchItem> items;
+    if (areOneItem && !inputs.empty()) items.push_back({folderName(inputs.front()), inputs});
+    if (!areOneItem) {
+        for (const fs::path& input : inputs) items.push_back({nameOf(input), {input}});
+    }
+    if (!batch.list.empty()) {
+        for (BatchItem& item : readList(batch.list, areOneItem, nameOf)) {
+            items.push_back(std::move(item));
+        }
+    }
+    for (BatchItem& item : items) item.folder = folder;
+    return items;
+}
+
+std::vector<PlannedRun> planRuns(const BatchProgram& program, std::vector<BatchItem> items,
+                                 const BatchOptions& batch, const CommonOptions& common) {
+    std::map<fs::path, const PlannedRun*> names, files;
+    const auto refuse = [&](const BatchItem& a, const PlannedRun* b, const std::string& why) {
+        throw InvalidInput(a.inputs.front().string() + " and " + b->item.inputs.front().string() +
+                           ": both " + why);
+    };
+    std::string threads;
+    if (common.threads) {
+        threads = "--threads=" + std::to_string(*common.threads);
+    } else if (batch.jobs.value_or(1) > 1) {
+        const int machine = static_cast<int>(std::thread::hardware_concurrency());
+        threads = "--threads=" + std::to_string(std::max(1, machine / *batch.jobs));
+    }
+    std::vector<PlannedRun> runs;
+    runs.reserve(items.size());
+    for (BatchItem& each : items) {
+        PlannedRun& run = runs.emplace_back(PlannedRun{std::move(each)});
+        const BatchItem& item = run.item;
+        run.inputs = item.inputs;
+        std::string output = item.output;
+        std::vector<std::string> surfaceValues;
+        for (const std::string& option : batch.runOptions) {
+            const auto [name, pattern] = split(option);
+            const std::string value = replaced(pattern, kName, item.name);
+            if (name == kOutput) {
+                output = batch.bids.empty() ? pattern : replaced(pattern, "{iso}", kIsoLabel);
+            } else if (isIn(program.outputOptions, name)) {
+                run.extras.emplace_back(name, item.folder / value);
+                run.arguments.push_back(name + "=" + (item.folder / value).string());
+            } else {
+                run.arguments.push_back(replaced(option, kName, item.name));
+                if (isIn(program.inputOptions, name)) {
+                    run.inputs.emplace_back(value);
+                    continue;
+                }
+                run.options.push_back({name, sha256Of(value)});
+                if (name == program.surfaceOption) surfaceValues.push_back(value);
+            }
+        }
+        output = replaced(output, kName, item.name);
+        run.record = item.folder / item.name;
+        if (!output.empty()) {
+            run.outputFolder = output;
+            run.arguments.push_back(std::string(kOutput) + "=" + (item.folder / output).string());
+            if (program.surfaceFiles && !surfaceValues.empty()) {
+                run.surfaces = program.surfaceFiles(item.folder / output, surfaceValues);
+                run.record = run.surfaces.front();
+            }
+        }
+        run.record = recordFile(item.folder, run.record, program.name);
+        if (!threads.empty()) run.arguments.push_back(threads);
+        run.arguments.insert(run.arguments.end(), {"--quiet", "--no-warnings", "--json=-"});
+        if (program.inputOption.empty()) run.arguments.emplace_back("--");
+        for (const fs::path& input : item.inputs) {
+            run.arguments.push_back((program.inputOption.empty() ? "" : program.inputOption + "=") +
+                                    input.string());
+        }
+        if (const auto [at, isNew] = names.emplace(item.folder / item.name, &run); !isNew) {
+            refuse(item, at->second,
+                   "are named '" + item.name + "'; give them names of their own in a --list");
+        }
+        for (const fs::path& surface : run.surfaces) {
+            if (const auto [at, isNew] = files.emplace(surface, &run); !isNew) {
+                refuse(item, at->second, "would write " + surface.filename().string());
+            }
+        }
+    }
+    return runs;
+}
+
+EarlierRun findEarlierRun(const BatchProgram& program, const PlannedRun& run,
+                          const fs::path& folder, bool trustsTimes) {
+    EarlierRun earlier;
+    earlier.fault = readRecord(run.record, earlier.record);
+    const RunRecord& record = earlier.record;
+    std::error_code error;
+    const auto surface = std::ranges::find_if(
+        run.surfaces, [&](const fs::path& file) { return fs::exists(file, error); });
+    earlier.isThere = earlier.fault != RecordFault::Missing || surface != run.surfaces.end();
+    const std::string version =
+        program.version.empty() ? versionText(program.name) : program.version;
+    if (!earlier.isThere) {
+        earlier.why = "nothing is there";
+    } else if (earlier.fault == RecordFault::Missing) {
+        earlier.why = surface->filename().string() + " has no record";
+    } else if (earlier.fault == RecordFault::Damaged) {
+        earlier.why = "its record is damaged";
+    } else if (earlier.fault == RecordFault::OfAnotherVersion) {
+        earlier.why = "its record is of another version";
+    } else if (!record.hasEnded) {
+        earlier.why = "its last run did not end";
+    } else if (!record.isFinished()) {
+        earlier.why = "its last run failed";
+    } else if (record.version != version) {
+        earlier.why = "another version has made it";
+    } else {
+        earlier.why = differenceOf(record.options, run.options);
+        if (earlier.why.empty()) earlier.why = changeOfInputs(run, record, folder, trustsTimes);
+        earlier.isCurrent = earlier.why.empty();
+        if (earlier.isCurrent) earlier.why = changeOfOutputs(run, record, trustsTimes);
+    }
+    return earlier;
+}
+
+std::vector<RunRecord> runRuns(const BatchProgram& program, const std::vector<PlannedRun>& runs,
+                               const BatchOptions& batch, const BatchRunning& running,
+                               const CommonOptions& common) {
+    return BatchRun(program, runs, batch, running, common).run();
+}
+
+int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const BatchOptions& batch,
+             const CommonOptions& common) {
+    checkOptions(program, batch);
+    BatchRunning running{folderOfBatch(batch), batch.summary, !batch.bids.empty()};
+    const std::vector<PlannedRun> runs = planRuns(program, std::move(items), batch, common);
+    if (running.isBids) {
+        makeDerivatives(batch.bids, running.folder, program.name);
+        try {
+            running.expected = findBidsScans(batch.bids, {}, running.folder);
+        } catch (const InvalidInput&) {
+            // there are surfaces alone
+        }
+    } else if (!running.folder.empty()) {
+        makeFolders(running.folder);
+    }
+    if (running.summary.empty() && !running.folder.empty()) {
+        running.summary = running.folder / "summary.html";
+    }
+    for (const fs::path& file : {running.summary, fs::path(common.json)}) {
+        if (file.empty() || file == "-") continue;
+        checkOutput(file);
+        for (const PlannedRun& run : runs) {
+            for (const fs::path& input : run.item.inputs) checkNotInput(file, input);
+        }
+    }
+    std::string lines;
+    running.jsonLines = &lines;
+    const std::vector<RunRecord> records = runRuns(program, runs, batch, running, common);
+    if (common.wantsJson() && !common.wantsJsonOnStdout()) writeWhole(common.json, lines);
+    const auto failed = std::ranges::count_if(records, std::not_fn(&RunRecord::hasPassed));
+    const auto before = std::ranges::count_if(records, &RunRecord::isOfEarlierRun);
+    if (!common.isQuiet && !common.wantsJsonOnStdout()) {
+        std::cout << records.size() << " input" << (records.size() == 1 ? "" : "s") << ", "
+                  << failed << " failed";
+        if (before > 0) std::cout << ", " << before << " of an earlier run";
+        std::cout << '\n';
+    }
+    flushResults();
+    return failed == 0 ? kExitOk : kExitCheckFailed;
 }
 
 }  // namespace adaptiso

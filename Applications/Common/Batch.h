@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "Common/BatchItems.h"
 #include "Common/BatchOptions.h"
 #include "Common/BatchRecord.h"
 #include "Common/CommonOptions.h"
@@ -13,75 +13,109 @@
 
 namespace adaptiso {
 
-/// What a program brings to a batch of its runs.
+/// The input of one run of a batch.
+struct BatchItem {
+    std::string name;                           ///< replaces {name}, and names the record
+    std::vector<std::filesystem::path> inputs;  ///< one, or the surfaces of one head
+    std::filesystem::path folder{};             ///< for outputs and record
+    std::string fault{};                        ///< why it fails without being run; may be empty
+    std::string output{};  ///< the value of --output where none is given; may be empty
+};
+
+/// The program that a batch runs.
 struct BatchProgram {
-    std::string name;                           ///< "adaptiso-mesh"
-    std::vector<std::filesystem::path> inputs;  ///< of the command line
-    bool isOneItem = false;    ///< the inputs, and those of a line of --list, belong together
-    bool keepsRecords = true;  ///< also where no folder is named
-    /// Options that name a file that a run reads besides its inputs: "--volume".
-    std::vector<std::string> inputOptions{};
-    /// The option of which each value makes a surface ("--iso"), and the files of the surfaces that
-    /// a run with this --output and these values makes, as far as they can be told before it. The
-    /// n-th of `surfaces` in the run's report tells of the n-th. Empty: a run makes no surface.
+    std::string name;  ///< "adaptiso-mesh"
+    /// Options that name a file to read besides the inputs ("--volume"), and files to write.
+    std::vector<std::string> inputOptions{}, outputOptions{};
+    /// The option of which each value makes a surface ("--iso"), and the files of these surfaces
+    /// for a value of --output and these values, as far as known before the run.
     std::string surfaceOption{};
     std::function<std::vector<std::filesystem::path>(const std::filesystem::path&,
                                                      const std::vector<std::string>&)>
         surfaceFiles{};
-    /// Options that name what a run writes: "--output". Relative names go into the item's folder.
-    std::vector<std::string> outputOptions;
-    /// Given to every run that has no --output; empty: none. With --bids the second.
-    std::string defaultOutput, defaultBidsOutput;
-    /// The same where it depends on the item, in place of both.
-    std::function<std::string(const BatchItem&)> defaultOutputOf{};
-    std::function<std::string(const std::filesystem::path&)> nameOf;
-    /// findBidsScans() or findBidsSurfaces()
-    std::function<std::vector<BatchItem>(const std::filesystem::path&,
-                                         const std::vector<std::string>&,
-                                         const std::filesystem::path&)>
-        findInBids;
-    /// From the report of a run: its result in a few words; the files that it wrote under
-    /// --output, without the folders of that ({name} stands for the item's name).
-    std::function<std::string(const Json&)> says;
-    std::function<std::vector<std::string>(const Json&)> outputs;
+    bool keepsRecords = true;  ///< also without --output-dir
 
-    // of a program that runs others, one batch of each after the other
-    std::filesystem::path executable{};  ///< empty: this very program
+    // set by adaptiso-bids
+    std::filesystem::path executable{};  ///< empty: this program
+    std::string version{};               ///< of the executable, as --version prints it
     std::string inputOption{};           ///< that takes the input ("--t1"); empty: none does
-    std::string version{};               ///< what the executable's --version prints; empty: ours
-    /// The page, the dataset's description and the totals are the caller's business, and so is the
-    /// file of --json: its lines go to `jsonLines`.
-    bool isPartOfApp = false;
-    std::string* jsonLines = nullptr;
-    /// The caller's own request, kept in every record; may be null.
-    Json asked{};
-    /// Before an item is made again what it has left goes, where that is still as it was made.
+    Json asked{};                        ///< the request, for the record
+    /// Removes the outputs of an earlier run before another is made, so that none stays if it
+    /// fails.
     bool removesFormer = false;
-    /// From the report of a run that has passed: what stands in "<name>.json" beside its surface,
-    /// or its folder. Counts as made by the run.
-    std::function<Json(const BatchItem&, const Json&)> sidecar{};
-    /// Told of every run when its record is kept.
-    std::function<void(const BatchItem&, const BatchRecord&)> ended{};
-
-    std::string versionText() const {
-        return version.empty() ? adaptiso::versionText(name) : version;
-    }
+    /// The content of "<name>.json" beside the first output of a run that has passed.
+    std::function<Json(const BatchItem&, const Json& report)> sidecar{};
 };
 
-/// The option of a surface, or of the folder of several, in records.
-inline constexpr const char* kOutputOption = "--output";
+/// A run of a batch: an item with all that the program's options mean for it.
+struct PlannedRun {
+    BatchItem item;
+    std::filesystem::path record{};  ///< its record's file
+    std::vector<std::string> arguments{};
+    std::vector<RecordedOption> options{};          ///< that shape the result
+    std::vector<std::filesystem::path> inputs{};    ///< the item's, and what options name
+    std::vector<std::filesystem::path> surfaces{};  ///< to be made, as far as known; may be empty
+    std::filesystem::path outputFolder{};           ///< of --output, from the item's folder
+    std::vector<std::pair<std::string, std::filesystem::path>>
+        extras{};  ///< "--report" and its file
+};
 
-/// Runs the program once for every input, in processes of their own, `batch.jobs` at a time, and
-/// tells of each in a line, in the order of the inputs: as text, or as JSON with --json. A run that
-/// fails or crashes does not keep others from running. Every run leaves a record of each surface in
-/// the item's folder (BatchRecord.h), by which --skip-existing knows what need not be made again,
-/// and from which, and those of other batches and programs there, the summary page is built.
-///
-/// In the values of options {name} stands for the item's name.
-/// \return kExitOk, or kExitCheckFailed when any input failed
+/// The runs of `items`, with `batch.runOptions` applied to each.
+/// \param folder  that the batch writes to; may be empty
+/// \throws InvalidInput  two items have one name, or would write one surface
+std::vector<PlannedRun> planRuns(const BatchProgram& program, std::vector<BatchItem> items,
+                                 const BatchOptions& batch, const CommonOptions& common);
+
+/// Compares an earlier run's record with what a run would make now: version, options, and the
+/// content of inputs and outputs.
+struct EarlierRun {
+    RecordFault fault = RecordFault::Missing;
+    RunRecord record{};      ///< \pre fault is None
+    bool isThere = false;    ///< a record or a surface is there
+    bool isCurrent = false;  ///< version, options and inputs are the same
+    std::string why{};       ///< why to run again; empty: the result would be the same
+};
+
+/// \param trustsTimes  don't read files of the recorded sizes and times
+EarlierRun findEarlierRun(const BatchProgram& program, const PlannedRun& run,
+                          const std::filesystem::path& folder, bool trustsTimes);
+
+/// What runRuns() needs besides the runs.
+struct BatchRunning {
+    std::filesystem::path folder;       ///< that the batch writes to; may be empty
+    std::filesystem::path summary{};    ///< a page to write; may be empty
+    bool isBids = false;                ///< the page shows records below sub-* too
+    std::vector<BatchItem> expected{};  ///< to be named on the page where they were not run
+    std::string* jsonLines = nullptr;   ///< takes the lines of --json FILE
+};
+
+/// Runs the program once for each of `runs` in processes of their own, `batch.jobs` at a time, and
+/// reports each in a line, in their order. A run that fails or crashes does not affect others. Each
+/// leaves its record, by which --skip-existing knows finished results and from which the page is
+/// made.
+/// \return a record of each
+std::vector<RunRecord> runRuns(const BatchProgram& program, const std::vector<PlannedRun>& runs,
+                               const BatchOptions& batch, const BatchRunning& running,
+                               const CommonOptions& common);
+
+/// Names an input; finds a BIDS dataset's inputs (findBidsScans() and its like).
+using NameInput = std::function<std::string(const std::filesystem::path&)>;
+using FindInBids = std::function<std::vector<BatchItem>(
+    const std::filesystem::path&, const std::vector<std::string>&, const std::filesystem::path&)>;
+
+/// The items of a program's command line: its inputs, those of --list, or those of --bids.
+/// \param areOneItem  the inputs, and those of a line of --list, are one item
+/// \throws UsageError  --bids with other inputs  \throws InvalidInput  \throws FileError
+std::vector<BatchItem> findBatchItems(const BatchOptions& batch,
+                                      const std::vector<std::filesystem::path>& inputs,
+                                      const NameInput& nameOf, const FindInBids& findInBids,
+                                      bool areOneItem = false);
+
+/// The batch mode of a program: plans, runs, prints totals, writes page and JSON lines.
+/// \return kExitOk, or kExitCheckFailed if any input failed
 /// \throws UsageError    options that don't go together, an output that all runs would write
-/// \throws InvalidInput  no inputs, or two of one name
-/// \throws FileError     list, summary or report can't be read or written
-int runBatch(const BatchProgram& program, const BatchOptions& batch, const CommonOptions& common);
+/// \throws FileError     summary or report can't be written
+int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const BatchOptions& batch,
+             const CommonOptions& common);
 
 }  // namespace adaptiso

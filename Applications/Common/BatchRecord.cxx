@@ -1,133 +1,267 @@
 #include "Common/BatchRecord.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <ctime>
 #include <fstream>
+#include <sstream>
 #include <string_view>
 
-#include "Common/AtomicOutput.h"
 #include "Common/CommonOptions.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/Verdict.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kLineSchema = "adaptiso-batch/1";
 constexpr const char* kRecordSchema = "adaptiso-record/1";
-constexpr std::string_view kRecordMark = ".adaptiso-", kRecordEnding = ".json";
 
-/// What a child wrote on stderr as one line, without what the reader of a batch's line knows or
-/// should not: the program's and the input's name, the advice after a wrong usage, the inputs'
-/// folders.
-std::string errorLine(const BatchItem& item, const std::string& errors,
+bool isHidden(const fs::path& path) {
+    const std::string name = path.filename().native();
+    return name.starts_with('.') && name != ".zarray" && name != ".zattrs" && name != ".zgroup";
+}
+
+std::vector<fs::path> filesIn(const fs::path& folder, const fs::path& output, bool isDeep) {
+    std::vector<fs::path> files;
+    std::error_code error, ignored;
+    const fs::path excluded = output.empty() ? fs::path() : fs::weakly_canonical(output, ignored);
+    fs::recursive_directory_iterator entry(folder, error);
+    for (const fs::recursive_directory_iterator end; !error && entry != end;
+         entry.increment(error)) {
+        const fs::path& path = entry->path();
+        if (entry->is_directory(ignored)) {
+            const bool isOutput =
+                !excluded.empty() && fs::weakly_canonical(path, ignored) == excluded;
+            if (!isDeep || isOutput || isHidden(path)) entry.disable_recursion_pending();
+        } else if (entry->is_regular_file(ignored) && !isHidden(path)) {
+            files.push_back(path);
+        }
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+/// The value of a line "ElementDataFile = x" (MetaImage) or "data file: x" (NRRD); may be empty.
+std::string dataFileOf(const fs::path& file) {
+    constexpr std::size_t kLongest = std::size_t{1} << 16;
+    std::string header(kLongest, '\0');
+    std::ifstream in(file, std::ios::binary);
+    in.read(header.data(), static_cast<std::streamsize>(header.size()));
+    header.resize(static_cast<std::size_t>(in.gcount()));
+    const bool isNrrd = header.starts_with("NRRD");
+    if (!isNrrd && header.find("ElementDataFile") == std::string::npos) return {};
+    std::istringstream lines(header);
+    for (std::string line; std::getline(lines, line) && !trimmed(line).empty();) {
+        const std::size_t sign = line.find(isNrrd ? ':' : '=');
+        if (sign == std::string::npos) continue;
+        const std::string key = lowerCase(trimmed(std::string_view(line).substr(0, sign)));
+        if (key == "elementdatafile" || key == "data file" || key == "datafile") {
+            return std::string(trimmed(std::string_view(line).substr(sign + 1)));
+        }
+    }
+    return {};
+}
+
+/// "scan" for "scan.hdr" and "scan.img.gz"; empty for other files.
+std::string pairStem(const fs::path& path) {
+    const std::string name = path.filename().string(), lower = lowerCase(name);
+    for (const std::string_view ending : {".hdr", ".img", ".hdr.gz", ".img.gz"}) {
+        if (lower.ends_with(ending)) return name.substr(0, name.size() - ending.size());
+    }
+    return {};
+}
+
+std::vector<fs::path> belongingTo(const fs::path& input, const fs::path& output) {
+    const fs::path folder = detail::folderOf(input);
+    if (lowerCase(input.filename().string()) == "dicomdir") return filesIn(folder, output, true);
+    if (const std::string stem = pairStem(input); !stem.empty()) {
+        std::vector<fs::path> files = filesIn(folder, {}, false);
+        std::erase_if(files, [&](const fs::path& file) { return pairStem(file) != stem; });
+        return files;
+    }
+    const std::string data = dataFileOf(input);
+    if (data.empty() || data == "LOCAL") return {};
+    std::error_code error;
+    if (fs::is_regular_file(folder / data, error)) return {folder / data};
+    return filesIn(folder, output, true);  // a list or a pattern of files
+}
+
+void addTimes(RecordedFile& file, const fs::path& path) {
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0) {
+        throw FileError(path.string() + ": can't be read: " + detail::reason());
+    }
+    // a pipe or a device may have no end
+    if (!S_ISREG(status.st_mode)) throw FileError(path.string() + ": is no regular file");
+    const auto nanoseconds = [](const timespec& time) {
+        constexpr std::int64_t kPerSecond = 1'000'000'000;
+        return std::int64_t{time.tv_sec} * kPerSecond + time.tv_nsec;
+    };
+    file.bytes += static_cast<std::uint64_t>(status.st_size);
+    file.modifiedNs = std::max(file.modifiedNs, nanoseconds(status.st_mtim));
+    file.changedNs = std::max(file.changedNs, nanoseconds(status.st_ctim));
+}
+
+Json toJson(const RecordedFile& file) {
+    Json json{{"file", file.file},
+              {"bytes", file.bytes},
+              {"sha256", file.sha256},
+              {"modifiedNs", file.modifiedNs},
+              {"changedNs", file.changedNs}};
+    if (file.files != 1) json["files"] = file.files;
+    if (!file.option.empty()) json["option"] = file.option;
+    if (!file.place.empty()) json["place"] = file.place;
+    return json;
+}
+
+std::vector<RecordedFile> filesFrom(const Json& list) {
+    std::vector<RecordedFile> files;
+    for (const Json& json : list) {
+        files.push_back({json.at("file"), json.value("files", std::uint64_t{1}), json.at("bytes"),
+                         json.at("sha256"), json.at("modifiedNs"), json.at("changedNs"),
+                         json.value("option", ""), json.value("place", "")});
+    }
+    return files;
+}
+
+/// \throws Json::exception  a key is missing, or its value has another type
+RunRecord recordFrom(const Json& json) {
+    RunRecord record;
+    record.program = json.at("program").at("name");
+    record.version = json.at("build");
+    record.hasEnded = json.at("ended");
+    record.date = json.at("date");
+    record.says = json.at("says");
+    record.asked = json.value("asked", Json());
+    record.name = json.at("name");
+    record.files = json.at("files").get<std::vector<std::string>>();
+    if (!json.at("exitCode").is_null()) record.exitCode = json.at("exitCode");
+    if (!json.at("signal").is_null()) record.signal = json.at("signal");
+    if (!record.isFinished() && json.at("error").is_object()) {
+        record.error = json["error"].at("text");
+    }
+    record.warnings = json.at("warnings").get<std::vector<Warning>>();
+    record.outputs = json.at("outputs").get<std::vector<std::string>>();
+    record.seconds = json.at("seconds");
+    record.report = json.at("report");
+    for (const Json& option : json.at("options")) {
+        record.options.push_back({option.at("name"), option.at("sha256")});
+    }
+    record.inputs = filesFrom(json.at("inputs"));
+    record.recordedOutputs = filesFrom(json.at("keptOutputs"));
+    return record;
+}
+
+/// The first line of a child's stderr, without the program's name and the inputs' folders.
+std::string errorLine(const std::string& errors, const std::vector<fs::path>& inputs,
                       const std::string& program) {
     std::string line = errors.substr(0, errors.find('\n'));
     const auto leaveOut = [&line](const std::string& start) {
         if (line.starts_with(start)) line.erase(0, start.size());
     };
     leaveOut(program + ": ");
-    for (const fs::path& input : item.inputs) {
-        const std::string path = input.string();
-        const std::string name = baseName(input);
+    for (const fs::path& input : inputs) {
+        const std::string path = input.string(), name = baseName(input);
         for (std::size_t at = line.find(path); at != std::string::npos;
              at = line.find(path, at + name.size())) {
             line.replace(at, path.size(), name);
         }
     }
-    leaveOut(baseName(item.inputs.front()) + ": ");
+    if (!inputs.empty()) leaveOut(baseName(inputs.front()) + ": ");
     return line;
-}
-
-Json recordJson(const KeptRecord& record) {
-    Json json = toJson(record.run, record.program);
-    json["schema"] = kRecordSchema;
-    json["build"] = record.version;
-    json["ended"] = record.hasEnded;
-    json["date"] = record.date;
-    json["says"] = record.says;
-    if (!record.asked.is_null()) json["asked"] = record.asked;
-    Json options = Json::array(), inputs = Json::array(), outputs = Json::array();
-    for (const KeptOption& option : record.options) {
-        options.push_back({{"name", option.name}, {"sha256", option.sha256}});
-    }
-    for (const KeptInput& input : record.inputs) {
-        Json kept = toJson(input.file);
-        if (!input.place.empty()) kept["place"] = input.place;
-        inputs.push_back(std::move(kept));
-    }
-    for (const KeptOutput& output : record.outputs) {
-        Json kept = toJson(output.file);
-        kept["option"] = output.option;
-        outputs.push_back(std::move(kept));
-    }
-    json["options"] = std::move(options);
-    json["inputs"] = std::move(inputs);
-    json["keptOutputs"] = std::move(outputs);
-    return json;
-}
-
-/// \throws Json::exception  a key is missing, or its value of another type
-KeptRecord recordFrom(const Json& json) {
-    KeptRecord record;
-    record.program = json.at("program").at("name").get<std::string>();
-    record.version = json.at("build").get<std::string>();
-    record.hasEnded = json.at("ended").get<bool>();
-    record.date = json.at("date").get<std::string>();
-    record.says = json.at("says").get<std::string>();
-    if (json.contains("asked")) record.asked = json["asked"];
-    BatchRecord& run = record.run;
-    run.name = json.at("name").get<std::string>();
-    run.files = json.at("files").get<std::vector<std::string>>();
-    if (!json.at("exitCode").is_null()) run.exitCode = json.at("exitCode").get<int>();
-    if (!json.at("signal").is_null()) run.signal = json.at("signal").get<int>();
-    if (!run.isFinished() && json.at("error").is_object()) {
-        run.error = json["error"].at("text").get<std::string>();
-    }
-    run.warnings = json.at("warnings").get<std::vector<Warning>>();
-    run.outputs = json.at("outputs").get<std::vector<std::string>>();
-    run.seconds = json.at("seconds").get<double>();
-    run.report = json.at("report");
-    for (const Json& option : json.at("options")) {
-        record.options.push_back(
-            {option.at("name").get<std::string>(), option.at("sha256").get<std::string>()});
-    }
-    for (const Json& input : json.at("inputs")) {
-        record.inputs.push_back({keptFileOf(input), input.value("place", std::string())});
-    }
-    for (const Json& output : json.at("keptOutputs")) {
-        record.outputs.push_back({output.at("option").get<std::string>(), keptFileOf(output)});
-    }
-    return record;
-}
-
-/// {text, file}; of a run that went to its end, that of its own report.
-Json errorJson(const BatchRecord& record) {
-    if (!record.error.empty()) {
-        Json json{{"text", record.error}};
-        if (!record.files.empty()) json["file"] = record.files.front();
-        return json;
-    }
-    return record.report.is_object() ? record.report.value("error", Json()) : Json();
 }
 
 }  // namespace
 
-Json toJson(const BatchRecord& record, const std::string& program) {
-    return {{"schema", kLineSchema},
-            {"program", {{"name", program}, {"version", programVersion()}}},
+RecordedFile describeFile(const std::string& name, const fs::path& path) {
+    RecordedFile file;
+    file.file = name;
+    addTimes(file, path);  // first: a file that changes while it is read gets other times
+    file.sha256 = sha256OfFile(path);
+    return file;
+}
+
+std::vector<fs::path> filesOfInput(const fs::path& input, const fs::path& output) {
+    std::error_code error;
+    if (fs::is_directory(input, error)) return filesIn(input, output, true);
+    std::vector<fs::path> files{input};
+    if (!fs::is_regular_file(input, error)) return files;
+    for (fs::path& file : belongingTo(input, output)) {
+        if (!fs::equivalent(file, input, error)) files.push_back(std::move(file));
+    }
+    return files;
+}
+
+RecordedFile describeInput(const fs::path& input, const fs::path& output) {
+    std::error_code error;
+    const bool isFolder = fs::is_directory(input, error);
+    const std::vector<fs::path> files = filesOfInput(input, output);
+    if (!isFolder && files.size() == 1) return describeFile(baseName(input), input);
+    RecordedFile all;
+    all.file = baseName(input);
+    all.files = files.size();
+    std::string list;
+    for (const fs::path& file : files) {
+        addTimes(all, file);
+        list += sha256OfFile(file) + "  " +
+                file.lexically_relative(isFolder ? input : detail::folderOf(input)).string() + "\n";
+    }
+    all.sha256 = sha256Of(list);
+    return all;
+}
+
+bool hasTimes(const RecordedFile& recorded, const fs::path& input, const fs::path& output) {
+    try {
+        RecordedFile now;
+        const std::vector<fs::path> files = filesOfInput(input, output);
+        for (const fs::path& file : files) addTimes(now, file);
+        return files.size() == recorded.files && now.bytes == recorded.bytes &&
+               now.modifiedNs == recorded.modifiedNs && now.changedNs == recorded.changedNs;
+    } catch (const FileError&) {
+        return false;
+    }
+}
+
+bool isSameContent(const RecordedFile& a, const RecordedFile& b) {
+    return a.files == b.files && a.bytes == b.bytes && a.sha256 == b.sha256;
+}
+
+std::string changeOf(const RecordedFile& recorded, const fs::path& path, bool trustsTimes) {
+    std::error_code error;
+    if (!fs::exists(path, error)) return "is gone";
+    try {
+        RecordedFile now;
+        addTimes(now, path);
+        const bool hasTimes =
+            now.modifiedNs == recorded.modifiedNs && now.changedNs == recorded.changedNs;
+        const bool isSame = now.bytes == recorded.bytes &&
+                            ((trustsTimes && hasTimes) || sha256OfFile(path) == recorded.sha256);
+        return isSame ? "" : "has changed";
+    } catch (const FileError&) {
+        return "has changed";  // can't be read
+    }
+}
+
+Json lineJson(const RunRecord& record) {
+    Json error = record.report.is_object() ? record.report.value("error", Json()) : Json();
+    if (!record.error.empty()) {
+        error = {{"text", record.error}};
+        if (!record.files.empty()) error["file"] = record.files.front();
+    }
+    return {{"schema", "adaptiso-batch/1"},
+            {"program", {{"name", record.program}, {"version", programVersion()}}},
             {"name", record.name},
             {"files", record.files},
             {"passed", record.hasPassed()},
             {"exitCode", record.signal == 0 ? Json(record.exitCode) : Json(nullptr)},
             {"signal", record.signal != 0 ? Json(record.signal) : Json(nullptr)},
-            {"error", errorJson(record)},
+            {"error", std::move(error)},
             {"warnings", record.warnings},
             {"earlierRun", record.isOfEarlierRun},
             {"madeAgain", record.madeAgain.empty() ? Json(nullptr) : Json(record.madeAgain)},
@@ -136,56 +270,34 @@ Json toJson(const BatchRecord& record, const std::string& program) {
             {"report", record.report}};
 }
 
-BatchRecord recordOf(const BatchItem& item, const ChildResult& result, const std::string& program) {
-    BatchRecord record;
-    record.name = item.name;
-    for (const fs::path& input : item.inputs) record.files.push_back(baseName(input));
+void addResult(const ChildResult& result, const std::vector<fs::path>& inputs, RunRecord& record) {
+    constexpr int kNotStarted = 127, kNotExecutable = 126;
+    record.hasEnded = true;
     record.exitCode = result.exitCode;
     record.signal = result.signal;
     record.seconds = result.seconds;
-    record.report = Json::parse(result.output, nullptr, false);
-    if (!record.report.is_object()) record.report = nullptr;
-    if (record.report.is_object() && record.report.contains("warnings")) {
-        record.warnings = record.report["warnings"].get<std::vector<Warning>>();
-    }
-    // its error is on stderr, too
-    if (record.report.is_object() && record.report.value("schema", "") == kFailureSchema) {
-        record.report = nullptr;
+    record.wasShort =
+        result.signal != 0 || result.exitCode == kNotStarted || result.exitCode == kNotExecutable;
+    Json report = Json::parse(result.output, nullptr, false);
+    if (report.is_object()) {
+        record.warnings = report.value("warnings", std::vector<Warning>());
+        record.wasShort = record.wasShort || report.value("shortage", false);
+        // a failure's report holds no more than stderr
+        if (report.value("schema", "") != kFailureSchema) record.report = std::move(report);
     }
     if (result.signal != 0) {
         record.error = std::string("ended by a signal: ") + strsignal(result.signal);
     } else if (!record.isFinished()) {
-        record.error = errorLine(item, result.errors, program);
+        record.error = errorLine(result.errors, inputs, record.program);
         if (record.error.empty()) {
             record.error = "ended with exit code " + std::to_string(result.exitCode);
         }
     }
-    return record;
-}
-
-bool mayPassElsewhere(const BatchRecord& record) {
-    constexpr int kNotStarted = 127, kNotExecutable = 126;
-    if (record.signal != 0 || record.exitCode == kNotStarted || record.exitCode == kNotExecutable) {
-        return true;
-    }
-    if (record.exitCode != kExitBadInput) return false;
-    // exit code 3 is for bad input, too; the texts are RunApp's, ImageIO's, and the system's
-    const std::string_view texts[] = {"not enough memory", "memory, more than there is",
-                                      "needs more memory", "out of memory",
-                                      "a thread or process could not be started"};
-    const auto isSaid = [&](std::string_view text) {
-        return record.error.find(text) != std::string::npos;
-    };
-    return std::ranges::any_of(texts, isSaid) ||
-           std::ranges::any_of(std::array{ENOSPC, EDQUOT, ENOMEM, EIO, ESTALE, EMFILE, ENFILE},
-                               [&](int number) { return isSaid(std::strerror(number)); });
 }
 
 fs::path recordFile(const fs::path& folder, const fs::path& file, const std::string& program) {
-    constexpr std::size_t kLongestName = 255;
-    constexpr std::size_t kDigits = 12;
-    const std::string ending = "." + program + std::string(kRecordEnding);
-    const std::string name = file.filename().string();
+    constexpr std::size_t kLongestName = 255, kDigits = 12;
+    const std::string ending = "." + program + ".json", name = file.filename().string();
     const fs::path inFolder = fs::absolute(file).lexically_normal().lexically_relative(
         fs::absolute(folder.empty() ? fs::path(".") : folder / "").lexically_normal());
     if (inFolder == file.filename() && name.size() + ending.size() <= kLongestName) {
@@ -196,35 +308,58 @@ fs::path recordFile(const fs::path& folder, const fs::path& file, const std::str
     return (folder / (name.substr(0, room) + sum + ending)).lexically_normal();
 }
 
-bool isRecordFile(const fs::path& file) {
-    const std::string name = file.filename().string();
-    return !name.starts_with(".") && name.ends_with(kRecordEnding) &&
-           name.rfind(kRecordMark) != std::string::npos;
+std::vector<fs::path> recordFiles(const fs::path& folder, bool hasSubjects) {
+    const fs::path root = folder.empty() ? fs::path(".") : folder;
+    std::vector<fs::path> found;
+    std::error_code error, ignored;
+    fs::recursive_directory_iterator entry(root, error);
+    for (const fs::recursive_directory_iterator end; !error && entry != end;
+         entry.increment(error)) {
+        const std::string name = entry->path().filename().native();
+        if (entry->is_directory(ignored)) {
+            const bool isSubject = entry.depth() > 0 || name.starts_with("sub-");
+            if (!hasSubjects || !isSubject || name.starts_with('.')) {
+                entry.disable_recursion_pending();
+            }
+        } else if (!name.starts_with('.') && name.ends_with(".json") &&
+                   name.find(".adaptiso-") != std::string::npos) {
+            found.push_back(entry->path().lexically_normal());
+        }
+    }
+    std::sort(found.begin(), found.end());
+    return found;
 }
 
-std::optional<KeptRecord> readRecord(const fs::path& path, RecordFault& fault) {
+RecordFault readRecord(const fs::path& path, RunRecord& record) {
     std::ifstream file(path);
-    fault = RecordFault::Missing;
-    if (!file) return std::nullopt;
-    fault = RecordFault::Damaged;
+    if (!file) return RecordFault::Missing;
     try {
         const Json json = Json::parse(file);
-        if (json.at("schema") != kRecordSchema) {
-            fault = RecordFault::OfAnotherVersion;
-            return std::nullopt;
-        }
-        KeptRecord record = recordFrom(json);
-        fault = RecordFault::None;
-        return record;
+        if (json.at("schema") != kRecordSchema) return RecordFault::OfAnotherVersion;
+        record = recordFrom(json);
+        return RecordFault::None;
     } catch (const Json::exception&) {
-        return std::nullopt;  // no record of ours, or one cut off by hand
+        return RecordFault::Damaged;  // not one of ours, or edited
     }
 }
 
-void writeRecord(const fs::path& file, const KeptRecord& record) {
-    std::vector<AtomicOutput> outputs;
-    outputs.emplace_back(file).writeText(jsonText(recordJson(record)) + "\n");
-    AtomicOutput::commit(outputs);
+void writeRecord(const fs::path& file, const RunRecord& record) {
+    Json json = lineJson(record);
+    json["schema"] = kRecordSchema;
+    json["build"] = record.version;
+    json["ended"] = record.hasEnded;
+    json["date"] = record.date;
+    json["says"] = record.says;
+    if (!record.asked.is_null()) json["asked"] = record.asked;
+    json["options"] = json["inputs"] = json["keptOutputs"] = Json::array();
+    for (const RecordedOption& option : record.options) {
+        json["options"].push_back({{"name", option.name}, {"sha256", option.sha256}});
+    }
+    for (const RecordedFile& input : record.inputs) json["inputs"].push_back(toJson(input));
+    for (const RecordedFile& output : record.recordedOutputs) {
+        json["keptOutputs"].push_back(toJson(output));
+    }
+    writeWhole(file, jsonText(json) + "\n");
 }
 
 std::string recordDate() {
@@ -234,6 +369,12 @@ std::string recordDate() {
     std::array<char, 32> text{};
     const std::size_t length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
     return {text.data(), length};
+}
+
+void writeWhole(const fs::path& file, const std::string& text) {
+    AtomicOutput output(file);
+    output.writeText(text);
+    AtomicOutput::commit({&output, 1});
 }
 
 }  // namespace adaptiso

@@ -1,99 +1,117 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "Common/BatchItems.h"
 #include "Common/ChildProcess.h"
 #include "Common/Json.h"
-#include "Common/KeptFiles.h"
 
 namespace adaptiso {
 
-/// How one run of a batch ended. `toJson` of it is a line of --json.
-struct BatchRecord {
-    std::string name;
-    std::vector<std::string> files;  ///< the inputs, without folders
+/// A file, or several that belong together, as a record describes it.
+struct RecordedFile {
+    std::string file;  ///< its name, or for an output its path from the record's folder
+    std::uint64_t files = 1, bytes = 0;
+    /// Of several files: the checksum of a list of their names and checksums as `sha256sum` prints
+    /// it.
+    std::string sha256;
+    /// Of the newest file, ns since 1970.
+    std::int64_t modifiedNs = 0, changedNs = 0;
+    std::string option{};  ///< that names an output: "--output", "--report"
+    /// Of an input in the batch's folder, its path from the record's folder. Other paths may hold a
+    /// patient's name, so they are not recorded.
+    std::string place{};
+};
+
+/// Reads the file. \throws FileError
+RecordedFile describeFile(const std::string& name, const std::filesystem::path& path);
+
+/// The files that an input consists of, by name; the given one first unless it is a folder. For a
+/// folder all regular files in and under it, for a header its data files, for a DICOMDIR all files
+/// beside it; without hidden files (except Zarr's metadata), and without `output`, the folder that
+/// the batch writes to.
+std::vector<std::filesystem::path> filesOfInput(const std::filesystem::path& input,
+                                                const std::filesystem::path& output);
+
+/// Reads all of filesOfInput(). \throws FileError
+RecordedFile describeInput(const std::filesystem::path& input, const std::filesystem::path& output);
+
+/// Whether an input has the recorded size and times; does not read it.
+bool hasTimes(const RecordedFile& recorded, const std::filesystem::path& input,
+              const std::filesystem::path& output);
+
+/// Whether two descriptions are of the same content.
+bool isSameContent(const RecordedFile& a, const RecordedFile& b);
+
+/// "is gone", "has changed", or empty: the file at `path` is as recorded.
+/// \param trustsTimes  don't read a file of the recorded size and times
+std::string changeOf(const RecordedFile& recorded, const std::filesystem::path& path,
+                     bool trustsTimes);
+
+/// An option that shapes the result, with a checksum of its value, which may be a path.
+struct RecordedOption {
+    std::string name, sha256;
+    friend bool operator==(const RecordedOption&, const RecordedOption&) = default;
+};
+
+/// How one run of a batch ended: a line of --json and, with what the result depends on, a file
+/// beside the result.
+struct RunRecord {
+    std::string program, version;  ///< version: of the program and its libraries
+    std::string name{};
+    std::vector<std::string> files{};  ///< inputs, without folders
+    bool hasEnded = false;
     int exitCode = 0;
-    int signal = 0;                    ///< that ended the run; 0: none
-    std::string error;                 ///< one line; empty: none
-    std::vector<std::string> outputs;  ///< surfaces written, relative to the item's folder
+    int signal = 0;                      ///< that ended the run; 0 for none
+    std::string error{};                 ///< one line; may be empty
+    std::vector<std::string> outputs{};  ///< written under --output, relative to the item's folder
     double seconds = 0;
     bool isOfEarlierRun = false;
-    std::string
-        madeAgain{};  ///< why what an earlier run had made did not do; empty: it was not asked
-    Json report{};    ///< the run's own; null when there is none
+    std::string madeAgain{};  ///< why an earlier result was replaced; empty: there was none
+    Json report{};            ///< the run's own; may be null
     std::vector<Warning> warnings{};
+    bool wasShort = false;  ///< of memory, disk or processes: it may pass elsewhere
+    std::string says{};     ///< the result, in words
+    std::string date{};     ///< of its end or, while it runs, its start: UTC, ISO 8601
+    Json asked{};           ///< adaptiso-bids's request; may be null
+    std::vector<RecordedOption> options{};
+    std::vector<RecordedFile> inputs{}, recordedOutputs{};
 
     bool hasPassed() const { return exitCode == 0 && signal == 0; }
-    /// It ran to its end, well or not: nothing would change if it ran again.
+    /// It reached a result, good or bad, that another try would not change.
     bool isFinished() const { return signal == 0 && (exitCode == 0 || exitCode == 1); }
 };
 
-/// The run ended for want of memory, disk or processes, by what it said, or its program could not
-/// be started: it may pass at another time or on another machine.
-bool mayPassElsewhere(const BatchRecord& record);
+/// A line of --json.
+Json lineJson(const RunRecord& record);
 
-Json toJson(const BatchRecord& record, const std::string& program);
+/// Fills in how the child ended. \param inputs  paths that its error line may hold
+void addResult(const ChildResult& result, const std::vector<std::filesystem::path>& inputs,
+               RunRecord& record);
 
-/// What the child said, as a record without outputs.
-BatchRecord recordOf(const BatchItem& item, const ChildResult& result, const std::string& program);
-
-/// An option that shapes the result. Of its value, which may be a path, only a checksum is kept.
-struct KeptOption {
-    std::string name;
-    std::string sha256;
-
-    friend bool operator==(const KeptOption&, const KeptOption&) = default;
-};
-
-struct KeptOutput {
-    std::string option;  ///< that names it: "--output", "--report"
-    KeptFile file;
-};
-
-struct KeptInput {
-    KeptFile file;
-    /// Its path from the record's folder, of one that lies in the folder of the batch; empty: its
-    /// folder's name may be a patient's.
-    std::string place;
-};
-
-/// What is kept of one surface that a run was to make, or of one run that makes none, in a file of
-/// its own: enough to tell whether it would be the same if it were made again.
-struct KeptRecord {
-    std::string program;
-    std::string version;  ///< of the program and the libraries that it stands on
-    bool hasEnded = false;
-    BatchRecord run{};
-    std::string says{};  ///< the result, in words
-    std::string date{};  ///< of the end, or of the beginning when there is none yet: UTC, ISO 8601
-    Json asked{};        ///< BatchProgram::asked
-    std::vector<KeptOption> options{};
-    std::vector<KeptInput> inputs{};
-    std::vector<KeptOutput> outputs{};
-};
-
-/// Why there is no record in a file.
-enum class RecordFault { None, Missing, Damaged, OfAnotherVersion };
-
-/// "<file>.<program>.json" beside `file`; where that can't be, as it lies in another folder or its
-/// name is too long, the same with a checksum of its path, in `folder`.
+/// "<file>.<program>.json" in `folder`; if `file` lies in another folder or its name is too long,
+/// with a checksum of its path.
 std::filesystem::path recordFile(const std::filesystem::path& folder,
                                  const std::filesystem::path& file, const std::string& program);
 
-/// Whether a file's name is that of a record.
-bool isRecordFile(const std::filesystem::path& file);
+/// All records in a folder and, of BIDS derivatives, below its sub-* folders, by path.
+std::vector<std::filesystem::path> recordFiles(const std::filesystem::path& folder,
+                                               bool hasSubjects);
 
-/// The record that a file holds, or why it holds none. Throws nothing, whatever it holds.
-std::optional<KeptRecord> readRecord(const std::filesystem::path& file, RecordFault& fault);
+enum class RecordFault { None, Missing, Damaged, OfAnotherVersion };
 
-/// Writes the record, whole or not at all. \throws FileError
-void writeRecord(const std::filesystem::path& file, const KeptRecord& record);
+/// Reads a record or returns why it can't be read. Throws nothing, whatever the file holds.
+RecordFault readRecord(const std::filesystem::path& file, RunRecord& record);
 
-/// Now, as records have it.
+/// \throws FileError
+void writeRecord(const std::filesystem::path& file, const RunRecord& record);
+
+/// The present time for RunRecord::date.
 std::string recordDate();
+
+/// Writes a text as a whole file. \throws FileError
+void writeWhole(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace adaptiso

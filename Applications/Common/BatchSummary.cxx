@@ -1,10 +1,15 @@
 #include "Common/BatchSummary.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "Common/CommonOptions.h"
@@ -25,7 +30,7 @@ tr.bad{background:#fff0f0}tr.unusual{background:#fff8e0}img{max-width:160px;max-
 @media print{@page{size:A4;margin:15mm}body{margin:0;font-size:11px}tr{break-inside:avoid}.scroll{overflow:visible}table{min-width:0}}
 )";
 
-/// As a link's target: percent signs where a name has what a URL may not.
+/// A link's target, percent-encoded.
 std::string linkTo(const fs::path& target, const fs::path& page) {
     constexpr std::string_view kDigits = "0123456789ABCDEF";
     const fs::path folder = fs::absolute(page).parent_path();
@@ -48,8 +53,7 @@ std::string anchor(const fs::path& target, const std::string& text, const fs::pa
     return "<a href=\"" + linkTo(target, page) + "\">" + escapedMarkup(text) + "</a>";
 }
 
-/// The first picture of a report, as it stands in the page ("data:image/png;base64,..."); empty:
-/// none.
+/// The first picture in a report ("data:image/png;base64,..."); may be empty.
 std::string firstPicture(const fs::path& report) {
     std::ifstream file(report, std::ios::binary);
     const std::string page{std::istreambuf_iterator<char>(file), {}};
@@ -95,15 +99,19 @@ std::string_view stateText(RunState state) {
     return "";
 }
 
-/// What there is to do about it is done.
 bool hasRun(const SummaryRow& row) {
     return row.state == RunState::Done || row.state == RunState::Unusual;
 }
 
 std::string rowText(const SummaryRow& row, const fs::path& page) {
     std::string files;
-    for (const fs::path& output : row.outputs) {
+    constexpr std::size_t kMostFiles = 12;
+    for (std::size_t n = 0; n < std::min(kMostFiles, row.outputs.size()); ++n) {
+        const fs::path& output = row.outputs[n];
         files += (files.empty() ? "" : "<br>") + anchor(output, output.filename().string(), page);
+    }
+    if (row.outputs.size() > kMostFiles) {
+        files += "<br>and " + std::to_string(row.outputs.size() - kMostFiles) + " more";
     }
     const std::string report =
         row.report.empty() ? "" : anchor(row.report, "report of " + row.name, page);
@@ -143,7 +151,115 @@ std::string verdictOf(const std::vector<SummaryRow>& rows) {
     return text + (unusual == 0 ? "" : ", " + std::to_string(unusual) + " unusual");
 }
 
+/// Differences from the record, in words; may be empty.
+std::string changesOf(const RunRecord& record, const fs::path& folder) {
+    std::string changes;
+    const auto add = [&](const RecordedFile& file, const fs::path& path, const char* since) {
+        constexpr bool kTrustsTimes = true;
+        std::string change = changeOf(file, path, kTrustsTimes);
+        if (change.empty()) return;
+        if (change == "has changed") change += std::string(" since it was ") + since;
+        changes += (changes.empty() ? "" : "; ") + path.filename().string() + " " + change;
+    };
+    for (const RecordedFile& input : record.inputs) {
+        if (!input.place.empty()) add(input, folder / input.place, "read");
+    }
+    for (const RecordedFile& output : record.recordedOutputs) {
+        add(output, folder / output.file, "written");
+    }
+    return changes;
+}
+
 }  // namespace
+
+SummaryRow summaryRow(const fs::path& file, const RunRecord& record) {
+    const fs::path folder = detail::folderOf(file);
+    SummaryRow row{record.program, record.name};
+    for (const std::string& name : record.files) row.file += (row.file.empty() ? "" : ", ") + name;
+    row.seconds = record.seconds;
+    row.date = record.date;
+    if (!record.hasEnded) {
+        row.state = RunState::NotFinished;
+        row.says = "not finished: it runs, or was interrupted";
+        return row;
+    }
+    for (const RecordedFile& output : record.recordedOutputs) {
+        const fs::path path = folder / output.file;
+        std::error_code error;
+        if (!fs::exists(path, error)) continue;
+        if (output.option == "--report") {
+            row.report = path;
+        } else if (output.option == "--pictures") {
+            row.pictures = path.parent_path();
+        } else {
+            row.outputs.push_back(path);
+        }
+    }
+    row.says = record.error.empty() ? record.says : record.error;
+    const std::string changes = changesOf(record, folder);
+    if (!changes.empty()) row.says = changes + (row.says.empty() ? "" : " (" + row.says + ")");
+    row.state = !record.hasPassed() ? RunState::Failed
+                : changes.empty()   ? RunState::Done
+                                    : RunState::Changed;
+    return row;
+}
+
+std::vector<SummaryRow> summaryRows(const fs::path& folder, bool hasSubjects,
+                                    const std::map<fs::path, RunRecord>& own,
+                                    const std::vector<BatchItem>& expected) {
+    std::vector<std::pair<fs::path, SummaryRow>> placed;
+    std::set<std::pair<fs::path, std::string>> known;  // folders and names of items
+    const auto add = [&](const fs::path& file, const RunRecord& record) {
+        known.emplace(detail::folderOf(file).lexically_normal(), record.name);
+        placed.emplace_back(file, summaryRow(file, record));
+    };
+    const auto addFaulty = [&](const fs::path& path, const std::string& name,
+                               const std::string& file, RunState state, const char* fault) {
+        placed.emplace_back(path, SummaryRow{"", name, file, state, fault});
+    };
+    for (const fs::path& file : recordFiles(folder, hasSubjects)) {
+        RunRecord record;
+        const RecordFault fault =
+            own.contains(file) ? RecordFault::Missing : readRecord(file, record);
+        if (fault == RecordFault::None) add(file, record);
+        if (fault == RecordFault::None || fault == RecordFault::Missing) continue;
+        addFaulty(file, file.filename().string(), "", RunState::NotFinished,
+                  fault == RecordFault::OfAnotherVersion
+                      ? "a record of another version of adaptiso; run it again"
+                      : "a damaged record; run it again");
+    }
+    for (const auto& [file, record] : own) add(file, record);
+    const auto isKnown = [&](const BatchItem& item) {
+        return known.contains({item.folder.lexically_normal(), item.name});
+    };
+    // if none of them is known, the surfaces were made by another program
+    const bool areOurs = std::ranges::any_of(expected, isKnown);
+    for (const BatchItem& item : expected) {
+        if (!areOurs || isKnown(item)) continue;
+        addFaulty(item.folder / item.name, item.name, baseName(item.inputs.front()),
+                  RunState::NotRun, "not run");
+    }
+    std::stable_sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) {
+        return std::tie(a.second.state, a.first) < std::tie(b.second.state, b.first);
+    });
+    std::vector<SummaryRow> rows;
+    for (auto& [file, row] : placed) rows.push_back(std::move(row));
+    return rows;
+}
+
+void writeSummary(const fs::path& page, const fs::path& folder, bool hasSubjects,
+                  const std::map<fs::path, RunRecord>& own,
+                  const std::vector<BatchItem>& expected) {
+    const int lock = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
+    if (lock >= 0) flock(lock, LOCK_EX);  // fails where the file system has none
+    try {
+        writeWhole(page, summaryPage(summaryRows(folder, hasSubjects, own, expected), page));
+    } catch (...) {
+        close(lock);
+        throw;
+    }
+    close(lock);
+}
 
 std::string summaryPage(const std::vector<SummaryRow>& rows, const fs::path& page) {
     const bool isDone = !rows.empty() && std::all_of(rows.begin(), rows.end(), hasRun);
@@ -155,7 +271,8 @@ std::string summaryPage(const std::vector<SummaryRow>& rows, const fs::path& pag
         "</style></head><body><main>\n<h1 class=\"" + (isDone ? "ok" : "failed") + "\">" + verdict +
         "</h1>\n<p>adaptiso " + programVersion() +
         "</p>\n<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Runs\">"
-        "<table><caption>Every run that has a record in this folder; what needs a look comes "
+        "<table><caption>Every run that has a record in this folder; those that need attention "
+        "come "
         "first</caption>\n<thead><tr><th>verdict</th><th>name</th><th>program</th><th>input</th>"
         "<th>result</th><th>files</th><th>picture</th><th>date</th><th>seconds</th></tr>"
         "</thead><tbody>\n";

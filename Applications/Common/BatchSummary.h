@@ -1,38 +1,58 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "Common/Batch.h"
+#include "Common/BatchRecord.h"
+
 namespace adaptiso {
 
-/// How a run stands, the worst first.
+/// The state of a run, the worst first.
 enum class RunState {
-    Failed,       ///< it did, or what it looked at did
-    Changed,      ///< it was done, but what it made or looked at is gone or not the same any more
-    NotFinished,  ///< it has begun, or its record can't be read
-    NotRun,       ///< its input is there, and nothing else
-    Unusual,      ///< done, and unlike what the others have come to
+    Failed,
+    Changed,      ///< done, but an output or an input is gone or has changed since
+    NotFinished,  ///< started, or its record can't be read
+    NotRun,       ///< only its input is there
+    Unusual,      ///< done, and unlike the others' results
     Done,
 };
 
 /// One line of the page.
 struct SummaryRow {
-    std::string program;  ///< empty: none has run
-    std::string name;
-    std::string file;
+    std::string program{};  ///< may be empty
+    std::string name{};
+    std::string file{};
     RunState state = RunState::NotRun;
-    std::string says;  ///< the result, or the error
-    std::string date;  ///< of the run's end; empty: none
+    std::string says{};  ///< the result, or the error
+    std::string date{};  ///< of the run's end; may be empty
     double seconds = 0;
-    std::vector<std::filesystem::path> outputs;
-    std::filesystem::path report;    ///< a page of --report; empty: none
-    std::filesystem::path pictures;  ///< a folder of --pictures; empty: none
+    std::vector<std::filesystem::path> outputs{};
+    std::filesystem::path report{};    ///< a page of --report; may be empty
+    std::filesystem::path pictures{};  ///< a folder of --pictures; may be empty
 };
+
+/// The line of a record in `file`; its outputs, and its inputs in the batch's folder, are compared
+/// with the record.
+SummaryRow summaryRow(const std::filesystem::path& file, const RunRecord& record);
+
+/// A line for every record in `folder`, with `own`, which replace those in their files, and for
+/// each of `expected` without a record if others of them have one: the worst first, then by path.
+std::vector<SummaryRow> summaryRows(const std::filesystem::path& folder, bool hasSubjects,
+                                    const std::map<std::filesystem::path, RunRecord>& own,
+                                    const std::vector<BatchItem>& expected);
 
 /// A page of HTML without scripts that lists `rows` in their order, the verdict in words and
 /// colour, with links relative to `page`, and a thumbnail where there is a picture: one of the
-/// row's pictures, or the first that its report holds.
+/// row's pictures, or the first in its report.
 std::string summaryPage(const std::vector<SummaryRow>& rows, const std::filesystem::path& page);
+
+/// Writes the page of summaryRows(). Of several processes that write it at once the last shows all
+/// records, where the file system has locks. \throws FileError
+void writeSummary(const std::filesystem::path& page, const std::filesystem::path& folder,
+                  bool hasSubjects, const std::map<std::filesystem::path, RunRecord>& own,
+                  const std::vector<BatchItem>& expected);
 
 }  // namespace adaptiso

@@ -8,7 +8,6 @@
 #include <sstream>
 #include <system_error>
 
-#include "Common/AtomicOutput.h"
 #include "Common/CommonOptions.h"
 #include "adaptiso/MeshIO/Formats.h"
 
@@ -50,6 +49,65 @@ void requireFound(const std::vector<BatchItem>& items, std::size_t before, const
                   const std::string& what) {
     if (items.size() == before) throw InvalidInput("--bids: no " + what + " in " + where.string());
 }
+
+/// Parts of `path` that are not empty.
+std::vector<std::string> partsOf(const std::string& path) {
+    std::vector<std::string> parts;
+    std::istringstream stream(path);
+    for (std::string part; std::getline(stream, part, '/');) {
+        if (!part.empty()) parts.push_back(part);
+    }
+    return parts;
+}
+
+/// Whether the path, or a folder above it, matches; "**" stands for any number of folders.
+bool fits(std::span<const std::string> pattern, std::span<const std::string> path) {
+    if (pattern.empty()) return true;
+    if (pattern[0] == "**" && fits(pattern.subspan(1), path)) return true;
+    if (path.empty()) return false;
+    if (pattern[0] == "**") return fits(pattern, path.subspan(1));
+    return fnmatch(pattern[0].c_str(), path[0].c_str(), 0) == 0 &&
+           fits(pattern.subspan(1), path.subspan(1));
+}
+
+/// The paths that .bidsignore of a dataset excludes, by the rules of .gitignore.
+class BidsIgnore {
+public:
+    explicit BidsIgnore(const fs::path& root) : root_(root) {
+        std::ifstream file(root / ".bidsignore");
+        for (std::string line; std::getline(file, line);) {
+            while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+            if (line.empty() || line[0] == '#') continue;
+            Rule rule{{}, line[0] == '!'};
+            if (rule.isException) line.erase(0, 1);
+            const std::size_t slash = line.find('/');
+            rule.pattern = partsOf(line);
+            // without a slash, except at its end, it is a name anywhere
+            if (slash == std::string::npos || slash + 1 == line.size()) {
+                rule.pattern.insert(rule.pattern.begin(), "**");
+            }
+            rules_.push_back(std::move(rule));
+        }
+    }
+    /// \param path  in the dataset, begun as its root is
+    bool contains(const fs::path& path) const {
+        const std::vector<std::string> parts =
+            partsOf(path.lexically_relative(root_).generic_string());
+        bool isIgnored = false;
+        for (const Rule& rule : rules_) {
+            if (fits(rule.pattern, parts)) isIgnored = !rule.isException;
+        }
+        return isIgnored;
+    }
+
+private:
+    struct Rule {
+        std::vector<std::string> pattern;  ///< by folders
+        bool isException = false;          ///< "!"
+    };
+    fs::path root_;
+    std::vector<Rule> rules_;
+};
 
 void addImages(const fs::path& folder, const fs::path& target, const BidsImages& images,
                const BidsIgnore& ignored, std::vector<BatchItem>& items) {
@@ -102,7 +160,7 @@ std::vector<BatchItem> findImages(const fs::path& root,
     return items;
 }
 
-/// An entry of SourceDatasets: what the dataset says of where it can be had.
+/// An entry of SourceDatasets, with the dataset's DOI if it states one.
 Json sourceOf(const fs::path& root) {
     std::ifstream file(root / kDescription);
     const Json said = Json::parse(file, nullptr, false);
@@ -116,54 +174,7 @@ Json sourceOf(const fs::path& root) {
     return source;
 }
 
-/// Parts of `path` that are not empty.
-std::vector<std::string> partsOf(const std::string& path) {
-    std::vector<std::string> parts;
-    std::istringstream stream(path);
-    for (std::string part; std::getline(stream, part, '/');) {
-        if (!part.empty()) parts.push_back(part);
-    }
-    return parts;
-}
-
-/// The path, or a folder that it lies in, fits; "**" stands for any number of folders.
-bool fits(std::span<const std::string> pattern, std::span<const std::string> path) {
-    if (pattern.empty()) return true;
-    if (pattern[0] == "**" && fits(pattern.subspan(1), path)) return true;
-    if (path.empty()) return false;
-    if (pattern[0] == "**") return fits(pattern, path.subspan(1));
-    return fnmatch(pattern[0].c_str(), path[0].c_str(), 0) == 0 &&
-           fits(pattern.subspan(1), path.subspan(1));
-}
-
 }  // namespace
-
-BidsIgnore::BidsIgnore(const fs::path& root) : root_(root) {
-    std::ifstream file(root / ".bidsignore");
-    for (std::string line; std::getline(file, line);) {
-        while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-        if (line.empty() || line[0] == '#') continue;
-        Rule rule;
-        rule.takesBack = line[0] == '!';
-        if (rule.takesBack) line.erase(0, 1);
-        const std::size_t slash = line.find('/');
-        rule.pattern = partsOf(line);
-        // one without a slash but at its end is a name anywhere
-        if (slash == std::string::npos || slash + 1 == line.size()) {
-            rule.pattern.insert(rule.pattern.begin(), "**");
-        }
-        rules_.push_back(std::move(rule));
-    }
-}
-
-bool BidsIgnore::contains(const fs::path& path) const {
-    const std::vector<std::string> parts = partsOf(path.lexically_relative(root_).generic_string());
-    bool isIgnored = false;
-    for (const Rule& rule : rules_) {
-        if (fits(rule.pattern, parts)) isIgnored = !rule.takesBack;
-    }
-    return isIgnored;
-}
 
 std::optional<std::set<std::string>> listedParticipants(const fs::path& root) {
     std::ifstream file(root / "participants.tsv");
@@ -290,10 +301,8 @@ void makeDerivatives(const fs::path& root, const fs::path& derivatives,
                      const std::string& program) {
     makeFolders(derivatives);
     if (fs::exists(derivatives / kDescription)) return;
-    std::vector<AtomicOutput> outputs;
-    outputs.emplace_back(derivatives / kDescription)
-        .writeText(jsonText(bidsDescription(root, derivatives, program)) + "\n");
-    AtomicOutput::commit(outputs);
+    writeWhole(derivatives / kDescription,
+               jsonText(bidsDescription(root, derivatives, program)) + "\n");
 }
 
 }  // namespace adaptiso

@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "Common/BatchItems.h"
+#include "Common/Batch.h"
 #include "Common/Json.h"
 
 namespace adaptiso {
 
-/// Stands for an isovalue in the name of a BIDS derivative: bidsLabel() of it.
+/// The placeholder for bidsLabel() of an isovalue in a file's name.
 inline constexpr std::string_view kIsoLabel = "{isolabel}";
 
 /// Images of one suffix in a BIDS dataset.
@@ -23,24 +23,7 @@ struct BidsImages {
 extern const BidsImages kBidsScans;          ///< *_T1w.nii[.gz]
 extern const BidsImages kBidsSegmentations;  ///< *_dseg.nii[.gz]
 
-/// The paths that .bidsignore of a dataset leaves out, by the rules of .gitignore.
-class BidsIgnore {
-public:
-    /// A dataset without the file leaves nothing out.
-    explicit BidsIgnore(const std::filesystem::path& root);
-    /// \param path  in the dataset, begun as `root` is
-    bool contains(const std::filesystem::path& path) const;
-
-private:
-    struct Rule {
-        std::vector<std::string> pattern;  ///< by folders
-        bool takesBack = false;            ///< "!"
-    };
-    std::filesystem::path root_;
-    std::vector<Rule> rules_;
-};
-
-/// participant_id of participants.tsv, "sub-01"; none where there is no such table.
+/// participant_id in participants.tsv ("sub-01"); empty if there is no such table.
 std::optional<std::set<std::string>> listedParticipants(const std::filesystem::path& root);
 
 /// The T1w images of a BIDS dataset, sub-*/[ses-*/]anat/*_T1w.nii[.gz], by name; each goes into the
@@ -81,12 +64,11 @@ std::vector<std::filesystem::path> bidsSubjects(const std::filesystem::path& roo
                                                 const std::vector<std::string>& participants,
                                                 const std::string& option);
 
-/// What of a number's text a BIDS label may hold, letters and digits: "411p5" of "411.5", "m300" of
-/// "-300", "1em07" of "1e-07". No two numbers have one label.
+/// A number's text in letters and digits, as a BIDS label must be: "411p5" for "411.5", "m300" for
+/// "-300", "1em07" for "1e-07". Two numbers never share a label.
 std::string bidsLabel(std::string_view number);
 
-/// dataset_description.json of derivatives of the dataset in `root`. \param program  that makes
-/// them
+/// dataset_description.json for derivatives that `program` makes of the dataset in `root`.
 Json bidsDescription(const std::filesystem::path& root, const std::filesystem::path& derivatives,
                      const std::string& program);
 

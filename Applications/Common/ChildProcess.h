@@ -11,12 +11,12 @@ namespace adaptiso {
 
 /// How a child process ended.
 struct ChildResult {
-    int exitCode = 0;    ///< meaningless when a signal ended it
-    int signal = 0;      ///< that ended it; 0 for none
-    int process = 0;     ///< its number
-    std::string output;  ///< its stdout
-    std::string errors;  ///< its stderr
-    double seconds = 0;  ///< wall-clock time
+    int exitCode = 0;      ///< meaningless when a signal ended it
+    int signal = 0;        ///< that ended it; 0 for none
+    int process = 0;       ///< its number
+    std::string output{};  ///< its stdout
+    std::string errors{};  ///< its stderr
+    double seconds = 0;    ///< wall-clock time
 
     bool isGood() const { return exitCode == 0 && signal == 0; }
     /// The signal, or the exit code and the last line printed.

@@ -21,7 +21,7 @@
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
-#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Shortage.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -146,6 +146,8 @@ Verdict verdictOf(const std::exception_ptr& thrown) {
         return {kExitUsage, error.what()};
     } catch (const InvalidInput& error) {
         return {kExitBadInput, error.what()};
+    } catch (const Shortage& error) {
+        return {kExitBadInput, error.what(), true};
     } catch (const FileError& error) {
         return {kExitBadInput, error.what()};
     } catch (const fs::filesystem_error& error) {
@@ -153,16 +155,17 @@ Verdict verdictOf(const std::exception_ptr& thrown) {
     } catch (const std::bad_alloc&) {
         return {kExitBadInput,
                 "not enough memory (" + formatNumber(std::round(peakMemoryMb())) +
-                    " MB were in use); a machine with more of it, or a smaller image, will do"};
+                    " MB were in use); a machine with more of it, or a smaller image, will do",
+                true};
     } catch (const std::system_error& error) {
         if (error.code() == std::errc::resource_unavailable_try_again) {
-            return {kExitBadInput, kNoThreads};
+            return {kExitBadInput, kNoThreads, true};
         }
         return {kExitInternalError, internal(error.what())};
     } catch (const std::exception& error) {
         // oneTBB throws a text where it can't start a thread
         if (std::strstr(error.what(), "pthread_create") != nullptr)
-            return {kExitBadInput, kNoThreads};
+            return {kExitBadInput, kNoThreads, true};
         return {kExitInternalError, internal(error.what())};
     } catch (...) {
         return {kExitInternalError, internal(nullptr)};
@@ -203,8 +206,9 @@ void writeFailureReport(const std::string& program, const Verdict& verdict) {
     const std::string& target = commandLine().json;
     if (target.empty() || std::exchange(commandLine().isReported, true)) return;
     try {
-        const std::string text =
-            jsonText(reportHead(kFailureSchema, program, verdict, printedWarnings()), -1) + "\n";
+        Json report = reportHead(kFailureSchema, program, verdict, printedWarnings());
+        if (verdict.isShortage) report["shortage"] = true;
+        const std::string text = jsonText(report, -1) + "\n";
         if (target == "-") {
             std::cout << text << std::flush;
         } else if (mayReplace(target)) {

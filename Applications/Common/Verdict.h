@@ -20,6 +20,7 @@ struct Verdict {
     /// Why it failed, in one line, which is the last on stderr; empty: it passed, or checks alone
     /// failed, which are in the report.
     std::string error{};
+    bool isShortage = false;      ///< of memory, disk or processes: another try may pass
     std::string reportFailure{};  ///< why there is no page; empty: nothing failed
 
     /// --strict makes warnings failures, unless --allow lets them pass.

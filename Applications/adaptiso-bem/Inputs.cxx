@@ -7,6 +7,7 @@
 #include "Run.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
+#include "adaptiso/HeadModel/SourceError.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -38,19 +39,18 @@ HeadBoundaries timed(BemRun& run, const std::string& option, const fs::path& pat
                      const Make& make) {
     try {
         return run.timer.time("boundaries", make);
-    } catch (const InvalidInput& error) {
-        const std::string what = error.what();
+    } catch (const SourceError& error) {
         const BemOptions& options = run.options;
-        std::string of = option + " " + path.string();
-        if (what.starts_with("the brain mask")) {
-            of = options.brainMask.empty() ? "--aseg " + options.aseg.string()
-                                           : "--brain-mask " + options.brainMask.string();
-        } else if (what.starts_with("the head mask")) {
-            of = "--head-mask " + options.headMask.string();
-        } else if (what.starts_with("a pial surface")) {
-            of = "--pial";
-        }
-        throw InvalidInput(of + ": " + what);
+        const std::string mask = options.brainMask.empty()
+                                     ? "--aseg " + options.aseg.string()
+                                     : "--brain-mask " + options.brainMask.string();
+        const std::string source = error.source() == BoundarySource::BrainMask ? mask
+                                   : error.source() == BoundarySource::HeadMask
+                                       ? "--head-mask " + options.headMask.string()
+                                       : "--pial";
+        throw InvalidInput(source + ": " + error.what());
+    } catch (const InvalidInput& error) {
+        throw InvalidInput(option + " " + path.string() + ": " + error.what());
     }
 }
 

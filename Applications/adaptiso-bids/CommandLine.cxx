@@ -47,42 +47,39 @@ void declareWhom(CLI::App& app, BidsOptions& options) {
         ->type_name("LABEL")
         ->group(kWhom);
     app.add_flag("--skip-bids-validation,--skip_bids_validation", options.skipsValidation,
-                 "Do not look whether the names in BIDS_DIR are those of a BIDS dataset")
+                 "Do not check the names in BIDS_DIR")
         ->group(kWhom);
 }
 
 void declareWhat(CLI::App& app, BidsOptions& options) {
-    app.add_option("--surfaces", options.surfaces,
-                   "Isosurfaces of every T1w image: options of adaptiso-mesh without dashes, with "
-                   "commas between them, iso=100,iso=120,largest; format=stl names the files' "
-                   "extension (default, unless --bem or --labels is given: iso=auto)")
-        ->type_name("LIST")
-        ->group(kWhat);
-    app.add_flag("--bem", options.makesBem, "A head model of every T1w image, by adaptiso-bem")
-        ->group(kWhat);
-    app.add_option("--bem-options", options.bemOptions,
-                   "Options of adaptiso-bem: vertices=642,meg,brain-mask=masks/{name}.nii.gz")
-        ->type_name("LIST")
-        ->group(kWhat);
-    app.add_flag("--labels", options.makesLabels,
-                 "Surfaces of the regions of every label map (*_dseg), by adaptiso-labels")
-        ->group(kWhat);
-    app.add_option("--labels-options", options.labelsOptions,
-                   "Options of adaptiso-labels: max-error=0.3,format=stl")
-        ->type_name("LIST")
-        ->group(kWhat);
+    const auto addList = [&](const std::string& name, std::string& list,
+                             const std::string& description) {
+        app.add_option(name, list, description)->type_name("LIST")->group(kWhat);
+    };
+    const auto addProduct = [&](const std::string& product, const std::string& description) {
+        app.add_flag_callback(
+               "--" + product, [&options, product] { options.wanted[product]; }, description)
+            ->group(kWhat);
+    };
+    addList("--surfaces", options.lists["surfaces"],
+            "Isosurfaces of every T1w image: options of adaptiso-mesh without dashes, with commas "
+            "between them, iso=100,iso=120,largest; format=stl names the files' extension "
+            "(default, unless --bem or --labels is given: iso=auto)");
+    addProduct("bem", "A head model of every T1w image, by adaptiso-bem");
+    addList("--bem-options", options.lists["bem"],
+            "Options of adaptiso-bem: vertices=642,meg,brain-mask=masks/{name}.nii.gz");
+    addProduct("labels", "Surfaces of the regions of every label map (*_dseg), by adaptiso-labels");
+    addList("--labels-options", options.lists["labels"],
+            "Options of adaptiso-labels: max-error=0.3,format=stl");
     app.add_option("--segmentations", options.segmentations,
                    "With --labels: the dataset of derivatives that holds the label maps (default: "
                    "BIDS_DIR)")
         ->type_name("DIR")
         ->group(kWhat);
-    app.add_flag("--check", options.makesChecks,
-                 "Check the isosurfaces by adaptiso-check; what the other programs make they check")
-        ->group(kWhat);
-    app.add_option("--check-options", options.checkOptions,
-                   "Options of adaptiso-check: profile=view")
-        ->type_name("LIST")
-        ->group(kWhat);
+    addProduct(
+        "check",
+        "Check the isosurfaces by adaptiso-check; the other programs check their own results");
+    addList("--check-options", options.lists["check"], "Options of adaptiso-check: profile=view");
     app.add_flag_callback(
            "--no-pictures", [&options] { options.makesPictures = false; },
            "Make no pictures for the page (2 MB a surface)")
@@ -95,7 +92,7 @@ void declareRunning(CLI::App& app, BidsOptions& options) {
                  "Mark values farther than Z robust standard deviations (1.4826 times the median "
                  "distance from the median) from the cohort's median (default: 3.5)");
     group.number("--outlier-percent", "P", options.outlierPercent, {.least = 0, .most = 100},
-                 "Mark none that lie nearer to the median than P per cent of it (default: 1)");
+                 "Do not mark values within P per cent of the median (default: 1)");
     app.add_flag("--force", options.force,
                  "Replace a table that was made with options which are neither these nor the "
                  "participant level's")
@@ -111,15 +108,17 @@ void checkCombinations(BidsOptions& options) {
         if (!isGood) throw UsageError(message);
     };
     const bool isGroup = options.level == BidsLevel::Group;
-    require(options.bemOptions.empty() || options.makesBem, "--bem-options: needs --bem");
-    require(options.labelsOptions.empty() || options.makesLabels,
-            "--labels-options: needs --labels");
-    require(options.segmentations.empty() || options.makesLabels,
+    for (const auto& [product, list] : options.lists) {
+        if (list.empty()) continue;
+        require(product == "surfaces" || options.makes(product),
+                "--" + product + "-options: needs --" + product);
+        options.wanted[product] = list;
+    }
+    require(options.segmentations.empty() || options.makes("labels"),
             "--segmentations: needs --labels");
-    require(options.checkOptions.empty() || options.makesChecks, "--check-options: needs --check");
-    // the group level takes what the participant level was asked for
-    if (!options.namesProducts() && !isGroup) options.surfaces = "iso=auto";
-    require(!options.makesChecks || !options.surfaces.empty() || isGroup,
+    // the group level takes the participant level's options
+    if (!options.namesProducts() && !isGroup) options.wanted["surfaces"] = "iso=auto";
+    require(!options.makes("check") || options.makes("surfaces") || isGroup,
             "--check: needs --surfaces");
     require(!isGroup || !options.jobs, "--jobs: is for the participant level");
     require(isGroup || !options.force, "--force: is for the group level");

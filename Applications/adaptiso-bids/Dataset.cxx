@@ -38,9 +38,9 @@ void requireDescription(const fs::path& root) {
     }
 }
 
-/// Of "sub-01_ses-2_acq-hi" in the folder sub-01/ses-2.
-void lookAtName(const std::string& name, const std::string& begin,
-                std::vector<std::string>& faults) {
+/// Checks "sub-01_ses-2_acq-hi" in the folder sub-01/ses-2.
+void checkName(const std::string& name, const std::string& begin,
+               std::vector<std::string>& faults) {
     if (name != begin && !name.starts_with(begin + "_")) {
         faults.push_back(name + ": lies in the folder of " + begin);
     }
@@ -53,7 +53,7 @@ void lookAtName(const std::string& name, const std::string& begin,
     }
 }
 
-void lookAtSubject(const fs::path& subject, std::vector<std::string>& faults) {
+void checkSubject(const fs::path& subject, std::vector<std::string>& faults) {
     const std::string name = subject.filename().string();
     if (!isLabel(name.substr(std::min<std::size_t>(name.size(), 4)))) {
         faults.push_back(name + ": its label has more than letters and digits");
@@ -62,12 +62,12 @@ void lookAtSubject(const fs::path& subject, std::vector<std::string>& faults) {
     for (const BidsImages* images : {&kBidsScans, &kBidsSegmentations}) {
         for (const BatchItem& item : bidsImagesOf(subject, {}, subject, *images)) {
             const fs::path session = item.inputs.front().parent_path().parent_path().filename();
-            lookAtName(item.name, session == name ? name : name + "_" + session.string(), faults);
+            checkName(item.name, session == name ? name : name + "_" + session.string(), faults);
         }
     }
 }
 
-/// Where participants.tsv and the folders differ.
+/// Warns where participants.tsv and the folders differ.
 void warnOfList(const BidsOptions& options, ChosenSubjects& chosen) {
     const auto listed = listedParticipants(options.dataset);
     if (!listed) return;
@@ -109,7 +109,7 @@ ChosenSubjects chooseSubjects(const BidsOptions& options) {
     requireDescription(root);
     std::erase_if(folders, [&](const fs::path& subject) {
         std::vector<std::string> faults;
-        lookAtSubject(subject, faults);
+        checkSubject(subject, faults);
         if (faults.empty()) return false;
         chosen.faulty.emplace_back(subject.filename().string(),
                                    faults.front() + "; rename it, or give --skip-bids-validation");

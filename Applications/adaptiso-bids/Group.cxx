@@ -1,17 +1,18 @@
+#include "Group.h"
+
 #include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <set>
-#include <string>
+#include <tuple>
 #include <utility>
 
-#include "Cohort.h"
-#include "Common/AtomicOutput.h"
+#include "Common/BatchSummary.h"
 #include "Common/Bids.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/Verdict.h"
-#include "Levels.h"
+#include "Jobs.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -20,8 +21,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "adaptiso-bids";
+constexpr const char* kDescription = "dataset_description.json";
+constexpr const char* kOptionsSum = "OptionsSha256";
 
-/// What is no part of BIDS in its present version, for its validators.
+/// Files that BIDS does not define yet, for its validators.
 constexpr const char* kIgnored =
     "*_mesh.*\n**/*_mesh.*\n**/*_mesh/\n**/*_figures/\n**/*.adaptiso-*.json\nquality.*\n"
     "summary.html\n";
@@ -30,23 +33,401 @@ constexpr const char* kReadme =
     R"(Surfaces made by adaptiso-bids (adaptiso %VERSION%) of the images of another dataset, for which
 dataset_description.json has the link. Research software, no medical device.
 
-summary.html       what was made of each scan, with pictures; what needs a look comes first
-quality.tsv        measures of every surface, and why one is not there; quality.json says what
-                   the columns mean
-sub-*/             surfaces, each with a sidecar (.json) that says what it was made of, and a
-                   record (.adaptiso-*.json) with the checksums of what went in and came out
+summary.html       the result of each scan, with pictures; those that need attention come first
+quality.tsv        measures of every surface, and why one is missing; quality.json describes the
+                   columns
+sub-*/             surfaces, each with a sidecar (.json) that names its source, and a record
+                   (.adaptiso-*.json) with the checksums of inputs and outputs
 )";
 
-std::string dumped(const Json& json) {
-    return jsonText(json) + "\n";
+// ---- the status of a dataset
+
+std::optional<double> numberAt(const Json& json, const char* key) {
+    const auto found = json.find(key);
+    if (found == json.end() || !found->is_number()) return std::nullopt;
+    return found->get<double>();
 }
 
-/// By which a table made with other options is known: of what may hold paths a checksum alone.
+QualityRow rowOf(const QualityRow& scan, const std::string& part, const Json& surface) {
+    QualityRow row = scan;
+    row.part = part;
+    row[Measure::Vertices] = numberAt(surface, "vertices");
+    row[Measure::Triangles] = numberAt(surface, "triangles");
+    row[Measure::AreaMm2] = numberAt(surface, "areaMm2");
+    row[Measure::VolumeMm3] = numberAt(surface, "volumeMm3");
+    row[Measure::Genus] = numberAt(surface, "genus");
+    return row;
+}
+
+std::vector<QualityRow> headRows(const QualityRow& scan, const Json& report) {
+    std::vector<QualityRow> rows;
+    const Json& gaps = report.at("gaps");
+    for (const Json& surface : report.at("surfaces")) {
+        QualityRow row = rowOf(scan, surface.at("name"), surface);
+        row[Measure::CrossingPairs] = numberAt(surface, "crossingPairs");
+        if (!rows.empty() && rows.size() <= gaps.size()) {
+            QualityRow& inner = rows.back();
+            row[Measure::GapMm] = numberAt(gaps[rows.size() - 1], "mm");
+            const auto volume = row[Measure::VolumeMm3], within = inner[Measure::VolumeMm3];
+            const auto area = row[Measure::AreaMm2], areaWithin = inner[Measure::AreaMm2];
+            if (volume && within && area && areaWithin) {
+                row[Measure::ThicknessMm] = (*volume - *within) / ((*area + *areaWithin) / 2);
+            }
+        }
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+/// "iso100", "isoauto": which of several isosurfaces a file is.
+std::string partOf(const fs::path& surface) {
+    return entityOf(surface.filename().string(), "desc");
+}
+
+/// The rows of a finished record: isosurfaces, those of a head model, or regions.
+std::vector<QualityRow> rowsOfReport(const QualityRow& scan, const Json& report,
+                                     const std::vector<fs::path>& surfaces) {
+    std::vector<QualityRow> rows;
+    if (scan.product == "bem") return headRows(scan, report);
+    if (scan.product == "labels") {
+        for (const Json& region : report.at("regions")) {
+            QualityRow& row = rows.emplace_back(
+                rowOf(scan, std::to_string(region.at("label").get<long long>()), region));
+            row.name = region.at("name");
+            row[Measure::Components] = numberAt(region, "components");
+        }
+        return rows;
+    }
+    for (const Json& surface : report.at("surfaces")) {
+        QualityRow& row = rows.emplace_back(rowOf(scan, partOf(surfaces.at(rows.size())), surface));
+        row[Measure::Isovalue] = numberAt(surface, "isovalue");
+        row[Measure::Components] = numberAt(surface, "componentCount");
+        row[Measure::CrossingPairs] = numberAt(surface.at("soundness"), "crossingPairs");
+    }
+    return rows;
+}
+
+/// What exists of a dataset: lines of the page, each with its rows of the table.
+class DatasetStatus {
+public:
+    struct Entry {
+        SummaryRow line;
+        std::vector<QualityRow> rows;
+    };
+
+    DatasetStatus(const BidsOptions& options, const ChosenSubjects& chosen)
+        : options_(options), subjects_(chosen.folders) {
+        const std::vector<Job> jobs = findJobs(options_, subjects_);
+        if (options_.makes("check")) addChecks(checkJob(options_, jobs.front()));
+        for (const auto& [subject, reason] : chosen.faulty) {
+            addAbsent({.participant = subject}, QualityState::Failed, reason);
+        }
+        for (const Job& job : jobs) add(job);
+        if (options_.participants.empty() && options_.sessions.empty()) addLeftovers();
+        // by participant and scan; results of one scan stay in their order
+        std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+            const QualityRow &x = a.rows.front(), &y = b.rows.front();
+            return std::tie(x.participant, x.session, x.scan) <
+                   std::tie(y.participant, y.session, y.scan);
+        });
+    }
+
+    std::vector<Entry> entries;
+    std::size_t records = 0;  ///< that exist
+
+private:
+    void add(const Job& job) {
+        for (const std::string& subject : job.without) {
+            addAbsent({.participant = subject, .product = job.product}, QualityState::Missing,
+                      "no " + job.needs);
+        }
+        for (const PlannedRun& run : job.runs) {
+            constexpr bool kTrustsTimes = true;
+            add(job, run, findEarlierRun(job.program, run, options_.output, kTrustsTimes));
+        }
+    }
+
+    void add(const Job& job, const PlannedRun& run, const EarlierRun& earlier) {
+        const std::string session = entityOf(run.item.name, "ses");
+        QualityRow row{.participant = "sub-" + entityOf(run.item.name, "sub"),
+                       .session = session.empty() ? "" : "ses-" + session,
+                       .scan = run.item.name,
+                       .product = job.product};
+        records += earlier.isThere ? 1 : 0;
+        for (const fs::path& file : run.surfaces) surfaces_.insert(file.filename().string());
+        if (!run.item.fault.empty()) {
+            return addAbsent(std::move(row), QualityState::Failed,
+                             baseName(run.item.inputs.front()) + ": " + run.item.fault);
+        }
+        if (earlier.fault != RecordFault::None) {
+            return addMissing(row, run, earlier.isThere ? earlier.why : "not run");
+        }
+        const RunRecord& record = earlier.record;
+        for (const std::string& output : record.outputs) {  // of "iso=auto" the isovalue is known
+            if (job.product == "surfaces") surfaces_.insert(fs::path(output).filename().string());
+        }
+        Entry& entry = entries.emplace_back(Entry{summaryRow(run.record, record), {}});
+        const std::string error = record.error.empty() ? record.says : record.error;
+        if (record.hasEnded && !record.isFinished()) {
+            setState(row, QualityState::Failed, error);
+        } else if (!earlier.why.empty()) {
+            setState(row, QualityState::Missing, earlier.why);
+        } else if (!record.hasPassed()) {
+            setState(row, QualityState::Failed, error);
+        } else {
+            try {
+                entry.rows = rowsOfReport(row, record.report, run.surfaces);
+            } catch (const std::exception&) {
+                setState(row, QualityState::Missing, "its record is damaged");  // edited by hand
+            }
+        }
+        if (entry.rows.empty()) entry.rows = rowsWith(row, run);
+        for (std::size_t n = 0; n < entry.rows.size() && n < record.outputs.size(); ++n) {
+            const auto check =
+                checks_.find((run.item.folder / record.outputs[n]).lexically_normal());
+            if (check == checks_.end() || entry.rows[n].state != QualityState::Done) continue;
+            const auto& [state, text] = check->second;
+            entry.rows[n].state = state;
+            if (state != QualityState::Done) entry.rows[n].reason = text;
+            if (state != QualityState::Missing) entry.rows[n].check = text;
+        }
+        entry.line.state = RunState::Done;
+        for (const QualityRow& each : entry.rows) {
+            if (each.state == QualityState::Done) continue;
+            entry.line.says = each.reason;
+            entry.line.state = !record.hasEnded                      ? RunState::NotFinished
+                               : each.state == QualityState::Missing ? RunState::Changed
+                                                                     : RunState::Failed;
+        }
+    }
+
+    static void setState(QualityRow& row, QualityState state, const std::string& reason) {
+        row.state = state;
+        row.reason = reason;
+    }
+
+    /// `row` for each planned surface; once if they aren't known.
+    static std::vector<QualityRow> rowsWith(const QualityRow& row, const PlannedRun& run) {
+        std::vector<QualityRow> rows(std::max<std::size_t>(1, run.surfaces.size()), row);
+        for (std::size_t n = 0; n < run.surfaces.size(); ++n)
+            rows[n].part = partOf(run.surfaces[n]);
+        return rows;
+    }
+
+    void addMissing(const QualityRow& row, const PlannedRun& run, const std::string& reason) {
+        for (QualityRow& each : rowsWith(row, run)) {
+            addAbsent(std::move(each), QualityState::Missing, reason);
+        }
+    }
+
+    void addAbsent(QualityRow row, QualityState state, const std::string& reason) {
+        setState(row, state, reason);
+        SummaryRow line;
+        line.program = row.product;
+        line.name = row.scan.empty() ? row.participant : row.scan;
+        line.state = state == QualityState::Leftover ? RunState::Changed : RunState::NotRun;
+        line.says = reason;
+        entries.push_back({std::move(line), {std::move(row)}});
+    }
+
+    void addChecks(const Job& job) {
+        for (const PlannedRun& run : job.runs) {
+            constexpr bool kTrustsTimes = true;
+            const EarlierRun earlier =
+                findEarlierRun(job.program, run, options_.output, kTrustsTimes);
+            auto& [state, text] = checks_[run.item.inputs.front().lexically_normal()];
+            if (!earlier.why.empty()) {
+                state = QualityState::Missing;
+                text = "its check: " + earlier.why;
+            } else {
+                const bool hasPassed = earlier.record.hasPassed();
+                state = hasPassed ? QualityState::Done : QualityState::Unsound;
+                text = hasPassed ? "passed" : earlier.record.says;
+            }
+        }
+    }
+
+    /// Results of scans that are no longer in the dataset, and surfaces of former isovalues.
+    void addLeftovers() {
+        std::set<std::string> known, reported;
+        for (const fs::path& subject : subjects_) {
+            fs::path elsewhere = options_.segmentations;
+            if (!elsewhere.empty()) elsewhere /= subject.filename();
+            for (const auto& [folder, images] :
+                 {std::pair{subject, &kBidsScans}, std::pair{subject, &kBidsSegmentations},
+                  std::pair{elsewhere, &kBidsSegmentations}}) {
+                if (folder.empty()) continue;
+                for (const BatchItem& item : bidsImagesOf(folder, {}, subject, *images)) {
+                    known.insert(item.name);
+                }
+            }
+        }
+        for (const fs::path& file : recordFiles(options_.output, true)) {
+            RunRecord record;
+            if (readRecord(file, record) != RecordFault::None) continue;
+            const bool isMesh = record.program == "adaptiso-mesh";
+            const bool isOfScan = isMesh || record.program == "adaptiso-bem" ||
+                                  // their images may be in a folder that is not named now
+                                  (record.program == "adaptiso-labels" && options_.makes("labels"));
+            if (!isOfScan) continue;
+            QualityRow row{.participant = "sub-" + entityOf(record.name, "sub"),
+                           .scan = record.name};
+            if (!known.contains(record.name) && reported.insert(record.name).second) {
+                addAbsent(std::move(row), QualityState::Leftover,
+                          "is in the output, but its image is not in the dataset; remove " +
+                              record.name + "_desc-* and " + record.name + "_mesh* there");
+            } else if (known.contains(record.name) && isMesh) {
+                addFormer(row, file, record);
+            }
+        }
+    }
+
+    void addFormer(QualityRow row, const fs::path& file, const RunRecord& record) {
+        for (const std::string& output : record.outputs) {
+            const std::string name = fs::path(output).filename().string();
+            const bool isThere = fs::exists(detail::folderOf(file) / output);
+            if (surfaces_.empty() || surfaces_.contains(name) || !isThere) continue;
+            row.product = "surfaces";
+            row.part = partOf(name);
+            addAbsent(row, QualityState::Leftover,
+                      name +
+                          " is of an isovalue or a format that is not asked for now; remove it, "
+                          "or ask for it too");
+        }
+    }
+
+    const BidsOptions& options_;
+    const std::vector<fs::path>& subjects_;
+    std::map<fs::path, std::pair<QualityState, std::string>> checks_;  ///< by surface
+    std::set<std::string> surfaces_;  ///< names of the files that are asked for
+};
+
+// ---- the options of the participant level
+
+void takeAsked(const Json& asked, BidsOptions& options) {
+    const std::string product = asked.value("product", "");
+    options.wanted[product] = asked.value("options", "");
+    const std::string folder = asked.value("segmentations", "");
+    if (!folder.empty() && options.segmentations.empty()) {
+        options.segmentations = (options.output / folder).lexically_normal();
+    }
+    options.makesPictures = options.makesPictures && asked.value("pictures", true);
+    options.common.isStrict = options.common.isStrict || asked.value("strict", false);
+    if (options.common.allowed.empty()) {
+        options.common.allowed = asked.value("allow", std::vector<std::string>());
+    }
+}
+
+/// Fills in the request of most participants for each program, by the records.
+void takeAsked(BidsOptions& options) {
+    // of each program and participant the last request, with the record's date
+    std::map<std::string, std::map<std::string, std::pair<std::string, Json>>> last;
+    for (const fs::path& file : recordFiles(options.output, true)) {
+        RunRecord record;
+        if (readRecord(file, record) != RecordFault::None || !record.asked.is_object()) continue;
+        auto& [date, asked] = last[record.program][entityOf(record.name, "sub")];
+        if (record.date >= date) std::tie(date, asked) = std::pair(record.date, record.asked);
+    }
+    for (const auto& [program, participants] : last) {
+        std::map<std::string, std::pair<std::size_t, std::string>> votes;  // and the last date
+        for (const auto& [participant, one] : participants) {
+            auto& [count, date] = votes[one.second.dump()];
+            ++count;
+            date = std::max(date, one.first);
+        }
+        const auto most = std::ranges::max_element(
+            votes, {}, [](const auto& vote) -> const auto& { return vote.second; });
+        takeAsked(Json::parse(most->first), options);
+    }
+}
+
+/// As on the command line: "--surfaces iso=100 --check".
+std::string wordsOf(const BidsOptions& options) {
+    std::string words;
+    for (const std::string product : kProducts) {
+        if (!options.makes(product)) continue;
+        const std::string& list = options.wanted.at(product);
+        words += (words.empty() ? "--" : " --") + product;
+        if (!list.empty()) {
+            words += (product == "surfaces" ? " " : " --" + product + "-options ") + list;
+        }
+        if (product == "labels" && !options.segmentations.empty()) {
+            words += " --segmentations " + options.segmentations.string();
+        }
+    }
+    return words;
+}
+
+/// Identifies a table's options without storing them, as they may hold paths.
 std::string sumOf(const Json& asked) {
     return sha256Of(asked.dump());
 }
 
-constexpr const char* kOptionsSum = "OptionsSha256";
+/// The first entry of GeneratedBy in the output's description; may be null.
+Json makerOf(const fs::path& output) {
+    std::ifstream file(output / kDescription);
+    const Json json = Json::parse(file, nullptr, false);
+    const Json makers = json.is_object() ? json.value("GeneratedBy", Json()) : Json();
+    const bool isMade = makers.is_array() && !makers.empty() && makers[0].is_object();
+    return isMade ? makers[0] : Json();
+}
+
+/// \throws InvalidInput  another program or a person made the files that the group level writes
+void requireOwnDataset(const fs::path& output) {
+    const auto refuse = [&](const char* file, const std::string& owner) {
+        throw InvalidInput((output / file).string() + ": is " + owner +
+                           "; give another OUT_DIR, or remove it");
+    };
+    std::error_code error;
+    if (fs::exists(output / kDescription, error)) {
+        const Json maker = makerOf(output);
+        const Json name = maker.is_object() ? maker.value("Name", Json()) : Json();
+        if (!name.is_string()) refuse(kDescription, "of another dataset");
+        const auto text = name.get<std::string>();
+        if (!text.starts_with("adaptiso")) refuse(kDescription, "of a dataset of " + oneLine(text));
+        return;
+    }
+    for (const char* const file : {"README", ".bidsignore"}) {
+        if (fs::exists(output / file, error)) refuse(file, "not of adaptiso-bids");
+    }
+}
+
+/// Fills in the participant level's options where none are given, and protects a table that was
+/// made with others. \throws InvalidInput  there is one, and --force is not given
+void requireOwnOptions(BidsOptions& options) {
+    BidsOptions recorded = options;
+    recorded.wanted.clear();
+    takeAsked(recorded);
+    if (!options.namesProducts()) {
+        auto given = std::move(options.wanted);
+        options = recorded;
+        for (auto& [product, list] : given) options.wanted[product] = list;
+    }
+    if (!options.namesProducts()) options.wanted["surfaces"] = "iso=auto";  // an old version's
+    if (options.makes("check") && !options.makes("surfaces")) {
+        throw UsageError("--check: needs --surfaces");
+    }
+    const Json asked = askedOf(options), known = askedOf(recorded);
+    const auto isKnown = [&](const Json& one) {
+        return std::find(known.begin(), known.end(), one) != known.end();
+    };
+    if (options.force || std::all_of(asked.begin(), asked.end(), isKnown)) return;
+    std::error_code error;
+    const Json maker = makerOf(options.output);
+    const std::string sum = maker.is_object() ? maker.value(kOptionsSum, "") : "";
+    const bool isTable = fs::exists(options.output / "quality.tsv", error);
+    if (!isTable || sum.empty() || sum == sumOf(asked)) return;
+    throw InvalidInput((options.output / "quality.tsv").string() +
+                       ": was made with other options than " + wordsOf(options) +
+                       "; leave them out to take the participant level's, or give --force to "
+                       "replace it");
+}
+
+// ---- what is written
+
+std::string dumped(const Json& json) {
+    return jsonText(json) + "\n";
+}
 
 Json descriptionOf(const BidsOptions& options) {
     Json json = bidsDescription(options.dataset, options.output, kProgram);
@@ -60,186 +441,45 @@ Json descriptionOf(const BidsOptions& options) {
     return json;
 }
 
-std::string readme() {
-    std::string text = kReadme;
-    const std::string place = "%VERSION%";
-    return text.replace(text.find(place), place.size(), programVersion());
-}
-
 bool isGood(const QualityRow& row) {
     return row.state == QualityState::Done;
 }
 
-/// "sub-01_ses-2: surfaces iso100"
-std::string subjectOf(const QualityRow& row) {
-    std::string text = row.scan.empty() ? row.participant : row.scan;
-    if (!row.product.empty()) text += ": " + row.product;
-    return text + (row.part.empty() ? "" : " " + row.part);
-}
-
-/// Marks and reasons of the table, on the page; what needs a look first.
-std::vector<SummaryRow> pageRows(Cohort& cohort) {
-    for (std::size_t n = 0; n < cohort.rows.size(); ++n) {
-        const QualityRow& row = cohort.rows[n];
-        if (row.outliers.empty()) continue;
-        SummaryRow& line = cohort.summary[cohort.shownBy[n]];
-        if (line.state == RunState::Done) line.state = RunState::Unusual;
-        line.says += (line.says.empty() ? "" : "; ") + std::string("unlike the others: ") +
-                     (row.part.empty() ? "" : row.part + " ") + row.outliers;
+/// The page's lines with their outliers, the worst first.
+std::vector<SummaryRow> pageRows(const std::vector<DatasetStatus::Entry>& entries,
+                                 const std::vector<QualityRow>& rows) {
+    std::vector<SummaryRow> lines;
+    auto row = rows.begin();
+    for (const DatasetStatus::Entry& entry : entries) {
+        SummaryRow& line = lines.emplace_back(entry.line);
+        for (const auto end = row + std::ssize(entry.rows); row != end; ++row) {
+            if (row->outliers.empty()) continue;
+            if (line.state == RunState::Done) line.state = RunState::Unusual;
+            line.says += (line.says.empty() ? "" : "; ") + std::string("unlike the others: ") +
+                         (row->part.empty() ? "" : row->part + " ") + row->outliers;
+        }
     }
-    std::vector<SummaryRow> rows = std::move(cohort.summary);
-    std::stable_sort(rows.begin(), rows.end(),
-                     [](const auto& a, const auto& b) { return a.state < b.state; });
-    return rows;
+    std::ranges::stable_sort(lines, {}, &SummaryRow::state);
+    return lines;
 }
 
 Json rowJson(const QualityRow& row) {
-    const auto orNone = [](const std::string& text) {
-        return text.empty() ? Json(nullptr) : Json(text);
-    };
-    return {{"participant", row.participant}, {"session", orNone(row.session)},
-            {"scan", orNone(row.scan)},       {"product", orNone(row.product)},
-            {"part", orNone(row.part)},       {"state", toString(row.state)},
-            {"reason", orNone(row.reason)},   {"outliers", orNone(row.outliers)}};
-}
-
-struct Counts {
-    std::size_t participants = 0, whole = 0, bad = 0, unusual = 0;
-};
-
-Counts countsOf(const std::vector<QualityRow>& rows) {
-    std::set<std::string> all, faulty;
-    Counts counts;
-    for (const QualityRow& row : rows) {
-        if (row.state != QualityState::Leftover) all.insert(row.participant);
-        if (!isGood(row)) faulty.insert(row.participant);
-        counts.bad += isGood(row) ? 0 : 1;
-        counts.unusual += row.outliers.empty() ? 0 : 1;
+    Json json{{"participant", row.participant}, {"state", toString(row.state)}};
+    for (const auto& [key, text] :
+         {std::pair("session", &row.session), std::pair("scan", &row.scan),
+          std::pair("product", &row.product), std::pair("part", &row.part),
+          std::pair("reason", &row.reason), std::pair("outliers", &row.outliers)}) {
+        json[key] = text->empty() ? Json(nullptr) : Json(*text);
     }
-    counts.participants = all.size();
-    for (const std::string& participant : all) counts.whole += faulty.contains(participant) ? 0 : 1;
-    return counts;
-}
-
-std::string jsonReport(const std::vector<QualityRow>& rows, const Counts& counts,
-                       const BidsOptions& options, const Verdict& verdict,
-                       const std::vector<Warning>& warnings) {
-    Json faulty = Json::array(), unusual = Json::array();
-    for (const QualityRow& row : rows) {
-        if (!isGood(row)) faulty.push_back(rowJson(row));
-        if (!row.outliers.empty()) unusual.push_back(rowJson(row));
-    }
-    Json report = reportHead("adaptiso-bids/1", kProgram, verdict, warnings);
-    report.update(Json{{"options", askedOf(options)},
-                       {"participants", counts.participants},
-                       {"wholeParticipants", counts.whole},
-                       {"surfaces", rows.size() - counts.bad},
-                       {"missing", faulty},
-                       {"unusual", unusual}});
-    return dumped(report);
-}
-
-/// As the command line has them: "--surfaces iso=100 --check".
-std::string wordsOf(const BidsOptions& options) {
-    std::string words;
-    const auto add = [&](const std::string& name, const std::string& list) {
-        words += (words.empty() ? "" : " ") + name + (list.empty() ? "" : " " + list);
-    };
-    if (!options.surfaces.empty()) add("--surfaces", options.surfaces);
-    if (options.makesBem) add("--bem", "");
-    if (!options.bemOptions.empty()) add("--bem-options", options.bemOptions);
-    if (options.makesLabels) add("--labels", "");
-    if (!options.labelsOptions.empty()) add("--labels-options", options.labelsOptions);
-    if (!options.segmentations.empty()) add("--segmentations", options.segmentations.string());
-    if (options.makesChecks) add("--check", "");
-    if (!options.checkOptions.empty()) add("--check-options", options.checkOptions);
-    return words;
-}
-
-void printTotals(std::ostream& out, const Counts& counts, std::size_t rows,
-                 const BidsOptions& options) {
-    out << counts.participants << " participant" << (counts.participants == 1 ? "" : "s") << ", "
-        << counts.whole << " whole; " << rows - counts.bad << " surfaces, " << counts.unusual
-        << " unusual\n"
-        << "options: " << wordsOf(options) << '\n'
-        << (options.output / "quality.tsv").string() << " and "
-        << (options.output / "summary.html").string() << " are written\n";
-}
-
-/// What the group level writes in the output's folder must not be another program's or a person's.
-/// \throws InvalidInput  it is
-void requireOwnDataset(const fs::path& output) {
-    const auto refuse = [&](const char* file, const std::string& of) {
-        throw InvalidInput((output / file).string() + ": is " + of +
-                           "; give another OUT_DIR, or take it away");
-    };
-    std::error_code error;
-    const auto isThere = [&](const char* file) { return fs::exists(output / file, error); };
-    constexpr const char* kDescription = "dataset_description.json";
-    if (isThere(kDescription)) {
-        std::ifstream file(output / kDescription);
-        const Json said = Json::parse(file, nullptr, false);
-        const Json none,
-            &by = said.is_object() && said.contains("GeneratedBy") ? said["GeneratedBy"] : none;
-        const Json& name =
-            by.is_array() && !by.empty() && by[0].is_object() && by[0].contains("Name")
-                ? by[0]["Name"]
-                : none;
-        const bool isOwn = name.is_string() && name.get<std::string>().starts_with("adaptiso");
-        if (!isOwn) {
-            refuse(kDescription, name.is_string()
-                                     ? "of a dataset of " + oneLine(name.get<std::string>())
-                                     : std::string("of another dataset"));
-        }
-        return;
-    }
-    for (const char* const file : {"README", ".bidsignore"}) {
-        if (isThere(file)) refuse(file, "not of adaptiso-bids");
-    }
-}
-
-/// Fills in the participant level's options where none are given, and keeps a table that was made
-/// with others. \throws InvalidInput  there is one, and --force is not given
-void requireOwnOptions(BidsOptions& options) {
-    BidsOptions ofParticipants = options;
-    ofParticipants.surfaces.clear();
-    ofParticipants.makesBem = ofParticipants.makesLabels = ofParticipants.makesChecks = false;
-    ofParticipants.checkOptions.clear();
-    takeAsked(ofParticipants);
-    if (!options.namesProducts()) {
-        const BidsOptions given = options;
-        options = ofParticipants;
-        if (given.makesChecks) {
-            options.makesChecks = true;
-            options.checkOptions = given.checkOptions;
-        }
-    }
-    if (!options.namesProducts()) options.surfaces = "iso=auto";  // of a version that kept none
-    if (options.makesChecks && options.surfaces.empty()) {
-        throw UsageError("--check: needs --surfaces");
-    }
-    const Json asked = askedOf(options), known = askedOf(ofParticipants);
-    const auto isKnown = [&](const Json& one) {
-        return std::find(known.begin(), known.end(), one) != known.end();
-    };
-    if (options.force || std::all_of(asked.begin(), asked.end(), isKnown)) return;
-    std::error_code error;
-    std::ifstream file(options.output / "dataset_description.json");
-    const Json said = Json::parse(file, nullptr, false);
-    if (!said.is_object() || !fs::exists(options.output / "quality.tsv", error)) return;
-    const std::string sum = said["GeneratedBy"][0].value(kOptionsSum, "");
-    if (sum.empty() || sum == sumOf(asked)) return;
-    throw InvalidInput((options.output / "quality.tsv").string() +
-                       ": was made with other options than " + wordsOf(options) +
-                       "; leave them out to take the participant level's, or give --force to "
-                       "replace it");
+    return json;
 }
 
 }  // namespace
 
 int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
-    const bool writesJson = options.common.wantsJson() && !options.common.wantsJsonOnStdout();
-    if (writesJson) checkOutput(options.common.json);
+    const CommonOptions& common = options.common;
+    const bool writesJson = common.wantsJson() && !common.wantsJsonOnStdout();
+    if (writesJson) checkOutput(common.json);
     std::error_code error;
     if (!fs::is_directory(options.output, error)) {
         throw InvalidInput(options.output.string() +
@@ -247,41 +487,73 @@ int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
     }
     requireOwnDataset(options.output);
     requireOwnOptions(options);
-    Cohort cohort = lookAtCohort(options, chosen);
-    if (cohort.records == 0) {
+    const DatasetStatus status(options, chosen);
+    if (status.records == 0) {
         throw InvalidInput(options.output.string() +
                            ": nothing of these participants is there, with these options (" +
                            wordsOf(options) + "); run the participant level first");
     }
-    markOutliers(cohort.rows, options.outlierLimit, options.outlierPercent);
-    const std::vector<SummaryRow> lines = pageRows(cohort);
-    const std::vector<QualityRow>& rows = cohort.rows;
-    const fs::path page = options.output / "summary.html";
+    std::vector<QualityRow> rows;
+    for (const DatasetStatus::Entry& entry : status.entries) {
+        rows.insert(rows.end(), entry.rows.begin(), entry.rows.end());
+    }
+    markOutliers(rows, options.outlierLimit, options.outlierPercent);
+
+    std::set<std::string> participants, faulty;
+    Json missing = Json::array(), unusual = Json::array();
+    for (const QualityRow& row : rows) {
+        if (row.state != QualityState::Leftover) participants.insert(row.participant);
+        if (!isGood(row)) faulty.insert(row.participant);
+        if (!isGood(row)) missing.push_back(rowJson(row));
+        if (!row.outliers.empty()) unusual.push_back(rowJson(row));
+    }
+    const auto whole = std::ranges::count_if(
+        participants, [&](const std::string& each) { return !faulty.contains(each); });
+    const std::size_t good = rows.size() - missing.size();
+
     std::vector<AtomicOutput> outputs;
     const auto write = [&](const char* name, const std::string& text) {
         outputs.emplace_back(options.output / name).writeText(text);
     };
-    write("dataset_description.json", dumped(descriptionOf(options)));
-    write("README", readme());
+    std::string readme = kReadme;
+    const std::string place = "%VERSION%";
+    write(kDescription, dumped(descriptionOf(options)));
+    write("README", readme.replace(readme.find(place), place.size(), programVersion()));
     write(".bidsignore", kIgnored);
     write("quality.tsv", qualityTable(rows));
     write("quality.json", dumped(qualityDictionary(options.outlierLimit, options.outlierPercent)));
-    write("summary.html", summaryPage(lines, page));
-    const Counts counts = countsOf(rows);
-    Verdict verdict{counts.bad == 0 ? kExitOk : kExitCheckFailed};
-    if (counts.bad == 0) verdict.failStrict(options.common, chosen.warnings, "");
-    const std::string json = options.common.wantsJson()
-                                 ? jsonReport(rows, counts, options, verdict, chosen.warnings)
-                                 : "";
-    if (writesJson) outputs.emplace_back(options.common.json).writeText(json);
-    printResults(options.common, json,
-                 [&](std::ostream& out) { printTotals(out, counts, rows.size(), options); });
+    write("summary.html",
+          summaryPage(pageRows(status.entries, rows), options.output / "summary.html"));
+    Verdict verdict{missing.empty() ? kExitOk : kExitCheckFailed};
+    if (missing.empty()) verdict.failStrict(common, chosen.warnings, "");
+    std::string json;
+    if (common.wantsJson()) {
+        Json report = reportHead("adaptiso-bids/1", kProgram, verdict, chosen.warnings);
+        report.update(Json{{"options", askedOf(options)},
+                           {"participants", participants.size()},
+                           {"wholeParticipants", whole},
+                           {"surfaces", good},
+                           {"missing", missing},
+                           {"unusual", unusual}});
+        json = dumped(report);
+    }
+    if (writesJson) outputs.emplace_back(common.json).writeText(json);
+    printResults(common, json, [&](std::ostream& out) {
+        out << participants.size() << " participant" << (participants.size() == 1 ? "" : "s")
+            << ", " << whole << " whole; " << good << " surfaces, " << unusual.size()
+            << " unusual\noptions: " << wordsOf(options) << '\n'
+            << (options.output / "quality.tsv").string() << " and "
+            << (options.output / "summary.html").string() << " are written\n";
+    });
     AtomicOutput::commit(outputs);
     for (const QualityRow& row : rows) {
         if (isGood(row)) continue;
-        printError(kProgram, toString(row.state) + ": " + subjectOf(row) + ": " + row.reason);
+        std::string subject = row.scan.empty() ? row.participant : row.scan;
+        if (!row.product.empty()) subject += ": " + row.product;
+        if (!row.part.empty()) subject += " " + row.part;
+        printError(kProgram, toString(row.state) + ": " + subject + ": " + row.reason);
     }
-    return counts.bad == 0 ? kExitOk : kExitCheckFailed;
+    return missing.empty() ? kExitOk : kExitCheckFailed;
 }
 
 }  // namespace adaptiso

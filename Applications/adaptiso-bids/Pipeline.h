@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,25 +10,27 @@
 
 namespace adaptiso {
 
-/// The two halves of a BIDS App.
+/// The two levels of a BIDS App.
 enum class BidsLevel { Participant, Group };
 
-/// What adaptiso-bids is asked to do.
+/// What adaptiso-bids can make, in its order.
+inline constexpr const char* kProducts[] = {"surfaces", "bem", "labels", "check"};
+
 struct BidsOptions {
     std::filesystem::path dataset;  ///< BIDS_DIR
     std::filesystem::path output;   ///< OUT_DIR
     BidsLevel level{};
-    std::vector<std::string> participants, sessions;  ///< labels; empty: all
+    std::vector<std::string> participants, sessions;  ///< labels; empty for all
     bool skipsValidation = false;
 
-    std::string surfaces;  ///< options of adaptiso-mesh, "iso=100,largest"; empty: none are made
-    bool makesBem = false, makesLabels = false, makesChecks = false;
-    std::string bemOptions, labelsOptions, checkOptions;  ///< of the programs, "vertices=642,meg"
-    std::filesystem::path segmentations;                  ///< a dataset; empty: `dataset`
+    /// What to make, of kProducts, each with its program's options: "iso=100,largest".
+    std::map<std::string, std::string> wanted;
+    std::map<std::string, std::string> lists;  ///< the same options as given; empty if not
+    std::filesystem::path segmentations;       ///< a dataset; empty for `dataset`
     bool makesPictures = true;
 
-    /// Says what to make.
-    bool namesProducts() const { return !surfaces.empty() || makesBem || makesLabels; }
+    bool makes(const std::string& product) const { return wanted.contains(product); }
+    bool namesProducts() const { return wanted.size() > (makes("check") ? 1 : 0); }
 
     double outlierLimit = 3.5;  ///< robust standard deviations
     double outlierPercent = 1;  ///< of the median, at least
@@ -38,7 +41,7 @@ struct BidsOptions {
 
 /// Makes what is asked for of every participant, or a table and a page of what was made.
 /// \return  kExitOk; kExitCheckFailed: some of it failed or is missing; kExitBadInput: a run was
-///          killed, so that another try may do
+///          killed or short of memory or disk, so that another try may help
 /// \throws UsageError, InvalidInput, FileError
 int runBids(const BidsOptions& options);
 

@@ -5,38 +5,10 @@
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso::mesher {
-namespace {
-
-std::string says(const Json& report) {
-    std::string text;
-    for (const Json& surface : report.value("surfaces", Json::array())) {
-        if (!text.empty()) text += "; ";
-        text += surface.at("output").at("file").get<std::string>() + ", " +
-                formatCount(surface.at("triangles").get<long long>()) + " triangles at " +
-                formatShort(surface.at("isovalue").get<double>());
-    }
-    return text;
-}
-
-std::vector<std::string> outputs(const Json& report) {
-    std::vector<std::string> files;
-    for (const Json& surface : report.value("surfaces", Json::array())) {
-        const Json& output = surface.at("output");
-        if (output.value("written", true)) files.push_back(output.at("file"));
-    }
-    return files;
-}
-
-}  // namespace
 
 int runMeshBatch(const MeshOptions& options) {
-    BatchProgram program;
-    program.name = "adaptiso-mesh";
-    program.inputs = options.inputs;
-    program.outputOptions = {"--output", "--report", "--pictures"};
-    program.surfaceOption = "--iso";
-    program.surfaceFiles = [&options](const std::filesystem::path& output,
-                                      const std::vector<std::string>&) {
+    BatchProgram program{"adaptiso-mesh", {}, {"--output", "--report", "--pictures"}, "--iso"};
+    program.surfaceFiles = [&options](const std::filesystem::path& output, const auto&) {
         MeshOptions named;
         named.output = output;
         named.isovalues = options.isovalues;
@@ -47,13 +19,13 @@ int runMeshBatch(const MeshOptions& options) {
         }
         return files;
     };
-    program.defaultOutput = "{name}-iso{iso}.vtp";
-    program.defaultBidsOutput = "{name}_desc-iso{isolabel}_mesh.vtp";
-    program.nameOf = inputStem;
-    program.findInBids = findBidsScans;
-    program.says = says;
-    program.outputs = outputs;
-    return runBatch(program, options.batch, options.common);
+    std::vector<BatchItem> items =
+        findBatchItems(options.batch, options.inputs, inputStem, findBidsScans);
+    for (BatchItem& item : items) {
+        item.output = options.batch.bids.empty() ? "{name}-iso{iso}.vtp"
+                                                 : "{name}_desc-iso{isolabel}_mesh.vtp";
+    }
+    return runBatch(program, std::move(items), options.batch, options.common);
 }
 
 }  // namespace adaptiso::mesher

@@ -3,10 +3,13 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "Common/BatchRecord.h"
-#include "Common/BatchRows.h"
+#include "Common/BatchSummary.h"
+#include "Common/Sha256.h"
 #include "FolderTest.h"
+#include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
 namespace {
@@ -14,12 +17,13 @@ namespace {
 namespace fs = std::filesystem;
 
 class BatchRecordTest : public FolderTest {};
+class RecordedFilesTest : public FolderTest {};
 
-KeptRecord recordOfRun(const std::string& program) {
-    KeptRecord record{program, program + " 1.0"};
+RunRecord recordOfRun(const std::string& program) {
+    RunRecord record{program, program + " 1.0"};
     record.hasEnded = true;
-    record.run.name = "a";
-    record.run.files = {"a.nii"};
+    record.name = "a";
+    record.files = {"a.nii"};
     record.date = recordDate();
     return record;
 }
@@ -37,31 +41,28 @@ TEST_F(BatchRecordTest, IsNamedAfterItsSurface) {
     const fs::path longest = recordFile("", stem + ".stl", "adaptiso-mesh");
     EXPECT_EQ(longest.native().size(), kLongestName);
     EXPECT_NE(longest, recordFile("", stem + ".ply", "adaptiso-mesh"));
-    EXPECT_TRUE(isRecordFile(longest));
-    EXPECT_FALSE(isRecordFile("report.json"));
 }
 
 TEST_F(BatchRecordTest, ComesBackAsItWasWritten) {
     const fs::path file = folder_ / "a.stl.adaptiso-mesh.json";
-    KeptRecord record = recordOfRun("adaptiso-mesh");
-    record.run.exitCode = 1;
-    record.run.outputs = {"a.stl"};
+    RunRecord record = recordOfRun("adaptiso-mesh");
+    record.exitCode = 1;
+    record.outputs = {"a.stl"};
     record.says = "fine";
     record.options = {{"--iso", "12ab"}};
-    record.inputs = {{{"a.nii", 1, 2, "34cd", 5, 6}, "../a.nii"}};
-    record.outputs = {{"--output", {"a.stl", 1, 7, "89ef", 10, 11}}};
+    record.inputs = {{"a.nii", 1, 2, "34cd", 5, 6, "", "../a.nii"}};
+    record.recordedOutputs = {{"a.stl", 1, 7, "89ef", 10, 11, "--output"}};
     writeRecord(file, record);
-    RecordFault fault = RecordFault::Damaged;
-    const std::optional<KeptRecord> again = readRecord(file, fault);
-    EXPECT_EQ(fault, RecordFault::None);
-    ASSERT_TRUE(again);
-    EXPECT_TRUE(again->hasEnded);
-    EXPECT_EQ(again->run.exitCode, 1);
-    EXPECT_EQ(again->run.outputs, record.run.outputs);
-    EXPECT_EQ(again->options, record.options);
-    EXPECT_EQ(again->inputs.at(0).place, "../a.nii");
-    EXPECT_EQ(again->inputs.at(0).file.sha256, "34cd");
-    EXPECT_EQ(again->outputs.at(0).file.bytes, 7u);
+    RunRecord again;
+    ASSERT_EQ(readRecord(file, again), RecordFault::None);
+    EXPECT_TRUE(again.hasEnded);
+    EXPECT_EQ(again.exitCode, 1);
+    EXPECT_EQ(again.outputs, record.outputs);
+    EXPECT_EQ(again.options, record.options);
+    EXPECT_EQ(again.inputs.at(0).place, "../a.nii");
+    EXPECT_EQ(again.inputs.at(0).sha256, "34cd");
+    EXPECT_EQ(again.recordedOutputs.at(0).bytes, 7u);
+    EXPECT_EQ(again.recordedOutputs.at(0).option, "--output");
 }
 
 TEST_F(BatchRecordTest, WhateverAFileHoldsNothingIsThrown) {
@@ -69,33 +70,31 @@ TEST_F(BatchRecordTest, WhateverAFileHoldsNothingIsThrown) {
     writeRecord(file, recordOfRun("adaptiso-mesh"));
     std::ifstream in(file);
     const std::string whole{std::istreambuf_iterator<char>(in), {}};
-    RecordFault fault = RecordFault::None;
+    RunRecord record;
     for (std::size_t length = 0; length + 2 < whole.size(); length += 7) {
         put(file.filename().string(), whole.substr(0, length));
-        EXPECT_FALSE(readRecord(file, fault)) << length;
-        EXPECT_EQ(fault, RecordFault::Damaged);
+        EXPECT_EQ(readRecord(file, record), RecordFault::Damaged) << length;
     }
     for (const char* key : {"schema", "program", "build", "ended", "name", "exitCode", "outputs",
                             "seconds", "options", "inputs", "keptOutputs"}) {
         Json json = Json::parse(whole);
         json[key] = Json::array({Json::array()});
         put(file.filename().string(), json.dump());
-        EXPECT_FALSE(readRecord(file, fault)) << key;
+        EXPECT_NE(readRecord(file, record), RecordFault::None) << key;
     }
     fs::remove(file);
-    EXPECT_FALSE(readRecord(file, fault));
-    EXPECT_EQ(fault, RecordFault::Missing);
+    EXPECT_EQ(readRecord(file, record), RecordFault::Missing);
 }
 
 TEST_F(BatchRecordTest, RowsAreThoseOfAllProgramsTheWorstFirst) {
-    KeptRecord failed = recordOfRun("adaptiso-mesh"), done = recordOfRun("adaptiso-check");
-    failed.run.exitCode = 3;
-    failed.run.error = "no image";
+    RunRecord failed = recordOfRun("adaptiso-mesh"), done = recordOfRun("adaptiso-check");
+    failed.exitCode = 3;
+    failed.error = "no image";
     writeRecord(folder_ / "b.adaptiso-mesh.json", failed);
     writeRecord(folder_ / "a.adaptiso-check.json", done);
     put("notes.json", "{}");
     put("deeper/c.adaptiso-mesh.json", "{}");  // not of this folder
-    const auto rows = summaryRows({folder_, true}, {}, {});
+    const auto rows = summaryRows(folder_, true, {}, {});
     ASSERT_EQ(rows.size(), 2u);
     EXPECT_EQ(rows[0].state, RunState::Failed);
     EXPECT_EQ(rows[0].says, "no image");
@@ -106,13 +105,107 @@ TEST_F(BatchRecordTest, ExpectedOnesCountOnlyWhereOthersAreKnown) {
     const fs::path anat = folder_ / "sub-1" / "anat";
     fs::create_directories(anat);
     const std::vector<BatchItem> expected{{"a", {"a.nii"}, anat}, {"b", {"b.nii"}, anat}};
-    EXPECT_TRUE(summaryRows({folder_, true}, {}, expected).empty());
+    EXPECT_TRUE(summaryRows(folder_, true, {}, expected).empty());
     writeRecord(anat / "a.stl.adaptiso-mesh.json", recordOfRun("adaptiso-mesh"));
-    const auto rows = summaryRows({folder_, true}, {}, expected);
+    const auto rows = summaryRows(folder_, true, {}, expected);
     ASSERT_EQ(rows.size(), 2u);
     EXPECT_EQ(rows[0].state, RunState::NotRun);
     EXPECT_EQ(rows[0].name, "b");
     EXPECT_EQ(rows[1].state, RunState::Done);
+}
+
+// FIPS 180-4's examples, as sha256sum prints them
+constexpr const char* kOfNothing =
+    "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
+constexpr const char* kOfAbc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+
+TEST_F(RecordedFilesTest, ChecksumIsSha256) {
+    EXPECT_EQ(sha256Of(""), kOfNothing);
+    EXPECT_EQ(sha256Of("abc"), kOfAbc);
+    EXPECT_EQ(sha256OfFile(put("a", "abc")), kOfAbc);
+    const std::string large(3 << 20, 'x');  // three pieces, as the file is read
+    EXPECT_EQ(sha256OfFile(put("large", large)), sha256Of(large));
+    EXPECT_THROW(sha256OfFile(folder_ / "missing"), FileError);
+    EXPECT_THROW(sha256OfFile(folder_), FileError);
+}
+
+TEST_F(RecordedFilesTest, TellsGoneFromChanged) {
+    const fs::path file = put("a", "abc");
+    const RecordedFile recorded = describeFile("a", file);
+    EXPECT_EQ(recorded.bytes, 3u);
+    EXPECT_EQ(recorded.sha256, kOfAbc);
+    EXPECT_EQ(changeOf(recorded, file, false), "");
+    put("a", "abd");
+    EXPECT_EQ(changeOf(recorded, file, false), "has changed");
+    EXPECT_EQ(changeOf(recorded, file, true), "has changed");
+    fs::remove(file);
+    EXPECT_EQ(changeOf(recorded, file, false), "is gone");
+    fs::create_directory(file);
+    EXPECT_EQ(changeOf(recorded, file, false), "has changed");
+}
+
+TEST_F(RecordedFilesTest, NoticesAChangeThatPutsTheTimeBack) {
+    const fs::path file = put("a", "abc");
+    const auto time = fs::last_write_time(file);
+    const RecordedFile recorded = describeFile("a", file);
+    put("a", "abd");
+    fs::last_write_time(file, time);
+    EXPECT_EQ(changeOf(recorded, file, true), "has changed");
+}
+
+TEST_F(RecordedFilesTest, TakesACopyForTheSame) {
+    const RecordedFile recorded = describeFile("a", put("a", "abc"));
+    EXPECT_EQ(changeOf(recorded, put("b", "abc"), true), "");
+}
+
+TEST_F(RecordedFilesTest, AFolderOfZarrIsItsHiddenMetadataToo) {
+    put("scan.zarr/.zarray", "{}");
+    put("scan.zarr/0.0.0", "chunk");
+    const fs::path scan = folder_ / "scan.zarr";
+    const RecordedFile recorded = describeInput(scan, {});
+    EXPECT_EQ(recorded.files, 2u);
+    put("scan.zarr/.zarray", "[]");  // of another shape, say
+    EXPECT_FALSE(isSameContent(recorded, describeInput(scan, {})));
+}
+
+TEST_F(RecordedFilesTest, AFolderIsAllThatIsSeenInIt) {
+    put("scan/1", "one");
+    put("scan/sub/2", "two");
+    put("scan/.hidden", "x");
+    put("scan/out/surface.stl", "x");
+    const fs::path scan = folder_ / "scan", output = folder_ / "scan" / "out" / "";
+    EXPECT_EQ(filesOfInput(scan, output).size(), 2u);
+    const RecordedFile recorded = describeInput(scan, output);
+    EXPECT_EQ(recorded.files, 2u);
+    EXPECT_EQ(recorded.bytes, 6u);
+    fs::rename(scan / "1", scan / "3");  // the name tells slices apart that hold the same
+    EXPECT_FALSE(isSameContent(recorded, describeInput(scan, output)));
+    fs::rename(scan / "3", scan / "1");
+    EXPECT_TRUE(isSameContent(recorded, describeInput(scan, output)));
+    fs::rename(scan, folder_ / "moved");
+    EXPECT_TRUE(
+        isSameContent(recorded, describeInput(folder_ / "moved", folder_ / "moved" / "out")));
+}
+
+TEST_F(RecordedFilesTest, AHeaderHasItsData) {
+    using Paths = std::vector<fs::path>;
+    const fs::path raw = put("a.raw", "data");
+    const fs::path meta = put("a.mhd", "NDims = 3\nElementDataFile = a.raw\n");
+    EXPECT_EQ(filesOfInput(meta, {}), (Paths{meta, raw}));
+    const fs::path local = put("a.mha", "NDims = 3\nElementDataFile = LOCAL\ndata");
+    EXPECT_EQ(filesOfInput(local, {}), Paths{local});
+    const fs::path nrrd = put("b.nhdr", "NRRD0004\ndata file: a.raw\n\n");
+    EXPECT_EQ(filesOfInput(nrrd, {}), (Paths{nrrd, raw}));
+    const fs::path list = put("list/c.nhdr", "NRRD0004\ndata file: %d.raw 1 2 1\n\n");
+    put("list/1.raw", "");
+    put("list/2.raw", "");
+    EXPECT_EQ(filesOfInput(list, {}).size(), 3u);
+    const fs::path header = put("d.hdr", "x"), image = put("d.img.gz", "x");
+    put("e.img", "x");
+    EXPECT_EQ(filesOfInput(header, {}), (Paths{header, image}));
+    EXPECT_EQ(filesOfInput(image, {}), (Paths{image, header}));
+    put("disk/IMAGES/1", "x");
+    EXPECT_EQ(filesOfInput(put("disk/DICOMDIR", "x"), {}).size(), 2u);
 }
 
 }  // namespace

@@ -300,8 +300,8 @@ class Bids(BatchTest):
         self.assertEqual(len(made), 4)
         for name in made:
             self.assertRegex(name, r"^sub-02_desc-[a-zA-Z0-9]+_mesh\.(vtp|stl)$")
-        again = self.lines(OK, "--bids", "study", "--participant", "02", "--iso", 100.5,
-                           "--skip-existing")
+        again = self.lines(OK, "--bids", "study", "--participant", "02", "--iso", 100.5, "--iso", -3,
+                           "--iso", "auto", "--skip-existing")
         self.assertEqual([line["earlierRun"] for line in again], [True])
 
     def test_the_dataset_says_what_made_it_and_of_what(self):

@@ -147,9 +147,8 @@ class Participants(BidsTest):
     def test_the_exit_code_says_whether_another_try_may_help(self):
         for number, (script, code) in enumerate((
                 ("exit 4", 4), ("exit 127", BAD_INPUT), ("kill -9 $$", BAD_INPUT),
-                ("echo adaptiso-mesh: x: No space left on device >&2; exit 3", BAD_INPUT),
-                ("echo adaptiso-mesh: x: truncated >&2; exit 3", CHECK_FAILED),
-                ("echo adaptiso-mesh: not enough memory >&2; exit 3", BAD_INPUT),
+                ("echo '{\"schema\": \"adaptiso-failure/1\", \"shortage\": true}'; exit 3", BAD_INPUT),
+                ("echo adaptiso-mesh: x: truncated, no memory >&2; exit 3", CHECK_FAILED),
                 ("ulimit -v 60000", BAD_INPUT))):
             with self.subTest(script):
                 if number:
@@ -384,9 +383,10 @@ class MadeAgain(BidsTest):
 
 class Group(BidsTest):
     def test_tells_of_surfaces_that_are_not_asked_for_now(self):
-        self.bids(OK, "participant", what=("--surfaces", "iso=100.5,iso=120", "--no-pictures"))
-        self.bids(OK, "group", what=("--surfaces", "iso=100.5,iso=120", "--no-pictures"))
-        self.bids(OK, "participant")
+        self.bids(OK, "participant", what=("--surfaces", "iso=120", "--no-pictures"))
+        self.bids(OK, "group", what=("--surfaces", "iso=120", "--no-pictures"))
+        self.bids(OK, "participant", what=("--surfaces", "iso=100.5,iso=110,largest", "--no-pictures"))
+        self.bids(OK, "participant")  # replaces the surfaces of both isovalues
         self.bids(CHECK_FAILED, "group")
         left = [row for row in self.table() if row["state"] == "leftover"]
         self.assertEqual([(row["participant_id"], row["part"]) for row in left],

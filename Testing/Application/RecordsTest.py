@@ -177,7 +177,7 @@ class Inputs(RecordsTest):
 
 
 class Surfaces(RecordsTest):
-    """One record for each surface and program."""
+    """One record for each run, beside its first surface."""
 
     def test_a_second_isovalue_has_its_own(self):
         arguments = ("a.nii", "--output-dir", "out")
@@ -185,7 +185,10 @@ class Surfaces(RecordsTest):
         self.assertEqual(self.reasons(*arguments, "--iso", 90), [None])
         self.assertEqual(self.reasons(*arguments, "--iso", 100), [False])
         self.assertEqual(self.reasons(*arguments, "--iso", 90), [False])
-        lines = self.lines(OK, *arguments, "--iso", 90, "--iso", 100, "--skip-existing")
+        both = (*arguments, "--iso", 90, "--iso", 100)
+        self.assertEqual(self.reasons(*both), ["other options were given"])
+        self.assertEqual(self.reasons(*arguments, "--iso", 100), [False])
+        lines = self.lines(OK, *both, "--skip-existing")
         self.assertTrue(lines[0]["earlierRun"])
         self.assertEqual(lines[0]["outputs"], ["a-iso90.vtp", "a-iso100.vtp"])
         self.assertEqual([surface["isovalue"] for surface in lines[0]["report"]["surfaces"]],
@@ -196,7 +199,7 @@ class Surfaces(RecordsTest):
     def test_of_one_run_are_told_apart(self):
         arguments = ("a.nii", "--output-dir", "out")
         self.assertEqual(self.reasons(*arguments, "--iso", 90, "--iso", "auto"), [None])
-        self.assertEqual(self.reasons(*arguments, "--iso", "auto"), [False])
+        self.assertEqual(self.reasons(*arguments, "--iso", "auto"), [None])
         self.path("out/a-iso90.vtp").write_text("")
         self.assertEqual(self.reasons(*arguments, "--iso", "auto"), [False])
         self.assertEqual(self.reasons(*arguments, "--iso", 90, "--iso", "auto"),

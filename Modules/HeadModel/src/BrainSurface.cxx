@@ -7,6 +7,7 @@
 #include "Voxelized.h"
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/HeadModel/SourceError.h"
 
 namespace adaptiso::headmodel {
 namespace {
@@ -27,9 +28,11 @@ std::vector<float> pialPart(const std::vector<TriangleMesh>& pial, const ImageGe
         constexpr double kNoClosing = 0;  // sulci are the brain solid's business
         const std::vector<float> one = surfacePart(surface, grid, kNoClosing);
         if (cm3Of(one, grid) < 50) {
-            throw InvalidInput("a pial surface encloses " + shortNumber(cm3Of(one, grid)) +
-                               " cm3 of this head, must be 50 or more; is it of this head, in the "
-                               "same space?");
+            throw SourceError(
+                BoundarySource::Pial,
+                "a pial surface encloses " + shortNumber(cm3Of(one, grid)) +
+                    " cm3 of this head, must be 50 or more; is it of this head, in the "
+                    "same space?");
         }
         unite(part, one);
     }

@@ -10,6 +10,7 @@
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
+#include "adaptiso/HeadModel/SourceError.h"
 
 namespace adaptiso {
 
@@ -170,7 +171,8 @@ HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels
     checkOptions(options);
     requireDistinct(tissues);
     if (headMask && headMask->geometry() != labels.geometry()) {
-        throw InvalidInput("the head mask is on another grid than the labels");
+        throw SourceError(BoundarySource::HeadMask,
+                          "the head mask is on another grid than the labels");
     }
     const auto isBrain = [&](double sample) {
         if (holds(tissues.brain, sample)) return true;

@@ -15,6 +15,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/HeadModel/SourceError.h"
 
 namespace adaptiso {
 
@@ -310,14 +311,17 @@ void requirePlausibleMask(const Mask& brain, const Head& head) {
     constexpr double kLeastCm3 = 200, kNearestMm = 4, kMostAtSkin = 0.02;
     const double cm3 = cm3Of(brain, head.grid);
     if (!(cm3 >= kLeastCm3 && cm3 <= kMostBrainCm3)) {
-        throw InvalidInput("the brain mask holds " + shortNumber(cm3) +
-                           " cm3, must be 200 to 2500 cm3; is it a mask of the brain?");
+        throw SourceError(BoundarySource::BrainMask,
+                          "the brain mask holds " + shortNumber(cm3) +
+                              " cm3, must be 200 to 2500 cm3; is it a mask of the brain?");
     }
     const double part = partAtSkin(brain, belowSkinMm(head), kNearestMm);
     if (part > kMostAtSkin) {
-        throw InvalidInput("the brain mask lies to " + shortNumber(100 * part) +
-                           " % outside the head or within 4 mm of its skin; is it of this head, in "
-                           "the same space?");
+        throw SourceError(
+            BoundarySource::BrainMask,
+            "the brain mask lies to " + shortNumber(100 * part) +
+                " % outside the head or within 4 mm of its skin; is it of this head, in "
+                "the same space?");
     }
 }
 
@@ -436,7 +440,8 @@ Mask guessedBrain(const Head& head) {
 /// The brain mask of the caller on the head's grid.
 std::vector<float> brainPart(const VolumeView& brainMask, const Head& head) {
     const ValueRange range = valueRange(brainMask);
-    if (!(range.maximum > 0)) throw InvalidInput("the brain mask is empty");
+    if (!(range.maximum > 0))
+        throw SourceError(BoundarySource::BrainMask, "the brain mask is empty");
     // a skull-stripped image is a mask where it is not zero; a mask of parts is cut at one half
     const bool isImage = range.maximum > 1 && !std::isnan(range.minimum) && [&] {
         const FloatImage values = toFloat(brainMask, 0);
@@ -448,7 +453,8 @@ std::vector<float> brainPart(const VolumeView& brainMask, const Head& head) {
     if (!isImage && range.maximum <= 1) parts = toFloat(brainMask, 0);
     std::vector<float> part = resampled(parts, head.grid, 0);
     if (voxelsIn(above(part, kFractionIsovalue)) == 0) {
-        throw InvalidInput("the brain mask lies outside the head's image");
+        throw SourceError(BoundarySource::BrainMask,
+                          "the brain mask lies outside the head's image");
     }
     return part;
 }

@@ -19,6 +19,7 @@
 
 #include "FileFault.h"
 #include "Samples.h"
+#include "adaptiso/Core/Shortage.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -95,10 +96,10 @@ private:
 };
 
 [[noreturn]] void refuseStart(const fs::path& input) {
-    refuse(input,
-           fmt::format("can't be read: no process could be started to decode it ({})",
-                       std::strerror(errno)),
-           "free memory or processes");
+    refuseShort(input,
+                fmt::format("can't be read: no process could be started to decode it ({})",
+                            std::strerror(errno)),
+                "free memory or processes");
 }
 
 /// Reads the pipe until the child closes it. \return false at the deadline
@@ -145,8 +146,9 @@ ReadVolume volumeOf(const fs::path& input, int memory, FenceAnswer answer) {
     }
     const std::shared_ptr<const void> samples = mapSamples(memory, answer);
     if (!samples) {
-        refuse(input, fmt::format("needs {} bytes of memory, more than there is", answer.byteCount),
-               "use a machine with more memory or crop the image");
+        refuseShort(input,
+                    fmt::format("needs {} bytes of memory, more than there is", answer.byteCount),
+                    "use a machine with more memory or crop the image");
     }
     requireUsableGeometry(input, answer.geometry);
     return {Volume(VolumeView(samples.get(), answer.pixelType, answer.geometry), samples),
@@ -161,12 +163,13 @@ ReadVolume volumeOf(const fs::path& input, int memory, FenceAnswer answer) {
             refuse(file, fmt::format("reading it was interrupted (signal {})", signal),
                    "try again");
         }
-        refuse(
-            file,
-            fmt::format(
-                "its decoder crashed (signal {}, {}){}", signal, ::strsignal(signal),
-                signal == SIGKILL || signal == SIGBUS ? ": the machine may be out of memory" : ""),
-            "the file is damaged or of an unknown kind");
+        const std::string crash =
+            fmt::format("its decoder crashed (signal {}, {})", signal, ::strsignal(signal));
+        const char* const remedy = "the file is damaged or of an unknown kind";
+        if (signal == SIGKILL || signal == SIGBUS) {
+            refuseShort(file, crash + ": the machine may be out of memory", remedy);
+        }
+        refuse(file, crash, remedy);
     }
     refuse(file,
            fmt::format("its decoder ended early (exit code {})",
@@ -179,6 +182,8 @@ ReadVolume volumeOf(const fs::path& input, int memory, FenceAnswer answer) {
     switch (answer.kind) {
         case FenceAnswer::Kind::FileError:
             throw FileError(answer.message);
+        case FenceAnswer::Kind::Shortage:
+            throw Shortage(answer.message);
         case FenceAnswer::Kind::InvalidInput:
             throw InvalidInput(answer.message);
         case FenceAnswer::Kind::InternalError:

@@ -62,6 +62,7 @@ struct FenceAnswer {
     enum class Kind : std::uint32_t {
         Volume,
         FileError,
+        Shortage,
         InvalidInput,
         InternalError,
         OutOfMemory,

@@ -16,6 +16,7 @@
 
 #include "Fence.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Shortage.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -149,6 +150,8 @@ FenceAnswer answerOf(const std::function<ReadVolume()>& read, std::optional<Read
         answer.format = result->format;
         answer.warnings = result->warnings;
         answer.kind = FenceAnswer::Kind::Volume;
+    } catch (const Shortage& error) {
+        failed(FenceAnswer::Kind::Shortage, error.what());
     } catch (const FileError& error) {
         failed(FenceAnswer::Kind::FileError, error.what());
     } catch (const InvalidInput& error) {

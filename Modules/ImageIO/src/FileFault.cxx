@@ -9,6 +9,7 @@
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ForeignContent.h"
+#include "adaptiso/Core/Shortage.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -61,6 +62,10 @@ std::string number(double value) {
 
 void refuse(const fs::path& file, std::string_view fault, std::string_view remedy) {
     throw FileError(fmt::format("{}: {}; {}", displayName(file), fault, remedy));
+}
+
+void refuseShort(const fs::path& file, std::string_view fault, std::string_view remedy) {
+    throw Shortage(fmt::format("{}: {}; {}", displayName(file), fault, remedy));
 }
 
 void refuseForeignContent(const fs::path& file) {

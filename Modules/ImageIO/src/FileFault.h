@@ -20,6 +20,10 @@ std::string number(double value);
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view fault,
                          std::string_view remedy);
 
+/// The same for want of memory or processes. \throws Shortage
+[[noreturn]] void refuseShort(const std::filesystem::path& file, std::string_view fault,
+                              std::string_view remedy);
+
 /// \throws FileError where findForeignContent() knows the content: a pointer of git-lfs, an
 /// archive, ...
 void refuseForeignContent(const std::filesystem::path& file);

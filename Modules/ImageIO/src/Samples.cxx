@@ -121,8 +121,8 @@ SampleBuffer allocateSamples(const std::filesystem::path& file, std::uint64_t by
         samples.reset(new (std::nothrow) std::byte[byteCount]);
     }
     if (!samples) {
-        refuse(file, fmt::format("needs {} bytes of memory, more than there is", byteCount),
-               "use a machine with more memory, or adaptiso-giant, which works tile by tile");
+        refuseShort(file, fmt::format("needs {} bytes of memory, more than there is", byteCount),
+                    "use a machine with more memory, or adaptiso-giant, which works tile by tile");
     }
     return samples;
 }

@@ -466,8 +466,8 @@ ZarrPart readZarrPart(const ZarrImage& image, const ZarrRegion& region) {
     try {
         assemble(image.store, image.array, assembly);
     } catch (const std::bad_alloc&) {
-        refuse(folder, "needs more memory for its chunks than there is",
-               "use a machine with more memory");
+        refuseShort(folder, "needs more memory for its chunks than there is",
+                    "use a machine with more memory");
     }
     return {makeVolume(std::move(samples), image.array.type, geometry), assembly.chunks(),
             assembly.missing()};

@@ -24,6 +24,7 @@
 #include "adaptiso/HeadModel/ConductivityModel.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
 #include "adaptiso/HeadModel/Landmarks.h"
+#include "adaptiso/HeadModel/SourceError.h"
 #include "adaptiso/HeadPipeline/BemElectrodes.h"
 #include "adaptiso/HeadPipeline/BemFiles.h"
 #include "adaptiso/HeadPipeline/BemJson.h"
@@ -158,14 +159,14 @@ HeadBoundaries boundariesOf(const HeadSources& sources, const BoundaryOptions& o
 HeadBoundaries namedBoundaries(const HeadSources& sources, const BoundaryOptions& options) {
     try {
         return boundariesOf(sources, options);
-    } catch (const InvalidInput& error) {
-        const std::string what = error.what();
-        const std::string name = what.starts_with("the brain mask")
+    } catch (const SourceError& error) {
+        const std::string name = error.source() == BoundarySource::BrainMask
                                      ? (sources.brainMask ? "brain_mask" : "aseg")
-                                 : what.starts_with("the head mask")  ? "head_mask"
-                                 : what.starts_with("a pial surface") ? "pial"
-                                                                      : sources.source;
-        throw InvalidInput(name + ": " + what);
+                                 : error.source() == BoundarySource::HeadMask ? "head_mask"
+                                                                              : "pial";
+        throw InvalidInput(name + ": " + error.what());
+    } catch (const InvalidInput& error) {
+        throw InvalidInput(sources.source + ": " + error.what());
     }
 }
 

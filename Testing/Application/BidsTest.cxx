@@ -8,9 +8,8 @@
 
 #include "Common/Bids.h"
 #include "Common/RunApp.h"
-#include "adaptiso-bids/Outliers.h"
+#include "adaptiso-bids/Jobs.h"
 #include "adaptiso-bids/QualityTable.h"
-#include "adaptiso-bids/Siblings.h"
 
 namespace adaptiso {
 namespace {
@@ -96,15 +95,16 @@ TEST(MarkOutliers, AsksForAnEffectAndTellsIt) {
     EXPECT_EQ(rows[0].outliers, "");
 }
 
-TEST(SiblingOptions, GiveValuesTheirCommas) {
-    const Sibling sibling{"adaptiso-x", {}, {}, {"iso", "largest", "crop", "vertices", "output"}};
+TEST(ProgramOptions, GiveValuesTheirCommas) {
+    const ProgramInfo program{
+        "adaptiso-x", {}, {}, {"iso", "largest", "crop", "vertices", "output"}};
     EXPECT_EQ(
-        siblingOptions("--o", "iso=100,largest,crop=:,:,40:,vertices=1,2,3,iso=-3", sibling, {}),
+        programOptions("--o", "iso=100,largest,crop=:,:,40:,vertices=1,2,3,iso=-3", program, {}),
         (std::vector<std::string>{"--iso=100", "--largest", "--crop=:,:,40:", "--vertices=1,2,3",
                                   "--iso=-3"}));
-    EXPECT_TRUE(siblingOptions("--o", "", sibling, {}).empty());
+    EXPECT_TRUE(programOptions("--o", "", program, {}).empty());
     for (const char* const wrong : {"is0=1", "100", "--iso=3", "iso=", "output=x", ",iso=1"}) {
-        EXPECT_THROW(siblingOptions("--o", wrong, sibling, {"output"}), UsageError) << wrong;
+        EXPECT_THROW(programOptions("--o", wrong, program, {"output"}), UsageError) << wrong;
     }
 }
 
