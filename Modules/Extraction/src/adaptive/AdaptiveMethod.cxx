@@ -25,8 +25,7 @@ public:
           progress_(progress),
           frame_(full.frame()),
           wanted_{options.maxTriangles, options.reduction},
-          boundMm_(boundOf(options)),
-          proof_(full.proof(boundMm_.value_or(std::numeric_limits<double>::max()))) {
+          boundMm_(boundOf(options)) {
         shape_.leastAngleDeg = options.minAngleDeg;
     }
 
@@ -34,13 +33,16 @@ public:
         for (int run = 0; run < kMostRuns; ++run) {
             report(run, 0);
             ++work_.runs;
-            Attempt attempt{simplify(), {}, {}, {}};
+            Attempt attempt = simplify(run > 0);
             report(run, 0.6);
-            if (keepsPromises(attempt)) {
-                report(run, 1);
-                return resultOf(attempt);
+            const std::int64_t triangles = attempt.surface.triangleCount();
+            if (!keepsPromises(attempt)) continue;
+            if (run + 1 < kMostRuns && !keepsCount(attempt.surface, triangles)) {
+                fewer_ = std::max<std::int64_t>(0, attempt.surface.triangleCount() - triangles);
+                continue;
             }
-            learnFrom(attempt, run);
+            report(run, 1);
+            return resultOf(attempt);
         }
         throw InternalError(
             "the adaptive method could not prove its mesh sound and within the bound; nothing is "
@@ -51,39 +53,36 @@ private:
     /// What a run made, and what was found of it.
     struct Attempt {
         SimplifiedSurface surface;
+        DistanceProof proof;
         ErrorBound error;
         TriangleMesh mesh;  ///< of the surface; empty where that lies beyond the bound
         /// Its triangles that cross others, or whose piece lies on the wrong side of another
         std::vector<std::int64_t> crossing;
     };
 
-    /// What later runs know of the ones before.
-    struct Lessons {
-        LocalTolerances tolerances;
-        int crossedRuns = 0;     ///< that left triangles that cross
-        bool provesAll = false;  ///< every star, everywhere
-    };
-
     /// The surface is proved to lie within the bound, to cross nothing, and to have each piece on
-    /// its side of the others. Single places where it is beyond or crosses are mended.
+    /// its side of the others. Single places where it does not are mended; what mending does not
+    /// help is taken back to the full surface, farther and farther around.
     bool keepsPromises(Attempt& attempt) {
-        attempt.error = proof_->prove(attempt.surface);
+        attempt.error = attempt.proof.prove(attempt.surface);
         attempt.surface.returnFreedMemory();
-        mendDistances(attempt);
-        if (isBeyond(attempt.error)) return false;
+        if (!keepsDistances(attempt)) return false;
         findCrossings(attempt);
-        const std::int64_t triangles = attempt.surface.triangleCount();
-        for (int mend = 0; mend < kMostMends && !attempt.crossing.empty(); ++mend) {
-            auto changes = mendCrossings(attempt);
-            if (!changes) changes = undoCrossings(attempt);
-            if (!changes || !keepsCount(attempt.surface, triangles)) return false;
-            attempt.error = proof_->proveAgain(attempt.surface, *changes);
-            mendDistances(attempt);
+        double reachMm = kUndoReach * frame_.narrowestMm();
+        for (int n = 0; !attempt.crossing.empty(); ++n) {
+            std::optional<SurfaceChanges> changes;
+            if (n < kMostMends) changes = mendCrossings(attempt);
+            if (!changes) {
+                if (reachMm > farthestMm()) return false;
+                changes = undoAround(attempt.surface, numbersOf(attempt.crossing), {}, reachMm);
+                reachMm *= 2;
+            }
+            if (!changes) continue;
+            attempt.error = attempt.proof.proveAgain(attempt.surface, *changes);
+            if (!keepsDistances(attempt)) return false;
             findCrossings(attempt);
         }
-        if (!attempt.crossing.empty() || isBeyond(attempt.error)) return false;
-        attempt.crossing = full_.insideOut(attempt.surface);
-        return attempt.crossing.empty();
+        return true;
     }
 
     /// After mending as many triangles are left as are wanted, or as were before.
@@ -93,19 +92,6 @@ private:
                            wanted = std::max(before, wanted_.of(surface.fineTriangles));
         return now <= wanted &&
                static_cast<double>(now) >= (1 - kCountMissed) * static_cast<double>(before);
-    }
-
-    /// Where promises were not kept the next run takes more care.
-    void learnFrom(const Attempt& attempt, int run) {
-        const std::vector<Vec3> beyond = indicesOf(attempt.error), crossings = placesOf(attempt);
-        lessons_.tolerances.add(beyond);
-        lessons_.tolerances.addCrossings(crossings);
-        if (!crossings.empty() && ++lessons_.crossedRuns == kMostCrossedRuns) {
-            lessons_.provesAll = true;
-        }
-        if (run < kFirstFreeze) return;
-        lessons_.tolerances.freeze(beyond, run - kFirstFreeze);
-        lessons_.tolerances.freeze(crossings, run - kFirstFreeze);
     }
 
     AdaptiveResult resultOf(Attempt& attempt) const {
@@ -130,30 +116,41 @@ private:
 
     void findCrossings(Attempt& attempt) const {
         attempt.mesh = full_.meshOf(attempt.surface);
-        attempt.crossing = crossingTriangles(attempt.mesh, full_.cellsOf(attempt.surface));
+        attempt.crossing =
+            crossingTriangles(attempt.mesh, full_.cellsOf(attempt.surface, attempt.proof.isFine()));
         full_.forgiveCrossings(attempt.mesh, attempt.crossing);
+        if (attempt.crossing.empty()) attempt.crossing = full_.insideOut(attempt.surface);
     }
 
     bool isBeyond(const ErrorBound& error) const { return boundMm_ && error.largestMm > *boundMm_; }
 
-    /// Mends places beyond the bound, and proves what was changed.
-    void mendDistances(Attempt& attempt) {
-        if (wanted_.isGiven() || !isBeyond(attempt.error)) return;
-        mend(attempt.surface, attempt.error);
-        undo(attempt.surface, attempt.error);
+    /// Mends places beyond the bound, and takes the simplification back around those that mending
+    /// does not help; proves what was changed.
+    bool keepsDistances(Attempt& attempt) {
+        if (isBeyond(attempt.error)) mend(attempt);
+        for (double reachMm = kUndoReach * frame_.narrowestMm(); isBeyond(attempt.error);
+             reachMm *= 2) {
+            if (reachMm > farthestMm()) return false;
+            const auto changes = undoAround(attempt.surface, trianglesOf(attempt.error),
+                                            pointsOf(attempt.error), reachMm);
+            if (!changes) continue;
+            attempt.error = attempt.proof.proveAgain(attempt.surface, *changes);
+            mend(attempt);
+        }
+        return true;
     }
 
-    /// \param error  what was proved; then what is
-    void mend(SimplifiedSurface& surface, ErrorBound& error) {
+    void mend(Attempt& attempt) {
+        SimplifiedSurface& surface = attempt.surface;
         SurfaceMender mender(surface, frame_, *boundMm_, full_.box());
-        for (int idle = 0; isBeyond(error) && idle < kMostIdleMends;) {
-            const std::size_t before = trianglesOf(error).size();
-            const std::size_t mended = mender.mendDistances(error.beyondLimit);
+        for (int idle = 0; isBeyond(attempt.error) && idle < kMostIdleMends;) {
+            const std::size_t before = trianglesOf(attempt.error).size();
+            const std::size_t mended = mender.mendDistances(attempt.error.beyondLimit);
             if (mended == 0) break;
             work_.placesMended += static_cast<std::int64_t>(mended);
             surface.returnFreedMemory();
-            error = proof_->proveAgain(surface, mender.takeChanges());
-            const bool isLess = static_cast<double>(trianglesOf(error).size()) <
+            attempt.error = attempt.proof.proveAgain(surface, mender.takeChanges());
+            const bool isLess = static_cast<double>(trianglesOf(attempt.error).size()) <
                                 kMended * static_cast<double>(before);
             idle = isLess ? 0 : idle + 1;
         }
@@ -165,26 +162,13 @@ private:
         mended_.insert(mended_.end(), changed.begin(), changed.end());
     }
 
-    /// Takes the simplification back around places that mending did not help.
-    /// \param error  what was proved; then what is
-    void undo(SimplifiedSurface& surface, ErrorBound& error) {
-        double reachMm = kUndoReach * frame_.narrowestMm();
-        for (int n = 0; n < kMostUndos && isBeyond(error); ++n) {
-            const auto changes = undoAround(surface, trianglesOf(error), pointsOf(error), reachMm);
-            if (changes) {
-                error = proof_->proveAgain(surface, *changes);
-                mend(surface, error);
-            }
-            reachMm *= 2;
-        }
-    }
-
     std::optional<SurfaceChanges> undoAround(SimplifiedSurface& surface,
                                              const std::vector<SurfaceState::Number>& triangles,
                                              const std::vector<Vec3>& places, double reachMm) {
-        if (checkpoint_.points.empty()) return {};
+        if (surface.heirs.empty()) return {};
         const std::ptrdiff_t points = std::ssize(surface.points);
-        auto changes = LocalUndo(checkpoint_, surface).around(mended_, triangles, places, reachMm);
+        auto changes =
+            LocalUndo(full_.fineOf(surface), surface).around(mended_, triangles, places, reachMm);
         work_.verticesUndone += std::ssize(surface.points) - points;
         return changes;
     }
@@ -205,21 +189,11 @@ private:
         return points;
     }
 
-    std::vector<Vec3> indicesOf(const ErrorBound& error) const {
-        std::vector<Vec3> indices;
-        for (const Vec3& p : pointsOf(error)) indices.push_back(frame_.toIndex(p));
-        return indices;
+    static std::vector<SurfaceState::Number> numbersOf(const std::vector<std::int64_t>& triangles) {
+        return {triangles.begin(), triangles.end()};
     }
-    /// The middles of the triangles that cross, as continuous sample indices.
-    std::vector<Vec3> placesOf(const Attempt& attempt) const {
-        std::vector<Vec3> places;
-        for (const std::int64_t t : attempt.crossing) {
-            const auto& [a, b, c] = attempt.mesh.triangles[t];
-            const std::vector<Vec3>& points = attempt.mesh.points;
-            places.push_back(full_.indexOf((1.0 / 3) * (points[a] + points[b] + points[c])));
-        }
-        return places;
-    }
+    /// No undo goes farther: then all of the surface is the full one.
+    double farthestMm() const { return 4 * full_.largestExtentMm(); }
 
     std::optional<SurfaceChanges> mendCrossings(Attempt& attempt) {
         SurfaceMender mender(attempt.surface, frame_, boundMm_.value_or(attempt.error.largestMm),
@@ -229,14 +203,6 @@ private:
         keepChanged(mender);
         if (mended == 0) return {};
         return mender.takeChanges();
-    }
-
-    /// Takes triangles that cross others back: where the simplification was taken back, its surface
-    /// can cross that of the checkpoint.
-    std::optional<SurfaceChanges> undoCrossings(Attempt& attempt) {
-        const std::vector<SurfaceState::Number> triangles(attempt.crossing.begin(),
-                                                          attempt.crossing.end());
-        return undoAround(attempt.surface, triangles, {}, kUndoReach * frame_.narrowestMm());
     }
 
     std::optional<double> boundOf(const AdaptiveOptions& adaptive) const {
@@ -249,7 +215,8 @@ private:
         if (progress_) progress_(run == 0 ? "extract" : "refine", fraction);
     }
 
-    PatchLimits limits() const {
+    /// \param isCareful  every star is proved
+    PatchLimits limits(bool isCareful) const {
         const double sheetMm = kSheetDistance * frame_.narrowestMm();
         const double boundMm = boundMm_.value_or(kCountDistance * frame_.narrowestMm());
         PatchLimits limits;
@@ -260,20 +227,29 @@ private:
             boundMm - std::min(kSlackVoxels * frame_.narrowestMm(), kSlackPart * boundMm);
         if (boundMm_) limits.webMm = kWeb * *boundMm_;
         if (!wanted_.isGiven()) limits.maxFittedMm = kFitDistance * limits.maxDistanceMm;
-        limits.provesAll = lessons_.provesAll || limits.maxDistanceMm > sheetMm;
+        limits.provesAll = isCareful || limits.maxDistanceMm > sheetMm;
+        limits.keepsHeirs = isCareful || boundMm_;
         return limits;
     }
 
-    SimplifiedSurface simplify() {
-        checkpoint_ = {};
-        Simplification simplification(full_, lessons_.tolerances, limits());
-        if (!wanted_.isGiven()) {
-            mended_.clear();
-            return simplification.toLimits(checkpoint_);
-        }
-        if (boundMm_) return simplification.toCount(wanted_, 0);
+    Attempt simplify(bool isCareful) {
+        mended_.clear();
+        SimplifiedSurface surface = simplified(limits(isCareful));
+        const TriangleView fine = full_.fineOf(surface);
+        return {std::move(surface),
+                DistanceProof(fine, frame_, boundMm_.value_or(std::numeric_limits<double>::max())),
+                {},
+                {},
+                {}};
+    }
+
+    SimplifiedSurface simplified(const PatchLimits& limits) const {
+        Simplification simplification(full_, limits);
+        if (!wanted_.isGiven()) return simplification.toLimits();
+        WantedCount wanted = wanted_;
+        wanted.fewer = fewer_;
         // without a bound the count goes before closeness
-        return simplification.toCount(wanted_, full_.largestExtentMm());
+        return simplification.toCount(wanted, boundMm_ ? 0 : full_.largestExtentMm());
     }
 
     const FullSurface& full_;
@@ -282,10 +258,8 @@ private:
     WantedCount wanted_;
     std::optional<double> boundMm_;
     StarLimits shape_;
-    Lessons lessons_;
-    SurfaceState checkpoint_;  ///< of this run; empty with a count
+    std::int64_t fewer_ = 0;  ///< triangles that a run aims below the wanted count
     AdaptiveWork work_;
-    std::unique_ptr<DistanceProof> proof_;        ///< remembers what it proved last, to prove less
     std::vector<SurfaceState::Triangle> mended_;  ///< of this run, before and after
 };
 

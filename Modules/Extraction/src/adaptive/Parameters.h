@@ -26,8 +26,9 @@ inline constexpr double kCountDistance = 0.46;
 /// Voxels: a star within this distance of its samples is a single sheet where the sheet test says
 /// so. Half a voxel is what the test's 4 x 4 x 4 samples are proved for (isSingleSheet).
 inline constexpr double kSheetDistance = 0.5;
-/// Runs from the beginning; those of them that may end in crossings before all stars are proved.
-inline constexpr int kMostRuns = 16, kMostCrossedRuns = 3;
+/// Runs: towards a count a second one proves every star where the first left triangles that cross,
+/// and aims lower by as many triangles as mending had added.
+inline constexpr int kMostRuns = 2;
 /// Rounds of mending crossings in one run; rounds of mending distances that may gain little.
 inline constexpr int kMostMends = 6, kMostIdleMends = 1;
 /// Part of the triangles that mending crossings may leave below a wanted count, which is to be met
@@ -36,18 +37,18 @@ inline constexpr double kCountMissed = 0.001;
 /// A round of mending gains little when it leaves more than this part of the triangles with places
 /// beyond the bound.
 inline constexpr double kMended = 0.5;
-/// From this run on places that fail stay at full resolution, twice as far around with every run.
-inline constexpr int kFirstFreeze = 6;
 /// Of the bound: a part of the surface that is thinner is a web or a needle, where the height over
 /// a sample's tangent plane says little of how far a point is from the surface. The allowed
 /// distance is smaller there from the start. Chosen by runs that had to begin again: ch2 at 60.5
 /// (three runs) and 100.5 (1,591 vertices undone) take one, for .5 and .2 % more triangles.
 inline constexpr double kWeb = 0.5;
+/// How often the square of the allowed distance is halved in a web.
+inline constexpr int kWebHalvings = 5;
 /// Vertices are fitted within this part of the allowed distance, or no farther than they were: then
 /// few places come to lie beyond the bound.
 inline constexpr double kFitDistance = 0.75;
 
-// ---- Rounds (Simplification, PatchRound, LocalTolerances) ----
+// ---- Rounds (Simplification, PatchRound) ----
 
 /// Limits of cost: of the bricks' round, and above which there is none.
 inline constexpr double kFirstCost = 1e-3, kLastCost = 10;
@@ -55,9 +56,9 @@ inline constexpr double kFirstCost = 1e-3, kLastCost = 10;
 /// collapses first, everywhere, so that walls between patches do not show. A round at 3e-3 before
 /// them takes a few per cent more time for as many triangles.
 inline constexpr std::array kBoundCosts{1.8e-2, 0.108, 0.648};
-/// The surface that single places are taken back to: costs below this part of the square of the
-/// allowed distance, distances below this part of it.
-inline constexpr double kCheckpointCost = 2, kCheckpointDistance = 0.25;
+/// Rounds towards a bound begin with changes that are small in every way: costs below this part of
+/// the square of the allowed distance, distances below this part of it.
+inline constexpr double kGentleCost = 2, kGentleDistance = 0.25;
 /// A larger distance helped towards a count when it leaves less than this part of the triangles
 /// that are still too many; after so many in a row that did not, the count is given up.
 inline constexpr double kHelped = 0.95;
@@ -112,10 +113,6 @@ inline constexpr double kFewFinal = 0.05;
 /// Cells that a patch's new vertices may lie beyond its own triangles, where others of the patch's
 /// cube are settled: vertices of a round part lie outside what they replace, by less.
 inline constexpr double kBeyondOwn = 1;
-/// Side of the cubes in which tolerances are lowered around a place, voxels, and how often the
-/// square of the allowed distance is halved there, by how often the place has failed.
-inline constexpr double kToleranceCube = 1.5;
-inline constexpr std::array<std::uint8_t, 4> kHalvings{0, 5, 14, 40};
 
 // ---- Bricks (BrickRound, SheetClearance, SheetTest) ----
 
@@ -201,7 +198,7 @@ inline constexpr double kProofGap = 1e-4;
 inline constexpr double kFanCosine = 0.02;
 inline constexpr int kFanMost = 24;
 
-// ---- The proof of the bound (BrickProof, ErrorProof) ----
+// ---- The proof of the bound (DistanceProof) ----
 
 /// How many triangles a walk may visit: from a full-resolution triangle; from one of the simplified
 /// surface, this many and so many for each voxel's face that would cover it.
@@ -209,11 +206,6 @@ inline constexpr int kStepsOfFine = 40, kFewSteps = 100;
 inline constexpr double kStepsPerFace = 20, kManySteps = 1e6;
 /// Voxels: from this bound on few pieces need cuts, and triangles are quartered instead.
 inline constexpr double kLooseBound = 0.2;
-/// So many full-resolution triangles are asked whether a piece lies near them: with those whose
-/// middles are nearest nearly every piece is settled.
-inline constexpr std::size_t kNearestFine = 6;
-/// Samples taken in place of the full-resolution surface where pieces are too far from every brick.
-inline constexpr std::size_t kFarSamples = 4096;
 
 // ---- Mending (SurfaceMender) ----
 
@@ -232,9 +224,8 @@ inline constexpr std::array kMendCosines{0.3, -0.3};
 inline constexpr double kMoveWeight = 0.4;
 inline constexpr std::array kMoveSteps{0.6, 0.35, 0.15};
 /// Around places that mending does not help vertices come apart again, voxels: in the first
-/// attempt; four attempts, each twice as far. At most this part of the checkpoint's vertices.
-inline constexpr double kUndoReach = 1, kMostUndone = 0.05;
-inline constexpr int kMostUndos = 4;
+/// attempt, and twice as far in each next one.
+inline constexpr double kUndoReach = 1;
 /// So many times more comes apart to keep the surface a manifold.
 inline constexpr int kMostWidenings = 8;
 /// An edge is turned where that leaves less than this part of the distance.

@@ -4,17 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <vector>
 
 #include "RandomVolumes.h"
-#include "Surfaces.h"
 #include "adaptive/bricks/Bricks.h"
 
 namespace adaptiso::testing {
 namespace {
 
-using detail::Brick;
 using detail::BrickMesher;
 using detail::Bricks;
 using detail::FineSurface;
@@ -36,14 +33,6 @@ Key keyOf(const Vec3& a, const Vec3& b, const Vec3& c) {
 Key keyOf(const FineSurface& fine, std::size_t t) {
     const auto& [a, b, c] = fine.triangles[t];
     return keyOf(fine.vertices[a].index, fine.vertices[b].index, fine.vertices[c].index);
-}
-
-/// The triangles of a surface, by the lattice position of their cells.
-std::map<Key, Index3> cellsOf(const FineSurface& fine, const Brick& brick) {
-    std::map<Key, Index3> cells;
-    forEachCellTriangle(fine, brick,
-                        [&](const Index3& cell, std::size_t t) { cells[keyOf(fine, t)] = cell; });
-    return cells;
 }
 
 }  // namespace
@@ -69,7 +58,6 @@ TEST(BrickMesher, MakesTheSurfaceOfMarchingCubes) {
         FineSurface fine;
         for (std::int64_t b = 0; b < bricks.count(); ++b) {
             mesher.mesh(bricks[b], fine);
-            EXPECT_EQ(fine.ownTriangles, fine.triangles.size());
             for (std::size_t t = 0; t < fine.triangles.size(); ++t) keys.push_back(keyOf(fine, t));
         }
         std::sort(expected.begin(), expected.end());
@@ -78,42 +66,6 @@ TEST(BrickMesher, MakesTheSurfaceOfMarchingCubes) {
         most = std::max(most, static_cast<std::size_t>(bricks.count()));
     }
     EXPECT_GE(most, 4U);
-}
-
-TEST(BrickMesher, GivesAHaloOfTheCellsAround) {
-    const Scene scene = ballScene();
-    ASSERT_EQ(scene.bricks.count(), 8);
-    BrickMesher mesher(*scene.sampler, scene.bricks.grid());
-    FineSurface fine;
-    std::map<Key, Index3> all;
-    for (std::int64_t b = 0; b < 8; ++b) {
-        mesher.mesh(scene.bricks[b], fine);
-        all.merge(cellsOf(fine, scene.bricks[b]));
-    }
-    for (std::int64_t b = 0; b < 8; ++b) {
-        const Brick& brick = scene.bricks[b];
-        mesher.mesh(brick, fine);
-        const std::size_t own = fine.triangles.size(), vertices = fine.vertices.size();
-        std::vector<Key> alone, withHalo, expected;
-        for (std::size_t t = 0; t < own; ++t) alone.push_back(keyOf(fine, t));
-        mesher.meshWithHalo(
-            scene.bricks, b, [](std::uint32_t) { return true; }, fine);
-        EXPECT_EQ(fine.ownTriangles, own);
-        EXPECT_EQ(fine.ownVertices, vertices);
-        for (std::size_t t = 0; t < own; ++t) EXPECT_EQ(keyOf(fine, t), alone[t]);
-        for (const auto& [key, cell] : cellsOf(fine, brick)) withHalo.push_back(key);
-        for (const auto& [key, cell] : all) {
-            bool isNear = true;
-            for (int a = 0; a < 3; ++a) {
-                const std::int64_t at = cell[a] - brick.low[a];
-                isNear =
-                    isNear && at >= -BrickMesher::kHalo && at < Brick::kSide + BrickMesher::kHalo;
-            }
-            if (isNear) expected.push_back(key);
-        }
-        EXPECT_EQ(withHalo, expected);  // maps are sorted
-        EXPECT_GT(withHalo.size(), own);
-    }
 }
 
 }  // namespace adaptiso::testing

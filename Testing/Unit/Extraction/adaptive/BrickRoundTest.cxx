@@ -36,7 +36,7 @@ TEST(BrickRound, KeepsEachTriangleInOneBrick) {
         limits.maxCost = 10;
         limits.maxDistanceMm = 0.5;
         const detail::SimplifiedSurface surface =
-            detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, {}, limits, nullptr);
+            detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, limits, nullptr);
         ASSERT_LT(surface.triangleCount(), surface.fineTriangles / 2);
         const auto offset = static_cast<double>(scene.bricks.grid().offset);
         constexpr double kRounding = 1e-9;  // of coordinates up to 100
@@ -56,23 +56,20 @@ TEST(BrickRound, KeepsEachTriangleInOneBrick) {
     }
 }
 
-TEST(BrickRound, LeavesFrozenPlacesAtFullResolution) {
+TEST(BrickRound, LeavesWhatMayNotMoveAtFullResolution) {
     const Scene scene = ballScene();
     detail::PatchLimits limits;
     limits.maxCost = 10;
     limits.maxDistanceMm = 0.5;
-    detail::LocalTolerances tolerances;
-    const auto simplified = [&] {
-        return detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, tolerances, limits,
-                                      nullptr);
+    const auto simplified = [&](double highest) {
+        BoundingBox moving{{-1, -1, -1}, {1e3, 1e3, highest}};
+        return detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, limits, nullptr,
+                                      &moving);
     };
-    const std::int64_t without = simplified().triangleCount();
-    tolerances.freeze({kBallMiddle + Vec3{0, 0, kBallRadius}}, 0);
-    const detail::SimplifiedSurface surface = simplified();
-    EXPECT_GT(surface.triangleCount(), without + 20);
+    const detail::SimplifiedSurface surface = simplified(kBallMiddle.z + 0.5 * kBallRadius);
+    EXPECT_GT(surface.triangleCount(), simplified(1e3).triangleCount() + 20);
     EXPECT_LT(surface.triangleCount(), surface.fineTriangles / 2);
-    tolerances.freeze({kBallMiddle}, 6);  // all of it
-    EXPECT_EQ(simplified().triangleCount(), surface.fineTriangles);
+    EXPECT_EQ(simplified(-0.5).triangleCount(), surface.fineTriangles);
 }
 
 // A web .1 voxel thick at x = 8, and a ball that is not.
@@ -86,16 +83,44 @@ TEST(BrickRound, KeepsWebsCloser) {
     for (const double webMm : {0.0, 0.09, 0.11}) {
         limits.webMm = webMm;
         const detail::SimplifiedSurface surface =
-            detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, {}, limits, nullptr);
+            detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, limits, nullptr);
         std::size_t closer = 0;
         for (const detail::Sample& sample : surface.samples) {
             const bool isOfBall = sample.point().x > 20;
             if (isOfBall) {
-                ASSERT_EQ(sample.halvings, 0);
+                ASSERT_FALSE(sample.isInWeb);
             }
-            closer += sample.halvings > 0 ? 1 : 0;
+            closer += sample.isInWeb ? 1 : 0;
         }
         EXPECT_EQ(closer > 1000, webMm == 0.11) << webMm;
+    }
+}
+
+// What the proof is given: all of marching cubes' surface, whatever was collapsed, and the samples
+// of its vertices in their order.
+TEST(BrickRound, KeepsTheFullSurfaceAndTheSamplesOfItsVertices) {
+    const Scene ball = ballScene();
+    const Scene noisy(noiseBesideSmooth({70, 20, 20}, {}, 5), 0, Border::Open);
+    for (const Scene* scene : {&ball, &noisy}) {
+        const detail::SimplifiedSurface surface = firstRoundOf(*scene);
+        EXPECT_LT(surface.triangleCount(), surface.fineTriangles);
+        EXPECT_EQ(std::ssize(surface.fine.triangles), surface.fineTriangles);
+        std::size_t vertex = 0;
+        for (const detail::Sample& sample : surface.samples) {
+            if (sample.isMiddle) continue;
+            ASSERT_LT(vertex, surface.fine.points.size());
+            EXPECT_EQ(sample.position, detail::Sample::positionOf(surface.fine.points[vertex++]));
+        }
+        EXPECT_EQ(vertex, surface.fine.points.size());
+        // without collapses the surface is the same triangle by triangle
+        const detail::SimplifiedSurface full = scene->fullSurface();
+        ASSERT_EQ(full.triangles.size(), surface.fine.triangles.size());
+        for (std::size_t t = 0; t < full.triangles.size(); ++t) {
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_EQ(surface.fine.points[surface.fine.triangles[t][c]],
+                          full.points[full.triangles[t][c]]);
+            }
+        }
     }
 }
 
@@ -114,15 +139,20 @@ TEST(BrickRound, LeavesNoiseWholeUpToItsWalls) {
         const Scene scene(Volume::fromSamples(std::move(values), unitGeometry(size)), 0,
                           Border::Open);
         ASSERT_EQ(scene.bricks.count(), 2);
-        const std::int64_t noise = isMirrored ? 1 : 0, smooth = 1 - noise;
         const detail::SimplifiedSurface surface = firstRoundOf(scene);
-        EXPECT_TRUE(surface.wasLeftWhole(noise));
-        EXPECT_FALSE(surface.wasLeftWhole(smooth));
         EXPECT_EQ(surface.quadrics.size(), surface.points.size());
-        // no samples but those on walls
-        EXPECT_EQ(surface.firstSample[noise], surface.firstSample[noise + 1]);
-        EXPECT_LT(surface.firstSample[smooth], surface.firstSample[smooth + 1]);
-        EXPECT_EQ(surface.samples.size() - surface.firstSample.back(), surface.wallEdges.size());
+        const auto vertices = std::count_if(surface.samples.begin(), surface.samples.end(),
+                                            [](const auto& s) { return !s.isMiddle; });
+        EXPECT_EQ(vertices, std::ssize(surface.fine.points));
+        const auto isWhole = [](const detail::SimplifiedSurface& s, bool inNoise) {
+            for (std::size_t v = 0; v < s.points.size(); ++v) {
+                if ((s.points[v].x < detail::Brick::kSide) != inNoise) continue;
+                if (s.states[v] != detail::Patch::State::Final) return false;
+            }
+            return true;
+        };
+        EXPECT_TRUE(isWhole(surface, !isMirrored));
+        EXPECT_FALSE(isWhole(surface, isMirrored));
         std::size_t onWall = 0;
         for (std::size_t v = 0; v < surface.points.size(); ++v) {
             if (surface.points[v].x != detail::Brick::kSide) continue;
@@ -134,8 +164,8 @@ TEST(BrickRound, LeavesNoiseWholeUpToItsWalls) {
         detail::PatchLimits limits = limitsThatLeaveNoise();
         limits.leavesNoise = false;
         const auto all =
-            detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, {}, limits, nullptr);
-        EXPECT_FALSE(all.wasLeftWhole(noise));
+            detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, limits, nullptr);
+        EXPECT_FALSE(isWhole(all, !isMirrored));
         EXPECT_EQ(all.fineTriangles, surface.fineTriangles);
         EXPECT_EQ(all.tableTriangles, surface.tableTriangles);
     }

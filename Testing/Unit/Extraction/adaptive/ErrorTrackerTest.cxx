@@ -43,14 +43,14 @@ TEST(ErrorTracker, RefusesASampleLeftBeyondTheDistance) {
     EXPECT_NEAR(result.largestSquare, 0.36, kRounding);
 }
 
-TEST(ErrorTracker, HalvesTheSquareOfTheDistance) {
+TEST(ErrorTracker, AllowsASmallerDistanceInAWeb) {
     SampledSquare square;
     const std::size_t s = square.addSample(0.3);
-    square.patch.samples[s].halvings = 2;  // half the distance
+    square.patch.samples[s].isInWeb = true;  // the square of the distance over 2^5
     ErrorTracker errors(square.patch, unitFrame());
     SampleAssignment result;
-    EXPECT_FALSE(errors.assign(square.changed, 0.59, result));
-    EXPECT_TRUE(errors.assign(square.changed, 0.61, result));
+    EXPECT_FALSE(errors.assign(square.changed, 1.69, result));
+    EXPECT_TRUE(errors.assign(square.changed, 1.7, result));
     EXPECT_FALSE(errors.measure(square.changed));  // no vertex is fitted there
 }
 

@@ -41,8 +41,9 @@ struct CoarseSphere {
         heirs = surface.heirs;
     }
 
+    detail::LocalUndo undo() { return {{start.points, start.triangles}, surface}; }
     std::optional<detail::SurfaceChanges> undoAround(const Vec3& place, double reachMm) {
-        return detail::LocalUndo(start, surface).around({}, {}, {place}, reachMm);
+        return undo().around({}, {}, {place}, reachMm);
     }
 
     detail::SimplifiedSurface surface;
@@ -171,7 +172,7 @@ TEST(LocalUndo, LeavesSamplesWithTrianglesNearThem) {
 }
 
 // Where a vertex was pulled through the surface beside it what crosses comes apart, and what
-// crosses that then; unless that is too much.
+// crosses that then.
 TEST(LocalUndo, TakesBackWhatCrosses) {
     const CoarseSphere sphere;
     constexpr std::size_t kEvery = 11;
@@ -186,7 +187,7 @@ TEST(LocalUndo, TakesBackWhatCrosses) {
         ++crossed;
         for (int n = 0; n < kTimes && !crossing.empty(); ++n) {
             const std::vector<SurfaceState::Number> seeds(crossing.begin(), crossing.end());
-            if (!detail::LocalUndo(pulled.start, pulled.surface).around({}, seeds, {}, 1)) break;
+            if (!pulled.undo().around({}, seeds, {}, 1)) break;
             expectSound(meshOf(pulled.surface));
             crossing = crossingTriangles(meshOf(pulled.surface));
         }
@@ -204,10 +205,11 @@ TEST(LocalUndo, HasNothingToDoWhereNothingWasMerged) {
     EXPECT_FALSE(CoarseSphere().undoAround({0, 0, 0}, 1));  // no surface there
 }
 
-TEST(LocalUndo, RefusesToUndoTooMuch) {
+TEST(LocalUndo, BringsAllBackFromFarEnough) {
     CoarseSphere sphere;
+    EXPECT_TRUE(sphere.undoAround({0, 0, kRadius}, 2 * kRadius));
+    EXPECT_EQ(byCorners(sphere.surface), byCorners(sphere.start));
     EXPECT_FALSE(sphere.undoAround({0, 0, kRadius}, 2 * kRadius));
-    EXPECT_EQ(byCorners(sphere.surface), byCorners(sphere.coarse));
 }
 
 // What was mended goes with what it was mended in.
@@ -225,8 +227,7 @@ TEST(LocalUndo, TakesMendedTrianglesBackToo) {
     ASSERT_GT(mender.mendDistances(places), 3U);
     const std::size_t mended = sphere.surface.points.size();
     ASSERT_GT(mended, sphere.coarse.points.size());
-    ASSERT_TRUE(detail::LocalUndo(sphere.start, sphere.surface)
-                    .around(mender.changedTriangles(), {}, {place}, 1));
+    ASSERT_TRUE(sphere.undo().around(mender.changedTriangles(), {}, {place}, 1));
     const TriangleMesh mesh = meshOf(sphere.surface);
     expectSound(mesh);
     // all of it hung together, and every vertex is one of the rounds' again

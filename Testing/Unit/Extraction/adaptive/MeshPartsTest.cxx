@@ -13,7 +13,7 @@
 #include "adaptive/full/FlatTriangles.h"
 #include "adaptive/full/MeshParts.h"
 #include "adaptive/full/MeshSurface.h"
-#include "adaptive/proof/MeshProof.h"
+#include "adaptive/proof/DistanceProof.h"
 #include "adaptive/rounds/BorderMarks.h"
 
 namespace adaptiso::testing {
@@ -31,7 +31,7 @@ TriangleMesh bare(TriangleMesh mesh) {
 
 /// The surface of a mesh with nothing changed of it.
 SimplifiedSurface whole(const detail::MeshSurface& surface) {
-    return surface.firstRound({}, {}, nullptr);  // a collapse costs more than nothing
+    return surface.firstRound({}, nullptr);  // a collapse costs more than nothing
 }
 
 }  // namespace
@@ -203,59 +203,63 @@ TEST(MeshSurface, GivesTheMeshBack) {
     }
 }
 
-TEST(MeshProof, SaysThatAMeshIsNearItself) {
+TEST(DistanceProof, SaysThatAMeshIsNearItself) {
     const TriangleMesh sphere = bare(icosphere(4, {}, 10));
     const MeshParts parts = takeApart(sphere, false);
     const detail::MeshSurface full(sphere, parts, {});
-    const detail::ErrorBound bound = full.proof(0.1)->prove(whole(full));
+    const detail::ErrorBound bound =
+        detail::DistanceProof(parts.view(), full.frame(), 0.1).prove(whole(full));
     EXPECT_TRUE(bound.beyondLimit.empty());
     EXPECT_LT(bound.largestMm, 0.02);  // a hundredth of a voxel is not told from nothing
 }
 
-TEST(MeshProof, BoundsASphereMovedOutward) {
+TEST(DistanceProof, BoundsAMeshMovedOutward) {
     const TriangleMesh sphere = bare(icosphere(4, {}, 10));
     const MeshParts parts = takeApart(sphere, false);
     const detail::MeshSurface full(sphere, parts, {});
     SimplifiedSurface moved = whole(full);
     for (Vec3& p : moved.points) p = 1.02 * p;
-    const detail::ErrorBound bound = full.proof(std::numeric_limits<double>::max())->prove(moved);
+    const detail::ErrorBound bound =
+        detail::DistanceProof(parts.view(), full.frame(), std::numeric_limits<double>::max())
+            .prove(moved);
     EXPECT_GE(bound.largestMm, 0.198);  // at vertices 0.2, a little less over triangles
     EXPECT_LE(bound.largestMm, 0.206);
 }
 
-TEST(MeshProof, FindsAVertexThatWasPulledOutAndForgetsItWhenItIsBack) {
+TEST(DistanceProof, FindsAVertexThatWasPulledOutAndForgetsItWhenItIsBack) {
     const TriangleMesh sphere = bare(icosphere(4, {}, 10));
     const MeshParts parts = takeApart(sphere, false);
     const detail::MeshSurface full(sphere, parts, {});
-    const auto proof = full.proof(0.1);
+    detail::DistanceProof proof(parts.view(), full.frame(), 0.1);
     SimplifiedSurface surface = whole(full);
     const Vec3 before = surface.points[7];
     surface.points[7] = 1.1 * before;
-    const detail::ErrorBound pulled = proof->prove(surface);
+    const detail::ErrorBound pulled = proof.prove(surface);
     EXPECT_GT(pulled.largestMm, 0.9);
     ASSERT_FALSE(pulled.beyondLimit.empty());
     for (const detail::PlaceBeyond& place : pulled.beyondLimit) {
         EXPECT_LT(norm(place.point() - before), 2);
     }
-    EXPECT_TRUE(proof->proveAgain(surface, moveVertex(surface, 7, before)).beyondLimit.empty());
+    EXPECT_TRUE(proof.proveAgain(surface, moveVertex(surface, 7, before)).beyondLimit.empty());
 }
 
 // Nothing is beyond no limit; the bound is what was proved of all that is still there.
-TEST(MeshProof, BoundsAgainWithoutALimit) {
+TEST(DistanceProof, BoundsAMeshAgainWithoutALimit) {
     const TriangleMesh sphere = bare(icosphere(4, {}, 10));
     const MeshParts parts = takeApart(sphere, false);
     const detail::MeshSurface full(sphere, parts, {});
     constexpr double kNoLimit = std::numeric_limits<double>::max();
-    const auto proof = full.proof(kNoLimit);
+    detail::DistanceProof proof(parts.view(), full.frame(), kNoLimit);
     SimplifiedSurface surface = whole(full);
-    double largestMm = proof->prove(surface).largestMm;
+    double largestMm = proof.prove(surface).largestMm;
     EXPECT_LT(largestMm, 0.05);
     for (const double mm : {0.2, 0.6, 1.5}) {
         const auto vertex = static_cast<std::uint32_t>(100 * mm);
         const Vec3 moved = (1 + mm / 10) * surface.points[vertex];
         const detail::ErrorBound again =
-            proof->proveAgain(surface, moveVertex(surface, vertex, moved));
-        const detail::ErrorBound anew = full.proof(kNoLimit)->prove(surface);
+            proof.proveAgain(surface, moveVertex(surface, vertex, moved));
+        const detail::ErrorBound anew =
+            detail::DistanceProof(parts.view(), full.frame(), kNoLimit).prove(surface);
         EXPECT_GT(anew.largestMm, 0.5 * mm);
         EXPECT_NEAR(again.largestMm, std::max(anew.largestMm, largestMm), 0.05);
         EXPECT_TRUE(again.beyondLimit.empty());
@@ -263,7 +267,7 @@ TEST(MeshProof, BoundsAgainWithoutALimit) {
     }
 }
 
-TEST(MeshProof, FindsWhatTheSimplifiedSurfaceLacks) {
+TEST(DistanceProof, FindsAPieceThatTheSimplifiedMeshLacks) {
     const TriangleMesh both = bare(merged({icosphere(3, {}, 10), icosphere(2, {30, 0, 0}, 2)}));
     const MeshParts parts = takeApart(both, false);
     const detail::MeshSurface full(both, parts, {});
@@ -273,7 +277,8 @@ TEST(MeshProof, FindsWhatTheSimplifiedSurfaceLacks) {
     for (std::uint32_t& t : surface.sampleTriangle) {
         t = std::min(t, static_cast<std::uint32_t>(kept - 1));
     }
-    const detail::ErrorBound bound = full.proof(1)->prove(surface);
+    const detail::ErrorBound bound =
+        detail::DistanceProof(parts.view(), full.frame(), 1).prove(surface);
     EXPECT_NEAR(bound.largestMm, 22, 0.5);  // from the far side of the small sphere
     EXPECT_TRUE(std::any_of(bound.beyondLimit.begin(), bound.beyondLimit.end(),
                             [](const detail::PlaceBeyond& p) { return p.isOfFine; }));

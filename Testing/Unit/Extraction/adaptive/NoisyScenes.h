@@ -51,8 +51,8 @@ inline detail::PatchLimits limitsThatLeaveNoise() {
 }
 
 inline detail::SimplifiedSurface firstRoundOf(const Scene& scene) {
-    return detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, {},
-                                  limitsThatLeaveNoise(), nullptr);
+    return detail::simplifyBricks(*scene.sampler, scene.bricks, scene.frame, limitsThatLeaveNoise(),
+                                  nullptr);
 }
 
 }  // namespace adaptiso::testing

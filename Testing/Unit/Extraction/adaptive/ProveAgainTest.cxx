@@ -11,8 +11,8 @@
 namespace adaptiso::testing {
 namespace {
 
+using detail::DistanceProof;
 using detail::ErrorBound;
-using detail::ErrorProof;
 using detail::SimplifiedSurface;
 
 /// What was found, without its order.
@@ -36,10 +36,10 @@ bool isAmong(const ErrorBound& some, const ErrorBound& all) {
 
 }  // namespace
 
-TEST(ErrorProof, SaysAgainWhatProvingAnewSays) {
+TEST(DistanceProof, SaysAgainWhatProvingAnewSays) {
     const ProvedBall ball;
     SimplifiedSurface surface = ball.full;
-    ErrorProof kept = ball.proof(0.5);
+    DistanceProof kept = ball.proof(0.5);
     ASSERT_TRUE(kept.prove(surface).beyondLimit.empty());
     std::mt19937 random(4);
     for (int n = 0; n < 4; ++n) {
@@ -55,11 +55,11 @@ TEST(ErrorProof, SaysAgainWhatProvingAnewSays) {
 }
 
 // Nothing is beyond no limit; the bound is what was proved of all that is still there.
-TEST(ErrorProof, BoundsAgainWithoutALimit) {
+TEST(DistanceProof, BoundsAgainWithoutALimit) {
     const ProvedBall ball;
     SimplifiedSurface surface = ball.full;
     constexpr double kNoLimit = std::numeric_limits<double>::max();
-    ErrorProof kept = ball.proof(kNoLimit);
+    DistanceProof kept = ball.proof(kNoLimit);
     double largestMm = kept.prove(surface).largestMm;
     EXPECT_LT(largestMm, 0.05);
     std::mt19937 random(5);
@@ -74,11 +74,11 @@ TEST(ErrorProof, BoundsAgainWithoutALimit) {
     }
 }
 
-TEST(ErrorProof, FindsAgainWhatWasNotMended) {
+TEST(DistanceProof, FindsAgainWhatWasNotMended) {
     const ProvedBall ball;
     SimplifiedSurface surface = ball.full;
     pull(surface, ball.vertexAt({28, 28, 40}), 1.5);
-    ErrorProof kept = ball.proof(0.5);
+    DistanceProof kept = ball.proof(0.5);
     const ErrorBound first = kept.prove(surface), again = kept.proveAgain(surface, {});
     EXPECT_FALSE(first.beyondLimit.empty());
     EXPECT_TRUE(isAmong(first, again) && isAmong(again, first));
@@ -86,10 +86,10 @@ TEST(ErrorProof, FindsAgainWhatWasNotMended) {
 
 // Triangles that go and leave nothing in their place: the full surface there has lost what was
 // near.
-TEST(ErrorProof, LooksAgainWhereTrianglesWent) {
+TEST(DistanceProof, LooksAgainWhereTrianglesWent) {
     const ProvedBall ball;
     SimplifiedSurface surface = ball.full;
-    ErrorProof kept = ball.proof(0.5);
+    DistanceProof kept = ball.proof(0.5);
     ASSERT_TRUE(kept.prove(surface).beyondLimit.empty());
     detail::SurfaceChanges changes;
     for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
@@ -110,9 +110,9 @@ TEST(ErrorProof, LooksAgainWhereTrianglesWent) {
 }
 
 // Another surface altogether, of which the proof remembers what it has in common with the last.
-TEST(ErrorProof, RemembersNothingWrongOfTheLastSurface) {
+TEST(DistanceProof, RemembersNothingWrongOfTheLastSurface) {
     const ProvedBall ball;
-    ErrorProof kept = ball.proof(0.5);
+    DistanceProof kept = ball.proof(0.5);
     for (const double mm : {0.0, 0.2, 1.5, 0.2}) {
         SimplifiedSurface surface = ball.full;
         pull(surface, ball.vertexAt(kBallMiddle + Vec3{0, 0, 9}), mm);

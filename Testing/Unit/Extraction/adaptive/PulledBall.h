@@ -4,17 +4,22 @@
 #include <limits>
 
 #include "Surfaces.h"
-#include "adaptive/proof/ErrorBound.h"
+#include "adaptive/proof/DistanceProof.h"
 
 namespace adaptiso::testing {
+
+inline detail::DistanceProof proofOf(const detail::SimplifiedSurface& surface, const Scene& scene,
+                                     double limitMm) {
+    return {{surface.fine.points, surface.fine.triangles}, scene.frame, limitMm};
+}
 
 /// The ball's surface in eight bricks, as it is and with changes.
 struct ProvedBall {
     Scene scene = ballScene();
     detail::SimplifiedSurface full = scene.fullSurface();
 
-    detail::ErrorProof proof(double limitMm = std::numeric_limits<double>::max()) const {
-        return {*scene.sampler, scene.bricks, scene.frame, limitMm};
+    detail::DistanceProof proof(double limitMm = std::numeric_limits<double>::max()) const {
+        return proofOf(full, scene, limitMm);
     }
     /// All vertices taken outward.
     detail::SimplifiedSurface outward(double mm) const {

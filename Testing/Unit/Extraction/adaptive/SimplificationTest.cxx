@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "Support/Soundness.h"
 #include "Surfaces.h"
@@ -20,11 +22,10 @@ constexpr double kDistanceMm = 0.2, kRounding = 1e-5;  // samples are kept in si
 struct Ball {
     Scene scene = ballScene();
     detail::VolumeSurface full{scene.volume.view().geometry(), *scene.sampler, scene.bricks};
-    detail::LocalTolerances tolerances;
     detail::PatchLimits limits;
 
     Ball() { limits.maxDistanceMm = kDistanceMm; }
-    Simplification simplification() const { return {full, tolerances, limits}; }
+    Simplification simplification() const { return {full, limits}; }
 };
 
 double largestDistance(const SimplifiedSurface& surface) {
@@ -52,32 +53,35 @@ TEST(WantedCount, IsTheLeastOfWhatIsAskedFor) {
 
 TEST(Simplification, StaysWithinItsLimits) {
     const Ball ball;
-    detail::SurfaceState checkpoint;
-    const SimplifiedSurface surface = ball.simplification().toLimits(checkpoint);
+    const SimplifiedSurface surface = ball.simplification().toLimits();
     EXPECT_LE(largestDistance(surface), kDistanceMm + kRounding);
     EXPECT_LT(surface.triangleCount(), surface.fineTriangles / 8);
     expectSound(meshOf(surface));
-    EXPECT_EQ(surface.heirs.size(), checkpoint.points.size());
-    EXPECT_GT(checkpoint.triangleCount(), surface.triangleCount());
-    EXPECT_LT(checkpoint.triangleCount(), surface.fineTriangles);
+    EXPECT_TRUE(surface.heirs.empty());  // nobody asked
 }
 
-TEST(Simplification, StaysCloserWhereTolerancesAreSmaller) {
+// Merging the full surface's vertices into their heirs gives the surface.
+TEST(Simplification, KeepsHeirsThatMakeTheSurface) {
     Ball ball;
-    detail::SurfaceState checkpoint;
-    const std::int64_t before = ball.simplification().toLimits(checkpoint).triangleCount();
-    const Vec3 pole = kBallMiddle + Vec3{0, 0, kBallRadius};
-    for (int times = 0; times < 2; ++times) ball.tolerances.add({pole});
-    const SimplifiedSurface surface = ball.simplification().toLimits(checkpoint);
-    EXPECT_GT(surface.triangleCount(), before);
-    for (std::size_t s = 0; s < surface.samples.size(); ++s) {
-        if (norm(surface.samples[s].point() - pole) > 1) continue;
-        EXPECT_GT(surface.samples[s].halvings, 0);
-        const auto& [a, b, c] = surface.triangles[surface.sampleTriangle[s]];
-        EXPECT_LE(std::sqrt(detail::squaredDistanceToTriangle(
-                      surface.samples[s].point(),
-                      {surface.points[a], surface.points[b], surface.points[c]})),
-                  kDistanceMm / 2);
+    ball.limits.keepsHeirs = true;
+    for (const bool toCount : {false, true}) {
+        const SimplifiedSurface surface = toCount ? ball.simplification().toCount({{}, 0.9}, 50)
+                                                  : ball.simplification().toLimits();
+        ASSERT_EQ(surface.heirs.size(), surface.fine.points.size());
+        std::set<detail::SurfaceState::Triangle> merged, made;
+        const auto turned = [](detail::SurfaceState::Triangle t) {
+            std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+            return t;
+        };
+        for (const auto& t : surface.fine.triangles) {
+            const auto& heirs = surface.heirs;
+            const detail::SurfaceState::Triangle now{heirs[t[0]], heirs[t[1]], heirs[t[2]]};
+            if (now[0] != now[1] && now[1] != now[2] && now[2] != now[0]) {
+                merged.insert(turned(now));
+            }
+        }
+        for (const auto& t : surface.triangles) made.insert(turned(t));
+        EXPECT_EQ(merged, made);
     }
 }
 
@@ -107,12 +111,11 @@ TEST(Simplification, NoCountIsPassed) {
 
 TEST(Simplification, ASettledSurfaceStaysAsItIs) {
     Ball ball;
-    ball.tolerances.freeze({kBallMiddle}, 8);  // all of it
-    detail::SurfaceState checkpoint;
-    const SimplifiedSurface surface = ball.simplification().toLimits(checkpoint);
+    constexpr double kFar = 1e6;
+    ball.full.stayIn({{kFar, kFar, kFar}, {kFar, kFar, kFar}}, BoundingBox::empty());
+    const SimplifiedSurface surface = ball.simplification().toLimits();
     EXPECT_EQ(surface.triangleCount(), surface.fineTriangles);
-    EXPECT_EQ(surface.points, checkpoint.points);
-    EXPECT_EQ(surface.heirs.size(), surface.points.size());
+    EXPECT_EQ(surface.points, ball.scene.fullSurface().points);
 }
 
 TEST(Simplification, GoesFartherForACountWhereItMay) {
@@ -128,8 +131,7 @@ TEST(Simplification, GoesFartherForACountWhereItMay) {
 
 TEST(Simplification, FitsEveryVertexInTheEnd) {
     const Ball ball;
-    detail::SurfaceState checkpoint;
-    const SimplifiedSurface surface = ball.simplification().toLimits(checkpoint);
+    const SimplifiedSurface surface = ball.simplification().toLimits();
     EXPECT_EQ(
         std::count(surface.states.begin(), surface.states.end(), detail::Patch::State::Fitted),
         std::ssize(surface.states));

@@ -116,7 +116,7 @@ Scene::Scene(Volume samples, double isovalue, Border border, int blockSize)
 
 detail::SimplifiedSurface Scene::fullSurface() const {
     // a collapse costs more than nothing: none is made
-    return detail::simplifyBricks(*sampler, bricks, frame, {}, {}, nullptr);
+    return detail::simplifyBricks(*sampler, bricks, frame, {}, nullptr);
 }
 
 Scene ballScene() {

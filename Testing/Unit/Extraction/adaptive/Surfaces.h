@@ -52,18 +52,6 @@ struct Scene {
     detail::MetricFrame frame;
 };
 
-/// Calls f(cell, t) for each triangle of a fine surface and the lattice position of its cell.
-template <class F>
-void forEachCellTriangle(const detail::FineSurface& fine, const detail::Brick& brick, const F& f) {
-    for (std::size_t c = 0; c < fine.cells.size(); ++c) {
-        const auto& at = fine.cells[c].position;
-        const Index3 cell{brick.low[0] + at[0], brick.low[1] + at[1], brick.low[2] + at[2]};
-        const std::size_t end =
-            c + 1 < fine.cells.size() ? fine.cells[c + 1].firstTriangle : fine.triangles.size();
-        for (std::size_t t = fine.cells[c].firstTriangle; t < end; ++t) f(cell, t);
-    }
-}
-
 /// A ball around the corner of eight bricks, or nearly; values are distances to its surface.
 inline constexpr double kBallRadius = 7;
 inline constexpr Vec3 kBallMiddle{28.3, 27.9, 28.1};

@@ -14,16 +14,13 @@ namespace {
 
 constexpr int kMargin = 1;         ///< samples around a block that the sheet test looks at
 constexpr int kLargestBlock = 16;  ///< cells a side
-constexpr int kPositions = Brick::kSide + 1 + 2 * BrickMesher::kHalo;
+constexpr int kPositions = Brick::kSide + 1;
 constexpr int kCellCentre = 3;  ///< in place of an edge's axis
 
 /// \param p  lattice position relative to the brick
 std::size_t edgeSlot(const std::array<int, 3>& p, int axis) {
-    constexpr int kHalo = BrickMesher::kHalo;
-    const auto x = static_cast<std::size_t>(p[0] + kHalo),
-               y = static_cast<std::size_t>(p[1] + kHalo),
-               z = static_cast<std::size_t>(p[2] + kHalo);
-    return 3 * ((z * kPositions + y) * kPositions + x) + static_cast<std::size_t>(axis);
+    return 3 * static_cast<std::size_t>((p[2] * kPositions + p[1]) * kPositions + p[0]) +
+           static_cast<std::size_t>(axis);
 }
 
 /// Relative to the brick, of an edge's first sample.
@@ -38,10 +35,6 @@ bool isCrossed(const LatticeEdge& edge, const LatticeSampler& sampler) {
     sampler.insideRows(edge.sample, 2, rows.data());
     const std::array<std::uint32_t, 3> ends{rows[0] >> 1, rows[1], rows[2]};
     return ((rows[0] ^ ends[edge.axis]) & 1u) != 0;
-}
-
-bool isAny(std::uint32_t) {
-    return true;
 }
 
 /// The surface of a cell that needs fans.
@@ -127,8 +120,15 @@ BrickMesher::BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid)
 
 void BrickMesher::mesh(const Brick& brick, const std::function<bool(const FineSurface&)>& wantsGaps,
                        FineSurface& surface) {
-    findsSheets_ = true;
-    meshBrick(brick, isAny, surface);
+    surface.vertices.clear();
+    surface.triangles.clear();
+    surface.cellsSeen = surface.cellsCrossed = 0;
+    for (const std::uint32_t block : brick.blocks) {
+        meshBlock(brick, block, surface);
+    }
+    surface.middles = static_cast<std::size_t>(
+        std::count_if(surface.vertices.begin(), surface.vertices.end(),
+                      [](const FineVertex& v) { return v.edge.axis() == kCellCentre; }));
     if (wantsGaps(surface)) findGaps(brick, surface);
     forget(brick, surface);
 }
@@ -140,55 +140,9 @@ void BrickMesher::mesh(const Brick& brick, FineSurface& surface) {
 
 void BrickMesher::meshWithoutSheets(const Brick& brick, FineSurface& surface) {
     findsSheets_ = false;
-    meshBrick(brick, isAny, surface);
-    forget(brick, surface);
-}
-
-void BrickMesher::meshWithHalo(const Bricks& bricks, std::int64_t number,
-                               const std::function<bool(std::uint32_t)>& isNeeded,
-                               FineSurface& surface) {
-    const Brick& brick = bricks[number];
-    findsSheets_ = false;
-    meshBrick(brick, isNeeded, surface);
-    for (int n = 0; n < 27; ++n) {
-        const std::int64_t other = bricks.at({brick.low[0] / Brick::kSide + n % 3 - 1,
-                                              brick.low[1] / Brick::kSide + n / 3 % 3 - 1,
-                                              brick.low[2] / Brick::kSide + n / 9 - 1});
-        if (other == Bricks::kNone || other == number) continue;
-        for (const std::uint32_t block : bricks[other].blocks) {
-            const Index3 first = grid_.firstSample(block);
-            CellRange range = cellsOf(block);
-            bool isNear = true;
-            for (int a = 0; a < 3; ++a) {
-                const auto inBrick = static_cast<int>(first[a] + grid_.offset - brick.low[a]);
-                range.begin[a] = std::max(range.begin[a], -kHalo - inBrick);
-                range.end[a] = std::min(range.end[a], Brick::kSide + kHalo - inBrick);
-                isNear = isNear && range.begin[a] < range.end[a];
-            }
-            if (isNear && isNeeded(block)) meshBlock(brick, block, range, surface);
-        }
-    }
-    forget(brick, surface);
-}
-
-void BrickMesher::meshBrick(const Brick& brick, const std::function<bool(std::uint32_t)>& isNeeded,
-                            FineSurface& surface) {
-    surface.vertices.clear();
-    surface.triangles.clear();
-    surface.cells.clear();
-    surface.blocks.clear();
-    surface.cellsSeen = 0;
-    for (std::uint32_t place = 0; place < brick.blocks.size(); ++place) {
-        const std::uint32_t block = brick.blocks[place];
-        if (!isNeeded(block)) continue;
-        surface.blocks.push_back({place, static_cast<std::uint32_t>(surface.vertices.size())});
-        meshBlock(brick, block, cellsOf(block), surface);
-    }
-    surface.ownVertices = surface.vertices.size();
-    surface.ownTriangles = surface.triangles.size();
-    surface.ownMiddles = static_cast<std::size_t>(
-        std::count_if(surface.vertices.begin(), surface.vertices.end(),
-                      [](const FineVertex& v) { return v.edge.axis() == kCellCentre; }));
+    mesh(
+        brick, [](const FineSurface&) { return false; }, surface);
+    findsSheets_ = true;
 }
 
 void BrickMesher::findGaps(const Brick& brick, FineSurface& surface) const {
@@ -225,17 +179,17 @@ void BrickMesher::forget(const Brick& brick, const FineSurface& surface) {
     }
 }
 
-/// The cells of a block that lie in the volume.
-BrickMesher::CellRange BrickMesher::cellsOf(std::uint32_t block) const {
+/// How many cells of a block lie in the volume, by axis.
+std::array<int, 3> BrickMesher::cellsOf(std::uint32_t block) const {
     const int n = grid_.blockSize;
-    CellRange range{{0, 0, 0}, {n, n, n}};
-    if (grid_.border == Border::Closed) return range;
+    std::array cells{n, n, n};
+    if (grid_.border == Border::Closed) return cells;
     const Index3 first = grid_.firstSample(block);
     for (int a = 0; a < 3; ++a) {
-        range.end[a] =
+        cells[a] =
             static_cast<int>(std::clamp<std::int64_t>(grid_.volumeSize[a] - 1 - first[a], 0, n));
     }
-    return range;
+    return cells;
 }
 
 /// \param cell  relative to the brick
@@ -274,8 +228,7 @@ unsigned BrickMesher::joinedFaces(const Index3& sample, unsigned ambiguous) cons
     return joined;
 }
 
-void BrickMesher::meshBlock(const Brick& brick, std::uint32_t block, const CellRange& range,
-                            FineSurface& surface) {
+void BrickMesher::meshBlock(const Brick& brick, std::uint32_t block, FineSurface& surface) {
     const BoxCases& cases = BoxCases::instance();
     const int count = grid_.blockSize + 1 + 2 * kMargin;
     const Index3 first = grid_.firstSample(block);
@@ -286,19 +239,18 @@ void BrickMesher::meshBlock(const Brick& brick, std::uint32_t block, const CellR
         inBrick[a] = static_cast<int>(first[a] + grid_.offset - brick.low[a]);
     }
 
-    std::int64_t seen = 1;
-    for (int a = 0; a < 3; ++a) seen *= range.end[a] - range.begin[a];
-    surface.cellsSeen += seen;
-    const std::uint32_t cellsInRange = (1u << range.end[0]) - (1u << range.begin[0]);
-    for (int z = range.begin[2]; z < range.end[2]; ++z) {
-        for (int y = range.begin[1]; y < range.end[1]; ++y) {
+    const std::array<int, 3> cells = cellsOf(block);
+    surface.cellsSeen += std::int64_t{cells[0]} * cells[1] * cells[2];
+    const std::uint32_t cellsInRow = (1u << cells[0]) - 1;
+    for (int z = 0; z < cells[2]; ++z) {
+        for (int y = 0; y < cells[1]; ++y) {
             const auto row = [&](int dy, int dz) {
                 return rows_[static_cast<std::size_t>(z + dz) * count + y + dy];
             };
             const std::uint32_t all = row(1, 1) & row(2, 1) & row(1, 2) & row(2, 2);
             const std::uint32_t any = row(1, 1) | row(2, 1) | row(1, 2) | row(2, 2);
             std::uint32_t crossed = ((any | any >> 1) & ~(all & all >> 1)) >> kMargin;
-            crossed &= cellsInRange;
+            crossed &= cellsInRow;
             for (; crossed != 0; crossed &= crossed - 1) {
                 const int x = std::countr_zero(crossed);
                 const auto window = [&] {
@@ -319,10 +271,7 @@ void BrickMesher::meshBlock(const Brick& brick, std::uint32_t block, const CellR
                 const BoxCase& boxCase =
                     cases[cases.caseIndex(corners, joinedFaces(sample, ambiguous))];
                 const bool isSingle = findsSheets_ && isSingleSheet(window());
-                surface.cells.push_back({{static_cast<std::int16_t>(inBrick[0] + x),
-                                          static_cast<std::int16_t>(inBrick[1] + y),
-                                          static_cast<std::int16_t>(inBrick[2] + z)},
-                                         static_cast<std::uint32_t>(surface.triangles.size())});
+                ++surface.cellsCrossed;
                 const auto at = [&](int edge) {
                     return vertexOn(brick, {inBrick[0] + x, inBrick[1] + y, inBrick[2] + z}, edge,
                                     isSingle, surface);

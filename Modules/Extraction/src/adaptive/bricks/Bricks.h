@@ -61,31 +61,15 @@ struct FineSurface {
     std::vector<FineVertex> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< outward in index space
 
-    /// How many of them are the brick's own, not of the halo; those come first.
-    std::size_t ownVertices = 0, ownTriangles = 0;
     /// Loops filled from their middle, which takes two triangles more than the table's.
-    std::size_t ownMiddles = 0;
+    std::size_t middles = 0;
 
-    /// A crossed cell and its first triangle; those after it are the next cell's.
-    struct Cell {
-        std::array<std::int16_t, 3> position;  ///< relative to the brick
-        std::uint32_t firstTriangle;
-    };
-    std::vector<Cell> cells;
-    /// A block of the brick that was meshed, by its place in Brick::blocks, and the first of the
-    /// vertices that came with it.
-    struct Block {
-        std::uint32_t place, firstVertex;
-    };
-    std::vector<Block> blocks;
-    std::int64_t cellsSeen = 0;  ///< of the active blocks, crossed or not
+    std::int64_t cellsSeen = 0, cellsCrossed = 0;  ///< of the active blocks
 };
 
 /// Makes fine surfaces brick by brick; keeps its working memory between them.
 class BrickMesher {
 public:
-    static constexpr int kHalo = 3;  ///< cells
-
     explicit BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid);
 
     /// The same brick always gives the same vertices and triangles in the same order.
@@ -100,21 +84,9 @@ public:
     /// The same, when nobody asks for FineVertex::isSingleSheet and FineVertex::gap.
     void meshWithoutSheets(const Brick& brick, FineSurface& surface);
 
-    /// The brick's surface, and after it that of the cells up to kHalo around the brick. Single
-    /// sheets and gaps are not looked for.
-    /// \param isNeeded  blocks for which it is false are left out
-    void meshWithHalo(const Bricks& bricks, std::int64_t number,
-                      const std::function<bool(std::uint32_t)>& isNeeded, FineSurface& surface);
-
 private:
-    struct CellRange {
-        std::array<int, 3> begin, end;  ///< cells of a block
-    };
-    void meshBrick(const Brick& brick, const std::function<bool(std::uint32_t)>& isNeeded,
-                   FineSurface& surface);
-    void meshBlock(const Brick& brick, std::uint32_t block, const CellRange& range,
-                   FineSurface& surface);
-    CellRange cellsOf(std::uint32_t block) const;
+    void meshBlock(const Brick& brick, std::uint32_t block, FineSurface& surface);
+    std::array<int, 3> cellsOf(std::uint32_t block) const;
     std::uint32_t vertexOn(const Brick& brick, const std::array<int, 3>& cell, int edge,
                            bool isSingle, FineSurface& surface);
     unsigned joinedFaces(const Index3& sample, unsigned ambiguous) const;

@@ -50,9 +50,9 @@ double heightOver(const Sample& sample, const Vec3& p) {
 }
 
 /// A distance from a sample, in proportion to the sample's tolerance: to be compared with the
-/// allowed distance of samples without halvings.
+/// allowed distance of samples that are in no web.
 double scaled(double distanceMm, const Sample& sample) {
-    return sample.halvings == 0 ? distanceMm : distanceMm * std::exp2(0.5 * sample.halvings);
+    return sample.isInWeb ? distanceMm * std::exp2(0.5 * kWebHalvings) : distanceMm;
 }
 
 }  // namespace
@@ -119,7 +119,7 @@ std::optional<StarFit> ErrorTracker::measure(const ChangedStar& unchanged) const
     forEachTriangle(unchanged.star, [&](std::uint32_t triangle, int wedge) {
         for (std::uint32_t s = firstSample_[triangle]; s != kNone && isLoose; s = nextSample_[s]) {
             const Sample& sample = patch_.samples[s];
-            isLoose = sample.halvings == 0;
+            isLoose = !sample.isInWeb;
             const double squared =
                 distanceTo(unchanged.wedge[wedge], sample.point() - unchanged.vertex).squared;
             fit.sumOfSquares += squared;
@@ -175,7 +175,7 @@ bool ErrorTracker::samplesAreNear(const ChangedStar& changed, double most,
         double squared = 0;
         move = nearest(changed, move.sample, move.wedge, squared);
         const Sample& sample = patch_.samples[move.sample];
-        if (!(squared <= (sample.halvings == 0 ? most : std::ldexp(most, -sample.halvings))) ||
+        if (!(squared <= (sample.isInWeb ? std::ldexp(most, -kWebHalvings) : most)) ||
             (sample.isOnBorder && !borderIsNear(changed, move, most))) {
             return false;
         }

@@ -25,6 +25,7 @@ struct PatchLimits {
     StarLimits shape;
     bool provesAll = false;    ///< also stars that can cross nothing by what is known of them
     bool leavesNoise = false;  ///< bricks full of it stay at full resolution
+    bool keepsHeirs = false;   ///< of the full surface's vertices, see SurfaceState
     std::optional<BoundingBox> box{};  ///< that new vertices stay in, metric frame
 };
 

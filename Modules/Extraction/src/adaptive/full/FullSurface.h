@@ -1,16 +1,14 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshQuality/TriangleTree.h"
 #include "adaptive/collapse/PatchSimplifier.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
-#include "adaptive/proof/DistanceProof.h"
-#include "adaptive/rounds/LocalTolerances.h"
 
 namespace adaptiso::detail {
 
@@ -29,18 +27,22 @@ public:
 
     /// The surface after a first round within the limits.
     /// \param costs  gets those of the collapses, patch by patch; may be null
-    virtual SimplifiedSurface firstRound(const LocalTolerances& tolerances,
-                                         const PatchLimits& limits, CollapseCosts* costs) const = 0;
+    virtual SimplifiedSurface firstRound(const PatchLimits& limits, CollapseCosts* costs) const = 0;
 
-    /// \param limitMm  what is farther than that is noted in ErrorBound::beyondLimit
-    virtual std::unique_ptr<DistanceProof> proof(double limitMm) const = 0;
+    /// The full-resolution surface itself, metric frame.
+    /// \param surface  made of it by firstRound(); a volume's is kept there
+    virtual TriangleView fineOf(const SimplifiedSurface& surface) const = 0;
 
     /// In physical coordinates. Triangles keep their numbers.
     virtual TriangleMesh meshOf(const SimplifiedSurface& surface) const = 0;
 
     /// Of each triangle of meshOf() the cell that it is known to lie in, such that those of
     /// different cells do not cross; kNoCell where that is not known. Empty: of none it is.
-    virtual std::vector<std::uint64_t> cellsOf(const SimplifiedSurface&) const { return {}; }
+    /// \param isFine  of each triangle: 1 for those that the full surface has, too
+    virtual std::vector<std::uint64_t> cellsOf(const SimplifiedSurface&,
+                                               const std::vector<std::uint8_t>& /*isFine*/) const {
+        return {};
+    }
 
     /// A point of meshOf(), as a continuous index of the frame.
     virtual Vec3 indexOf(const Vec3& point) const = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "adaptiso/Core/Buckets.h"
@@ -9,7 +10,6 @@
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/Parameters.h"
-#include "adaptive/proof/MeshProof.h"
 #include "adaptive/rounds/BorderMarks.h"
 #include "adaptive/rounds/PatchRound.h"
 
@@ -106,15 +106,14 @@ std::vector<std::int64_t> MeshSurface::insideOut(const SimplifiedSurface& surfac
     return std::move(now.triangles);
 }
 
-SimplifiedSurface MeshSurface::firstRound(const LocalTolerances& tolerances,
-                                          const PatchLimits& limits, CollapseCosts* costs) const {
-    SimplifiedSurface surface = whole(tolerances);
+SimplifiedSurface MeshSurface::firstRound(const PatchLimits& limits, CollapseCosts* costs) const {
+    SimplifiedSurface surface = whole(limits.keepsHeirs);
     PatchRound(surface, {}, frame()).run({limits}, costs);
     return surface;
 }
 
 /// The mesh as it is.
-SimplifiedSurface MeshSurface::whole(const LocalTolerances& tolerances) const {
+SimplifiedSurface MeshSurface::whole(bool keepsHeirs) const {
     SimplifiedSurface surface;
     reserveInHugePages(surface.points, parts_.points.size());
     surface.points = parts_.points;
@@ -133,12 +132,14 @@ SimplifiedSurface MeshSurface::whole(const LocalTolerances& tolerances) const {
         const std::vector<Vec3> areas = addPoints(around, surface);
         addSamples(around, areas, surface);
     }
-    tolerances.apply(frame(), surface.samples);
     for (std::size_t v = 0; v < surface.points.size(); ++v) {
-        const bool isKept = !parts_.isKept.empty() && parts_.isKept[v] != 0;
-        if (isKept || tolerances.isFrozen(frame().toIndex(surface.points[v]))) {
+        if (!parts_.isKept.empty() && parts_.isKept[v] != 0) {
             surface.states[v] = Patch::State::Final;
         }
+    }
+    if (keepsHeirs) {
+        surface.heirs.resize(parts_.points.size());
+        std::iota(surface.heirs.begin(), surface.heirs.end(), SurfaceState::Number{0});
     }
     if (!parts_.borderEdges.empty()) markBorders(parts_.borderEdges, surface);
     return surface;
@@ -255,15 +256,12 @@ void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& area
         const Corners c = cornersOf(t);
         const MeshParts::Triangle& v = parts_.triangles[t];
         Sample& middle = surface.samples.emplace_back();
+        middle.isMiddle = true;
         middle.setPoint((1.0 / 3) * (c[0] + c[1] + c[2]));
         middle.setNormal(areaVector2(c[0], c[1], c[2]));
         middle.clearance = std::min({clearances[v[0]], clearances[v[1]], clearances[v[2]]});
         surface.sampleTriangle.push_back(static_cast<SurfaceState::Number>(t));
     }
-}
-
-std::unique_ptr<DistanceProof> MeshSurface::proof(double limitMm) const {
-    return std::make_unique<MeshProof>(parts_, frame(), limitMm);
 }
 
 /// Points that were cut apart become one again.

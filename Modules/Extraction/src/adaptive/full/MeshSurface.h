@@ -24,9 +24,8 @@ public:
     /// New vertices are to stay in a box. \param box  as seen from parts.origin
     void stayIn(const BoundingBox& box) { keepIn(box); }
 
-    SimplifiedSurface firstRound(const LocalTolerances& tolerances, const PatchLimits& limits,
-                                 CollapseCosts* costs) const override;
-    std::unique_ptr<DistanceProof> proof(double limitMm) const override;
+    SimplifiedSurface firstRound(const PatchLimits& limits, CollapseCosts* costs) const override;
+    TriangleView fineOf(const SimplifiedSurface&) const override { return parts_.view(); }
     /// Without normals.
     TriangleMesh meshOf(const SimplifiedSurface& surface) const override;
     Vec3 indexOf(const Vec3& point) const override {
@@ -40,7 +39,7 @@ public:
 private:
     using Around = OrderedBuckets<std::uint32_t>;
 
-    SimplifiedSurface whole(const LocalTolerances& tolerances) const;
+    SimplifiedSurface whole(bool keepsHeirs) const;
     std::vector<Vec3> addPoints(const Around& around, SimplifiedSurface& surface) const;
     InsideOutPieces judge(const TriangleView& surface, std::span<const std::uint32_t> marks) const;
     std::vector<std::uint8_t> clearancesOf(const SimplifiedSurface& surface,

@@ -9,8 +9,6 @@
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Winding.h"
 #include "adaptive/Parameters.h"
-#include "adaptive/mesh/WholeBricks.h"
-#include "adaptive/proof/ErrorBound.h"
 #include "adaptive/rounds/BorderMarks.h"
 #include "adaptive/rounds/BrickRound.h"
 #include "filling/MeshRepair.h"
@@ -77,10 +75,9 @@ void VolumeSurface::stayIn(const BoundingBox& moving, const BoundingBox& box) {
     keepIn(box);
 }
 
-SimplifiedSurface VolumeSurface::firstRound(const LocalTolerances& tolerances,
-                                            const PatchLimits& limits, CollapseCosts* costs) const {
-    SimplifiedSurface surface = simplifyBricks(sampler_, bricks_, frame(), tolerances, limits,
-                                               costs, moving_ ? &*moving_ : nullptr);
+SimplifiedSurface VolumeSurface::firstRound(const PatchLimits& limits, CollapseCosts* costs) const {
+    SimplifiedSurface surface =
+        simplifyBricks(sampler_, bricks_, frame(), limits, costs, moving_ ? &*moving_ : nullptr);
     if (bricks_.grid().border == Border::Open) {
         std::vector<std::uint8_t> faces(surface.points.size());
         parallelForPieces(std::ssize(faces), kPiece, [&](std::int64_t begin, std::int64_t end) {
@@ -109,16 +106,12 @@ std::uint8_t VolumeSurface::facesAt(const Vec3& point) const {
     return faces;
 }
 
-std::unique_ptr<DistanceProof> VolumeSurface::proof(double limitMm) const {
-    return std::make_unique<ErrorProof>(sampler_, bricks_, frame(), limitMm);
-}
-
 TriangleMesh VolumeSurface::meshOf(const SimplifiedSurface& surface) const {
     return toMesh(surface, geometry_, frame(), sampler_);
 }
 
-/// Where bricks are whole each triangle lies in the cell that marching cubes made it in. Triangles
-/// of different cells cannot cross there:
+/// A triangle of the full surface lies in the cell that marching cubes made it in. Triangles of
+/// different cells cannot cross:
 ///   - A cell's triangles lie in the cell. In a face of it they have its iso-lines and the ends of
 ///     these, no more: no triangle has a corner off the face nearer to it than kHair / 12 (the
 ///     middle of a loop of twelve), none has an edge across the face that is no iso-line, and none
@@ -131,14 +124,16 @@ TriangleMesh VolumeSurface::meshOf(const SimplifiedSurface& surface) const {
 ///     triangles lie to the face; and the angle between triangles with a corner in common is more
 ///     than kHair / 12 / 2. Rounding by less than kFineRounding changes neither.
 /// Which triangles have a corner in common is the mesh's to say: they have the same number.
-std::vector<std::uint64_t> VolumeSurface::cellsOf(const SimplifiedSurface& surface) const {
-    const WholeBricks whole(surface, bricks_, frame());
-    if (!whole.isAny() || !roundsFinely()) return {};
+std::vector<std::uint64_t> VolumeSurface::cellsOf(const SimplifiedSurface& surface,
+                                                  const std::vector<std::uint8_t>& isFine) const {
+    const auto fine = std::count(isFine.begin(), isFine.end(), 1);
+    const double fewest = kFewFinal * static_cast<double>(isFine.size());
+    if (!(static_cast<double>(fine) > fewest) || !roundsFinely()) return {};
     std::vector<std::uint64_t> cells(surface.triangles.size(), kNoCell);
     const Index3 count{geometry_.size[0] + 1, geometry_.size[1] + 1, geometry_.size[2] + 1};
     parallelForPieces(std::ssize(cells), kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t t = begin; t < end; ++t) {
-            if (!whole.isFine(static_cast<std::uint64_t>(t))) continue;
+            if (isFine[t] == 0) continue;
             const auto& [a, b, c] = surface.triangles[t];
             const Vec3 middle = frame().toIndex(
                 (1.0 / 3) * (surface.points[a] + surface.points[b] + surface.points[c]));

@@ -8,8 +8,8 @@
 
 namespace adaptiso::detail {
 
-/// The marching cubes surface of a volume, made brick by brick whenever it is needed. Keeps
-/// references to all it is given.
+/// The marching cubes surface of a volume, made brick by brick. Keeps references to all it is
+/// given.
 class VolumeSurface final : public FullSurface {
 public:
     VolumeSurface(const ImageGeometry& geometry, const LatticeSampler& sampler,
@@ -20,11 +20,13 @@ public:
     /// \param moving  continuous sample indices \param box  metric frame
     void stayIn(const BoundingBox& moving, const BoundingBox& box);
 
-    SimplifiedSurface firstRound(const LocalTolerances& tolerances, const PatchLimits& limits,
-                                 CollapseCosts* costs) const override;
-    std::unique_ptr<DistanceProof> proof(double limitMm) const override;
+    SimplifiedSurface firstRound(const PatchLimits& limits, CollapseCosts* costs) const override;
+    TriangleView fineOf(const SimplifiedSurface& surface) const override {
+        return {surface.fine.points, surface.fine.triangles};
+    }
     TriangleMesh meshOf(const SimplifiedSurface& surface) const override;
-    std::vector<std::uint64_t> cellsOf(const SimplifiedSurface& surface) const override;
+    std::vector<std::uint64_t> cellsOf(const SimplifiedSurface& surface,
+                                       const std::vector<std::uint8_t>& isFine) const override;
     Vec3 indexOf(const Vec3& point) const override { return geometry_.toIndex(point); }
     void forgiveCrossings(const TriangleMesh&, std::vector<std::int64_t>&) const override {}
     std::vector<std::int64_t> insideOut(const SimplifiedSurface& surface) const override;

@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 #include <tuple>
+#include <utility>
 
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/SurfaceProof/PieceBound.h"
@@ -98,11 +99,10 @@ std::optional<SurfaceChanges> LocalUndo::around(const std::vector<Triangle>& men
     }
     std::vector<bool> isChosen(surface_.points.size());
     Numbers more = verticesAround(seeds, places, reachMm);
-    const double most = kMostUndone * static_cast<double>(start_.points.size());
     for (int widening = 0; widening < kMostWidenings; ++widening) {
         for (const Number v : more) isChosen[sets.find(number(v))] = true;
         choose(isChosen, sets);
-        if (!hasMerges() || static_cast<double>(apart_.size()) > most) return {};
+        if (!hasMerges()) return {};
         makeTriangles();
         more = faults();
         if (more.empty()) return apply();
@@ -155,33 +155,31 @@ bool LocalUndo::hasMerges() const {
     });
 }
 
-/// Those of the start that have a vertex that comes apart, and do not vanish by the merges that
+/// The full surface's that have a vertex that comes apart, and do not vanish by the merges that
 /// stay.
 void LocalUndo::makeTriangles() {
     fresh_.clear();
-    origin_.clear();
-    for (Number t = 0; t < start_.triangles.size(); ++t) {
-        if (!isTouched(heirsOf(start_.triangles[t]))) continue;
-        const auto [a, b, c] = start_.triangles[t];
+    for (const Triangle& t : fine_.triangles) {
+        if (!isTouched(heirsOf(t))) continue;
+        const auto [a, b, c] = t;
         const Triangle now{numbers_[a], numbers_[b], numbers_[c]};
         if (now[0] == now[1] || now[1] == now[2] || now[2] == now[0]) continue;
         fresh_.push_back(now);
-        origin_.push_back(t);
     }
 }
 
 /// The surface's vertices that have to come apart as well: the triangles around each vertex are to
-/// hang together as they do in the surface, or did at the start.
+/// hang together as they do in the surface, or in the full one.
 LocalUndo::Numbers LocalUndo::faults() const {
     const std::size_t old = surface_.points.size();
     std::vector<bool> isBeside(old);
     for (const Triangle& t : fresh_) {
         for (const Number v : t) {
-            if (!isOfStart(v)) isBeside[v] = true;
+            if (!isOfFine(v)) isBeside[v] = true;
         }
     }
     std::vector<Link> before, after;
-    const auto isBesideOne = [&](Number v) { return !isOfStart(v) && isBeside[v]; };
+    const auto isBesideOne = [&](Number v) { return !isOfFine(v) && isBeside[v]; };
     for (const Triangle& t : surface_.triangles) {
         addLinks(t, isBesideOne, before);
         if (!isTouched(t)) addLinks(t, isBesideOne, after);
@@ -190,10 +188,10 @@ LocalUndo::Numbers LocalUndo::faults() const {
         addLinks(
             t, [](Number) { return true; }, after);
     }
-    for (const Triangle& t : start_.triangles) {
+    for (const Triangle& t : fine_.triangles) {
         for (int c = 0; c < 3; ++c) {
             const Number v = numbers_[t[c]];
-            if (isOfStart(v)) before.push_back({v, t[(c + 1) % 3], t[(c + 2) % 3]});
+            if (isOfFine(v)) before.push_back({v, t[(c + 1) % 3], t[(c + 2) % 3]});
         }
     }
     const std::vector<VertexFan> wanted = fansOf(std::move(before)),
@@ -204,7 +202,7 @@ LocalUndo::Numbers LocalUndo::faults() const {
     Numbers vertices = flatCorners();
     std::vector<bool> isFaulty(old + apart_.size());
     for (const VertexFan& fan : different) isFaulty[fan.vertex] = true;
-    for (const Triangle& t : start_.triangles) {
+    for (const Triangle& t : fine_.triangles) {
         const bool isAt =
             isFaulty[numbers_[t[0]]] || isFaulty[numbers_[t[1]]] || isFaulty[numbers_[t[2]]];
         if (!isAt) continue;
@@ -215,7 +213,7 @@ LocalUndo::Numbers LocalUndo::faults() const {
     return vertices;
 }
 
-/// Of triangles between start and surface.
+/// Of triangles between the full surface and this one.
 LocalUndo::Numbers LocalUndo::flatCorners() const {
     Numbers corners;
     for (const Triangle& t : fresh_) {
@@ -224,7 +222,7 @@ LocalUndo::Numbers LocalUndo::flatCorners() const {
             std::max({squaredNorm(b - a), squaredNorm(c - b), squaredNorm(a - c)});
         if (norm(areaVector2(a, b, c)) > kFlatTriangle * longest) continue;
         for (const Number v : t) {
-            if (!isOfStart(v)) corners.push_back(v);
+            if (!isOfFine(v)) corners.push_back(v);
         }
     }
     return corners;
@@ -239,13 +237,7 @@ SurfaceChanges LocalUndo::apply() {
         const auto [a, b, c] = surface_.triangles[t];
         changes.before.push_back({surface_.points[a], surface_.points[b], surface_.points[c]});
     }
-    for (std::size_t i = 0; i < apart_.size(); ++i) {
-        const Number v = apart_[i];
-        surface_.heirs[v] = static_cast<Number>(surface_.points.size());
-        surface_.points.push_back(start_.points[v]);
-        surface_.states.push_back(start_.states[v]);
-        if (!surface_.marks.empty()) surface_.marks.push_back(start_.marks[v]);
-    }
+    addVertices();
     for (std::size_t i = 0; i < fresh_.size(); ++i) {
         const auto next = static_cast<Number>(surface_.triangles.size());
         numbers.push_back(i < removed.size() ? removed[i] : next);
@@ -261,28 +253,39 @@ SurfaceChanges LocalUndo::apply() {
     return changes;
 }
 
-/// Gives samples to the triangles of the start that they had there, or to the nearest.
+/// Final vertices, and those where the surface was cut apart, were merged with none.
+void LocalUndo::addVertices() {
+    auto sample = surface_.samples.begin();
+    Number next = 0;
+    for (const Number v : apart_) {
+        for (;; ++sample) {  // the vertex's
+            if (sample->isMiddle) continue;
+            if (next++ == v) break;
+        }
+        const Number heir =
+            std::exchange(surface_.heirs[v], static_cast<Number>(surface_.points.size()));
+        surface_.points.push_back(fine_.points[v]);
+        surface_.states.push_back(surface_.states[heir] == Patch::State::Final
+                                      ? Patch::State::Final
+                                      : Patch::State::Open);
+        if (!surface_.marks.empty()) {
+            const Number mark = surface_.marks[heir];
+            const Number own = sample->isOnBorder ? Patch::kBorder : Patch::kPlain;
+            surface_.marks.push_back(mark > Patch::kBorder ? mark : own);
+        }
+        ++sample;
+    }
+}
+
+/// Gives samples to the nearest of the triangles that came.
 void LocalUndo::handOver(const Numbers& removed, const Numbers& numbers) {
     std::vector<bool> isRemoved(surface_.triangles.size());
     for (const Number t : removed) isRemoved[t] = true;
     const TriangleTree tree({surface_.points, fresh_});
     for (std::size_t s = 0; s < surface_.sampleTriangle.size(); ++s) {
         if (!isRemoved[surface_.sampleTriangle[s]]) continue;
-        const Number before = start_.sampleTriangle[s];
-        const auto at = std::lower_bound(origin_.begin(), origin_.end(), before);
-        const bool isThere = at != origin_.end() && *at == before && isWhole(before);
-        surface_.sampleTriangle[s] =
-            numbers[isThere ? at - origin_.begin()
-                            : nearestFresh(surface_.samples[s].point(), tree)];
+        surface_.sampleTriangle[s] = numbers[nearestFresh(surface_.samples[s].point(), tree)];
     }
-}
-
-/// All corners of one of the start's triangles came apart.
-bool LocalUndo::isWhole(Number triangle) const {
-    const Triangle& corners = start_.triangles[triangle];
-    return std::all_of(corners.begin(), corners.end(), [&](Number v) {
-        return std::binary_search(apart_.begin(), apart_.end(), v);
-    });
 }
 
 /// Of those equally near the first. \param tree  of the fresh ones

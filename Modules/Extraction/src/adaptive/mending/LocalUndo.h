@@ -11,25 +11,27 @@
 
 namespace adaptiso::detail {
 
-/// Takes a simplification back around places that mending did not help, and nowhere else.
+/// Takes a simplification back to the full-resolution surface around places that mending did not
+/// help, and nowhere else.
 ///
 /// Progressive meshes keep their history as a list of vertex splits [Hoppe1996]. Here each vertex
-/// of the surface that the rounds started from only knows its heir, the vertex that it was merged
-/// into. Where all that share an heir come apart again the surface is that of the start; beside it
-/// both surfaces are joined by triangles that have corners of both. More comes apart where that
-/// would not leave a 2-manifold with the same borders.
+/// of the full surface only knows its heir, the vertex that it was merged into. Where all that
+/// share an heir come apart again the surface is the full one; beside it both surfaces are joined
+/// by triangles that have corners of both. More comes apart where that would not leave a 2-manifold
+/// with the same borders.
 class LocalUndo {
 public:
-    /// \param start    the surface's state before the rounds that its heirs tell of
-    LocalUndo(const SurfaceState& start, SimplifiedSurface& surface)
-        : start_(start), surface_(surface) {}
+    /// \pre the surface keeps heirs of the full one, and samples of its vertices
+    LocalUndo(const TriangleView& fine, SimplifiedSurface& surface)
+        : fine_(fine), surface_(surface) {}
 
     /// \param mended   triangles that were changed besides, before and after: their corners come
     ///                 apart together
     /// \param seeds    triangles of the surface
     /// \param places   in the metric frame
     /// \param reachMm  how far around the places vertices come apart; at least the seeds' corners
-    /// \return what it changed; nothing when no vertex would come apart, or too many
+    /// \return what it changed; nothing when no vertex would come apart, or the surface would not
+    ///         stay a manifold
     std::optional<SurfaceChanges> around(const std::vector<SurfaceState::Triangle>& mended,
                                          const std::vector<SurfaceState::Number>& seeds,
                                          const std::vector<Vec3>& places, double reachMm);
@@ -48,8 +50,8 @@ private:
     Numbers flatCorners() const;
     SurfaceChanges apply();
     void handOver(const Numbers& removed, const Numbers& numbers);
-    bool isWhole(Number triangle) const;
     std::ptrdiff_t nearestFresh(const Vec3& p, const TriangleTree& tree) const;
+    void addVertices();
 
     bool isTouched(const Triangle& t) const {
         return comesApart_[t[0]] || comesApart_[t[1]] || comesApart_[t[2]];
@@ -57,21 +59,21 @@ private:
     Triangle heirsOf(const Triangle& t) const {
         return {surface_.heirs[t[0]], surface_.heirs[t[1]], surface_.heirs[t[2]]};
     }
-    bool isOfStart(Number vertex) const { return vertex >= surface_.points.size(); }
+    bool isOfFine(Number vertex) const { return vertex >= surface_.points.size(); }
     Vec3 pointOf(Number vertex) const {
-        return isOfStart(vertex) ? start_.points[apart_[vertex - surface_.points.size()]]
-                                 : surface_.points[vertex];
+        return isOfFine(vertex) ? fine_.points[apart_[vertex - surface_.points.size()]]
+                                : surface_.points[vertex];
     }
 
-    const SurfaceState& start_;
+    TriangleView fine_;
     SimplifiedSurface& surface_;
     // of one call
     std::vector<bool> comesApart_;  ///< each vertex of the surface
-    /// The start's vertices that return, ascending. They get the numbers after the surface's.
+    /// The full surface's vertices that return, ascending. They get the numbers after the
+    /// surface's.
     Numbers apart_;
-    Numbers numbers_;              ///< of each vertex of the start, in what is made
+    Numbers numbers_;              ///< of each vertex of the full surface, in what is made
     std::vector<Triangle> fresh_;  ///< triangles to add
-    Numbers origin_;               ///< the start's triangle, of each of them, ascending
 };
 
 }  // namespace adaptiso::detail

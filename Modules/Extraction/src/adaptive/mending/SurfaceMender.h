@@ -10,7 +10,7 @@
 
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
-#include "adaptive/proof/BrickProof.h"
+#include "adaptive/proof/DistanceProof.h"
 
 namespace adaptiso::detail {
 

@@ -18,12 +18,11 @@ struct Sample {
     std::array<float, 3> position{};
     std::array<std::int16_t, 3> direction{};          ///< of the normal, in parts of kUnit
     std::uint8_t clearance = SheetClearance::kAlone;  ///< to other sheets, see SheetClearance
-    /// How often the square of the allowed distance is halved, see LocalTolerances.
-    std::uint8_t halvings : 7 = 0;  ///< up to kMostHalvings
-    bool isOnBorder : 1 = false;    ///< a vertex of an open border
+    bool isInWeb : 1 = false;     ///< a smaller distance is allowed, see PatchLimits::webMm
+    bool isOnBorder : 1 = false;  ///< a vertex of an open border
+    bool isMiddle : 1 = false;    ///< of a triangle; else it is a vertex
 
     static constexpr double kUnit = 32767;
-    static constexpr std::uint8_t kMostHalvings = 0x7F;
 
     bool isAlone() const { return clearance == SheetClearance::kAlone; }
 

@@ -6,7 +6,6 @@
 
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/TriangleMesh.h"
-#include "adaptive/mesh/BrickPrint.h"
 #include "adaptive/mesh/Patch.h"
 
 namespace adaptiso::detail {
@@ -26,8 +25,17 @@ struct SurfaceState {
     std::vector<std::uint32_t> marks;
     std::vector<Triangle> triangles;
     std::vector<Number> sampleTriangle;  ///< that each sample is assigned to
+    /// Of each vertex of the full-resolution surface: the point that it was merged into, or still
+    /// is. Empty: not asked for.
+    std::vector<Number> heirs;
 
     std::int64_t triangleCount() const { return static_cast<std::int64_t>(triangles.size()); }
+};
+
+/// A full-resolution surface, metric frame. Nothing changes it.
+struct FineMesh {
+    std::vector<Vec3> points;
+    std::vector<SurfaceState::Triangle> triangles;
 };
 
 /// The whole surface between rounds of simplification, and the samples of the full-resolution one.
@@ -38,27 +46,15 @@ struct SimplifiedSurface : SurfaceState {
     /// Of each point, seen from it. Empty once nothing is collapsed or fitted any more, and where
     /// nothing ever can be.
     std::vector<StoredQuadric> quadrics;
-    /// Those within bricks, brick by brick in the mesher's order, none of bricks that were left
-    /// whole; then those on bricks' walls, ordered by their lattice edge.
+    /// The full-resolution surface's vertices in their order, and between them middles of its
+    /// triangles.
     std::vector<Sample> samples;
-    std::vector<std::uint64_t> firstSample;  ///< of each brick; then the first on a wall
-    std::vector<std::uint64_t> wallEdges;    ///< EdgeKey of each wall sample, ascending
-
-    /// Of each brick that was left at full resolution the triangles then; of others none. Empty:
-    /// none was.
-    std::vector<BrickPrint> prints;
+    FineMesh fine;  ///< of a volume; empty for a mesh, which is there already
 
     std::int64_t fineTriangles = 0;   ///< of the full-resolution surface
     std::int64_t tableTriangles = 0;  ///< of it, were no loop filled from its middle
 
-    /// Of each vertex of the checkpoint (see Simplification::toLimits): the vertex that it was
-    /// merged into since, or itself. Empty: not asked for.
-    std::vector<Number> heirs;
-
     SurfaceState& state() { return *this; }
-    bool wasLeftWhole(std::int64_t brick) const {
-        return !prints.empty() && prints[brick].triangles > 0;
-    }
 
     /// To be called between steps; small surfaces are not worth the time.
     void returnFreedMemory() const {

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "adaptiso/MeshQuality/TriangleTree.h"
+#include "adaptiso/SurfaceProof/SurfaceWalk.h"
+#include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
 
 namespace adaptiso::detail {
@@ -27,26 +31,60 @@ struct ErrorBound {
     std::vector<PlaceBeyond> beyondLimit;
 };
 
-/// Proves how far a simplified surface and the full-resolution one are apart, both ways. Nothing of
-/// what the simplification believed is trusted, except for where to look first.
+/// Proves how far a simplified surface and the full-resolution one are apart, both ways. Trusts
+/// nothing that the simplification believed, except for where to look first.
 ///
-/// What was proved of a surface holds after changes as far as it is the same: a triangle of before
-/// lies as near to the full-resolution surface, and a piece of the latter has not lost what is near
-/// it where no triangle came or went within the limit.
+/// The full surface is mapped to the simplified one triangle by triangle (SurfaceMap), which proves
+/// most of both directions. The rest is cut into pieces along walks on the other surface
+/// (SurfaceWalk); PieceBound bounds what a walk cannot settle, among all triangles near it.
+///
+/// A proof holds after changes as far as both surfaces stay the same: an unchanged triangle lies as
+/// near to the full surface, and a piece of the latter has lost nothing near it where no triangle
+/// came or went within the limit.
 class DistanceProof {
 public:
-    DistanceProof() = default;
-    DistanceProof(const DistanceProof&) = default;
-    DistanceProof(DistanceProof&&) = default;
-    DistanceProof& operator=(const DistanceProof&) = delete;
-    DistanceProof& operator=(DistanceProof&&) = delete;
-    virtual ~DistanceProof() = default;
+    /// Keeps references to all it is given.
+    /// \param fine     the full-resolution surface: a 2-manifold, with borders or without
+    /// \param limitMm  places farther than that are noted in ErrorBound::beyondLimit
+    DistanceProof(const TriangleView& fine, const MetricFrame& frame, double limitMm);
 
-    virtual ErrorBound prove(const SimplifiedSurface& surface) = 0;
+    /// \pre the samples that are no middles are the full surface's vertices, in their order
+    ErrorBound prove(const SimplifiedSurface& surface);
 
     /// The same of the last surface, which is still there, after some changes.
-    virtual ErrorBound proveAgain(const SimplifiedSurface& surface,
-                                  const SurfaceChanges& changes) = 0;
+    ErrorBound proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes);
+
+    /// Of each triangle of the last surface: 1 for one that the full surface has too, with the same
+    /// corners. Some of those may have 0.
+    const std::vector<std::uint8_t>& isFine() const { return isFine_; }
+
+private:
+    /// What is to be proved: all where a list is empty.
+    struct Scope {
+        std::vector<std::uint8_t> isKnown;      ///< of each triangle of the simplified surface
+        std::vector<std::uint8_t> isFineKnown;  ///< of each one of the full surface
+    };
+    Scope scopeOf(const SimplifiedSurface& surface, const SurfaceChanges& changes);
+    void remember(std::size_t triangles, std::vector<PlaceBeyond> beyond);
+    void markFine(const std::vector<Corners>& changed, Scope& scope);
+    void follow(const SimplifiedSurface& surface, const SurfaceChanges& changes);
+    ErrorBound prove(const SimplifiedSurface& surface, const Scope& scope);
+
+    TriangleView fineView_;
+    const MetricFrame& frame_;
+    double limitMm_;
+    WalkableSurface<std::uint32_t> fine_;  ///< empty until it is needed
+    TreeOnDemand fineTree_;
+    double enoughMm_ = 0;  ///< no bound need be tighter
+    double provedMm_ = 0;  ///< so far, of what lies within the limit
+    // of the last surface; empty where none was proved, or all of it was the full one
+    WalkableSurface<SurfaceState::Number> walkable_;
+    std::optional<TreeOnDemand> tree_;
+    bool treeIsMade_ = false;
+    std::vector<SurfaceState::Number> changed_;  ///< triangles, since the tree was made
+    std::vector<std::uint8_t> isWithin_;         ///< the limit, each triangle
+    std::vector<std::uint8_t> isFine_;
+    std::vector<PlaceBeyond> beyond_;
 };
 
 }  // namespace adaptiso::detail

@@ -1,6 +1,7 @@
 #include "adaptive/rounds/BrickRound.h"
 
 #include <algorithm>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -41,6 +42,11 @@ struct BrickSurface {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<Sample> samples;  ///< those on walls are not among them
     std::vector<std::uint32_t> sampleTriangle;
+    /// The full-resolution surface: its vertices but those on walls, which the triangles have as
+    /// kOnWall + their number in `walls`.
+    FineMesh fine;
+    std::vector<std::uint32_t> heirs;  ///< of those vertices, see SurfaceState
+    static constexpr std::uint32_t kOnWall = std::uint32_t{1} << 31;
     struct WallVertex {
         std::uint64_t edge;
         std::uint32_t vertex, triangle;  ///< and one of its triangles
@@ -48,14 +54,13 @@ struct BrickSurface {
         std::uint8_t clearance;
     };
     std::vector<WallVertex> walls;
-    std::int64_t fineTriangles = 0, tableTriangles = 0;
-    BrickPrint print;  ///< where it was left whole; then it has no quadrics and no samples
-
-    bool isWhole() const { return print.triangles > 0; }
+    std::int64_t tableTriangles = 0;
+    bool isWhole = false;  ///< it was left so, and has no quadrics
 };
 
 /// Takes over what is not gone of the patch.
-void takeOver(Patch& patch, BrickSurface& brick) {
+/// \return the new number of each point, or kNone
+std::vector<std::uint32_t> takeOver(Patch& patch, BrickSurface& brick) {
     std::vector<std::uint32_t> newTriangle(patch.triangles.size(), kNone),
         newVertex(patch.points.size(), kNone);
     std::uint32_t triangles = 0, vertices = 0;
@@ -94,6 +99,7 @@ void takeOver(Patch& patch, BrickSurface& brick) {
         wall.vertex = newVertex[wall.vertex];
         wall.triangle = triangleAt[wall.vertex];
     }
+    return newVertex;
 }
 
 /// The surface comes round a sample whose value is the isovalue. There are many in whole-numbered
@@ -104,11 +110,6 @@ constexpr double kHairGap = 3 * kHair;
 struct Nearness {
     std::vector<std::uint8_t> clearance;  ///< see SheetClearance
     std::vector<std::uint8_t> isInWeb;    ///< see PatchLimits::webMm
-
-    /// See Sample.
-    std::uint8_t halvings(std::uint32_t vertex) const {
-        return isInWeb[vertex] != 0 ? kHalvings[1] : 0;
-    }
 };
 
 /// \param areas  around each vertex
@@ -151,12 +152,13 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, const N
         if (!bends(v, areas)) continue;
         const Vec3 &p = patch.points[v[0]], &q = patch.points[v[1]], &r = patch.points[v[2]];
         Sample& middle = patch.samples.emplace_back();
+        middle.isMiddle = true;
         middle.setPoint((1.0 / 3) * (p + q + r));
         middle.setNormal(areaVector2(p, q, r));
         middle.clearance =
             std::min({near.clearance[v[0]], near.clearance[v[1]], near.clearance[v[2]]});
-        middle.halvings = (near.halvings(v[0]) | near.halvings(v[1]) | near.halvings(v[2])) &
-                          Sample::kMostHalvings;
+        middle.isInWeb =
+            near.isInWeb[v[0]] != 0 || near.isInWeb[v[1]] != 0 || near.isInWeb[v[2]] != 0;
         patch.sampleTriangle.push_back(t);
     }
 }
@@ -207,8 +209,7 @@ bool FineBrick::findNoise() {
     const auto isPart = [](double part, std::int64_t of, std::size_t all) {
         return static_cast<double>(of) >= part * static_cast<double>(all);
     };
-    if (!isPart(kNoiseCrossed, std::ssize(surface.cells),
-                static_cast<std::size_t>(surface.cellsSeen))) {
+    if (!isPart(kNoiseCrossed, surface.cellsCrossed, static_cast<std::size_t>(surface.cellsSeen))) {
         return false;
     }
     const auto single = std::count_if(surface.vertices.begin(), surface.vertices.end(),
@@ -220,25 +221,60 @@ bool FineBrick::findNoise() {
     return isPart(kNoiseBent, bent, surface.triangles.size());
 }
 
-/// The brick as it is. Nothing of it is simplified later: it takes no quadrics, and no samples but
-/// those on walls, which other bricks have too.
+/// A triangle at each vertex.
+std::vector<std::uint32_t> trianglesAt(const FineSurface& fine) {
+    std::vector<std::uint32_t> triangleAt(fine.vertices.size());
+    for (std::uint32_t t = 0; t < fine.triangles.size(); ++t) {
+        for (const std::uint32_t v : fine.triangles[t]) triangleAt[v] = t;
+    }
+    return triangleAt;
+}
+
+/// What is kept of the full-resolution surface, for the proof and to be brought back.
+/// \param heirOf  says of each vertex what the brick has in its place
+template <class HeirOf>
+void keepFine(const FineBrick& made, const HeirOf& heirOf, BrickSurface& brick) {
+    std::vector<std::uint32_t> number(made.points.size());
+    std::uint32_t onWall = BrickSurface::kOnWall;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+        if (made.surface.vertices[v].isOnWall) {
+            number[v] = onWall++;
+        } else {
+            number[v] = static_cast<std::uint32_t>(brick.fine.points.size());
+            brick.fine.points.push_back(made.points[v]);
+            brick.heirs.push_back(heirOf(static_cast<std::uint32_t>(v)));
+        }
+    }
+    brick.fine.triangles.reserve(made.surface.triangles.size());
+    for (const auto& [a, b, c] : made.surface.triangles) {
+        brick.fine.triangles.push_back({number[a], number[b], number[c]});
+    }
+}
+
+/// The brick as it is. Nothing of it is simplified later: it takes no quadrics.
 BrickSurface wholeBrick(const FineBrick& fine) {
     BrickSurface brick;
+    brick.isWhole = true;
     brick.points = fine.points;
     brick.states.assign(brick.points.size(), Patch::State::Final);
     brick.triangles = fine.surface.triangles;
-    std::vector<std::uint32_t> triangleAt(brick.points.size());
-    for (std::uint32_t t = 0; t < brick.triangles.size(); ++t) {
-        const auto& [a, b, c] = brick.triangles[t];
-        triangleAt[a] = triangleAt[b] = triangleAt[c] = t;
-        brick.print.add({brick.points[a], brick.points[b], brick.points[c]});
-    }
+    const std::vector<std::uint32_t> triangleAt = trianglesAt(fine.surface);
     for (std::uint32_t v = 0; v < brick.points.size(); ++v) {
         const FineVertex& vertex = fine.surface.vertices[v];
-        if (!vertex.isOnWall) continue;
-        brick.walls.push_back({vertex.edge.word, v, triangleAt[v], normalized(fine.areas[v]),
-                               vertex.isSingleSheet ? SheetClearance::kAlone : std::uint8_t{0}});
+        if (vertex.isOnWall) {
+            brick.walls.push_back(
+                {vertex.edge.word, v, triangleAt[v], normalized(fine.areas[v]),
+                 vertex.isSingleSheet ? SheetClearance::kAlone : std::uint8_t{0}});
+            continue;
+        }
+        Sample& sample = brick.samples.emplace_back();
+        sample.setPoint(brick.points[v]);
+        sample.setNormal(fine.areas[v]);
+        sample.clearance = 0;
+        brick.sampleTriangle.push_back(triangleAt[v]);
     }
+    keepFine(
+        fine, [](std::uint32_t v) { return v; }, brick);
     return brick;
 }
 
@@ -256,10 +292,7 @@ Patch patchOf(const FineBrick& made, const MetricFrame& frame, double webMm, Bri
     const std::vector<Vec3> areas = addQuadrics(patch);
     isFlat = flatVertices(patch, areas);
     const Nearness near = nearnessOf(fine, patch.points, areas, frame, webMm);
-    std::vector<std::uint32_t> triangleAt(fine.vertices.size());
-    for (std::uint32_t t = 0; t < fine.triangles.size(); ++t) {
-        for (const std::uint32_t v : fine.triangles[t]) triangleAt[v] = t;
-    }
+    const std::vector<std::uint32_t> triangleAt = trianglesAt(fine);
     for (std::uint32_t v = 0; v < fine.vertices.size(); ++v) {
         const FineVertex& vertex = fine.vertices[v];
         if (vertex.isOnWall) {
@@ -271,7 +304,7 @@ Patch patchOf(const FineBrick& made, const MetricFrame& frame, double webMm, Bri
         sample.setPoint(patch.points[v]);
         sample.setNormal(areas[v]);
         sample.clearance = near.clearance[v];
-        sample.halvings = near.halvings(v) & Sample::kMostHalvings;
+        sample.isInWeb = near.isInWeb[v] != 0;
         patch.sampleTriangle.push_back(triangleAt[v]);
     }
     addMiddles(fine, areas, near, patch);
@@ -280,24 +313,32 @@ Patch patchOf(const FineBrick& made, const MetricFrame& frame, double webMm, Bri
 
 /// \param lowIndex  sample index of the brick's first lattice position
 BrickSurface simplifyBrick(const FineBrick& made, const Index3& lowIndex, const MetricFrame& frame,
-                           const LocalTolerances& tolerances, const PatchLimits& limits,
-                           const BoundingBox* moving, std::vector<double>* costs) {
+                           const PatchLimits& limits, const BoundingBox* moving,
+                           std::vector<double>* costs) {
     BrickSurface result;
     std::vector<std::uint8_t> isFlat;
     Patch patch = patchOf(made, frame, limits.webMm, result, isFlat);
     patch.setBox(lowIndex, Brick::kSide);
-    tolerances.apply(frame, patch.samples);
     for (std::size_t v = 0; v < patch.points.size(); ++v) {
         const Vec3& index = made.surface.vertices[v].index;
         const bool isOutside = moving != nullptr && !moving->contains(index);
-        if (isOutside || tolerances.isFrozen(index)) patch.states[v] = Patch::State::Final;
+        if (isOutside) patch.states[v] = Patch::State::Final;
     }
+    patch.heirs.resize(patch.points.size());
+    std::iota(patch.heirs.begin(), patch.heirs.end(), 0U);
     PatchSimplifier simplifier(patch, frame, limits);
     if (limits.maxCost > 0 && !isFlat.empty()) {
         simplifier.settleFlatBoxes(isFlat, Brick::kSide / 2, costs);
     }
     simplifier.collapseEdges(patch.ownTriangles, costs);
-    takeOver(patch, result);
+    const std::vector<std::uint32_t> newVertex = takeOver(patch, result);
+    keepFine(
+        made,
+        [&](std::uint32_t v) {
+            while (newVertex[v] == kNone && patch.heirs[v] != v) v = patch.heirs[v];
+            return newVertex[v];
+        },
+        result);
     return result;
 }
 
@@ -305,8 +346,7 @@ BrickSurface simplifyBrick(const FineBrick& made, const Index3& lowIndex, const 
 /// Vertices of the whole are numbered in the order in which bricks first have them.
 class Joiner {
 public:
-    Joiner(const Bricks& bricks, const MetricFrame& frame, const LocalTolerances& tolerances)
-        : bricks_(bricks), frame_(frame), tolerances_(tolerances) {
+    Joiner(const Bricks& bricks, bool keepsHeirs) : bricks_(bricks), keepsHeirs_(keepsHeirs) {
         for (std::int64_t b = 0; b < bricks.count(); ++b) blocks_ += bricks[b].blocks.size();
     }
 
@@ -319,25 +359,30 @@ public:
         for (const auto& t : brick.triangles) {
             whole_.triangles.push_back({number_[t[0]], number_[t[1]], number_[t[2]]});
         }
-        whole_.firstSample.push_back(whole_.samples.size());
+        addFine(brick);
         whole_.samples.insert(whole_.samples.end(), brick.samples.begin(), brick.samples.end());
         for (const std::uint32_t t : brick.sampleTriangle) {
             whole_.sampleTriangle.push_back(firstTriangle + t);
         }
-        if (brick.isWhole()) {
-            whole_.prints.resize(static_cast<std::size_t>(bricks_.count()));
-            whole_.prints[whole_.firstSample.size() - 1] = brick.print;
-        }
-        whole_.fineTriangles += brick.fineTriangles;
+        whole_.fineTriangles += std::ssize(brick.fine.triangles);
         whole_.tableTriangles += brick.tableTriangles;
     }
 
     SimplifiedSurface join() {
         wallAt_.clear();
-        whole_.firstSample.push_back(whole_.samples.size());
-        std::sort(walls_.begin(), walls_.end(),
-                  [](const WallVertex& a, const WallVertex& b) { return a.edge < b.edge; });
-        for (const WallVertex& wall : walls_) addWallSample(wall);
+        std::vector<Number> order(walls_.size()), place(walls_.size());
+        std::iota(order.begin(), order.end(), Number{0});
+        std::sort(order.begin(), order.end(),
+                  [&](Number a, Number b) { return walls_[a].edge < walls_[b].edge; });
+        for (const Number wall : order) {
+            place[wall] = static_cast<Number>(whole_.fine.points.size());
+            addWallSample(walls_[wall]);
+        }
+        for (auto& t : whole_.fine.triangles) {
+            for (Number& v : t) {
+                if (v >= BrickSurface::kOnWall) v = place[v - BrickSurface::kOnWall];
+            }
+        }
         if (!whole_.quadrics.empty()) whole_.quadrics.resize(whole_.points.size());
         return std::move(whole_);
     }
@@ -357,7 +402,7 @@ private:
         const auto fits = [](const auto& whole, const auto& part, std::size_t most) {
             return part.size() <= most - whole.size();
         };
-        if (fits(whole_.triangles, brick.triangles, SurfaceState::kMost) &&
+        if (fits(whole_.fine.triangles, brick.fine.triangles, SurfaceState::kMost) &&
             fits(whole_.points, brick.points, SurfaceState::kMost) &&
             fits(whole_.samples, brick.samples, SimplifiedSurface::kMostSamples - walls_.size())) {
             return;
@@ -370,8 +415,7 @@ private:
     /// Lets the lists grow to what all bricks will need, by how much those so far did: so they are
     /// copied rarely, and little of them is there twice.
     void makeRoomFor(const BrickSurface& brick) {
-        const std::size_t number = whole_.firstSample.size();
-        blocksJoined_ += bricks_[static_cast<std::int64_t>(number)].blocks.size();
+        blocksJoined_ += bricks_[bricksJoined_++].blocks.size();
         const double share = static_cast<double>(blocksJoined_) /
                              static_cast<double>(std::max<std::size_t>(blocks_, 1));
         const auto grow = [&](auto& list, std::size_t more) {
@@ -384,19 +428,23 @@ private:
         };
         grow(whole_.points, brick.points.size());
         grow(whole_.states, brick.points.size());
-        if (!brick.isWhole()) grow(whole_.quadrics, brick.points.size());
+        if (!brick.isWhole) grow(whole_.quadrics, brick.points.size());
         grow(whole_.triangles, brick.triangles.size());
         // those on walls come last
         const std::size_t samples = brick.samples.size() + walls_.size() + brick.walls.size();
         grow(whole_.samples, samples);
         grow(whole_.sampleTriangle, samples);
+        grow(whole_.fine.triangles, brick.fine.triangles.size());
+        if (keepsHeirs_)
+            grow(whole_.heirs, brick.heirs.size() + walls_.size() + brick.walls.size());
+        grow(whole_.fine.points, brick.fine.points.size() + walls_.size() + brick.walls.size());
     }
 
     /// Gives the brick's vertices their numbers in the whole, and appends those that are new: at a
     /// wall the first brick keeps the vertex, the others add their quadrics to it.
     void numberVertices(const BrickSurface& brick, Number firstTriangle) {
         constexpr Number kNew = ~Number{0};
-        if (!brick.isWhole()) whole_.quadrics.resize(whole_.points.size());
+        if (!brick.isWhole) whole_.quadrics.resize(whole_.points.size());
         number_.assign(brick.points.size(), kNew);
         for (const auto& wall : brick.walls) {
             const auto known = wallAt_.find(wall.edge);
@@ -407,29 +455,48 @@ private:
                 number_[v] = static_cast<Number>(whole_.points.size());
                 whole_.points.push_back(brick.points[v]);
                 whole_.states.push_back(brick.states[v]);
-                if (!brick.isWhole()) whole_.quadrics.push_back(brick.quadrics[v]);
+                if (!brick.isWhole) whole_.quadrics.push_back(brick.quadrics[v]);
                 continue;
             }
             // a brick that is left whole keeps its walls, too
             if (brick.states[v] == Patch::State::Final) {
                 whole_.states[number_[v]] = Patch::State::Final;
             }
-            if (!brick.isWhole()) {
+            if (!brick.isWhole) {
                 StoredQuadric& sum = whole_.quadrics[number_[v]];
                 for (std::size_t n = 0; n < sum.number.size(); ++n) {
                     sum.number[n] += brick.quadrics[v].number[n];
                 }
             }
         }
+        wallNumber_.clear();
         for (const auto& wall : brick.walls) {
             const auto [at, isNew] = wallAt_.try_emplace(wall.edge, walls_.size());
             if (isNew) {
                 walls_.push_back({wall.edge, number_[wall.vertex], firstTriangle + wall.triangle,
                                   Vec3{}, SheetClearance::kAlone});
             }
+            wallNumber_.push_back(static_cast<Number>(at->second));
             WallVertex& whole = walls_[at->second];
             whole.normal += wall.normal;
             whole.clearance = std::min(whole.clearance, wall.clearance);
+        }
+    }
+
+    /// \pre numberVertices() has numbered the brick's walls
+    void addFine(const BrickSurface& brick) {
+        const FineMesh& fine = brick.fine;
+        const auto first = static_cast<Number>(whole_.fine.points.size());
+        whole_.fine.points.insert(whole_.fine.points.end(), fine.points.begin(), fine.points.end());
+        if (keepsHeirs_) {
+            for (const Number heir : brick.heirs) whole_.heirs.push_back(number_[heir]);
+        }
+        const auto numberOf = [&](Number v) {
+            constexpr Number kOnWall = BrickSurface::kOnWall;
+            return v < kOnWall ? first + v : kOnWall + wallNumber_[v - kOnWall];
+        };
+        for (const auto& [a, b, c] : fine.triangles) {
+            whole_.fine.triangles.push_back({numberOf(a), numberOf(b), numberOf(c)});
         }
     }
 
@@ -438,17 +505,18 @@ private:
         sample.clearance = wall.clearance;
         sample.setPoint(whole_.points[wall.vertex]);
         sample.setNormal(wall.normal);
-        tolerances_.apply(frame_, sample);
         whole_.samples.push_back(sample);
         whole_.sampleTriangle.push_back(wall.triangle);
-        whole_.wallEdges.push_back(wall.edge);
+        whole_.fine.points.push_back(whole_.points[wall.vertex]);
+        if (keepsHeirs_) whole_.heirs.push_back(wall.vertex);
     }
 
     const Bricks& bricks_;
-    const MetricFrame& frame_;
-    const LocalTolerances& tolerances_;
+    bool keepsHeirs_;
     std::size_t blocks_ = 0, blocksJoined_ = 0;  ///< of all bricks; of those that were added
-    std::vector<Number> number_;                 ///< in the whole, of a brick's vertices
+    std::int64_t bricksJoined_ = 0;
+    std::vector<Number> number_;      ///< in the whole, of a brick's vertices
+    std::vector<Number> wallNumber_;  ///< in walls_, of a brick's
     std::vector<WallVertex> walls_;
     std::unordered_map<std::uint64_t, std::size_t> wallAt_;  ///< by edge
     SimplifiedSurface whole_;
@@ -457,9 +525,8 @@ private:
 }  // namespace
 
 SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& bricks,
-                                 const MetricFrame& frame, const LocalTolerances& tolerances,
-                                 const PatchLimits& limits, CollapseCosts* costs,
-                                 const BoundingBox* moving) {
+                                 const MetricFrame& frame, const PatchLimits& limits,
+                                 CollapseCosts* costs, const BoundingBox* moving) {
     struct Tools {
         BrickMesher mesher;
         FineBrick fine;
@@ -482,14 +549,13 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
         for (std::int64_t& along : lowIndex) along -= bricks.grid().offset;
         BrickSurface brick = fine.isNoise
                                  ? wholeBrick(fine)
-                                 : simplifyBrick(fine, lowIndex, frame, tolerances, limits, moving,
+                                 : simplifyBrick(fine, lowIndex, frame, limits, moving,
                                                  costs != nullptr ? &(*costs)[b] : nullptr);
-        brick.fineTriangles = std::ssize(fine.surface.triangles);
         brick.tableTriangles =
-            brick.fineTriangles - 2 * static_cast<std::int64_t>(fine.surface.ownMiddles);
+            std::ssize(brick.fine.triangles) - 2 * static_cast<std::int64_t>(fine.surface.middles);
         return brick;
     };
-    Joiner joiner(bricks, frame, tolerances);
+    Joiner joiner(bricks, limits.keepsHeirs);
     parallelInOrder(bricks.count(), simplified,
                     [&](const BrickSurface& brick) { joiner.add(brick); });
     tools.clear();

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 #include "adaptiso/Core/Memory.h"
@@ -13,12 +12,6 @@
 
 namespace adaptiso::detail {
 namespace {
-
-/// From now on.
-void keepHeirs(SimplifiedSurface& surface) {
-    surface.heirs.resize(surface.points.size());
-    std::iota(surface.heirs.begin(), surface.heirs.end(), SurfaceState::Number{0});
-}
 
 /// A cut into one cube with all of the surface; none where that would be too large.
 std::optional<PatchCut> cutAround(const SimplifiedSurface& surface, const MetricFrame& frame) {
@@ -92,9 +85,8 @@ private:
 
 }  // namespace
 
-Simplification::Simplification(const FullSurface& full, const LocalTolerances& tolerances,
-                               const PatchLimits& limits)
-    : full_(full), frame_(full.frame()), tolerances_(tolerances), limits_(limits) {
+Simplification::Simplification(const FullSurface& full, const PatchLimits& limits)
+    : full_(full), frame_(full.frame()), limits_(limits) {
     const double voxel = frame_.voxelMm();
     costUnit_ = voxel * voxel * voxel * voxel;
 }
@@ -134,12 +126,12 @@ void Simplification::roundUpTo(double cost, SimplifiedSurface& surface, bool fit
 }
 
 /// Rounds with changes that are small in every way.
-SimplifiedSurface Simplification::toCheckpoint() {
+SimplifiedSurface Simplification::beginGently() {
     const double distanceMm = limits_.maxDistanceMm, voxel = frame_.voxelMm();
-    const double mostCost = kCheckpointCost * voxel * voxel * distanceMm * distanceMm;
-    limits_.maxDistanceMm *= kCheckpointDistance;
+    const double mostCost = kGentleCost * voxel * voxel * distanceMm * distanceMm;
+    limits_.maxDistanceMm *= kGentleDistance;
     limits_.maxCost = kFirstCost * costUnit_;
-    SimplifiedSurface surface = full_.firstRound(tolerances_, limits_, nullptr);
+    SimplifiedSurface surface = full_.firstRound(limits_, nullptr);
     surface.returnFreedMemory();
     for (const double cost : kBoundCosts) {
         if (cost * costUnit_ > mostCost) break;
@@ -153,11 +145,9 @@ SimplifiedSurface Simplification::toCheckpoint() {
     return surface;
 }
 
-SimplifiedSurface Simplification::toLimits(SurfaceState& checkpoint) {
-    SimplifiedSurface surface = toCheckpoint();
+SimplifiedSurface Simplification::toLimits() {
+    SimplifiedSurface surface = beginGently();
     if (surface.quadrics.empty()) return surface;  // all was left whole
-    checkpoint = surface.state();
-    keepHeirs(surface);
     for (const double cost : kBoundCosts) {
         if (cost * costUnit_ > limits_.maxCost) roundUpTo(cost * costUnit_, surface);
     }
@@ -228,12 +218,12 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
     limits_.triedCost = -1;
     rounds_ = fits_ = 0;
     isTied_ = false;
-    SimplifiedSurface surface = full_.firstRound(tolerances_, limits_, &costs);
+    SimplifiedSurface surface = full_.firstRound(limits_, &costs);
     collapsed_ = (surface.fineTriangles - surface.triangleCount()) / 2;
     const std::int64_t target = wanted.of(surface.fineTriangles);
     if (surface.triangleCount() < target) {
         limits_.maxCost = costLimitFor(costs, (surface.fineTriangles - target) / 2);
-        surface = full_.firstRound(tolerances_, limits_, nullptr);
+        surface = full_.firstRound(limits_, nullptr);
     }
     limits_.triedCost = limits_.maxCost;
     approach(surface, target, farthestMm);

@@ -12,6 +12,7 @@ namespace adaptiso::detail {
 struct WantedCount {
     std::optional<std::int64_t> triangles;
     std::optional<double> reduction;
+    std::int64_t fewer = 0;  ///< by so many than that
 
     bool isGiven() const { return triangles || reduction; }
     std::int64_t of(std::int64_t fineTriangles) const {
@@ -20,7 +21,7 @@ struct WantedCount {
             const double kept = (1 - *reduction) * static_cast<double>(fineTriangles);
             count = std::min(count, static_cast<std::int64_t>(kept));
         }
-        return count;
+        return std::max<std::int64_t>(count - fewer, 0);
     }
 };
 
@@ -29,13 +30,10 @@ struct WantedCount {
 /// surface get coarser together.
 class Simplification {
 public:
-    Simplification(const FullSurface& full, const LocalTolerances& tolerances,
-                   const PatchLimits& limits);
+    Simplification(const FullSurface& full, const PatchLimits& limits);
 
     /// As few triangles as the limits allow.
-    /// \param checkpoint  gets the surface after its first rounds, whose changes are small in every
-    ///                 way: the heirs are of its vertices
-    SimplifiedSurface toLimits(SurfaceState& checkpoint);
+    SimplifiedSurface toLimits();
 
     /// The wanted number of triangles, or as few as the limits allow.
     /// \param farthestMm  where they don't, the allowed distance of samples is doubled on the way
@@ -48,7 +46,7 @@ private:
     void fit(SimplifiedSurface& surface);
     PatchCut nextCut(const SimplifiedSurface& surface);
     void roundUpTo(double cost, SimplifiedSurface& surface, bool fits = false);
-    SimplifiedSurface toCheckpoint();
+    SimplifiedSurface beginGently();
     SimplifiedSurface towards(const WantedCount& wanted, double farthestMm);
     void approach(SimplifiedSurface& surface, std::int64_t target, double farthestMm);
     void goFarther(SimplifiedSurface& surface);
@@ -57,7 +55,6 @@ private:
 
     const FullSurface& full_;
     const MetricFrame& frame_;
-    const LocalTolerances& tolerances_;
     PatchLimits limits_;
     double costUnit_;
     int rounds_ = 0;

@@ -14,7 +14,6 @@
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptiso/SurfaceProof/SurfaceWalk.h"
-#include "adaptiso/SurfaceProof/ZeroedTable.h"
 
 namespace adaptiso::detail {
 
@@ -48,7 +47,7 @@ struct MappedVertex {
 
 /// Maps a surface continuously to another one, triangle by triangle, so that no point goes farther
 /// than a distance. Then the first surface lies within that distance of the second, and so does
-/// each triangle of the second that the map covers: see MapCover.
+/// each triangle of the second that the map covers: see SharedCover.
 ///
 /// A vertex goes to the nearest point of the triangle that it is assigned to. An edge between
 /// vertices of different ones is cut where it passes from one triangle to the next, and the cut
@@ -434,55 +433,8 @@ inline double shareOf(const Vec3& area2, const Corners& triangle) {
 /// How far from 1 rounding may take that sum.
 inline constexpr double kCoverRounding = 1e-3;
 
-/// What a SurfaceMap's images cover of the other surface: see shareOf().
-template <class Index>
-class MapCover {
-public:
-    MapCover(const WalkableSurface<Index>& onto, std::size_t triangles)
-        : onto_(&onto), entryOf_(triangles) {}
-
-    void clear() {
-        for (const Entry& e : entries_) entryOf_[static_cast<std::size_t>(e.triangle)] = 0;
-        entries_.clear();
-    }
-    void add(const typename SurfaceMap<Index>::Part& part) {
-        at(part.triangle).area2 += part.area2;
-    }
-    /// The border of what is mapped passes it.
-    void addBorder(Index triangle) { at(triangle).hasBorder = true; }
-
-    /// Each point of the triangle is the image of a mapped one.
-    bool covers(Index triangle) const {
-        const std::uint32_t number = entryOf_[static_cast<std::size_t>(triangle)];
-        if (number == 0) return false;
-        const Entry& entry = entries_[number - 1];
-        return !entry.hasBorder &&
-               std::abs(shareOf(entry.area2, onto_->cornersOf(triangle)) - 1) < kCoverRounding;
-    }
-
-private:
-    struct Entry {
-        Index triangle;
-        Vec3 area2{};  ///< sum of the parts'
-        bool hasBorder = false;
-    };
-    Entry& at(Index triangle) {
-        std::uint32_t& entry = entryOf_[static_cast<std::size_t>(triangle)];
-        if (entry == 0) {
-            entries_.push_back({triangle});
-            entry = static_cast<std::uint32_t>(entries_.size());
-        }
-        return entries_[entry - 1];
-    }
-
-    const WalkableSurface<Index>* onto_;
-    ZeroedTable entryOf_;  ///< of each triangle: its number in entries_, + 1
-    std::vector<Entry> entries_;
-};
-
-/// What maps of pieces of the full surface cover of the simplified one, as MapCover, for pieces
-/// side by side: shares are summed as whole numbers of a small part, so that their order changes
-/// nothing.
+/// What a SurfaceMap's images cover of the other surface: see shareOf(). For pieces side by side:
+/// shares are summed as whole numbers of a small part, so that their order changes nothing.
 class SharedCover {
 public:
     explicit SharedCover(std::size_t triangles) : parts_(triangles, 0), hasBorder_(triangles, 0) {}
@@ -494,9 +446,11 @@ public:
             addBorder(triangle);
         }
     }
+    /// The border of what is mapped passes it.
     void addBorder(std::uint64_t triangle) {
         std::atomic_ref(hasBorder_[triangle]).store(1, std::memory_order_relaxed);
     }
+    /// Each point of the triangle is the image of a mapped one.
     bool covers(std::uint64_t triangle) const {
         const double sum = static_cast<double>(parts_[triangle]) / kOne;
         return hasBorder_[triangle] == 0 && std::abs(sum - 1) < kCoverRounding;

@@ -1,4 +1,4 @@
-#include "adaptive/proof/MeshProof.h"
+#include "adaptive/proof/DistanceProof.h"
 
 #include <algorithm>
 #include <array>
@@ -8,25 +8,23 @@
 #include <span>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/PerThread.h"
 #include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/Parameters.h"
-#include "adaptive/proof/MeshMap.h"
+#include "adaptive/proof/PieceMap.h"
 
 namespace adaptiso::detail {
 namespace {
 
 using Number = SurfaceState::Number;
 
-constexpr std::int64_t kPiece = 256;
+constexpr std::int64_t kPiece = 256, kFinePiece = 2048;
+/// A tree serves as long as no more than this part of the triangles have changed.
+constexpr std::size_t kFewChanges = 64;
 
 Corners cornersOf(const SimplifiedSurface& surface, std::uint64_t t) {
     const SurfaceState::Triangle& c = surface.triangles[t];
     return {surface.points[c[0]], surface.points[c[1]], surface.points[c[2]]};
-}
-
-Corners cornersOf(const MeshParts& parts, std::size_t t) {
-    const MeshParts::Triangle& c = parts.triangles[t];
-    return {parts.points[c[0]], parts.points[c[1]], parts.points[c[2]]};
 }
 
 /// What is proved of some triangles.
@@ -42,7 +40,8 @@ template <class Index>
 struct Target {
     const WalkableSurface<Index>& walkable;
     TriangleView view;
-    TreeOnDemand& tree;  ///< of the view
+    TreeOnDemand& tree;              ///< of the view
+    std::span<const Index> changed;  ///< triangles that are new or have changed since it was made
 };
 
 /// Bounds how far triangles of one surface are from another; keeps its working memory.
@@ -114,13 +113,13 @@ private:
         double reachMm = bound_.boundMm();
         for (const Vec3& corner : piece) {
             double nearest = std::numeric_limits<double>::infinity();
-            for (const Corners& t : around_) {
+            for (const Corners& t : bound_.nearby()) {
                 nearest = std::min(nearest, squaredDistanceToTriangle(corner, t));
             }
-            nearest = to_.tree.get().squaredDistance(corner, to_.view, nearest);
+            if (near_.empty()) nearest = squaredDistanceTo(corner);
             reachMm = std::max(reachMm, std::sqrt(nearest));
         }
-        collectWithin(reachMm, piece);
+        if (near_.empty() || reachMm > bound_.boundMm()) collectWithin(reachMm, piece);
         includeNear(piece, makePlace);
     }
 
@@ -130,10 +129,22 @@ private:
         box.widen(kRounding * distanceMm);
         near_.clear();
         bound_.nearby().clear();
-        to_.tree.get().forEachOverlap(box, to_.view, [&](std::uint32_t t) {
+        const auto add = [&](Index t) {
             near_.push_back(t);
             bound_.nearby().push_back(to_.view.cornersOf(t));
-        });
+        };
+        to_.tree.get().forEachOverlap(box, to_.view, add);
+        for (const Index t : to_.changed) {
+            if (boxOf(to_.view.cornersOf(t)).overlaps(box)) add(t);
+        }
+    }
+
+    double squaredDistanceTo(const Vec3& p) const {
+        double nearest = to_.tree.get().squaredDistance(p, to_.view);
+        for (const Index t : to_.changed) {
+            nearest = std::min(nearest, squaredDistanceToTriangle(p, to_.view.cornersOf(t)));
+        }
+        return nearest;
     }
 
     template <class MakePlace>
@@ -156,41 +167,69 @@ private:
 
 /// What is proved, but for which triangles.
 struct Task {
-    const MeshParts& parts;
-    const SimplifiedSurface& surface;
+    Target<std::uint32_t> fine;
+    Target<Number> simplified;
+    /// Of each vertex of the full surface, the triangle that it is assigned to.
+    std::vector<Number> assigned;
     double voxelMm, enoughMm, limitMm;
 };
 
-/// Calls f(triangle) for those of a piece of work that are not known.
+/// What the full surface's triangles were found to be.
+struct FineFound {
+    std::vector<std::uint8_t> isMapped;  ///< of each one: the map has it
+    std::vector<std::uint8_t> isFine;    ///< of each simplified one: it is one of them
+    SharedCover cover;                   ///< by the images of those that are mapped
+};
+
+/// Calls f(triangle) for those from one up to another that are not known.
 template <class F>
-void forEachUnknown(const std::vector<std::uint8_t>& isKnown, std::int64_t piece, std::size_t count,
+void forEachUnknown(const std::vector<std::uint8_t>& isKnown, std::int64_t begin, std::int64_t end,
                     const F& f) {
-    const std::size_t begin = static_cast<std::size_t>(piece) * kPiece;
-    for (std::size_t t = begin; t < std::min<std::size_t>(count, begin + kPiece); ++t) {
-        if (isKnown.empty() || isKnown[t] == 0) f(t);
+    for (std::int64_t t = begin; t < end; ++t) {
+        if (isKnown.empty() || isKnown[t] == 0) f(static_cast<std::uint32_t>(t));
     }
 }
 
+/// The simplified surface's triangle with the corners of one of the full surface, if there is one.
+Number sameTriangle(const Task& task, std::uint32_t t) {
+    const WalkableSurface<Number>& onto = task.simplified.walkable;
+    std::array<Number, 3> corners{};
+    for (int i = 0; i < 3; ++i) {
+        const std::uint32_t v = task.fine.walkable.verticesOf(t)[i];
+        const auto& there = onto.verticesOf(task.assigned[v]);
+        const auto at = std::find_if(there.begin(), there.end(), [&](Number corner) {
+            return onto.point(corner) == task.fine.walkable.point(v);
+        });
+        if (at == there.end()) return PlaceBeyond::kNone;
+        corners[i] = *at;
+    }
+    return onto.find(corners[0], corners[1], corners[2]);
+}
+
 /// Of the full surface to the simplified one.
-/// \param isMapped  gets 1 for each triangle that the map has, whose images the cover gets
-PartBound proveFine(const Task& task, const WalkableSurface<std::uint32_t>& fine,
-                    const Target<Number>& to, const std::vector<std::uint8_t>& isKnown,
-                    std::int64_t piece, std::vector<std::uint8_t>& isMapped, SharedCover& cover) {
+PartBound proveFine(const Task& task, const std::vector<std::uint8_t>& isKnown, std::int64_t begin,
+                    std::int64_t end, PieceMap& map, FineFound& found) {
+    const Target<Number>& to = task.simplified;
     OneWayProof<Number> proof(to, task.voxelMm, task.enoughMm, task.limitMm);
-    PieceMap map(task.parts, fine, task.surface, to.walkable, task.enoughMm);
-    forEachUnknown(isKnown, piece, task.parts.triangles.size(), [&](std::size_t t) {
-        if (map.map(static_cast<std::uint32_t>(t), proof.squaredBound())) {
-            isMapped[t] = 1;
+    map.beginPiece(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin));
+    forEachUnknown(isKnown, begin, end, [&](std::uint32_t t) {
+        const Number same = sameTriangle(task, t);
+        if (same != PlaceBeyond::kNone) {
+            std::atomic_ref(found.isFine[same]).store(1, std::memory_order_relaxed);
+            return;
+        }
+        if (map.map(t, proof.squaredBound())) {
+            found.isMapped[t] = 1;
             for (const auto& part : map.parts()) {
-                cover.add(part.triangle, shareOf(part.area2, to.walkable.cornersOf(part.triangle)));
+                found.cover.add(part.triangle,
+                                shareOf(part.area2, to.walkable.cornersOf(part.triangle)));
             }
             return;
         }
-        const auto& [a, b, c] = task.parts.triangles[t];
-        const auto& standsFor = task.surface.sampleTriangle;
-        const std::array starts{standsFor[a], standsFor[b], standsFor[c]};
+        const auto& [a, b, c] = task.fine.walkable.verticesOf(t);
+        const std::array starts{task.assigned[a], task.assigned[b], task.assigned[c]};
         proof.include(
-            cornersOf(task.parts, t), starts, kStepsOfFine,
+            task.fine.walkable.cornersOf(t), starts, kStepsOfFine,
             [](const Vec3& p, const Vec3& nearest, std::int64_t other) {
                 const auto triangle = static_cast<Number>(other);
                 return PlaceBeyond{nearest, p, other < 0 ? PlaceBeyond::kNone : triangle, true};
@@ -199,30 +238,28 @@ PartBound proveFine(const Task& task, const WalkableSurface<std::uint32_t>& fine
     return proof.result();
 }
 
-/// Tells the cover of the border between triangles that are mapped and others.
-void addBorders(const Task& task, const WalkableSurface<std::uint32_t>& fine,
-                const WalkableSurface<Number>& onto, std::int64_t piece,
-                const std::vector<std::uint8_t>& isMapped, SharedCover& cover) {
-    PieceMap map(task.parts, fine, task.surface, onto, task.enoughMm);
-    forEachUnknown({}, piece, isMapped.size(), [&](std::size_t t) {
-        if (isMapped[t] == 0) return;
-        for (auto h = static_cast<std::uint32_t>(3 * t); h < 3 * t + 3; ++h) {
-            const std::uint32_t beside = fine.twin(h) / 3;
-            if (beside < isMapped.size() && isMapped[beside] != 0) continue;
-            map.forEachAlong(h, [&](std::uint64_t passed) { cover.addBorder(passed); });
+/// Excludes from the cover what the border between triangles that are mapped and others passes.
+void addBorders(const Task& task, std::int64_t begin, std::int64_t end, PieceMap& map,
+                FineFound& found) {
+    forEachUnknown({}, begin, end, [&](std::uint32_t t) {
+        if (found.isMapped[t] == 0) return;
+        for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+            const std::uint32_t beside = task.fine.walkable.twin(h) / 3;
+            if (beside < found.isMapped.size() && found.isMapped[beside] != 0) continue;
+            map.forEachAlong(h, [&](std::uint64_t passed) { found.cover.addBorder(passed); });
         }
     });
 }
 
 /// Of the simplified surface to the full one.
-PartBound proveSimplified(const Task& task, const Target<std::uint32_t>& to,
-                          const std::vector<std::uint8_t>& isKnown,
-                          const std::vector<std::uint32_t>& starts, std::int64_t piece,
-                          const SharedCover& cover) {
-    OneWayProof<std::uint32_t> proof(to, task.voxelMm, task.enoughMm, task.limitMm);
-    forEachUnknown(isKnown, piece, task.surface.triangles.size(), [&](std::size_t t) {
-        if (cover.covers(t)) return;
-        const Corners corners = cornersOf(task.surface, t);
+/// \param starts  of each triangle, where walks on the full surface start
+PartBound proveSimplified(const Task& task, const std::vector<std::uint8_t>& isKnown,
+                          const std::vector<std::uint32_t>& starts, std::int64_t begin,
+                          std::int64_t end, const FineFound& found) {
+    OneWayProof<std::uint32_t> proof(task.fine, task.voxelMm, task.enoughMm, task.limitMm);
+    forEachUnknown(isKnown, begin, end, [&](std::uint32_t t) {
+        if (found.isFine[t] != 0 || found.cover.covers(t)) return;
+        const Corners corners = task.simplified.walkable.cornersOf(t);
         const Vec3 extent = boxOf(corners).maximum - boxOf(corners).minimum;
         // along a needle, which has no area, lie triangles too
         const double faces =
@@ -231,7 +268,7 @@ PartBound proveSimplified(const Task& task, const Target<std::uint32_t>& to,
         const int steps = kFewSteps + static_cast<int>(std::min(kManySteps, kStepsPerFace * faces));
         proof.include(corners, {&starts[t], 1}, steps,
                       [&](const Vec3& p, const Vec3& nearest, std::int64_t) {
-                          return PlaceBeyond{p, nearest, static_cast<Number>(t), false};
+                          return PlaceBeyond{p, nearest, t, false};
                       });
     });
     return proof.result();
@@ -268,25 +305,28 @@ void startBeside(const SimplifiedSurface& surface, std::vector<std::uint32_t>& s
     for (const std::size_t t : left) starts[t] = 0;
 }
 
-/// For each triangle of the simplified surface one of the full surface with a point assigned to it.
-/// \param points  of the full surface, which are the first samples
-std::vector<std::uint32_t> startsOf(const SimplifiedSurface& surface,
-                                    const WalkableSurface<std::uint32_t>& fine,
-                                    std::size_t points) {
+/// For each triangle of the simplified surface one of the full surface with a vertex assigned to
+/// it.
+std::vector<std::uint32_t> startsOf(const SimplifiedSurface& surface, const Task& task) {
     std::vector<std::uint32_t> starts(surface.triangles.size(), kNoStart);
-    for (std::size_t v = points; v-- > 0;) {
-        starts[surface.sampleTriangle[v]] = fine.triangleAt(static_cast<std::uint32_t>(v));
+    for (std::size_t v = task.assigned.size(); v-- > 0;) {
+        starts[task.assigned[v]] = task.fine.walkable.triangleAt(static_cast<std::uint32_t>(v));
     }
     startBeside(surface, starts);
     return starts;
 }
 
-}  // namespace
+/// Of each vertex of the full surface.
+std::vector<Number> assignedOf(const SimplifiedSurface& surface, std::size_t vertices) {
+    std::vector<Number> assigned;
+    assigned.reserve(vertices);
+    for (std::size_t s = 0; s < surface.samples.size(); ++s) {
+        if (!surface.samples[s].isMiddle) assigned.push_back(surface.sampleTriangle[s]);
+    }
+    return assigned;
+}
 
-MeshProof::MeshProof(const MeshParts& parts, const MetricFrame& frame, double limitMm)
-    : parts_(parts), frame_(frame), limitMm_(limitMm), fineTree_(parts.view()) {}
-
-double MeshProof::largestSampleDistance(const SimplifiedSurface& surface) const {
+double largestSampleDistance(const SimplifiedSurface& surface) {
     constexpr std::int64_t kSamples = 1 << 14;
     const std::int64_t count = std::ssize(surface.samples);
     std::vector<double> largest((count + kSamples - 1) / kSamples, 0);
@@ -301,50 +341,106 @@ double MeshProof::largestSampleDistance(const SimplifiedSurface& surface) const 
     return std::sqrt(*std::max_element(largest.begin(), largest.end()));
 }
 
-ErrorBound MeshProof::prove(const SimplifiedSurface& surface) {
+/// Nothing was changed, as of noise: triangle by triangle both are the same.
+bool isFineSurface(const SimplifiedSurface& surface, const TriangleView& fine) {
+    if (surface.triangles.size() != fine.triangles.size()) return false;
+    std::atomic<bool> isSame = true;
+    parallelForPieces(std::ssize(surface.triangles), kFinePiece,
+                      [&](std::int64_t begin, std::int64_t end) {
+                          for (std::int64_t t = begin; t < end && isSame; ++t) {
+                              if (cornersOf(surface, t) != fine.cornersOf(t)) isSame = false;
+                          }
+                      });
+    return isSame;
+}
+
+}  // namespace
+
+DistanceProof::DistanceProof(const TriangleView& fine, const MetricFrame& frame, double limitMm)
+    : fineView_(fine), frame_(frame), limitMm_(limitMm), fineTree_(fine) {}
+
+ErrorBound DistanceProof::prove(const SimplifiedSurface& surface) {
+    provedMm_ = 0;
+    if (isFineSurface(surface, fineView_)) {
+        enoughMm_ = std::min(limitMm_, 0.01 * frame_.narrowestMm());
+        walkable_ = {};
+        isFine_.assign(surface.triangles.size(), 1);
+        remember(surface.triangles.size(), {});
+        return {};
+    }
     // bounds are as tight as the largest sample's distance, or as a hundredth of a voxel
     enoughMm_ =
         std::min(limitMm_, std::max(largestSampleDistance(surface), 0.01 * frame_.narrowestMm()));
-    provedMm_ = 0;
+    if (fine_.isEmpty()) fine_.assign(fineView_.points, fineView_.triangles);
+    walkable_.assign(surface.points, surface.triangles);
+    treeIsMade_ = false;
     return prove(surface, Scope());
 }
 
-ErrorBound MeshProof::proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes) {
-    if (isWithin_.empty()) return prove(surface);
+ErrorBound DistanceProof::proveAgain(const SimplifiedSurface& surface,
+                                     const SurfaceChanges& changes) {
+    if (walkable_.isEmpty()) return prove(surface);
+    follow(surface, changes);
     return prove(surface, scopeOf(surface, changes));
 }
 
-ErrorBound MeshProof::prove(const SimplifiedSurface& surface, const Scope& scope) {
-    if (fine_.isEmpty()) fine_.assign(parts_.points, parts_.triangles);
-    const Target<std::uint32_t> fine{fine_, parts_.view(), fineTree_};
-    WalkableSurface<Number> walkable;
-    walkable.assign(surface.points, surface.triangles);
+/// Brings what is kept of the last surface to what it is now.
+void DistanceProof::follow(const SimplifiedSurface& surface, const SurfaceChanges& changes) {
+    const std::size_t before = walkable_.triangleCount(), now = surface.triangles.size();
+    std::vector<Number> changed = changes.triangles;
+    for (std::size_t t = std::min(before, now); t < std::max(before, now); ++t) {
+        changed.push_back(static_cast<Number>(t));
+    }
+    std::sort(changed.begin(), changed.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    // some came and went meanwhile
+    std::erase_if(changed, [&](Number t) { return t >= std::max(before, now); });
+    walkable_.update(surface.points, surface.triangles, changed);
+    treeIsMade_ = treeIsMade_ && now >= before;  // it knows triangles by their numbers
+    changed_.insert(changed_.end(), changed.begin(), changed.end());
+}
+
+ErrorBound DistanceProof::prove(const SimplifiedSurface& surface, const Scope& scope) {
     const TriangleView view{surface.points, surface.triangles};
-    TreeOnDemand tree(view);
-    const Target<Number> simplified{walkable, view, tree};
-    const Task task{parts_, surface, frame_.voxelMm(), enoughMm_, limitMm_};
-    const std::vector<std::uint32_t> starts = startsOf(surface, fine_, parts_.points.size());
-    const std::int64_t finePieces = (std::ssize(parts_.triangles) + kPiece - 1) / kPiece,
-                       pieces = (std::ssize(surface.triangles) + kPiece - 1) / kPiece;
+    if (!treeIsMade_ || changed_.size() > surface.triangles.size() / kFewChanges) {
+        tree_.emplace(view);
+        treeIsMade_ = false;
+        changed_.clear();
+    }
+    const Task task{{fine_, fineView_, fineTree_, {}},
+                    {walkable_, view, *tree_, changed_},
+                    assignedOf(surface, fineView_.points.size()),
+                    frame_.voxelMm(),
+                    enoughMm_,
+                    limitMm_};
+    const std::vector<std::uint32_t> starts = startsOf(surface, task);
+    const std::int64_t fineCount = std::ssize(fineView_.triangles), count = surface.triangleCount(),
+                       finePieces = (fineCount + kFinePiece - 1) / kFinePiece,
+                       pieces = (count + kPiece - 1) / kPiece;
     std::vector<PartBound> results(finePieces + pieces);
-    SharedCover cover(surface.triangles.size());
-    std::vector<std::uint8_t> isMapped(parts_.triangles.size(), 0);
-    parallelForPieces(finePieces, 1, [&](std::int64_t piece, std::int64_t) {
-        results[piece] =
-            proveFine(task, fine_, simplified, scope.isFineKnown, piece, isMapped, cover);
+    FineFound found{std::vector<std::uint8_t>(fineCount), std::vector<std::uint8_t>(count),
+                    SharedCover(count)};
+    for (std::size_t t = 0; t < scope.isKnown.size(); ++t) {
+        if (scope.isKnown[t] != 0) found.isFine[t] = isFine_[t];
+    }
+    PerThread<PieceMap> maps([&] { return PieceMap(fine_, task.assigned, walkable_, enoughMm_); });
+    parallelForPieces(fineCount, kFinePiece, [&](std::int64_t begin, std::int64_t end) {
+        results[begin / kFinePiece] =
+            proveFine(task, scope.isFineKnown, begin, end, maps.local(), found);
     });
-    parallelForPieces(finePieces, 1, [&](std::int64_t piece, std::int64_t) {
-        addBorders(task, fine_, simplified.walkable, piece, isMapped, cover);
+    parallelForPieces(fineCount, kFinePiece, [&](std::int64_t begin, std::int64_t end) {
+        addBorders(task, begin, end, maps.local(), found);
     });
     // walks on the full surface will fail as well then: its tree is made by all threads, where each
     // would wait for the one that asks first
     if (std::any_of(results.begin(), results.end(),
                     [](const PartBound& result) { return result.hasSearched; })) {
         fineTree_.get();
+        treeIsMade_ = true;
     }
-    parallelForPieces(pieces, 1, [&](std::int64_t piece, std::int64_t) {
-        results[finePieces + piece] =
-            proveSimplified(task, fine, scope.isKnown, starts, piece, cover);
+    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
+        results[finePieces + begin / kPiece] =
+            proveSimplified(task, scope.isKnown, starts, begin, end, found);
     });
     ErrorBound bound;
     double farthestMm = 0;
@@ -355,11 +451,12 @@ ErrorBound MeshProof::prove(const SimplifiedSurface& surface, const Scope& scope
                                  result.beyond.end());
     }
     bound.largestMm = std::max(provedMm_, farthestMm);
+    isFine_ = std::move(found.isFine);
     remember(surface.triangles.size(), bound.beyondLimit);
     return bound;
 }
 
-void MeshProof::remember(std::size_t triangles, std::vector<PlaceBeyond> beyond) {
+void DistanceProof::remember(std::size_t triangles, std::vector<PlaceBeyond> beyond) {
     isWithin_.assign(triangles, 1);
     for (const PlaceBeyond& place : beyond) {
         if (!place.isOfFine) isWithin_[place.triangle] = 0;
@@ -369,8 +466,8 @@ void MeshProof::remember(std::size_t triangles, std::vector<PlaceBeyond> beyond)
 
 /// What is to be proved: the new triangles, and the full surface near those that came or went and
 /// where it lay beyond the limit.
-MeshProof::Scope MeshProof::scopeOf(const SimplifiedSurface& surface,
-                                    const SurfaceChanges& changes) {
+DistanceProof::Scope DistanceProof::scopeOf(const SimplifiedSurface& surface,
+                                            const SurfaceChanges& changes) {
     Scope scope;
     scope.isKnown = isWithin_;
     scope.isKnown.resize(surface.triangles.size(), 0);
@@ -387,17 +484,17 @@ MeshProof::Scope MeshProof::scopeOf(const SimplifiedSurface& surface,
 
 /// Finds the triangles of the full surface near some triangles, and near the last places beyond the
 /// limit. What is farther than the proved distance lies as near another triangle.
-void MeshProof::markFine(const std::vector<Corners>& changed, Scope& scope) {
+void DistanceProof::markFine(const std::vector<Corners>& changed, Scope& scope) {
     // where much has changed nearly all is near it
     if (changed.size() > scope.isKnown.size() / 4) return;
     const double reachMm = std::min(limitMm_, provedMm_);
     const TriangleTree& tree = fineTree_.get();
-    scope.isFineKnown.assign(parts_.triangles.size(), 1);
+    scope.isFineKnown.assign(fineView_.triangles.size(), 1);
     const auto markNear = [&](const Corners& corners) {
         constexpr double kRounding = 1 + 1e-9;
         BoundingBox box = boxOf(corners);
         box.widen(kRounding * reachMm);
-        tree.forEachOverlap(box, parts_.view(), [&](std::uint32_t t) {
+        tree.forEachOverlap(box, fineView_, [&](std::uint32_t t) {
             std::atomic_ref(scope.isFineKnown[t]).store(0, std::memory_order_relaxed);
         });
     };

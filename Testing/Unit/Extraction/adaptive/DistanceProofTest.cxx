@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <tuple>
 
 #include "NoisyScenes.h"
 #include "PulledBall.h"
@@ -20,7 +22,7 @@ constexpr double kInterpolation = 1.0 / (8 * 7);
 
 }  // namespace
 
-TEST(ErrorProof, SaysThatTheFullSurfaceIsNear) {
+TEST(DistanceProof, SaysThatTheFullSurfaceIsNear) {
     const ProvedBall ball;
     const ErrorBound bound = ball.proof(0.1).prove(ball.full);
     EXPECT_LE(bound.largestMm, kEnough);
@@ -29,7 +31,7 @@ TEST(ErrorProof, SaysThatTheFullSurfaceIsNear) {
 
 // Every vertex moves by d, so every triangle lies within d of the one that it was; and the vertices
 // lie d outside of a ball that holds the whole surface, but for what marching cubes rounds.
-TEST(ErrorProof, BoundsASphereMovedOutward) {
+TEST(DistanceProof, BoundsASphereMovedOutward) {
     const ProvedBall ball;
     for (const double mm : {0.1, 0.5, 1.2}) {
         const ErrorBound bound = ball.proof().prove(ball.outward(mm));
@@ -41,7 +43,7 @@ TEST(ErrorProof, BoundsASphereMovedOutward) {
     }
 }
 
-TEST(ErrorProof, FindsAVertexThatWasPulledOut) {
+TEST(DistanceProof, FindsAVertexThatWasPulledOut) {
     const ProvedBall ball;
     SimplifiedSurface surface = ball.full;
     const Vec3 place = kBallMiddle + kBallRadius * normalized({1, 2, 3});
@@ -60,7 +62,7 @@ TEST(ErrorProof, FindsAVertexThatWasPulledOut) {
 }
 
 // All that is left lies on the full surface; what is missing shows from the other side alone.
-TEST(ErrorProof, FindsWhatTheSimplifiedSurfaceLacks) {
+TEST(DistanceProof, FindsWhatTheSimplifiedSurfaceLacks) {
     const ProvedBall ball;
     SimplifiedSurface surface = ball.full;
     std::erase_if(surface.triangles, [&](const auto& t) {
@@ -93,15 +95,7 @@ struct PartlyNoise {
     Scene scene{noiseBesideSmooth({70, 20, 20}, {}, 5), 0, Border::Open};
     SimplifiedSurface surface = firstRoundOf(scene);
 
-    detail::ErrorProof proof(double limitMm) const {
-        return {*scene.sampler, scene.bricks, scene.frame, limitMm};
-    }
-    /// The same, proved as if nothing were known of whole bricks.
-    ErrorBound proveAll(double limitMm) const {
-        SimplifiedSurface unknown = surface;
-        for (auto& print : unknown.prints) ++print.sum;
-        return proof(limitMm).prove(unknown);
-    }
+    detail::DistanceProof proof(double limitMm) const { return proofOf(surface, scene, limitMm); }
     /// A vertex of the noise, away from the brick's walls.
     std::uint32_t vertexOfNoise() const {
         const Vec3 place{15, 10, 10};
@@ -114,37 +108,86 @@ struct PartlyNoise {
 
 }  // namespace
 
-TEST(ErrorProof, SaysThatNoiseAtFullResolutionIsThere) {
-    const Scene scene(whiteNoise({40, 20, 20}, 3), 0, Border::Closed);
-    SimplifiedSurface surface = firstRoundOf(scene);
-    detail::ErrorProof proof(*scene.sampler, scene.bricks, scene.frame, 0.3);
-    EXPECT_EQ(proof.prove(surface).largestMm, 0);
-    // and by a look at all of it
-    for (auto& print : surface.prints) ++print.sum;
-    EXPECT_LE(
-        detail::ErrorProof(*scene.sampler, scene.bricks, scene.frame, 0.3).prove(surface).largestMm,
-        kEnough);
-}
-
-TEST(ErrorProof, SaysOfPartlyNoiseWhatALookAtAllOfItSays) {
-    const PartlyNoise partly;
-    ASSERT_TRUE(partly.surface.wasLeftWhole(0));
-    ASSERT_LT(partly.surface.triangleCount(), partly.surface.fineTriangles);
-    for (const double limitMm : {0.1, 0.4}) {
-        const ErrorBound bound = partly.proof(limitMm).prove(partly.surface);
-        const ErrorBound all = partly.proveAll(limitMm);
-        EXPECT_GT(bound.largestMm, 0.05);
-        EXPECT_NEAR(bound.largestMm, all.largestMm, 0.01 * all.largestMm) << limitMm;
-        EXPECT_EQ(bound.beyondLimit.size(), all.beyondLimit.size()) << limitMm;
+TEST(DistanceProof, SaysThatNoiseAtFullResolutionIsThere) {
+    for (const Border border : {Border::Open, Border::Closed}) {
+        const Scene scene(whiteNoise({70, 20, 20}, 3), 0, border);
+        const SimplifiedSurface surface = firstRoundOf(scene);
+        detail::DistanceProof proof = proofOf(surface, scene, 0.3);
+        EXPECT_EQ(proof.prove(surface).largestMm, 0);
+        EXPECT_EQ(proof.isFine(), std::vector<std::uint8_t>(surface.triangles.size(), 1));
+        // and under other numbers, by a look at all of it
+        SimplifiedSurface turned = surface;
+        std::reverse(turned.triangles.begin(), turned.triangles.end());
+        const auto last = static_cast<std::uint32_t>(turned.triangles.size() - 1);
+        for (std::uint32_t& t : turned.sampleTriangle) t = last - t;
+        detail::DistanceProof anew = proofOf(surface, scene, 0.3);
+        EXPECT_LE(anew.prove(turned).largestMm, kEnough);
+        EXPECT_EQ(anew.isFine(), proof.isFine());
     }
 }
 
-// What was left whole has no samples: the triangles of its vertices are found by their places.
-TEST(ErrorProof, FindsAVertexOfNoiseThatWasPulledOut) {
+// A triangle counts as one of the full surface as long as nothing of it has changed.
+TEST(DistanceProof, KnowsTheTrianglesOfTheFullSurface) {
+    const PartlyNoise partly;
+    ASSERT_LT(partly.surface.triangleCount(), partly.surface.fineTriangles);
+    const detail::FineMesh& fine = partly.surface.fine;
+    std::set<Corners, bool (*)(const Corners&, const Corners&)> all(
+        [](const Corners& a, const Corners& b) {
+            return std::lexicographical_compare(
+                a.begin(), a.end(), b.begin(), b.end(), [](const Vec3& p, const Vec3& q) {
+                    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+                });
+        });
+    const auto fromLowest = [](Corners c) {
+        std::rotate(c.begin(),
+                    std::min_element(c.begin(), c.end(),
+                                     [](const Vec3& p, const Vec3& q) {
+                                         return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+                                     }),
+                    c.end());
+        return c;
+    };
+    for (const auto& [a, b, c] : fine.triangles) {
+        all.insert(fromLowest({fine.points[a], fine.points[b], fine.points[c]}));
+    }
+    SimplifiedSurface surface = partly.surface;
+    const auto expectSame = [&](const detail::DistanceProof& proof, const char* what) {
+        SCOPED_TRACE(what);
+        std::size_t same = 0;
+        for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+            const auto& [a, b, c] = surface.triangles[t];
+            const bool isSame =
+                all.contains(fromLowest({surface.points[a], surface.points[b], surface.points[c]}));
+            ASSERT_LE(proof.isFine()[t] != 0, isSame) << t;
+            same += proof.isFine()[t];
+        }
+        EXPECT_GT(same, 1000U);
+        EXPECT_LT(same, surface.triangles.size());
+    };
+    detail::DistanceProof proof = partly.proof(0.4);
+    proof.prove(surface);
+    expectSame(proof, "as it is");
+    const std::uint32_t vertex = partly.vertexOfNoise();
+    const Vec3 before = surface.points[vertex];
+    const auto next = std::nextafter(before.x, 1e9);
+    proof.proveAgain(surface, moveVertex(surface, vertex, {next, before.y, before.z}));
+    expectSame(proof, "a vertex moved by a unit in the last place");
+    const auto kept = proof.isFine();
+    proof.proveAgain(surface, moveVertex(surface, vertex, before));
+    expectSame(proof, "it is back");
+    EXPECT_GT(std::count(proof.isFine().begin(), proof.isFine().end(), 1),
+              std::count(kept.begin(), kept.end(), 1));
+    std::swap(surface.triangles[5][0], surface.triangles[5][1]);
+    detail::DistanceProof anew = partly.proof(0.4);
+    anew.prove(surface);
+    expectSame(anew, "a triangle is turned round");
+}
+
+TEST(DistanceProof, FindsAVertexOfNoiseThatWasPulledOut) {
     PartlyNoise partly;
     const Vec3 far{0, 0, 30};  // out of the volume
     const std::uint32_t vertex = partly.vertexOfNoise();
-    detail::ErrorProof proof = partly.proof(0.5);
+    detail::DistanceProof proof = partly.proof(0.5);
     ASSERT_LE(proof.prove(partly.surface).largestMm, 0.5);
     const SimplifiedSurface before = partly.surface;
     detail::SurfaceChanges changes;
@@ -173,13 +216,13 @@ TEST(ErrorProof, FindsAVertexOfNoiseThatWasPulledOut) {
 }
 
 // All is noise, and then it is not: there is nothing that an earlier proof could have left.
-TEST(ErrorProof, ProvesNoiseThatChangedAfterAll) {
+TEST(DistanceProof, ProvesNoiseThatChangedAfterAll) {
     const Scene scene(whiteNoise({40, 20, 20}, 3), 0, Border::Closed);
     SimplifiedSurface surface = firstRoundOf(scene);
-    detail::ErrorProof proof(*scene.sampler, scene.bricks, scene.frame, 0.3);
+    detail::DistanceProof proof = proofOf(surface, scene, 0.3);
     ASSERT_EQ(proof.prove(surface).largestMm, 0);
-    surface.points[0] += {-20, 0, 0};
-    const ErrorBound bound = proof.proveAgain(surface, {});
+    const ErrorBound bound =
+        proof.proveAgain(surface, moveVertex(surface, 0, surface.points[0] + Vec3{-20, 0, 0}));
     EXPECT_GE(bound.largestMm, 15);
     EXPECT_FALSE(bound.beyondLimit.empty());
 }
