@@ -4,11 +4,12 @@
 
 SOURCE is the folder of the sources, BUILD one of its own: BUILD/xml holds what Doxygen made, BUILD/html gets the
 site. PYTHON is the folder that `import adaptiso` is found in; without it the site has no reference of Python. A
-link that leads nowhere, a page that no list names and every other warning of Sphinx is an error. Pages are
+link that leads nowhere and every other warning of Sphinx is an error. A page that index.md.in does not list comes last. Pages are
 copied; links from them to files that are no pages become plain text.
 """
 
 import csv
+import fnmatch
 import os
 import re
 import shutil
@@ -123,7 +124,13 @@ def assemble(source, site, python):
     (site / "_static").mkdir()
     shutil.copy(here / "site.css", site / "_static")
     shutil.copy(here / "conf.py", site)
-    shutil.copy(here / "index.md.in", site / "index.md")  # its links are those of the site
+    index = (here / "index.md.in").read_text(encoding="utf-8")  # its links are those of the site
+    names = [page.relative_to(source).with_suffix("").as_posix() for page in pages]
+    listed = [line for line in index.splitlines() if re.fullmatch(r"[\w/*.-]+", line)]
+    more = [name for name in names if not any(fnmatch.fnmatch(name, line) for line in listed)]
+    if more:
+        index += "\n".join(["", "```{toctree}", ":caption: More", ":maxdepth: 1", *more, "```", ""])
+    (site / "index.md").write_text(index, encoding="utf-8")
     page = source / "Documentation" / "Appendix.md"
     (site / "Documentation" / "Appendix.md").write_text(
         linked(appendix(source / "Documentation" / "benchmarks"), page, source, {*pages, page}), encoding="utf-8")
