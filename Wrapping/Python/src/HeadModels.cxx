@@ -305,11 +305,11 @@ std::string HeadModelData::reportOf(const BemModel& model, const BemFileOptions&
                                            : Json{{"text", "no model: " + model.failureText()}}},
                 {"warnings", model.warnings},
                 {"model", model.hasModel()},
-                {"failedByWarnings", false},
                 {"input", bemInputJson(model)},
                 {"options", told}};
     report.update(bemModelJson(model));
     report["output"] = bemOutputJson(model, options, files);
+    report["failedByWarnings"] = false;
     report["reportFailure"] = nullptr;
     Json seconds = Json::object();
     for (const auto& [stage, time] : seconds_) seconds[stage] = time;
