@@ -97,8 +97,9 @@ void checkCombinations(const MeshOptions& options) {
 void declareInput(CLI::App& app, MeshOptions& options) {
     OptionGroup(app).text(
         "INPUT", "", options.inputs,
-        "A 3-D image: NIfTI, NRRD, MetaImage, MGH, a DICOM file or DICOMDIR, or a folder "
-        "that holds the slices of a DICOM series, an OME-Zarr or N5; several make a batch");
+        "A 3-D image: NIfTI, NRRD, MetaImage, MGH, a DICOM file or DICOMDIR, MINC and others by "
+        "ITK's readers, or a folder that holds the slices of a DICOM series, an OME-Zarr or N5; "
+        "several make a batch");
     declareImageOptions(app, options.image, kInput);
     declarePreprocessingOptions(app, options.preprocessing, kPreprocessing);
 }

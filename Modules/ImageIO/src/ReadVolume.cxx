@@ -3,8 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <type_traits>
 
 #include "ByteSource.h"
@@ -86,36 +88,68 @@ void refuseForeign(const fs::path& input, std::string_view head, std::string_vie
     if (foreign) detail::refuse(input, foreign->fault, foreign->remedy);
 }
 
+/// A reader of ours.
+struct Reader {
+    std::string_view format;
+    ReadVolume (*read)(const fs::path&, const ReadOptions&);
+};
+
+Reader readerOfFolder(const fs::path& folder) {
+    if (detail::isZarrFolder(folder)) return Reader{"Zarr", detail::readZarr};
+    return Reader{"DICOM", detail::readDicomFolder};
+}
+
+/// \param head, inflated  the first bytes as they are and unpacked
+std::optional<Reader> readerOfFile(const fs::path& file, std::string_view head,
+                                   std::string_view inflated) {
+    const Reader nifti{"NIfTI", detail::readNifti}, meta{"MetaImage", detail::readMetaImage};
+    if (detail::looksLikeNrrd(head)) return Reader{"NRRD", detail::readNrrd};
+    if (detail::looksLikeMetaImage(head)) return meta;
+    if (detail::looksLikeNifti(inflated)) return nifti;
+    // content that only its name explains, or a damaged file whose reader says best what is wrong
+    const std::string ending = formatEnding(file);
+    if (ending == "nii" || ending == "hdr" || ending == "img") return nifti;
+    if (ending == "mgh" || ending == "mgz") return Reader{"MGH", detail::readMgh};
+    if (ending == "mha" || ending == "mhd") return meta;
+    const bool isMrc = head.size() >= 212 && head.substr(208, 4) == "MAP ";  // its width may be 8
+    if (detail::looksLikeDicom(head) && !isMrc) return Reader{"DICOM", detail::readDicomFile};
+    return std::nullopt;
+}
+
+/// TIFF, HDF5 and netCDF, which may hold a volume for ITK's readers.
+bool mayBeItks(std::string_view head) {
+    using namespace std::string_view_literals;
+    return std::ranges::any_of(std::array{"II*\0"sv, "MM\0*"sv, "CDF\1"sv, "CDF\2"sv, "\x89HDF"sv},
+                               [&](std::string_view magic) { return head.starts_with(magic); });
+}
+
 ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
     std::error_code error;
-    if (fs::is_directory(input, error)) {
-        if (detail::isZarrFolder(input)) return detail::readZarr(input, options);
-        return detail::readDicomFolder(input, options);
-    }
+    if (fs::is_directory(input, error)) return readerOfFolder(input).read(input, options);
     detail::requireRegularFile(input);
 
     const std::string head = detail::readHead(input, kHeadBytes);
-    if (detail::looksLikeNrrd(head)) return detail::readNrrd(input, options);
-    if (detail::looksLikeMetaImage(head)) return detail::readMetaImage(input, options);
     const std::string inflated = inflatedHead(input);
-    if (!detail::looksLikeDicom(head)) refuseForeign(input, head, inflated);
-    if (detail::looksLikeNifti(inflated)) return detail::readNifti(input, options);
-
-    // content that only its name explains, or a damaged file whose reader says best what is wrong
-    const std::string ending = formatEnding(input);
-    if (ending == "nii" || ending == "hdr" || ending == "img")
-        return detail::readNifti(input, options);
-    if (ending == "mgh" || ending == "mgz") return detail::readMgh(input, options);
-    if (ending == "mha" || ending == "mhd") return detail::readMetaImage(input, options);
-    if (detail::looksLikeDicom(head)) return detail::readDicomFile(input, options);
+    const auto reader = readerOfFile(input, head, inflated);
+    const bool isSure = reader && (reader->format == "DICOM" || detail::looksLikeNrrd(head) ||
+                                   detail::looksLikeMetaImage(head));
+    if (!isSure && !reader && mayBeItks(inflated)) {
+        if (auto read = detail::readWithItk(input, options)) return std::move(*read);
+    }
+    if (!isSure) refuseForeign(input, head, inflated);
+    if (reader) return reader->read(input, options);
+    if (auto read = detail::readWithItk(input, options)) return std::move(*read);
     for (const auto looksLikeOne :
          {detail::looksLikeDicom, detail::looksLikeNrrd, detail::looksLikeMetaImage}) {
-        if (!looksLikeOne(inflated)) continue;
+        if (head == inflated || !looksLikeOne(inflated)) continue;
         detail::refuse(input, "is compressed as a whole, as its format is not",
                        "decompress it, e.g. with gunzip");
     }
     detail::refuse(input, "not a format that is read here",
-                   "give NIfTI, NRRD, MetaImage, MGH, DICOM, or a folder of Zarr");
+                   std::string("give NIfTI, NRRD, MetaImage, MGH, DICOM, or a folder of Zarr") +
+                       (detail::hasItkReaders() ? ""
+                                                : "; MINC and other formats of ITK need "
+                                                  "libadaptisoItkIO.so, which is not here"));
 }
 
 }  // namespace
@@ -124,6 +158,19 @@ ReadVolume readVolume(const fs::path& input, const ReadOptions& options) {
     ReadVolume read = readAnyFormat(input, options);
     warnOfOddSamples(read);
     return read;
+}
+
+std::string_view recognizeImage(const fs::path& input) {
+    try {
+        std::error_code error;
+        if (fs::is_directory(input, error)) return readerOfFolder(input).format;
+        detail::requireRegularFile(input);
+        const auto reader =
+            readerOfFile(input, detail::readHead(input, kHeadBytes), inflatedHead(input));
+        return reader ? reader->format : std::string_view();
+    } catch (const Error&) {
+        return {};
+    }
 }
 
 }  // namespace adaptiso

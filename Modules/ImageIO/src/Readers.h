@@ -18,6 +18,11 @@ ReadVolume readDicomFile(const std::filesystem::path& file, const ReadOptions& o
 ReadVolume readZarr(const std::filesystem::path& folder, const ReadOptions& options);
 ReadVolume readDicomFolder(const std::filesystem::path& folder, const ReadOptions& options);
 
+/// By ITK's readers of other formats. Empty where none takes the file, or they are not installed.
+std::optional<ReadVolume> readWithItk(const std::filesystem::path& file,
+                                      const ReadOptions& options);
+bool hasItkReaders();
+
 /// Format by the first bytes of a file (inflated, 1024 or all of them).
 bool looksLikeNifti(std::string_view head);
 bool looksLikeNrrd(std::string_view head);

@@ -1,8 +1,10 @@
 #include "Fence.h"
 #include "FileFault.h"
 #include "GdcmDecoder.h"
+#include "Readers.h"
 
-/// A build without GDCM: compressed DICOM is refused, so that nothing needs a sandbox process.
+/// A build without GDCM: compressed DICOM and ITK's formats are refused, so that nothing needs a
+/// sandbox process.
 namespace adaptiso::detail {
 
 void decodeWithGdcm(const std::filesystem::path& file, std::string_view, const std::string&,
@@ -28,6 +30,14 @@ bool isBehindFence() {
 
 std::shared_ptr<std::byte[]> allocateSharedBytes(std::uint64_t) {
     return {};
+}
+
+bool hasItkReaders() {
+    return false;
+}
+
+std::optional<ReadVolume> readWithItk(const std::filesystem::path&, const ReadOptions&) {
+    return std::nullopt;
 }
 
 }  // namespace adaptiso::detail

@@ -9,7 +9,7 @@ namespace adaptiso::detail {
 Extraction extractInFilter(itk::ProcessObject& filter, const VolumeView& volume,
                            ExtractionOptions options, Border border) {
     const std::function<void()> endIfAborted = [&] {
-        if (filter.GetAbortGenerateData()) throw itk::ProcessAborted(__FILE__, __LINE__);
+        if (filter.GetAbortGenerateData()) throw itk::ProcessAborted("adaptiso", 0);
     };
     options.progress = [&](std::string_view, double fraction) {
         // a stage after the first starts at 0 again; progress never goes back
@@ -20,7 +20,7 @@ Extraction extractInFilter(itk::ProcessObject& filter, const VolumeView& volume,
         const InterruptionCheck check(endIfAborted);
         return extractSurface(volume, options, border);
     } catch (const Error& error) {
-        throw itk::ExceptionObject(__FILE__, __LINE__, error.what(), filter.GetNameOfClass());
+        throw itk::ExceptionObject("adaptiso", 0, error.what(), filter.GetNameOfClass());
     }
 }
 

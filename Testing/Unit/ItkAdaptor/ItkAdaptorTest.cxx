@@ -2,10 +2,16 @@
 #include <gtest/gtest.h>
 #include <itkAddImageAdaptor.h>
 #include <itkCommand.h>
+#include <itkImageFileReader.h>
+#include <itkMetaDataObject.h>
 #include <itkQuadEdgeMesh.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <utility>
@@ -13,6 +19,7 @@
 
 #include "Support/AnalyticVolumes.h"
 #include "adaptiso/ItkAdaptor/AdaptiveIsosurfaceMeshFilter.h"
+#include "adaptiso/ItkAdaptor/ItkImageIO.h"
 
 namespace adaptiso::testing {
 namespace {
@@ -205,6 +212,79 @@ TEST(ItkFilter, RefusalsAreExceptionsWithTheLine) {
         EXPECT_EQ(std::string(error.GetDescription()),
                   "extractSurface: the isovalue is not a finite number");
     }
+}
+
+/// A NIfTI of 3 x 2 x 2 voxels of 16 bits, 0 to 11, without sform and qform: a warning.
+std::filesystem::path writeNifti(std::size_t samples = 12) {
+    const auto file = std::filesystem::temp_directory_path() /
+                      ("adaptiso-itk-" + std::to_string(getpid()) + ".nii");
+    std::string head(352, '\0');
+    const auto put = [&](std::size_t at, auto value) {
+        std::memcpy(head.data() + at, &value, sizeof value);
+    };
+    put(0, std::int32_t{348});
+    std::size_t at = 40;
+    for (const int value : {3, 3, 2, 2, 1, 1, 1, 1}) {
+        put(std::exchange(at, at + 2), static_cast<std::int16_t>(value));
+    }
+    put(70, std::int16_t{4});
+    put(72, std::int16_t{16});
+    at = 76;
+    for (const float value : {1.F, 2.F, 3.F, 4.F}) put(std::exchange(at, at + 4), value);
+    put(108, 352.F);
+    head.replace(344, 4, std::string("n+1\0", 4));
+    std::ofstream out(file, std::ios::binary);
+    out << head;
+    for (std::int16_t n = 0; n < static_cast<std::int16_t>(samples); ++n) {
+        out.write(reinterpret_cast<const char*>(&n), 2);
+    }
+    return file;
+}
+
+TEST(ItkImageIo, ReadsWithSpacingWarningsAndFormat) {
+    registerItkImageIO();
+    const auto file = writeNifti();
+    auto reader = itk::ImageFileReader<itk::Image<short, 3>>::New();
+    reader->SetFileName(file.string());
+    reader->Update();
+    ASSERT_NE(dynamic_cast<ItkImageIO*>(reader->GetImageIO()), nullptr);
+    const auto& image = *reader->GetOutput();
+    EXPECT_EQ(image.GetSpacing()[0], 2);
+    EXPECT_EQ(image.GetSpacing()[2], 4);
+    for (short n = 0; n < 12; ++n) ASSERT_EQ(image.GetBufferPointer()[n], n);
+    std::string text;
+    EXPECT_TRUE(itk::ExposeMetaData(image.GetMetaDataDictionary(), "adaptiso.format", text));
+    EXPECT_EQ(text, "NIfTI-1");
+    EXPECT_TRUE(itk::ExposeMetaData(image.GetMetaDataDictionary(), "adaptiso.warnings", text));
+    EXPECT_EQ(text, readVolume(file).warnings.front().line());
+
+    // a slice of it, for a reader of two dimensions
+    auto slice = itk::ImageFileReader<itk::Image<short, 2>>::New();
+    slice->SetFileName(file.string());
+    slice->Update();
+    EXPECT_EQ(slice->GetOutput()->GetBufferPointer()[5], 5);
+    std::filesystem::remove(file);
+}
+
+TEST(ItkImageIo, RefusalsAreExceptionsWithTheLine) {
+    registerItkImageIO();
+    const auto file = writeNifti(11);
+    std::string line;
+    try {
+        readVolume(file);
+    } catch (const FileError& error) {
+        line = error.what();
+    }
+    auto reader = itk::ImageFileReader<itk::Image<short, 3>>::New();
+    reader->SetFileName(file.string());
+    try {
+        reader->Update();
+        FAIL() << "a cut file was taken";
+    } catch (const itk::ExceptionObject& error) {
+        EXPECT_NE(std::string(error.GetDescription()).find(line), std::string::npos);
+        EXPECT_NE(line, "");
+    }
+    std::filesystem::remove(file);
 }
 
 TEST(ItkImageAdaptor, ViewsPixelsInPlaceWhereTheBufferedRegionLies) {

@@ -72,7 +72,8 @@ class Image(NamedTuple):
 def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int] = None,
          level: Optional[int] = None, channel: Optional[int] = None, time: Optional[int] = None,
          all_chunks: bool = False, resample_slices: bool = False) -> Image:
-    """Read a scan: NIfTI, NRRD, MetaImage, MGH, Zarr, or DICOM (a file, a folder, a DICOMDIR).
+    """Read a scan: NIfTI, NRRD, MetaImage, MGH, Zarr, or DICOM (a file, a folder, a DICOMDIR); MINC
+    and others by ITK's readers, where the programs' libadaptisoItkIO.so is installed.
 
     Files are taken for hostile: every length is checked, nothing is padded or guessed, and
     DICOM's compressed pixels are decoded in a child process, so that a damaged file is an

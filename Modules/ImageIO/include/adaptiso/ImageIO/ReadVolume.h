@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adaptiso/Core/Volume.h"
@@ -69,6 +70,9 @@ struct ReadVolume {
 ///              to mm; x, y and z taken for LPS, with a warning. Chunks raw or packed by gzip,
 ///              zlib, zstd, blosc, lz4, with crc32c, in shards or not; all else is refused by name.
 ///              Each is read once; beside the image, each thread holds one, packed and unpacked
+///   others     as ITK's readers place them, with a warning where they do not know it: MINC, GIPL,
+///              TIFF with several pages, HDF5 of ITK, VTK images, MRC, Bruker, GE, Siemens Vision,
+///              Stimulate; in a child process, where libadaptisoItkIO.so is installed
 ///
 /// Samples keep their type. Scaled ones (NIfTI scl_slope, DICOM rescale, MetaImage
 /// ElementToIntensityFunction) become float32, or float64 where float32 could not hold the stored
@@ -97,5 +101,10 @@ struct ReadVolume {
 /// \post no process or file of this call's is left
 /// Cost: one copy of the samples, and one DICOM file's; one pass.
 ReadVolume readVolume(const std::filesystem::path& input, const ReadOptions& options = {});
+
+/// The reader of this library that readVolume() takes for a file or folder, by its first bytes or
+/// name: "NIfTI", "NRRD", "MetaImage", "MGH", "DICOM", "Zarr". Empty where there is none, and where
+/// the file cannot be opened. It may be refused all the same.
+std::string_view recognizeImage(const std::filesystem::path& input);
 
 }  // namespace adaptiso

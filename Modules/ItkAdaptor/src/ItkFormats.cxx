@@ -1,0 +1,210 @@
+// ITK's own readers, for readVolume(): formats that this library has no reader for.
+#include <itkBruker2dseqImageIO.h>
+#include <itkGE4ImageIO.h>
+#include <itkGE5ImageIO.h>
+#include <itkGEAdwImageIO.h>
+#include <itkGiplImageIO.h>
+#include <itkHDF5ImageIO.h>
+#include <itkMINCImageIO.h>
+#include <itkMRCImageIO.h>
+#include <itkSiemensVisionImageIO.h>
+#include <itkStimulateImageIO.h>
+#include <itkTIFFImageIO.h>
+#include <itkVTKImageIO.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <span>
+#include <string_view>
+
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/ImageIO/ItkReaders.h"
+
+namespace adaptiso {
+namespace {
+
+struct Format {
+    const char* name;
+    itk::ImageIOBase::Pointer (*make)();
+    bool saysSpacing = true, saysOrientation = true;
+    bool isRas = false;         ///< ITK 5.2 keeps the file's own axes
+    bool mayStopShort = false;  ///< without a word, where the file ends early
+};
+
+template <class Io>
+itk::ImageIOBase::Pointer make() {
+    return Io::New().GetPointer();
+}
+
+const Format kFormats[] = {
+    {"MINC", make<itk::MINCImageIO>, true, true, true},
+    {"GIPL", make<itk::GiplImageIO>, true, false, false, true},
+    {"TIFF", make<itk::TIFFImageIO>, false, false},
+    {"VTK image", make<itk::VTKImageIO>, true, false, false, true},
+    {"MRC", make<itk::MRCImageIO>, true, false, false, true},
+    {"Bruker 2dseq", make<itk::Bruker2dseqImageIO>},
+    {"GE 4", make<itk::GE4ImageIO>},
+    {"GE 5", make<itk::GE5ImageIO>},
+    {"GE Advantage", make<itk::GEAdwImageIO>},
+    {"Siemens Vision", make<itk::SiemensVisionImageIO>},
+    {"Stimulate", make<itk::StimulateImageIO>, true, false},
+    {"ITK HDF5", make<itk::HDF5ImageIO>},
+};
+
+PixelType pixelTypeOf(const ItkRequest& request, const itk::ImageIOBase& io) {
+    using Component = itk::IOComponentEnum;
+    const auto refuse = [&](const std::string& fault) {
+        return FileError(request.file.string() + ": " + fault + "; give a scalar 3-D image");
+    };
+    if (io.GetNumberOfComponents() != 1) {
+        throw refuse("has " + std::to_string(io.GetNumberOfComponents()) +
+                     " values a voxel (colours or vectors)");
+    }
+    const bool isSigned =
+        io.GetComponentType() == Component::CHAR || io.GetComponentType() == Component::SHORT ||
+        io.GetComponentType() == Component::INT || io.GetComponentType() == Component::LONG ||
+        io.GetComponentType() == Component::LONGLONG;
+    switch (io.GetComponentType()) {
+        case Component::FLOAT:
+            return PixelType::Float32;
+        case Component::DOUBLE:
+            return PixelType::Float64;
+        case Component::UCHAR:
+        case Component::CHAR:
+            return isSigned ? PixelType::Int8 : PixelType::UInt8;
+        case Component::USHORT:
+        case Component::SHORT:
+            return isSigned ? PixelType::Int16 : PixelType::UInt16;
+        case Component::UINT:
+        case Component::INT:
+            return isSigned ? PixelType::Int32 : PixelType::UInt32;
+        case Component::ULONG:
+        case Component::LONG:
+        case Component::ULONGLONG:
+        case Component::LONGLONG:
+            return isSigned ? PixelType::Int64 : PixelType::UInt64;
+        default:
+            throw refuse("has samples of an unknown type");
+    }
+}
+
+ImageGeometry geometryOf(const itk::ImageIOBase& io, bool isRas) {
+    ImageGeometry geometry;
+    const unsigned dimensions = io.GetNumberOfDimensions();
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const bool isThere = axis < dimensions;
+        geometry.size[axis] = isThere ? static_cast<std::int64_t>(io.GetDimensions(axis)) : 1;
+        geometry.originMm[static_cast<int>(axis)] = isThere ? io.GetOrigin(axis) : 0;
+        const std::vector<double> direction =
+            isThere ? io.GetDirection(axis) : std::vector<double>{0, 0, 1};
+        for (unsigned row = 0; row < 3; ++row) {
+            geometry.indexToPhysical.column[axis][static_cast<int>(row)] =
+                row < direction.size() ? direction[row] * (isThere ? io.GetSpacing(axis) : 1) : 0;
+        }
+    }
+    if (!isRas) return geometry;
+    for (Vec3* each : {&geometry.originMm, &geometry.indexToPhysical.column[0],
+                       &geometry.indexToPhysical.column[1], &geometry.indexToPhysical.column[2]}) {
+        *each = {0 - each->x, 0 - each->y, each->z};
+    }
+    return geometry;
+}
+
+std::vector<Warning> warningsOf(const Format& format) {
+    std::vector<Warning> warnings;
+    const std::string reader = std::string("ITK's reader of ") + format.name;
+    if (!format.saysSpacing) {
+        warnings.push_back({"guessed-spacing", reader + " may not know the voxel size"});
+    }
+    if (!format.saysOrientation) {
+        warnings.push_back({"guessed-orientation",
+                            reader + " does not know the orientation: its axes are taken for LPS"});
+    }
+    return warnings;
+}
+
+FileError cutOff(const std::filesystem::path& file) {
+    return FileError(file.string() + ": is shorter than its header says; get it again");
+}
+
+/// The directories of all pages are there; libtiff takes those that are for the whole.
+void requireWholeTiff(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    const bool isLittle = file.get() == 'I';
+    const auto at = [&](std::uint64_t place, int bytes) {
+        file.seekg(static_cast<std::streamoff>(place));
+        std::uint64_t value = 0;
+        for (int n = 0; n < bytes; ++n) {
+            const auto byte = static_cast<std::uint64_t>(file.get() & 0xFF);
+            value |= byte << 8 * (isLittle ? n : bytes - 1 - n);
+        }
+        if (!file) throw cutOff(path);
+        return value;
+    };
+    const std::uint64_t most = std::filesystem::file_size(path);
+    std::uint64_t pages = 0;
+    for (std::uint64_t page = at(4, 4); page != 0; page = at(page + 2 + 12 * at(page, 2), 4)) {
+        if (++pages > most / 18) throw cutOff(path);  // a ring
+    }
+}
+
+/// Reads all samples. Some of ITK's readers say nothing of a file that ends early, and leave the
+/// rest of the samples as it was.
+void readWhole(const Format& format, itk::ImageIOBase& io, const ItkRequest& request,
+               std::span<std::byte> samples) {
+    const std::span<std::byte> end = samples.last(bytesPerPixel(pixelTypeOf(request, io)));
+    std::ranges::fill(end, std::byte{0});
+    io.Read(samples.data());
+    if (!format.mayStopShort) return;
+    const std::vector<std::byte> last(end.begin(), end.end());
+    std::ranges::fill(end, std::byte{0xFF});
+    io.ReadImageInformation();  // GIPL's reader goes on where that ended
+    io.Read(samples.data());
+    if (!std::ranges::equal(last, end)) throw cutOff(request.file);
+}
+
+ReadVolume readBy(const Format& format, itk::ImageIOBase& io, const ItkRequest& request) {
+    if (format.name == std::string_view("TIFF")) requireWholeTiff(request.file);
+    io.ReadImageInformation();
+    const PixelType type = pixelTypeOf(request, io);
+    const ImageGeometry geometry = geometryOf(io, format.isRas);
+    std::int64_t volumes = 1;
+    itk::ImageIORegion region(io.GetNumberOfDimensions());
+    for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis) {
+        region.SetSize(axis, io.GetDimensions(axis));
+        if (axis > 2) volumes *= static_cast<std::int64_t>(io.GetDimensions(axis));
+    }
+    io.SetIORegion(region);
+    const std::int64_t chosen = volumes == 1 ? 0 : request.chooseVolume(volumes);
+    const auto samples = request.allocate(geometry, type);
+    const std::size_t bytes = static_cast<std::size_t>(geometry.voxelCount()) * bytesPerPixel(type);
+    if (volumes == 1) {
+        readWhole(format, io, request, {samples.get(), bytes});
+    } else {
+        std::vector<std::byte> all(bytes * static_cast<std::size_t>(volumes));
+        readWhole(format, io, request, all);
+        std::memcpy(samples.get(), all.data() + bytes * static_cast<std::size_t>(chosen), bytes);
+    }
+    return {Volume(VolumeView(samples.get(), type, geometry), samples),
+            std::string(format.name) + " (ITK)", warningsOf(format)};
+}
+
+}  // namespace
+}  // namespace adaptiso
+
+extern "C" void adaptisoReadWithItk(const adaptiso::ItkRequest& request,
+                                    std::optional<adaptiso::ReadVolume>& result) {
+    for (const adaptiso::Format& format : adaptiso::kFormats) {
+        const itk::ImageIOBase::Pointer io = format.make();
+        if (!io->CanReadFile(request.file.c_str())) continue;
+        io->SetFileName(request.file.string());
+        try {
+            result = adaptiso::readBy(format, *io, request);
+        } catch (const itk::ExceptionObject&) {  // its text names places in ITK's sources
+            throw adaptiso::FileError(request.file.string() + ": ITK's reader of " + format.name +
+                                      " cannot read it; get it again, or convert it to NIfTI");
+        }
+        return;
+    }
+}

@@ -1,0 +1,328 @@
+"""ITK both ways: our readers as a plug-in in programs by others (Debian's elastix and plastimatch), and
+ITK's readers of other formats in ours, against geometry known on paper, nibabel and minc-tools."""
+
+import json
+import os
+import re
+import shutil
+import struct
+import subprocess
+import unittest
+from pathlib import Path
+
+from DicomTest import element, sequence
+from support import BAD_INPUT, ApplicationTest, main
+
+PLUGIN = Path(os.environ["ADAPTISO_BIN"]).parent / "lib" / "adaptiso"
+#: Columns: the steps of i, j, k in LPS mm; oblique, by angles of the 3-4-5 triangle.
+STEPS = ((1.6, 1.2, 0), (-0.9, 1.2, 0), (0, 0, 2.5))
+ORIGIN = (10, -20, 30)
+SIZE = (8, 6, 4)
+
+
+def samples():
+    """All differ, i fastest."""
+    return [100 + i + 8 * j + 48 * k for k in range(4) for j in range(6) for i in range(8)]
+
+
+def us(value):
+    return struct.pack("<H", value)
+
+
+def text(*numbers):
+    return "\\".join(f"{number:.12g}" for number in numbers)
+
+
+def pixels(columns, rows, frames=b"", spacing=b""):
+    """What a header says of 16-bit samples."""
+    return b"".join([
+        element(0x0028, 0x0002, "US", us(1)), element(0x0028, 0x0004, "CS", "MONOCHROME2"), frames,
+        element(0x0028, 0x0010, "US", us(rows)), element(0x0028, 0x0011, "US", us(columns)), spacing,
+        element(0x0028, 0x0100, "US", us(16)), element(0x0028, 0x0101, "US", us(16)),
+        element(0x0028, 0x0102, "US", us(15)), element(0x0028, 0x0103, "US", us(0))])
+
+
+def data(values):
+    return element(0x7FE0, 0x0010, "OW", struct.pack(f"<{len(values)}H", *values))
+
+
+AXES = text(0.8, 0.6, 0, -0.6, 0.8, 0)
+
+
+def mosaic():
+    """Four slices as the tiles of one image, as Siemens stores an EPI volume."""
+    def tag(name, *items):
+        head = name.encode().ljust(64, b"\0") + struct.pack("<i4sii i", 1, b"DS\0\0", 0, len(items), 77)
+        return head + b"".join(struct.pack("<4i", 0, len(item) + 1, 77, 0) +
+                               item.encode().ljust((len(item) + 4) // 4 * 4, b"\0") for item in items)
+
+    csa = b"SV10\4\3\2\1" + struct.pack("<ii", 2, 77) + tag("NumberOfImagesInMosaic", "4") + tag(
+        "SliceNormalVector", "0.0", "0.0", "1.0")
+    all_samples = samples()
+    tiled = [all_samples[i % 8 + 8 * (j % 6) + 48 * (i // 8 + 2 * (j // 6))]
+             for j in range(12) for i in range(16)]
+    # the header's position is that of an image as large as the mosaic around the slice's centre
+    corner = [ORIGIN[row] - 4 * STEPS[0][row] - 3 * STEPS[1][row] for row in range(3)]
+    return bytes(128) + b"DICM" + b"".join([
+        element(0x0002, 0x0010, "UI", "1.2.840.10008.1.2.1"),
+        element(0x0008, 0x0008, "CS", "ORIGINAL\\PRIMARY\\M\\ND\\MOSAIC"),
+        element(0x0008, 0x0016, "UI", "1.2.840.10008.5.1.4.1.1.4"),
+        element(0x0008, 0x0060, "CS", "MR"), element(0x0018, 0x0088, "DS", "2.5"),
+        element(0x0020, 0x000E, "UI", "1.2.3"), element(0x0020, 0x0032, "DS", text(*corner)),
+        element(0x0020, 0x0037, "DS", AXES), pixels(16, 12, spacing=element(0x0028, 0x0030, "DS", "1.5\\2")),
+        element(0x0029, 0x0010, "LO", "SIEMENS CSA HEADER"), element(0x0029, 0x1010, "OB", csa),
+        data(tiled)])
+
+
+def enhanced():
+    """A multi-frame file with a position for each frame."""
+    frames = [[ORIGIN[row] + k * STEPS[2][row] for row in range(3)] for k in range(4)]
+    return bytes(128) + b"DICM" + b"".join([
+        element(0x0002, 0x0010, "UI", "1.2.840.10008.1.2.1"),
+        element(0x0008, 0x0016, "UI", "1.2.840.10008.5.1.4.1.1.4.1"),
+        element(0x0008, 0x0060, "CS", "MR"), element(0x0020, 0x000E, "UI", "1.2.3"),
+        pixels(8, 6, frames=element(0x0028, 0x0008, "IS", "4")),
+        sequence(0x5200, 0x9229, [
+            sequence(0x0020, 0x9116, [element(0x0020, 0x0037, "DS", AXES)]) +
+            sequence(0x0028, 0x9110, [element(0x0018, 0x0088, "DS", "2.5") +
+                                      element(0x0028, 0x0030, "DS", "1.5\\2")])]),
+        sequence(0x5200, 0x9230, [
+            sequence(0x0020, 0x9113, [element(0x0020, 0x0032, "DS", text(*frame))])
+            for frame in frames]),
+        data(samples())])
+
+
+def nifti():
+    """Oblique, by its sform."""
+    head = bytearray(352)
+    struct.pack_into("<i", head, 0, 348)
+    struct.pack_into("<8h", head, 40, 3, *SIZE, 1, 1, 1, 1)
+    struct.pack_into("<hh", head, 70, 512, 16)  # uint16
+    struct.pack_into("<8f", head, 76, 1, 2, 1.5, 2.5, 0, 0, 0, 0)
+    struct.pack_into("<f", head, 108, 352)
+    head[123] = 2  # mm
+    struct.pack_into("<hh", head, 252, 0, 1)
+    for row in range(3):
+        sign = -1 if row < 2 else 1  # RAS
+        struct.pack_into("<4f", head, 280 + 16 * row, *(sign * step[row] for step in STEPS),
+                         sign * ORIGIN[row])
+    head[344:348] = b"n+1\0"
+    return bytes(head) + struct.pack(f"<{len(samples())}H", *samples())
+
+
+PARAMETERS = """(Transform "TranslationTransform")
+(NumberOfParameters 3)
+(TransformParameters 0 0 0)
+(InitialTransformParametersFileName "NoInitialTransform")
+(HowToCombineTransforms "Compose")
+(FixedImageDimension 3)
+(MovingImageDimension 3)
+(FixedInternalImagePixelType "float")
+(MovingInternalImagePixelType "float")
+(Size 8 6 4)
+(Index 0 0 0)
+(Spacing 2 1.5 2.5)
+(Origin 10 -20 30)
+(Direction 0.8 0.6 0 -0.6 0.8 0 0 0 1)
+(UseDirectionCosines "true")
+(ResampleInterpolator "FinalBSplineInterpolator")
+(FinalBSplineInterpolationOrder 0)
+(Resampler "DefaultResampler")
+(DefaultPixelValue 0)
+(ResultImageFormat "mhd")
+(ResultImagePixelType "unsigned short")
+(CompressResultImage "false")
+"""
+
+
+def has(*programs):
+    missing = [name for name in programs if shutil.which(name) is None]
+    return unittest.skipIf(missing, "not installed: " + ", ".join(missing))
+
+
+@unittest.skipUnless(PLUGIN.exists(), "the plug-in is not built")
+class PlugIn(ApplicationTest):
+    """Programs by others read the same three files with the plug-in and without."""
+
+    FILES = {"mosaic.dcm": mosaic, "enhanced.dcm": enhanced, "oblique.nii": nifti}
+
+    def setUp(self):
+        super().setUp()
+        for name, make in self.FILES.items():
+            self.path(name).write_bytes(make())
+
+    def run_by(self, command, with_plugin):
+        env = {**os.environ, "ITK_AUTOLOAD_PATH": str(PLUGIN) if with_plugin else ""}
+        done = subprocess.run(list(map(str, command)), text=True, capture_output=True, env=env,
+                              cwd=self.folder)
+        return done.stdout + done.stderr
+
+    def test_our_own_program_agrees(self):
+        for name in self.FILES:
+            said = self.mesh(name, "--info").stdout
+            self.assertIn("8 x 6 x 4", said, name)
+            self.assertIn("2 x 1.5 x 2.5 mm", said, name)
+
+    def resampled(self, name, with_plugin):
+        """The file's samples where they must lie, as transformix finds them."""
+        out = self.path("out")
+        shutil.rmtree(out, ignore_errors=True)
+        out.mkdir()
+        self.path("identity.txt").write_text(PARAMETERS)
+        self.run_by(["transformix", "-in", name, "-tp", "identity.txt", "-out", out], with_plugin)
+        raw = out / "result.raw"
+        return list(struct.unpack("<192H", raw.read_bytes())) if raw.exists() else None
+
+    @has("transformix")
+    def test_elastix_resamples_them_in_place(self):
+        for name in self.FILES:
+            self.assertEqual(self.resampled(name, True), samples(), name)
+        self.assertNotEqual(self.resampled("mosaic.dcm", False), samples())
+
+    @has("plastimatch")
+    def test_plastimatch_prints_their_geometry(self):
+        for name in self.FILES:
+            said = self.run_by(["plastimatch", "header", name], True)
+            numbers = {key: [float(n) for n in values.split()] for key, values in
+                       re.findall(r"(Origin|Size|Spacing|Direction) = ([-\d. ]+)", said)}
+            for key, wanted in (("Origin", ORIGIN), ("Size", SIZE), ("Spacing", (2, 1.5, 2.5)),
+                                ("Direction", (0.8, -0.6, 0, 0.6, 0.8, 0, 0, 0, 1))):
+                self.assertEqual(len(numbers.get(key, [])), len(wanted), f"{name}: {key}: {said}")
+                for found, value in zip(numbers[key], wanted):
+                    self.assertAlmostEqual(found, value, delta=1e-4, msg=f"{name}: {key}")
+        self.assertNotIn("Size = 8 6 4", self.run_by(["plastimatch", "header", "mosaic.dcm"], False))
+
+    @has("plastimatch")
+    def test_what_is_refused_is_refused_with_the_line(self):
+        self.path("cut.nii").write_bytes(nifti()[:-10])
+        said = self.run_by(["plastimatch", "header", "cut.nii"], True)
+        self.assertIn("cut.nii: ", said)
+        line = self.run_mesh("cut.nii", "--info").stderr
+        self.assertIn(line.strip().removeprefix("adaptiso-mesh: "), said)
+
+
+def gipl():
+    head = bytearray(256)
+    struct.pack_into(">4HH", head, 0, *SIZE, 1, 15)  # 16 bits
+    struct.pack_into(">4f", head, 10, 2, 1.5, 2.5, 0)
+    struct.pack_into(">4d", head, 204, *ORIGIN, 0)
+    struct.pack_into(">I", head, 252, 719555000)
+    return bytes(head) + struct.pack(f">{len(samples())}h", *samples())
+
+
+def vtk_image():
+    return b"""# vtk DataFile Version 3.0
+made up
+BINARY
+DATASET STRUCTURED_POINTS
+DIMENSIONS 8 6 4
+SPACING 2 1.5 2.5
+ORIGIN 10 -20 30
+POINT_DATA 192
+SCALARS scalars unsigned_short 1
+LOOKUP_TABLE default
+""" + struct.pack(f">{len(samples())}H", *samples())
+
+
+def mrc():
+    head = bytearray(1024)
+    struct.pack_into("<10i", head, 0, *SIZE, 1, 0, 0, 0, *SIZE)  # 16 bits
+    struct.pack_into("<6f", head, 40, 16, 9, 10, 90, 90, 90)  # 8 * 2, 6 * 1.5, 4 * 2.5
+    struct.pack_into("<3i", head, 64, 1, 2, 3)
+    struct.pack_into("<3f", head, 196, *ORIGIN)
+    head[208:216] = b"MAP DA\0\0"
+    return bytes(head) + struct.pack(f"<{len(samples())}h", *samples())
+
+
+@unittest.skipUnless(PLUGIN.exists(), "the plug-in is not built")
+class OtherFormats(ApplicationTest):
+    """Read by ITK's readers in the sandbox process."""
+
+    def image(self, name):
+        """What --info says of a file: format, warning codes, image, values."""
+        report = json.loads(self.mesh(name, "--info", "--json", "-", "--quiet").stdout)
+        return (report["input"]["format"], {warning["code"] for warning in report["warnings"]},
+                report["image"], report["values"])
+
+    def check(self, name, kind, warned, origin=ORIGIN, steps=((2, 0, 0), (0, 1.5, 0), (0, 0, 2.5))):
+        found, codes, image, values = self.image(name)
+        self.assertEqual(found, kind)
+        self.assertEqual(codes, warned)
+        self.assertEqual(image["sizeVoxels"], list(SIZE))
+        self.assertAlmostEqual(values["minimum"], 100, delta=1e-3)
+        self.assertAlmostEqual(values["maximum"], 291, delta=1e-3)
+        for axis in range(3):
+            self.assertAlmostEqual(image["originMm"][axis], origin[axis], delta=1e-5)
+        # a surface between two samples lies where they do: the sample of index (7, 5, 3) alone
+        self.mesh(name, "--iso", 290.5, "--method", "mc", "--coordinates", "lps", "-o", "corner.obj")
+        points = [tuple(map(float, line.split()[1:4]))
+                  for line in self.path("corner.obj").read_text().splitlines()
+                  if line.startswith("v ")]
+        wanted = [origin[row] + sum(n * step[row] for n, step in zip((7, 5, 3), steps))
+                  for row in range(3)]
+        middle = [(min(p[row] for p in points) + max(p[row] for p in points)) / 2
+                  for row in range(3)]
+        reach = [sum(abs(step[row]) for step in steps) / 2 for row in range(3)]
+        for row in range(3):
+            self.assertAlmostEqual(middle[row], wanted[row], delta=reach[row])
+
+    def check_cut(self, name):
+        """A part of the file is refused."""
+        whole = self.path(name).read_bytes()
+        for tenths in (9, 6):
+            self.path(name).write_bytes(whole[:len(whole) * tenths // 10])
+            self.assert_fails(BAD_INPUT, re.escape(name), name, "--info")
+
+    def test_gipl_vtk_and_mrc(self):
+        for name, kind, make in (("x.gipl", "GIPL (ITK)", gipl), ("x.vtk", "VTK image (ITK)", vtk_image),
+                                 ("x.mrc", "MRC (ITK)", mrc)):
+            with self.subTest(name):
+                self.path(name).write_bytes(make())
+                self.check(name, kind, {"guessed-orientation"})
+                self.check_cut(name)
+
+    def test_tiff_of_several_pages(self):
+        from PIL import Image
+        pages = [Image.frombytes("I;16", (8, 6), struct.pack("<48H", *samples()[48 * k:48 * k + 48]))
+                 for k in range(4)]
+        pages[0].save(self.path("x.tif"), save_all=True, append_images=pages[1:])
+        self.check("x.tif", "TIFF (ITK)", {"guessed-orientation", "guessed-spacing"}, (0, 0, 0),
+                   ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+        self.check_cut("x.tif")
+
+    @has("rawtominc", "voxeltoworld")
+    def test_minc_lies_where_its_own_tools_have_it(self):
+        subprocess.run(
+            ["rawtominc", "-2", "-short", "-unsigned", "-range", "100", "291", "-real_range", "100",
+             "291", "-xstep", "2", "-ystep", "1.5", "-zstep", "2.5", "-xstart", "5", "-ystart", "-7",
+             "-zstart", "30", "-xdircos", "0.8", "0.6", "0", "-ydircos", "-0.6", "0.8", "0", "-zdircos",
+             "0", "0", "1", "x.mnc", "4", "6", "8"],
+            cwd=self.folder, check=True, input=struct.pack("<192H", *samples()))
+
+        def lps(i, j, k):
+            said = subprocess.check_output(["voxeltoworld", "x.mnc", str(k), str(j), str(i)],
+                                           cwd=self.folder, text=True)
+            x, y, z = map(float, said.split())  # MINC's own axes are RAS
+            return -x, -y, z
+
+        origin = lps(0, 0, 0)
+        steps = [[a - b for a, b in zip(lps(*index), origin)]
+                 for index in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+        self.check("x.mnc", "MINC (ITK)", set(), origin, steps)
+        self.check_cut("x.mnc")
+
+    @has("plastimatch")
+    def test_hdf5_of_itk(self):
+        self.path("x.nii").write_bytes(nifti())
+        subprocess.run(["plastimatch", "convert", "--input", "x.nii", "--output-img", "x.h5"],
+                       cwd=self.folder, check=True, capture_output=True)
+        self.check("x.h5", "ITK HDF5 (ITK)", set(), ORIGIN, STEPS)
+        self.check_cut("x.h5")
+
+    def test_what_no_reader_takes_is_named(self):
+        self.path("x.dat").write_bytes(b"what is this" * 100)
+        self.assert_fails(BAD_INPUT, "x.dat: not a format that is read here", "x.dat", "--info")
+
+
+if __name__ == "__main__":
+    main()
