@@ -21,6 +21,7 @@
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
+#include "adaptiso/SurfacePipeline/FinishSurface.h"
 
 EM_JS(void, showProgress, (const char* text), {
     if (Module["onProgress"]) Module["onProgress"](UTF8ToString(text));
@@ -73,7 +74,7 @@ struct ShownMesh {
 
 struct OpenImage {
     ReadVolume read;
-    Volume coarse;  ///< every n-th sample of it, for previews
+    std::optional<Volume> coarse;  ///< every n-th sample of it, for previews
     std::optional<SpanSpaceIndex> index;
     std::vector<std::uint8_t> shades;
 };
@@ -163,7 +164,7 @@ void openImage(const std::string& path, const ReadOptions& options, bool isLabel
     image->shades = shadesOf(seen.view(), isFlat ? at(0) : at(kLow),
                              isFlat ? at(std::size(kPercents) - 1) : at(kHigh));
     image->coarse = withAtMost(image->read.volume, kMostPreviewed, previewStep);
-    image->index.emplace(SpanSpaceIndex::build(image->coarse.view(), {}));
+    image->index.emplace(SpanSpaceIndex::build(image->coarse->view(), {}));
     Json warnings = Json::array();
     for (const Warning& warning : image->read.warnings) warnings.push_back(warning.text);
     const ImageGeometry& geometry = view.geometry();
@@ -187,7 +188,7 @@ void openImage(const std::string& path, const ReadOptions& options, bool isLabel
 
 void preview(double isovalue) {
     if (!image) throw InvalidInput("no image is open");
-    const VolumeView& view = image->coarse.view();
+    const VolumeView& view = image->coarse->view();
     if (const auto fault = isovalueFault(isovalue, valueRange(view))) throw InvalidInput(*fault);
     ExtractionOptions options;
     options.isovalue = isovalue;
