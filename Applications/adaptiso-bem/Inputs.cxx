@@ -45,6 +45,8 @@ HeadBoundaries timed(BemRun& run, const std::string& option, const fs::path& pat
                                      ? "--aseg " + options.aseg.string()
                                      : "--brain-mask " + options.brainMask.string();
         const std::string source = error.source() == BoundarySource::BrainMask ? mask
+                                   : error.source() == BoundarySource::Lesion
+                                       ? "--lesion " + options.lesion.string()
                                    : error.source() == BoundarySource::HeadMask
                                        ? "--head-mask " + options.headMask.string()
                                        : "--pial";
@@ -73,16 +75,18 @@ std::vector<TriangleMesh> readPial(BemRun& run) {
 
 HeadBoundaries fromT1(BemRun& run, const BoundaryOptions& boundaries) {
     const BemOptions& options = run.options;
-    std::optional<ReadVolume> t1, mask, aseg;
+    std::optional<ReadVolume> t1, mask, aseg, lesion;
     BrainSources brain;
     run.timer.time("read", [&] {
         t1 = readMainImage(options.t1, "t1", run);
         if (!options.brainMask.empty()) mask = readImage(options.brainMask, "brain mask", run);
         if (!options.aseg.empty()) aseg = readImage(options.aseg, "aseg", run);
+        if (!options.lesion.empty()) lesion = readImage(options.lesion, "lesion mask", run);
         if (!options.pial.empty()) brain.pial = readPial(run);
     });
     if (mask) brain.mask = mask->volume.view();
     if (aseg) brain.aseg = aseg->volume.view();
+    if (lesion) brain.lesion = lesion->volume.view();
     return timed(run, "--t1", options.t1,
                  [&] { return boundariesFromT1(t1->volume, brain, boundaries); });
 }

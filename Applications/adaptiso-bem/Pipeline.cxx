@@ -38,8 +38,8 @@ std::vector<fs::path> inputsOf(const BemOptions& options) {
     inputs.insert(inputs.end(), options.surfaces.begin(), options.surfaces.end());
     inputs.insert(inputs.end(), options.pial.begin(), options.pial.end());
     for (const fs::path& path :
-         {options.t1, options.brainMask, options.aseg, options.labels, options.headMask, options.ct,
-          options.volume, options.electrodes}) {
+         {options.t1, options.brainMask, options.aseg, options.lesion, options.labels,
+          options.headMask, options.ct, options.volume, options.electrodes}) {
         if (!path.empty()) inputs.push_back(path);
     }
     return inputs;

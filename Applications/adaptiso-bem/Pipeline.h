@@ -28,6 +28,7 @@ struct BemOptions {
 
     std::filesystem::path brainMask;          ///< with t1
     std::filesystem::path aseg;               ///< with t1
+    std::filesystem::path lesion;             ///< with t1
     std::vector<std::filesystem::path> pial;  ///< with t1, of four layers
     TissueLabels tissues;                     ///< with labels
     std::filesystem::path headMask;           ///< with labels: all that lies within the skin

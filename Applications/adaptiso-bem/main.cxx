@@ -100,6 +100,9 @@ void declareInput(CLI::App& app, BemOptions& options) {
         "--aseg", "IMG", options.aseg,
         "With --t1: FreeSurfer's or FastSurfer's aseg; serves as brain mask if none is given, "
         "and with --layers 4 the brain's own surface");
+    input.text("--lesion", "IMG", options.lesion,
+               "With --t1: a mask of lesions (tumour, cavity, bleeding) within the skull; they "
+               "count as brain, whatever their grey values");
     input.text(
         "--pial", "MESH...", options.pial,
         "With --t1 and --layers 4: the cortex (lh.pial rh.pial), for the brain's own surface");
@@ -343,6 +346,7 @@ void checkCombinations(const BemOptions& options) {
             "one of --t1, --labels, --probabilities, --ct, --surfaces must be given, and one only");
     require(options.brainMask.empty() || !options.t1.empty(), "--brain-mask needs --t1");
     require(options.aseg.empty() || !options.t1.empty(), "--aseg needs --t1");
+    require(options.lesion.empty() || !options.t1.empty(), "--lesion needs --t1");
     const BoundaryOptions& layers = options.model.boundaries;
     require(options.pial.empty() || (!options.t1.empty() && layers.withBrain),
             "--pial needs --t1 and --layers 4");

@@ -378,7 +378,7 @@ class Plausibility(BemTest):
         done = self.bem(*self.labels(), "-o", "model")
         notes = {(note["name"], note["of"]): note for note in self.report()["plausibility"]}
         self.assertEqual({name for name, _ in notes},
-                         {"necks", "notCutFlat", "edgesInProportion", "innerSkullVolume",
+                         {"necks", "notCutFlat", "edgesInProportion", "innerSkullVolume", "dents",
                           "skullThickness", "scalpThickness", "edgesAgainstGap", "vertexCounts"})
         # 60 mm: 905 cm3, a child's
         volume = notes["innerSkullVolume", "inner_skull"]

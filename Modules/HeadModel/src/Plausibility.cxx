@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -57,10 +58,54 @@ Vec3 normalOf(const TriangleMesh& mesh, const Triangle& t) {
     return cross(b - a, c - a);
 }
 
+/// The value below which a share of all lies. \pre values are not empty
+double percentileOf(std::vector<double> values, double share) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(
+                                         share * static_cast<double>(values.size() - 1) + 0.5);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
 double medianOf(std::vector<double> values) {
     const auto middle = values.begin() + std::ssize(values) / 2;
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
+}
+
+/// Unit vectors spread evenly over the sphere (a Fibonacci lattice), 4.5 degrees apart.
+std::vector<Vec3> allDirections() {
+    constexpr int kCount = 2000;
+    std::vector<Vec3> directions;
+    for (int n = 0; n < kCount; ++n) {
+        const double z = 1 - (2 * n + 1.0) / kCount, radius = std::sqrt(1 - z * z);
+        const double turn = 2 * std::numbers::pi / std::numbers::phi * n;
+        directions.push_back({radius * std::cos(turn), radius * std::sin(turn), z});
+    }
+    return directions;
+}
+
+/// Depth of points below their convex hull, mm, by its support in some directions: too large by
+/// less than 0.1 mm for a head. Only points with z >= leastZ; 0 for others.
+std::vector<double> depthBelowHullMm(const std::vector<Vec3>& points, double leastZ) {
+    const std::vector<Vec3> directions = allDirections();
+    std::vector<double> support(directions.size());
+    parallelForPieces(std::ssize(support), 64, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) {
+            support[n] = dot(points.front(), directions[n]);
+            for (const Vec3& p : points) support[n] = std::max(support[n], dot(p, directions[n]));
+        }
+    });
+    std::vector<double> depth(points.size());
+    parallelForPieces(std::ssize(depth), 64, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t k = begin; k < end; ++k) {
+            if (points[k].z < leastZ) continue;
+            depth[k] = support[0] - dot(points[k], directions[0]);
+            for (std::size_t n = 1; n < directions.size(); ++n) {
+                depth[k] = std::min(depth[k], support[n] - dot(points[k], directions[n]));
+            }
+        }
+    });
+    return depth;
 }
 
 /// A surface as it is asked about.
@@ -120,6 +165,7 @@ public:
             askFlat(n);
             askProportion(n);
             if (n == innerSkull_ && options_.areHeadLayers && surface.volumeMm3) askVolume();
+            if (n == innerSkull_ && options_.areHeadLayers) askDents();
         }
         for (std::size_t n = 0; options_.areNested && n + 1 < surfaces_.size(); ++n) {
             if (surfaces_[n].used.empty() || surfaces_[n + 1].used.empty()) continue;
@@ -320,6 +366,27 @@ private:
                 fixed(UsualHead::kMostInnerSkullCm3, 0) + " cm3");
     }
 
+    /// The vault is convex. The base is not: its fossae and the foramen magnum are left out.
+    void askDents() {
+        constexpr double kFromBelow = 0.4;
+        const Asked& surface = surfaces_[innerSkull_];
+        std::vector<Vec3> points;
+        for (const VertexId v : surface.used) points.push_back(surface.mesh.points[v]);
+        const double bottom = surface.box.minimum.z;
+        const std::vector<double> depth =
+            depthBelowHullMm(points, bottom + kFromBelow * (surface.box.maximum.z - bottom));
+        const auto deepest = std::max_element(depth.begin(), depth.end());
+        const bool isNoted = *deepest > UsualHead::kMostDentMm;
+        HeadNote& note =
+            add("dents", "vault without dents", innerSkull_, isNoted,
+                "at most " + fixed(*deepest, 1) + " mm below its convex hull" +
+                    (isNoted ? "; sound heads stay below " + fixed(UsualHead::kMostDentMm, 0) +
+                                   " mm: a lesion at the cortex, or brain that was lost?"
+                             : ""));
+        note.warning = "inner-skull-dented";
+        if (isNoted) note.pointsMm.push_back(points[deepest - depth.begin()]);
+    }
+
     /// Thickness of the layer between two neighbours, and edges against it.
     void askLayer(std::size_t n) {
         const Asked &inner = surfaces_[n], &outer = surfaces_[n + 1];
@@ -370,17 +437,35 @@ private:
         const double most = isSkull ? UsualHead::kMostSkullMm : UsualHead::kMostScalpMm;
         const double median = medianOf(upper);
         const bool isThin = median<least, isThick = median> most;
+        // single vertices may be off where a vein or a suture is
+        const double thick = percentileOf(upper, isSkull ? 0.95 : 0.99);
+        const double ratio = thick / percentileOf(upper, 0.05);
+        const double mostAnywhere =
+            isSkull ? UsualHead::kMostSkullAnywhereMm : UsualHead::kMostScalpAnywhereMm;
+        const bool isSomewhereThick = thick > mostAnywhere;
+        const bool isUneven = isSkull && ratio > UsualHead::kMostSkullRatio;
         std::string finding = "median " + fixed(median, 1) + " mm over the upper half (" +
                               fixed(gap[thinnest], 1) + " to " + fixed(gap[thickest], 1) + "), ";
         finding += (isThin || isThick ? "adults have " : "of adults' ") + fixed(least, 0) + " to " +
                    fixed(most, 0) + " mm";
-        HeadNote& note =
-            isSkull
-                ? add("skullThickness", "thickness of the skull", n, isThin || isThick, finding)
-                : add("scalpThickness", "thickness of the scalp", n, isThin || isThick, finding);
+        if (isSomewhereThick) {
+            finding += "; thicker than " + fixed(mostAnywhere, 0) + " mm on more than " +
+                       (isSkull ? "5" : "1") + " % of it";
+        }
+        if (isUneven) {
+            finding += "; its thick parts are " + fixed(ratio, 1) +
+                       " times as thick as its thin ones, 3 times is usual";
+        }
+        const bool isNoted = isThin || isThick || isSomewhereThick || isUneven;
+        HeadNote& note = isSkull
+                             ? add("skullThickness", "thickness of the skull", n, isNoted, finding)
+                             : add("scalpThickness", "thickness of the scalp", n, isNoted, finding);
         note.next = n + 1;
-        if (isThin || isThick) {
-            note.pointsMm.push_back(inner.mesh.points[inner.used[isThin ? thinnest : thickest]]);
+        note.warning = "thickness-unusual";
+        if (isNoted) {
+            const bool looksAtThin = isThin || (isUneven && !isThick && !isSomewhereThick);
+            note.pointsMm.push_back(
+                inner.mesh.points[inner.used[looksAtThin ? thinnest : thickest]]);
         }
     }
 

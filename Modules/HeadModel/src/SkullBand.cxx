@@ -1,7 +1,10 @@
 #include "SkullBand.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <optional>
 
 #include "adaptiso/Core/Memory.h"
@@ -90,6 +93,7 @@ std::vector<Ray> raysFrom(const std::vector<float>& part, const Index3& size) {
 struct Search {
     const std::vector<float>& t1;
     const std::vector<float>& skinDepth;
+    const std::vector<std::uint8_t>& faces;
     const Index3& size;
     double step;
     const HeadLevels& levels;
@@ -99,6 +103,7 @@ struct Search {
         bool reachesSkin = false;
         std::optional<double> thicknessMm;
         bool startsInTissue = false;  ///< as bright as brain, beyond the inner skull
+        bool endsAtImage = false;     ///< the image ends there, not the head
     };
 
     Answer along(const Ray& ray) const {
@@ -111,9 +116,21 @@ struct Search {
             profile.push_back(sampleAt(t1, size, at));
         }
         if (!answer.reachesSkin) return answer;
+        answer.endsAtImage =
+            isBeyondImage(ray, kRayStepMm * static_cast<double>(profile.size() - 1) + 2 * step);
         answer.thicknessMm = thickness(profile);
         answer.startsInTissue = startsInTissue(profile);
         return answer;
+    }
+
+    bool isBeyondImage(const Ray& ray, double mm) const {
+        const Vec3 at = ray.start + (mm / step) * ray.direction;
+        std::int64_t voxel = 0, stride = 1;
+        for (int a = 0; a < 3; ++a) {
+            voxel += stride * std::clamp<std::int64_t>(std::llround(at[a]), 0, size[a] - 1);
+            stride *= size[a];
+        }
+        return faces[voxel] == 0;
     }
 
     /// CSF and bone are dark: as much brain as this beyond the inner skull was lost.
@@ -165,11 +182,12 @@ struct Search {
 
 std::vector<Search::Answer> search(const std::vector<Ray>& rays, const std::vector<float>& t1,
                                    const ImageGeometry& grid, const Mask& skin,
-                                   const HeadLevels& levels, const BoundaryOptions& options) {
+                                   const std::vector<std::uint8_t>& faces, const HeadLevels& levels,
+                                   const BoundaryOptions& options) {
     const double step = stepMm(grid);
     // a ray asks for the side alone; between corners of both sides no depth is above two voxels
     const std::vector<float> skinDepth = depthMm(skin, grid, DepthBand::within(3 * step));
-    const Search search{t1, skinDepth, grid.size, step, levels, options};
+    const Search search{t1, skinDepth, faces, grid.size, step, levels, options};
     std::vector<Search::Answer> answers(rays.size());
     parallelForPieces(std::ssize(rays), 1024, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t n = begin; n < end; ++n) answers[n] = search.along(rays[n]);
@@ -290,16 +308,79 @@ std::vector<float> grownBy(const Thickness& thickness, const Mask& innerSkull,
     return part;
 }
 
+/// Rays that start in one cube of 8 mm.
+struct Cell {
+    std::int64_t rays = 0, seen = 0;
+    double voxelFaces = 0;  ///< area
+    Vec3 sumMm;
+    bool isUnseen() const { return 3 * seen < rays; }
+};
+
+/// Fills band.unseenMm2 and unseenMm: cubes in which less than a third of the rays show a band,
+/// joined by faces, edges and corners.
+void findUnseen(const std::vector<Ray>& rays, const std::vector<Search::Answer>& answers,
+                const ImageGeometry& grid, SkullBand& band) {
+    constexpr double kCellMm = 8, kFromBelow = 0.4;
+    using Place = std::array<std::int64_t, 3>;
+    std::vector<Vec3> starts;
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+    for (const Ray& ray : rays) {
+        starts.push_back(grid.toPhysical(ray.start));
+        lowest = std::min(lowest, starts.back().z);
+        highest = std::max(highest, starts.back().z);
+    }
+    std::map<Place, Cell> cells;
+    for (std::size_t n = 0; n < rays.size(); ++n) {
+        const Vec3& p = starts[n];
+        if (!answers[n].reachesSkin || answers[n].endsAtImage ||
+            p.z < lowest + kFromBelow * (highest - lowest))
+            continue;
+        Place place;
+        for (int a = 0; a < 3; ++a)
+            place[a] = static_cast<std::int64_t>(std::floor(p[a] / kCellMm));
+        Cell& cell = cells[place];
+        ++cell.rays;
+        cell.seen += answers[n].thicknessMm ? 1 : 0;
+        cell.sumMm += p;
+        // the voxels that a plane passes lie one above each face along the axis it faces most
+        const Vec3& d = rays[n].direction;
+        cell.voxelFaces += 1 / std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+    }
+    std::erase_if(cells, [](const auto& cell) { return !cell.second.isUnseen(); });
+    while (!cells.empty()) {
+        std::vector<Place> open{cells.begin()->first};
+        Cell patch;
+        while (!open.empty()) {
+            const Place at = open.back();
+            open.pop_back();
+            const auto found = cells.find(at);
+            if (found == cells.end()) continue;
+            patch.rays += found->second.rays;
+            patch.voxelFaces += found->second.voxelFaces;
+            patch.sumMm += found->second.sumMm;
+            cells.erase(found);
+            for (std::int64_t k = 0; k < 27; ++k) {
+                open.push_back({at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1});
+            }
+        }
+        const double mm2 = patch.voxelFaces * std::pow(stepMm(grid), 2);
+        if (mm2 <= band.unseenMm2) continue;
+        band.unseenMm2 = mm2;
+        band.unseenMm = (1 / static_cast<double>(patch.rays)) * patch.sumMm;
+    }
+}
+
 }  // namespace
 
 SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
-                        std::vector<float> innerSkull, const Mask& skin, const HeadLevels& levels,
+                        std::vector<float> innerSkull, const Mask& skin,
+                        const std::vector<std::uint8_t>& faces, const HeadLevels& levels,
                         const BoundaryOptions& options) {
     const double step = stepMm(grid);
     const std::vector<Ray> rays = raysFrom(innerSkull, grid.size);
     const Mask within = above(innerSkull, kFractionIsovalue);
     freeMemory(innerSkull);  // a head's worth of memory
-    std::vector<Search::Answer> answers = search(rays, t1, grid, skin, levels, options);
+    std::vector<Search::Answer> answers = search(rays, t1, grid, skin, faces, levels, options);
 
     SkullBand band;
     std::vector<double> seen;
@@ -318,6 +399,7 @@ SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
         band.tissueFraction = static_cast<double>(inTissue) / static_cast<double>(towardsScalp);
     }
     dropOutliers(rays, Thickness(rays, answers, grid, options.skullMm), grid.size, answers);
+    findUnseen(rays, answers, grid, band);
     for (std::size_t n = 0; n < rays.size(); ++n) {
         if (!answers[n].thicknessMm) continue;
         const Vec3 end = rays[n].start + (*answers[n].thicknessMm / step) * rays[n].direction;

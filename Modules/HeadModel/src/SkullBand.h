@@ -16,6 +16,10 @@ struct SkullBand {
     /// lost there, or the inner skull lies in muscle.
     double tissueFraction = 0;
     double medianThicknessMm = 0;  ///< over the rays that do
+    /// The largest connected part of the inner skull's upper three fifths whose rays to the scalp
+    /// mostly show no band: its area, and the middle.
+    double unseenMm2 = 0;
+    Vec3 unseenMm;
 };
 
 /// The grey levels that rule the search.
@@ -35,8 +39,10 @@ struct HeadLevels {
 /// bright and minSkullMm to maxSkullMm away, are not seen. Thickness is averaged over the surface
 /// by normalized convolution [Knutsson1993] with a Gaussian of 6 mm, a second time without what
 /// differs by more than 3 mm from the first; where nothing is seen nearby it tends to skullMm.
+/// \param faces  as imageFaces(): 0 beyond the image
 SkullBand findSkullBand(const std::vector<float>& t1, const ImageGeometry& grid,
-                        std::vector<float> innerSkull, const Mask& skin, const HeadLevels& levels,
+                        std::vector<float> innerSkull, const Mask& skin,
+                        const std::vector<std::uint8_t>& faces, const HeadLevels& levels,
                         const BoundaryOptions& options);
 
 }  // namespace adaptiso::headmodel

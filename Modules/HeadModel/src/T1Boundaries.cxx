@@ -8,6 +8,7 @@
 
 #include "BiasField.h"
 #include "BrainSurface.h"
+#include "Contrast.h"
 #include "FinishBoundaries.h"
 #include "Necks.h"
 #include "SkullBand.h"
@@ -30,9 +31,14 @@ struct Head {
     std::vector<std::uint8_t> faces;
     HeadLevels levels;
     double skinLevel = 0;
-    Mask mask;          ///< closed and filled
-    double cutMm2 = 0;  ///< of its side, where tissue was taken out of the image
-    BiasField bias;     ///< as it was taken out of t1
+    Mask mask;                   ///< closed and filled
+    double cutMm2 = 0;           ///< of its side, where tissue was taken out of the image
+    BiasField bias;              ///< as it was taken out of t1
+    bool isFramed = false;       ///< what is thinner than 12 mm is no part of it
+    double darkShare = 1;        ///< of what lies 6 to 16 mm below the skin: bone
+    Mask lesion;                 ///< given as such; else empty
+    bool isFluidBright = false;  ///< a T2
+    bool isLesion(std::int64_t voxel) const { return !lesion.empty() && lesion[voxel] != 0; }
 };
 
 double medianWhere(const std::vector<float>& values, const Mask& mask) {
@@ -88,7 +94,13 @@ Mask headMask(const Head& head, double level, double closingMm) {
     // the scalp may hang together with nothing within it, but it is all around; where a face was
     // taken out it may not enclose the brain
     Mask raw;
-    {
+    if (head.isFramed) {
+        constexpr double kThinMm = 6;
+        const Mask tissue = filled(above(head.t1, level), head.grid.size);
+        raw = dilated(largestComponent(opened(tissue, head.grid, kThinMm), head.grid.size),
+                      head.grid, kThinMm);
+        for (std::size_t n = 0; n < raw.size(); ++n) raw[n] &= tissue[n];
+    } else {
         const Mask tissue = above(head.t1, level);
         raw = widestComponent(tissue, head.grid.size);
         const Mask largest = largestComponent(tissue, head.grid.size);
@@ -152,13 +164,16 @@ constexpr double kMostBrainCm3 = 2500;
 /// Below this nobody needs to be told of a bias field (ch2: 0.79 to 1.04, darker towards its neck).
 constexpr double kNotableBias = 0.3;
 
+constexpr const char* kSkullStripped =
+    "there is no skull or skin around the brain (a skull-stripped T1); give the whole T1, and this "
+    "image as the brain mask";
+
 /// Refuses an image whose skull was removed: its largest piece is no larger than a brain, and
 /// nowhere near its surface is the dark of bone. A whole head shows bone on a fifth of the voxels
 /// 6 to 16 mm below its skin (ch2: 31 %), a brain on sulci alone (ch2bet: 3 %).
-void requireSkull(const Head& head) {
+void requireSkull(Head& head, const std::vector<float>& below) {
     constexpr double kLeastMm = 6, kMostMm = kMostBelowSkinMm, kLeastDark = 0.1;
     if (cm3Of(head.mask, head.grid) > kMostBrainCm3) return;
-    const std::vector<float> below = belowSkinMm(head);
     const double bone = head.levels.air + 0.5 * (head.levels.tissue - head.levels.air);
     std::int64_t all = 0, dark = 0;
     for (std::size_t n = 0; n < below.size(); ++n) {
@@ -166,10 +181,9 @@ void requireSkull(const Head& head) {
         ++all;
         if (head.t1[n] < bone) ++dark;
     }
-    if (all == 0 || static_cast<double>(dark) >= kLeastDark * static_cast<double>(all)) return;
-    throw InvalidInput(
-        "there is no skull or skin around the brain (a skull-stripped T1); give the whole T1, and "
-        "this image as the brain mask");
+    if (all > 0) head.darkShare = static_cast<double>(dark) / static_cast<double>(all);
+    if (head.darkShare >= kLeastDark) return;
+    throw InvalidInput(kSkullStripped);
 }
 
 bool isTakenOut(float sample, double least) {
@@ -239,15 +253,27 @@ void takeBiasOut(Head& head, const Mask& rough, const std::vector<float>& depth,
     constexpr float kDeepMm = 10;
     Mask tissue(rough.size());
     for (std::size_t n = 0; n < tissue.size(); ++n) {
-        tissue[n] = rough[n] != 0 && depth[n] > kDeepMm && head.t1[n] > level ? 1 : 0;
+        const bool isTissue = rough[n] != 0 && depth[n] > kDeepMm && head.t1[n] > level;
+        tissue[n] = isTissue && !head.isLesion(n) ? 1 : 0;
     }
     head.bias = BiasField::estimated(head.t1, head.levels.air, tissue, head.grid);
     head.bias.removeFrom(head.t1, head.levels.air, head.grid.size);
 }
 
-Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
+/// The lesion on the head's grid.
+Mask lesionOf(const VolumeView& lesion, const Head& head) {
+    const FloatImage parts = indicator(lesion, [](double value) { return value > 0; });
+    Mask mask = above(resampled(parts, head.grid, 0), kFractionIsovalue);
+    if (voxelsIn(mask) == 0)
+        throw SourceError(BoundarySource::Lesion, "the lesion mask holds nothing in this head");
+    return mask;
+}
+
+Head findHead(const VolumeView& t1, const BrainSources& sources, const BoundaryOptions& options,
+              bool isFramed) {
     FloatImage image = toFloat(t1, std::numeric_limits<float>::quiet_NaN());
     clipSpikes(image.values);
+    backgroundToAir(image);
     const auto [air, brightest] = std::minmax_element(image.values.begin(), image.values.end());
     if (!std::isfinite(*brightest - *air)) {
         throw InvalidInput("many samples are infinite");
@@ -265,9 +291,11 @@ Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
         last[a] = std::min<std::int64_t>(last[a] + kSoftVoxels, image.geometry.size[a] - 1);
     }
     Head head;
+    head.isFramed = isFramed;
     head.grid = workingGrid(image.geometry, first, last, options.stepMm, marginMm(options));
     head.t1 = resampled(image, head.grid, *air);
     head.faces = imageFaces(image.geometry, head.grid);
+    if (sources.lesion) head.lesion = lesionOf(*sources.lesion, head);
 
     Mask roughMask = headMask(head, rough, options.closingMm);
     std::vector<float> depth = depthInHeadMm(roughMask, head.grid);
@@ -280,11 +308,18 @@ Head findHead(const VolumeView& t1, const BoundaryOptions& options) {
     head.levels.air = *air;
     takeBiasOut(head, roughMask, depth, rough);
     freeMemory(depth);
-    head.levels.tissue = medianWhere(head.t1, ballAround(middle, head.grid, 35));
+    Mask sound = ballAround(middle, head.grid, 35);
+    for (std::size_t n = 0; n < head.lesion.size(); ++n) {
+        if (head.lesion[n] != 0) sound[n] = 0;
+    }
+    head.levels.tissue = medianWhere(head.t1, sound);
+    freeMemory(sound);
     head.skinLevel = skinLevelOf(head, roughMask, head.levels);
     freeMemory(roughMask);
     head.mask = headMask(head, head.skinLevel, options.closingMm);
-    requireSkull(head);
+    const std::vector<float> below = belowSkinMm(head);
+    requireSkull(head, below);
+    head.isFluidBright = isFluidBright(head.t1, below, head.grid, head.levels);
     findCut(head, image);
     return head;
 }
@@ -307,21 +342,22 @@ bool isPlausibleBrain(const Mask& brain, const Head& head, const std::vector<flo
 
 /// A mask of something else, or in another place. Looser than what is asked of a guess: brain
 /// extractions leave this and that at the rim.
-void requirePlausibleMask(const Mask& brain, const Head& head) {
+void requirePlausibleMask(const Mask& brain, const Head& head,
+                          BoundarySource source = BoundarySource::BrainMask) {
+    const std::string name =
+        source == BoundarySource::Lesion ? "the lesion mask" : "the brain mask";
     constexpr double kLeastCm3 = 200, kNearestMm = 4, kMostAtSkin = 0.02;
     const double cm3 = cm3Of(brain, head.grid);
     if (!(cm3 >= kLeastCm3 && cm3 <= kMostBrainCm3)) {
-        throw SourceError(BoundarySource::BrainMask,
-                          "the brain mask holds " + shortNumber(cm3) +
-                              " cm3, must be 200 to 2500 cm3; is it a mask of the brain?");
+        throw SourceError(source, name + " holds " + shortNumber(cm3) +
+                                      " cm3, must be 200 to 2500 cm3; is it a mask of the brain?");
     }
     const double part = partAtSkin(brain, belowSkinMm(head), kNearestMm);
     if (part > kMostAtSkin) {
         throw SourceError(
-            BoundarySource::BrainMask,
-            "the brain mask lies to " + shortNumber(100 * part) +
-                " % outside the head or within 4 mm of its skin; is it of this head, in "
-                "the same space?");
+            source, name + " lies to " + shortNumber(100 * part) +
+                        " % outside the head or within 4 mm of its skin; is it of this head, in "
+                        "the same space?");
     }
 }
 
@@ -368,7 +404,9 @@ public:
         const double span = head.levels.tissue - head.levels.air;
         for (std::size_t n = 0; n < tissue_.size(); ++n) {
             const double level = (head.t1[n] - head.levels.air) / span;
-            tissue_[n] = level > 0.55 && level < 1.45 && depth[n] > 4 ? 1 : 0;
+            // on a T2 all that is not dark as bone: brain and CSF
+            const bool isTissue = head.isFluidBright ? level > 0.4 : level > 0.55 && level < 1.45;
+            tissue_[n] = (isTissue || head.isLesion(n)) && depth[n] > 4 ? 1 : 0;
         }
         tissue_ = withoutHoles(tissue_, head.grid.size);
         middle_ = ballAround(deepestVoxel(depth), head.grid, 20);
@@ -415,7 +453,7 @@ bool dropsMuscle(const Mask& brain, const Mask& next, const ImageGeometry& grid)
 }
 
 /// The brain by thresholds and morphology: the first that is plausible, or one not much thinner
-/// that muscle has fallen off.
+/// that muscle has fallen off. Empty where none is.
 Mask guessedBrain(const Head& head) {
     constexpr double kFirstMm = 2, kStepMm = 0.5;
     constexpr int kSteps = 12, kStepsAhead = 2;
@@ -431,10 +469,14 @@ Mask guessedBrain(const Head& head) {
             brain = std::move(loose);
         }
     }
-    if (found > kSteps) {
-        throw InvalidInput("no brain comes loose by thresholds; give a brain mask");
-    }
-    return withoutTongues(brain, head);
+    return found > kSteps ? Mask{} : withoutTongues(brain, head);
+}
+
+/// Why there is no guess of the brain.
+std::string noBrainText(const Head& head) {
+    constexpr double kUsuallyDark = 0.18;  // stripped images with wide sulci: up to 12 %
+    if (head.darkShare < kUsuallyDark) return kSkullStripped;
+    return "no brain comes loose by thresholds; give a brain mask";
 }
 
 /// The brain mask of the caller on the head's grid.
@@ -460,18 +502,18 @@ std::vector<float> brainPart(const VolumeView& brainMask, const Head& head) {
 }
 
 /// The inner skull: the brain, closed and grown by the CSF around it, kept below the scalp.
-std::vector<float> innerSkullPart(const Mask& brain, const Head& head,
+std::vector<float> innerSkullPart(const Mask& brain, const Head& head, double csfMm,
                                   const BoundaryOptions& options) {
     const double step = stepMm(head.grid);
     const Mask whole = filledAtBorder(
         closed(largestComponent(brain, head.grid.size), head.grid, options.closingMm), head.faces,
         head.grid.size);
     const double wall = options.minSkullMm + options.minScalpMm;
-    std::vector<float> part = depthMm(whole, head.grid, {step, options.csfMm + step});
+    std::vector<float> part = depthMm(whole, head.grid, {step, csfMm + step});
     const std::vector<float> below = depthMm(head.mask, head.grid, {wall + step, step});
     forVoxels(part, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t n = begin; n < end; ++n) {
-            const float grown = partAtDepth(part[n] + options.csfMm, step);
+            const float grown = partAtDepth(part[n] + csfMm, step);
             const double room = below[n] - options.minSkullMm - options.minScalpMm;
             part[n] =
                 std::max(partAtDepth(part[n], step), std::min(grown, partAtDepth(room, step)));
@@ -488,12 +530,16 @@ std::vector<Vec3> skinSides(const Head& head) {
 }
 
 /// The brain by what is known of it, or guessed.
-Mask brainOf(const BrainSources& sources, const Head& head, RawBoundaries& raw) {
+Mask brainOf(const BrainSources& sources, const Head& head, Mask guess, RawBoundaries& raw) {
     const bool isGuess = !sources.mask && !sources.aseg;
-    const Mask brain = sources.mask   ? above(brainPart(*sources.mask, head), kFractionIsovalue)
-                       : sources.aseg ? above(asegPart(*sources.aseg, head.grid), kFractionIsovalue)
-                                      : guessedBrain(head);
+    Mask brain = sources.mask   ? above(brainPart(*sources.mask, head), kFractionIsovalue)
+                 : sources.aseg ? above(asegPart(*sources.aseg, head.grid), kFractionIsovalue)
+                                : std::move(guess);
     if (!isGuess) requirePlausibleMask(brain, head);
+    if (!head.lesion.empty()) {
+        for (std::size_t n = 0; n < brain.size(); ++n) brain[n] |= head.lesion[n];
+        requirePlausibleMask(brain, head, BoundarySource::Lesion);
+    }
     const std::string cm3 = shortNumber(cm3Of(brain, head.grid)) + " cm3";
     raw.notes.push_back(
         (isGuess ? "brain guessed by thresholds, give a mask if it is wrong: " : "brain mask: ") +
@@ -513,6 +559,12 @@ std::string percentOf(double share) {
 /// rays that begin in tissue (at the temples and the base), brains that lost a part 13 to 60 %.
 void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<Warning>& warnings) {
     constexpr double kUsuallySeen = 0.6, kUsuallyInTissue = 0.12, kMostInTissue = 0.3;
+    constexpr double kLeastSeen = 0.2;       // stripped images: 0 to 5 %
+    constexpr double kMostUnseenMm2 = 1500;  // ch2 and copies of it: at most 5 cm2; a flap: 37
+    if (band.seenFraction < kLeastSeen) {
+        throw InvalidInput("the skull shows on " + percentOf(band.seenFraction) +
+                           " of the rays from the brain outwards: " + kSkullStripped);
+    }
     if (isGuess && band.tissueFraction > kMostInTissue) {
         throw InvalidInput("a part of the brain is lost by thresholds: outside what was found, " +
                            percentOf(band.tissueFraction) +
@@ -534,6 +586,16 @@ void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<Warning
                  " % of the rays to the scalp: the brain or its mask may lie wrong, or "
                  "the image be too noisy; look at the result"});
     }
+    if (band.unseenMm2 > kMostUnseenMm2) {
+        const Vec3& p = band.unseenMm;
+        const auto text = [](double mm) { return shortNumber(std::round(mm)); };
+        warnings.push_back(
+            {"skull-unseen",
+             "the skull does not show on " + shortNumber(std::round(band.unseenMm2 / 100)) +
+                 " cm2 in one piece, around (" + text(-p.x) + ", " + text(-p.y) + ", " + text(p.z) +
+                 ") mm RAS: a hole (craniotomy), a lesion at the cortex, or a brain "
+                 "that is wrong there; look at the result"});
+    }
 }
 
 }  // namespace
@@ -553,7 +615,20 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
                            " mm, must be minSkullMm to maxSkullMm");
     }
     tell(options, "head", 0);
-    Head head = findHead(t1, options);
+    const bool isGuess = !sources.mask && !sources.aseg;
+    Head head = findHead(t1, sources, options, false);
+    tell(options, "brain", 0);
+    Mask guess;
+    if (isGuess) {
+        guess = guessedBrain(head);
+        if (guess.empty()) {
+            // a stereotactic frame, a coil or a pad that is as bright as tissue
+            Head bare = findHead(t1, sources, options, true);
+            guess = guessedBrain(bare);
+            if (!guess.empty()) head = std::move(bare);
+        }
+        if (guess.empty()) throw InvalidInput(noBrainText(head));
+    }
     RawBoundaries raw;
     raw.grid = head.grid;
     raw.notes.push_back("skin at " + shortNumber(head.skinLevel) + ", brain tissue at " +
@@ -564,14 +639,31 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
                             " times as bright as usual from place to place (a bias field): taken "
                             "out for this model, not in the image");
     }
+    if (head.isFramed) {
+        raw.notes.push_back(
+            "what is thinner than 12 mm was left aside (a stereotactic frame, a coil?)");
+    }
     if (head.cutMm2 > 0) {
         raw.notes.push_back("about " + shortNumber(head.cutMm2 / 100) +
                             " cm2 of the head's side are cut (a face taken out?): no skin is seen "
                             "there");
     }
-    tell(options, "brain", 0);
-    Mask brain = brainOf(sources, head, raw);
-    raw.parts.push_back(innerSkullPart(brain, head, options));
+    if (head.isFluidBright) {
+        if (options.withBrain && !sources.aseg && sources.pial.empty()) {
+            throw InvalidInput(
+                "CSF is brighter than brain (a T2-weighted image): it does not show where the "
+                "brain ends by itself; give --aseg or --pial, or a T1");
+        }
+        raw.warnings.push_back(
+            {"t2-weighted", std::string("CSF is brighter than brain (a T2-weighted image?): ") +
+                                (isGuess ? "what is bright within the skull was taken for brain "
+                                           "and CSF"
+                                         : "the brain is the mask's") +
+                                "; look at the result, or give a T1"});
+    }
+    Mask brain = brainOf(sources, head, std::move(guess), raw);
+    raw.parts.push_back(
+        innerSkullPart(brain, head, isGuess && head.isFluidBright ? 0 : options.csfMm, options));
     cutNecks(raw, options);
     if (options.withBrain) {
         raw.brain = brainSurfacePart(sources, {head.grid, head.t1, head.faces, head.levels, brain},
@@ -581,8 +673,8 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
     tell(options, "skull", 0);
     SkullBand band =
         findSkullBand(head.t1, head.grid, smoothed(raw.parts[0], head.grid, options.smoothingMm),
-                      head.mask, head.levels, options);
-    requireBandInSight(band, !sources.mask && !sources.aseg, raw.warnings);
+                      head.mask, head.faces, head.levels, options);
+    requireBandInSight(band, isGuess, raw.warnings);
     if (!options.innerSkullOnly) {
         raw.notes.push_back("skull band seen on " + shortNumber(100 * band.seenFraction) +
                             " % of the rays to the scalp, median thickness " +

@@ -129,6 +129,11 @@ void askWhatIsUsual(BemModel& model, const BemHooks& hooks) {
             if (note.next) subject += " in " + bemSurfaceName(*note.next, model.meshes.size());
             ToldNote told{std::move(note), std::move(subject), CoordinateFrame::Ras, {}};
             for (const Vec3& p : told.note.pointsMm) told.placesMm.push_back(toRas(p));
+            if (told.note.isNoted && !told.note.warning.empty()) {
+                model.warnings.push_back({std::string(told.note.warning),
+                                          told.subject + ": " + told.note.finding + ", at " +
+                                              rasText(told.note.pointsMm.front())});
+            }
             model.plausibility.push_back(std::move(told));
         }
     });

@@ -136,6 +136,92 @@ TEST(BoundariesFromT1, WarnsWhereABrainLacksAPart) {
         }));
 }
 
+/// CSF within the brain, as sulci and ventricles have it: rods of 6 mm, 18 mm apart.
+bool isInSulcus(const Vec3& p, const LargeHead& head) {
+    const auto place = [](double mm) { return mm - 18 * std::floor(mm / 18); };
+    return head.shapes.innerSkull.depthMm(p) > 4 && place(p.x) < 6 && place(p.y) < 6;
+}
+
+Vec3 placeOf(std::int64_t voxel, const ImageGeometry& geometry) {
+    const Index3& size = geometry.size;
+    return geometry.toPhysical({static_cast<double>(voxel % size[0]),
+                                static_cast<double>(voxel / size[0] % size[1]),
+                                static_cast<double>(voxel / (size[0] * size[1]))});
+}
+
+TEST(BoundariesFromT1, TakeALesionForBrainWhereItIsMarked) {
+    const LargeHead head;
+    std::vector<float> t1 = headT1(head.shapes, 2, head.geometry);
+    const Shape cavity = sphere({3 + 40, -4, 8 + 35}, 20);  // touches the inner skull
+    std::vector<float> lesion(t1.size());
+    for (std::int64_t n = 0; n < std::ssize(t1); ++n) {
+        const Vec3 p = placeOf(n, head.geometry);
+        if (cavity.depthMm(p) < 0 || head.shapes.innerSkull.depthMm(p) < 0) continue;
+        t1[n] = 30;
+        lesion[n] = 1;
+    }
+    BoundaryOptions options;
+    options.stepMm = 2;
+    options.smoothingMm = 2;
+    options.innerSkullOnly = true;
+    BrainSources sources;
+    const auto error = [&] {
+        const HeadBoundaries found = boundariesFromT1({t1.data(), head.geometry}, sources, options);
+        return surfaceError(found.solids[0], head.shapes.innerSkull).largestMm;
+    };
+    EXPECT_GT(error(), 10);  // the cavity is as dark as CSF
+    sources.lesion = VolumeView{lesion.data(), head.geometry};
+    EXPECT_LE(error(), 3);  // as without a lesion; voxels have 2 mm
+    std::fill(lesion.begin(), lesion.end(), 0.0F);
+    EXPECT_THROW(error(), InvalidInput);
+}
+
+TEST(BoundariesFromT1, RecogniseAT2) {
+    const LargeHead head;
+    std::vector<float> t1 = headT1(head.shapes, 2, head.geometry), t2 = t1;
+    for (std::int64_t n = 0; n < std::ssize(t1); ++n) {
+        const Vec3 p = placeOf(n, head.geometry);
+        const double depth = head.shapes.innerSkull.depthMm(p);
+        if (isInSulcus(p, head)) t1[n] = 30;
+        if (depth > 0) t2[n] = depth < 2 || isInSulcus(p, head) ? 200 : 100;
+    }
+    BoundaryOptions options;
+    options.stepMm = 2;
+    options.smoothingMm = 2;
+    const auto isTold = [](const HeadBoundaries& found) {
+        return std::any_of(found.warnings.begin(), found.warnings.end(),
+                           [](const Warning& warning) { return warning.code == "t2-weighted"; });
+    };
+    EXPECT_FALSE(isTold(boundariesFromT1({t1.data(), head.geometry}, std::nullopt, options)));
+    const HeadBoundaries found =
+        boundariesFromT1({t2.data(), head.geometry}, std::nullopt, options);
+    EXPECT_TRUE(isTold(found));
+    // CSF is bright, so the inner skull itself is seen; voxels have 2 mm
+    EXPECT_LE(surfaceError(found.solids[0], head.shapes.innerSkull).largestMm, 3);
+    options.withBrain = true;
+    EXPECT_THROW(boundariesFromT1({t2.data(), head.geometry}, std::nullopt, options), InvalidInput);
+}
+
+TEST(BoundariesFromT1, RefuseAStrippedImageByNameOnAnyBackground) {
+    const LargeHead head;
+    const std::vector<float> whole = headT1(head.shapes, 2, head.geometry);
+    for (const float background : {0.0F, 40.0F, 99.0F, 250.0F}) {
+        std::vector<float> stripped = whole;
+        for (std::int64_t n = 0; n < std::ssize(stripped); ++n) {
+            const Vec3 p = placeOf(n, head.geometry);
+            if (head.shapes.innerSkull.depthMm(p) < 1) stripped[n] = background;
+            if (isInSulcus(p, head)) stripped[n] = 30;
+        }
+        try {
+            boundariesFromT1({stripped.data(), head.geometry}, std::nullopt, {.stepMm = 2});
+            ADD_FAILURE() << background;
+        } catch (const InvalidInput& error) {
+            EXPECT_NE(std::string(error.what()).find("skull-stripped"), std::string::npos)
+                << background << ": " << error.what();
+        }
+    }
+}
+
 TEST(BoundariesFromT1, TakeAFaceThatWasTakenOutForTheImagesEnd) {
     // a plane 5 mm in front of the brain, zero beyond it; air has a little noise elsewhere
     const LargeHead head;
@@ -346,11 +432,14 @@ TEST(BoundariesFromCt, RefuseGreyValuesThatAreNotHounsfieldUnits) {
 
 TEST(BoundariesFromT1, TellWhenTheSkullIsHardlySeen) {
     const LargeHead head;
-    // no dark band at all: the skull as bright as the brain
+    // no dark band on one side: the skull as bright as the brain
     HeadShapes boneless = head.shapes;
     boneless.outerSkull = boneless.innerSkull;
     std::vector<float> t1 = headT1(boneless, 0, head.geometry);
-    for (float& value : t1) value = std::min(value, 100.0f);
+    const std::vector<float> whole = headT1(head.shapes, 2, head.geometry);
+    for (std::int64_t n = 0; n < std::ssize(t1); ++n) {
+        t1[n] = placeOf(n, head.geometry).x < -3 ? whole[n] : std::min(t1[n], 100.0f);
+    }
     std::vector<std::uint8_t> mask;
     for (const float part : partInside(sphere({3, -4, 8}, 66), head.geometry)) {
         mask.push_back(part >= 0.5);
@@ -359,9 +448,16 @@ TEST(BoundariesFromT1, TellWhenTheSkullIsHardlySeen) {
     options.stepMm = 3;
     const HeadBoundaries found = boundariesFromT1({t1.data(), head.geometry},
                                                   VolumeView(mask.data(), head.geometry), options);
-    ASSERT_EQ(found.warnings.size(), 2u);
+    ASSERT_EQ(found.warnings.size(), 3u);
+    EXPECT_NE(found.warnings[2].text.find("cm2 in one piece"), std::string::npos);
     EXPECT_NE(found.warnings[0].text.find("as bright as brain"), std::string::npos);
     EXPECT_NE(found.warnings[1].text.find("skull shows on only"), std::string::npos);
+    // on no side: a stripped image, or as good as one
+    t1 = headT1(boneless, 0, head.geometry);
+    for (float& value : t1) value = std::min(value, 100.0f);
+    EXPECT_THROW(boundariesFromT1({t1.data(), head.geometry},
+                                  VolumeView(mask.data(), head.geometry), options),
+                 InvalidInput);
 }
 
 TEST(BoundariesFromT1, SinglePointsThatAreNoTissueChangeLittle) {

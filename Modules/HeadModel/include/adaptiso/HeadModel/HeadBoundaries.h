@@ -90,7 +90,11 @@ struct HeadBoundaries {
 /// scalp.
 ///
 /// \param brainMask  on any grid in the same space
-/// \throws InvalidInput  no head, or no brain, is found; the mask is empty, outside the image, not
+/// Where CSF is brighter than brain (a T2), the guess is all that is bright within the skull,
+/// without csfMm; a warning says so.
+///
+/// \throws InvalidInput  no head, or no brain, is found; the skull shows on less than 20 % of the
+///                       rays (a skull-stripped image); the mask is empty, outside the image, not
 ///                       of a brain's size (200 to 2500 cm3), or not below the skin of this head
 HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<VolumeView>& brainMask,
                                 const BoundaryOptions& options = {});
@@ -102,6 +106,8 @@ struct BrainSources {
     /// are the brain. It is the mask as well where there is none.
     std::optional<VolumeView> aseg;
     std::vector<TriangleMesh> pial;  ///< closed surfaces of the cortex, LPS mm
+    /// Lesions of the brain (not 0), whatever their grey values: they count as brain.
+    std::optional<VolumeView> lesion{};
 };
 
 /// The same, and with options.withBrain the brain's own surface: what lies within the pial surfaces

@@ -23,6 +23,15 @@ struct UsualHead {
     /// whole scalps is known to us; sphere models take 5 [Naess2017]; wide around these.
     static constexpr double kLeastSkullMm = 3, kMostSkullMm = 12;
     static constexpr double kLeastScalpMm = 2, kMostScalpMm = 15;
+    /// Over the upper half, but for 1 % of the vertices, the scalp is at most this thick (ch2 and
+    /// its deformed copies: 14 mm; FreeSurfer's average head has 19 with its skull), and but for
+    /// 5 % the skull [Calisan2021]. Its thick parts (95th percentile) are no more times as thick as
+    /// its thin ones (5th) than this; sound models have 3.
+    static constexpr double kMostScalpAnywhereMm = 20, kMostSkullAnywhereMm = 15;
+    static constexpr double kMostSkullRatio = 5;
+    /// Depth of the inner skull's upper three fifths below their convex hull, mm. Models of ch2,
+    /// its deformed copies and FreeSurfer's average head: at most 4.9.
+    static constexpr double kMostDentMm = 8;
 
     static constexpr double kNeckBallMm = 8;       ///< as BoundaryOptions::cutNecksMm
     static constexpr double kFlatAreaShare = .01;  ///< of the surface, on one plane
@@ -42,6 +51,8 @@ struct HeadNote {
     bool isNoted = false;             ///< unusual: worth a look
     std::string finding;              ///< what was measured, against what
     std::vector<Vec3> pointsMm{};     ///< where to look; in the surfaces' frame
+    /// Code of the warning where what is noted makes a head model doubtful; else empty.
+    std::string_view warning{};
 };
 
 struct PlausibilityOptions {
@@ -53,8 +64,8 @@ struct PlausibilityOptions {
 };
 
 /// Asks what is usual of a head model: no necks (the innermost, when nested), not cut flat, edges
-/// in proportion (each); volume of the inner skull and thickness of skull and scalp (head layers,
-/// nested), edges against the gap and numbers of vertices (nested neighbours).
+/// in proportion (each); volume and dents of the inner skull, thickness of skull and scalp (head
+/// layers, nested), edges against the gap and numbers of vertices (nested neighbours).
 ///
 /// Up is +z, as in RAS, LPS and tkRAS. What can't be measured of a surface (it is open, not finite,
 /// not of a head's size) is not asked. Triangles may name points that aren't there.
