@@ -141,6 +141,7 @@ void readElectrodes(BemRun& run) {
     landmarks.nasionMm = toLps(*options.nasion);
     landmarks.leftEarMm = toLps(*options.leftEar);
     landmarks.rightEarMm = toLps(*options.rightEar);
+    if (options.inion) landmarks.inionMm = toLps(*options.inion);
     wanted.landmarks = landmarks;
 }
 

@@ -38,8 +38,8 @@ struct BemOptions {
     bool namesCsf = false;  ///< the conductivity of CSF was given
     BemFileOptions files;
 
-    std::filesystem::path electrodes;               ///< a file; empty: none
-    std::optional<Vec3> nasion, leftEar, rightEar;  ///< scanner RAS mm
+    std::filesystem::path electrodes;                      ///< a file; empty: none
+    std::optional<Vec3> nasion, leftEar, rightEar, inion;  ///< scanner RAS mm
     MesherOptions tetrahedra;
     std::filesystem::path output;
     bool mayReplace = false;

@@ -311,6 +311,8 @@ void declareElectrodes(CLI::App& app, BemOptions& options) {
              "Nasion, scanner RAS mm (default: the electrodes' file's, else guessed)");
     addPoint(app, "--left-ear", options.leftEar, "Left preauricular point, the same");
     addPoint(app, "--right-ear", options.rightEar, "Right preauricular point, the same");
+    addPoint(app, "--inion", options.inion,
+             "Inion, scanner RAS mm, for --montage (default: by nasion and ears)");
 }
 
 void declareToolboxes(CLI::App& app, BemOptions& options) {
@@ -397,6 +399,7 @@ void checkCombinations(const BemOptions& options) {
             "--electrodes and --montage exclude each other");
     require(!namesLandmarks || (options.nasion && options.leftEar && options.rightEar),
             "--nasion, --left-ear and --right-ear need each other");
+    require(!options.inion || namesLandmarks, "--inion needs --nasion, --left-ear and --right-ear");
     require(!wantsElectrodes || options.model.hasSkin(),
             "electrodes and landmarks need a skin: not with --meg");
     require(!options.model.electrodes.frame || !options.electrodes.empty(),

@@ -364,6 +364,7 @@ class Toolboxes(SharedFolderTest):
             found = montage.get_positions()["ch_pos"]
             for electrode, place in expected.items():
                 np.testing.assert_allclose(scale * found[electrode], place, atol=1e-3)
+        self.assertIsNotNone(montage.get_positions()["nasion"])  # of .elc
         dig = mne.channels.read_dig_fif(self.path("ras/electrodes-dig.fif")).get_positions()
         self.assertEqual(dig["coord_frame"], "mri")
         self.assertEqual(len(dig["ch_pos"]), 21)
@@ -398,6 +399,42 @@ class RealHead(SharedFolderTest):
         model = self.accepted("alone", solve=False)  # 7,686 equations take MNE a minute
         self.assertEqual([surface["np"] for surface in model], [2562] * 3)
         self.assert_head("alone")
+
+    def test_positions_are_those_of_mne_on_its_own_head(self):
+        """standard_1005 is of Colin's head, in its space: ch2. Its points lie 2 mm within ch2's skin."""
+        lines = (Path(mne.__file__).parent / "channels/data/montages/standard_1005.elc").read_text().splitlines()
+        points, labels = lines.index("Positions"), lines.index("Labels")
+        right = {name.strip(): np.array(line.split(), float)
+                 for name, line in zip(lines[labels + 1:], lines[points + 1:labels])}
+        place = {name: ",".join(map(str, right[name])) for name in ("Nz", "Iz", "LPA", "RPA")}
+        self.bem("--t1", TEMPLATES / "ch2.nii.gz", "--brain-mask", TEMPLATES / "ch2bet.nii.gz", "--montage", "10-05",
+                 f"--nasion={place['Nz']}", f"--inion={place['Iz']}", f"--left-ear={place['LPA']}",
+                 f"--right-ear={place['RPA']}", "--vertices", 642, "-o", "montage")
+        rows = [row.split("\t") for row in (self.path("montage") / "electrodes.tsv").read_text().splitlines()[1:]]
+        off = {row[0]: np.linalg.norm(np.array(row[1:4], float) - right[row[0]]) for row in rows if row[0] in right}
+        self.assertGreater(len(off), 250)
+        self.assertLess(np.mean(list(off.values())), 5)
+        self.assertLess(max(off.values()), 10, max(off, key=off.get))
+        for name in ("Cz", "Oz", "Fpz", "Iz", "T7", "T8"):
+            self.assertLess(off[name], 5, name)
+
+    def test_a_lesion_at_the_cortex_is_warned_of_or_marked(self):
+        """A cavity of 20 mm radius, as dark as CSF, dents the inner skull by 25 mm; all checks of the surfaces pass."""
+        image = nibabel.load(TEMPLATES / "ch2.nii.gz")
+        brain = np.asarray(nibabel.load(TEMPLATES / "ch2bet.nii.gz").dataobj) > 0
+        distance = np.linalg.norm(lattice(image.shape, image.affine) - (-46, -30, 42), axis=-1).reshape(image.shape)
+        lesion = brain & (distance < 20)
+        t1 = np.asarray(image.dataobj).copy()
+        t1[lesion] = 25
+        save(self.path("cavity.nii"), t1, image.affine)
+        save(self.path("lesion.nii"), lesion.astype(np.uint8), image.affine)
+        codes = []
+        for name, more in (("silent", ()), ("marked", ("--lesion", "lesion.nii"))):
+            self.bem("--t1", "cavity.nii", *more, "--vertices", 642, "-o", name)
+            report = json.loads((self.path(name) / "report.json").read_text())
+            codes.append({warning["code"] for warning in report["warnings"]})
+        self.assertIn("inner-skull-dented", codes[0])
+        self.assertEqual(codes[1], {"guessed-brain"})
 
     def test_a_bad_scan_gives_the_same_inner_skull(self):
         """Brighter to one side by 10 to 30 % along each axis, noise of 5 %, and the right side cut off: more than half of the

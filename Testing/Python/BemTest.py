@@ -329,7 +329,7 @@ class Electrodes(unittest.TestCase):
                         {"electrodes": {"Cz": (0, 0, 80)}, "montage": "10-20"}, {"montage": "10-30"},
                         {"electrodes": {}}, {"landmarks": {"nasion": (0, 1, 2)}}, {"landmarks": "here"},
                         {"meg": True, "montage": "10-20"}, {"layers": 4}, {"layers": 2},
-                        {"electrodes_in": "ras"}, {"aseg": spheres()}, {"pial": []},
+                        {"electrodes_in": "ras"}, {"aseg": spheres()}, {"lesion": spheres()}, {"pial": []},
                         {"conductivity": (1, 1, 1, 1)}, {"layers": 4, "meg": True}):
             with self.assertRaises(adaptiso.Error, msg=str(options)) as caught:
                 adaptiso.bem(**{**common, **options})

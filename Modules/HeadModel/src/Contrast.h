@@ -9,7 +9,8 @@
 namespace adaptiso::headmodel {
 
 /// Makes a background of one value air: where most samples of the image's border have one and the
-/// same value, all that have it become the darkest of the rest. Masked images may be brighter outside than inside.
+/// same value, all that have it become the darkest of the rest. Masked images may be brighter
+/// outside than inside.
 void backgroundToAir(FloatImage& image);
 
 /// Whether fluid is brighter than brain, as on T2-weighted images. In blocks of 16 mm, 15 mm or

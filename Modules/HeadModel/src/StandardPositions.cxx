@@ -36,8 +36,9 @@ struct Frame {
 
 Frame frameOf(const TriangleMesh& skin, const Landmarks& landmarks) {
     constexpr double kMostMm = 30;
-    const OntoSkin onto =
-        projectedOntoSkin({landmarks.nasionMm, landmarks.leftEarMm, landmarks.rightEarMm}, skin);
+    std::vector<Vec3> places{landmarks.nasionMm, landmarks.leftEarMm, landmarks.rightEarMm};
+    if (landmarks.inionMm) places.push_back(*landmarks.inionMm);
+    const OntoSkin onto = projectedOntoSkin(places, skin);
     if (onto.farthestMm > kMostMm) {
         throw InvalidInput("a landmark lies " + shortNumber(onto.farthestMm) +
                            " mm from the skin, must be at most 30; is it of this head, in the "
@@ -45,13 +46,13 @@ Frame frameOf(const TriangleMesh& skin, const Landmarks& landmarks) {
     }
     Frame frame{onto.pointsMm[0], {}, onto.pointsMm[1], onto.pointsMm[2], {}};
     const Vec3 middle = 0.5 * (frame.leftEar + frame.rightEar);
-    const Vec3 back = normalized(middle - frame.nasion);
     const Vec3 up = normalized(cross(frame.rightEar - frame.leftEar, frame.nasion - middle));
+    const Vec3 back = normalized(middle - frame.nasion);
     const RayHits behind = rayHits(skin, middle, back), above = rayHits(skin, middle, up);
     if (behind.mm.empty() || above.mm.empty()) {
         throw InvalidInput("nasion and ears do not lie round the head; are left and right right?");
     }
-    frame.inion = middle + behind.mm.back() * back;
+    frame.inion = landmarks.inionMm ? onto.pointsMm[3] : middle + behind.mm.back() * back;
     frame.vertex = middle + above.mm.back() * up;
     constexpr int kMostRounds = 20;
     constexpr double kEnoughMm = 0.01;

@@ -11,7 +11,7 @@
 namespace adaptiso {
 namespace {
 
-constexpr double kMostMovedMm = 60;
+constexpr double kMostMovedMm = 60, kMuchMovedMm = 10;
 
 /// The three landmarks among a file's points, if it has them all.
 std::optional<Landmarks> landmarksOf(const std::vector<NamedPoint>& points) {
@@ -121,6 +121,12 @@ void project(std::vector<NamedPoint> points, BemModel& model, BemElectrodes& pla
         throw InvalidInput(
             "the electrode " + placed.farthestName + " lies " + formatFixed(onto.farthestMm, 0) +
             " mm from the skin, must be at most 60; is it in another frame or unit?");
+    }
+    if (onto.meanMm > kMuchMovedMm) {
+        model.warnings.push_back(
+            {"cap-moved-far", "the electrodes lie " + formatFixed(onto.meanMm, 1) +
+                                  " mm from the skin on average and were moved onto it: is the cap "
+                                  "of this head, and are nasion and ears right?"});
     }
     for (std::size_t n = 0; n < points.size(); ++n) points[n].point = onto.pointsMm[n];
     placed.points = std::move(points);

@@ -63,7 +63,7 @@ void writeTetrahedra(const BemModel& model, const BemFileOptions& options, const
     const AffineTransform move = lpsToFrame(options.frame, model.tkRasVolume);
     const TetrahedralMesh mesh = transformed(model.tetrahedra->mesh, move.linear, move.offset);
     const std::vector<TetrahedraRegion> regions = headRegions(model.meshes);
-    writeMsh22(mesh, regions, place(kMsh22File));
+    writeMsh22(mesh, regions, place(kMsh22File), true);
     writeMsh41(mesh, regions, place(kMsh41File));
     writeVtu(mesh, place(kVtuFile));
     writeDgf(mesh, allTissues(), place(kDgfFile));

@@ -56,7 +56,8 @@ std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
         rows +=
             "| `head.msh` (2.2), `head-4.1.msh`, `head.vtu` | SimNIBS and Gmsh, Gmsh, viewers; "
             "tissues "
-            "2 brain, 3 CSF, 4 skull, 5 scalp | " +
+            "2 brain, 3 CSF, 4 skull, 5 scalp; `head.msh` has their outer surfaces too, 1002 to "
+            "1005 | " +
             frame +
             "; millimetres |\n| `head.dgf` | DUNEuro; `head.cond` has "
             "the "
@@ -87,10 +88,13 @@ std::string toolboxText(const BemModel& model, const BemFileOptions& options) {
     if (options.writesFieldTrip) {
         text += isOne ? "\nFieldTrip (`type` is singleshell, which needs no more):\n```matlab\n"
                         "load headmodel.mat\n```\n"
-                      : "\nFieldTrip, with OpenMEEG (or ft_headmodel_dipoli, _bemcp):\n"
-                        "```matlab\nload headmodel.mat\n"
-                        "headmodel = ft_headmodel_openmeeg(headmodel.bnd, 'conductivity', "
-                        "headmodel.cond, 'tissue', headmodel.tissue);\n```\n";
+                      : std::string(model.options.boundaries.withBrain
+                                        ? "\nFieldTrip, with OpenMEEG:\n"
+                                        : "\nFieldTrip, with OpenMEEG (or ft_headmodel_dipoli, "
+                                          "_bemcp):\n") +
+                            "```matlab\nload headmodel.mat\n"
+                            "headmodel = ft_headmodel_openmeeg(headmodel.bnd, 'conductivity', "
+                            "headmodel.cond, 'tissue', headmodel.tissue);\n```\n";
     }
     if (options.writesBrainstorm && !hasLandmarks(model)) {
         text +=

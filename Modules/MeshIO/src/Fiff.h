@@ -19,7 +19,8 @@ inline constexpr std::int32_t kFileId = 100, kDirectoryPointer = 101, kBlockStar
 inline constexpr std::int32_t kDigPoint = 213, kDigString = 234;
 inline constexpr std::int32_t kSurfaceId = 3101, kNodeCount = 3103, kTriangleCount = 3104,
                               kNodes = 3105, kTriangles = 3106, kNormals = 3107,
-                              kBemCoordFrame = 3112, kSigma = 3113, kMneCoordFrame = 3506;
+                              kBemCoordFrame = 3112, kSigma = 3113, kMneCoordFrame = 3506,
+                              kMneChannelNames = 3507;
 // kinds of blocks
 inline constexpr std::int32_t kIsotrak = 107, kBem = 310, kBemSurface = 311;
 // coordinate frames

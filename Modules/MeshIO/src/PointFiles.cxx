@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "Bytes.h"
 #include "Fiff.h"
@@ -211,6 +212,14 @@ PointFile decodeSfp(std::string_view bytes) {
 }
 
 /// The points of the first digitizer block.
+/// Colons stand between names; MNE writes others so.
+std::string withoutColons(std::string name) {
+    for (std::size_t at = name.find(':'); at != name.npos; at = name.find(':', at)) {
+        name.replace(at, 1, "{COLON}");
+    }
+    return name;
+}
+
 PointFile decodeFiff(std::string_view bytes) {
     const fiff::Content content = fiff::decode(bytes);
     PointFile file;
@@ -226,6 +235,12 @@ PointFile decodeFiff(std::string_view bytes) {
     file.frameName = frame == fiff::kFrameMri    ? "MRI"
                      : frame == fiff::kFrameHead ? "head"
                                                  : "FIFF frame " + std::to_string(frame);
+    std::vector<std::string> names;  // of electrodes, in their order
+    if (const fiff::Tag* tag = content.find(block, fiff::kMneChannelNames)) {
+        std::istringstream list{std::string(tag->data)};
+        for (std::string name; std::getline(list, name, ':');) names.push_back(name);
+    }
+    std::size_t electrodes = 0;
     for (const fiff::Tag& tag : content.tags) {
         if (tag.block != block || tag.kind != fiff::kDigPoint) continue;
         const fiff::DigitizedPoint point = fiff::toPoint(tag);
@@ -237,7 +252,11 @@ PointFile decodeFiff(std::string_view bytes) {
             const char* const name = kNames[static_cast<std::size_t>(point.number - 1)];
             add(file, name, point.metres, kindOf(name));
         } else if (point.kind == kElectrode) {
-            add(file, "EEG" + digits, point.metres, PointKind::Electrode);
+            const std::string name = electrodes < names.size() && !names[electrodes].empty()
+                                         ? names[electrodes]
+                                         : "EEG" + digits;
+            ++electrodes;
+            add(file, name, point.metres, PointKind::Electrode);
         } else {
             add(file, "extra" + digits, point.metres, PointKind::Other);
         }
@@ -348,7 +367,8 @@ void writeElc(std::span<const NamedPoint> points, const std::filesystem::path& p
         for (const NamedPoint& point : points) sink << point.point << "\n";
         sink << "Labels\n";
         for (const NamedPoint& point : points) {
-            std::string name = point.name;  // words are between spaces
+            // words are between spaces; MNE looks for Nz
+            std::string name = point.kind == PointKind::Nasion ? "Nz" : point.name;
             std::replace(name.begin(), name.end(), ' ', '_');
             sink << name << "\n";
         }
@@ -375,6 +395,7 @@ void writeFiffPoints(std::span<const NamedPoint> points, const std::filesystem::
         writer.begin(fiff::kIsotrak);
         writer.put(fiff::kMneCoordFrame, fiff::kFrameMri);
         std::int32_t electrodes = 0, others = 0;
+        std::string names;  // of the electrodes, as MNE 1.9 and newer take them
         for (const NamedPoint& point : points) {
             const Vec3 metres = (1 / kMetreMm) * point.point;
             constexpr std::int32_t kCardinal = 1, kElectrode = 3, kExtra = 4;
@@ -390,12 +411,14 @@ void writeFiffPoints(std::span<const NamedPoint> points, const std::filesystem::
                     break;
                 case PointKind::Electrode:
                     writer.putPoint(kElectrode, ++electrodes, metres);
+                    names += (names.empty() ? "" : ":") + withoutColons(point.name);
                     break;
                 case PointKind::Other:
                     writer.putPoint(kExtra, ++others, metres);
                     break;
             }
         }
+        if (!names.empty()) writer.put(fiff::kMneChannelNames, std::string_view(names));
         writer.end(fiff::kIsotrak);
         writer.finish();
     });

@@ -43,9 +43,10 @@ struct VerdictWords {
     const char *style, *sign, *word;
 };
 
-VerdictWords wordsOf(ReportVerdict verdict) {
-    switch (verdict) {
+VerdictWords wordsOf(const Report& report) {
+    switch (report.verdict) {
         case ReportVerdict::Passed:
+            if (!report.warnings.empty()) return {"doubtful", "▲", "PASSED WITH WARNINGS"};
             return {"passed", "✔", "PASSED"};
         case ReportVerdict::Failed:
             return {"failed", "✘", "FAILED"};
@@ -187,7 +188,7 @@ std::string htmlPage(const Report& report, const std::vector<Picture>& pictures,
         scripts = viewerData(report, scene, options, notes);
         addViewerScripts(scripts);
     }
-    const VerdictWords words = wordsOf(report.verdict);
+    const VerdictWords words = wordsOf(report);
     const std::string licenses = "<details><summary>Licences of the viewer</summary><pre>" +
                                  escaped(std::string(embedded::licenses())) + "</pre></details>";
     const std::string scale = scaleHtml(scene);

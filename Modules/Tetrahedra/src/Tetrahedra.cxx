@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
@@ -231,22 +232,68 @@ std::map<std::int32_t, std::int64_t> placesOf(std::span<const TetrahedraRegion> 
     return places;
 }
 
+/// A face between two regions, or at the outside, outward of the region with the smaller number.
+struct Wall {
+    std::array<VertexId, 3> corners;
+    std::int32_t label;
+};
+
+/// In the order of their sorted corners.
+std::vector<Wall> wallsOf(const TetrahedralMesh& mesh) {
+    struct Side {
+        std::array<VertexId, 3> key;
+        std::array<VertexId, 3> outward;
+        std::int32_t label;
+    };
+    std::vector<Side> sides;
+    sides.reserve(4 * mesh.tetrahedra.size());
+    for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
+        const auto& [a, b, c, d] = mesh.tetrahedra[n];
+        for (const std::array<VertexId, 3>& face :
+             {std::array{a, c, b}, std::array{a, b, d}, std::array{b, c, d}, std::array{a, d, c}}) {
+            Side side{face, face, mesh.labels[n]};
+            std::sort(side.key.begin(), side.key.end());
+            sides.push_back(side);
+        }
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+        return std::tie(x.key, x.label) < std::tie(y.key, y.label);
+    });
+    std::vector<Wall> walls;
+    for (std::size_t n = 0; n < sides.size(); ++n) {
+        const bool isShared = n + 1 < sides.size() && sides[n].key == sides[n + 1].key;
+        if (!isShared || sides[n].label != sides[n + 1].label) {
+            walls.push_back({sides[n].outward, sides[n].label});
+        }
+        if (isShared) ++n;
+    }
+    return walls;
+}
+
 }  // namespace
 
 void writeMsh22(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
-                const std::filesystem::path& path) {
+                const std::filesystem::path& path, bool withWalls) {
+    const std::vector<Wall> walls = withWalls ? wallsOf(mesh) : std::vector<Wall>{};
     TextFile file(path);
     file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
     writeNames(file, regions);
     file << "$Nodes\n" << std::ssize(mesh.points) << "\n";
     std::int64_t number = 0;
     for (const Vec3& p : mesh.points) file << ++number << " " << p << "\n";
-    file << "$EndNodes\n$Elements\n" << std::ssize(mesh.tetrahedra) << "\n";
+    file << "$EndNodes\n$Elements\n" << std::ssize(walls) + std::ssize(mesh.tetrahedra) << "\n";
+    std::int64_t element = 0;
+    for (const Wall& wall : walls) {
+        const std::int64_t tag = 1000 + std::int64_t{wall.label};
+        file << ++element << " 2 2 " << tag << " " << tag;
+        for (const VertexId corner : wall.corners) file << " " << corner + 1;
+        file << "\n";
+    }
     for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
         const auto& [a, b, c, d] = mesh.tetrahedra[n];
         const std::int64_t tissue = mesh.labels[n];
-        file << static_cast<std::int64_t>(n + 1) << " 4 2 " << tissue << " " << tissue << " "
-             << a + 1 << " " << b + 1 << " " << c + 1 << " " << d + 1 << "\n";
+        file << ++element << " 4 2 " << tissue << " " << tissue << " " << a + 1 << " " << b + 1
+             << " " << c + 1 << " " << d + 1 << "\n";
     }
     file << "$EndElements\n";
     file.finish();

@@ -62,6 +62,18 @@ TEST(StandardPositions, OfASphereAreWhereAnglesSay) {
     EXPECT_NEAR(norm(half - positions.at("F7")), norm(half - positions.at("Fz")), 0.3);
 }
 
+TEST(StandardPositions, TakeTheInionThatIsGiven) {
+    Landmarks landmarks = onEquator();
+    landmarks.inionMm = kCentre + kRadiusMm * direction(70, 180);
+    for (const NamedPoint& point :
+         standardPositions(icosphere(5, kCentre, kRadiusMm), landmarks, PositionSystem::TenTen)) {
+        const Vec3 at = point.point - kCentre;
+        if (point.name == "Iz") EXPECT_LE(norm(at - kRadiusMm * direction(70, 180)), 0.2);
+        // ten percent of an arc of 160 degrees from the nasion
+        if (point.name == "Fpz") EXPECT_LE(norm(at - kRadiusMm * direction(74, 0)), 0.2);
+    }
+}
+
 TEST(StandardPositions, AreAsManyAsTheSystemsHaveAndNamedOnce) {
     const TriangleMesh skin = icosphere(4, kCentre, kRadiusMm);
     const std::map<PositionSystem, std::size_t> counts{{PositionSystem::TenTwenty, 21},

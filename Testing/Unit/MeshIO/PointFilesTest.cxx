@@ -52,7 +52,8 @@ TEST(PointFiles, OfOtherFormatsComeBack) {
     writeFiffPoints(kPoints, fif);
     expectSame(readPoints(fif), kPoints, 1e-4);  // float metres
     EXPECT_EQ(readPoints(fif).frame, CoordinateFrame::TkRas);
-    EXPECT_EQ(readPoints(fif).points[1].name, "EEG002");
+    EXPECT_EQ(readPoints(fif).points[1].name, kPoints[1].name);
+    EXPECT_NE(bytesOf(elc).find("\nNz\n"), std::string::npos);  // MNE's name of the nasion
 }
 
 TEST(PointFiles, OfOthersAreReadToo) {

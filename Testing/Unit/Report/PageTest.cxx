@@ -33,6 +33,10 @@ TEST(Page, TellsTheVerdictInWords) {
     Report report = example();
     EXPECT_TRUE(holds(htmlPage(report, {}), "FAILED: Check of a.stl"));
     report.verdict = ReportVerdict::Passed;
+    report.warnings = {"a part of the brain may be missing"};
+    EXPECT_TRUE(holds(htmlPage(report, {}), "PASSED WITH WARNINGS: Check of a.stl"));
+    EXPECT_TRUE(holds(htmlPage(report, {}), "verdict doubtful"));
+    report.warnings.clear();
     EXPECT_TRUE(holds(htmlPage(report, {}), "PASSED: Check of a.stl"));
     report.verdict = ReportVerdict::Done;
     EXPECT_TRUE(holds(htmlPage(report, {}), "DONE: Check of a.stl"));

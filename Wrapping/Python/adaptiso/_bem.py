@@ -287,6 +287,7 @@ class _Source(NamedTuple):
     images: List[Samples]
     mask: Optional[Samples]
     aseg: Optional[Samples]
+    lesion: Optional[Samples]
     head_mask: Optional[Samples]
     pial: List[Mesh]
     surfaces: List[Mesh]
@@ -298,6 +299,7 @@ class _Source(NamedTuple):
         return {"kind": self.kind, "images": [image.volume for image in self.images],
                 "brain_mask": None if self.mask is None else self.mask.volume,
                 "aseg": None if self.aseg is None else self.aseg.volume,
+                "lesion": None if self.lesion is None else self.lesion.volume,
                 "head_mask": None if self.head_mask is None else self.head_mask.volume,
                 "pial": [mesh._data for mesh in self.pial],
                 "surfaces": [mesh._data for mesh in self.surfaces], "inputs": self.inputs,
@@ -305,11 +307,11 @@ class _Source(NamedTuple):
 
     def all_images(self) -> List[Samples]:
         """Every image that is looked at."""
-        return self.images + [image for image in (self.mask, self.aseg, self.head_mask)
-                              if image is not None]
+        marked = (self.mask, self.aseg, self.lesion, self.head_mask)
+        return self.images + [image for image in marked if image is not None]
 
 
-def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
+def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any = None,
         pial: Optional[Sequence[Any]] = None, labels: Any = None,
         tissues: Union[str, Mapping[str, Sequence[int]], None] = None, head_mask: Any = None,
         probabilities: Optional[Sequence[Any]] = None, ct: Any = None,
@@ -342,6 +344,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
     aseg : image, optional
         With `t1`: FreeSurfer's or FastSurfer's aseg: the brain mask where `brain_mask` is missing, and with
         four layers the brain's own surface.
+    lesion : image, optional
+        With `t1`: a mask of lesions within the skull; they count as brain, whatever their values.
     pial : sequence, optional
         With `t1` and four layers: the cortex, as `surfaces`: ``["lh.pial", "rh.pial"]``.
     labels : image, optional
@@ -408,8 +412,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
     montage : {"10-20", "10-10", "10-05"}, optional
         Instead of `electrodes`: the positions of this system, computed on the skin.
     landmarks : mapping of "nasion", "left_ear", "right_ear" to (float, float, float), or "guess"
-        Scanner RAS mm. Default: those of the electrodes' file; guessed, with a warning, where they
-        are needed or this is "guess".
+        Scanner RAS mm; "inion" may be among them. Default: those of the electrodes' file; guessed,
+        with a warning, where they are needed or this is "guess".
     head_shape : bool
         Keep the skin alone as well, as finely as it was found, for ``save(folder, fif=True)``.
     threads : int
@@ -472,8 +476,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
     if count_ == 4 and ct is not None:
         raise Error("layers 4: a CT does not show where the brain ends and CSF begins")
     preset, lists = _tissues(tissues, labels is not None, count_, head_mask is not None)
-    source = _source(t1, brain_mask, aseg, pial, labels, head_mask, probabilities, ct, surfaces,
-                     volume, input_coordinates, affine, count_)
+    source = _source(t1, brain_mask, aseg, lesion, pial, labels, head_mask, probabilities, ct,
+                     surfaces, volume, input_coordinates, affine, count_)
     if input_coordinates is not None:
         options["input_coordinates"] = ([input_coordinates] if isinstance(input_coordinates, str)
                                         else [frame for frame in input_coordinates if frame])
@@ -489,8 +493,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None,
     return model
 
 
-def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, head_mask: Any,
-            probabilities: Any, ct: Any, surfaces: Any, volume: Any,
+def _source(t1: Any, brain_mask: Any, aseg: Any, lesion: Any, pial: Any, labels: Any,
+            head_mask: Any, probabilities: Any, ct: Any, surfaces: Any, volume: Any,
             input_coordinates: Any, affine: Any, layers: int) -> _Source:
     """The input that is given. \\raises Error"""
     given = {"t1": t1, "labels": labels, "probabilities": probabilities, "ct": ct,
@@ -499,7 +503,8 @@ def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, head_ma
     if len(kinds) != 1:
         raise Error("one of t1, labels, probabilities, ct and surfaces must be given, and one only")
     kind = kinds[0]
-    for name, value in (("brain_mask", brain_mask), ("aseg", aseg), ("pial", pial)):
+    for name, value in (("brain_mask", brain_mask), ("aseg", aseg), ("lesion", lesion),
+                        ("pial", pial)):
         if value is not None and kind != "t1":
             raise Error(f"{name}: needs t1")
     if head_mask is not None and kind != "labels":
@@ -510,7 +515,7 @@ def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, head_ma
         raise Error("volume: needs surfaces")
     if input_coordinates is not None and kind != "surfaces" and pial is None:
         raise Error("input_coordinates: needs surfaces or pial")
-    source = _Source(kind, [], None, None, None, [], [], [], [])
+    source = _Source(kind, [], None, None, None, None, [], [], [], [])
     if kind == "surfaces":
         if volume is not None:
             source.images.append(_image("volume", volume, affine, source))
@@ -527,7 +532,8 @@ def _source(t1: Any, brain_mask: Any, aseg: Any, pial: Any, labels: Any, head_ma
     head = None if head_mask is None else _image("head_mask", head_mask, affine, source)
     if pial is not None:
         source.pial.extend(_surfaces("pial", pial, input_coordinates, source))
-    return source._replace(mask=mask, aseg=labelled, head_mask=head)
+    marked = None if lesion is None else _image("lesion", lesion, affine, source)
+    return source._replace(mask=mask, aseg=labelled, lesion=marked, head_mask=head)
 
 
 def _image(name: str, image: Any, affine: Any, source: _Source) -> Samples:
@@ -628,7 +634,7 @@ def _electrodes(electrodes: Any, frame: Any, montage: Any, landmarks: Any,
                 layers: int) -> Dict[str, Any]:
     """Electrodes and landmarks, for C++. \\raises Error"""
     options: Dict[str, Any] = {"electrodes": None, "electrodes_name": "", "electrodes_in": None,
-                               "montage": None, "landmarks": None,
+                               "montage": None, "landmarks": None, "inion": None,
                                "guesses_landmarks": landmarks == "guess"}
     if electrodes is not None and montage is not None:
         raise Error("electrodes and montage: exclude each other")
@@ -650,8 +656,10 @@ def _electrodes(electrodes: Any, frame: Any, montage: Any, landmarks: Any,
         options["electrodes_in"] = word("electrodes_in", frame, ("ras", "lps", "tkras"))
     if montage is not None:
         options["montage"] = word("montage", montage, MONTAGES)
-    if isinstance(landmarks, Mapping) and set(landmarks) == set(_LANDMARKS):
+    if isinstance(landmarks, Mapping) and set(landmarks) - {"inion"} == set(_LANDMARKS):
         options["landmarks"] = [_point(name, landmarks[name]) for name in _LANDMARKS]
+        if "inion" in landmarks:
+            options["inion"] = _point("inion", landmarks["inion"])
     elif landmarks is not None and not options["guesses_landmarks"]:
         raise Error(f"landmarks {shown(landmarks)}: must be 'guess', or a dict of "
                     + ", ".join(_LANDMARKS))

@@ -43,9 +43,9 @@ namespace py = pybind11;
 struct HeadSources {
     std::string source;  ///< "t1", "labels", "probabilities", "ct", "surfaces"
     std::vector<std::shared_ptr<ArrayVolume>> images;  ///< with surfaces: the one they belong to
-    std::shared_ptr<ArrayVolume> brainMask, aseg;      ///< with t1; may be null
-    std::shared_ptr<ArrayVolume> headMask;             ///< with labels; may be null
-    std::vector<std::shared_ptr<MeshData>> pial;       ///< with t1: the cortex
+    std::shared_ptr<ArrayVolume> brainMask, aseg, lesion;  ///< with t1; may be null
+    std::shared_ptr<ArrayVolume> headMask;                 ///< with labels; may be null
+    std::vector<std::shared_ptr<MeshData>> pial;           ///< with t1: the cortex
     TissueLabels tissues;
     std::vector<std::shared_ptr<MeshData>> surfaces;  ///< inside out, in one frame
     std::vector<BemInput> inputs;                     ///< one for each of them
@@ -135,6 +135,7 @@ HeadBoundaries boundariesOfT1(const HeadSources& sources, const BoundaryOptions&
     BrainSources brain;
     if (sources.brainMask) brain.mask = sources.brainMask->view;
     if (sources.aseg) brain.aseg = sources.aseg->view;
+    if (sources.lesion) brain.lesion = sources.lesion->view;
     for (const auto& surface : sources.pial) {
         const ImageGeometry& image = surface->image() ? *surface->image() : t1.geometry();
         brain.pial.push_back(inLps(*surface, frameVolume(CoordinateFrame::TkRas, image)));
@@ -162,6 +163,7 @@ HeadBoundaries namedBoundaries(const HeadSources& sources, const BoundaryOptions
     } catch (const SourceError& error) {
         const std::string name = error.source() == BoundarySource::BrainMask
                                      ? (sources.brainMask ? "brain_mask" : "aseg")
+                                 : error.source() == BoundarySource::Lesion   ? "lesion"
                                  : error.source() == BoundarySource::HeadMask ? "head_mask"
                                                                               : "pial";
         throw InvalidInput(name + ": " + error.what());
@@ -437,6 +439,9 @@ ElectrodeOptions electrodesOf(const py::dict& options) {
         landmarks.nasionMm = toLps((*given)[0]);
         landmarks.leftEarMm = toLps((*given)[1]);
         landmarks.rightEarMm = toLps((*given)[2]);
+        if (const auto inion = take<std::optional<Place>>(options, "inion")) {
+            landmarks.inionMm = toLps(*inion);
+        }
         wanted.landmarks = landmarks;
     }
     return wanted;
@@ -475,6 +480,7 @@ HeadSources sourcesOf(const py::dict& from) {
     sources.images = take<Volumes>(from, "images");
     sources.brainMask = take<std::shared_ptr<ArrayVolume>>(from, "brain_mask");
     sources.aseg = take<std::shared_ptr<ArrayVolume>>(from, "aseg");
+    sources.lesion = take<std::shared_ptr<ArrayVolume>>(from, "lesion");
     sources.headMask = take<std::shared_ptr<ArrayVolume>>(from, "head_mask");
     sources.pial = take<Meshes>(from, "pial");
     sources.tissues = tissuesOf(from);

@@ -16,6 +16,8 @@ struct Landmarks {
     /// How far off they may be; 0 where they were given.
     double nasionUncertaintyMm = 0, earUncertaintyMm = 0;
 
+    std::optional<Vec3> inionMm{};  ///< where given
+
     bool areGuessed() const { return earUncertaintyMm > 0; }
 };
 
@@ -24,7 +26,7 @@ struct Landmarks {
 /// Nasion: in the middle plane, the deepest place of the profile between nose and forehead; where
 /// no nose stands out by 5 mm (a defaced scan, a face cut off), by proportion. Ears: by proportion
 /// to the inner skull (0.57 of its length behind its front, 0.69 of it below its top, as in
-/// FreeSurfer's average head), where the skin is there: tragus and lobes are not looked for, so 12
+/// FreeSurfer's average head), where the skin is there: tragus and lobes are not looked for, so 20
 /// mm is all that can be promised of them. \param innerSkull, skin  closed, LPS mm
 struct GuessedLandmarks {
     std::optional<Landmarks> landmarks;
@@ -46,9 +48,9 @@ enum class PositionSystem { TenTwenty, TenTen, TenFive };
 
 /// The positions of the 10-20 system and its extensions [Jurcak2007, Oostenveld2001] on a skin:
 /// shares of arcs in planes through landmarks. Cz halves both the arc from nasion to inion and that
-/// from ear to ear. The inion is taken where the line from the nasion between the ears leaves the
-/// head. \param skin  closed, LPS mm \throws InvalidInput  landmarks farther than 30 mm from the
-/// skin, or a plane that does not cut it
+/// from ear to ear. An inion that is not given is taken where the line from the nasion between the
+/// ears leaves the head: of Colin's head 33 mm too low. \param skin  closed, LPS mm \throws
+/// InvalidInput  landmarks farther than 30 mm from the skin, or a plane that does not cut it
 std::vector<NamedPoint> standardPositions(const TriangleMesh& skin, const Landmarks& landmarks,
                                           PositionSystem system);
 

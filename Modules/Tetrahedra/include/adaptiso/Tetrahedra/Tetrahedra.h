@@ -71,8 +71,10 @@ void takeRegions(TetrahedralMesh& mesh, std::span<const TetrahedraRegion> region
 /// bytes. \throws FileError  a file can't be written
 ///
 /// Gmsh's .msh 2.2 (SimNIBS, DUNEuro) and 4.1, text; regions are physical volumes with names.
+/// \param withWalls  2.2: triangles too, as SimNIBS has them: of region n the faces towards regions
+///                   of larger numbers and the outside, outward, with the number 1000 + n
 void writeMsh22(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
-                const std::filesystem::path& path);
+                const std::filesystem::path& path, bool withWalls = false);
 void writeMsh41(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
                 const std::filesystem::path& path);
 /// VTK's .vtu, text, with the array "tissue" of labels.
