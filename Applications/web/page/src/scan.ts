@@ -61,7 +61,7 @@ export class Scan {
   }
 }
 
-/** What the adaptive method takes beside the image: measured, about 110 bytes a triangle of marching cubes. */
+/** An estimate, not measured: the adaptive method takes about 110 bytes a triangle of marching cubes beside the image. */
 export function memoryOf(facts: ImageFacts, previewTriangles: number): number {
   return 3 * facts.bytes + 110 * previewTriangles * facts.previewStep ** 2 + 30e6;
 }
