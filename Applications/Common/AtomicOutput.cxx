@@ -1,6 +1,7 @@
 #include "Common/AtomicOutput.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
 /// newest first, so that the handler may walk it at any moment; a folder's files come before it.
 struct detail::Temporary {
     const std::string path;
+    const int lock;  ///< an open file with flock(), for as long as the process lives; -1 for none
     std::atomic<bool> exists{true};
     Temporary* next = nullptr;
 };
@@ -64,6 +66,17 @@ void removeNow(Temporary* temporary) {
     temporary->exists.store(false);
 }
 
+/// Opens a file or folder and locks it. \return -1 and EWOULDBLOCK: a living process holds the lock
+int openLocked(const fs::path& path) {
+    int file = open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+    if (file < 0 && errno == EISDIR) file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_DIRECTORY);
+    if (file < 0 || flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+    const int fault = errno;
+    close(file);
+    errno = fault;
+    return -1;
+}
+
 /// Makes an empty file or folder beside `final`; others may open it only where nothing stands yet
 /// whose permissions it is to take over. \throws FileError  naming `target`
 std::shared_ptr<Temporary> makeTemporary(const fs::path& final, bool isFolder,
@@ -77,9 +90,15 @@ std::shared_ptr<Temporary> makeTemporary(const fs::path& final, bool isFolder,
             isFolder ? mkdir(path.c_str(), mode)
                      : open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode & 0666U);
         if (made >= 0 && !isFolder) close(made);
-        if (made >= 0) return detail::removedAtEnd(path);
-        // processes of other machines and containers may have the same number
-        requireDone(errno == EEXIST, target, "can't be made");
+        if (made < 0) {
+            // processes of other machines and containers may have the same number
+            requireDone(errno == EEXIST, target, "can't be made");
+            continue;
+        }
+        // one that cleans up may have come in between
+        const int lock = openLocked(path);
+        if (access(path.c_str(), F_OK) == 0) return detail::removedAtEnd(path, lock);
+        if (lock >= 0) close(lock);
     }
 }
 
@@ -214,12 +233,15 @@ void removeOutputsOnSignals() {
 
 namespace detail {
 
-std::shared_ptr<Temporary> removedAtEnd(const fs::path& path) {
-    auto* const temporary = new Temporary{path.string()};  // for as long as a signal may come
+std::shared_ptr<Temporary> removedAtEnd(const fs::path& path, int lock) {
+    auto* const temporary = new Temporary{path.string(), lock};  // for as long as a signal may come
     temporary->next = newestTemporary.load();
     while (!newestTemporary.compare_exchange_weak(temporary->next, temporary)) {
     }
-    return {temporary, removeNow};
+    return {temporary, [](Temporary* each) {
+                removeNow(each);
+                if (each->lock >= 0) close(each->lock);
+            }};
 }
 
 void removeTemporaries() {
@@ -236,9 +258,14 @@ void removeLeftTemporaries(const fs::path& folder, int process) {
     for (const auto& entry : fs::directory_iterator(folder, error)) {
         const std::string name = entry.path().filename().string();
         if (!name.starts_with(".adaptiso-") || name.find(".part") == std::string::npos) continue;
+        const int lock = openLocked(entry.path());
+        if (lock < 0 && errno == EWOULDBLOCK) continue;
         const auto written = entry.last_write_time(error);
-        const bool isOld = !error && written < dayAgo;
-        if (isOld || name.starts_with(prefixOf(process))) fs::remove_all(entry.path(), ignored);
+        const bool isOld = !error && written < dayAgo;  // where there are no locks
+        if (lock >= 0 || isOld || name.starts_with(prefixOf(process))) {
+            fs::remove_all(entry.path(), ignored);
+        }
+        if (lock >= 0) close(lock);
     }
 }
 
@@ -371,15 +398,18 @@ void AtomicFolder::commit(std::span<AtomicOutput> outputs) {
     AtomicOutput::check(outputs);
     keepAttributes(target_, temporary_);
     const fs::path former = newName(target_);  // for a moment there is neither
+    const int lock = openLocked(target_);
     std::error_code ignored;
     fs::rename(target_, former, ignored);
     try {
         renameTo(temporary_, target_, target_);
     } catch (const FileError&) {
         fs::rename(former, target_, ignored);
+        if (lock >= 0) close(lock);
         throw;
     }
     fs::remove_all(former, ignored);
+    if (lock >= 0) close(lock);
     for (const auto& record : records_) record->exists.store(false);
     AtomicOutput::commit(outputs);
 }

@@ -123,13 +123,14 @@ void removeOutputsOnSignals();
 namespace detail {
 
 /// The file or empty folder is removed when the result goes, and when a signal ends the program.
-std::shared_ptr<Temporary> removedAtEnd(const std::filesystem::path& path);
+/// \param lock  an open file, closed then; -1 for none
+std::shared_ptr<Temporary> removedAtEnd(const std::filesystem::path& path, int lock = -1);
 
 /// Removes all temporaries, before the program ends at once. Async-signal-safe.
 void removeTemporaries();
 
-/// Removes from `folder` the temporaries of a process that has ended, and those that nobody
-/// has written to for a day: their processes were killed.
+/// Removes from `folder` the temporaries of killed processes: those of `process`, those that no
+/// process has locked and, where the file system has no locks, those not written to for a day.
 void removeLeftTemporaries(const std::filesystem::path& folder, int process);
 
 /// A child process that writes temporaries and so is ended before they are removed; 0 for none.

@@ -45,15 +45,19 @@ Verification verify(const VolumeView& volume, const SpanSpaceIndex& index, const
     const std::size_t insideOut = isJudged ? findInsideOutPieces(mesh, ours).size() : 0;
     require(insideOut == 0, std::to_string(insideOut) + " pieces are inside out");
 
-    constexpr double kRounding = 1e-9;  // of the bound: coordinates in other frames
+    constexpr double kRounding = 1e-9;    // of the bound: coordinates in other frames
+    constexpr double kMeasuring = 1e-14;  // of the surface's extent: what distances are measured to
     const TriangleMesh written = asStored(mesh, digits.format->precision, digits.toFrame);
     double roundingMm = 0;
     for (std::size_t v = 0; v < mesh.points.size(); ++v) {
         roundingMm = std::max(roundingMm, norm(written.points[v] - mesh.points[v]));
     }
     const DistanceReport distance = surfaceDistance(written, full);
+    const BoundingBox box = boundingBox(full);
     const double maxMm = distance.combined.maxMm,
-                 boundMm = record.statistics.errorBoundMm.value_or(0) + roundingMm;
+                 boundMm = record.statistics.errorBoundMm.value_or(0) + roundingMm +
+                           kMeasuring * std::max({norm(box.minimum), norm(box.maximum),
+                                                  norm(box.maximum - box.minimum)});
     require(maxMm <= (1 + kRounding) * boundMm, "a point lies " + formatNumber(maxMm) +
                                                     " mm from the surface of marching cubes, not " +
                                                     formatNumber(boundMm));

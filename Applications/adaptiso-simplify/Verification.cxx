@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,7 +15,8 @@
 namespace adaptiso::simplifier {
 namespace {
 
-constexpr double kRounding = 1e-9;  // of the bound: sums of distances
+constexpr double kRounding = 1e-9;    // of the bound: sums of distances
+constexpr double kMeasuring = 1e-14;  // of the surface's extent: what distances are measured to
 
 std::int64_t eulerCharacteristic(const TopologyReport& topology) {
     std::int64_t sum = 0;
@@ -82,6 +84,12 @@ TriangleMesh withArea(const TriangleMesh& input) {
     return mesh;
 }
 
+/// The largest absolute coordinate, or the box's diagonal where that is more.
+double extentOf(const TriangleMesh& mesh) {
+    const BoundingBox box = boundingBox(mesh);
+    return std::max({norm(box.minimum), norm(box.maximum), norm(box.maximum - box.minimum)});
+}
+
 [[noreturn]] void fail(const std::string& what) {
     throw InternalError("the surface breaks its promise: " + what);
 }
@@ -103,7 +111,8 @@ void verify(const VerifiedSurface& surface, SimplifyRun& run) {
                                         ? surfaceDistance(surface.written, surface.input)
                                         : surfaceDistance(surface.written, withArea(surface.input));
     const double maxMm = distance.combined.maxMm,
-                 boundMm = (1 + kRounding) * run.statistics.errorBoundMm + surface.roundingMm;
+                 boundMm = (1 + kRounding) * run.statistics.errorBoundMm + surface.roundingMm +
+                           kMeasuring * extentOf(surface.input);
     if (!(maxMm <= boundMm)) {
         fail("a point lies " + formatNumber(maxMm) + " mm from the input, not " +
              formatNumber(boundMm));

@@ -13,7 +13,7 @@ from pathlib import Path
 from DicomTest import element, sequence
 from support import BAD_INPUT, ApplicationTest, main
 
-PLUGIN = Path(os.environ["ADAPTISO_BIN"]).parent / "lib" / "adaptiso"
+PLUGIN = Path(os.environ["ADAPTISO_BIN"]).parent / "lib" / "adaptiso" / "itk"
 #: Columns: the steps of i, j, k in LPS mm; oblique, by angles of the 3-4-5 triangle.
 STEPS = ((1.6, 1.2, 0), (-0.9, 1.2, 0), (0, 0, 2.5))
 ORIGIN = (10, -20, 30)

@@ -96,7 +96,7 @@ class Packages(ApplicationTest):
         self.assertTrue(os.access(giant / "submit.sh", os.X_OK))
         for header in ("vtkAdaptisoIsosurface.h", "vtkAdaptisoSimplify.h"):
             self.assertIn(f"usr/include/adaptiso/VtkAdaptor/{header}", files)
-        self.assertTrue([file for file in files if file.endswith("/adaptiso/libadaptisoItkIO.so")])
+        self.assertTrue([file for file in files if file.endswith("/adaptiso/itk/libadaptisoItkIO.so")])
         for package in self.debs:
             self.assertIn(f"usr/share/doc/{package}/copyright", files)
             changes = gzip.decompress(

@@ -33,7 +33,7 @@ constexpr WarningCode kCodes[] = {
     {"label-missing", "the map holds no voxel of a label that was asked for"},
     {"label-nameless", "the table of names lacks labels of the map"},
     {"landmarks-unknown", "nasion and ears are neither given nor can be guessed"},
-    {"large-integers", "voxels hold integers beyond 2^53, which isovalues cannot tell apart"},
+    {"large-integers", "voxels hold integers beyond 2^53, which isovalues cannot distinguish"},
     {"many-vertices", "the head model has more vertices than solvers can usually handle"},
     {"missing-chunks", "chunks of a Zarr are missing; the fill value stands for them"},
     {"mixed-signedness", "some slices hold signed samples and some unsigned ones"},

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The library beside the program or Python module that this code is in: in lib/adaptiso of a
+/// The library beside the program or Python module that this code is in: in lib/adaptiso/itk of a
 /// folder above. Null where it is not installed.
 ItkReader loadItkReader() {
     Dl_info own{};
@@ -32,7 +32,7 @@ ItkReader loadItkReader() {
         for (int level = 0; level < 4 && place.has_relative_path(); ++level) {
             place = place.parent_path();
             for (const char* folder : {"lib", ADAPTISO_LIBRARY_FOLDER}) {
-                const fs::path file = place / folder / "adaptiso/libadaptisoItkIO.so";
+                const fs::path file = place / folder / "adaptiso/itk/libadaptisoItkIO.so";
                 if (!fs::exists(file, error)) continue;
                 void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
                 if (library == nullptr) continue;
