@@ -20,12 +20,14 @@ umask 022
 for component in programs python; do
     cmake --install "$build" --component $component --strip --prefix "$tree" >/dev/null
 done
+# ITK's readers of further formats would bring 18 MB of libraries, packed.
+find "$tree/lib" -type d -name itk -exec rm -r {} +
 mkdir -p "$tree/lib/c++"
 if [ -d "$tree/lib/python3/dist-packages" ]; then
     mv "$tree/lib/python3/dist-packages" "$tree/python"
     rm -r "$tree/lib/python3"
 fi
-mapfile -t binaries < <(find "$tree/bin" "$tree/python" "$tree/lib" -type f \( -name '*.so' -o -perm /111 \) 2>/dev/null)
+mapfile -t binaries < <(find "$tree/bin" "$tree/python" -type f \( -name '*.so' -o -perm /111 \) 2>/dev/null)
 
 # The C library stays the system's: it is the kernel's and the name service's partner. The C++
 # runtime is for the programs alone: a Python process already has its own.
@@ -53,7 +55,6 @@ chmod 644 "$tree"/lib/*.so* "$tree"/lib/c++/*
 for binary in "${binaries[@]}"; do
     case $binary in
         "$tree"/bin/*) path='$ORIGIN/../lib:$ORIGIN/../lib/c++' ;;
-        "$tree"/lib/adaptiso/itk/*) path='$ORIGIN/../..' ;;
         *) path='$ORIGIN/../../lib' ;;
     esac
     patchelf --force-rpath --set-rpath "$path" "$binary"

@@ -145,7 +145,7 @@ class Codes(unittest.TestCase):
             for path in (SOURCE / folder).rglob("*"):
                 if path.suffix in (".cxx", ".h", ".py") and path.name != "Warning.cxx":
                     used.update(re.findall(
-                        r'(?:warnings\.push_back\(\s*\{|Warning ?\{|return \{|Warned\(.*)\s*'
+                        r'(?:warnings\.push_back\(\s*\{|Warning ?\{|return \{|\.warning = |Warned\(.*)\s*'
                         r'"([a-z0-9]+(?:-[a-z0-9]+)+)",?', path.read_text()))
         self.assertEqual({code for code in used if not code.startswith("adaptiso-")},  # programs
                          set(self.codes))

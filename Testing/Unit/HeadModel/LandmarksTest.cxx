@@ -68,9 +68,13 @@ TEST(StandardPositions, TakeTheInionThatIsGiven) {
     for (const NamedPoint& point :
          standardPositions(icosphere(5, kCentre, kRadiusMm), landmarks, PositionSystem::TenTen)) {
         const Vec3 at = point.point - kCentre;
-        if (point.name == "Iz") EXPECT_LE(norm(at - kRadiusMm * direction(70, 180)), 0.2);
+        if (point.name == "Iz") {
+            EXPECT_LE(norm(at - kRadiusMm * direction(70, 180)), 0.2);
+        }
         // ten percent of an arc of 160 degrees from the nasion
-        if (point.name == "Fpz") EXPECT_LE(norm(at - kRadiusMm * direction(74, 0)), 0.2);
+        if (point.name == "Fpz") {
+            EXPECT_LE(norm(at - kRadiusMm * direction(74, 0)), 0.2);
+        }
     }
 }
 

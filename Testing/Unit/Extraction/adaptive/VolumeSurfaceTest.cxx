@@ -109,7 +109,9 @@ TEST(VolumeSurface, KnowsCellsOfWhatIsAtFullResolution) {
         for (const std::uint32_t v : surface.triangles[t]) {
             middle += (1.0 / 3) * surface.points[v];
         }
-        if (middle.x < detail::Brick::kSide) ASSERT_NE(cells[t], kNoCell) << t;
+        if (middle.x < detail::Brick::kSide) {
+            ASSERT_NE(cells[t], kNoCell) << t;
+        }
         known += cells[t] != kNoCell ? 1 : 0;
         for (std::size_t other = t; cells[t] != kNoCell && other-- > 0;) {
             if (cells[other] != cells[t]) break;  // those of a cell come one after the other
