@@ -489,10 +489,11 @@ private:
 
 std::string differenceOf(const std::vector<RecordedOption>& before,
                          const std::vector<RecordedOption>& now) {
-    const bool haveSameNames =
-        std::ranges::equal(before, now, {}, &RecordedOption::name, &RecordedOption::name);
+    const bool haveSameNames = std::equal(
+        before.begin(), before.end(), now.begin(), now.end(),
+        [](const RecordedOption& a, const RecordedOption& b) { return a.name == b.name; });
     if (!haveSameNames) return "other options were given";
-    const auto [was, is] = std::ranges::mismatch(before, now);
+    const auto [was, is] = std::mismatch(before.begin(), before.end(), now.begin(), now.end());
     return is == now.end() ? "" : "another " + is->name + " was given";
 }
 
@@ -518,8 +519,8 @@ std::string changeOfInputs(const PlannedRun& run, const RunRecord& record, const
 std::string changeOfOutputs(const PlannedRun& run, const RunRecord& record, bool trustsTimes) {
     for (const auto& [option, path] : run.extras) {
         const fs::path wanted = path.lexically_normal(), folder = wanted / "";
-        const bool isRecorded =
-            std::ranges::any_of(record.recordedOutputs, [&](const RecordedFile& output) {
+        const bool isRecorded = std::ranges::any_of(
+            record.recordedOutputs, [&, &option = option](const RecordedFile& output) {
                 const fs::path file = (run.item.folder / output.file).lexically_normal();
                 return output.option == option &&
                        (file == wanted || file.parent_path() / "" == folder);
@@ -729,7 +730,7 @@ int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const Ba
     const std::vector<RunRecord> records = runRuns(program, runs, batch, running, common);
     if (common.wantsJson() && !common.wantsJsonOnStdout()) writeWhole(common.json, lines);
     const auto failed = std::ranges::count_if(records, std::not_fn(&RunRecord::hasPassed));
-    const auto before = std::ranges::count_if(records, &RunRecord::isOfEarlierRun);
+    const auto before = std::ranges::count_if(records, std::mem_fn(&RunRecord::isOfEarlierRun));
     if (!common.isQuiet && !common.wantsJsonOnStdout()) {
         std::cout << records.size() << " input" << (records.size() == 1 ? "" : "s") << ", "
                   << failed << " failed";

@@ -24,8 +24,8 @@ bool hasJsonFile(const CommonOptions& common) {
 }  // namespace
 
 OutputPlan::OutputPlan(std::span<const fs::path> inputs) {
-    std::ranges::copy_if(inputs, std::back_inserter(inputs_),
-                         [](const fs::path& input) { return !input.empty(); });
+    std::copy_if(inputs.begin(), inputs.end(), std::back_inserter(inputs_),
+                 [](const fs::path& input) { return !input.empty(); });
 }
 
 void OutputPlan::add(const std::string& option, const fs::path& file) {

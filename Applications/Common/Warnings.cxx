@@ -20,9 +20,10 @@ std::vector<Warning>& printed() {
 std::vector<Warning> failing(const CommonOptions& common, std::span<const Warning> warnings) {
     std::vector<Warning> bad;
     if (!common.isStrict) return bad;
-    std::ranges::copy_if(warnings, std::back_inserter(bad), [&](const Warning& warning) {
-        return std::ranges::find(common.allowed, warning.code) == common.allowed.end();
-    });
+    std::copy_if(warnings.begin(), warnings.end(), std::back_inserter(bad),
+                 [&](const Warning& warning) {
+                     return std::ranges::find(common.allowed, warning.code) == common.allowed.end();
+                 });
     return bad;
 }
 

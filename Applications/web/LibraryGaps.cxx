@@ -121,3 +121,14 @@ from_chars_result from_chars(const char* first, const char* last, float& value) 
 }
 
 }  // namespace std
+
+// What Emscripten's C library declares and lacks: files are in memory, and a page starts no child.
+extern "C" {
+int syncfs(int) {
+    return 0;
+}
+int prctl(int, ...) {
+    errno = ENOSYS;
+    return -1;
+}
+}

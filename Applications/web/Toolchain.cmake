@@ -51,7 +51,7 @@ add_library(expat STATIC ${source}/lib/xmlparse.c ${source}/lib/xmlrole.c ${sour
 target_include_directories(expat SYSTEM PUBLIC ${source}/lib)
 # as Debian's: UTF-8, namespaces, the context of errors; entropy for its hash tables
 target_compile_definitions(expat PRIVATE XML_NS XML_DTD XML_CONTEXT_BYTES=1024 BYTEORDER=1234
-    XML_DEV_URANDOM HAVE_GETRANDOM=0)
+    XML_DEV_URANDOM)
 target_compile_options(expat PRIVATE -w)
 file(WRITE ${PROJECT_BINARY_DIR}/sources/expat_config.h "")
 target_include_directories(expat PRIVATE ${PROJECT_BINARY_DIR}/sources)

@@ -54,7 +54,7 @@ async function bytesOf(data: Blob | Uint8Array): Promise<Uint8Array> {
 
 async function put(fs: FileSystem, file: InputFile): Promise<void> {
   const folder = file.path.split("/").slice(0, -1).join("/");
-  if (folder !== "") fs.mkdirTree(folder);
+  if (folder !== "") fs.mkdirTree(`${kFolder}/${folder}`);  // from the root, whatever the folder is
   fs.writeFile(file.path, await bytesOf(file.data), { canOwn: true });
 }
 
@@ -74,7 +74,7 @@ async function run(id: number, request: RunRequest): Promise<void> {
     printErr: (line: string) => stderr.push(line),
     onProgress: (text: string) => reply({ id, kind: "progress", text }),
   });
-  for (const folder of request.folders) instance.FS.mkdirTree(folder);
+  for (const folder of request.folders) instance.FS.mkdirTree(`${kFolder}/${folder}`);
   for (const file of request.files) await put(instance.FS, file);
   const given = new Set(request.files.map((file) => file.path));
   const begin = performance.now();
