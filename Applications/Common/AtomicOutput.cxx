@@ -81,7 +81,9 @@ int openLocked(const fs::path& path) {
 /// whose permissions it is to take over. \throws FileError  naming `target`
 std::shared_ptr<Temporary> makeTemporary(const fs::path& final, bool isFolder,
                                          const fs::path& target) {
+#ifndef __EMSCRIPTEN__  // whose flock() locks nothing; a page's files are of one process
     detail::removeLeftTemporaries(folderOf(final), 0);
+#endif
     const detail::SignalsWait untilItIsRecorded;
     const unsigned mode = access(final.c_str(), F_OK) == 0 ? 0700 : 0777;
     for (;;) {

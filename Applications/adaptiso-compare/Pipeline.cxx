@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -216,7 +217,7 @@ int runCompare(const CompareOptions& options) {
     if (options.report.isWanted()) {
         run.writePage([&] { return describe(run, std::move(a), std::move(b)); });
     }
-    const bool havePassed = std::ranges::all_of(run.checks, &Check::hasPassed);
+    const bool havePassed = std::ranges::all_of(run.checks, std::mem_fn(&Check::hasPassed));
     run.verdict.exitCode = havePassed ? kExitOk : kExitCheckFailed;
     run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
     printFailed(run);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <exception>
 #include <functional>
+#include <iostream>
 #include <map>
 #include <optional>
 #include <string>
@@ -279,5 +280,8 @@ EMSCRIPTEN_KEEPALIVE const float* adaptisoValues() {
 
 int main(int argc, char** argv) {
     adaptiso::observeProgress([](const std::string& text) { showProgress(text.c_str()); });
-    return kPrograms.at(argv[0])(argc, argv);
+    const auto program = kPrograms.find(argv[0]);
+    if (program != kPrograms.end()) return program->second(argc, argv);
+    std::cerr << argv[0] << ": is not in this page; use the program\n";
+    return adaptiso::kExitUsage;
 }

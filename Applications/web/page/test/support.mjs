@@ -1,6 +1,6 @@
 // What the tests share: browsers, inputs made here, and the native programs.
 import { spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -54,8 +54,9 @@ export const textOf = (page, selector) => page.$eval(selector, (element) => elem
 
 /** The file that a button saves. */
 export async function saved(page, downloads, selector, name) {
-  await press(page, selector);
   const path = join(downloads, name);
+  rmSync(path, { force: true });
+  await press(page, selector);
   for (let n = 0; n < 300; ++n) {
     if (existsSync(path) && !existsSync(`${path}.part`) && !existsSync(`${path}.crdownload`)) {
       const bytes = readFileSync(path);
