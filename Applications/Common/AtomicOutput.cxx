@@ -97,9 +97,10 @@ std::shared_ptr<Temporary> makeTemporary(const fs::path& final, bool isFolder,
             requireDone(errno == EEXIST, target, "can't be made");
             continue;
         }
-        // one that cleans up may have come in between
+        // one that cleans up may come in between, and is about to remove it or has done so
         const int lock = openLocked(path);
-        if (access(path.c_str(), F_OK) == 0) return detail::removedAtEnd(path, lock);
+        const bool isTaken = lock < 0 && errno == EWOULDBLOCK;
+        if (!isTaken && access(path.c_str(), F_OK) == 0) return detail::removedAtEnd(path, lock);
         if (lock >= 0) close(lock);
     }
 }
