@@ -28,7 +28,7 @@ struct UsualHead {
     /// 5 % the skull [Calisan2021]. Its thick parts (95th percentile) are no more times as thick as
     /// its thin ones (5th) than this; sound models have 3.
     static constexpr double kMostScalpAnywhereMm = 20, kMostSkullAnywhereMm = 15;
-    static constexpr double kMostSkullRatio = 5;
+    static constexpr double kMostSkullRatio = 4;
     /// Depth of the inner skull's upper three fifths below their convex hull, mm. Models of ch2,
     /// its deformed copies and FreeSurfer's average head: at most 4.9.
     static constexpr double kMostDentMm = 8;
