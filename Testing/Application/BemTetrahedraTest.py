@@ -24,13 +24,16 @@ FOUR = [word for pair in ("brain=4", "csf=1", "skull=2", "scalp=3") for word in 
 
 
 def read_msh22(path):
-    """Points, corners (from 1) and tissues."""
+    """Points, corners (from 1) and tissues of the tetrahedra; the tissues' surfaces have other numbers."""
     lines = path.read_text().split("\n")
     at = lines.index("$Nodes")
     count = int(lines[at + 1])
     points = [tuple(map(float, line.split()[1:])) for line in lines[at + 2:at + 2 + count]]
     at = lines.index("$Elements")
     rows = [list(map(int, line.split())) for line in lines[at + 2:at + 2 + int(lines[at + 1])]]
+    surfaces = {row[3] for row in rows if row[1] == 2}
+    assert surfaces == {1002, 1003, 1004, 1005}, surfaces  # as SimNIBS looks for them
+    rows = [row for row in rows if row[1] == 4]
     return points, [row[5:] for row in rows], [row[3] for row in rows]
 
 

@@ -58,8 +58,10 @@ def farthest(found, right, bottom):
     return worst, place
 
 
-def dice(found, right):
+def dice(found, right, bottom):
+    """Of what lies above `bottom`: an image that ends higher holds no more."""
     low = np.floor(np.minimum(found[0].min(0), right[0].min(0))) - 2
+    low[2] = max(low[2], bottom)
     high = np.maximum(found[0].max(0), right[0].max(0)) + 2
     affine = np.diag((1.5, 1.5, 1.5, 1.0))
     affine[:3, 3] = low
@@ -129,7 +131,7 @@ def try_case(program, folder, head, right, case, way, vertices):
             # what the image does not hold can't be compared
             corner = affine[2, 3] + 2
             bottom = max(right[0][0][:, 2].min() + BASE_MM, corner)
-            result.dice = dice(result.surfaces[0], right[0])
+            result.dice = dice(result.surfaces[0], right[0], corner)
             far = [farthest(f, r, bottom) for f, r in zip(result.surfaces[:case.compared], right)]
             result.mm = [mm for mm, _ in far]
             result.place = far[int(np.argmax(result.mm))][1]

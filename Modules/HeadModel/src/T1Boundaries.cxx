@@ -560,7 +560,7 @@ std::string percentOf(double share) {
 void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<Warning>& warnings) {
     constexpr double kUsuallySeen = 0.6, kUsuallyInTissue = 0.12, kMostInTissue = 0.3;
     constexpr double kLeastSeen = 0.2;       // stripped images: 0 to 5 %
-    constexpr double kMostUnseenMm2 = 1500;  // ch2 and copies of it: at most 5 cm2; a flap: 37
+    constexpr double kMostUnseenMm2 = 2500;  // ch2 and copies of it: at most 21 cm2; a flap: 37
     if (band.seenFraction < kLeastSeen) {
         throw InvalidInput("the skull shows on " + percentOf(band.seenFraction) +
                            " of the rays from the brain outwards: " + kSkullStripped);
