@@ -166,7 +166,7 @@ constexpr double kNotableBias = 0.3;
 
 constexpr const char* kSkullStripped =
     "there is no skull or skin around the brain (a skull-stripped T1); give the whole T1, and this "
-    "image as the brain mask";
+    "image as the brain mask. If it is a T2 or shows a frame, give a brain mask";
 
 /// Refuses an image whose skull was removed: its largest piece is no larger than a brain, and
 /// nowhere near its surface is the dark of bone. A whole head shows bone on a fifth of the voxels
