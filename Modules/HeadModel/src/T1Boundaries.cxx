@@ -96,9 +96,11 @@ Mask headMask(const Head& head, double level, double closingMm) {
     Mask raw;
     if (head.isFramed) {
         constexpr double kThinMm = 6;
-        const Mask tissue = filled(above(head.t1, level), head.grid.size);
-        raw = dilated(largestComponent(opened(tissue, head.grid, kThinMm), head.grid.size),
-                      head.grid, kThinMm);
+        // skull and scalp are thin too: what lies within them first
+        const Mask tissue = filledAtBorder(closed(above(head.t1, level), head.grid, kThinMm),
+                                           head.faces, head.grid.size);
+        raw = dilated(largestComponent(opened(tissue, head.grid, kThinMm + 2), head.grid.size),
+                      head.grid, kThinMm + 2);
         for (std::size_t n = 0; n < raw.size(); ++n) raw[n] &= tissue[n];
     } else {
         const Mask tissue = above(head.t1, level);
@@ -166,7 +168,7 @@ constexpr double kNotableBias = 0.3;
 
 constexpr const char* kSkullStripped =
     "there is no skull or skin around the brain (a skull-stripped T1); give the whole T1, and this "
-    "image as the brain mask. If it is a T2 or shows a frame, give a brain mask";
+    "image as the brain mask";
 
 /// Refuses an image whose skull was removed: its largest piece is no larger than a brain, and
 /// nowhere near its surface is the dark of bone. A whole head shows bone on a fifth of the voxels
@@ -335,9 +337,10 @@ double partAtSkin(const Mask& brain, const std::vector<float>& belowSkin, double
 
 /// What a brain can be: not the wrong size, not at the skin.
 bool isPlausibleBrain(const Mask& brain, const Head& head, const std::vector<float>& belowSkin) {
-    constexpr double kNearestMm = 8;  // scalp and skull are thicker together
+    // scalp and skull are thicker together; on a T2 CSF, which touches the skull, is in it
+    const double nearestMm = head.isFluidBright ? 5 : 8;
     const double cm3 = cm3Of(brain, head.grid);
-    return cm3 >= 500 && cm3 <= kMostBrainCm3 && partAtSkin(brain, belowSkin, kNearestMm) <= 0.001;
+    return cm3 >= 500 && cm3 <= kMostBrainCm3 && partAtSkin(brain, belowSkin, nearestMm) <= 0.001;
 }
 
 /// A mask of something else, or in another place. Looser than what is asked of a guess: brain
@@ -475,6 +478,10 @@ Mask guessedBrain(const Head& head) {
 /// Why there is no guess of the brain.
 std::string noBrainText(const Head& head) {
     constexpr double kUsuallyDark = 0.18;  // stripped images with wide sulci: up to 12 %
+    if (head.isFluidBright) {
+        return "CSF is brighter than brain (a T2-weighted image?), and no brain comes loose by "
+               "thresholds; give a T1, or a brain mask";
+    }
     if (head.darkShare < kUsuallyDark) return kSkullStripped;
     return "no brain comes loose by thresholds; give a brain mask";
 }
