@@ -40,7 +40,7 @@ void require(bool isGood, const fs::path& target, const std::string& fault) {
     if (!isGood) throw FileError(target.string() + ": " + fault);
 }
 
-/// Of a system call: the message ends with the text of errno.
+/// Throws unless a system call succeeded; the message ends with the text of errno.
 void requireDone(bool isDone, const fs::path& target, const char* fault = "can't be written") {
     if (isDone) return;
     if (isShortage(errno)) throw Shortage(target.string() + ": " + fault + ": " + reason());

@@ -53,8 +53,8 @@ private:
     std::shared_ptr<detail::Temporary> record_;
 };
 
-/// Whether an existing folder that is to be replaced may hold a file, by its path in the folder:
-/// "walls.vtp", "regions/3.vtp". Empty: the folder must be empty or missing.
+/// Accepts the files that a folder may hold when it is replaced, by their paths in the folder:
+/// "walls.vtp", "regions/3.vtp". If empty, the folder must be empty or missing.
 using OwnNames = std::function<bool(std::string_view)>;
 
 /// A folder of files, some in subfolders, that appears under its name only when it is whole.

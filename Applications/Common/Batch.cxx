@@ -201,7 +201,7 @@ RecordedFile described(const std::string& option, const std::string& name, const
     return file;
 }
 
-/// What a run reads, with checksums; empty if it can't be read, which the run will report.
+/// The inputs of a run with checksums; empty if one can't be read, which the run will report.
 std::vector<RecordedFile> describedInputs(const PlannedRun& run, const fs::path& folder) {
     std::vector<RecordedFile> inputs;
     try {

@@ -80,7 +80,7 @@ struct EarlierRun {
 EarlierRun findEarlierRun(const BatchProgram& program, const PlannedRun& run,
                           const std::filesystem::path& folder, bool trustsTimes);
 
-/// What runRuns() needs besides the runs.
+/// Settings and callbacks of runRuns().
 struct BatchRunning {
     std::filesystem::path folder;       ///< that the batch writes to; may be empty
     std::filesystem::path summary{};    ///< a page to write; may be empty

@@ -14,13 +14,12 @@ namespace adaptiso {
 struct RecordedFile {
     std::string file;  ///< its name, or for an output its path from the record's folder
     std::uint64_t files = 1, bytes = 0;
-    /// Of several files: the checksum of a list of their names and checksums as `sha256sum` prints
-    /// it.
+    /// For several files the checksum of their list, as `sha256sum` prints it.
     std::string sha256;
-    /// Of the newest file, ns since 1970.
+    /// Times of the newest file, ns since 1970.
     std::int64_t modifiedNs = 0, changedNs = 0;
     std::string option{};  ///< that names an output: "--output", "--report"
-    /// Of an input in the batch's folder, its path from the record's folder. Other paths may hold a
+    /// Path from the record's folder, for an input in the batch's folder. Other paths may hold a
     /// patient's name, so they are not recorded.
     std::string place{};
 };
@@ -38,7 +37,7 @@ std::vector<std::filesystem::path> filesOfInput(const std::filesystem::path& inp
 /// Reads all of filesOfInput(). \throws FileError
 RecordedFile describeInput(const std::filesystem::path& input, const std::filesystem::path& output);
 
-/// Whether an input has the recorded size and times; does not read it.
+/// True if an input has the recorded size and times. Does not read it.
 bool hasTimes(const RecordedFile& recorded, const std::filesystem::path& input,
               const std::filesystem::path& output);
 
