@@ -70,19 +70,6 @@ constexpr AffineTransform kLpsToRas{Mat3::diagonal(-1, -1, 1), {}};
 // (DICOM) or as float (NIfTI) stay below 1e-5, gantry tilts start at 1e-2.
 constexpr double kMaxAxisCosine = 1e-4;
 
-void requireRightAngles(const ImageGeometry& volume) {
-    const auto& axes = volume.indexToPhysical.column;
-    for (int a = 0; a < 3; ++a) {
-        const double cosine = dot(normalized(axes[a]), normalized(axes[(a + 1) % 3]));
-        if (!(std::abs(cosine) <= kMaxAxisCosine)) {
-            throw InvalidInput("the volume's axes are not at right angles (cosine " +
-                               formatShort(cosine) +
-                               ", at most 0.0001), and tkRAS can't express shear; " +
-                               "write RAS, or use the conformed volume's geometry");
-        }
-    }
-}
-
 const ImageGeometry& requireVolume(CoordinateFrame frame,
                                    const std::optional<ImageGeometry>& volume) {
     if (!volume) {
@@ -99,6 +86,15 @@ const ImageGeometry& requireVolume(CoordinateFrame frame,
 
 }  // namespace
 
+bool hasRightAngles(const ImageGeometry& volume) {
+    const auto& axes = volume.indexToPhysical.column;
+    for (int a = 0; a < 3; ++a) {
+        const double cosine = dot(normalized(axes[a]), normalized(axes[(a + 1) % 3]));
+        if (!(std::abs(cosine) <= kMaxAxisCosine)) return false;
+    }
+    return true;
+}
+
 AffineTransform indexToTkRas(const ImageGeometry& volume) {
     for (const std::int64_t extent : volume.size) {
         if (extent < 1) {
@@ -106,7 +102,11 @@ AffineTransform indexToTkRas(const ImageGeometry& volume) {
                                " voxels along an axis, must have at least 1");
         }
     }
-    requireRightAngles(volume);
+    if (!hasRightAngles(volume)) {
+        throw InvalidInput(
+            "the volume's axes are not at right angles, and tkRAS can't express "
+            "shear; write RAS, or use the conformed volume's geometry");
+    }
     const Vec3 d = volume.spacingMm();
     const auto half = [&](int axis) {
         return d[axis] * static_cast<double>(volume.size[axis]) / 2;

@@ -166,9 +166,9 @@ private:
     std::string name_;
 };
 
-/// The volume in VolGeom; empty if incomplete. Where the volume lies
-/// depends on its axes and centre alone: without a size it is FreeSurfer's, 256 voxels of 1 mm, and
-/// without axes they are those of FreeSurfer's volumes, as niivue and fMRIPrep have it.
+/// The volume in VolGeom; empty if incomplete or sheared. Where the volume lies depends on its axes
+/// and centre alone: without a size it is FreeSurfer's, 256 voxels of 1 mm, and without axes they
+/// are those of FreeSurfer's volumes, as niivue and fMRIPrep have it.
 std::optional<ImageGeometry> volumeOf(const Metadata& metadata) {
     const auto number = [&](std::string_view key, double otherwise) {
         const auto found = metadata.find(std::string(kVolumeKey).append(key));
@@ -196,7 +196,7 @@ std::optional<ImageGeometry> volumeOf(const Metadata& metadata) {
     }
     volume.originMm = centre - volume.indexToPhysical * half;
     const bool isThere = volume.voxelVolumeMm3() > 0 && std::isfinite(volume.voxelVolumeMm3()) &&
-                         std::isfinite(squaredNorm(volume.originMm));
+                         std::isfinite(squaredNorm(volume.originMm)) && hasRightAngles(volume);
     return isThere ? std::optional(volume) : std::nullopt;
 }
 

@@ -309,6 +309,15 @@ TEST(GiftiFile, VolGeomsAxesTurnThePoints) {
     expectNear(rasPoints(file), {{4, -12, 7.5}, {5, -12, 9.5}, {5, -15, 7.5}});
 }
 
+TEST(GiftiFile, ShearedVolGeomIsNoVolume) {
+    const std::string sheared = metadataOf(kAxes + entry("VolGeomX_A", "0.2") + kCentre);
+    for (const std::string& said : {sheared, sheared + space("UNKNOWN", "SCANNER_ANAT")}) {
+        const MeshFile file = decoded(giftiWith("", said), "a.gii");
+        EXPECT_EQ(file.frame, CoordinateFrame::TkRas);
+        EXPECT_FALSE(file.volume);
+    }
+}
+
 TEST(GiftiFile, ScannerSpaceOutdoesVolGeom) {
     const MeshFile file = decoded(
         giftiWith("", metadataOf(kAxes + kCentre) + space("SCANNER_ANAT", "UNKNOWN")), "a.gii");

@@ -58,6 +58,9 @@ constexpr AffineTransform inverse(const AffineTransform& a) {
     return {linear, -(linear * a.offset)};
 }
 
+/// Whether the volume's axes are at right angles, to a cosine of 1e-4.
+bool hasRightAngles(const ImageGeometry& volume);
+
 /// Voxel index -> FreeSurfer surface RAS (mm) of a volume of this geometry: FreeSurfer's
 /// vox2ras-tkr (nibabel: MGHHeader.get_vox2ras_tkr), which knows only the volume's size n and
 /// spacing d, not where it lies: x = dx (nx/2 - i), y = dz (k - nz/2), z = dy (ny/2 - j).
@@ -67,8 +70,7 @@ constexpr AffineTransform inverse(const AffineTransform& a) {
 /// DICOM images as they come, FreeSurfer's rule makes tkRAS a mirror image of the head. Where
 /// that won't do (MNE's coregistration, FreeSurfer subjects), use conformedGeometry().
 ///
-/// \throws InvalidInput  size < 1; axes that are not at right angles (cosine > 1e-4: the scaled
-///                       box of tkRAS can't be sheared)
+/// \throws InvalidInput  size < 1; not hasRightAngles(): the scaled box of tkRAS can't be sheared
 AffineTransform indexToTkRas(const ImageGeometry& volume);
 
 /// The geometry of the volume that FreeSurfer makes of this one (`mri_convert --conform`, a
