@@ -4,7 +4,7 @@ import { takeFiles } from "./drop";
 import type { InputFile, RunResult } from "./protocol";
 import type { Scan } from "./scan";
 import { isChecked, kReport, number, type Page, reportOf, type Run, Task } from "./task";
-import type { Color, Surface } from "./view";
+import type { Color, Surface } from "./painter";
 import { zip } from "./zip";
 
 const kColors: Color[] = [[230, 120, 110], [240, 190, 120], [110, 190, 240], [150, 220, 150]];

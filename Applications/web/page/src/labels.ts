@@ -4,7 +4,7 @@ import { takeFiles } from "./drop";
 import type { InputFile, RunResult } from "./protocol";
 import type { Scan } from "./scan";
 import { isChecked, kReport, number, type Page, reportOf, type Run, Task } from "./task";
-import type { Color, Surface } from "./view";
+import type { Color, Surface } from "./painter";
 import { zip } from "./zip";
 
 interface Region { label: number; name: string; isNamed: boolean; color: unknown; voxels: number; volumeMm3: number;

@@ -7,7 +7,7 @@ import { exampleHead } from "./nifti";
 import type { InputFile, RunResult, Shape } from "./protocol";
 import { memoryOf, type Scan } from "./scan";
 import { isChecked, kMostMemory, kReport, number, outputsOf, type Page, reportOf, type Run, Task, tooLarge } from "./task";
-import type { Color } from "./view";
+import type { Color } from "./painter";
 
 const kColor: Color = [240, 190, 120], kPreview: Color = [110, 190, 240];
 interface SurfaceReport { triangles: number; errorBoundMm: number | null; componentCount: number;
@@ -104,7 +104,7 @@ export class MeshTab {
           const step = this.scan.facts?.previewStep ?? 1;
           byId("preview").textContent = `Preview: ${formatCount(this.previewTriangles)} triangles of marching cubes`
             + (step > 1 ? `, of every ${step}${step === 2 ? "nd" : step === 3 ? "rd" : "th"} voxel` : "");
-          byId("preview").dataset.milliseconds = String(Math.round(performance.now() - begin));
+          Object.assign(byId("preview").dataset, { isovalue, milliseconds: Math.round(performance.now() - begin) });
         } catch (error) {
           if (!(error instanceof Cancelled)) byId("preview").textContent = (error as Error).message;
         }

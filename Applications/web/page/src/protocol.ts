@@ -53,7 +53,8 @@ export interface ImageFacts {
   shownAffine: number[];
   previewStep: number;
 }
-export interface Shape { points: Float32Array; triangles: Uint32Array; values: Float32Array | null }
+/** Scanner RAS mm; normals of any length. */
+export interface Shape { points: Float32Array; triangles: Uint32Array; normals: Float32Array; values: Float32Array | null }
 export interface OpenedImage { facts: ImageFacts; shades: Uint8Array }
 export interface OpenedMesh { shape: Shape; format: string; frame: string | null; valuesName: string | null }
 

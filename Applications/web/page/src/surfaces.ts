@@ -4,7 +4,7 @@ import { stemOf, takeFiles } from "./drop";
 import { type Looker, Refused } from "./engine";
 import type { InputFile, OpenedMesh, Shape } from "./protocol";
 import { kReport, number, outputsOf, type Page, reportOf, type Run, Task } from "./task";
-import type { Color, Surface } from "./view";
+import type { Color, Surface } from "./painter";
 
 const kColor: Color = [240, 190, 120], kOther: Color = [110, 190, 240];
 

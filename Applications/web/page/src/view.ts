@@ -1,48 +1,17 @@
 /**
- * Slices and 3-D by niivue. niivue draws; this adds the outlines of the meshes on the slices, a mesh shader
- * that shows the inside, and the keys. Points are scanner RAS mm throughout.
+ * Slices and 3-D by niivue, to which this adds the surfaces (painter.ts), their outlines on the slices, and the
+ * keys. Points are scanner RAS mm throughout.
  */
-import type { Niivue, NVMesh } from "@niivue/niivue";
+import type { Niivue } from "@niivue/niivue";
+import { type Painted, Painter, type Surface } from "./painter";
 import type { Shape } from "./protocol";
 
-export type Color = [number, number, number];
-export interface Surface { name: string; shape: Shape; color: Color; opacity: number; colors?: Uint8Array }
-
-interface Drawn { mesh: NVMesh; surface: Surface; isShown: boolean; cuts: { at: number; points: Float32Array }[] }
+interface Drawn extends Painted { cuts: { at: number; points: Float32Array }[] }
 interface Plane { normal: number[]; at: number }
 interface Tile { axCorSag: number; leftTopWidthHeight: number[]; leftTopMM: number[]; fovMM: number[] }
 
 /** Of a tile: the axis it is cut across, and those that run across and up it. */
 const kAxes: Record<number, [number, number, number]> = { 0: [2, 0, 1], 1: [1, 0, 2], 2: [0, 1, 2] };
-const kShader = `#version 300 es
-precision highp int;
-precision highp float;
-uniform float opacity;
-in vec4 vClr;
-in vec3 vN;
-out vec4 color;
-void main() {
-  if (!gl_FrontFacing && opacity < 0.99) discard;
-  vec3 base = gl_FrontFacing ? vClr.rgb : vec3(0.84, 0.27, 0.25);
-  float light = 0.3 + 0.7 * abs(dot(normalize(vN), normalize(vec3(-0.35, 0.45, -0.9))));
-  color = vec4(base * light, opacity);
-}`;
-
-/** A mesh as an MZ3 file: what niivue reads fastest. */
-function mz3(surface: Surface): ArrayBuffer {
-  const { points, triangles } = surface.shape, count = points.length / 3;
-  const hasColors = surface.colors !== undefined;
-  const bytes = new ArrayBuffer(16 + 4 * triangles.length + 4 * points.length + (hasColors ? 4 * count : 0));
-  const view = new DataView(bytes);
-  view.setUint16(0, 0x5a4d, true);
-  view.setUint16(2, hasColors ? 7 : 3, true);
-  view.setUint32(4, triangles.length / 3, true);
-  view.setUint32(8, count, true);
-  new Uint32Array(bytes, 16, triangles.length).set(triangles);
-  new Float32Array(bytes, 16 + 4 * triangles.length, points.length).set(points);
-  if (surface.colors) new Uint8Array(bytes, 16 + 4 * (triangles.length + points.length)).set(surface.colors);
-  return bytes;
-}
 
 /** Where a mesh meets a plane: pairs of points, flat. */
 function cutOf({ points, triangles }: Shape, { normal, at }: Plane): Float32Array {
@@ -63,14 +32,14 @@ function cutOf({ points, triangles }: Shape, { normal, at }: Plane): Float32Arra
 
 export class View {
   private readonly nv: Niivue;
-  private readonly shader: number;
+  private readonly painter: Painter;
   private drawn: Drawn[] = [];
   private turn = Promise.resolve();
 
   private constructor(private readonly library: typeof import("@niivue/niivue"), private readonly canvas: HTMLCanvasElement,
       private readonly layer: HTMLCanvasElement, private readonly position: HTMLElement, nv: Niivue) {
     this.nv = nv;
-    this.shader = nv.setCustomMeshShader(kShader, "adaptiso");
+    this.painter = new Painter(nv.gl);
     this.hook();
     canvas.addEventListener("keydown", (event) => this.step(event), true);
   }
@@ -78,7 +47,8 @@ export class View {
   /** \throws Error where there is no WebGL 2 */
   static async make(library: typeof import("@niivue/niivue"), canvas: HTMLCanvasElement, layer: HTMLCanvasElement,
       position: HTMLElement): Promise<View> {
-    if (document.createElement("canvas").getContext("webgl2") === null) {
+    const probe = document.createElement("canvas").getContext("webgl2");
+    if (probe === null) {
       throw new Error("Slices and 3-D need WebGL 2, which this browser does not have or has turned off. Meshes are made all the same.");
     }
     const nv = new library.Niivue({ logLevel: "error", dragAndDropEnabled: false, isSliceMM: true, meshThicknessOn2D: 0,
@@ -86,7 +56,9 @@ export class View {
       multiplanarPadPixels: 4, isOrientCube: false, show3Dcrosshair: true, crosshairWidth: 0.35,
       crosshairWidthUnit: "percent", crosshairColor: [1, 0.28, 0.28, 0.8], crosshairGap: 3, backColor: [0, 0, 0, 1],
       fontColor: [0.75, 0.78, 0.82, 1], dragMode: library.DRAG_MODE.pan });
-    await nv.attachToCanvas(canvas, true);
+    const isSoftware = /swiftshader|llvmpipe|software/i.test(String(probe.getParameter(
+      probe.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? probe.RENDERER)));
+    await nv.attachToCanvas(canvas, !isSoftware);  // smooth edges take a processor four times as long
     const view = new View(library, canvas, layer, position, nv);
     nv.setSliceType(library.SLICE_TYPE.MULTIPLANAR);
     nv.setRenderAzimuthElevation(145, 12);
@@ -108,7 +80,6 @@ export class View {
       const volume = await this.library.NVImage.loadFromFile({ file: blob, name: "image.nii",
         colormap: isLabels ? "actc" : "gray", cal_min: 0, cal_max: 255 } as never);
       this.nv.addVolume(volume);
-      this.nv.updateGLVolume();
       this.moveTo([0, 1, 2].map((axis) => (this.nv.frac2mm([0.5, 0.5, 0.5] as never) as unknown as number[])[axis]));
     });
   }
@@ -116,17 +87,9 @@ export class View {
   showSurfaces(surfaces: Surface[]): Promise<void> {
     return this.next(async () => {
       if (this.nv.volumes.length === 0) await this.showBlank(surfaces);
-      const made: Drawn[] = [];
-      for (const surface of surfaces) {
-        const mesh = await this.library.NVMesh.readMesh(mz3(surface), "surface.mz3", this.nv.gl, surface.opacity,
-          new Uint8Array([...surface.color, 255]), true);
-        mesh.meshShaderIndex = this.shader;
-        made.push({ mesh, surface, isShown: true, cuts: [] });
-      }
       this.clearMeshes();
-      for (const one of made) this.nv.meshes.push(one.mesh);
-      this.drawn = made;
-      this.nv.updateGLVolume();
+      this.drawn = surfaces.map((surface) => ({ ...this.painter.add(surface), cuts: [] }));
+      this.nv.drawScene();
     });
   }
 
@@ -134,7 +97,6 @@ export class View {
     const one = this.drawn[index];
     if (one === undefined) return;
     one.isShown = isShown;
-    one.mesh.visible = isShown;
     this.nv.drawScene();
   }
 
@@ -152,7 +114,7 @@ export class View {
   }
 
   private clearMeshes(): void {
-    for (const { mesh } of this.drawn) this.nv.removeMesh(mesh);
+    for (const one of this.drawn) this.painter.remove(one);
     this.drawn = [];
   }
 
@@ -179,16 +141,9 @@ export class View {
 
   private hook(): void {
     const nv = this.nv as unknown as Record<string, unknown> & { gl: WebGL2RenderingContext };
-    const drawMesh = (nv.drawMesh3D as (...given: unknown[]) => unknown).bind(nv);
     const drawScene = (nv.drawScene as (...given: unknown[]) => unknown).bind(nv);
-    nv.drawMesh3D = (...given: unknown[]) => {
-      const gl = nv.gl, enable = gl.enable;  // niivue leaves out what faces away; here it is to be seen
-      gl.enable = (what) => what === gl.CULL_FACE ? gl.disable(what) : enable.call(gl, what);
-      try {
-        return drawMesh(...given);
-      } finally {
-        gl.enable = enable;
-      }
+    nv.drawMesh3D = (_isDepthTest: boolean, _alpha: number, toScreen: Float32Array, _model: unknown, turn: Float32Array, is2D = false) => {
+      if (!is2D) this.painter.draw(this.drawn, toScreen, turn, this.nv.uiData.mouseDepthPicker);
     };
     nv.drawImage3D = () => {};
     nv.drawScene = (...given: unknown[]) => {

@@ -104,21 +104,39 @@ function call(instance: Instance, name: string, types: string[], args: unknown[]
 const address = (instance: Instance, name: string): number =>
   instance.ccall(name, "number", [], []) as number >>> 0;
 
-function shapeOf(instance: Instance, points: number, triangles: number, hasValues: boolean): Shape {
-  const from = address(instance, "adaptisoPoints") / 4, corners = address(instance, "adaptisoTriangles") / 4;
-  const values = address(instance, "adaptisoValues") / 4;
-  return {
-    points: instance.HEAPF32.slice(from, from + 3 * points),
-    triangles: instance.HEAPU32.slice(corners, corners + 3 * triangles),
-    values: hasValues ? instance.HEAPF32.slice(values, values + points) : null,
-  };
+/** Area-weighted, not of unit length: for drawing alone. */
+function normalsOf(points: Float32Array, triangles: Uint32Array): Float32Array {
+  const normals = new Float32Array(points.length);
+  for (let n = 0; n < triangles.length; n += 3) {
+    const a = 3 * triangles[n], b = 3 * triangles[n + 1], c = 3 * triangles[n + 2];
+    const ux = points[b] - points[a], uy = points[b + 1] - points[a + 1], uz = points[b + 2] - points[a + 2];
+    const vx = points[c] - points[a], vy = points[c + 1] - points[a + 1], vz = points[c + 2] - points[a + 2];
+    const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+    for (const corner of [a, b, c]) {
+      normals[corner] += x;
+      normals[corner + 1] += y;
+      normals[corner + 2] += z;
+    }
+  }
+  return normals;
 }
 
-function pointCount(triangles: Uint32Array): number {
-  let most = -1;
-  for (const corner of triangles) if (corner > most) most = corner;
-  return most + 1;
+/** \param facts  adaptisoAnswer()'s: counts, and whether there are values */
+function shapeOf(instance: Instance, facts: Record<string, unknown>): Shape {
+  const from = address(instance, "adaptisoPoints") / 4, corners = address(instance, "adaptisoTriangles") / 4;
+  const at = address(instance, "adaptisoValues") / 4;
+  const given = instance.HEAPU32.slice(corners, corners + 3 * (facts.triangles as number));
+  const count = facts.points as number ?? given.reduce((most, corner) => Math.max(most, corner + 1), 0);
+  const points = instance.HEAPF32.slice(from, from + 3 * count);
+  // a damaged mesh names points that are not there
+  const triangles = given.every((corner) => corner < count) ? given
+    : given.filter((_, n) => [0, 1, 2].every((side) => given[n - n % 3 + side] < count));
+  return { points, triangles, normals: normalsOf(points, triangles),
+    values: typeof facts.values === "string" ? instance.HEAPF32.slice(at, at + count) : null };
 }
+
+const buffersOf = (shape: Shape): Transferable[] =>
+  [shape.points, shape.triangles, shape.normals, ...(shape.values ? [shape.values] : [])].map((part) => part.buffer);
 
 async function open(request: OpenRequest): Promise<OpenedImage> {
   const instance = await makeInstance({ print: () => {}, printErr: () => {} });
@@ -138,19 +156,16 @@ async function handle(id: number, request: Message["request"]): Promise<void> {
   looker ??= makeInstance({ print: () => {}, printErr: () => {} });
   const instance = await looker;
   if (request.kind === "preview") {
-    const facts = call(instance, "adaptisoPreview", ["number"], [request.isovalue]);
-    const shape = shapeOf(instance, 0, facts.triangles as number, false);
-    const from = address(instance, "adaptisoPoints") / 4;
-    shape.points = instance.HEAPF32.slice(from, from + 3 * pointCount(shape.triangles));
-    return reply({ id, kind: "done", result: shape }, [shape.points.buffer, shape.triangles.buffer]);
+    const shape = shapeOf(instance, call(instance, "adaptisoPreview", ["number"], [request.isovalue]));
+    return reply({ id, kind: "done", result: shape }, buffersOf(shape));
   }
   await put(instance.FS, request.file);
   try {
     const facts = call(instance, "adaptisoOpenMesh", ["string", "string"], [request.file.path, request.program]);
-    const shape = shapeOf(instance, facts.points as number, facts.triangles as number, facts.values !== null);
+    const shape = shapeOf(instance, facts);
     const opened: OpenedMesh = { shape, format: facts.format as string, frame: facts.frame as string | null,
       valuesName: facts.values as string | null };
-    reply({ id, kind: "done", result: opened });
+    reply({ id, kind: "done", result: opened }, buffersOf(shape));
   } finally {
     instance.FS.unlink(request.file.path);
   }

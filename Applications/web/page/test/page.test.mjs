@@ -53,6 +53,29 @@ for (const browserName of kBrowsers) {
       await picture(page, `${browserName}-example`);
     });
 
+    it("shows a preview within a second that follows the slider", async () => {
+      writeNifti(join(folder, "head.nii"), [181, 217, 181], (i, j, k) => balls(i % 64, j % 64, k % 64));
+      await give(page, "#scan-files", join(folder, "head.nii"));
+      await page.waitForFunction(() => document.body.dataset.scan === "head.nii", { timeout: 120_000 });
+      const shown = [];
+      for (const isovalue of [90, 120, 150, 110]) {
+        shown.push(await page.evaluate(async (value) => {
+          const preview = document.querySelector("#preview"), slider = document.querySelector("#iso-slider");
+          for (const passing of [60, 200, value]) {  // wishes that came too late are left out
+            slider.value = String(passing);
+            slider.dispatchEvent(new Event("input"));
+          }
+          const begin = performance.now();
+          const wanted = document.querySelector("#iso").value;
+          while (preview.dataset.isovalue !== wanted && performance.now() - begin < 60_000) await new Promise((done) => setTimeout(done, 5));
+          return { seconds: (performance.now() - begin) / 1000, text: preview.textContent };
+        }, isovalue));
+      }
+      assert.equal(new Set(shown.map(({ text }) => text)).size, 4, JSON.stringify(shown));
+      const [, seconds] = shown.map((each) => each.seconds).sort((a, b) => a - b);  // 0.1 to 0.4 on a busy machine
+      assert.ok(seconds < 1, JSON.stringify(shown));
+    });
+
     it("saves the bytes that the program writes, in every format", async () => {
       await give(page, "#scan-files", join(folder, "balls.nii"));
       await page.waitForFunction(() => document.body.dataset.scan === "balls.nii");
