@@ -56,17 +56,20 @@ HeadBoundaries timed(BemRun& run, const std::string& option, const fs::path& pat
     }
 }
 
-/// Surfaces of the cortex, in the T1's space.
-std::vector<TriangleMesh> readPial(BemRun& run) {
+/// Surfaces of the cortex, in the model's space.
+/// \param first  the number of the first one among those that --input-coordinates is for
+std::vector<TriangleMesh> readCortex(BemRun& run, const std::vector<fs::path>& paths,
+                                     const std::string& option, const std::string& role,
+                                     std::size_t first) {
     std::vector<NamedMesh> files;
-    for (const fs::path& path : run.options.pial) {
-        const auto stated = statedFrame(run.options.inputCoordinates, files.size());
+    for (const fs::path& path : paths) {
+        const auto stated = statedFrame(run.options.inputCoordinates, first + files.size());
         files.push_back({path, readMesh(path, {.inputCoordinates = stated})});
         run.model.inputs.push_back(
-            {baseName(path), "pial surface", std::string(files.back().file.format->name)});
+            {baseName(path), role, std::string(files.back().file.format->name)});
     }
     const CommonFrame common =
-        naming("--pial", [&] { return bringToOneFrame(files, run.model.image); });
+        naming(option, [&] { return bringToOneFrame(files, run.model.image); });
     addWarnings(run.model.warnings, common.warnings);
     std::vector<TriangleMesh> surfaces;
     for (NamedMesh& named : files) surfaces.push_back(std::move(named.file.mesh));
@@ -82,11 +85,14 @@ HeadBoundaries fromT1(BemRun& run, const BoundaryOptions& boundaries) {
         if (!options.brainMask.empty()) mask = readImage(options.brainMask, "brain mask", run);
         if (!options.aseg.empty()) aseg = readImage(options.aseg, "aseg", run);
         if (!options.lesion.empty()) lesion = readImage(options.lesion, "lesion mask", run);
-        if (!options.pial.empty()) brain.pial = readPial(run);
+        if (!options.pial.empty()) {
+            brain.pial = readCortex(run, options.pial, "--pial", "pial surface", 0);
+        }
     });
     if (mask) brain.mask = mask->volume.view();
     if (aseg) brain.aseg = aseg->volume.view();
     if (lesion) brain.lesion = lesion->volume.view();
+    run.model.pial = brain.pial;
     return timed(run, "--t1", options.t1,
                  [&] { return boundariesFromT1(t1->volume, brain, boundaries); });
 }
@@ -167,6 +173,16 @@ std::vector<TriangleMesh> readSurfaces(BemRun& run) {
         freeMemory(surfaces.back().normals);
     }
     return surfaces;
+}
+
+void readSources(BemRun& run) {
+    const BemOptions& options = run.options;
+    if (options.sources.empty()) return;
+    run.timer.time("read", [&] {
+        run.model.options.sources.surfaces =
+            readCortex(run, options.sources, "--sources", "source surface",
+                       options.surfaces.size() + options.pial.size());
+    });
 }
 
 void chooseTkRas(BemRun& run) {

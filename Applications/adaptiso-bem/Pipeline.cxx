@@ -16,6 +16,7 @@
 #include "adaptiso/HeadModel/Tetrahedra.h"
 #include "adaptiso/HeadPipeline/BemElectrodes.h"
 #include "adaptiso/HeadPipeline/BemReport.h"
+#include "adaptiso/HeadPipeline/BemSources.h"
 #include "adaptiso/HeadPipeline/BemSurfaces.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/PointFiles.h"
@@ -37,6 +38,7 @@ std::vector<fs::path> inputsOf(const BemOptions& options) {
     std::vector<fs::path> inputs = options.probabilities;
     inputs.insert(inputs.end(), options.surfaces.begin(), options.surfaces.end());
     inputs.insert(inputs.end(), options.pial.begin(), options.pial.end());
+    inputs.insert(inputs.end(), options.sources.begin(), options.sources.end());
     for (const fs::path& path :
          {options.t1, options.brainMask, options.aseg, options.lesion, options.labels,
           options.headMask, options.ct, options.volume, options.electrodes}) {
@@ -273,10 +275,15 @@ int runBem(const BemOptions& options) {
         [&](std::string_view stage, const std::function<void()>& work) { run.stage(stage, work); },
         run.progress.callback()};
     std::vector<TriangleMesh> dense = firstSurfaces(run, hooks);
+    readSources(run);
     chooseTkRas(run);
     run.takeWarnings();
     finishBemModel(std::move(dense), run.model, hooks);
     putElectrodes(run, hooks);
+    if (run.model.hasModel()) {
+        naming(options.sources.empty() ? "--source-grid" : "--sources",
+               [&] { placeSources(run.model, hooks); });
+    }
     if (run.model.hasModel() && options.tetrahedra.isAsked()) makeTetrahedra(run, hooks);
     run.takeWarnings();
     write(run);

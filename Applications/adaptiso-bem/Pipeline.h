@@ -24,16 +24,18 @@ struct BemOptions {
     std::filesystem::path ct;
     std::vector<std::filesystem::path> surfaces;
 
-    std::vector<CoordinateFrame> inputCoordinates;  ///< of surfaces, or pial; empty: as they say
+    /// Of surfaces, pial, sources in this order; empty: as they say.
+    std::vector<CoordinateFrame> inputCoordinates;
 
-    std::filesystem::path brainMask;          ///< with t1
-    std::filesystem::path aseg;               ///< with t1
-    std::filesystem::path lesion;             ///< with t1
-    std::vector<std::filesystem::path> pial;  ///< with t1, of four layers
-    TissueLabels tissues;                     ///< with labels
-    std::filesystem::path headMask;           ///< with labels: all that lies within the skin
-    std::filesystem::path volume;             ///< with surfaces: the image whose tkRAS is written
-    ReadOptions read;                         ///< of the main image
+    std::filesystem::path brainMask;             ///< with t1
+    std::filesystem::path aseg;                  ///< with t1
+    std::filesystem::path lesion;                ///< with t1
+    std::vector<std::filesystem::path> pial;     ///< with t1
+    std::vector<std::filesystem::path> sources;  ///< the cortex, for sources; two at most
+    TissueLabels tissues;                        ///< with labels
+    std::filesystem::path headMask;              ///< with labels: all that lies within the skin
+    std::filesystem::path volume;  ///< with surfaces: the image whose tkRAS is written
+    ReadOptions read;              ///< of the main image
     BemModelOptions model;
     bool namesCsf = false;  ///< the conductivity of CSF was given
     BemFileOptions files;

@@ -44,6 +44,10 @@ HeadBoundaries boundariesFromImages(BemRun& run);
 /// \throws FileError, InvalidInput
 std::vector<TriangleMesh> readSurfaces(BemRun& run);
 
+/// Reads the surfaces that --sources names. \pre the main image, or the surfaces, are read
+/// \throws FileError, InvalidInput
+void readSources(BemRun& run);
+
 /// Which volume's tkRAS the FreeSurfer files will be in: the subject's own mri/orig.mgz where there
 /// is one, else the image's (frameVolume()), else that of the surfaces read, else none.
 /// \throws FileError

@@ -23,6 +23,7 @@ constexpr const char* kMesh = "Surfaces";
 constexpr const char* kOutput = "Output";
 constexpr const char* kTetrahedra = "Tetrahedra";
 constexpr const char* kElectrodes = "Electrodes and landmarks";
+constexpr const char* kSources = "Sources of lead fields";
 constexpr const char* kToolboxes =
     "Files for other programs, besides those of FreeSurfer and OpenMEEG";
 
@@ -105,7 +106,8 @@ void declareInput(CLI::App& app, BemOptions& options) {
                "count as brain, whatever their grey values");
     input.text(
         "--pial", "MESH...", options.pial,
-        "With --t1 and --layers 4: the cortex (lh.pial rh.pial), for the brain's own surface");
+        "With --t1: the cortex (lh.pial rh.pial), which the inner skull then holds, and with "
+        "--layers 4 the brain's own surface");
     input.text("--labels", "IMG", options.labels,
                "A segmentation; --tissue or --preset names its tissues");
     input.values(
@@ -136,8 +138,8 @@ void declareInput(CLI::App& app, BemOptions& options) {
                "SKIN with --layers 4); "
                "checked, mended where need be, and kept as they are where not");
     declareInputCoordinates(input, options.inputCoordinates,
-                            "the surfaces of --surfaces or --pial; given once for each, that of "
-                            "each");
+                            "the surfaces of --surfaces, --pial and --sources; given once for "
+                            "each, in this order, that of each");
     input.text("--volume", "IMG", options.volume,
                "With --surfaces: the image they belong to, for tkRAS and voxel coordinates");
     declareReadOptions(app, options.read, kInput);
@@ -315,6 +317,19 @@ void declareElectrodes(CLI::App& app, BemOptions& options) {
              "Inion, scanner RAS mm, for --montage (default: by nasion and ears)");
 }
 
+void declareSources(CLI::App& app, BemOptions& options) {
+    const OptionGroup group(app, kSources);
+    SourceOptions& sources = options.model.sources;
+    constexpr std::int64_t kMostSources = 1'000'000;
+    group.text("--sources", "MESH...", options.sources,
+               "Dipoles along the normals of the cortex (lh.white rh.white): dipoles.txt for "
+               "OpenMEEG, sources-src.fif for MNE");
+    group.count("--source-count", sources.count, 1, kMostSources,
+                "Sources of each of these surfaces, spread evenly (default: 4098)");
+    group.number("--source-grid", "MM", sources.gridMm, {.least = 1, .most = 50, .unit = "mm"},
+                 "Dipoles along x, y and z at the points of a grid instead, MM apart");
+}
+
 void declareToolboxes(CLI::App& app, BemOptions& options) {
     const OptionGroup group(app, kToolboxes);
     BemFileOptions& files = options.files;
@@ -350,8 +365,13 @@ void checkCombinations(const BemOptions& options) {
     require(options.aseg.empty() || !options.t1.empty(), "--aseg needs --t1");
     require(options.lesion.empty() || !options.t1.empty(), "--lesion needs --t1");
     const BoundaryOptions& layers = options.model.boundaries;
-    require(options.pial.empty() || (!options.t1.empty() && layers.withBrain),
-            "--pial needs --t1 and --layers 4");
+    require(options.pial.empty() || !options.t1.empty(), "--pial needs --t1");
+    const SourceOptions& dipoles = options.model.sources;
+    require(options.sources.size() <= 2, "--sources: must be one or two surfaces");
+    require(options.sources.empty() || dipoles.gridMm == 0,
+            "--sources and --source-grid exclude each other");
+    require(dipoles.count == SourceOptions{}.count || !options.sources.empty(),
+            "--source-count needs --sources");
     require(!layers.withBrain || !layers.innerSkullOnly, "--layers 4 and --meg exclude each other");
     require(
         !layers.withBrain || options.ct.empty(),
@@ -360,9 +380,11 @@ void checkCombinations(const BemOptions& options) {
     require(!layers.withBrain || options.labels.empty() || !options.tissues.csf.empty(),
             "--layers 4 needs --tissue csf=... as well");
     require(options.volume.empty() || !options.surfaces.empty(), "--volume needs --surfaces");
-    require(options.inputCoordinates.empty() || !options.surfaces.empty() || !options.pial.empty(),
-            "--input-coordinates needs --surfaces or --pial");
-    checkInputCoordinates(options.inputCoordinates, options.surfaces.size() + options.pial.size());
+    const std::size_t meshes =
+        options.surfaces.size() + options.pial.size() + options.sources.size();
+    require(options.inputCoordinates.empty() || meshes > 0,
+            "--input-coordinates needs --surfaces, --pial or --sources");
+    checkInputCoordinates(options.inputCoordinates, meshes);
     const bool namesTissues = !options.tissues.brain.empty() || options.tissues.othersAreBrain;
     require(options.labels.empty() || namesTissues,
             "--labels needs --preset, or --tissue brain=..., skull=... and scalp=...");
@@ -427,6 +449,8 @@ constexpr const char* kFooter = R"(Examples:
   adaptiso-bem --t1 T1.nii.gz --electrodes sub-1_electrodes.tsv -o model
   adaptiso-bem --t1 T1.nii.gz --montage 10-10 --nasion 0,85,-35 --left-ear=-80,-28,-41 \
       --right-ear 80,-28,-41 -o model
+  adaptiso-bem --t1 T1.mgz --pial lh.pial rh.pial --sources lh.white rh.white --fif \
+      --electrodes cap.elc -o model
   adaptiso-bem --t1 T1.nii.gz --fif --fieldtrip --brainstorm -o model
 
 Exit codes: 0 done, 1 no model could be guaranteed, or a warning with --strict
@@ -448,6 +472,7 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
     declareSurfaces(app, options);
     declareOutput(app, options);
     declareElectrodes(app, options);
+    declareSources(app, options);
     declareMesherOptions(app, options.tetrahedra,
                          "head.msh (SimNIBS, DUNEuro), head-4.1.msh, head.vtu, head.dgf and "
                          "head.geo (DUNEuro) with the conductivities",

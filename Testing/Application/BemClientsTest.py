@@ -37,6 +37,11 @@ def lattice(size, affine):
     return index @ affine[:3, :3].T + affine[:3, 3]
 
 
+def icosphere(level):
+    sphere = mne.surface._get_ico_surface(level)
+    return sphere["rr"], sphere["tris"]
+
+
 def part_of_ball(points, radius, steps=5):
     """The part of every 1 mm voxel inside the sphere, by counting points within."""
     distance = np.linalg.norm(points - CENTRE, axis=-1)
@@ -266,6 +271,9 @@ class Toolboxes(SharedFolderTest):
         arguments = {
             "ras": (*self.ARGUMENTS, *self.FORMATS, *electrodes, "--subjects-dir", "subjects", "--subject", "anna"),
             "again": (*self.ARGUMENTS, *self.FORMATS, *electrodes),
+            "cortex": (*self.ARGUMENTS[:9], 642, *self.ARGUMENTS[10:], *electrodes, "--fif", "--sources", "rh.white",
+                       "lh.white", "--source-count", 100),
+            "grid": (*self.ARGUMENTS[:9], 642, *self.ARGUMENTS[10:], *electrodes, "--fif", "--source-grid", 20),
             "lps": (*self.ARGUMENTS, "--fieldtrip", "--simnibs", "--coordinates", "lps"),
             "guessed": (*self.ARGUMENTS, "--brainstorm"),
             "meg": (*self.ARGUMENTS[:4], "--meg", "--vertices", 300, "--voxel", 2, "--fieldtrip"),
@@ -373,6 +381,104 @@ class Toolboxes(SharedFolderTest):
         for place in dig["ch_pos"].values():
             self.assertAlmostEqual(np.linalg.norm(1000 * place - middle), 92, delta=3)
         np.testing.assert_allclose(1000 * dig["nasion"] - middle, (0, 92, 0), atol=2)
+
+    def write_hemispheres(self):
+        """Balls of 33 mm beside the middle, as FreeSurfer's lh.white and rh.white: they end 6 mm below the inner skull."""
+        points, triangles = icosphere(4)
+        for side, name in ((-1, "lh"), (1, "rh")):
+            place = np.array([side * 41, 0, 0])  # tkRAS begins in the image's middle, 1 mm beside CENTRE
+            mne.write_surface(self.path(f"{name}.white"), 33 * points + place - 1, triangles, overwrite=True)
+
+    def lead_field(self, name, bem=None):
+        """EEG, of the model's own files, as MNE makes it."""
+        folder = self.path(name)
+        bem = bem or mne.make_bem_solution(mne.read_bem_surfaces(folder / "bem.fif"))
+        montage = mne.channels.read_custom_montage(folder / "electrodes.elc", head_size=None)
+        info = mne.create_info(montage.ch_names, 100, "eeg").set_montage(montage)
+        return mne.make_forward_solution(info, folder / "head-mri-trans.fif", folder / "sources-src.fif", bem,
+                                         meg=False, verbose=False)
+
+    def assert_as_on_paper(self, name, most_rdm):
+        """The lead field beside MNE's spheres with the same sources."""
+        sphere = mne.make_sphere_model((0, 0, 0), 0.092, relative_radii=(80 / 92, 86 / 92, 1), verbose=False,
+                                       sigmas=self.CONDUCTIVITIES)
+        fields = []
+        for bem in (None, sphere):
+            field = self.lead_field(name, bem)["sol"]["data"]
+            fields.append(field - field.mean(axis=0))
+        sizes = [np.linalg.norm(field, axis=0) for field in fields]
+        rdm = np.linalg.norm(fields[0] / sizes[0] - fields[1] / sizes[1], axis=0)
+        self.assertLess(rdm.mean(), most_rdm)
+        self.assertLess(abs(np.median(sizes[0] / sizes[1]) - 1), 0.1)  # MNE's own MAG at 642 vertices: .91 to .93
+
+    def dipoles(self, name):
+        return np.loadtxt(self.path(name) / "dipoles.txt").reshape(-1, 2, 3)
+
+    def test_sources_of_the_cortex_make_a_lead_field(self):
+        self.write_hemispheres()
+        self.model("cortex")
+        sources = mne.read_source_spaces(self.path("cortex/sources-src.fif"))
+        self.assertEqual([s["id"] for s in sources], [101, 102])  # the left one first
+        self.assertEqual([s["nuse"] for s in sources], [100, 100])
+        inner = mne.read_bem_surfaces(self.path("cortex/bem.fif"))[2]
+        edges = inner["rr"][inner["tris"]]
+        edge = np.linalg.norm(edges - np.roll(edges, 1, axis=1), axis=2).mean(axis=1)
+        points, triangles = icosphere(4)
+        for space, side in zip(sources, (-1, 1)):
+            np.testing.assert_array_equal(space["tris"], triangles)
+            stays = np.setdiff1d(np.arange(space["np"]), space["vertno"])
+            place = 33 * points + np.array([side * 41, 0, 0]) - 1
+            np.testing.assert_allclose(1000 * space["rr"][stays], place[stays], atol=1e-3)
+            np.testing.assert_allclose(space["nn"], points, atol=0.01)
+            used = space["rr"][space["vertno"]]
+            # none nearer to the inner skull than its shortest edge there; those moved lie one edge away
+            depth = 0.080 - np.linalg.norm(used + 0.001, axis=1)
+            self.assertGreater(depth.min(), edge.min() - 0.0015)
+            # evenly: hexagons of a 100th of the ball's area have a radius of 7.3 mm, and middles 12.6 mm apart
+            apart = np.linalg.norm(points[space["vertno"]][:, None] - points[space["vertno"]], axis=2) + 9 * np.eye(100)
+            self.assertGreater(33 * apart.min(), 7)
+            self.assertLess(33 * np.linalg.norm(points[:, None] - points[space["vertno"]], axis=2).min(axis=1).max(), 10)
+        report = json.loads((self.path("cortex") / "report.json").read_text())["sources"]
+        self.assertEqual((report["counts"], report["dropped"], report["outside"]), ([100, 100], 0, 0))
+        self.assertGreater(report["moved"], 10)
+        # from 6 mm off to one edge (11 mm)
+        self.assertLess(report["farthestMovedMm"], 1000 * edge.max() - 5)
+        used = np.concatenate([1000 * s["rr"][s["vertno"]] for s in sources]) + np.array(CENTRE) + 1
+        np.testing.assert_allclose(self.dipoles("cortex")[:, 0], used, atol=1e-3)  # scanner RAS
+        normals = np.concatenate([s["nn"][s["vertno"]] for s in sources])
+        np.testing.assert_allclose(self.dipoles("cortex")[:, 1], normals, atol=1e-5)
+        self.assert_as_on_paper("cortex", 0.05)
+
+    def test_sources_on_a_grid_make_a_lead_field(self):
+        self.model("grid")
+        space, = mne.read_source_spaces(self.path("grid/sources-src.fif"))
+        self.assertEqual(space["type"], "vol")
+        self.assertEqual(space["np"], np.prod(space["shape"]))
+        used = 1000 * space["rr"][space["vertno"]] + np.array(CENTRE) + 1
+        np.testing.assert_allclose(used / 20, np.round(used / 20), atol=1e-4)
+        # all points of the grid that lie deep enough (edges of 9 to 15 mm), and no other
+        depth = 80 - np.linalg.norm(20 * np.stack(np.meshgrid(*[np.arange(-12, 13)] * 3), -1).reshape(-1, 3) - CENTRE, axis=1)
+        self.assertGreaterEqual(space["nuse"], np.sum(depth > 16))
+        self.assertLessEqual(space["nuse"], np.sum(depth > 8))
+        grid = mne.transforms.apply_trans(space["src_mri_t"], np.array([[1, 2, 3]]))
+        n = 1 + space["shape"][0] * (2 + space["shape"][1] * 3)
+        np.testing.assert_allclose(grid[0], space["rr"][n], atol=1e-6)
+        scanner = mne.transforms.apply_trans(space["mri_ras_t"], space["rr"][space["vertno"]])
+        np.testing.assert_allclose(1000 * scanner, used, atol=1e-3)
+        dipoles = self.dipoles("grid")
+        np.testing.assert_allclose(dipoles[::3, 0], used, atol=1e-3)
+        np.testing.assert_allclose(dipoles[:3, 1], np.eye(3))
+        mne.write_source_spaces(self.path("again-src.fif"), mne.SourceSpaces([space]))
+        self.assert_as_on_paper("grid", 0.04)
+
+    def test_head_to_mri_is_the_landmarks_frame(self):
+        self.model("ras")
+        trans = mne.read_trans(self.path("ras/head-mri-trans.fif"))
+        self.assertEqual((trans["from"], trans["to"]), (4, 5))
+        # nasion and ears lie on a level round CENTRE, which is (-1, -1, -1) mm in tkRAS
+        expected = np.eye(4)
+        expected[:3, 3] = -0.001
+        np.testing.assert_allclose(trans["trans"], expected, atol=1e-6)
 
     def test_the_same_bytes_again(self):
         for name in ("ras", "again"):

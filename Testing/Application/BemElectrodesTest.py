@@ -140,5 +140,38 @@ class Electrodes(BemTest):
                    "m")
 
 
+class Sources(BemTest):
+    def test_a_grid_is_written_in_the_frame_and_unit_asked_for(self):
+        self.bem(*self.labels(), "--source-grid", 15, "-o", "mm")
+        self.bem(*self.labels(), "--source-grid", 15, "--coordinates", "lps", "--units", "m", "-o", "m")
+        places = [[tuple(map(float, line.split())) for line in (self.path(folder) / "dipoles.txt").read_text().splitlines()]
+                  for folder in ("mm", "m")]
+        self.assertEqual(len(places[0]), 3 * self.report("mm")["sources"]["counts"][0])
+        for n, (mm, m) in enumerate(zip(*places, strict=True)):
+            self.assertEqual(mm[3:], tuple(float(axis == n % 3) for axis in range(3)))
+            self.assertEqual(m[3:], mm[3:])
+            self.assertLess(math.dist([-1000 * m[0], -1000 * m[1], 1000 * m[2]], mm[:3]), 0.002)
+            self.assertLess(math.hypot(*mm[:3]), RADII[0] - 10)  # edges of 162 vertices are 18 to 26 mm; chords
+        self.assertFalse((self.path("mm") / "head-mri-trans.fif").exists())  # nasion and ears are not known
+
+    def test_sources_outside_the_head_are_refused(self):
+        self.bem(*self.labels(), "-o", "model")
+        self.assertFalse((self.path("model") / "dipoles.txt").exists())
+        self.fails(BAD_INPUT, r"--sources: 100.0 % of the sources lie outside inner_skull; are the surfaces of this head",
+                   *self.labels(), "--sources", "model/outer_skin.surf", "-o", "again")
+        done = self.bem(*self.labels(), "--sources", "model/inner_skull.surf", "--source-count", 40, "-o", "again")
+        self.assertRegex(done.stderr, r"sources nearer to inner_skull than one edge were moved by up to \d+\.\d mm; more vertices")
+        report = self.report("again")["sources"]
+        self.assertEqual((report["counts"], report["moved"], report["dropped"]), ([40], 40, 0))
+
+    def test_refusals(self):
+        labels = self.labels()
+        self.fails(USAGE, "--source-count needs --sources", *labels, "--source-count", 100, "-o", "m")
+        self.fails(USAGE, "exclude each other", *labels, "--sources", "a.surf", "--source-grid", 10, "-o", "m")
+        self.fails(USAGE, "must be one or two surfaces", *labels, "--sources", "a", "b", "c", "-o", "m")
+        self.fails(USAGE, "--source-grid 0.5: must be", *labels, "--source-grid", 0.5, "-o", "m")
+        self.fails(BAD_INPUT, "a.surf: ", *labels, "--sources", "a.surf", "-o", "m")
+
+
 if __name__ == "__main__":
     main()

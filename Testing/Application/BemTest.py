@@ -86,7 +86,7 @@ class Model(BemTest):
         self.fails(USAGE, r"--layers 4 and --meg", *labels, "--layers", "4", "--meg", "-o", "m")
         self.fails(USAGE, r"--layers 4 does not go with --ct", "--ct", "seg.nii", "--layers", "4", "-o",
                    "m")
-        self.fails(USAGE, r"--pial needs --t1 and --layers 4", "--t1", "seg.nii", "--pial", "lh.pial",
+        self.fails(USAGE, r"--pial needs --t1", "--labels", "seg.nii", "--pial", "lh.pial",
                    "-o", "m")
         self.fails(USAGE, r"--aseg needs --t1", *labels, "--aseg", "seg.nii", "-o", "m")
         self.fails(USAGE, r"four numbers need --layers 4", *labels, "--conductivity",
@@ -490,7 +490,7 @@ class Report(BemTest):
     def test_keys_are_the_documented_ones(self):
         skin = RADII[-1]
         self.bem(*self.labels(), "--montage", "10-20", "--nasion", f"0,{skin},0",
-                 f"--left-ear=-{skin},0,0", "--right-ear", f"{skin},0,0", "-o", "model")
+                 f"--left-ear=-{skin},0,0", "--right-ear", f"{skin},0,0", "--source-grid", 10, "-o", "model")
         section = README.read_text().split("## The report")[1]
         documented = set()
         for row in re.findall(r"^\| (`.*?`) \|", section, re.MULTILINE):

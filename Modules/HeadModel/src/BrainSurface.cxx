@@ -21,24 +21,6 @@ void unite(std::vector<float>& part, const std::vector<float>& more) {
     for (std::size_t n = 0; n < part.size(); ++n) part[n] = std::max(part[n], more[n]);
 }
 
-/// The cortex of both hemispheres.
-std::vector<float> pialPart(const std::vector<TriangleMesh>& pial, const ImageGeometry& grid) {
-    std::vector<float> part(static_cast<std::size_t>(grid.voxelCount()), 0);
-    for (const TriangleMesh& surface : pial) {
-        constexpr double kNoClosing = 0;  // sulci are the brain solid's business
-        const std::vector<float> one = surfacePart(surface, grid, kNoClosing);
-        if (cm3Of(one, grid) < 50) {
-            throw SourceError(
-                BoundarySource::Pial,
-                "a pial surface encloses " + shortNumber(cm3Of(one, grid)) +
-                    " cm3 of this head, must be 50 or more; is it of this head, in the "
-                    "same space?");
-        }
-        unite(part, one);
-    }
-    return part;
-}
-
 /// What of the mask is tissue: CSF is dark in a T1. All of it where that leaves too little.
 std::vector<float> tissuePart(const BrainInT1& head, std::vector<std::string>& notes) {
     constexpr double kLevel = 0.5, kLeastShare = 0.6;
@@ -64,6 +46,23 @@ std::vector<float> tissuePart(const BrainInT1& head, std::vector<std::string>& n
 }
 
 }  // namespace
+
+std::vector<float> pialPart(const std::vector<TriangleMesh>& pial, const ImageGeometry& grid) {
+    std::vector<float> part(static_cast<std::size_t>(grid.voxelCount()), 0);
+    for (const TriangleMesh& surface : pial) {
+        constexpr double kNoClosing = 0;  // sulci are the brain solid's business
+        const std::vector<float> one = surfacePart(surface, grid, kNoClosing);
+        if (cm3Of(one, grid) < 50) {
+            throw SourceError(
+                BoundarySource::Pial,
+                "a pial surface encloses " + shortNumber(cm3Of(one, grid)) +
+                    " cm3 of this head, must be 50 or more; is it of this head, in the "
+                    "same space?");
+        }
+        unite(part, one);
+    }
+    return part;
+}
 
 std::vector<float> asegPart(const VolumeView& aseg, const ImageGeometry& grid) {
     return resampled(indicator(aseg,

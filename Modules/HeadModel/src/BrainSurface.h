@@ -14,6 +14,10 @@ namespace adaptiso::headmodel {
 /// outside.
 std::vector<float> asegPart(const VolumeView& aseg, const ImageGeometry& grid);
 
+/// What lies within surfaces of the cortex, of both hemispheres.
+/// \throws SourceError  pial surfaces that enclose nothing
+std::vector<float> pialPart(const std::vector<TriangleMesh>& pial, const ImageGeometry& grid);
+
 /// A T1 on its grid, and where the brain is in it.
 struct BrainInT1 {
     const ImageGeometry& grid;

@@ -128,6 +128,10 @@ AffineTransform byLandmarks(const Landmarks& from, const Landmarks& to) {
     return headAxes(to) * inverse(headAxes(from));
 }
 
+AffineTransform toNeuromag(const Landmarks& landmarks) {
+    return inverse(headAxes(landmarks));
+}
+
 AffineTransform toBrainstorm(const Landmarks& landmarks) {
     headAxes(landmarks);  // throws
     const Vec3 origin = 0.5 * (landmarks.leftEarMm + landmarks.rightEarMm);

@@ -547,6 +547,10 @@ Mask brainOf(const BrainSources& sources, const Head& head, Mask guess, RawBound
         for (std::size_t n = 0; n < brain.size(); ++n) brain[n] |= head.lesion[n];
         requirePlausibleMask(brain, head, BoundarySource::Lesion);
     }
+    if (!sources.pial.empty()) {
+        const Mask pial = above(pialPart(sources.pial, head.grid), kFractionIsovalue);
+        for (std::size_t n = 0; n < brain.size(); ++n) brain[n] |= pial[n];
+    }
     const std::string cm3 = shortNumber(cm3Of(brain, head.grid)) + " cm3";
     raw.notes.push_back(
         (isGuess ? "brain guessed by thresholds, give a mask if it is wrong: " : "brain mask: ") +

@@ -12,6 +12,7 @@
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/MeshIO/FiffSurfaces.h"
 #include "adaptiso/MeshIO/PointFiles.h"
 #include "adaptiso/Tetrahedra/Tetrahedra.h"
 
@@ -28,6 +29,22 @@ void writeText(const fs::path& path, const std::string& text) {
     if (file) return;
     throw FileError(path.string() + ": can't be written" +
                     (errno == 0 ? std::string() : std::string(": ") + std::strerror(errno)));
+}
+
+constexpr double kMetresPerMm = 0.001;
+
+double unitOf(const BemFileOptions& options) {
+    return options.unit == OpenMeegUnit::Metres ? kMetresPerMm : 1;
+}
+
+std::string numbersOf(const Vec3& v) {
+    return formatFixed(v.x, 6) + " " + formatFixed(v.y, 6) + " " + formatFixed(v.z, 6);
+}
+
+/// The same move of points in metres.
+AffineTransform inMetres(AffineTransform mm) {
+    mm.offset = kMetresPerMm * mm.offset;
+    return mm;
 }
 
 std::vector<NamedPoint> pointsIn(CoordinateFrame frame, const BemModel& model) {
@@ -47,16 +64,73 @@ void writeElectrodes(const BemModel& model, const BemFileOptions& options, const
     writeSfp(points, place(kElectrodesSfp));
     const CoordinateFrame mri = model.tkRasVolume ? CoordinateFrame::TkRas : CoordinateFrame::Ras;
     writeFiffPoints(pointsIn(mri, model), place(kElectrodesFif));
+    if (model.electrodes->landmarks) {
+        const AffineTransform toHead = toNeuromag(*model.electrodes->landmarks);
+        writeFiffHeadToMri(inMetres(lpsToFrame(mri, model.tkRasVolume) * inverse(toHead)),
+                           place(kHeadToMriFif));
+    }
     if (model.electrodes->points.empty()) return;
-    const double unit = options.unit == OpenMeegUnit::Metres ? 0.001 : 1;
     std::string lines;
     for (const NamedPoint& p : points) {
-        if (p.kind != PointKind::Electrode) continue;
-        const Vec3 at = unit * p.point;
-        lines +=
-            formatFixed(at.x, 6) + " " + formatFixed(at.y, 6) + " " + formatFixed(at.z, 6) + "\n";
+        if (p.kind == PointKind::Electrode) lines += numbersOf(unitOf(options) * p.point) + "\n";
     }
     writeText(place(kElectrodesTxt), lines);
+}
+
+void writeDipoles(const BemModel& model, const BemFileOptions& options, const PlaceFile& place) {
+    const AffineTransform move = lpsToFrame(options.frame, model.tkRasVolume);
+    std::string lines;
+    for (const SourceSpace& space : model.sources->spaces) {
+        for (const std::int64_t point : space.used) {
+            const std::string at = numbersOf(unitOf(options) * move(space.surface.points[point]));
+            for (const Vec3& direction : space.orientations(point)) {
+                const Vec3 along = space.grid ? direction : move.linear * direction;
+                lines += at + " " + numbersOf(along) + "\n";
+            }
+        }
+    }
+    writeText(place(kDipolesTxt), lines);
+}
+
+FiffSources::Grid gridIn(const ImageGeometry& grid, const AffineTransform& toMri,
+                         const std::optional<ImageGeometry>& image) {
+    const auto sizeOf = [](const ImageGeometry& geometry) {
+        std::array<std::int32_t, 3> size{};
+        std::copy(geometry.size.begin(), geometry.size.end(), size.begin());
+        return size;
+    };
+    const auto placeOf = [&](const ImageGeometry& geometry) {
+        AffineTransform place =
+            toMri * AffineTransform{geometry.indexToPhysical, geometry.originMm};
+        for (Vec3& column : place.linear.column) column = kMetresPerMm * column;
+        return inMetres(place);
+    };
+    const ImageGeometry& parent = image ? *image : grid;
+    const AffineTransform toRas = lpsToFrame(CoordinateFrame::Ras, {}) * inverse(toMri);
+    return {sizeOf(grid), sizeOf(parent), placeOf(grid), placeOf(parent), inMetres(toRas)};
+}
+
+void writeSources(const BemModel& model, const PlaceFile& place) {
+    const CoordinateFrame mri = model.tkRasVolume ? CoordinateFrame::TkRas : CoordinateFrame::Ras;
+    const AffineTransform toMri = lpsToFrame(mri, model.tkRasVolume);
+    const double middleX = boundingBox(model.meshes.front()).middle().x;
+    std::vector<FiffSources> spaces;
+    for (const SourceSpace& space : model.sources->spaces) {
+        FiffSources& written = spaces.emplace_back();
+        written.mesh = transformed(space.surface, toMri);
+        for (Vec3& p : written.mesh.points) p = kMetresPerMm * p;
+        written.used = space.used;
+        if (space.grid) {
+            written.mesh.normals.assign(written.mesh.points.size(), Normal{0, 0, 1});
+            written.grid = gridIn(*space.grid, toMri, model.tkRasVolume);
+            continue;
+        }
+        const bool isRight = model.sources->spaces.size() == 2
+                                 ? spaces.size() == 2
+                                 : boundingBox(space.surface).middle().x < middleX;
+        written.id = isRight ? FiffSources::kRightHemisphere : FiffSources::kLeftHemisphere;
+    }
+    writeFiffSources(spaces, place(kSourcesFif));
 }
 
 void writeTetrahedra(const BemModel& model, const BemFileOptions& options, const PlaceFile& place) {
@@ -95,7 +169,8 @@ std::vector<std::string> bemFileNames() {
                                    kElectrodesTsv, kElectrodesJson, kElectrodesElc,
                                    kElectrodesSfp, kElectrodesFif,  kElectrodesTxt,
                                    kBesaFile,      kMsh22File,      kMsh41File,
-                                   kVtuFile,       kDgfFile,        kTissueConductivitiesFile};
+                                   kVtuFile,       kDgfFile,        kTissueConductivitiesFile,
+                                   kDipolesTxt,    kSourcesFif,     kHeadToMriFif};
     for (std::size_t n = 0; n < kHeadSurfaceCount; ++n) {
         const HeadSurface surface = headSurface(n, kHeadSurfaceCount);
         for (const char* extension : {".surf", ".tri", ".gii", ".vtp"}) {
@@ -119,6 +194,10 @@ void writeBemFiles(const BemModel& model, const BemFileOptions& options, const s
     }
     for (const BemFileKind& kind : bemFileKinds(model, options)) kind.write(place);
     if (model.electrodes) writeElectrodes(model, options, place);
+    if (model.sources) {
+        writeDipoles(model, options, place);
+        writeSources(model, place);
+    }
     if (options.writesBesa) writeBesa(model, options, place);
     if (model.tetrahedra) writeTetrahedra(model, options, place);
     writeText(place("model.geom"), openMeegGeometry(triangleFiles));

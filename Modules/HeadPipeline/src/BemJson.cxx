@@ -90,6 +90,19 @@ Json electrodesJson(const BemModel& model) {
             {"points", points}};
 }
 
+Json sourcesJson(const BemModel& model) {
+    if (!model.sources) return nullptr;
+    const SourceMoves& moves = model.sources->moves;
+    Json counts = Json::array();
+    for (const SourceSpace& space : model.sources->spaces) counts.push_back(space.used.size());
+    return {{"counts", counts},
+            {"moved", moves.moved},
+            {"meanMovedMm", number(moves.meanMm)},
+            {"farthestMovedMm", number(moves.farthestMm)},
+            {"outside", moves.outside},
+            {"dropped", moves.dropped}};
+}
+
 /// The model's skull beside that of the segmentation.
 Json skullJson(const BemModel& model) {
     if (!model.skull) return nullptr;
@@ -170,7 +183,10 @@ Json bemOptionsJson(const BemModelOptions& options) {
           {"csf", options.boundaries.withBrain ? Json(options.conductivities.csf) : Json(nullptr)},
           {"skull", options.conductivities.skull},
           {"scalp", options.conductivities.scalp}}},
-        {"inputCoordinates", options.inputCoordinates}};
+        {"inputCoordinates", options.inputCoordinates},
+        {"sourceCount", options.sources.count},
+        {"sourceGridMm",
+         options.sources.gridMm > 0 ? Json(options.sources.gridMm) : Json(nullptr)}};
 }
 
 Json bemModelJson(const BemModel& model) {
@@ -198,6 +214,7 @@ Json bemModelJson(const BemModel& model) {
             {"tetrahedra", tetrahedraJson(model)},
             {"landmarks", landmarksJson(model)},
             {"electrodes", electrodesJson(model)},
+            {"sources", sourcesJson(model)},
             {"plausibility", notesJson(inLps(model.plausibility))},
             {"findings", findings}};
 }

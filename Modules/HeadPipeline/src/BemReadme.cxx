@@ -29,6 +29,10 @@ bool hasLandmarks(const BemModel& model) {
            !model.electrodes->landmarks->areGuessed();
 }
 
+bool hasTransform(const BemModel& model) {
+    return model.electrodes && model.electrodes->landmarks;
+}
+
 /// Rows of the table of files, for what else was asked for.
 std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
                         const std::string& frame) {
@@ -64,6 +68,15 @@ std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
             "conductivities (S/m) of tissues 0 to 3 of `head.dgf`, of 2 to 5 of `head.msh` | " +
             frame + "; millimetres |\n";
     }
+    if (model.sources) {
+        rows += "| `dipoles.txt` | OpenMEEG | " + frame + "; " +
+                (options.unit == OpenMeegUnit::Metres ? "metres" : "millimetres") +
+                " |\n| `sources-src.fif` | MNE | " + mri + "; metres |\n";
+    }
+    if (hasTransform(model)) {
+        rows += "| `head-mri-trans.fif` | MNE | head coordinates, by nasion and ears, to " + mri +
+                "; metres |\n";
+    }
     if (options.writesBesa) rows += "| `head.sfp` | BESA | " + frame + "; millimetres |\n";
     if (model.electrodes && !model.electrodes->all().empty()) {
         rows +=
@@ -84,6 +97,14 @@ std::string toolboxText(const BemModel& model, const BemFileOptions& options) {
         text +=
             "\nMNE-Python without FreeSurfer's folders:\n```python\nimport mne\n"
             "bem = mne.make_bem_solution(mne.read_bem_surfaces('bem.fif'))\n```\n";
+    }
+    if (model.sources && hasTransform(model)) {
+        text +=
+            "\nMNE's lead field; `info` names the electrodes (or sensors) of the recording:\n"
+            "```python\nmontage = mne.channels.read_custom_montage('electrodes.elc', "
+            "head_size=None)\ninfo = mne.create_info(montage.ch_names, 1000, 'eeg')"
+            ".set_montage(montage)\nfwd = mne.make_forward_solution(info, 'head-mri-trans.fif', "
+            "'sources-src.fif', bem, meg=False)\n```\n";
     }
     if (options.writesFieldTrip) {
         text += isOne ? "\nFieldTrip (`type` is singleshell, which needs no more):\n```matlab\n"

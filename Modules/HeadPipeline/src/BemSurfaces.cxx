@@ -10,6 +10,7 @@
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/HeadPipeline/BemChecks.h"
+#include "adaptiso/HeadPipeline/BemSources.h"
 
 namespace adaptiso {
 namespace {
@@ -307,6 +308,7 @@ void finishBemModel(std::vector<TriangleMesh> dense, BemModel& model, const BemH
     if (model.hasModel()) checkModel(model, hooks);
     if (model.hasModel()) askWhatIsUsual(model, hooks);
     if (model.hasModel()) tellMoves(model);
+    if (model.hasModel()) checkPial(model);
     if (model.hasModel()) compareWithSegmentation(model);
     for (std::size_t n = 0; model.hasModel() && n < model.seenMm.size(); ++n) {
         model.surfaces[n].seen = seenOf(model.meshes[n], model.seenMm[n]);

@@ -16,7 +16,7 @@ namespace adaptiso::meshio::fiff {
 namespace {
 
 constexpr std::uint32_t kVoid = 0, kInt = 3, kFloat = 4, kString = 10, kIdStruct = 31,
-                        kDigPointStruct = 33, kMatrix = 0x40000000;
+                        kDigPointStruct = 33, kTransformStruct = 35, kMatrix = 0x40000000;
 constexpr std::size_t kIdBytes = 20;
 constexpr std::int32_t kVersion = (1 << 16) | 4;
 constexpr auto kBig = std::endian::big;
@@ -167,6 +167,11 @@ void Writer::put(std::int32_t kind, std::string_view text) {
     sink_ << text;
 }
 
+void Writer::put(std::int32_t kind, std::span<const std::int32_t> values) {
+    header(kind, kInt, sizeof(std::int32_t) * values.size());
+    for (const std::int32_t value : values) sink_.bigEndian(value);
+}
+
 void Writer::put(std::int32_t kind, std::span<const Vec3> rows) {
     header(kind, kMatrix | kFloat, 12 * rows.size() + 12);
     for (const Vec3& row : rows) {
@@ -194,6 +199,22 @@ void Writer::putPoint(std::int32_t pointKind, std::int32_t number, const Vec3& m
     for (int axis = 0; axis < 3; ++axis) sink_.bigEndian(static_cast<float>(metres[axis]));
 }
 
+void Writer::putTransform(std::int32_t from, std::int32_t to, const AffineTransform& metres) {
+    header(kCoordTrans, kTransformStruct, 104);
+    sink_.bigEndian(from);
+    sink_.bigEndian(to);
+    for (const AffineTransform& transform : {metres, inverse(metres)}) {
+        for (int row = 0; row < 3; ++row) {
+            for (const Vec3& column : transform.linear.column) {
+                sink_.bigEndian(static_cast<float>(column[row]));
+            }
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            sink_.bigEndian(static_cast<float>(transform.offset[axis]));
+        }
+    }
+}
+
 void Writer::finish() {
     header(kNop, kVoid, 0, -1);
 }
@@ -209,9 +230,10 @@ namespace {
 /// Bytes of a matrix with three columns are counted in 31 bits.
 constexpr std::size_t kMostRows = std::numeric_limits<std::int32_t>::max() / 12 - 1;
 
-void requireCountable(std::span<const FiffSurface> surfaces, const std::string& file) {
+template <class Surface>
+void requireCountable(std::span<const Surface> surfaces, const std::string& file) {
     if (surfaces.empty()) throw InvalidInput(file + ": there is no surface to write");
-    for (const FiffSurface& surface : surfaces) {
+    for (const Surface& surface : surfaces) {
         const std::size_t most =
             std::max(surface.mesh.points.size(), surface.mesh.triangles.size());
         if (most > kMostRows) {
@@ -219,6 +241,23 @@ void requireCountable(std::span<const FiffSurface> surfaces, const std::string& 
                                " points and triangles, a surface has " + std::to_string(most));
         }
     }
+}
+
+/// Numbered from 1.
+std::vector<std::array<std::int32_t, 3>> trianglesOf(const TriangleMesh& mesh) {
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    triangles.reserve(mesh.triangles.size());
+    for (const auto& [a, b, c] : mesh.triangles) {
+        triangles.push_back({static_cast<std::int32_t>(a + 1), static_cast<std::int32_t>(b + 1),
+                             static_cast<std::int32_t>(c + 1)});
+    }
+    return triangles;
+}
+
+std::vector<Vec3> normalsOf(const TriangleMesh& mesh) {
+    std::vector<Vec3> normals;
+    for (const Normal& normal : mesh.normals) normals.push_back(toVec3(normal));
+    return normals;
 }
 
 void encodeSurface(const FiffSurface& surface, fiff::Writer& writer) {
@@ -230,19 +269,42 @@ void encodeSurface(const FiffSurface& surface, fiff::Writer& writer) {
     writer.put(fiff::kNodeCount, static_cast<std::int32_t>(mesh.points.size()));
     writer.put(fiff::kTriangleCount, static_cast<std::int32_t>(mesh.triangles.size()));
     writer.put(fiff::kNodes, mesh.points);
-    std::vector<std::array<std::int32_t, 3>> triangles;  // numbered from 1
-    triangles.reserve(mesh.triangles.size());
-    for (const auto& [a, b, c] : mesh.triangles) {
-        triangles.push_back({static_cast<std::int32_t>(a + 1), static_cast<std::int32_t>(b + 1),
-                             static_cast<std::int32_t>(c + 1)});
-    }
-    writer.put(fiff::kTriangles, triangles);
-    if (!mesh.normals.empty()) {
-        std::vector<Vec3> normals;
-        for (const Normal& normal : mesh.normals) normals.push_back(toVec3(normal));
-        writer.put(fiff::kNormals, normals);
-    }
+    writer.put(fiff::kTriangles, trianglesOf(mesh));
+    if (!mesh.normals.empty()) writer.put(fiff::kNormals, normalsOf(mesh));
     writer.end(fiff::kBemSurface);
+}
+
+void encodeSources(const FiffSources& sources, fiff::Writer& writer) {
+    const TriangleMesh& mesh = sources.mesh;
+    constexpr std::int32_t kSurfaceType = 1, kVolumeType = 2;
+    writer.begin(fiff::kMneSources);
+    writer.put(fiff::kSourceType, sources.grid ? kVolumeType : kSurfaceType);
+    if (!sources.grid) writer.put(fiff::kSourceId, sources.id);
+    writer.put(fiff::kMneCoordFrame, fiff::kFrameMri);
+    writer.put(fiff::kSourcePointCount, static_cast<std::int32_t>(mesh.points.size()));
+    writer.put(fiff::kSourcePoints, mesh.points);
+    writer.put(fiff::kSourceNormals, normalsOf(mesh));
+    std::vector<std::int32_t> selection(mesh.points.size());
+    for (const std::int64_t point : sources.used) selection[point] = 1;
+    writer.put(fiff::kSourceSelection, selection);
+    writer.put(fiff::kSourcesUsed, static_cast<std::int32_t>(sources.used.size()));
+    if (!mesh.triangles.empty()) {
+        writer.put(fiff::kSourceTriangleCount, static_cast<std::int32_t>(mesh.triangles.size()));
+        writer.put(fiff::kSourceTriangles, trianglesOf(mesh));
+    }
+    if (sources.grid) {
+        const FiffSources::Grid& grid = *sources.grid;
+        writer.putTransform(fiff::kFrameMriVoxel, fiff::kFrameMri, grid.toMri);
+        writer.put(fiff::kSourceGridSize, grid.size);
+        writer.begin(fiff::kMneParentMri);
+        writer.putTransform(fiff::kFrameMri, fiff::kFrameRas, grid.mriToRas);
+        writer.putTransform(fiff::kFrameMriVoxel, fiff::kFrameMri, grid.imageToMri);
+        writer.put(fiff::kMriWidth, grid.imageSize[0]);
+        writer.put(fiff::kMriHeight, grid.imageSize[1]);
+        writer.put(fiff::kMriDepth, grid.imageSize[2]);
+        writer.end(fiff::kMneParentMri);
+    }
+    writer.end(fiff::kMneSources);
 }
 
 const fiff::Tag& require(const fiff::Content& content, std::size_t block, std::int32_t kind,
@@ -301,6 +363,25 @@ void writeFiffSurfaces(std::span<const FiffSurface> surfaces, const std::filesys
         writer.put(fiff::kBemCoordFrame, fiff::kFrameMri);
         for (const FiffSurface& surface : surfaces) encodeSurface(surface, writer);
         writer.end(fiff::kBem);
+        writer.finish();
+    });
+}
+
+void writeFiffSources(std::span<const FiffSources> sources, const std::filesystem::path& path) {
+    requireCountable(sources, path.string());
+    writeBytes(path, [&](ByteSink& sink) {
+        fiff::Writer writer(sink);
+        writer.begin(fiff::kMne);
+        for (const FiffSources& space : sources) encodeSources(space, writer);
+        writer.end(fiff::kMne);
+        writer.finish();
+    });
+}
+
+void writeFiffHeadToMri(const AffineTransform& metres, const std::filesystem::path& path) {
+    writeBytes(path, [&](ByteSink& sink) {
+        fiff::Writer writer(sink);
+        writer.putTransform(fiff::kFrameHead, fiff::kFrameMri, metres);
         writer.finish();
     });
 }

@@ -8,6 +8,7 @@
 
 #include "Bytes.h"
 #include "adaptiso/Core/Geometry.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 // FIFF, the tagged file of Neuromag and MNE: big-endian tags of kind, type, size, next, data. What
 // is here is what surfaces and digitized points take.
@@ -16,15 +17,23 @@ namespace adaptiso::meshio::fiff {
 // kinds of tags
 inline constexpr std::int32_t kFileId = 100, kDirectoryPointer = 101, kBlockStart = 104,
                               kBlockEnd = 105, kFreeList = 106, kNop = 108;
-inline constexpr std::int32_t kDigPoint = 213, kDigString = 234;
+inline constexpr std::int32_t kDigPoint = 213, kCoordTrans = 222, kDigString = 234;
 inline constexpr std::int32_t kSurfaceId = 3101, kNodeCount = 3103, kTriangleCount = 3104,
                               kNodes = 3105, kTriangles = 3106, kNormals = 3107,
                               kBemCoordFrame = 3112, kSigma = 3113, kMneCoordFrame = 3506,
                               kMneChannelNames = 3507;
+// of sources, and of the image that a grid of them lies in
+inline constexpr std::int32_t kSourcePoints = 3510, kSourceNormals = 3511, kSourcePointCount = 3512,
+                              kSourceSelection = 3513, kSourcesUsed = 3514, kSourceId = 3517,
+                              kSourceType = 3518, kSourceTriangleCount = 3590,
+                              kSourceTriangles = 3591, kSourceGridSize = 3596, kMriWidth = 2010,
+                              kMriHeight = 2012, kMriDepth = 2014;
 // kinds of blocks
-inline constexpr std::int32_t kIsotrak = 107, kBem = 310, kBemSurface = 311;
+inline constexpr std::int32_t kIsotrak = 107, kBem = 310, kBemSurface = 311, kMne = 350,
+                              kMneSources = 351, kMneParentMri = 353;
 // coordinate frames
-inline constexpr std::int32_t kFrameHead = 4, kFrameMri = 5;
+inline constexpr std::int32_t kFrameHead = 4, kFrameMri = 5, kFrameMriVoxel = 2001,
+                              kFrameRas = 2002;
 
 /// One tag of a file.
 struct Tag {
@@ -76,10 +85,13 @@ public:
     void put(std::int32_t kind, std::int32_t value);
     void put(std::int32_t kind, float value);
     void put(std::int32_t kind, std::string_view text);
+    void put(std::int32_t kind, std::span<const std::int32_t> values);
     void put(std::int32_t kind, std::span<const Vec3> rows);
     void put(std::int32_t kind, std::span<const std::array<std::int32_t, 3>> rows);
     /// A point of a digitizer: Isotrak's kind (1 cardinal, 3 EEG, 4 extra), its number, metres.
     void putPoint(std::int32_t pointKind, std::int32_t number, const Vec3& metres);
+    /// From one coordinate frame to another, with its inverse. \param metres  offset in metres
+    void putTransform(std::int32_t from, std::int32_t to, const AffineTransform& metres);
     /// The last tag of a file.
     void finish();
 

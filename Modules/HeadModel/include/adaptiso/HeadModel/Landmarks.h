@@ -39,6 +39,10 @@ GuessedLandmarks guessLandmarks(const TriangleMesh& innerSkull, const TriangleMe
 /// InvalidInput  landmarks that span no plane
 AffineTransform byLandmarks(const Landmarks& from, const Landmarks& to);
 
+/// LPS mm -> MNE's and Neuromag's head coordinates, mm: x to the right ear, y to the nasion, z up,
+/// from the line between the ears below the nasion. \throws InvalidInput  as above
+AffineTransform toNeuromag(const Landmarks& landmarks);
+
 /// LPS mm -> Brainstorm's coordinates (SCS), mm: x from the middle between the ears to the nasion,
 /// y to the left in the plane of the three, z up. \throws InvalidInput  as above
 AffineTransform toBrainstorm(const Landmarks& landmarks);

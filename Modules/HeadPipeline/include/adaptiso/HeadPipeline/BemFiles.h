@@ -35,6 +35,11 @@ inline constexpr const char* kElectrodesSfp = "electrodes.sfp";
 inline constexpr const char* kElectrodesFif = "electrodes-dig.fif";
 inline constexpr const char* kElectrodesTxt = "electrodes.txt";
 inline constexpr const char* kBesaFile = "head.sfp";
+/// Of a model with sources: a line "x y z ox oy oz" a dipole, and MNE's source space.
+inline constexpr const char* kDipolesTxt = "dipoles.txt";
+inline constexpr const char* kSourcesFif = "sources-src.fif";
+/// Of a model with landmarks: MNE's head coordinates to those of the .surf and .fif files.
+inline constexpr const char* kHeadToMriFif = "head-mri-trans.fif";
 /// Of a model with tetrahedra, in BemFileOptions::frame, mm.
 inline constexpr const char* kMsh22File = "head.msh";
 inline constexpr const char* kMsh41File = "head-4.1.msh";

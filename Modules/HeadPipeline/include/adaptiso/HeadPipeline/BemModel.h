@@ -19,6 +19,7 @@
 #include "adaptiso/HeadModel/Remesh.h"
 #include "adaptiso/HeadModel/Seen.h"
 #include "adaptiso/HeadModel/SegmentedSkull.h"
+#include "adaptiso/HeadModel/SourceSpace.h"
 #include "adaptiso/HeadModel/Tetrahedra.h"
 #include "adaptiso/HeadPipeline/HeadNotes.h"
 #include "adaptiso/MeshIO/PointFiles.h"
@@ -40,6 +41,15 @@ struct ElectrodeOptions {
     bool areWanted() const { return file || positions || landmarks || wantsLandmarks; }
 };
 
+/// Which places of dipoles to write for a lead field.
+struct SourceOptions {
+    std::vector<TriangleMesh> surfaces{};  ///< the cortex (lh.white, rh.white), LPS mm; two at most
+    std::int64_t count = 4098;             ///< sources of each surface, at most
+    double gridMm = 0;                     ///< or a grid; 0: none
+
+    bool areWanted() const { return !surfaces.empty() || gridMm > 0; }
+};
+
 /// What a head model is to be, whatever it is made from.
 struct BemModelOptions {
     BoundaryOptions boundaries;  ///< layers, gaps, thicknesses, isovalues
@@ -51,6 +61,7 @@ struct BemModelOptions {
     std::optional<EdgeLengthRange> edgeLengthMm;
     ConductivityModel conductivities;
     ElectrodeOptions electrodes{};
+    SourceOptions sources{};
     bool wantsHeadShape = false;                  ///< the skin alone as well, for coregistration
     std::vector<std::string> inputCoordinates{};  ///< as stated for files of surfaces, for reports
 
@@ -119,6 +130,14 @@ struct BemElectrodes {
     std::vector<NamedPoint> all() const;
 };
 
+/// Places of dipoles within a model.
+struct BemSources {
+    std::vector<SourceSpace> spaces;  ///< left hemisphere first; or one grid
+    SourceMoves moves;
+
+    std::int64_t count() const;
+};
+
 /// The layers of a model in tetrahedra.
 struct BemTetrahedra {
     std::string mesher;    ///< "tetgen" or "gmsh"
@@ -148,6 +167,8 @@ struct BemModel {
     std::optional<HeadShape> headShape;  ///< LPS mm; if wanted, and there is a model with a skin
     std::optional<BemTetrahedra> tetrahedra;  ///< if wanted, and there is a model
     std::optional<BemElectrodes> electrodes;  ///< if wanted, and there is a model
+    std::optional<BemSources> sources{};      ///< if wanted, and there is a model
+    std::vector<TriangleMesh> pial{};         ///< LPS mm, as given: to lie within the inner skull
     std::vector<NestedGap> gaps;
     std::vector<BemCheck> checks;
     std::vector<ToldNote> plausibility;  ///< what is unusual of adults' heads

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso {
 
@@ -25,7 +28,29 @@ struct FiffSurface {
 /// \throws FileError     the file can't be written
 void writeFiffSurfaces(std::span<const FiffSurface> surfaces, const std::filesystem::path& path);
 
-/// Reads all surfaces of such a file.
+/// Places of dipoles as MNE's source spaces (-src.fif) have them, in metres and MRI coordinates.
+struct FiffSources {
+    static constexpr std::int32_t kLeftHemisphere = 101, kRightHemisphere = 102;
+    std::int32_t id = kLeftHemisphere;  ///< not of a grid
+    TriangleMesh mesh;                  ///< with normals; of a grid its points alone, x fastest
+    std::vector<std::int64_t> used;     ///< numbers of the points that are sources
+
+    /// Of points on a grid: its size and place, and those of the image.
+    struct Grid {
+        std::array<std::int32_t, 3> size, imageSize;
+        AffineTransform toMri, imageToMri, mriToRas;  ///< offsets in metres
+    };
+    std::optional<Grid> grid{};
+};
+
+/// Writes a file that mne.read_source_spaces() reads. \throws as writeFiffSurfaces()
+void writeFiffSources(std::span<const FiffSources> sources, const std::filesystem::path& path);
+
+/// Writes a -trans.fif, which mne.read_trans() reads: head coordinates to MRI coordinates.
+/// \param metres  its offset is in metres \throws FileError  the file can't be written
+void writeFiffHeadToMri(const AffineTransform& metres, const std::filesystem::path& path);
+
+/// Reads all surfaces of a file.
 /// \throws FileError  "<file>: what is wrong; what to do"; also where there is no surface, or one
 ///                    is not in MRI coordinates, or a triangle names a point that is not there
 std::vector<FiffSurface> readFiffSurfaces(const std::filesystem::path& path);
