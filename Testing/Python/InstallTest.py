@@ -2,6 +2,7 @@
 and is tried with ADAPTISO_PIP=1 only)."""
 
 import os
+import shutil
 import subprocess
 import sys
 import unittest
@@ -31,6 +32,31 @@ class Installed(InFolder):
         self.assertEqual(failed, "[]\n")
         for name in ("py.typed", "_adaptiso.pyi"):
             self.assertTrue((package / "adaptiso" / name).is_file(), name)
+        self.check_itks_readers(package)
+
+    def check_itks_readers(self, package):
+        """They are found where the programs' package puts them."""
+        library = Path("lib/adaptiso/itk/libadaptisoItkIO.so")
+        if not (Path(os.environ["ADAPTISO_BUILD"]) / library).exists():
+            return
+        (self.folder / library).parent.mkdir(parents=True)
+        shutil.copy(Path(os.environ["ADAPTISO_BUILD"]) / library, self.folder / library)
+        (self.folder / "image.vtk").write_text("""# vtk DataFile Version 3.0
+one line
+ASCII
+DATASET STRUCTURED_POINTS
+DIMENSIONS 2 2 2
+SPACING 1 1 1
+ORIGIN 0 0 0
+POINT_DATA 8
+SCALARS scalars short 1
+LOOKUP_TABLE default
+1 2 3 4 5 6 7 8
+""")
+        self.assertEqual("VTK image (ITK)\n", subprocess.check_output(
+            [sys.executable, "-B", "-c", "import adaptiso; print(adaptiso.read('image.vtk').format)"],
+            cwd=self.folder, text=True, stderr=subprocess.DEVNULL,
+            env={"PATH": "/usr/bin:/bin", "PYTHONPATH": str(package)}))
 
     @unittest.skipUnless(os.environ.get("ADAPTISO_PIP"), "ADAPTISO_PIP is not set")
     def test_by_pip_into_a_virtual_environment(self):

@@ -1,13 +1,14 @@
 """Images read by nibabel, as a package built without readers (ADAPTISO_PYTHON_READERS=OFF) does; Zarr's
-levels, channels and time points."""
+levels, channels and time points; formats of ITK's readers."""
 
 import json
+import struct
 import unittest
 
 import adaptiso
 import numpy as np
 from adaptiso import _adaptiso
-from support import BRAIN, InFolder, needs
+from support import BIN, BRAIN, InFolder, needs
 
 AFFINE = np.array([[-1.5, 0.2, 0, 20], [0, 0.9, 1.1, -30], [0.1, -1, 1.2, 12], [0, 0, 0, 1]],
                   np.float32).astype(float)  # as NIfTI's sform holds it
@@ -74,6 +75,27 @@ class WithoutReaders(InFolder):
         ours = self.by_own(BRAIN)
         self.assertEqual(adaptiso.surface(BRAIN, 100, method="boxes"),
                          adaptiso.surface(ours, 100, method="boxes"))
+
+
+@unittest.skipUnless((BIN.parent / "lib/adaptiso/itk/libadaptisoItkIO.so").exists(),
+                     "ITK's readers are not built")
+class ItksFormats(InFolder):
+    def test_is_read_with_size_place_and_warning(self):
+        samples = np.arange(192, dtype=">i2")
+        file = self.folder / "image.gipl"
+        file.write_bytes(struct.pack(">4HH4f", 8, 6, 4, 1, 15, 2, 1.5, 2.5, 0).ljust(204, b"\0") + struct.pack(
+            ">4d", 10, -20, 30, 0).ljust(48, b"\0") + struct.pack(">I", 719555000) + samples.tobytes())
+        with self.assertLogs("adaptiso", "WARNING"):
+            image = adaptiso.read(file)
+        np.testing.assert_array_equal(image.array, samples.reshape(8, 6, 4, order="F"))
+        np.testing.assert_array_equal(image.affine, np.diag([-2, -1.5, 2.5, 1]) + np.array(
+            [[0, 0, 0, -10], [0, 0, 0, 20], [0, 0, 0, 30], [0, 0, 0, 0]]))
+        self.assertEqual(image.format, "GIPL (ITK)")
+        self.assertEqual([each.code for each in image.warnings], ["guessed-orientation"])
+        self.assertTrue(adaptiso.surface(file, 100.5).is_closed)
+        file.write_bytes(file.read_bytes()[:-20])
+        with self.assertRaisesRegex(adaptiso.Error, "shorter than its header says"):
+            adaptiso.read(file)
 
 
 @unittest.skipUnless(hasattr(_adaptiso, "read_image"), "built without readers")

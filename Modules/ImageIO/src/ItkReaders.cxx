@@ -29,7 +29,7 @@ ItkReader loadItkReader() {
         places.push_back(fs::canonical(own.dli_fname, error));
     }
     for (fs::path place : places) {
-        for (int level = 0; level < 4 && place.has_relative_path(); ++level) {
+        for (int level = 0; level < 5 && place.has_relative_path(); ++level) {
             place = place.parent_path();
             for (const char* folder : {"lib", ADAPTISO_LIBRARY_FOLDER}) {
                 const fs::path file = place / folder / "adaptiso/itk/libadaptisoItkIO.so";
