@@ -13,7 +13,8 @@ from pathlib import Path
 from DicomTest import element, sequence
 from support import BAD_INPUT, ApplicationTest, main
 
-PLUGIN = Path(os.environ["ADAPTISO_BIN"]).parent / "lib" / "adaptiso" / "itk"
+BUILD = Path(os.environ["ADAPTISO_BIN"]).parent
+PLUGIN = BUILD / "lib" / "adaptiso" / "itk"
 #: Columns: the steps of i, j, k in LPS mm; oblique, by angles of the 3-4-5 triangle.
 STEPS = ((1.6, 1.2, 0), (-0.9, 1.2, 0), (0, 0, 2.5))
 ORIGIN = (10, -20, 30)
@@ -92,6 +93,33 @@ def enhanced():
         data(samples())])
 
 
+def slice_of(k):
+    """One file of a series of four, by GDCM's and our own way to read it."""
+    corner = [ORIGIN[row] + k * STEPS[2][row] for row in range(3)]
+    return bytes(128) + b"DICM" + b"".join([
+        element(0x0002, 0x0010, "UI", "1.2.840.10008.1.2.1"),
+        element(0x0008, 0x0016, "UI", "1.2.840.10008.5.1.4.1.1.4"),
+        element(0x0008, 0x0018, "UI", f"1.2.3.{k + 1}"), element(0x0008, 0x0060, "CS", "MR"),
+        element(0x0018, 0x0050, "DS", "2.5"), element(0x0020, 0x000E, "UI", "1.2.3"),
+        element(0x0020, 0x0032, "DS", text(*corner)), element(0x0020, 0x0037, "DS", AXES),
+        pixels(8, 6, spacing=element(0x0028, 0x0030, "DS", "1.5\\2")), data(samples()[48 * k:48 * k + 48])])
+
+
+def write_zarr(folder):
+    """An OME-Zarr with its axes along LPS."""
+    (folder / "0").mkdir(parents=True)
+    (folder / ".zgroup").write_text('{"zarr_format": 2}')
+    (folder / ".zattrs").write_text(json.dumps({"multiscales": [{
+        "version": "0.4", "axes": [{"name": n, "type": "space", "unit": "millimeter"} for n in "zyx"],
+        "datasets": [{"path": "0", "coordinateTransformations": [
+            {"type": "scale", "scale": [2.5, 1.5, 2]},
+            {"type": "translation", "translation": [30, -20, 10]}]}]}]}))
+    (folder / "0" / ".zarray").write_text(json.dumps({
+        "zarr_format": 2, "shape": [4, 6, 8], "chunks": [4, 6, 8], "dtype": "<u2", "compressor": None,
+        "filters": None, "fill_value": 0, "order": "C"}))
+    (folder / "0" / "0.0.0").write_bytes(struct.pack("<192H", *samples()))
+
+
 def nifti():
     """Oblique, by its sform."""
     head = bytearray(352)
@@ -163,12 +191,12 @@ class PlugIn(ApplicationTest):
             self.assertIn("8 x 6 x 4", said, name)
             self.assertIn("2 x 1.5 x 2.5 mm", said, name)
 
-    def resampled(self, name, with_plugin):
+    def resampled(self, name, with_plugin, parameters=PARAMETERS):
         """The file's samples where they must lie, as transformix finds them."""
         out = self.path("out")
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir()
-        self.path("identity.txt").write_text(PARAMETERS)
+        self.path("identity.txt").write_text(parameters)
         self.run_by(["transformix", "-in", name, "-tp", "identity.txt", "-out", out], with_plugin)
         raw = out / "result.raw"
         return list(struct.unpack("<192H", raw.read_bytes())) if raw.exists() else None
@@ -178,6 +206,26 @@ class PlugIn(ApplicationTest):
         for name in self.FILES:
             self.assertEqual(self.resampled(name, True), samples(), name)
         self.assertNotEqual(self.resampled("mosaic.dcm", False), samples())
+
+    @has("transformix")
+    def test_elastix_reads_folders(self):
+        """A DICOM series and a Zarr, which stock ITK does not open by their folder."""
+        self.path("series").mkdir()
+        for k in (2, 0, 3, 1):
+            self.path(f"series/{9 - k}").write_bytes(slice_of(k))
+        self.assertEqual(self.resampled("series", True), samples())
+        self.assertIsNone(self.resampled("series", False))
+        write_zarr(self.path("image.zarr"))
+        straight = PARAMETERS.replace("0.8 0.6 0 -0.6 0.8 0 0 0 1", "1 0 0 0 1 0 0 0 1")
+        self.assertEqual(self.resampled("image.zarr", True, straight), samples())
+
+    @has("plastimatch")
+    def test_one_slice_is_left_to_itks_own_reader(self):
+        self.path("slice.dcm").write_bytes(slice_of(1))
+        with_plugin, without = (self.run_by(["plastimatch", "header", "slice.dcm"], each)
+                                for each in (True, False))
+        self.assertIn("Size = 8 6 1", with_plugin)
+        self.assertEqual(with_plugin, without)
 
     @has("plastimatch")
     def test_plastimatch_prints_their_geometry(self):
@@ -234,6 +282,105 @@ def mrc():
     return bytes(head) + struct.pack(f"<{len(samples())}h", *samples())
 
 
+def fields(size, *items):
+    """`size` bytes of a header: (position, struct's letters, values...)."""
+    head = bytearray(size)
+    for at, letters, *values in items:
+        struct.pack_into(letters, head, at, *values)
+    return bytes(head)
+
+
+def big(values):
+    return struct.pack(f">{len(values)}h", *values)
+
+
+def ge_5(k):
+    """Genesis, version 3. The corners of slice k are RAS."""
+    exam, series, image = 200, 1300, 2400
+
+    def ras(*index):
+        x, y, z = (ORIGIN[row] + sum(n * step[row] for n, step in zip(index, STEPS)) for row in range(3))
+        return -x, -y, z
+
+    return fields(
+        6000, (0, ">4si", b"IMGF", 6000), (52, ">h", 3), (132, ">6i", exam, 1024, series, 1020, image, 1022),
+        (exam + 305, "2s", b"MR"), (series + 10, ">h", 7), (image + 12, ">h", k + 1),
+        (image + 26, ">f2h", 2, 8, 6), (image + 50, ">2f", 2, 1.5), (image + 114, ">h", 2),
+        (image + 126, ">f", 2.5 * k), (image + 150, ">f", 1),
+        (image + 154, ">9f", *ras(0, 0, k), *ras(7, 0, k), *ras(7, 5, k)),
+        (image + 210, ">2h", 1, 1)) + big(samples()[48 * k:48 * k + 48])
+
+
+def ge_4(k):
+    """Square pixels; floating-point numbers of Data General, by powers of 16."""
+    def number(value):
+        exponent = 64
+        while value >= 1:
+            value, exponent = value / 16, exponent + 1
+        return exponent << 24 | int(value * (1 << 24)) if value else 0
+
+    series, image = 8 * 512, 10 * 512
+    return fields(
+        7000, (series + 62, "s", b"7"), (series + 278, "5s", b"AXIAL"), (series + 302, ">I", number(16)),
+        (image + 88, "s", b"%d" % (k + 1)), (image + 600, "s", b"1"), (image + 146, ">I", number(2.5 * k)),
+        (image + 154, ">2I", number(2), number(0.5)), (image + 196, ">2h", 1, 1),
+        (image + 274, ">2hI", 8, 6, number(2))) + big(samples()[48 * k:48 * k + 48])
+
+
+def ge_advantage(k):
+    return fields(
+        3244, (3232, ">i", 16), (1166, ">h", 7), (2196, ">h", k + 1), (2212, ">f2h", 2.5, 8, 6),
+        (2236, ">2f", 2, 1.5), (2300, ">h", 2), (2316, ">f", 2.5 * k),
+        (2402, ">h", 1)) + big(samples()[48 * k:48 * k + 48])
+
+
+def vision(k):
+    """8 x 8 pixels, 2.5 mm thick; the last sample is the largest."""
+    return fields(
+        6144, (2864, ">i", 8), (5000, ">2d", 2, 1.5), (5546, "s", b"%d" % (k + 1)), (5695, "s", b"8"),
+        (5700, "s", b"8"), (5752, "s", b"1"), (5794, "3s", b"2.5"), (5806, "4s", b"%.1f" % (2.5 * k)),
+        (5814, "3s", b"Tra"), (5842, "2s", b"16"), (5846, "2s", b"12"), (5999, "s", b"7")) + big(
+            [64 * k + n for n in range(64)])
+
+
+#: As ParaVision 6 writes them.
+VISU_PARS = """##TITLE=Parameter List, ParaVision 6.0.1
+##JCAMPDX=4.24
+##DATATYPE=Parameter Values
+##ORIGIN=Bruker BioSpin MRI GmbH
+##OWNER=nobody
+$$ 2020-01-01 12:00:00.000 +0000  nobody@nowhere
+$$ /opt/data/1/pdata/1/visu_pars
+$$ process /opt/PV6.0.1/prog/bin/paravision
+##$VisuVersion=3
+##$VisuCoreDim=3
+##$VisuCoreFrameCount=1
+##$VisuCoreSize=( 3 )
+8 6 4
+##$VisuCoreExtent=( 3 )
+16 9 10
+##$VisuCorePosition=( 1, 3 )
+9 -20.75 28.75
+##$VisuCoreOrientation=( 1, 9 )
+1 0 0 0 1 0 0 0 1
+##$VisuCoreDataOffs=( 1 )
+0
+##$VisuCoreDataSlope=( 1 )
+1
+##$VisuCoreWordType=_16BIT_SGN_INT
+##$VisuCoreByteOrder=littleEndian
+##END=
+"""
+
+STIMULATE = """numDim: 3
+dim: 8 6 4
+origin: 10 -20 30
+interval: 2 1.5 2.5
+dataType: WORD
+endian: ieee-be
+"""
+
+
 @unittest.skipUnless(PLUGIN.exists(), "the plug-in is not built")
 class OtherFormats(ApplicationTest):
     """Read by ITK's readers in the sandbox process."""
@@ -278,7 +425,7 @@ class OtherFormats(ApplicationTest):
                                  ("x.mrc", "MRC (ITK)", mrc)):
             with self.subTest(name):
                 self.path(name).write_bytes(make())
-                self.check(name, kind, {"guessed-orientation"})
+                self.check(name, kind, {"guessed-orientation"} | ({"guessed-unit"} if make is mrc else set()))
                 self.check_cut(name)
 
     def test_tiff_of_several_pages(self):
@@ -318,6 +465,55 @@ class OtherFormats(ApplicationTest):
                        cwd=self.folder, check=True, capture_output=True)
         self.check("x.h5", "ITK HDF5 (ITK)", set(), ORIGIN, STEPS)
         self.check_cut("x.h5")
+
+    def write_slices(self, make):
+        for k in range(4):
+            self.path(f"I.00{k}").write_bytes(make(k))
+
+    def test_ge_5_lies_where_its_corners_are(self):
+        self.write_slices(ge_5)
+        self.check("I.002", "GE 5 (ITK)", {"guessed-spacing", "guessed-position"}, ORIGIN, STEPS)
+        self.check_cut("I.002")
+
+    def test_ge_4_and_advantage_have_size_and_plane_alone(self):
+        warned = {"guessed-spacing", "guessed-orientation", "guessed-position"}
+        for make, kind, row in ((ge_4, "GE 4 (ITK)", 2), (ge_advantage, "GE Advantage (ITK)", 1.5)):
+            with self.subTest(kind):
+                self.write_slices(make)
+                self.check("I.000", kind, warned, (0, 0, 0), ((2, 0, 0), (0, row, 0), (0, 0, 2.5)))
+
+    def test_siemens_vision_is_warned_of_as_its_thickness_is_cut_to_whole_mm(self):
+        self.write_slices(vision)
+        kind, codes, image, values = self.image("I.000")
+        self.assertEqual((kind, image["sizeVoxels"]), ("Siemens Vision (ITK)", [8, 8, 4]))
+        self.assertEqual(codes, {"guessed-spacing", "guessed-orientation", "guessed-position"})
+        self.assertEqual((values["minimum"], values["maximum"]), (0, 255))
+        self.assertEqual(image["spacingMm"], [2, 1.5, 2])  # by ITK 5.2; 2.5 in the file
+
+    def test_bruker_2dseq(self):
+        self.path("visu_pars").write_text(VISU_PARS)
+        self.path("2dseq").write_bytes(struct.pack("<192h", *samples()))
+        self.check("2dseq", "Bruker 2dseq (ITK)", {"guessed-spacing", "guessed-position"})
+        self.check_cut("2dseq")
+
+    def test_stimulate_reads_data_beside_it_alone(self):
+        self.path("x.spr").write_text(STIMULATE)
+        self.path("x.sdt").write_bytes(big(samples()))
+        self.check("x.spr", "Stimulate (ITK)", {"guessed-orientation"})
+        for line, fault in ((f"stimFileName: {self.path('x.sdt')}", "outside its own folder"),
+                            ("dataType: LWORD", "32-bit integers")):
+            self.path("y.spr").write_text(STIMULATE + line + "\n")
+            self.assert_fails(BAD_INPUT, fault, "y.spr", "--info")
+
+    def test_plug_ins_by_others_are_asked_last(self):
+        """As ITK_AUTOLOAD_PATH names them; our own one there does no harm."""
+        self.path("x.others").write_bytes(b"by others")
+        self.path("x.nii").write_bytes(nifti())
+        self.assert_fails(BAD_INPUT, "x.others: not a format that is read here", "x.others", "--info")
+        os.environ["ITK_AUTOLOAD_PATH"] = f"{PLUGIN}:{BUILD / 'Testing' / 'itk'}"
+        self.addCleanup(os.environ.pop, "ITK_AUTOLOAD_PATH")
+        self.check("x.others", "OthersImageIO (ITK)", {"guessed-orientation"})
+        self.assertEqual(self.image("x.nii")[0], "NIfTI-1")
 
     def test_what_no_reader_takes_is_named(self):
         self.path("x.dat").write_bytes(b"what is this" * 100)

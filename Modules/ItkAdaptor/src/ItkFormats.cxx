@@ -1,4 +1,4 @@
-// ITK's own readers, for readVolume(): formats that this library has no reader for.
+// ITK's own readers, for readVolume(): formats that this library has no reader for, and plug-ins.
 #include <itkBruker2dseqImageIO.h>
 #include <itkGE4ImageIO.h>
 #include <itkGE5ImageIO.h>
@@ -7,6 +7,7 @@
 #include <itkHDF5ImageIO.h>
 #include <itkMINCImageIO.h>
 #include <itkMRCImageIO.h>
+#include <itkObjectFactoryBase.h>
 #include <itkSiemensVisionImageIO.h>
 #include <itkStimulateImageIO.h>
 #include <itkTIFFImageIO.h>
@@ -16,7 +17,9 @@
 #include <cstring>
 #include <fstream>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/ImageIO/ItkReaders.h"
@@ -24,10 +27,28 @@
 namespace adaptiso {
 namespace {
 
+/// What a reader of ITK does not know; the warning of it.
+struct Doubt {
+    const char *code, *text;
+};
+constexpr Doubt kSpacing{"guessed-spacing", "may not know the voxel size"},
+    kEvenSteps{"guessed-spacing", "takes one distance for all slices, even where one is missing"},
+    kThickness{"guessed-spacing", "takes the thickness of slices, and no gap, for their distance"},
+    kWholeThickness{"guessed-spacing",
+                    "takes the thickness of slices in whole mm, and no gap, for their distance"},
+    kOrientation{"guessed-orientation",
+                 "does not know the orientation: its axes are taken for LPS"},
+    kPlane{"guessed-orientation", "knows axial, sagittal and coronal slices, no oblique ones"},
+    kOneVoxel{"guessed-position", "may be off by a voxel"},
+    kPosition{"guessed-position", "does not know the position: the first voxel is put at 0, 0, 0"},
+    kUnit{"guessed-unit", "takes angstroms for mm"},
+    kPlugIn{"guessed-orientation",
+            "is of a plug-in (ITK_AUTOLOAD_PATH): size, place and values are as it gives them"};
+
 struct Format {
-    const char* name;
+    std::string name;
     itk::ImageIOBase::Pointer (*make)();
-    bool saysSpacing = true, saysOrientation = true;
+    std::vector<Doubt> doubts{};
     bool isRas = false;         ///< ITK 5.2 keeps the file's own axes
     bool mayStopShort = false;  ///< without a word, where the file ends early
 };
@@ -38,17 +59,17 @@ itk::ImageIOBase::Pointer make() {
 }
 
 const Format kFormats[] = {
-    {"MINC", make<itk::MINCImageIO>, true, true, true},
-    {"GIPL", make<itk::GiplImageIO>, true, false, false, true},
-    {"TIFF", make<itk::TIFFImageIO>, false, false},
-    {"VTK image", make<itk::VTKImageIO>, true, false, false, true},
-    {"MRC", make<itk::MRCImageIO>, true, false, false, true},
-    {"Bruker 2dseq", make<itk::Bruker2dseqImageIO>},
-    {"GE 4", make<itk::GE4ImageIO>},
-    {"GE 5", make<itk::GE5ImageIO>},
-    {"GE Advantage", make<itk::GEAdwImageIO>},
-    {"Siemens Vision", make<itk::SiemensVisionImageIO>},
-    {"Stimulate", make<itk::StimulateImageIO>, true, false},
+    {"MINC", make<itk::MINCImageIO>, {}, true},
+    {"GIPL", make<itk::GiplImageIO>, {kOrientation}, false, true},
+    {"TIFF", make<itk::TIFFImageIO>, {kOrientation, kSpacing}},
+    {"VTK image", make<itk::VTKImageIO>, {kOrientation}, false, true},
+    {"MRC", make<itk::MRCImageIO>, {kOrientation, kUnit}, false, true},
+    {"Bruker 2dseq", make<itk::Bruker2dseqImageIO>, {kEvenSteps, kOneVoxel}},
+    {"GE 4", make<itk::GE4ImageIO>, {kEvenSteps, kPlane, kPosition}},
+    {"GE 5", make<itk::GE5ImageIO>, {kEvenSteps, kOneVoxel}},
+    {"GE Advantage", make<itk::GEAdwImageIO>, {kThickness, kPlane, kPosition}},
+    {"Siemens Vision", make<itk::SiemensVisionImageIO>, {kWholeThickness, kPlane, kPosition}},
+    {"Stimulate", make<itk::StimulateImageIO>, {kOrientation}},
     {"ITK HDF5", make<itk::HDF5ImageIO>},
 };
 
@@ -113,13 +134,8 @@ ImageGeometry geometryOf(const itk::ImageIOBase& io, bool isRas) {
 
 std::vector<Warning> warningsOf(const Format& format) {
     std::vector<Warning> warnings;
-    const std::string reader = std::string("ITK's reader of ") + format.name;
-    if (!format.saysSpacing) {
-        warnings.push_back({"guessed-spacing", reader + " may not know the voxel size"});
-    }
-    if (!format.saysOrientation) {
-        warnings.push_back({"guessed-orientation",
-                            reader + " does not know the orientation: its axes are taken for LPS"});
+    for (const Doubt& doubt : format.doubts) {
+        warnings.push_back({doubt.code, "ITK's reader of " + format.name + " " + doubt.text});
     }
     return warnings;
 }
@@ -149,6 +165,24 @@ void requireWholeTiff(const std::filesystem::path& path) {
     }
 }
 
+/// ITK's reader takes 32-bit integers for 16-bit ones, and data from any folder.
+void requireSafeStimulate(const std::filesystem::path& path) {
+    std::ifstream file(path);
+    for (std::string line; std::getline(file, line);) {
+        const auto has = [&](std::string_view text) { return line.find(text) != line.npos; };
+        if (has("dataType") && has("LWORD")) {
+            throw FileError(path.string() +
+                            ": has 32-bit integers (LWORD), which ITK's reader of "
+                            "Stimulate reads wrong; convert it to NIfTI");
+        }
+        if (has("stimFileName") && has("/")) {
+            throw FileError(path.string() +
+                            ": names data outside its own folder; put the .sdt "
+                            "beside it, and name it without a folder");
+        }
+    }
+}
+
 /// Reads all samples. Some of ITK's readers say nothing of a file that ends early, and leave the
 /// rest of the samples as it was.
 void readWhole(const Format& format, itk::ImageIOBase& io, const ItkRequest& request,
@@ -165,7 +199,8 @@ void readWhole(const Format& format, itk::ImageIOBase& io, const ItkRequest& req
 }
 
 ReadVolume readBy(const Format& format, itk::ImageIOBase& io, const ItkRequest& request) {
-    if (format.name == std::string_view("TIFF")) requireWholeTiff(request.file);
+    if (format.name == "TIFF") requireWholeTiff(request.file);
+    if (format.name == "Stimulate") requireSafeStimulate(request.file);
     io.ReadImageInformation();
     const PixelType type = pixelTypeOf(request, io);
     const ImageGeometry geometry = geometryOf(io, format.isRas);
@@ -186,8 +221,25 @@ ReadVolume readBy(const Format& format, itk::ImageIOBase& io, const ItkRequest& 
         readWhole(format, io, request, all);
         std::memcpy(samples.get(), all.data() + bytes * static_cast<std::size_t>(chosen), bytes);
     }
-    return {Volume(VolumeView(samples.get(), type, geometry), samples),
-            std::string(format.name) + " (ITK)", warningsOf(format)};
+    return {Volume(VolumeView(samples.get(), type, geometry), samples), format.name + " (ITK)",
+            warningsOf(format)};
+}
+
+/// \return nothing where `io` does not take the file. \throws FileError
+std::optional<ReadVolume> readIfIts(const Format& format, itk::ImageIOBase& io,
+                                    const ItkRequest& request) {
+    try {
+        if (!io.CanReadFile(request.file.c_str())) return std::nullopt;
+        io.SetFileName(request.file.string());
+        return readBy(format, io, request);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception&) {  // its text names places in ITK's sources
+        throw FileError(request.file.string() + ": ITK's reader of " + format.name +
+                        " cannot read it; get it again, or convert it to NIfTI");
+    }
 }
 
 }  // namespace
@@ -196,15 +248,14 @@ ReadVolume readBy(const Format& format, itk::ImageIOBase& io, const ItkRequest& 
 extern "C" void adaptisoReadWithItk(const adaptiso::ItkRequest& request,
                                     std::optional<adaptiso::ReadVolume>& result) {
     for (const adaptiso::Format& format : adaptiso::kFormats) {
-        const itk::ImageIOBase::Pointer io = format.make();
-        if (!io->CanReadFile(request.file.c_str())) continue;
-        io->SetFileName(request.file.string());
-        try {
-            result = adaptiso::readBy(format, *io, request);
-        } catch (const itk::ExceptionObject&) {  // its text names places in ITK's sources
-            throw adaptiso::FileError(request.file.string() + ": ITK's reader of " + format.name +
-                                      " cannot read it; get it again, or convert it to NIfTI");
-        }
-        return;
+        result = adaptiso::readIfIts(format, *format.make(), request);
+        if (result) return;
+    }
+    for (const auto& made : itk::ObjectFactoryBase::CreateAllInstance("itkImageIOBase")) {
+        auto* const io = dynamic_cast<itk::ImageIOBase*>(made.GetPointer());
+        if (io == nullptr) continue;
+        result =
+            adaptiso::readIfIts({io->GetNameOfClass(), nullptr, {adaptiso::kPlugIn}}, *io, request);
+        if (result) return;
     }
 }

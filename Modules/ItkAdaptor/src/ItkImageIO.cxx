@@ -5,8 +5,12 @@
 #include <itkVersion.h>
 
 #include <cstring>
+#include <filesystem>
+#include <string_view>
+#include <vector>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/ImageIO/ListSeries.h"
 
 namespace adaptiso {
 namespace {
@@ -41,7 +45,14 @@ protected:
 }  // namespace
 
 bool ItkImageIO::CanReadFile(const char* name) {
-    return !recognizeImage(name).empty();
+    const std::string_view format = recognizeImage(name);
+    if (format != "DICOM" || std::filesystem::is_directory(name)) return !format.empty();
+    try {
+        const std::vector<DicomSeries> series = listSeries(name).series;
+        return series.size() != 1 || series.front().slices != 1;
+    } catch (const Error&) {
+        return true;  // reading says why not
+    }
 }
 
 void ItkImageIO::ReadImageInformation() {

@@ -70,9 +70,9 @@ struct ReadVolume {
 ///              to mm; x, y and z taken for LPS, with a warning. Chunks raw or packed by gzip,
 ///              zlib, zstd, blosc, lz4, with crc32c, in shards or not; all else is refused by name.
 ///              Each is read once; beside the image, each thread holds one, packed and unpacked
-///   others     as ITK's readers place them, with a warning where they do not know it: MINC, GIPL,
-///              TIFF with several pages, HDF5 of ITK, VTK images, MRC, Bruker, GE, Siemens Vision,
-///              Stimulate; in a child process, where libadaptisoItkIO.so is installed
+///   others     as ITK's readers place them, and plug-ins of ITK_AUTOLOAD_PATH, with a warning
+///              where they do not know it (Documentation/Formats.md lists them); in a child
+///              process, where libadaptisoItkIO.so is installed
 ///
 /// Samples keep their type. Scaled ones (NIfTI scl_slope, DICOM rescale, MetaImage
 /// ElementToIntensityFunction) become float32, or float64 where float32 could not hold the stored

@@ -10,7 +10,8 @@ namespace adaptiso {
 
 /// readVolume() as ITK reads: NIfTI, NRRD, MetaImage, MGH, DICOM (multi-frame files, mosaics,
 /// folders of a series) and Zarr, with the geometry that readVolume() promises. Shear stays in the
-/// direction.
+/// direction. A DICOM file of one slice is left to ITK's own reader, which itk::ImageSeriesReader
+/// needs.
 ///
 /// What readVolume() refuses is an itk::ExceptionObject with the same line. The metadata dictionary
 /// has `adaptiso.format` and, where there are any, `adaptiso.warnings` (one a line).
