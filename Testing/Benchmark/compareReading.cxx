@@ -1,5 +1,6 @@
-// Reads one image with this library, behind the fence and without it, and with ITK alone, in turn
-// within one process. Testing/Benchmark/README.md explains the columns.
+// Reads one image with this library, behind the fence and without it, as an ITK ImageIO, and with
+// ITK alone; or, with --iso, makes its surface by extractSurface() and by the filters for ITK and
+// VTK: in turn within one process. Testing/Benchmark/README.md explains the columns.
 #include <itkGDCMImageIO.h>
 #include <itkGDCMSeriesFileNames.h>
 #include <itkImageFileReader.h>
@@ -7,20 +8,29 @@
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
+#include <sys/resource.h>
+#include <vtkDataArray.h>
+#include <vtkImageData.h>
+#include <vtkMatrix3x3.h>
+#include <vtkPointData.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iostream>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
+#include "adaptiso/ItkAdaptor/AdaptiveIsosurfaceMeshFilter.h"
 #include "adaptiso/ItkAdaptor/ItkImageAdaptor.h"
+#include "adaptiso/ItkAdaptor/ItkImageIO.h"
+#include "adaptiso/VtkAdaptor/vtkAdaptisoIsosurface.h"
 
 namespace {
 
@@ -55,10 +65,96 @@ void readWithItk(const fs::path& input) {
     adaptiso::valueRange(adaptiso::viewItkImage(*reader->GetOutput()));
 }
 
+/// The same image by our own ImageIO.
+template <class T>
+void readPlugged(const fs::path& input) {
+    auto reader = itk::ImageFileReader<itk::Image<T, 3>>::New();
+    reader->SetFileName(input.native());
+    reader->SetImageIO(adaptiso::ItkImageIO::New());
+    reader->Update();
+    adaptiso::valueRange(adaptiso::viewItkImage(*reader->GetOutput()));
+}
+
+/// As the ITK filter makes it, from the same samples.
+template <class T>
+void extractByItk(const adaptiso::VolumeView& view, double isovalue) {
+    using Image = itk::Image<T, 3>;
+    auto image = Image::New();
+    typename Image::SizeType size;
+    typename Image::PointType origin;
+    typename Image::SpacingType spacing;
+    typename Image::DirectionType direction;
+    const adaptiso::ImageGeometry& geometry = view.geometry();
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const auto n = static_cast<int>(axis);
+        size[axis] = static_cast<itk::SizeValueType>(geometry.size[axis]);
+        origin[axis] = geometry.originMm[n];
+        spacing[axis] = geometry.spacingMm()[n];
+        for (int row = 0; row < 3; ++row) {
+            direction(row, axis) = geometry.indexToPhysical.column[axis][row] / spacing[axis];
+        }
+    }
+    image->SetRegions(size);
+    image->SetOrigin(origin);
+    image->SetSpacing(spacing);
+    image->SetDirection(direction);
+    image->GetPixelContainer()->SetImportPointer(
+        const_cast<T*>(static_cast<const T*>(view.samples())),
+        static_cast<itk::SizeValueType>(geometry.voxelCount()), false);
+    auto filter = adaptiso::AdaptiveIsosurfaceMeshFilter<Image>::New();
+    filter->SetInput(image);
+    filter->SetIsovalue(isovalue);
+    filter->Update();
+}
+
+/// As the VTK filter makes it, without normals, from the same samples.
+template <class T>
+void extractByVtk(const adaptiso::VolumeView& view, double isovalue) {
+    const adaptiso::ImageGeometry& geometry = view.geometry();
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(static_cast<int>(geometry.size[0]), static_cast<int>(geometry.size[1]),
+                         static_cast<int>(geometry.size[2]));
+    image->SetOrigin(&geometry.originMm.x);
+    const adaptiso::Vec3 spacing = geometry.spacingMm();
+    image->SetSpacing(&spacing.x);
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int row = 0; row < 3; ++row) {
+            image->GetDirectionMatrix()->SetElement(
+                row, axis,
+                geometry.indexToPhysical.column[static_cast<std::size_t>(axis)][row] /
+                    spacing[axis]);
+        }
+    }
+    const auto scalars = vtkSmartPointer<vtkDataArray>::Take(
+        vtkDataArray::CreateDataArray(vtkTypeTraits<T>::VTK_TYPE_ID));
+    scalars->SetVoidArray(const_cast<void*>(view.samples()), geometry.voxelCount(), 1);
+    image->GetPointData()->SetScalars(scalars);
+    vtkNew<vtkAdaptisoIsosurface> filter;
+    filter->SetInputData(image);
+    filter->SetValue(0, isovalue);
+    filter->SetCoordinateFrameToLPS();
+    filter->ComputeNormalsOff();
+    filter->ComputeScalarsOff();
+    filter->Update();
+}
+
+/// Processor seconds, user and system, of this process and its children.
 double secondsOf(const std::function<void()>& work) {
-    const auto begin = std::chrono::steady_clock::now();
+    const auto now = [] {
+        double seconds = 0;
+        for (const int whose : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+            rusage usage{};
+            getrusage(whose, &usage);
+            for (const timeval& time : {usage.ru_utime, usage.ru_stime}) {
+                seconds +=
+                    static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+            }
+        }
+        return seconds;
+    };
+    const double begin = now();
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return now() - begin;
 }
 
 double median(std::vector<double> values) {
@@ -79,41 +175,55 @@ double statusMb(const std::string& field) {
 struct Way {
     std::string name;
     std::function<void()> read;
-    std::vector<double> seconds, ratios;
+    std::vector<double> seconds{}, ratios{};
 };
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("Times reading an image behind the fence, without it, and with ITK alone.");
+    CLI::App app("Times ways to read an image, or to make its surface.");
     fs::path input;
     int repeats = 7;
     std::string only;
+    std::optional<double> isovalue;
     app.add_option("INPUT", input, "An image file or a DICOM folder")->required();
+    app.add_option("--iso", isovalue, "Make the surface: library, itkFilter, vtkFilter");
     app.add_option("--repeats", repeats, "Runs of each way (default: 7)");
-    app.add_option("--only", only, "One run of fenced, unfenced or itk, with its memory");
+    app.add_option("--only", only, "One run of the way of this name, with its memory");
     CLI11_PARSE(app, argc, argv);
 
     ReadOptions fenced, unfenced;
     unfenced.fence = false;
-    const auto type = adaptiso::readVolume(input, fenced).volume.view().pixelType();
+    const adaptiso::ReadVolume scan = adaptiso::readVolume(input, fenced);
+    const adaptiso::VolumeView& view = scan.volume.view();
     const auto ours = [&](const ReadOptions& options) {
         adaptiso::valueRange(adaptiso::readVolume(input, options).volume);
     };
-    std::vector<Way> ways{{"unfenced", [&] { ours(unfenced); }, {}, {}},
-                          {"fenced", [&] { ours(fenced); }, {}, {}},
-                          {"itk",
-                           [&] {
-                               if (type == adaptiso::PixelType::UInt8) {
-                                   readWithItk<std::uint8_t>(input);
-                               } else if (type == adaptiso::PixelType::Float32) {
-                                   readWithItk<float>(input);
-                               } else {
-                                   readWithItk<std::int16_t>(input);
-                               }
-                           },
-                           {},
-                           {}}};
+    std::vector<Way> ways;
+    const auto addWays = [&]<class T>(T) {
+        if (isovalue) {
+            ways.push_back({"library", [&] {
+                                adaptiso::ExtractionOptions options;
+                                options.isovalue = *isovalue;
+                                options.computeNormals = false;
+                                adaptiso::extractSurface(view, options);
+                            }});
+            ways.push_back({"itkFilter", [&] { extractByItk<T>(view, *isovalue); }});
+            ways.push_back({"vtkFilter", [&] { extractByVtk<T>(view, *isovalue); }});
+            return;
+        }
+        ways.push_back({"unfenced", [&] { ours(unfenced); }});
+        ways.push_back({"fenced", [&] { ours(fenced); }});
+        ways.push_back({"plugged", [&] { readPlugged<T>(input); }});
+        ways.push_back({"itk", [&] { readWithItk<T>(input); }});
+    };
+    if (view.pixelType() == adaptiso::PixelType::UInt8) {
+        addWays(std::uint8_t{});
+    } else if (view.pixelType() == adaptiso::PixelType::Float32) {
+        addWays(float{});
+    } else {
+        addWays(std::int16_t{});
+    }
     if (!only.empty()) {
         std::ofstream("/proc/self/clear_refs") << 5;  // forget the peak so far
         const double before = statusMb("VmRSS");
@@ -129,7 +239,7 @@ int main(int argc, char** argv) {
             way.ratios.push_back(way.seconds.back() / ways.front().seconds.back());
         }
     }
-    std::cout << "| way | seconds | x unfenced |\n|---|---:|---:|\n";
+    std::cout << "| way | seconds | x first |\n|---|---:|---:|\n";
     for (const Way& way : ways) {
         std::cout << "| " << way.name << " | " << median(way.seconds) << " | " << median(way.ratios)
                   << " |\n";
