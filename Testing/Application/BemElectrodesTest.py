@@ -69,6 +69,14 @@ class Electrodes(BemTest):
                 self.assertEqual(origin["origin"], "file")
                 self.assertLess(math.dist(origin["nasionMm"], (0, -SKIN, 0)), 0.01)  # LPS
 
+    def test_a_cap_that_is_moved_far_is_a_warning(self):
+        for off, is_far in ((8, False), (15, True)):
+            self.write_bids(scale=(SKIN + off) / 80)
+            self.bem(*self.labels(), "--electrodes", "sub-1_electrodes.tsv", "-o", "model", "--force")
+            report = self.report()
+            self.assertAlmostEqual(report["electrodes"]["meanMovedMm"], off, delta=1.5)
+            self.assertEqual("cap-moved-far" in [w["code"] for w in report["warnings"]], is_far)
+
     def test_a_frame_of_its_own_follows_from_landmarks(self):
         # CTF: x to the nose, y to the left; cm; no unit is said
         lines = [f"FidNz {SKIN / 10} 0 0", f"FidT9 0 {SKIN / 10} 0", f"FidT10 0 -{SKIN / 10} 0"]

@@ -75,6 +75,34 @@ void guess(BemModel& model, BemElectrodes& placed) {
                                   " mm; give them where that matters"});
 }
 
+/// Head points, where the file has enough, say better than nasion and ears where the head is;
+/// these are then the file's own.
+void fitHeadPoints(const std::vector<NamedPoint>& points, const Landmarks& own,
+                   AffineTransform& move, BemModel& model, BemElectrodes& placed) {
+    constexpr std::size_t kLeast = 20;
+    constexpr double kOffMm = 5;
+    std::vector<Vec3> headPoints;
+    for (const NamedPoint& p : points) {
+        if (p.kind == PointKind::Other) headPoints.push_back(p.point);
+    }
+    if (headPoints.size() < kLeast) return;
+    const SkinFit fit = fitToSkin(headPoints, model.meshes.back(), own, *placed.landmarks);
+    move = fit.move;
+    placed.headPoints = HeadPoints{std::ssize(headPoints), fit};
+    placed.landmarks = Landmarks{move(own.nasionMm), move(own.leftEarMm), move(own.rightEarMm)};
+    placed.landmarkOrigin = "file";
+    std::erase_if(model.warnings, [](const Warning& w) { return w.code == "guessed-landmarks"; });
+    const std::string off =
+        formatFixed(fit.meanMm, 1) + " mm from the skin on average, 95 % within " +
+        formatFixed(fit.p95Mm, 1) + " mm, the farthest " + formatFixed(fit.largestMm, 1) + " mm";
+    model.notes.push_back("electrodes: fitted to the skin by " +
+                          formatCount(std::ssize(headPoints)) + " head points, " + off);
+    if (fit.meanMm <= kOffMm) return;
+    model.warnings.push_back({"head-points-off", "the head points lie " + off +
+                                                     ": are they of this head, and are nasion and "
+                                                     "ears right?"});
+}
+
 /// The file's points in the model's space.
 std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
     const ElectrodeOptions& options = model.options.electrodes;
@@ -99,6 +127,7 @@ std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
         move = byLandmarks(*own, *placed.landmarks);
         model.notes.push_back("electrodes: brought to the head by nasion and ears" +
                               (file.frameName.empty() ? "" : " (frame " + file.frameName + ")"));
+        fitHeadPoints(file.points, *own, move, model, placed);
     } else {
         throw InvalidInput(
             "the file says no coordinate frame, and has no nasion and ears to find it by; state it "
@@ -110,6 +139,7 @@ std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
 
 void project(std::vector<NamedPoint> points, BemModel& model, BemElectrodes& placed) {
     std::erase_if(points, [](const NamedPoint& p) { return p.kind != PointKind::Electrode; });
+    if (points.empty() && placed.headPoints) return;
     if (points.empty()) throw InvalidInput("the file holds no electrode");
     std::vector<Vec3> places;
     for (const NamedPoint& p : points) places.push_back(p.point);

@@ -90,6 +90,15 @@ Json electrodesJson(const BemModel& model) {
             {"points", points}};
 }
 
+Json headPointsJson(const BemModel& model) {
+    if (!model.electrodes || !model.electrodes->headPoints) return nullptr;
+    const auto& [count, fit] = *model.electrodes->headPoints;
+    return {{"count", count},
+            {"meanMm", number(fit.meanMm)},
+            {"p95Mm", number(fit.p95Mm)},
+            {"largestMm", number(fit.largestMm)}};
+}
+
 Json sourcesJson(const BemModel& model) {
     if (!model.sources) return nullptr;
     const SourceMoves& moves = model.sources->moves;
@@ -214,6 +223,7 @@ Json bemModelJson(const BemModel& model) {
             {"tetrahedra", tetrahedraJson(model)},
             {"landmarks", landmarksJson(model)},
             {"electrodes", electrodesJson(model)},
+            {"headPoints", headPointsJson(model)},
             {"sources", sourcesJson(model)},
             {"plausibility", notesJson(inLps(model.plausibility))},
             {"findings", findings}};

@@ -149,5 +149,59 @@ TEST(GuessedLandmarks, OfASphereAreToldToBeByProportion) {
     EXPECT_FALSE(guessLandmarks(inner, shallow).reason.empty());
 }
 
+/// An ellipsoid with a nose: no turn leaves it as it is.
+TriangleMesh noseHead() {
+    TriangleMesh skin = icosphere(5, {}, 1);
+    for (Vec3& p : skin.points) {
+        const double nose = std::exp(-40 * squaredNorm(p - normalized(Vec3{0, -1, -0.4})));
+        p = (1 + 0.25 * nose) * Vec3{75 * p.x, 95 * p.y, 85 * p.z};
+    }
+    return skin;
+}
+
+Landmarks movedBy(const AffineTransform& move, Landmarks landmarks) {
+    for (Vec3* p : {&landmarks.nasionMm, &landmarks.leftEarMm, &landmarks.rightEarMm})
+        *p = move(*p);
+    return landmarks;
+}
+
+/// Turned about x, by radians, and shifted.
+AffineTransform nodded(double angle, const Vec3& shift) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {{{{{1, 0, 0}, {0, c, s}, {0, -s, c}}}}, shift};
+}
+
+TEST(SkinFit, HeadPointsMendLandmarksDespiteATenthOfStrays) {
+    const TriangleMesh skin = noseHead();
+    const Landmarks truth{{0, -95, -30}, {75, 10, -30}, {-75, 10, -30}};
+    const AffineTransform away = nodded(0.35, {5, -10, 10});
+    std::vector<Vec3> points, right;
+    for (std::size_t n = 0; n < skin.points.size(); n += 53) right.push_back(skin.points[n]);
+    for (std::size_t n = 0; n < right.size(); ++n) {
+        points.push_back(away(n % 11 == 0 ? 1.3 * right[n] : right[n]));  // 20 mm and more off
+    }
+    // the head's landmarks are guessed, 20 mm off
+    Landmarks guess = movedBy(nodded(0.1, {0, 5, 15}), truth);
+    guess.nasionUncertaintyMm = guess.earUncertaintyMm = 20;
+    const SkinFit fit = fitToSkin(points, skin, movedBy(away, truth), guess);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        if (n % 11 != 0) {
+            EXPECT_LE(norm(fit.move(points[n]) - right[n]), 0.5) << n;
+        }
+    }
+    EXPECT_NEAR(determinant(fit.move.linear), 1, 1e-9);
+    EXPECT_GT(fit.largestMm, 15);
+    EXPECT_LE(fit.p95Mm, fit.largestMm);
+    EXPECT_NEAR(fit.meanMm, 2.3, 0.5);  // an eleventh of them, 25 mm off
+}
+
+TEST(SkinFit, LandmarksTurnTheHeadWhereASphereDoesNotSay) {
+    const TriangleMesh skin = icosphere(5, kCentre, kRadiusMm);
+    const std::vector<Vec3> points(skin.points.begin(), skin.points.begin() + 200);
+    const AffineTransform turn = nodded(0.2, kCentre - nodded(0.2, {})(kCentre));
+    const SkinFit fit = fitToSkin(points, skin, onEquator(), movedBy(turn, onEquator()));
+    EXPECT_LE(norm(fit.move(points[0]) - turn(points[0])), 0.1);
+}
+
 }  // namespace
 }  // namespace adaptiso

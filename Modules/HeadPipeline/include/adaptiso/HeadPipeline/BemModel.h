@@ -117,12 +117,19 @@ struct HeadShape {
     TriangleMesh sparse;  ///< of the model, with at most 2,500 triangles
 };
 
+/// Digitized points of the scalp that electrodes were brought to the skin by.
+struct HeadPoints {
+    std::int64_t count = 0;
+    SkinFit fit;
+};
+
 /// Electrodes and landmarks on a model's skin.
 struct BemElectrodes {
     std::optional<Landmarks> landmarks;
     std::string landmarkOrigin;      ///< "given", "file" or "guessed"
     std::vector<NamedPoint> points;  ///< electrodes, LPS mm
-    bool areComputed = false;        ///< by a system of positions, not from a file
+    std::optional<HeadPoints> headPoints{};
+    bool areComputed = false;  ///< by a system of positions, not from a file
     double meanMovedMm = 0, farthestMovedMm = 0;
     std::string farthestName;
 
