@@ -27,5 +27,10 @@ npm run --silent check
 version=$(sed -n 's/^project(adaptiso VERSION \([0-9.]*\).*/\1/p' "$top/CMakeLists.txt")
 node build.mjs "$top/build/web" "$version"
 if [[ ${1:-} == --test ]]; then
-    node --test --test-concurrency=1 test/
+    programs=${ADAPTISO_PROGRAMS:-$top/build/release/bin}
+    if [[ ! -x $programs/adaptiso-mesh ]]; then
+        echo "Applications/web/run.sh: the tests compare with the native programs, which $programs lacks: cmake --preset release && cmake --build --preset release --target programs" >&2
+        exit 1
+    fi
+    xvfb-run --auto-servernum node --test --test-concurrency=1 test/  # Firefox has WebGL on a screen alone
 fi

@@ -19,7 +19,7 @@ const read = (path) => readFileSync(path);
 const inScript = (text) => text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
 
 const kRun = `<div class="progress" hidden><p class="stage" aria-live="polite"></p><progress max="100" aria-label="Progress"></progress></div>
-    <p class="refusal" role="alert" hidden></p><div class="result" hidden></div>`;
+    <p class="refusal" role="alert" hidden></p><p class="choices row"></p><div class="result" hidden></div>`;
 const worker = `${read(join(folder, "adaptiso.js"))}\n${await bundle("src/worker.ts", "iife")}`;
 const parts = {
   STYLE: read(join(here, "src/page.css")).toString(),

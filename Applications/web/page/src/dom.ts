@@ -12,6 +12,13 @@ export function make<K extends keyof HTMLElementTagNameMap>(name: K, properties:
   return element;
 }
 
+/** A spot of a colour beside its name. */
+export function swatch(color: number[]): HTMLElement {
+  const spot = make("span", { className: "swatch" });
+  spot.style.background = `rgb(${color.join(" ")})`;
+  return spot;
+}
+
 export const formatCount = (count: number): string => count.toLocaleString("en-US");
 export const formatBytes = (bytes: number): string =>
   bytes >= 1e9 ? `${(bytes / 1e9).toFixed(1)} GB` : bytes >= 1e6 ? `${(bytes / 1e6).toFixed(1)} MB` : `${Math.ceil(bytes / 1e3)} kB`;

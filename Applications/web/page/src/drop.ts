@@ -23,15 +23,28 @@ export async function filesOf(data: DataTransfer): Promise<InputFile[]> {
   return [...data.files].map((file) => ({ path: file.name, data: file }));
 }
 
+const takers = new Map<Element, (files: InputFile[]) => void>();
+
+/** What is dropped outside all zones is for the first one that is seen; it must not take the page away. */
+export function takeStrayFiles(): void {
+  takeFiles(document.body, (files) => {
+    const zone = document.querySelector("[role=tabpanel]:not([hidden]) .drop");
+    if (zone !== null && files.length > 0) takers.get(zone)?.(files);
+  });
+}
+
 /** Calls `take` with what is dropped on `zone` or chosen with one of its inputs. */
 export function takeFiles(zone: HTMLElement, take: (files: InputFile[]) => void): void {
+  takers.set(zone, take);
   zone.addEventListener("dragover", (event) => { event.preventDefault(); zone.classList.add("over"); });
   zone.addEventListener("dragleave", () => zone.classList.remove("over"));
   zone.addEventListener("drop", async (event) => {
     event.preventDefault();
-    zone.classList.remove("over");
+    event.stopPropagation();
+    for (const each of takers.keys()) each.classList.remove("over");
     if (event.dataTransfer !== null) take(await filesOf(event.dataTransfer));
   });
+  if (zone === document.body) return;
   for (const input of zone.querySelectorAll<HTMLInputElement>("input[type=file]")) {
     input.addEventListener("change", () => {
       const files = [...input.files ?? []].map((file) => ({ path: file.webkitRelativePath || file.name, data: file }));

@@ -23,7 +23,8 @@ export class HeadTab {
     });
     byId("head-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
     byId("source").addEventListener("change", () => this.showSource());
-    scan.onOpen(() => { byId("head-scan").textContent = scan.path; });
+    takeFiles(byId("head-drop"), (files) => scan.take(this.task, files));
+    scan.onChange(() => { byId("head-scan").textContent = scan.facts === undefined ? "no scan yet" : scan.path; });
     this.showSource();
   }
 
@@ -55,7 +56,7 @@ export class HeadTab {
   }
 
   async make(): Promise<void> {
-    if (this.scan.facts === undefined) return this.task.refuse("Give a scan first (tab Mesh).");
+    if (this.scan.facts === undefined) return this.task.refuse("Give a scan first.");
     const run = this.runOf(), done = await this.task.run(run);
     if (done !== undefined) await this.show(run, done);
   }
@@ -81,8 +82,9 @@ export class HeadTab {
       const file = model.find((each) => each.path === `model/${surface.name}.surf`);
       if (file === undefined) continue;
       const opened = await this.scan.looker.mesh({ path: `shown/${surface.name}.surf`, data: file.bytes.slice() }, "adaptiso-bem");
-      surfaces.push({ name: surface.name, shape: opened.shape, color: kColors[n], opacity: n + 1 === report.surfaces.length ? 0.35 : 1 });
+      surfaces.push({ name: surface.name.replace("_", " "), shape: opened.shape, color: kColors[n], opacity: n + 1 === report.surfaces.length ? 0.35 : 1 });
     }
+    this.task.addGlb("model.glb", surfaces);
     await (await this.page.view())?.showSurfaces(surfaces);
     document.body.dataset.shown = "model";
   }

@@ -30,10 +30,10 @@ export class Histogram {
     const style = getComputedStyle(canvas), { lower, upper, counts } = this.facts.histogram;
     const bars = Math.min(counts.length, 200), heights = new Array<number>(bars).fill(0);
     counts.forEach((count, n) => { heights[Math.floor(n * bars / counts.length)] += count; });
-    const roots = heights.map(Math.sqrt), most = Math.max(...roots, 1);
+    const roots = heights.map(Math.sqrt), [, most] = [1, ...roots].sort((a, b) => b - a);  // the highest, often air, may be cut
     const x = Math.min(1, Math.max(0, (this.isovalue - lower) / (upper - lower))) * canvas.width;
     for (let n = 0; n < bars; ++n) {
-      const left = n * canvas.width / bars, height = roots[n] / most * (canvas.height - 4 * scale);
+      const left = n * canvas.width / bars, height = Math.min(1, roots[n] / most) * (canvas.height - 4 * scale);
       context.fillStyle = style.getPropertyValue(left >= x ? "--accent" : "--faint");
       context.fillRect(left, canvas.height - height, Math.max(1, canvas.width / bars - 0.5), height);
     }

@@ -1,5 +1,5 @@
 /** The tab Labels: adaptiso-labels of a segmentation. */
-import { byId, formatCount, make } from "./dom";
+import { byId, formatCount, make, swatch } from "./dom";
 import { takeFiles } from "./drop";
 import type { InputFile, RunResult } from "./protocol";
 import type { Scan } from "./scan";
@@ -28,10 +28,8 @@ export class LabelsTab {
 
   constructor(private readonly page: Page, private readonly scan: Scan) {
     this.task = new Task("labels", page);
-    takeFiles(byId("labels-drop"), async (files) => {
-      this.task.part(".result").hidden = true;
-      this.task.refuse(await scan.open(files, true));
-    });
+    takeFiles(byId("labels-drop"), (files) => scan.take(this.task, files, true));
+    scan.onChange(() => { if (scan.facts !== undefined) byId("labels-scan").textContent = scan.path; });
     takeFiles(byId("names-drop"), ([file]) => { this.names = file; byId("names-name").textContent = file.path; });
     byId("labels-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
   }
@@ -74,10 +72,9 @@ export class LabelsTab {
       surfaces.push({ name, shape: opened.shape, color, opacity: 1 });
       const box = make("input", { type: "checkbox", checked: true });
       box.addEventListener("change", async () => (await this.page.view())?.setShown(index, box.checked));
-      const swatch = make("span", { className: "swatch" });
-      swatch.style.background = `rgb(${color.join(" ")})`;
-      list.append(make("li", {}, make("label", {}, box, swatch, ` ${name}: ${formatCount(Math.round(region.volumeMm3))} mm³`)));
+      list.append(make("li", {}, make("label", {}, box, swatch(color), ` ${name}: ${formatCount(Math.round(region.volumeMm3))} mm³`)));
     }
+    this.task.addGlb("regions.glb", surfaces);
     await (await this.page.view())?.showSurfaces(surfaces);
     document.body.dataset.shown = "regions";
   }

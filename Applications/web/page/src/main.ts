@@ -1,6 +1,6 @@
 /** The page. Everything heavy is kept packed in the file and unpacked when it is first wanted. */
 import { byId } from "./dom";
-import { takeFiles } from "./drop";
+import { takeStrayFiles } from "./drop";
 import { Engine } from "./engine";
 import { HeadTab } from "./head";
 import { LabelsTab } from "./labels";
@@ -18,9 +18,10 @@ function makeEngine(): Engine {
 
 async function makeView(): Promise<View | undefined> {
   try {
+    document.body.dataset.stage = "true";
     document.head.append(Object.assign(document.createElement("script"), { textContent: await unpackText("niivue") }));
     const library = (globalThis as unknown as { niivue: typeof import("@niivue/niivue") }).niivue;
-    return await View.make(library, byId<HTMLCanvasElement>("gl"), byId<HTMLCanvasElement>("outlines"), byId("position"));
+    return await View.make(library, byId<HTMLCanvasElement>("gl"), byId("position"), byId("caption"));
   } catch (error) {
     byId("viewer-missing").textContent = (error as Error).message;
     byId("viewer-missing").hidden = false;
@@ -54,8 +55,14 @@ function listenToTabs(): void {
 function start(): void {
   const engine = makeEngine();
   let view: Promise<View | undefined> | undefined;
+  byId("only-3d").addEventListener("click", async () => {
+    const isAlone = byId("only-3d").getAttribute("aria-pressed") !== "true";
+    byId("only-3d").setAttribute("aria-pressed", String(isAlone));
+    (await view)?.show3dAlone(isAlone);
+  });
   const page: Page = { engine, view: () => (view ??= makeView()) };
-  const scan = new Scan(page), mesh = new MeshTab(page, scan);
+  const scan = new Scan(page);
+  new MeshTab(page, scan);
   new HeadTab(page, scan);
   new LabelsTab(page, scan);
   new CheckTab(page);
@@ -63,8 +70,7 @@ function start(): void {
   new CompareTab(page);
   listenToTabs();
   byId("version").textContent = kVersion;
-  // what misses a drop zone must not take the page away; on the tab Mesh it is a scan
-  takeFiles(document.body, (files) => { if (!byId("mesh").hidden && files.length > 0) void mesh.open(files); });
+  takeStrayFiles();
   document.body.dataset.ready = "true";
 }
 

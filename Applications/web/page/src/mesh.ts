@@ -4,10 +4,10 @@ import { stemOf, takeFiles } from "./drop";
 import { Cancelled } from "./engine";
 import { Histogram } from "./histogram";
 import { exampleHead } from "./nifti";
-import type { InputFile, RunResult, Shape } from "./protocol";
+import type { RunResult, Shape } from "./protocol";
 import { memoryOf, type Scan } from "./scan";
 import { isChecked, kMostMemory, kReport, number, outputsOf, type Page, reportOf, type Run, Task, tooLarge } from "./task";
-import type { Color } from "./painter";
+import type { Color, Surface } from "./painter";
 
 const kColor: Color = [240, 190, 120], kPreview: Color = [110, 190, 240];
 interface SurfaceReport { triangles: number; errorBoundMm: number | null; componentCount: number;
@@ -23,35 +23,26 @@ export class MeshTab {
   constructor(private readonly page: Page, private readonly scan: Scan) {
     this.task = new Task("mesh", page);
     this.histogram = new Histogram(byId<HTMLCanvasElement>("histogram"), (value) => this.setIsovalue(this.rounded(value)));
-    takeFiles(byId("drop"), (files) => this.open(files));
+    takeFiles(byId("drop"), (files) => scan.take(this.task, files));
     byId("example").addEventListener("click", () => this.openExample());
     byId("auto").addEventListener("click", () => { if (scan.facts?.otsu != null) this.setIsovalue(scan.facts.otsu); });
     byId("iso").addEventListener("change", () => this.setIsovalue(Number(number("iso"))));
     byId("iso-slider").addEventListener("input", () => this.setIsovalue(this.rounded(Number(number("iso-slider")))));
     byId("mesh-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
     for (const id of ["by-distance", "by-count"]) byId(id).addEventListener("change", () => this.showSize());
-    scan.onOpen(() => this.opened());
+    scan.onChange(() => this.opened());
     this.showSize();
-  }
-
-  async open(files: InputFile[]): Promise<void> {
-    this.task.cancel();
-    this.scan.volumeIndex = number("volume-index") === "" ? -1 : Number(number("volume-index"));
-    this.scan.series = number("series");
     this.setReady(false);
-    this.task.part(".result").hidden = true;
-    this.task.refuse(await this.scan.open(files));
   }
 
   async openExample(): Promise<void> {
-    await this.open([{ path: "example.nii", data: exampleHead() }]);
-    await this.make();
+    if (await this.scan.take(this.task, [{ path: "example.nii", data: exampleHead() }])) await this.make();
   }
 
   private opened(): void {
     const facts = this.scan.facts;
+    this.setReady(facts !== undefined);
     if (facts === undefined) return;
-    this.setReady(true);
     const slider = byId<HTMLInputElement>("iso-slider");
     slider.min = String(facts.histogram?.lower ?? facts.minimum);
     slider.max = String(facts.histogram?.upper ?? facts.maximum);
@@ -64,7 +55,7 @@ export class MeshTab {
 
   private setReady(isReady: boolean): void {
     byId("mesh-options").toggleAttribute("disabled", !isReady);
-    byId("scan-tools").hidden = !isReady;
+    for (const id of ["scan-tools", "mesh-form"]) byId(id).hidden = !isReady;
   }
 
   private showSize(): void {
@@ -100,7 +91,7 @@ export class MeshTab {
           const shape = await this.scan.looker.preview(isovalue);
           this.previewTriangles = shape.triangles.length / 3;
           const view = await this.page.view();
-          await view?.showSurfaces([{ name: "preview", shape, color: kPreview, opacity: 1 }]);
+          await view?.showSurfaces([{ name: `preview at ${isovalue}`, shape, color: kPreview, opacity: 1 }]);
           const step = this.scan.facts?.previewStep ?? 1;
           byId("preview").textContent = `Preview: ${formatCount(this.previewTriangles)} triangles of marching cubes`
             + (step > 1 ? `, of every ${step}${step === 2 ? "nd" : step === 3 ? "rd" : "th"} voxel` : "");
@@ -151,7 +142,9 @@ export class MeshTab {
     if (report !== undefined) this.task.addSave("Save the report (JSON)", `${stemOf(this.scan.path)}.json`, () => report.bytes);
     const shape: Shape = (await this.scan.looker.mesh({ path: `shown/${output.path}`, data: output.bytes.slice() }, "adaptiso-mesh")).shape;
     const view = await this.page.view();
-    await view?.showSurfaces([{ name: output.path, shape, color: kColor, opacity: 1 }]);
+    const surface3d: Surface = { name: output.path, shape, color: kColor, opacity: 1 };
+    this.task.addGlb(`${stemOf(this.scan.path)}.glb`, [surface3d]);
+    await view?.showSurfaces([surface3d]);
     document.body.dataset.shown = output.path;
   }
 }

@@ -37,19 +37,50 @@ void main() {
   color = vec4(base * (0.25 + 0.72 * side) + 0.12 * shine, opacity);
 }`;
 
+/** A segment as a rectangle of the tile's plane. Noise has 100,000 of them, over which a 2-D canvas sits a minute. */
+const kSegment = `#version 300 es
+layout(location=0) in vec3 from;
+layout(location=1) in vec3 to;
+uniform ivec2 axes;
+uniform vec4 toPixel;
+uniform vec2 size;
+uniform float halfWidth;
+void main() {
+  vec2 a = vec2(from[axes.x], from[axes.y]) * toPixel.xy + toPixel.zw, b = vec2(to[axes.x], to[axes.y]) * toPixel.xy + toPixel.zw;
+  vec2 along = a == b ? vec2(1.0, 0.0) : normalize(b - a), side = vec2(-along.y, along.x) * (gl_VertexID % 2 == 0 ? 1.0 : -1.0);
+  vec2 pixel = gl_VertexID < 2 ? a - halfWidth * along : b + halfWidth * along;
+  gl_Position = vec4(2.0 * (pixel + halfWidth * side) / size - 1.0, 0.0, 1.0);
+}`;
+const kOneColor = `#version 300 es
+precision highp float;
+uniform vec3 shade;
+out vec4 color;
+void main() { color = vec4(shade, 1.0); }`;
+
+/** Where a tile lies, in pixels from the lower left, and what of a point's mm runs across and up it. */
+export interface TilePlace { box: number[]; axes: number[]; toPixel: number[] }
+export interface Outline { array: WebGLVertexArrayObject; buffer: WebGLBuffer; segments: number }
+
+function makeProgram(gl: WebGL2RenderingContext, vertex: string, fragment: string): WebGLProgram {
+  const program = gl.createProgram();
+  for (const [type, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]] as const) {
+    const shader = gl.createShader(type);
+    if (shader === null) throw new Error("WebGL is lost");
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    gl.attachShader(program, shader);
+  }
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program) ?? "WebGL is lost");
+  return program;
+}
+
 export class Painter {
   private readonly program: WebGLProgram;
+  private readonly lines: WebGLProgram;
   constructor(private readonly gl: WebGL2RenderingContext) {
-    this.program = gl.createProgram();
-    for (const [type, text] of [[gl.VERTEX_SHADER, kVertex], [gl.FRAGMENT_SHADER, kFragment]] as const) {
-      const shader = gl.createShader(type);
-      if (shader === null) throw new Error("WebGL is lost");
-      gl.shaderSource(shader, text);
-      gl.compileShader(shader);
-      gl.attachShader(this.program, shader);
-    }
-    gl.linkProgram(this.program);
-    if (!gl.getProgramParameter(this.program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(this.program) ?? "WebGL is lost");
+    this.program = makeProgram(gl, kVertex, kFragment);
+    this.lines = makeProgram(gl, kSegment, kOneColor);
   }
 
   add(surface: Surface): Painted {
@@ -103,5 +134,47 @@ export class Painter {
     gl.bindVertexArray(null);
     gl.depthMask(true);
     gl.disable(gl.BLEND);
+  }
+
+  /** \param ends  pairs of points, flat */
+  addOutline(ends: Float32Array<ArrayBuffer>): Outline {
+    const { gl } = this, array = gl.createVertexArray(), buffer = gl.createBuffer();
+    gl.bindVertexArray(array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, ends, gl.STATIC_DRAW);
+    for (const end of [0, 1]) {
+      gl.enableVertexAttribArray(end);
+      gl.vertexAttribPointer(end, 3, gl.FLOAT, false, 24, 12 * end);
+      gl.vertexAttribDivisor(end, 1);
+    }
+    gl.bindVertexArray(null);
+    return { array, buffer, segments: ends.length / 6 };
+  }
+
+  removeOutline({ array, buffer }: Outline): void {
+    this.gl.deleteBuffer(buffer);
+    this.gl.deleteVertexArray(array);
+  }
+
+  drawOutlines(outlines: { outline: Outline; color: Color }[], { box, axes, toPixel }: TilePlace, pixel: number): void {
+    const { gl, lines } = this, at = (name: string): WebGLUniformLocation | null => gl.getUniformLocation(lines, name);
+    gl.useProgram(lines);
+    gl.viewport(0, 0, gl.canvas.width, gl.canvas.height);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(box[0], box[1], box[2], box[3]);
+    for (const capability of [gl.DEPTH_TEST, gl.CULL_FACE, gl.BLEND]) gl.disable(capability);
+    gl.uniform2i(at("axes"), axes[0], axes[1]);
+    gl.uniform4fv(at("toPixel"), toPixel);
+    gl.uniform2f(at("size"), gl.canvas.width, gl.canvas.height);
+    for (const isRim of [true, false]) {  // on bright tissue a line is seen by its dark rim
+      gl.uniform1f(at("halfWidth"), (isRim ? 1.75 : 0.75) * pixel);
+      for (const { outline, color } of outlines) {
+        gl.uniform3fv(at("shade"), isRim ? [0, 0, 0] : color.map((shade) => shade / 255));
+        gl.bindVertexArray(outline.array);
+        gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, outline.segments);
+      }
+    }
+    gl.bindVertexArray(null);
+    gl.disable(gl.SCISSOR_TEST);
   }
 }

@@ -1,23 +1,34 @@
 /** The image that the tabs Mesh, Head model and Labels work on. */
-import { byId, formatBytes, formatCount, make } from "./dom";
+import { byId, formatBytes, make } from "./dom";
 import { asInput } from "./drop";
 import { Cancelled, type Looker, Refused } from "./engine";
 import { nifti } from "./nifti";
 import type { ImageFacts, InputFile } from "./protocol";
-import { kMostMemory, type Page, tooLarge } from "./task";
+import { kMostMemory, type Page, type Task, tooLarge } from "./task";
+
+/** What it takes unpacked: gzip keeps its length modulo 4 GiB in the last four bytes. */
+async function unpackedBytes({ data }: InputFile): Promise<number> {
+  const size = data instanceof Blob ? data.size : data.length;
+  if (!(data instanceof Blob) || size < 18) return size;
+  const [one, other] = new Uint8Array(await data.slice(0, 2).arrayBuffer());
+  if (one !== 0x1f || other !== 0x8b) return size;
+  const length = new DataView(await data.slice(-4).arrayBuffer()).getUint32(0, true);
+  return size + (length < size / 2 ? length + 2 ** 32 : length);
+}
 
 export class Scan {
   files: InputFile[] = [];
   path = "";
   facts: ImageFacts | undefined;
-  volumeIndex = -1;
-  series = "";
+  private volumeIndex = -1;
+  private series = "";
   readonly looker: Looker;
   private readonly listeners: (() => void)[] = [];
 
   constructor(private readonly page: Page) { this.looker = page.engine.looker(); }
 
-  onOpen(listener: () => void): void { this.listeners.push(listener); }
+  /** Calls `listener` when an image is open, and when another begins to be opened (without `facts`). */
+  onChange(listener: () => void): void { this.listeners.push(listener); }
 
   /** Arguments of every program that reads it. */
   get readArgs(): string[] {
@@ -25,17 +36,43 @@ export class Scan {
       ...(this.series !== "" ? ["--series", this.series] : [])];
   }
 
-  /** \return the line that says why not; empty: it is open */
-  async open(given: InputFile[], isLabels = false): Promise<string> {
+  /** Opens what was given on a tab; where it is refused, the tab says why and offers what the line lets choose from. */
+  async take(task: Task, given: InputFile[], isLabels = false, volumeIndex = -1, series = ""): Promise<boolean> {
+    task.cancel();
+    task.part(".result").hidden = true;
+    task.refuse("");
+    this.volumeIndex = volumeIndex;
+    this.series = series;
+    const line = await this.open(given, isLabels), choices: HTMLElement[] = [];
+    const add = (label: string, index: () => number, number: string): void => {
+      const button = make("button", { type: "button" }, label);
+      button.addEventListener("click", () => this.take(task, given, isLabels, index(), number));
+      choices.push(button);
+    };
+    const volumes = line.includes("--volume-index") ? /\b0 to (\d+)/.exec(line) : null;
+    if (volumes !== null) {
+      const box = make("input", { type: "number", min: "0", max: volumes[1], value: "0" });
+      choices.push(make("label", {}, "Volume ", box));
+      add("Open it", () => Number(box.value), "");
+    } else if (line.includes("--series")) {
+      for (const [, number, text] of line.matchAll(/[(;] ?(\d+): (.*?)(?=; \d+: |\); )/g)) add(`${number}: ${text}`, () => -1, number);
+    }
+    task.refuse(line, choices);
+    return line === "" && this.facts !== undefined;
+  }
+
+  /** \return the line that says why not; empty: it is open, or another was opened meanwhile */
+  private async open(given: InputFile[], isLabels: boolean): Promise<string> {
     const { files, path } = asInput(given);
-    const bytes = files.reduce((sum, file) => sum + (file.data instanceof Blob ? file.data.size : file.data.length), 0);
     this.facts = undefined;
     this.files = files;
     this.path = path;
+    for (const listener of this.listeners) listener();
     byId("facts").textContent = "reading ...";
     byId("facts-box").hidden = false;
     byId("scan-warnings").replaceChildren();
     try {
+      const bytes = (await Promise.all(files.map(unpackedBytes))).reduce((sum, each) => sum + each, 0);
       if (2 * bytes > kMostMemory) throw new Refused(tooLarge(path, 2 * bytes, "adaptiso-mesh, or adaptiso-giant"), 3);
       const { facts, shades } = await this.looker.open({ files, path, volumeIndex: this.volumeIndex, series: this.series, isLabels });
       this.facts = facts;
@@ -65,4 +102,3 @@ export class Scan {
 export function memoryOf(facts: ImageFacts, previewTriangles: number): number {
   return 3 * facts.bytes + 110 * previewTriangles * facts.previewStep ** 2 + 30e6;
 }
-export { formatCount };

@@ -3,7 +3,7 @@ import { byId, formatCount, make } from "./dom";
 import { stemOf, takeFiles } from "./drop";
 import { type Looker, Refused } from "./engine";
 import type { InputFile, OpenedMesh, Shape } from "./protocol";
-import { kReport, number, outputsOf, type Page, reportOf, type Run, Task } from "./task";
+import { isChecked, kReport, number, outputsOf, type Page, reportOf, type Run, Task } from "./task";
 import type { Color, Surface } from "./painter";
 
 const kColor: Color = [240, 190, 120], kOther: Color = [110, 190, 240];
@@ -37,7 +37,7 @@ class Meshes {
   }
 
   /** What can be read; the program says what can't. */
-  async show(files: InputFile[], paint?: (shape: Shape) => Uint8Array | undefined): Promise<void> {
+  async show(files: InputFile[], paint?: (shape: Shape) => Uint8Array | undefined): Promise<Surface[]> {
     const surfaces: Surface[] = [];
     for (const [n, file] of files.entries()) {
       try {
@@ -48,10 +48,11 @@ class Meshes {
       }
     }
     const view = await this.page.view();
-    if (surfaces.length === 0) return;
+    if (surfaces.length === 0) return [];
     await view?.clear();
     await view?.showSurfaces(surfaces);
     document.body.dataset.shown = files.map((file) => file.path).join(" ");
+    return surfaces;
   }
 }
 
@@ -107,8 +108,8 @@ export class SimplifyTab {
     if (files.length === 0) return task.refuse("Give a mesh first.");
     const [file] = files, format = byId<HTMLSelectElement>("simplify-format").value;
     const args = [file.path];
-    if (number("simplify-error") !== "") args.push("--max-error", number("simplify-error"));
-    if (number("simplify-triangles") !== "") args.push("--triangles", number("simplify-triangles"));
+    if (isChecked("simplify-by-count")) args.push("--triangles", number("simplify-triangles"));
+    else args.push("--max-error", number("simplify-error"));
     const output = `${stemOf(file.path)}-simple${format}`;
     args.push("-o", output, "--json", kReport);
     const run: Run = { program: "adaptiso-simplify", args, files }, done = await task.run(run);
@@ -119,7 +120,7 @@ export class SimplifyTab {
       + (report.output.errorBoundMm === null ? "" : `; no point farther than ${Number(report.output.errorBoundMm.toPrecision(3))} mm (proved)`),
       run, done, [result]);
     task.addSave(`Save ${result.path}`, result.path, () => result.bytes, true);
-    await this.meshes.show([{ path: result.path, data: result.bytes }]);
+    task.addGlb(`${stemOf(result.path)}.glb`, await this.meshes.show([{ path: result.path, data: result.bytes }]));
   }
 }
 
@@ -144,13 +145,13 @@ export class CompareTab {
     await task.show(`mean ${mm(all.meanMm)}, 95 % within ${mm(all.p95Mm)}, maximum ${mm(all.maxMm)}`, run, done, outputsOf(done));
     const [colored] = outputsOf(done);
     task.addSave(`Save ${colored.path}`, colored.path, () => colored.bytes, true);
-    await this.meshes.show([{ path: colored.path, data: colored.bytes }], (shape) => {
+    task.addGlb("distance.glb", await this.meshes.show([{ path: colored.path, data: colored.bytes }], (shape) => {
       if (shape.values === null) return undefined;
       const most = shape.values.reduce((a, b) => Math.max(a, Math.abs(b)), 0) || 1, colors = new Uint8Array(4 * shape.values.length);
       shape.values.forEach((value, n) => {
         colors.set([...kViridis[Math.round(Math.min(1, Math.abs(value) / most) * (kViridis.length - 1))], 255], 4 * n);
       });
       return colors;
-    });
+    }));
   }
 }

@@ -1,6 +1,8 @@
 /** What all tabs share: a form, a run of a program with its progress, and what comes out of it. */
 import { byId, copy, formatBytes, formatCount, make, quoted, save, sha256 } from "./dom";
 import { Cancelled, type Engine, type Job, Refused } from "./engine";
+import { glb } from "./glb";
+import type { Surface } from "./painter";
 import type { InputFile, OutputFile, RunResult } from "./protocol";
 import type { View } from "./view";
 
@@ -44,10 +46,12 @@ export class Task {
   get isRunning(): boolean { return this.job !== undefined; }
   cancel(): void { this.job?.cancel(); }
 
-  refuse(line: string): void {
+  /** \param choices  what can be pressed about it */
+  refuse(line: string, choices: HTMLElement[] = []): void {
     const box = this.part(".refusal");
     box.textContent = line;
     box.hidden = line === "";
+    this.part(".choices").replaceChildren(...choices);
   }
 
   /** \return nothing where it was cancelled or refused, which the tab then says */
@@ -111,6 +115,10 @@ export class Task {
         `${done.seconds.toFixed(1)} s, ${formatBytes(done.memoryBytes)} of memory. Nothing was sent.`));
     this.part(".result").hidden = false;
     document.body.dataset.done = this.id;
+  }
+
+  addGlb(name: string, surfaces: Surface[]): void {
+    this.addSave("Save GLB", name, () => glb(surfaces, `adaptiso ${kVersion}`));
   }
 
   addSave(label: string, name: string, data: () => Blob | Uint8Array, isMain = false): void {

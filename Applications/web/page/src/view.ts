@@ -3,10 +3,11 @@
  * keys. Points are scanner RAS mm throughout.
  */
 import type { Niivue } from "@niivue/niivue";
-import { type Painted, Painter, type Surface } from "./painter";
+import { swatch } from "./dom";
+import { type Outline, type Painted, Painter, type Surface } from "./painter";
 import type { Shape } from "./protocol";
 
-interface Drawn extends Painted { cuts: { at: number; points: Float32Array }[] }
+interface Drawn extends Painted { cuts: { at: number; outline: Outline }[] }
 interface Plane { normal: number[]; at: number }
 interface Tile { axCorSag: number; leftTopWidthHeight: number[]; leftTopMM: number[]; fovMM: number[] }
 
@@ -14,7 +15,7 @@ interface Tile { axCorSag: number; leftTopWidthHeight: number[]; leftTopMM: numb
 const kAxes: Record<number, [number, number, number]> = { 0: [2, 0, 1], 1: [1, 0, 2], 2: [0, 1, 2] };
 
 /** Where a mesh meets a plane: pairs of points, flat. */
-function cutOf({ points, triangles }: Shape, { normal, at }: Plane): Float32Array {
+function cutOf({ points, triangles }: Shape, { normal, at }: Plane): Float32Array<ArrayBuffer> {
   const heights = new Float32Array(points.length / 3), found: number[] = [];
   for (let n = 0; n < heights.length; ++n) {
     heights[n] = normal[0] * points[3 * n] + normal[1] * points[3 * n + 1] + normal[2] * points[3 * n + 2];
@@ -37,7 +38,7 @@ export class View {
   private turn = Promise.resolve();
 
   private constructor(private readonly library: typeof import("@niivue/niivue"), private readonly canvas: HTMLCanvasElement,
-      private readonly layer: HTMLCanvasElement, private readonly position: HTMLElement, nv: Niivue) {
+      private readonly position: HTMLElement, private readonly caption: HTMLElement, nv: Niivue) {
     this.nv = nv;
     this.painter = new Painter(nv.gl);
     this.hook();
@@ -45,8 +46,8 @@ export class View {
   }
 
   /** \throws Error where there is no WebGL 2 */
-  static async make(library: typeof import("@niivue/niivue"), canvas: HTMLCanvasElement, layer: HTMLCanvasElement,
-      position: HTMLElement): Promise<View> {
+  static async make(library: typeof import("@niivue/niivue"), canvas: HTMLCanvasElement,
+      position: HTMLElement, caption: HTMLElement): Promise<View> {
     const probe = document.createElement("canvas").getContext("webgl2");
     if (probe === null) {
       throw new Error("Slices and 3-D need WebGL 2, which this browser does not have or has turned off. Meshes are made all the same.");
@@ -59,7 +60,7 @@ export class View {
     const isSoftware = /swiftshader|llvmpipe|software/i.test(String(probe.getParameter(
       probe.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? probe.RENDERER)));
     await nv.attachToCanvas(canvas, !isSoftware);  // smooth edges take a processor four times as long
-    const view = new View(library, canvas, layer, position, nv);
+    const view = new View(library, canvas, position, caption, nv);
     nv.setSliceType(library.SLICE_TYPE.MULTIPLANAR);
     nv.setRenderAzimuthElevation(145, 12);
     return view;
@@ -89,6 +90,8 @@ export class View {
       if (this.nv.volumes.length === 0) await this.showBlank(surfaces);
       this.clearMeshes();
       this.drawn = surfaces.map((surface) => ({ ...this.painter.add(surface), cuts: [] }));
+      this.caption.replaceChildren(...surfaces.length > 5 ? [] : surfaces.flatMap(({ name, color, colors }) => [
+        ...(colors ? [] : [swatch(color)]), `${name} `]));
       this.nv.drawScene();
     });
   }
@@ -98,6 +101,10 @@ export class View {
     if (one === undefined) return;
     one.isShown = isShown;
     this.nv.drawScene();
+  }
+
+  show3dAlone(isAlone: boolean): void {
+    this.nv.setSliceType(isAlone ? this.library.SLICE_TYPE.RENDER : this.library.SLICE_TYPE.MULTIPLANAR);
   }
 
   moveTo(point: number[]): void {
@@ -114,8 +121,12 @@ export class View {
   }
 
   private clearMeshes(): void {
-    for (const one of this.drawn) this.painter.remove(one);
+    for (const one of this.drawn) {
+      this.painter.remove(one);
+      for (const cut of one.cuts) if (cut) this.painter.removeOutline(cut.outline);
+    }
     this.drawn = [];
+    this.caption.replaceChildren();
   }
 
   /** A black image around meshes that have none. */
@@ -168,45 +179,22 @@ export class View {
   }
 
   private drawOutlines(): void {
-    const { canvas, layer } = this;
-    if (layer.width !== canvas.width || layer.height !== canvas.height) {
-      layer.width = canvas.width;
-      layer.height = canvas.height;
-    }
-    const context = layer.getContext("2d");
-    if (context === null) return;
-    context.clearRect(0, 0, layer.width, layer.height);
+    const { canvas } = this, pixel = canvas.width / Math.max(1, canvas.clientWidth);
     if (this.nv.volumes.length === 0) return;
-    const pixel = canvas.width / Math.max(1, canvas.clientWidth);
     for (const tile of (this.nv as unknown as { screenSlices: Tile[] }).screenSlices) {
       if (!(tile.axCorSag in kAxes) || !(tile.fovMM?.length > 1)) continue;
-      const [left, top, width, height] = tile.leftTopWidthHeight, [axis, across, up] = kAxes[tile.axCorSag];
-      const plane = this.planeOf(axis);
-      const toX = (mm: number): number => left + width * (mm - tile.leftTopMM[0]) / tile.fovMM[0];
-      const toY = (mm: number): number => top + height * (1 - (mm - tile.leftTopMM[1]) / tile.fovMM[1]);
-      context.save();
-      context.beginPath();
-      context.rect(left, top, width, height);
-      context.clip();
-      context.lineCap = "round";
+      const [left, top, width, height] = tile.leftTopWidthHeight, [axis, ...axes] = kAxes[tile.axCorSag];
+      const plane = this.planeOf(axis), bottom = canvas.height - top - height;
       const outlines = this.drawn.filter((one) => one.isShown).map((one) => {
-        if (one.cuts[axis]?.at !== plane.at) one.cuts[axis] = { at: plane.at, points: cutOf(one.surface.shape, plane) };
-        const points = one.cuts[axis].points, path = new Path2D();
-        for (let n = 0; n + 5 < points.length; n += 6) {
-          path.moveTo(toX(points[n + across]), toY(points[n + up]));
-          path.lineTo(toX(points[n + 3 + across]), toY(points[n + 3 + up]));
+        if (one.cuts[axis]?.at !== plane.at) {
+          if (one.cuts[axis]) this.painter.removeOutline(one.cuts[axis].outline);
+          one.cuts[axis] = { at: plane.at, outline: this.painter.addOutline(cutOf(one.surface.shape, plane)) };
         }
-        return { path, color: `rgb(${one.surface.color.join(" ")})` };
+        return { outline: one.cuts[axis].outline, color: one.surface.color };
       });
-      context.strokeStyle = "black";  // on bright tissue a line is seen by its dark rim
-      context.lineWidth = 3.5 * pixel;
-      for (const { path } of outlines) context.stroke(path);
-      context.lineWidth = 1.5 * pixel;
-      for (const { path, color } of outlines) {
-        context.strokeStyle = color;
-        context.stroke(path);
-      }
-      context.restore();
+      const scale = [width / tile.fovMM[0], height / tile.fovMM[1]];
+      this.painter.drawOutlines(outlines, { box: [left, bottom, width, height], axes,
+        toPixel: [...scale, left - scale[0] * tile.leftTopMM[0], bottom - scale[1] * tile.leftTopMM[1]] }, pixel);
     }
   }
 

@@ -4,7 +4,8 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
-import { balls, ended, give, headLabels, kBrowsers, kPage, makeFolder, native, openPage, picture, press, saved, textOf,
+import validator from "gltf-validator";
+import { balls, dicomSlice, ended, give, headLabels, kBrowsers, kPage, makeFolder, native, openPage, picture, press, saved, textOf,
   writeNifti } from "./support.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -92,7 +93,19 @@ for (const browserName of kBrowsers) {
       }
     });
 
+    it("saves a GLB that the Khronos validator takes, in metres", async () => {
+      const bytes = await saved(page, open.downloads, "#mesh .saves button:nth-of-type(3)", "balls.glb");
+      const { issues, info } = await validator.validateBytes(new Uint8Array(bytes));
+      assert.deepEqual(issues.messages, []);
+      assert.equal(info.totalTriangleCount, Number((await textOf(page, "#mesh .verdict")).split(" ")[0].replaceAll(",", "")));
+      const { nodes } = JSON.parse(bytes.toString("utf8", 20, 20 + bytes.readUInt32LE(12)));
+      assert.deepEqual(nodes[0].scale, [0.001, 0.001, 0.001]);
+      assert.equal(nodes[1].name, "balls.off");
+    });
+
     it("makes the same bytes with every option of the form", async () => {
+      await give(page, "#scan-files", join(folder, "balls.nii"));
+      await page.waitForFunction(() => document.body.dataset.scan === "balls.nii");
       await page.select("#format", ".ply");
       await page.select("#frame", "lps");
       for (const id of ["#by-count", "#largest", "#fill"]) await press(page, id);
@@ -124,6 +137,53 @@ for (const browserName of kBrowsers) {
         assert.equal(status, 3, name);
         assert.equal(await textOf(page, "#mesh .refusal"), line);
       }
+    });
+
+    it("offers the volumes of a 4-D image and the series of a folder to choose from", async () => {
+      const isOpen = (text) => page.waitForFunction((part) => !document.querySelector("#facts-box").hidden
+        && document.querySelector("#facts").textContent.includes(part), { timeout: 60_000 }, text);
+      writeNifti(join(folder, "two.nii"), [8, 8, 8, 2], (i, _j, _k, volume) => 10 * volume + (i > 3));
+      await give(page, "#scan-files", join(folder, "two.nii"));
+      await page.waitForSelector("#mesh .choices button", { timeout: 60_000 });
+      await page.$eval("#mesh .choices input", (input) => { input.value = "1"; });
+      await press(page, "#mesh .choices button");
+      await isOpen("values 10 to 11");
+      await press(page, "#mesh .go");
+      assert.equal(await ended(page, "mesh"), "");
+      assert.match(await textOf(page, "#mesh .copy:nth-of-type(2) code"), /--volume-index 1/);
+
+      const slices = [];
+      for (const [series, size] of [[1, 6], [2, 9]]) {
+        for (let n = 0; n < size; ++n) {
+          slices.push(join(folder, `${series}-${n}.dcm`));
+          writeFileSync(slices.at(-1), dicomSlice(series, n, size));
+        }
+      }
+      await give(page, "#scan-files", ...slices);
+      await page.waitForSelector("#mesh .choices button", { timeout: 60_000 });
+      assert.equal((await page.$$("#mesh .choices button")).length, 2);
+      await press(page, "#mesh .choices button:nth-of-type(2)");
+      await isOpen("9 × 9 × 9 voxels");
+    });
+
+    it("draws the outlines of noise without freezing", async () => {
+      writeNifti(join(folder, "noise.nii"), [256, 256, 4], (i, j, k) => Math.imul(i + 256 * j + 65536 * k + 1, 2654435761) >>> 24);
+      await give(page, "#scan-files", join(folder, "noise.nii"));
+      const begin = performance.now();  // a 2-D canvas took a minute
+      await page.waitForFunction(() => document.body.dataset.scan === "noise.nii"
+        && document.querySelector("#preview").dataset.isovalue === document.querySelector("#iso").value, { timeout: 60_000 });
+      await picture(page, `${browserName}-noise`);
+      assert.ok(performance.now() - begin < 30_000, `${performance.now() - begin} ms`);
+    });
+
+    it("refuses what no memory of a page holds before it reads it", async () => {
+      // 4,000 megabytes of zeros by gzip's own record of its length
+      const bytes = Buffer.concat([Buffer.from([0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 3]), Buffer.alloc(100)]);
+      bytes.writeUInt32LE(4_000_000_000, bytes.length - 4);
+      writeFileSync(join(folder, "huge.nii.gz"), bytes);
+      await give(page, "#scan-files", join(folder, "huge.nii.gz"));
+      await page.waitForFunction(() => !document.querySelector("#mesh .refusal").hidden);
+      assert.match(await textOf(page, "#mesh .refusal"), /^huge\.nii\.gz needs about 8\.0 GB of memory, and a page has 4 GB: use adaptiso-mesh/);
     });
 
     it("cancels within 0.2 s, and makes the mesh again", async () => {

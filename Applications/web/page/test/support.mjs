@@ -42,7 +42,7 @@ export async function give(page, selector, ...files) {
 }
 
 /** Waits for the run of a tab to end. \return its refusal; empty where there is none */
-export async function ended(page, tab, timeout = 300_000) {
+export async function ended(page, tab, timeout = 100_000) {
   await page.waitForFunction((id) => document.querySelector(`#${id} .go`).disabled === false
     && (document.querySelector(`#${id} .result`).hidden === false || document.querySelector(`#${id} .refusal`).hidden === false),
     { timeout, polling: 50 }, tab);
@@ -96,7 +96,8 @@ export function writeNifti(path, size, sample, changes = [], bytesEach = 1) {
   [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0].forEach((value, n) => { bytes.writeFloatLE(value, 280 + 4 * n); });
   bytes.write("n+1", 344, "latin1");
   for (let n = 0; n < count; ++n) {
-    bytes[352 + n * bytesEach] = sample(n % size[0], Math.floor(n / size[0]) % size[1], Math.floor(n / size[0] / size[1]) % (size[2] ?? 1));
+    const [nx, ny, nz = 1] = size, slice = Math.floor(n / nx / ny);
+    bytes[352 + n * bytesEach] = sample(n % nx, Math.floor(n / nx) % ny, slice % nz, Math.floor(slice / nz));
   }
   for (const [offset, type, value] of changes) bytes[`write${type}`](value, offset);
   writeFileSync(path, bytes);
@@ -114,4 +115,33 @@ export function balls(i, j, k) {
 export function headLabels(i, j, k) {
   const d = 2 * Math.hypot(i - 42, j - 42, k - 42);
   return d < 62 ? 1 : d < 70 ? 2 : d < 78 ? 3 : 0;
+}
+
+/** A slice of a DICOM series of `size` slices of size x size voxels of 1 mm, Explicit VR Little Endian. */
+export function dicomSlice(series, n, size) {
+  const element = (group, number, type, value) => {
+    const short = (v) => { const b = Buffer.alloc(2); b.writeUInt16LE(v); return b; };
+    const data = typeof value === "number" ? short(value) : typeof value === "string"
+      ? Buffer.from(value.length % 2 ? `${value}${type === "UI" ? "\0" : " "}` : value) : value;
+    const head = Buffer.alloc(["OB", "OW"].includes(type) ? 12 : 8);
+    head.writeUInt16LE(group, 0);
+    head.writeUInt16LE(number, 2);
+    head.write(type, 4);
+    if (head.length === 12) head.writeUInt32LE(data.length, 8); else head.writeUInt16LE(data.length, 6);
+    return Buffer.concat([head, data]);
+  };
+  const kMr = "1.2.840.10008.5.1.4.1.1.4", uid = `1.2.3.${series}.${n + 1}`, pixels = Buffer.alloc(2 * size * size);
+  for (let at = 0; at < size * size; ++at) pixels.writeUInt16LE(100 * (at % size), 2 * at);
+  const meta = Buffer.concat([element(2, 1, "OB", Buffer.from([0, 1])), element(2, 2, "UI", kMr), element(2, 3, "UI", uid),
+    element(2, 0x10, "UI", "1.2.840.10008.1.2.1"), element(2, 0x12, "UI", "1.2.3")]);
+  const length = Buffer.alloc(4);
+  length.writeUInt32LE(meta.length);
+  return Buffer.concat([Buffer.alloc(128), Buffer.from("DICM"), element(2, 0, "UL", length), meta,
+    element(8, 0x16, "UI", kMr), element(8, 0x18, "UI", uid), element(8, 0x60, "CS", "MR"),
+    element(0x18, 0x50, "DS", "1"), element(0x20, 0xd, "UI", "1.2.3"), element(0x20, 0xe, "UI", `1.2.3.${series}`),
+    element(0x20, 0x11, "IS", String(series)), element(0x20, 0x13, "IS", String(n + 1)),
+    element(0x20, 0x32, "DS", `0\\0\\${n}`), element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0"), element(0x20, 0x52, "UI", "1.2.3.9"),
+    element(0x28, 2, "US", 1), element(0x28, 4, "CS", "MONOCHROME2"), element(0x28, 0x10, "US", size), element(0x28, 0x11, "US", size),
+    element(0x28, 0x30, "DS", "1\\1"), element(0x28, 0x100, "US", 16), element(0x28, 0x101, "US", 16), element(0x28, 0x102, "US", 15),
+    element(0x28, 0x103, "US", 0), element(0x7fe0, 0x10, "OW", pixels)]);
 }
