@@ -24,7 +24,7 @@ export function nifti(size: number[], affine: number[], samples: Uint8Array): Ui
   return bytes;
 }
 
-/** A head of 2 mm voxels: skin, skull, CSF, a folded brain with ventricles, an eye on either side, and noise
+/** A head of 2 mm voxels: skin, skull, CSF, a folded brain with ventricles, eyes, nose, ears, a neck, and noise
  * that is the same every time. */
 export function exampleHead(): Uint8Array<ArrayBuffer> {
   const size = [84, 104, 92], samples = new Uint8Array(size[0] * size[1] * size[2]);
@@ -40,17 +40,18 @@ export function exampleHead(): Uint8Array<ArrayBuffer> {
       for (let i = 0; i < size[0]; ++i, ++n) {
         const x = 2 * i - 83, y = 2 * j - 105, z = 2 * k - 92;
         const skin = depthIn(x, y, z, 76, 96, 86);
-        const nose = depthIn(x, y - 92, z + 28, 12, 16, 18);
+        const nose = depthIn(x, y - 86, z + 30, 11, 16, 20), ear = depthIn(Math.abs(x) - 73, y + 6, z + 14, 8, 16, 22);
+        const neck = z < -40 ? 46 - Math.hypot(x, y + 14) : -1;
         const folds = 2.4 * Math.sin(x / 4.5 + Math.sin(z / 7)) * Math.sin(y / 5.5) * Math.sin(z / 5 + Math.cos(x / 9));
         const brain = depthIn(x, y, z - 6, 61, 79, 68) + folds - Math.max(0, 3.5 - Math.abs(x)) * (z > 20 ? 1.5 : 0);
         const ventricle = depthIn(Math.abs(x) - 9, y + 4, z - 12, 6, 26, 9);
         let value = 6;
-        if (skin > 0 || nose > 0) value = 150;
+        if (Math.max(skin, nose, ear, neck) > 0) value = 150;
         if (skin > 5) value = 35;
         if (skin > 11) value = 55;
         if (brain > 0) value = brain > 5 ? 178 : 128;
         if (brain > 0 && ventricle > 0) value = 48;
-        const eye = depthIn(Math.abs(x) - 30, y - 72, z + 24, 12, 12, 12);
+        const eye = depthIn(Math.abs(x) - 28, y - 67, z + 22, 11, 11, 11);
         if (eye > 0 && brain <= 0) value = 52;
         samples[n] = Math.max(0, Math.round(value + 9 * (noise() + noise() + noise())));
       }
