@@ -19,27 +19,36 @@ using ItkMesh = itk::Mesh<Coordinate, 3,
 ///               keep the points exactly; float rounds them (0.00002 mm at 200 mm).
 template <class Mesh>
 void fillItkMesh(const TriangleMesh& surface, Mesh& mesh) {
-    mesh.GetPoints()->Reserve(surface.points.size());
+    // vectors or maps; SetPoint() and SetCell() would send an event for each
+    auto& points = mesh.GetPoints()->CastToSTLContainer();
+    if constexpr (requires { points.resize(1); }) points.resize(surface.points.size());
     for (std::size_t id = 0; id < surface.points.size(); ++id) {
         typename Mesh::PointType point;
         for (int axis = 0; axis < 3; ++axis) {
             point[axis] = static_cast<typename Mesh::CoordRepType>(surface.points[id][axis]);
         }
-        mesh.SetPoint(id, point);
+        points[id] = point;
     }
-    for (std::size_t id = 0; id < surface.triangles.size(); ++id) {
-        const auto corner = [&](int n) {
-            return static_cast<itk::IdentifierType>(surface.triangles[id][n]);
-        };
-        if constexpr (requires { mesh.AddFaceTriangle(corner(0), corner(1), corner(2)); }) {
-            mesh.AddFaceTriangle(corner(0), corner(1), corner(2));
-        } else {
-            using Cell = itk::TriangleCell<typename Mesh::CellType>;
-            typename Mesh::CellAutoPointer cell;
-            cell.TakeOwnership(new Cell);
-            for (int n = 0; n < 3; ++n) cell->SetPointId(n, corner(n));
-            mesh.SetCell(id, cell);
+    mesh.GetPoints()->Modified();
+    if constexpr (requires { mesh.AddFaceTriangle(0, 0, 0); }) {
+        for (const Triangle& t : surface.triangles) {
+            mesh.AddFaceTriangle(static_cast<itk::IdentifierType>(t[0]),
+                                 static_cast<itk::IdentifierType>(t[1]),
+                                 static_cast<itk::IdentifierType>(t[2]));
         }
+    } else {
+        const auto made = Mesh::CellsContainer::New();
+        auto& cells = made->CastToSTLContainer();
+        if constexpr (requires { cells.resize(1); }) cells.resize(surface.triangles.size());
+        for (std::size_t id = 0; id < surface.triangles.size(); ++id) {
+            auto* const cell =
+                new itk::TriangleCell<typename Mesh::CellType>;  // the mesh deletes it
+            for (int n = 0; n < 3; ++n) {
+                cell->SetPointId(n, static_cast<itk::IdentifierType>(surface.triangles[id][n]));
+            }
+            cells[id] = cell;
+        }
+        mesh.SetCells(made);
     }
 }
 
