@@ -74,7 +74,6 @@ const Format kFormats[] = {
 };
 
 PixelType pixelTypeOf(const ItkRequest& request, const itk::ImageIOBase& io) {
-    using Component = itk::IOComponentEnum;
     const auto refuse = [&](const std::string& fault) {
         return FileError(request.file.string() + ": " + fault + "; give a scalar 3-D image");
     };
@@ -82,32 +81,13 @@ PixelType pixelTypeOf(const ItkRequest& request, const itk::ImageIOBase& io) {
         throw refuse("has " + std::to_string(io.GetNumberOfComponents()) +
                      " values a voxel (colours or vectors)");
     }
-    const bool isSigned =
-        io.GetComponentType() == Component::CHAR || io.GetComponentType() == Component::SHORT ||
-        io.GetComponentType() == Component::INT || io.GetComponentType() == Component::LONG ||
-        io.GetComponentType() == Component::LONGLONG;
-    switch (io.GetComponentType()) {
-        case Component::FLOAT:
-            return PixelType::Float32;
-        case Component::DOUBLE:
-            return PixelType::Float64;
-        case Component::UCHAR:
-        case Component::CHAR:
-            return isSigned ? PixelType::Int8 : PixelType::UInt8;
-        case Component::USHORT:
-        case Component::SHORT:
-            return isSigned ? PixelType::Int16 : PixelType::UInt16;
-        case Component::UINT:
-        case Component::INT:
-            return isSigned ? PixelType::Int32 : PixelType::UInt32;
-        case Component::ULONG:
-        case Component::LONG:
-        case Component::ULONGLONG:
-        case Component::LONGLONG:
-            return isSigned ? PixelType::Int64 : PixelType::UInt64;
-        default:
-            throw refuse("has samples of an unknown type");
-    }
+    using enum PixelType;  // in the order of ITK's, whose long has 64 bits on Linux
+    constexpr PixelType kTypes[]{UInt8,  Int8,  UInt16, Int16,  UInt32,  Int32,
+                                 UInt64, Int64, Int64,  UInt64, Float32, Float64};
+    const auto place = static_cast<std::size_t>(io.GetComponentType()) -
+                       static_cast<std::size_t>(itk::IOComponentEnum::UCHAR);
+    if (place >= std::size(kTypes)) throw refuse("has samples of an unknown type");
+    return kTypes[place];
 }
 
 ImageGeometry geometryOf(const itk::ImageIOBase& io, bool isRas) {
