@@ -4,6 +4,7 @@ import { takeFiles } from "./drop";
 import type { InputFile, RunResult } from "./protocol";
 import type { Scan } from "./scan";
 import { isChecked, kReport, number, type Page, reportOf, type Run, Task } from "./task";
+import { exampleHead } from "./nifti";
 import type { Color, Surface } from "./painter";
 import { zip } from "./zip";
 
@@ -23,6 +24,11 @@ export class HeadTab {
     });
     byId("head-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
     byId("source").addEventListener("change", () => this.showSource());
+    byId("head-example").addEventListener("click", async () => {
+      byId<HTMLSelectElement>("source").value = "t1";
+      this.showSource();
+      if (await scan.take(this.task, [{ path: "example.nii", data: exampleHead() }])) await this.make();
+    });
     takeFiles(byId("head-drop"), (files) => scan.take(this.task, files));
     scan.onChange(() => { byId("head-scan").textContent = scan.facts === undefined ? "no scan yet" : scan.path; });
     this.showSource();

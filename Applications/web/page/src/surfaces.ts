@@ -16,6 +16,7 @@ async function bytesOf(file: InputFile): Promise<Uint8Array> {
 class Meshes {
   readonly task: Task;
   readonly files: InputFile[] = [];
+  shown: Surface[] = [];
   private readonly looker: Looker;
 
   constructor(id: string, readonly page: Page, most: number, make: () => Promise<void>) {
@@ -52,20 +53,21 @@ class Meshes {
     await view?.clear();
     await view?.showSurfaces(surfaces);
     document.body.dataset.shown = files.map((file) => file.path).join(" ");
+    this.shown = surfaces;
     return surfaces;
   }
 }
 
 interface CheckReport { surfaces: { file: string; error: string | null; passed: boolean; triangles: number; failed: string[];
   checks: { name: string; required: boolean; outcome: string; finding: string }[];
-  examples: { defect: string; pointMm: number[] | null }[] }[] }
+  examples: { defect: string; vertices: number[]; pointMm: number[] | null }[] }[] }
 
 export class CheckTab {
   private readonly meshes: Meshes;
   constructor(page: Page) { this.meshes = new Meshes("check", page, 8, () => this.make()); }
 
   private async make(): Promise<void> {
-    const { task, files, page } = this.meshes;
+    const { task, files, page, shown } = this.meshes;
     if (files.length === 0) return task.refuse("Give a mesh first.");
     const args = files.map((file) => file.path);
     if (byId<HTMLInputElement>("nested").checked) args.push("--nested");
@@ -84,9 +86,13 @@ export class CheckTab {
           + `${check.finding === "" ? "" : `: ${check.finding}`}`));
       }
       const places = make("p", { className: "saves" });
+      const shape = shown.find(({ name }) => name === surface.file)?.shape;
       for (const example of (surface.examples ?? []).slice(0, 12)) {
-        if (example.pointMm === null) continue;
-        const point = example.pointMm, button = make("button", { type: "button" }, `Show ${example.defect}`);
+        // a vertex lies right whatever the file's frame is
+        const vertex = example.vertices?.[0], point = shape && vertex !== undefined && 3 * vertex < shape.points.length
+          ? Array.from(shape.points.subarray(3 * vertex, 3 * vertex + 3)) : example.pointMm;
+        if (point === null || !point.every(Number.isFinite)) continue;
+        const button = make("button", { type: "button" }, `Show ${example.defect}`);
         button.addEventListener("click", async () => (await page.view())?.moveTo(point));
         places.append(button);
       }

@@ -166,6 +166,18 @@ for (const browserName of kBrowsers) {
       await isOpen("9 × 9 × 9 voxels");
     });
 
+    it("takes what is dropped beside a zone, for the tab that is seen", async () => {
+      await press(page, "#tab-head");
+      await page.evaluate((bytes) => {
+        const data = new DataTransfer();
+        data.items.add(new File([Uint8Array.from(bytes)], "dropped.nii"));
+        document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+      }, [...readFileSync(join(folder, "balls.nii"))]);
+      await page.waitForFunction(() => document.querySelector("#head-scan").textContent === "dropped.nii", { timeout: 60_000 });
+      await press(page, "#tab-mesh");
+      assert.match(await textOf(page, "#facts"), /^dropped\.nii: NIfTI-1, 48 × 48 × 48 voxels/);
+    });
+
     it("draws the outlines of noise without freezing", async () => {
       writeNifti(join(folder, "noise.nii"), [256, 256, 4], (i, j, k) => Math.imul(i + 256 * j + 65536 * k + 1, 2654435761) >>> 24);
       await give(page, "#scan-files", join(folder, "noise.nii"));
@@ -241,6 +253,15 @@ for (const browserName of kBrowsers) {
         if (!name.endsWith("report.json")) assert.deepEqual(bytes, readFileSync(join(folder, name)), name);
       }
       await picture(page, `${browserName}-labels`);
+    });
+
+    it("makes a head model of the example by one click", async () => {
+      await press(page, "#tab-head");
+      await press(page, "#head-example");
+      assert.equal(await ended(page, "head", 600_000), "");
+      assert.match(await textOf(page, "#head .verdict"), /^3 surfaces of ([\d,]+), \1, \1 vertices, closed, each inside the next; 0 pairs cross$/);
+      await page.waitForFunction(() => document.body.dataset.shown === "model", { timeout: 60_000 });
+      await picture(page, `${browserName}-head-example`);
     });
 
     it("checks meshes as the program does", async () => {
