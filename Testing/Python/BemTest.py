@@ -272,6 +272,29 @@ class FourLayers(InFolder):
             if file.suffix not in (".json", ".md") or file.name == "coordsystem.json":
                 self.assertEqual((ours / file.name).read_bytes(), file.read_bytes(), file.name)
 
+    def test_sources_are_the_programs_to_the_byte(self):
+        import nibabel
+        cortex = adaptiso.surface((spheres(radii=(40, 66, 72)) == 1).astype(np.uint8), 0.5, affine=affine())
+        cortex.save(self.folder / "lh.vtp")
+        nibabel.save(nibabel.Nifti1Image(np.asfortranarray(spheres()), affine()), self.folder / "seg.nii")
+        for options, arguments in (
+                ({"sources": [cortex], "source_count": 50},
+                 ["--sources", self.folder / "lh.vtp", "--source-count", 50]),
+                ({"source_grid": 15}, ["--source-grid", 15])):
+            model = adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), **options, **QUICK)
+            model.save(self.folder / "ours", replace=True)
+            program("adaptiso-bem", "--labels", self.folder / "seg.nii", "--tissue", "brain=1",
+                    "--tissue", "skull=2", "--tissue", "scalp=3", *arguments, *ARGUMENTS, "-o",
+                    self.folder / "theirs", "--force")
+            for name in ("dipoles.txt", "sources-src.fif"):
+                self.assertEqual((self.folder / "ours" / name).read_bytes(),
+                                 (self.folder / "theirs" / name).read_bytes(), name)
+        with self.assertRaisesRegex(adaptiso.Error, "sources and source_grid"):
+            adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), sources=[cortex], source_grid=10)
+        far = adaptiso.Mesh(cortex.vertices + 200, cortex.faces)
+        with self.assertRaisesRegex(adaptiso.Error, "sources: 100.0 % of the sources lie outside inner_skull"):
+            adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), sources=[far], **QUICK)
+
     @needs("nibabel")
     def test_pial_surfaces_and_aseg_are_taken_as_by_the_program(self):
         import nibabel

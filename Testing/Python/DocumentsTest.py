@@ -117,6 +117,16 @@ class Pages(InFolder):
             "filters": None, "fill_value": 0, "order": "C"}))
         (array / "0.0.0").write_bytes((150 + ball((80, 80, 80))).astype("<f4").tobytes())
 
+    def assert_like_a_sphere(self, forward, info):
+        """Lead fields of a head and of the sphere that fits its electrodes are alike: no frame or order is mixed up."""
+        import mne
+        sphere = mne.make_sphere_model("auto", "auto", info, verbose=False)
+        other = mne.make_forward_solution(info, forward["mri_head_t"], forward["src"], sphere, meg=False, verbose=False)
+        fields = [one["sol"]["data"] - one["sol"]["data"].mean(axis=0) for one in (forward, other)]
+        self.assertEqual(fields[0].shape, (21, 3 * forward["nsource"]))
+        alike = [np.corrcoef(a, b)[0, 1] for a, b in zip(fields[0].T, fields[1].T)]
+        self.assertGreater(np.median(alike), 0.9)
+
     @needs("nibabel", "mne", "tqdm")
     @unittest.skipUnless((BIN / "adaptiso-giant").exists(), "built without programs")
     def test_python(self):
@@ -124,11 +134,12 @@ class Pages(InFolder):
         self.write_zarr()
         # MNE's solution of 2,562 vertices takes minutes
         blocks = blocks_of("Documentation/Python.md", ("vertices=2562", "vertices=162"))
-        self.assertEqual(len(blocks), 7)
+        self.assertEqual(len(blocks), 8)
         path = f"{BIN}{os.pathsep}{os.environ.get('PATH', '')}"
         with mock.patch.dict(os.environ, {"PATH": path}), contextlib.redirect_stderr(io.StringIO()):
             made = self.run_blocks(blocks)
         self.assertIn("solution", made["bem"])
+        self.assert_like_a_sphere(made["forward"], made["info"])
         self.assertTrue(adaptiso.check(made["walls"].region(17)))
         self.assertAlmostEqual(made["report"]["volumeMm3"], 4 / 3 * np.pi * 30**3, delta=1000)
         for name in ("head.stl", "hippocampus.stl", "walls.vtp", "brain.pvtp", "coarse.ply", "brain.ply"):

@@ -290,6 +290,7 @@ class _Source(NamedTuple):
     lesion: Optional[Samples]
     head_mask: Optional[Samples]
     pial: List[Mesh]
+    sources: List[Mesh]
     surfaces: List[Mesh]
     inputs: List[List[str]]
     warnings: List[Warned]
@@ -302,6 +303,7 @@ class _Source(NamedTuple):
                 "lesion": None if self.lesion is None else self.lesion.volume,
                 "head_mask": None if self.head_mask is None else self.head_mask.volume,
                 "pial": [mesh._data for mesh in self.pial],
+                "sources": [mesh._data for mesh in self.sources],
                 "surfaces": [mesh._data for mesh in self.surfaces], "inputs": self.inputs,
                 "warnings": self.warnings, "preset": preset, "tissues": tissues}
 
@@ -325,7 +327,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         voxel: Optional[float] = None, conductivity: Sequence[float] = (0.3, 0.006, 0.3),
         electrodes: Union[Mapping[str, Point], Any] = None, electrodes_in: Optional[str] = None,
         montage: Optional[str] = None, landmarks: Union[Mapping[str, Point], str, None] = None,
-        head_shape: bool = False, threads: int = 0,
+        sources: Optional[Sequence[Any]] = None, source_count: int = 4098,
+        source_grid: Optional[float] = None, head_shape: bool = False, threads: int = 0,
         progress: Optional[Progress] = None) -> HeadModel:
     """Make the nested surfaces of a head model: inner skull, outer skull, outer skin, and with four
     layers the brain; electrodes on the skin.
@@ -347,7 +350,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
     lesion : image, optional
         With `t1`: a mask of lesions within the skull; they count as brain, whatever their values.
     pial : sequence, optional
-        With `t1` and four layers: the cortex, as `surfaces`: ``["lh.pial", "rh.pial"]``.
+        With `t1`: the cortex, as `surfaces`: ``["lh.pial", "rh.pial"]``. The inner skull holds it,
+        and with four layers the brain's own surface.
     labels : image, optional
         A segmentation; `tissues` says of what.
     tissues : {"charm", "headreco", "aseg", "samseg", "totalsegmentator"} or dict, optional
@@ -366,7 +370,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
     volume : image, optional
         With `surfaces`: the image they belong to, for tkRAS.
     input_coordinates : {"ras", "lps", "tkras", "voxel"}, or a sequence of one for each, optional
-        The frame of the files of `surfaces`, or of `pial`, whatever the file says of it.
+        The frame of the files of `surfaces`, `pial` and `sources`, in this order, whatever the file
+        says of it.
     affine : array_like of shape (4, 4), optional
         Of images that are plain arrays: voxel indices to scanner RAS mm.
     layers : {3, 4, 1}
@@ -414,6 +419,14 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
     landmarks : mapping of "nasion", "left_ear", "right_ear" to (float, float, float), or "guess"
         Scanner RAS mm; "inion" may be among them. Default: those of the electrodes' file; guessed,
         with a warning, where they are needed or this is "guess".
+    sources : sequence, optional
+        The cortex, as `surfaces`: ``["lh.white", "rh.white"]``: dipoles along its normals, none
+        nearer to the innermost surface than one edge; `save` writes dipoles.txt (OpenMEEG) and
+        sources-src.fif (MNE).
+    source_count : int
+        Sources of each of these surfaces, spread evenly.
+    source_grid : float, optional
+        Instead of `sources`: dipoles along x, y and z at the points of a grid, mm apart, 1 to 50.
     head_shape : bool
         Keep the skin alone as well, as finely as it was found, for ``save(folder, fif=True)``.
     threads : int
@@ -468,6 +481,9 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         "voxel": 0.0 if voxel is None else _length("voxel", voxel, 5),
         "conductivity": _conductivities(conductivity, count_),
         "head_shape": flag("head_shape", head_shape),
+        "source_count": count("source_count", source_count, 1, 1000000),
+        "source_grid": 0.0 if source_grid is None else number(
+            "source_grid", source_grid, "a number from 1 to 50, in mm", lambda mm: 1 <= mm <= 50),
         "input_coordinates": [],
         **_electrodes(electrodes, electrodes_in, montage, landmarks, count_),
     }
@@ -477,7 +493,9 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         raise Error("layers 4: a CT does not show where the brain ends and CSF begins")
     preset, lists = _tissues(tissues, labels is not None, count_, head_mask is not None)
     source = _source(t1, brain_mask, aseg, lesion, pial, labels, head_mask, probabilities, ct,
-                     surfaces, volume, input_coordinates, affine, count_)
+                     surfaces, volume, input_coordinates, affine, count_, sources)
+    if sources is not None and source_grid is not None:
+        raise Error("sources and source_grid: exclude each other")
     if input_coordinates is not None:
         options["input_coordinates"] = ([input_coordinates] if isinstance(input_coordinates, str)
                                         else [frame for frame in input_coordinates if frame])
@@ -495,7 +513,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
 
 def _source(t1: Any, brain_mask: Any, aseg: Any, lesion: Any, pial: Any, labels: Any,
             head_mask: Any, probabilities: Any, ct: Any, surfaces: Any, volume: Any,
-            input_coordinates: Any, affine: Any, layers: int) -> _Source:
+            input_coordinates: Any, affine: Any, layers: int, sources: Any) -> _Source:
     """The input that is given. \\raises Error"""
     given = {"t1": t1, "labels": labels, "probabilities": probabilities, "ct": ct,
              "surfaces": surfaces}
@@ -509,19 +527,19 @@ def _source(t1: Any, brain_mask: Any, aseg: Any, lesion: Any, pial: Any, labels:
             raise Error(f"{name}: needs t1")
     if head_mask is not None and kind != "labels":
         raise Error("head_mask: needs labels")
-    if pial is not None and layers != 4:
-        raise Error("pial: needs layers=4")
     if volume is not None and kind != "surfaces":
         raise Error("volume: needs surfaces")
-    if input_coordinates is not None and kind != "surfaces" and pial is None:
-        raise Error("input_coordinates: needs surfaces or pial")
-    source = _Source(kind, [], None, None, None, None, [], [], [], [])
+    if input_coordinates is not None and surfaces is None and pial is None and sources is None:
+        raise Error("input_coordinates: needs surfaces, pial or sources")
+    source = _Source(kind, [], None, None, None, None, [], [], [], [], [])
     if kind == "surfaces":
         if volume is not None:
             source.images.append(_image("volume", volume, affine, source))
         source.surfaces.extend(_surfaces("surfaces", surfaces, input_coordinates, source))
         if len(source.surfaces) != layers:
             raise Error(f"surfaces: are {len(source.surfaces)}, must be {layers}, from inside out")
+        if sources is not None:
+            source.sources.extend(_surfaces("sources", sources, input_coordinates, source))
         return source
     images = listed(kind, probabilities) if kind == "probabilities" else [given[kind]]
     if not images:
@@ -532,6 +550,8 @@ def _source(t1: Any, brain_mask: Any, aseg: Any, lesion: Any, pial: Any, labels:
     head = None if head_mask is None else _image("head_mask", head_mask, affine, source)
     if pial is not None:
         source.pial.extend(_surfaces("pial", pial, input_coordinates, source))
+    if sources is not None:
+        source.sources.extend(_surfaces("sources", sources, input_coordinates, source))
     marked = None if lesion is None else _image("lesion", lesion, affine, source)
     return source._replace(mask=mask, aseg=labelled, lesion=marked, head_mask=head)
 
@@ -550,7 +570,7 @@ def _image(name: str, image: Any, affine: Any, source: _Source) -> Samples:
 
 
 def _surfaces(name: str, surfaces: Any, input_coordinates: Any, source: _Source) -> List[Mesh]:
-    role = "surface" if name == "surfaces" else "pial surface"
+    role = {"surfaces": "surface", "pial": "pial surface", "sources": "source surface"}[name]
     meshes = []
     given = listed(name, surfaces.values() if isinstance(surfaces, Mapping) else surfaces)
     for surface, stated in zip(given, stated_frames(input_coordinates, given)):

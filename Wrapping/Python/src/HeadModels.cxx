@@ -30,6 +30,7 @@
 #include "adaptiso/HeadPipeline/BemJson.h"
 #include "adaptiso/HeadPipeline/BemModel.h"
 #include "adaptiso/HeadPipeline/BemReport.h"
+#include "adaptiso/HeadPipeline/BemSources.h"
 #include "adaptiso/HeadPipeline/BemSurfaces.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/PointFiles.h"
@@ -45,7 +46,7 @@ struct HeadSources {
     std::vector<std::shared_ptr<ArrayVolume>> images;  ///< with surfaces: the one they belong to
     std::shared_ptr<ArrayVolume> brainMask, aseg, lesion;  ///< with t1; may be null
     std::shared_ptr<ArrayVolume> headMask;                 ///< with labels; may be null
-    std::vector<std::shared_ptr<MeshData>> pial;           ///< with t1: the cortex
+    std::vector<std::shared_ptr<MeshData>> pial, cortex;   ///< with t1; for sources
     TissueLabels tissues;
     std::vector<std::shared_ptr<MeshData>> surfaces;  ///< inside out, in one frame
     std::vector<BemInput> inputs;                     ///< one for each of them
@@ -130,16 +131,25 @@ TriangleMesh inLps(const MeshData& surface, const std::optional<ImageGeometry>& 
     return mesh;
 }
 
+/// Surfaces of the cortex in LPS mm; those in tkRAS without a volume of their own are of `image`'s.
+std::vector<TriangleMesh> cortexOf(const std::vector<std::shared_ptr<MeshData>>& surfaces,
+                                   const std::optional<ImageGeometry>& image) {
+    std::vector<TriangleMesh> meshes;
+    for (const auto& surface : surfaces) {
+        std::optional<ImageGeometry> volume = surface->image() ? surface->image() : image;
+        if (volume) volume = frameVolume(CoordinateFrame::TkRas, *volume);
+        meshes.push_back(inLps(*surface, volume));
+    }
+    return meshes;
+}
+
 HeadBoundaries boundariesOfT1(const HeadSources& sources, const BoundaryOptions& options) {
     const VolumeView& t1 = sources.images.front()->view;
     BrainSources brain;
     if (sources.brainMask) brain.mask = sources.brainMask->view;
     if (sources.aseg) brain.aseg = sources.aseg->view;
     if (sources.lesion) brain.lesion = sources.lesion->view;
-    for (const auto& surface : sources.pial) {
-        const ImageGeometry& image = surface->image() ? *surface->image() : t1.geometry();
-        brain.pial.push_back(inLps(*surface, frameVolume(CoordinateFrame::TkRas, image)));
-    }
+    brain.pial = cortexOf(sources.pial, t1.geometry());
     return boundariesFromT1(t1, brain, options);
 }
 
@@ -215,6 +225,16 @@ void putElectrodes(BemModel& model, const BemHooks& hooks) {
     }
 }
 
+void putSources(BemModel& model, const BemHooks& hooks) {
+    if (!model.hasModel()) return;
+    try {
+        placeSources(model, hooks);
+    } catch (const InvalidInput& error) {
+        throw InvalidInput((model.options.sources.gridMm > 0 ? "source_grid: " : "sources: ") +
+                           std::string(error.what()));
+    }
+}
+
 void writeText(const fs::path& path, const std::string& text) {
     std::ofstream file(path, std::ios::binary | std::ios::trunc);
     file.write(text.data(), static_cast<std::streamsize>(text.size()));
@@ -250,8 +270,13 @@ std::shared_ptr<HeadModelData> HeadModelData::make(const HeadSources& sources,
                                  addSeconds(data->seconds_, stage, secondsSince(start));
                              },
                              watcher.callback()};
-        finishBemModel(firstSurfaces(sources, model, hooks), model, hooks);
+        std::vector<TriangleMesh> dense = firstSurfaces(sources, model, hooks);
+        const auto& image = model.image ? model.image : model.tkRasVolume;
+        model.pial = cortexOf(sources.pial, image);
+        model.options.sources.surfaces = cortexOf(sources.cortex, image);
+        finishBemModel(std::move(dense), model, hooks);
         putElectrodes(model, hooks);
+        putSources(model, hooks);
         watcher.tell("check", 1);
     });
     data->totalSeconds_ = secondsSince(begin);
@@ -457,6 +482,8 @@ BemModelOptions modelOptionsOf(const py::dict& options) {
     }
     model.conductivities = conductivitiesOf(options);
     model.electrodes = electrodesOf(options);
+    model.sources.count = take<std::int64_t>(options, "source_count");
+    model.sources.gridMm = take<double>(options, "source_grid");
     model.wantsHeadShape = take<bool>(options, "head_shape");
     model.inputCoordinates = take<std::vector<std::string>>(options, "input_coordinates");
     return model;
@@ -483,6 +510,7 @@ HeadSources sourcesOf(const py::dict& from) {
     sources.lesion = take<std::shared_ptr<ArrayVolume>>(from, "lesion");
     sources.headMask = take<std::shared_ptr<ArrayVolume>>(from, "head_mask");
     sources.pial = take<Meshes>(from, "pial");
+    sources.cortex = take<Meshes>(from, "sources");
     sources.tissues = tissuesOf(from);
     sources.surfaces = take<Meshes>(from, "surfaces");
     for (const auto& [file, role, format] :
