@@ -321,7 +321,7 @@ def ge_4(k):
 
     series, image = 8 * 512, 10 * 512
     return fields(
-        7000, (series + 62, "s", b"7"), (series + 278, "5s", b"AXIAL"), (series + 302, ">I", number(16)),
+        14336, (series + 62, "s", b"7"), (series + 278, "5s", b"AXIAL"), (series + 302, ">I", number(16)),
         (image + 88, "s", b"%d" % (k + 1)), (image + 600, "s", b"1"), (image + 146, ">I", number(2.5 * k)),
         (image + 154, ">2I", number(2), number(0.5)), (image + 196, ">2h", 1, 1),
         (image + 274, ">2hI", 8, 6, number(2))) + big(samples()[48 * k:48 * k + 48])
@@ -439,9 +439,14 @@ class OtherFormats(ApplicationTest):
 
     @has("rawtominc", "voxeltoworld")
     def test_minc_lies_where_its_own_tools_have_it(self):
+        for version in ([], ["-2"]):  # netCDF, HDF5
+            with self.subTest(version):
+                self.check_minc(version)
+
+    def check_minc(self, version):
         subprocess.run(
-            ["rawtominc", "-2", "-short", "-unsigned", "-range", "100", "291", "-real_range", "100",
-             "291", "-xstep", "2", "-ystep", "1.5", "-zstep", "2.5", "-xstart", "5", "-ystart", "-7",
+            ["rawtominc", *version, "-clobber", "-short", "-unsigned", "-range", "100", "291",
+             "-real_range", "100", "291", "-xstep", "2", "-ystep", "1.5", "-zstep", "2.5", "-xstart", "5", "-ystart", "-7",
              "-zstart", "30", "-xdircos", "0.8", "0.6", "0", "-ydircos", "-0.6", "0.8", "0", "-zdircos",
              "0", "0", "1", "x.mnc", "4", "6", "8"],
             cwd=self.folder, check=True, input=struct.pack("<192H", *samples()))
@@ -481,6 +486,9 @@ class OtherFormats(ApplicationTest):
             with self.subTest(kind):
                 self.write_slices(make)
                 self.check("I.000", kind, warned, (0, 0, 0), ((2, 0, 0), (0, row, 0), (0, 0, 2.5)))
+                if make is ge_4:
+                    self.path("I.002").write_bytes(make(2)[:-2])
+                    self.assert_fails(BAD_INPUT, "I.002: is shorter", "I.000", "--info")
 
     def test_siemens_vision_is_warned_of_as_its_thickness_is_cut_to_whole_mm(self):
         self.write_slices(vision)

@@ -19,6 +19,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "adaptiso/Core/Errors.h"
@@ -124,24 +125,83 @@ FileError cutOff(const std::filesystem::path& file) {
     return FileError(file.string() + ": is shorter than its header says; get it again");
 }
 
-/// The directories of all pages are there; libtiff takes those that are for the whole.
-void requireWholeTiff(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    const bool isLittle = file.get() == 'I';
-    const auto at = [&](std::uint64_t place, int bytes) {
-        file.seekg(static_cast<std::streamoff>(place));
+/// Whole numbers of a file.
+class Numbers {
+public:
+    Numbers(const std::filesystem::path& path, bool isLittle)
+        : path_(path), file_(path, std::ios::binary), isLittle_(isLittle) {}
+
+    /// \throws FileError  the file ends before
+    std::uint64_t at(std::uint64_t place, int bytes) {
+        file_.seekg(static_cast<std::streamoff>(place));
         std::uint64_t value = 0;
         for (int n = 0; n < bytes; ++n) {
-            const auto byte = static_cast<std::uint64_t>(file.get() & 0xFF);
-            value |= byte << 8 * (isLittle ? n : bytes - 1 - n);
+            const auto byte = static_cast<std::uint64_t>(file_.get() & 0xFF);
+            value |= byte << 8 * (isLittle_ ? n : bytes - 1 - n);
         }
-        if (!file) throw cutOff(path);
+        if (!file_) throw cutOff(path_);
         return value;
-    };
+    }
+
+private:
+    std::filesystem::path path_;
+    std::ifstream file_;
+    bool isLittle_;
+};
+
+/// The directories of all pages are there; libtiff takes those that are for the whole.
+void requireWholeTiff(const std::filesystem::path& path) {
+    Numbers file(path, std::ifstream(path).get() == 'I');  // "II": Intel's order
     const std::uint64_t most = std::filesystem::file_size(path);
     std::uint64_t pages = 0;
-    for (std::uint64_t page = at(4, 4); page != 0; page = at(page + 2 + 12 * at(page, 2), 4)) {
+    for (std::uint64_t page = file.at(4, 4); page != 0;
+         page = file.at(page + 2 + 12 * file.at(page, 2), 4)) {
         if (++pages > most / 18) throw cutOff(path);  // a ring
+    }
+}
+
+/// MINC 1 is netCDF (classic), whose library fills up with zeros where the file ends early.
+void requireWholeNetCdf(const std::filesystem::path& path) {
+    Numbers file(path, false);
+    if (file.at(0, 3) != 0x434446) return;  // "CDF"
+    std::uint64_t place = 8, end = 0;
+    const auto take = [&](int bytes) {
+        return file.at(std::exchange(place, place + bytes), bytes);
+    };
+    const auto skip = [&](std::uint64_t bytes) { place += (bytes + 3) / 4 * 4; };
+    const auto each = [&](const auto& work) {  // of a list: its tag, its length
+        take(4);
+        for (std::uint64_t left = take(4); left > 0; --left) {
+            skip(take(4));  // its name
+            work();
+        }
+    };
+    const auto attribute = [&] {
+        constexpr std::uint64_t kBytes[]{1, 1, 1, 2, 4, 4, 8};  // byte, char, short, int, ...
+        const std::uint64_t bytes = kBytes[std::min<std::uint64_t>(take(4), 6)];
+        skip(bytes * take(4));
+    };
+    each([&] { take(4); });  // dimensions
+    each(attribute);
+    each([&] {  // variables
+        skip(4 * take(4));
+        each(attribute);
+        take(4);
+        const std::uint64_t bytes = take(4);
+        end = std::max(end, take(file.at(3, 1) == 2 ? 8 : 4) + bytes);
+    });
+    if (std::filesystem::file_size(path) + 3 < end)
+        throw cutOff(path);  // the last may lack its fill
+}
+
+/// Its header is 14336 bytes; ITK's reader takes the end of each file of the series for the slice.
+void requireWholeGe4(itk::ImageIOBase& io, const std::filesystem::path& path) {
+    const std::filesystem::path folder = path.parent_path();
+    for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder)) {
+        if (!entry.is_regular_file() || !io.CanReadFile(entry.path().c_str())) continue;
+        Numbers file(entry.path(), false);
+        const std::uint64_t pixels = file.at(5394, 2) * file.at(5396, 2);
+        if (entry.file_size() < 14336 + 2 * pixels) throw cutOff(entry.path());
     }
 }
 
@@ -179,6 +239,8 @@ void readWhole(const Format& format, itk::ImageIOBase& io, const ItkRequest& req
 }
 
 ReadVolume readBy(const Format& format, itk::ImageIOBase& io, const ItkRequest& request) {
+    if (format.name == "MINC") requireWholeNetCdf(request.file);
+    if (format.name == "GE 4") requireWholeGe4(io, request.file);
     if (format.name == "TIFF") requireWholeTiff(request.file);
     if (format.name == "Stimulate") requireSafeStimulate(request.file);
     io.ReadImageInformation();
