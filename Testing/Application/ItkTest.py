@@ -517,10 +517,14 @@ class OtherFormats(ApplicationTest):
         """As ITK_AUTOLOAD_PATH names them; our own one there does no harm."""
         self.path("x.others").write_bytes(b"by others")
         self.path("x.nii").write_bytes(nifti())
+        self.path("x.PAR").write_bytes(b"# === DATA DESCRIPTION FILE by others")
+        self.path("y.PAR").write_bytes(b"# === DATA DESCRIPTION FILE")
         self.assert_fails(BAD_INPUT, "x.others: not a format that is read here", "x.others", "--info")
         os.environ["ITK_AUTOLOAD_PATH"] = f"{PLUGIN}:{BUILD / 'Testing' / 'itk'}"
         self.addCleanup(os.environ.pop, "ITK_AUTOLOAD_PATH")
-        self.check("x.others", "OthersImageIO (ITK)", {"guessed-orientation"})
+        for name in ("x.others", "x.PAR"):
+            self.check(name, "OthersImageIO (ITK)", {"guessed-orientation"})
+        self.assert_fails(BAD_INPUT, "y.PAR: is a PAR header of Philips", "y.PAR", "--info")
         self.assertEqual(self.image("x.nii")[0], "NIfTI-1")
 
     def test_what_no_reader_takes_is_named(self):

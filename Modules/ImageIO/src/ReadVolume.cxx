@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <type_traits>
 
@@ -116,9 +117,12 @@ std::optional<Reader> readerOfFile(const fs::path& file, std::string_view head,
     return std::nullopt;
 }
 
-/// TIFF, HDF5 and netCDF, which may hold a volume for ITK's readers.
+/// TIFF, HDF5 and netCDF, which may hold a volume for ITK's readers; all else where it has
+/// plug-ins.
 bool mayBeItks(std::string_view head) {
     using namespace std::string_view_literals;
+    const char* const plugIns = std::getenv("ITK_AUTOLOAD_PATH");
+    if (plugIns != nullptr && *plugIns != '\0') return true;
     return std::ranges::any_of(std::array{"II*\0"sv, "MM\0*"sv, "CDF\1"sv, "CDF\2"sv, "\x89HDF"sv},
                                [&](std::string_view magic) { return head.starts_with(magic); });
 }

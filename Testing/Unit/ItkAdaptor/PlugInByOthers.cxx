@@ -1,4 +1,4 @@
-// A plug-in as others make them for ITK_AUTOLOAD_PATH: images that begin with "by others".
+// A plug-in as others make them for ITK_AUTOLOAD_PATH: images with "by others" in the beginning.
 #include <itkImageIOBase.h>
 #include <itkObjectFactoryBase.h>
 #include <itkVersion.h>
@@ -16,8 +16,9 @@ public:
     itkTypeMacro(OthersImageIO, itk::ImageIOBase);
     // clang-format on
     bool CanReadFile(const char* name) override {
-        std::string word(9, '\0');
-        return std::ifstream(name).read(word.data(), 9) && word == "by others";
+        std::string head(64, '\0');
+        std::ifstream(name).read(head.data(), 64);
+        return head.find("by others") != std::string::npos;
     }
     void ReadImageInformation() override {
         SetNumberOfDimensions(3);
