@@ -23,6 +23,7 @@ done
 # ITK's readers of further formats would bring 18 MB of libraries, packed.
 find "$tree/lib" -type d -name itk -exec rm -r {} +
 mkdir -p "$tree/lib/c++"
+cp "$top/LICENSE" "$tree"
 if [ -d "$tree/lib/python3/dist-packages" ]; then
     mv "$tree/lib/python3/dist-packages" "$tree/python"
     rm -r "$tree/lib/python3"

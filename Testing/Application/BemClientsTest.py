@@ -47,11 +47,12 @@ def part_of_ball(points, radius, steps=5):
     distance = np.linalg.norm(points - CENTRE, axis=-1)
     part = (distance <= radius).astype(float)
     near = np.abs(distance - radius) < 1
-    offsets = (np.arange(steps) + 0.5) / steps - 0.5
-    count = np.zeros(near.sum())
-    for offset in np.stack(np.meshgrid(offsets, offsets, offsets), axis=-1).reshape(-1, 3):
-        count += np.linalg.norm(points[near] + offset - CENTRE, axis=-1) <= radius
-    part[near] = count / steps ** 3
+    steps = (np.arange(steps) + 0.5) / steps - 0.5
+    offsets = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
+    # |p + o|^2 = |p|^2 + 2 p o + |o|^2
+    within = (distance[near] ** 2)[:, None] + (offsets ** 2).sum(axis=1)
+    within += 2 * (points[near] - CENTRE) @ offsets.T
+    part[near] = (within <= radius ** 2).mean(axis=1)
     return part
 
 
@@ -209,7 +210,7 @@ class Frames(ClientTest):
                     off = np.linalg.norm(points - CENTRE, axis=1) - radius
                     self.assertLess(np.abs(off).max(), max(spacing) / 2)  # half a voxel
                     self.assertLess(np.linalg.norm(points.mean(axis=0) - CENTRE), 1)
-                self.accepted(name)
+                self.accepted(name, solve=name == "oblique")
 
     def test_subject_of_freesurfer(self):
         # orig.mgz of 2 mm voxels in FreeSurfer's order, its centre off the scanner's origin
@@ -493,7 +494,7 @@ class RealHead(SharedFolderTest):
     def test_with_a_brain_mask(self):
         self.bem("--t1", TEMPLATES / "ch2.nii.gz", "--brain-mask", TEMPLATES / "ch2bet.nii.gz",
                  "--vertices", 642, "-o", "masked")
-        self.accepted("masked")
+        self.accepted("masked", solve=False)  # spheres' models are solved
         self.assert_head("masked")
 
     def test_head_points_bring_a_cap_to_the_head(self):

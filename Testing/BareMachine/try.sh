@@ -151,17 +151,12 @@ tryArchive() {
         cp "$scans/ch2.nii.gz" "$scans/ch2bet.nii.gz" "$scans/aal.nii.gz" "$root$inside/"
         chown -R 1000:1000 "$root$inside"
         cp "$given" "$root/tmp/archive.tar.gz"
+        cp "$repository/Packaging/debian/tests/session" "$root/tmp/"
         user=1000:1000
         runInside "$release: first surface" "tar -xzf /tmp/archive.tar.gz --strip-components=1 &&
             bin/adaptiso-mesh ch2bet.nii.gz --iso 100 --pictures pictures"
         runInside "$release: self test" "bin/adaptiso-check --self-test"
-        runInside "$release: session" "export PATH=\$PWD/bin:\$PATH
-            adaptiso-mesh ch2bet.nii.gz --iso 100 --method mc -o full.vtp &&
-            adaptiso-compare ch2bet-iso100.vtp full.vtp --voxel 1 && adaptiso-check full.vtp &&
-            adaptiso-bem --t1 ch2.nii.gz --brain-mask ch2bet.nii.gz -o model --report model.html &&
-            adaptiso-labels aal.nii.gz -o aal &&
-            adaptiso-simplify full.vtp --max-error 0.2 -o small.vtp && adaptiso-bids --version &&
-            adaptiso-giant --version && sha256sum ch2bet-iso100.vtp"
+        runInside "$release: session" "PATH=\$PWD/bin:\$PATH sh /tmp/session . && sha256sum ch2bet-iso100.vtp"
         user=
         if [ "$release" = bookworm ]; then  # for whose Python the package is
             runInside "$release: Python" "apt-get update && apt-get install -y python3-numpy &&
@@ -173,8 +168,8 @@ tryArchive() {
 # Makes the package of the clone's programs; its name is then in $deb.
 makePackage() {
     runInside "package: make" ". Applications/quickstart/packages.sh &&
-        installPackages Packaging/packages.txt && cd build/release && cpack -G DEB"
-    deb=$(find "$root$clone/build/release" -maxdepth 1 -name 'adaptiso_*.deb')
+        installPackages Packaging/packages.txt && Packaging/debian.sh binary"
+    deb=$(find "$root$clone/build/debian" -name 'adaptiso_*.deb')
 }
 
 tryAll() {

@@ -85,7 +85,7 @@ class Citation(unittest.TestCase):
 
 class Versions(unittest.TestCase):
     def test_the_changelog_begins_with_this_one(self):
-        """Every heading is one that Packaging/changelog.py understands."""
+        """Every heading says a version and a date."""
         headings = re.findall(r"(?m)^## (.*)$", text("CHANGELOG.md"))
         for heading in headings:
             self.assertRegex(heading, r"^\d+\.\d+\.\d+ \((unreleased|\d{4}-\d\d-\d\d)\)$")
@@ -94,7 +94,8 @@ class Versions(unittest.TestCase):
         self.assertEqual(numbers, sorted(numbers, reverse=True))
 
     def test_the_readme_names_the_packages_of_this_one(self):
-        named = set(re.findall(r"adaptiso(?:-dev)?_([\d.]+)_", text("README.md")))
+        named = set(re.findall(r"adaptiso(?:-dev)?_([\d.]+)-1_", text("README.md")))
+        named.update(re.findall(r"^adaptiso \(([\d.]+)-1\)", text("Packaging/debian/changelog")))
         self.assertEqual(named, {VERSION})
         minor = ".".join(VERSION.split(".")[:2])
         for place in ("Documentation/Cpp.md", "Examples/meshScan/CMakeLists.txt"):
