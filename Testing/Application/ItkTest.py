@@ -502,6 +502,8 @@ class OtherFormats(ApplicationTest):
         self.path("visu_pars").write_text(VISU_PARS)
         self.path("2dseq").write_bytes(struct.pack("<192h", *samples()))
         self.check("2dseq", "Bruker 2dseq (ITK)", {"guessed-spacing", "guessed-position"})
+        self.path("notes").write_bytes(b"any other file " * 99)
+        self.assert_fails(BAD_INPUT, "notes: not a format that is read here", "notes", "--info")
         self.check_cut("2dseq")
 
     def test_stimulate_reads_data_beside_it_alone(self):

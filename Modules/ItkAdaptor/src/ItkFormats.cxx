@@ -270,6 +270,8 @@ ReadVolume readBy(const Format& format, itk::ImageIOBase& io, const ItkRequest& 
 /// \return nothing where `io` does not take the file. \throws FileError
 std::optional<ReadVolume> readIfIts(const Format& format, itk::ImageIOBase& io,
                                     const ItkRequest& request) {
+    // ITK takes any file that has a visu_pars beside it
+    if (format.name == "Bruker 2dseq" && request.file.filename() != "2dseq") return std::nullopt;
     try {
         if (!io.CanReadFile(request.file.c_str())) return std::nullopt;
         io.SetFileName(request.file.string());
