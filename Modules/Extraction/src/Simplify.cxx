@@ -11,9 +11,9 @@
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/AdaptiveMethod.h"
 #include "adaptive/Parameters.h"
-#include "adaptive/full/MeshParts.h"
 #include "adaptive/full/MeshSurface.h"
 #include "adaptive/full/NearestNormals.h"
+#include "repair/MeshParts.h"
 
 namespace adaptiso {
 namespace {

@@ -6,11 +6,11 @@
 #include "adaptiso/Core/Parallel.h"
 #include "cells/BoxCases.h"
 #include "cells/CellTriangles.h"
-#include "filling/MeshRepair.h"
 #include "lattice/ActiveBlocks.h"
 #include "lattice/Bits.h"
 #include "lattice/BlockSamples.h"
 #include "lattice/LatticeSampler.h"
+#include "repair/MeshRepair.h"
 
 namespace adaptiso::detail {
 namespace {

@@ -6,8 +6,8 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 #include "filling/LoopTriangulation.h"
-#include "filling/MeshRepair.h"
 #include "filling/PlanarTriangulation.h"
+#include "repair/MeshRepair.h"
 
 namespace adaptiso::detail {
 namespace {

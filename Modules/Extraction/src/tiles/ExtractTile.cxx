@@ -9,8 +9,8 @@
 #include "adaptiso/Core/PerThread.h"
 #include "adaptiso/Extraction/Tiles.h"
 #include "adaptive/bricks/Bricks.h"
-#include "filling/MeshRepair.h"
 #include "lattice/LatticeSampler.h"
+#include "repair/MeshRepair.h"
 #include "tiles/TileGrid.h"
 
 namespace adaptiso {

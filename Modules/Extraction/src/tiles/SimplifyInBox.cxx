@@ -9,10 +9,10 @@
 #include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/SurfaceProof/HalfEdges.h"
 #include "adaptive/AdaptiveMethod.h"
-#include "adaptive/full/MeshParts.h"
 #include "adaptive/full/MeshSurface.h"
 #include "adaptive/full/NearestNormals.h"
 #include "adaptive/mesh/MetricFrame.h"
+#include "repair/MeshParts.h"
 #include "tiles/TileGrid.h"
 
 namespace adaptiso {

@@ -10,11 +10,11 @@
 #include "Support/Soundness.h"
 #include "Surfaces.h"
 #include "adaptiso/MeshQuality/Topology.h"
-#include "adaptive/full/FlatTriangles.h"
-#include "adaptive/full/MeshParts.h"
 #include "adaptive/full/MeshSurface.h"
 #include "adaptive/proof/DistanceProof.h"
 #include "adaptive/rounds/BorderMarks.h"
+#include "repair/FlatTriangles.h"
+#include "repair/MeshParts.h"
 
 namespace adaptiso::testing {
 namespace {

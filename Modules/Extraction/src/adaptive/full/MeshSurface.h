@@ -8,7 +8,7 @@
 #include "adaptiso/SurfaceProof/OrderedBuckets.h"
 #include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/full/FullSurface.h"
-#include "adaptive/full/MeshParts.h"
+#include "repair/MeshParts.h"
 
 namespace adaptiso::detail {
 

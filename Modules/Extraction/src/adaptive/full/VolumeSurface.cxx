@@ -11,7 +11,7 @@
 #include "adaptive/Parameters.h"
 #include "adaptive/rounds/BorderMarks.h"
 #include "adaptive/rounds/BrickRound.h"
-#include "filling/MeshRepair.h"
+#include "repair/MeshRepair.h"
 
 namespace adaptiso::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "adaptive/full/FlatTriangles.h"
+#include "repair/FlatTriangles.h"
 
 #include <algorithm>
 #include <iterator>

@@ -1,4 +1,4 @@
-#include "adaptive/full/MeshParts.h"
+#include "repair/MeshParts.h"
 
 #include <algorithm>
 #include <atomic>
@@ -15,8 +15,8 @@
 #include "adaptiso/Core/ParallelSort.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/SurfaceProof/HalfEdges.h"
-#include "adaptive/full/FlatTriangles.h"
 #include "adaptive/mesh/Patch.h"
+#include "repair/FlatTriangles.h"
 
 namespace adaptiso::detail {
 namespace {

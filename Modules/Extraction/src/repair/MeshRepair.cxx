@@ -1,4 +1,4 @@
-#include "filling/MeshRepair.h"
+#include "repair/MeshRepair.h"
 
 #include <algorithm>
 #include <map>
