@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "adaptiso/Core/AabbTree.h"
@@ -109,19 +110,11 @@ bool SurfaceMender::mendCrossing(Number triangle, bool mergesFirst) {
                 {closestPointOnTriangle(p, corners[0], corners[1], corners[2]), p, triangle, true});
         }
     }
-    const auto anyCosine = [&](const auto& change) {
-        return std::any_of(kMendCosines.begin(), kMendCosines.end(), [&](double leastCosine) {
-            leastCosine_ = leastCosine;
-            return change();
-        });
-    };
-    if (mergesFirst && anyCosine([&] { return mergeCorners(triangle); })) return true;
-    return anyCosine([&] {
-        for (const PlaceBeyond& place : places) {
-            if (insert(place, triangle, barycentric(place.onSimplified, corners))) return true;
-        }
-        return mergeCorners(triangle);
-    });
+    if (mergesFirst && mergeCorners(triangle)) return true;
+    for (const PlaceBeyond& place : places) {
+        if (insert(place, triangle, barycentric(place.onSimplified, corners))) return true;
+    }
+    return mergeCorners(triangle);
 }
 
 bool SurfaceMender::mergeCorners(Number triangle) {
@@ -177,23 +170,11 @@ void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
 bool SurfaceMender::mendPlace(const PlaceBeyond& place) {
     const Number t = partAt(place);
     if (t == kNone) return false;
-    const std::array<double, 3> at = barycentric(place.onSimplified, cornersOf(t));
-    const auto largest = std::max_element(at.begin(), at.end()) - at.begin(),
-               least = std::min_element(at.begin(), at.end()) - at.begin();
-    for (const double leastCosine : kMendCosines) {
-        leastCosine_ = leastCosine;
-        if (insert(place, t, at)) return true;
-        const auto besideLeast = static_cast<int>(least + 1) % 3;
-        if (at[least] < kAtEdge && turnEdge(t, besideLeast, place)) return true;
-    }
+    if (insert(place, t, barycentric(place.onSimplified, cornersOf(t)))) return true;
     for (int corner = 0; corner < 3; ++corner) {
         if (collapseEdge(t, corner, place)) return true;
     }
-    if (at[largest] < kMoveWeight) return false;
-    const Number vertex = surface_.triangles[t][largest];
-    const Vec3 whole = 1 / at[largest] * (place.onFine - place.onSimplified);
-    return std::any_of(kMoveSteps.begin(), kMoveSteps.end(),
-                       [&](double part) { return moveVertex(vertex, part * whole); });
+    return false;
 }
 
 /// \param at  barycentric coordinates of the place in the triangle
@@ -300,34 +281,6 @@ bool SurfaceMender::splitTriangle(Number triangle, const Vec3& point) {
     return true;
 }
 
-/// The two triangles at the edge from a corner to the next one get their other diagonal, where that
-/// brings them to the place.
-bool SurfaceMender::turnEdge(Number triangle, int corner, const PlaceBeyond& place) {
-    const std::optional<Edge> edge = edgeAt(triangle, corner);
-    if (!edge) return false;
-    const auto [a, b, c, d, twin] = *edge;
-    if (turned_.contains({std::min(c, d), std::max(c, d)}) || (!isTracked(c) && !isTracked(d)) ||
-        triangleOf(c, d) != kNone || triangleOf(d, c) != kNone) {
-        return false;
-    }
-    const auto& at = surface_.points;
-    const Corners first = cornersOf(triangle), second = cornersOf(twin);
-    const std::vector<Corners> parts{{at[a], at[d], at[c]}, {at[d], at[b], at[c]}};
-    const bool isNearer = squaredDistanceToNearest(place.onFine, parts) <=
-                          kTurnLeaves * kTurnLeaves * place.squaredDistance();
-    const bool facesAlike = std::all_of(parts.begin(), parts.end(), [&](const Corners& part) {
-        return facesAs(part, first) || facesAs(part, second);
-    });
-    if (!isNearer || !facesAlike || !isSound(parts, {triangle, twin})) return false;
-    turned_.insert({std::min(a, b), std::max(a, b)});
-    note(triangle);
-    note(twin);
-    replace(triangle, {a, d, c});
-    replace(twin, {d, b, c});
-    handOver({triangle, twin}, {triangle, twin});
-    return true;
-}
-
 /// Merges the ends of the edge from a corner to the next one, where that brings the surface nearer
 /// to the place.
 bool SurfaceMender::collapseEdge(Number triangle, int corner, const PlaceBeyond& place) {
@@ -411,7 +364,7 @@ bool SurfaceMender::facesAs(const Corners& now, const Corners& before) const {
     const double longest = std::max(
         {squaredNorm(now[1] - now[0]), squaredNorm(now[2] - now[1]), squaredNorm(now[0] - now[2])});
     return norm(area2) > kFlatTriangle * longest &&
-           dot(area2, old) > leastCosine_ * norm(area2) * norm(old);
+           dot(area2, old) > kMendCosine * norm(area2) * norm(old);
 }
 
 /// \param replaced  triangles that go

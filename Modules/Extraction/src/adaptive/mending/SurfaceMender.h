@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <set>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -18,8 +17,8 @@ namespace adaptiso::detail {
 /// surface there by a new vertex, as greedy insertion refines terrains [Garland1995].
 ///
 /// The triangle of the place is split in three; beside an edge the edge is split, with the two
-/// triangles at it; beside a vertex that moves. Where none of these is allowed the edge gets the
-/// other diagonal, or an edge of the triangle is collapsed. A change is allowed if no triangle
+/// triangles at it; beside a vertex that moves. Where none of these is allowed an edge of the
+/// triangle is collapsed. A change is allowed if no triangle
 /// turns too far, none crosses another, and no sample is taken beyond the bound.
 ///
 /// Vertices keep their numbers; those that collapses leave without a triangle stay in the list.
@@ -69,7 +68,6 @@ private:
     bool moveVertex(Number vertex, const Vec3& step);
     bool splitEdge(Number triangle, int corner, const Vec3& point);
     bool splitTriangle(Number triangle, const Vec3& point);
-    bool turnEdge(Number triangle, int corner, const PlaceBeyond& place);
 
     bool collapseEdge(Number triangle, int corner, const PlaceBeyond& place);
     bool mayMerge(const Edge& edge) const;
@@ -103,8 +101,6 @@ private:
     SimplifiedSurface& surface_;
     double squaredLimit_, cubeMm_;
     std::optional<BoundingBox> box_;
-    double leastCosine_ = 0;                  ///< between the normals before and after
-    std::set<std::array<Number, 2>> turned_;  ///< edges that were: they do not come back
 
     SurfaceChanges changes_;
     std::vector<Triangle> changed_;
