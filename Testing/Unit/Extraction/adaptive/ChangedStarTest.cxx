@@ -10,6 +10,7 @@ namespace adaptiso::testing {
 namespace {
 
 using detail::ChangedStar;
+using detail::Refusal;
 
 /// The vertex in the middle of a square of 2 x 2 cells, 1 mm each, and its six triangles.
 struct Middle {
@@ -23,7 +24,7 @@ struct Middle {
             EXPECT_TRUE(topology.starOf(v, changed.star));
         }
     }
-    bool shape(const Vec3& vertex, double leastAngleDeg = 0) {
+    Refusal shape(const Vec3& vertex, double leastAngleDeg = 0) {
         changed.vertex = vertex;
         return shapeStar(patch, {leastAngleDeg}, changed);
     }
@@ -33,7 +34,7 @@ struct Middle {
 
 TEST(ChangedStar, KnowsItsTriangles) {
     Middle middle;
-    ASSERT_TRUE(middle.shape({1.2, 0.9, 0.3}));
+    ASSERT_EQ(middle.shape({1.2, 0.9, 0.3}), Refusal::None);
     EXPECT_TRUE(middle.changed.isGraph);
     const auto& [star, vertex, wedges, isGraph, normal] = middle.changed;
     EXPECT_NEAR(norm(normal), 1, 1e-12);
@@ -53,33 +54,33 @@ TEST(ChangedStar, KnowsItsTriangles) {
 
 TEST(ChangedStar, IsRefusedWhereATriangleIsFlat) {
     Middle middle;
-    EXPECT_FALSE(middle.shape({0, 1, 0}));  // on the ring
-    EXPECT_FALSE(middle.shape({1e-8, 1, 0}));
-    EXPECT_TRUE(middle.shape({0.1, 1, 0}));
+    EXPECT_EQ(middle.shape({0, 1, 0}), Refusal::Flat);  // on the ring
+    EXPECT_EQ(middle.shape({1e-8, 1, 0}), Refusal::Flat);
+    EXPECT_EQ(middle.shape({0.1, 1, 0}), Refusal::None);
 }
 
 TEST(ChangedStar, IsRefusedWhereATriangleTurnsOver) {
     Middle middle;
-    EXPECT_FALSE(middle.shape({-0.5, 1, 0}));
-    EXPECT_FALSE(middle.shape({1, 1, 20}));  // a spike: its sides stand upright
-    EXPECT_TRUE(middle.shape({1, 1, 0.5}));
+    EXPECT_EQ(middle.shape({-0.5, 1, 0}), Refusal::Turned);
+    EXPECT_EQ(middle.shape({1, 1, 20}), Refusal::Turned);  // a spike: its sides stand upright
+    EXPECT_EQ(middle.shape({1, 1, 0.5}), Refusal::None);
 }
 
 TEST(ChangedStar, IsRefusedWhereACornerIsTooSharp) {
     Middle middle;
     // the triangle with the ring's (0, 1) and (0, 0) has sides of 0.2 and 1: atan(0.2), 11 degrees
-    EXPECT_TRUE(middle.shape({0.2, 1, 0}));
-    EXPECT_TRUE(middle.shape({0.2, 1, 0}, 5));
-    EXPECT_FALSE(middle.shape({0.2, 1, 0}, 30));
-    EXPECT_TRUE(middle.shape({1, 1, 0}, 40));
+    EXPECT_EQ(middle.shape({0.2, 1, 0}), Refusal::None);
+    EXPECT_EQ(middle.shape({0.2, 1, 0}, 5), Refusal::None);
+    EXPECT_EQ(middle.shape({0.2, 1, 0}, 30), Refusal::SharpCorner);
+    EXPECT_EQ(middle.shape({1, 1, 0}, 40), Refusal::None);
 }
 
 TEST(ChangedStar, MayHaveASharpCornerWhereTheOneBeforeWasSharper) {
     Middle middle;
     const std::uint32_t vertex = middle.changed.star.apex[0];
     middle.patch.points[vertex] = {0.05, 1, 0};
-    EXPECT_TRUE(middle.shape({0.2, 1, 0}, 30));
-    EXPECT_FALSE(middle.shape({0.04, 1, 0}, 30));
+    EXPECT_EQ(middle.shape({0.2, 1, 0}, 30), Refusal::None);
+    EXPECT_EQ(middle.shape({0.04, 1, 0}, 30), Refusal::SharpCorner);
 }
 
 TEST(ChangedStar, IsNoGraphWhereItGoesRoundItsVertexTwice) {
@@ -98,7 +99,7 @@ TEST(ChangedStar, IsNoGraphWhereItGoesRoundItsVertexTwice) {
     changed.star.count = kSteps;
     changed.star.ring[kSteps] = changed.star.ring[0];
     changed.vertex = {0, 0, 0.25};
-    ASSERT_TRUE(shapeStar(patch, {}, changed));
+    ASSERT_EQ(shapeStar(patch, {}, changed), Refusal::None);
     EXPECT_FALSE(changed.isGraph);
 }
 
@@ -112,10 +113,10 @@ TEST(ChangedStar, IsNoGraphWhereATriangleOverhangs) {
         Vec3& ring = middle.patch.points[star.ring[i]];
         const Vec3 before = ring;
         ring = centre + 0.2 * (before - centre) - Vec3{0, 0, 0.2};
-        ASSERT_TRUE(middle.shape(centre));
+        ASSERT_EQ(middle.shape(centre), Refusal::None);
         EXPECT_TRUE(middle.changed.isGraph) << i;
         ring = centre - 0.4 * (before - centre) - Vec3{0, 0, 0.2};
-        ASSERT_TRUE(middle.shape(centre));  // no triangle turns: they were so before
+        ASSERT_EQ(middle.shape(centre), Refusal::None);  // no triangle turns: they were so before
         EXPECT_FALSE(middle.changed.isGraph) << i;
         ring = before;
     }

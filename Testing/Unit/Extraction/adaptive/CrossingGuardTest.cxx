@@ -70,7 +70,7 @@ TEST(CrossingGuard, SeesTrianglesThatNoSampleIsAssignedTo) {
         ASSERT_TRUE(topology.starOf(vertexAt(2, 2), changed.star));
         for (const double height : {0.3, 0.7}) {  // below the triangle, and through it
             changed.vertex = {2, 2, height};
-            ASSERT_TRUE(shapeStar(patch, {}, changed));
+            ASSERT_EQ(shapeStar(patch, {}, changed), detail::Refusal::None);
             EXPECT_EQ(guard.crossesNothing(changed), height < 0.5) << height;
         }
     }
@@ -84,7 +84,7 @@ TEST(CrossingGuard, SeesTrianglesWhereACommitPutThem) {
     ChangedStar changed;
     ASSERT_TRUE(topology.starOf(vertexAt(1, 1), changed.star));
     changed.vertex = {1, 1, 0.4};
-    ASSERT_TRUE(shapeStar(patch, {}, changed));
+    ASSERT_EQ(shapeStar(patch, {}, changed), detail::Refusal::None);
     ASSERT_TRUE(guard.crossesNothing(changed));
     // a tent of 3 mm beside it, over the place that the next star wants
     changed.vertex = {4.5, 1, 0.4};
@@ -94,7 +94,7 @@ TEST(CrossingGuard, SeesTrianglesWhereACommitPutThem) {
     ChangedStar other;
     ASSERT_TRUE(topology.starOf(vertexAt(3, 1), other.star));
     other.vertex = {3, 1, 0.45};
-    ASSERT_TRUE(shapeStar(patch, {}, other));
+    ASSERT_EQ(shapeStar(patch, {}, other), detail::Refusal::None);
     EXPECT_FALSE(guard.crossesNothing(other));
 }
 
@@ -120,7 +120,7 @@ TEST(CrossingGuard, LetsNoStarSweepOverAPiece) {
         ASSERT_TRUE(topology.starOf(vertexAt(2, 2), changed.star));
         for (const double height : {-2.0, 0.1, 0.25, 2.0}) {  // below, through and over the piece
             changed.vertex = {2, 2, height};
-            ASSERT_TRUE(shapeStar(patch, {}, changed));
+            ASSERT_EQ(shapeStar(patch, {}, changed), detail::Refusal::None);
             EXPECT_EQ(guard.crossesNothing(changed), height < 0.2) << height;
         }
         for (const std::uint32_t corner : {0U, 1U, 2U, 3U}) {  // the piece goes up, and is found
@@ -132,7 +132,7 @@ TEST(CrossingGuard, LetsNoStarSweepOverAPiece) {
         }
         for (const double height : {0.25, 1.0, 2.0}) {
             changed.vertex = {2, 2, height};
-            ASSERT_TRUE(shapeStar(patch, {}, changed));
+            ASSERT_EQ(shapeStar(patch, {}, changed), detail::Refusal::None);
             EXPECT_EQ(guard.crossesNothing(changed), height < 1.7) << height;
         }
         for (int corner = 0; corner < 4; ++corner) patch.points[first + corner].z -= 1.5;
@@ -153,7 +153,7 @@ TEST(CrossingGuard, AsksForAProofBesideAFold) {
         ChangedStar changed;
         ASSERT_TRUE(topology.starOf(vertexAt(2, 2), changed.star));
         changed.vertex = {2, 2, 0.02};
-        ASSERT_TRUE(shapeStar(patch, {}, changed));
+        ASSERT_EQ(shapeStar(patch, {}, changed), detail::Refusal::None);
         ASSERT_TRUE(changed.isGraph);
         EXPECT_EQ(guard.needsProof(changed, false), isFolded);
     }

@@ -7,6 +7,7 @@ namespace adaptiso::testing {
 namespace {
 
 using detail::ErrorTracker;
+using detail::Refusal;
 using detail::SampleAssignment;
 using detail::SheetClearance;
 
@@ -29,8 +30,8 @@ TEST(ErrorTracker, RefusesAVertexBeyondTheDistance) {
     ErrorTracker errors(square.patch, unitFrame());
     SampleAssignment result;
     square.shape({2.1, 2, 0.5});
-    EXPECT_FALSE(errors.assign(square.changed, 0.49, result));
-    EXPECT_TRUE(errors.assign(square.changed, 0.51, result));
+    EXPECT_EQ(errors.assign(square.changed, 0.49, result), Refusal::VertexFar);
+    EXPECT_EQ(errors.assign(square.changed, 0.51, result), Refusal::None);
 }
 
 TEST(ErrorTracker, RefusesASampleLeftBeyondTheDistance) {
@@ -38,8 +39,8 @@ TEST(ErrorTracker, RefusesASampleLeftBeyondTheDistance) {
     square.addSample(0.6);
     ErrorTracker errors(square.patch, unitFrame());
     SampleAssignment result;
-    EXPECT_FALSE(errors.assign(square.changed, 0.59, result));
-    EXPECT_TRUE(errors.assign(square.changed, 0.61, result));
+    EXPECT_EQ(errors.assign(square.changed, 0.59, result), Refusal::SampleFar);
+    EXPECT_EQ(errors.assign(square.changed, 0.61, result), Refusal::None);
     EXPECT_NEAR(result.largestSquare, 0.36, kRounding);
 }
 
@@ -49,8 +50,8 @@ TEST(ErrorTracker, AllowsASmallerDistanceInAWeb) {
     square.patch.samples[s].isInWeb = true;  // the square of the distance over 2^5
     ErrorTracker errors(square.patch, unitFrame());
     SampleAssignment result;
-    EXPECT_FALSE(errors.assign(square.changed, 1.69, result));
-    EXPECT_TRUE(errors.assign(square.changed, 1.7, result));
+    EXPECT_EQ(errors.assign(square.changed, 1.69, result), Refusal::SampleFar);
+    EXPECT_EQ(errors.assign(square.changed, 1.7, result), Refusal::None);
     EXPECT_FALSE(errors.measure(square.changed));  // no vertex is fitted there
 }
 
@@ -62,11 +63,11 @@ TEST(ErrorTracker, KnowsWhereOtherSheetsAreNear) {
         const ErrorTracker errors(square.patch, unitFrame());
         SampleAssignment result;
         square.shape({2.4, 2.2, 0.02});
-        EXPECT_TRUE(errors.assign(square.changed, 1, result));
+        EXPECT_EQ(errors.assign(square.changed, 1, result), Refusal::None);
         EXPECT_EQ(result.isCrowded, clearance == 0) << clearance;
         EXPECT_EQ(result.isInSingleSheet(), clearance == SheetClearance::kAlone) << clearance;
         square.shape({2.4, 2.2, 0.9});  // nearly as far as the other sheet
-        EXPECT_TRUE(errors.assign(square.changed, 1, result));
+        EXPECT_EQ(errors.assign(square.changed, 1, result), Refusal::None);
         EXPECT_EQ(result.isCrowded, clearance != SheetClearance::kAlone) << clearance;
     }
 }
@@ -76,7 +77,8 @@ TEST(ErrorTracker, IsInNoSingleSheetWithoutASample) {
     square.patch.samples.clear();
     square.patch.sampleTriangle.clear();
     SampleAssignment result;
-    EXPECT_TRUE(ErrorTracker(square.patch, unitFrame()).assign(square.changed, 0.1, result));
+    EXPECT_EQ(ErrorTracker(square.patch, unitFrame()).assign(square.changed, 0.1, result),
+              Refusal::None);
     EXPECT_FALSE(result.isInSingleSheet());
 }
 

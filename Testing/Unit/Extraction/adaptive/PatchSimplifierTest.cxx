@@ -170,4 +170,24 @@ TEST(Sample, KeepsItsPlaceAndItsDirection) {
     }
 }
 
+TEST(TriedEdges, AreTriedAgainWhereSomethingHasChanged) {
+    using State = Patch::State;
+    std::vector<State> states(4, State::Open);
+    states[3] = State::Final;
+    detail::TriedEdges tried(states, 0.5);
+    EXPECT_FALSE(tried.has(0, 1, 0.1));
+    for (std::uint32_t v = 0; v < 4; ++v) tried.begin(v);
+    EXPECT_TRUE(tried.has(0, 1, 0.5));
+    EXPECT_FALSE(tried.has(0, 1, 0.6));  // dearer than what was tried
+    EXPECT_FALSE(tried.has(0, 3, 0.1));
+    tried.open(0);
+    EXPECT_FALSE(tried.has(0, 1, 0.1));
+    tried.passOn(1, 3);
+    EXPECT_EQ(states, (std::vector{State::Open, State::Tried, State::Tried, State::Final}));
+    tried.finish();
+    EXPECT_EQ(states, (std::vector{State::Open, State::Open, State::Tried, State::Final}));
+    detail::TriedEdges::openAll(states);
+    EXPECT_EQ(states, (std::vector{State::Open, State::Open, State::Open, State::Final}));
+}
+
 }  // namespace adaptiso::testing

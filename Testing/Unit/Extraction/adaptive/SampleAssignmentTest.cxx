@@ -15,6 +15,7 @@ using detail::ChangedStar;
 using detail::ErrorTracker;
 using detail::Patch;
 using detail::PatchTopology;
+using detail::Refusal;
 using detail::SampleAssignment;
 
 constexpr double kRounding = 1e-5;  // samples are kept in single precision
@@ -53,7 +54,8 @@ TEST(ErrorTracker, HandsSamplesToNearTriangles) {
         ErrorTracker errors(patch, unitFrame());
         square.changed.vertex = patch.points[SampledSquare::kMiddle] + randomPoint(random, 0.3);
         SampleAssignment result;
-        if (!shapeStar(patch, {}, square.changed) || !errors.assign(square.changed, 2, result)) {
+        if (shapeStar(patch, {}, square.changed) != Refusal::None ||
+            errors.assign(square.changed, 2, result) != Refusal::None) {
             continue;
         }
         std::vector<std::size_t> samples;
@@ -98,7 +100,9 @@ TEST(ErrorTracker, HandsOnTheSamplesOfTrianglesThatGo) {
         if (!topology.starOfEdge(h, changed.star)) continue;
         changed.vertex = 0.5 * (patch.points[topology.from(h)] + patch.points[topology.to(h)]);
         SampleAssignment result;
-        if (!shapeStar(patch, {}, changed) || !errors.assign(changed, 0.1, result)) continue;
+        if (shapeStar(patch, {}, changed) != Refusal::None ||
+            errors.assign(changed, 0.1, result) != Refusal::None)
+            continue;
         const std::uint32_t kept = topology.from(h);
         topology.collapse(h, changed.star);
         errors.commit(changed, result);

@@ -26,7 +26,7 @@ struct SampledSquare {
     }
     void shape(const Vec3& vertex) {
         changed.vertex = vertex;
-        EXPECT_TRUE(shapeStar(patch, {}, changed));
+        EXPECT_EQ(shapeStar(patch, {}, changed), detail::Refusal::None);
     }
     /// At (2.4, 2.2), assigned to the star's triangle there. \return its number
     std::size_t addSample(double height) {

@@ -43,7 +43,7 @@ bool anglesMayStay(const Patch& patch, const Star& star, const StarLimits& limit
 
 }  // namespace
 
-bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& changed) {
+Refusal shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& changed) {
     const Star& star = changed.star;
     const auto point = [&](std::uint32_t v) { return patch.points[v]; };
     std::array<Vec3, Star::kMost> before;
@@ -74,11 +74,11 @@ bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& change
         w.a22 = squaredNorm(w.e2);
         w.inverse = 1 / squared;
         const double third = w.a11 + w.a22 - 2 * w.a12;
-        if (!(area2 > kFlatTriangle * std::max({w.a11, w.a22, third}))) return false;
+        if (!(area2 > kFlatTriangle * std::max({w.a11, w.a22, third}))) return Refusal::Flat;
         const double upright = dot(after, normal);
         if (upright < kStarCosine * area2 &&
             dot(after, before[i]) < kOwnCosine * area2 * norm(before[i])) {
-            return false;
+            return Refusal::Turned;
         }
         if (!(upright > 0) || !(dot(before[i], normal) > 0)) changed.isGraph = false;
         if (dot(w.e1, across) < 0 && dot(w.e2, across) >= 0) ++turns;
@@ -87,7 +87,9 @@ bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& change
         }
     }
     if (turns != 1) changed.isGraph = false;
-    return limits.leastAngleDeg == 0 || anglesMayStay(patch, star, limits, sharpest);
+    const bool maySharpen =
+        limits.leastAngleDeg == 0 || anglesMayStay(patch, star, limits, sharpest);
+    return maySharpen ? Refusal::None : Refusal::SharpCorner;
 }
 
 }  // namespace adaptiso::detail

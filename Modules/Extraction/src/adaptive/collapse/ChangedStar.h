@@ -1,10 +1,26 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "adaptive/mesh/PatchTopology.h"
 
 namespace adaptiso::detail {
+
+/// Why a change is refused, in the order in which it is asked.
+enum class Refusal : std::uint8_t {
+    None,
+    Topology,     ///< no manifold with the same borders would be left, or too large a star
+    OutsideBox,   ///< the patch's: another cut may allow it
+    Flat,         ///< a triangle has no area
+    Turned,       ///< a triangle turns too far from the surface
+    SharpCorner,  ///< sharper than asked for, and than before
+    InsideOut,    ///< a piece of four triangles
+    VertexFar,    ///< the new vertex, from the full-resolution surface
+    RidgeFar,     ///< a point of a sharp new edge
+    SampleFar,
+    Crossing  ///< not proved to cross nothing, or sweeps over a piece
+};
 
 /// A star as it would be after a change: its new vertex and the triangles around it.
 struct ChangedStar {
@@ -33,8 +49,8 @@ struct StarLimits {
 };
 
 /// Fills in the wedges for the star's vertex at star.vertex.
-/// \return false when a triangle would be flat, turn too far from the surface, or have too sharp a
-///         corner. Slivers on the way are allowed: forbidding them costs accuracy.
-bool shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& changed);
+/// \return Flat, Turned, SharpCorner or None. Slivers on the way are allowed: forbidding them costs
+///         accuracy.
+Refusal shapeStar(const Patch& patch, const StarLimits& limits, ChangedStar& changed);
 
 }  // namespace adaptiso::detail

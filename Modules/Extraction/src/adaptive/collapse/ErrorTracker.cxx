@@ -129,12 +129,14 @@ std::optional<StarFit> ErrorTracker::measure(const ChangedStar& unchanged) const
     return isLoose ? std::optional(fit) : std::nullopt;
 }
 
-bool ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm,
-                          SampleAssignment& result) const {
+Refusal ErrorTracker::assign(const ChangedStar& changed, double maxDistanceMm,
+                             SampleAssignment& result) const {
     collect(changed.star, result);
     // points of the star first: more changes fail by them, and they take less time
-    return starIsNear(changed, maxDistanceMm, result) &&
-           samplesAreNear(changed, maxDistanceMm * maxDistanceMm, result);
+    if (!vertexIsNear(changed, maxDistanceMm, result)) return Refusal::VertexFar;
+    if (!ridgesAreNear(changed, result, maxDistanceMm)) return Refusal::RidgeFar;
+    const bool areNear = samplesAreNear(changed, maxDistanceMm * maxDistanceMm, result);
+    return areNear ? Refusal::None : Refusal::SampleFar;
 }
 
 /// The star's samples, each with the wedge to look at first.
@@ -152,10 +154,9 @@ void ErrorTracker::collect(const Star& star, SampleAssignment& result) const {
     result.leastClearance = std::min(result.leastClearance, result.clearanceUnseen);
 }
 
-/// The new vertex and points of sharp edges are near the full-resolution surface, as the nearest
-/// sample tells.
-bool ErrorTracker::starIsNear(const ChangedStar& changed, double maxDistanceMm,
-                              SampleAssignment& result) const {
+/// The new vertex is near the full-resolution surface, by its nearest sample.
+bool ErrorTracker::vertexIsNear(const ChangedStar& changed, double maxDistanceMm,
+                                SampleAssignment& result) const {
     if (result.moves.empty()) {
         result.isCrowded = result.leastClearance != SheetClearance::kAlone;
         return true;
@@ -164,8 +165,7 @@ bool ErrorTracker::starIsNear(const ChangedStar& changed, double maxDistanceMm,
     const double height = heightOver(nearest, changed.vertex);
     result.isCrowded =
         height * height > squaredClearance_[std::min(nearest.clearance, result.clearanceUnseen)];
-    return scaled(height, nearest) <= maxDistanceMm &&
-           ridgesAreNear(changed, result, maxDistanceMm);
+    return scaled(height, nearest) <= maxDistanceMm;
 }
 
 /// Hands each sample to the near one of the changed triangles.
@@ -227,6 +227,7 @@ const Sample& ErrorTracker::sampleNearest(const Vec3& p, const SampleAssignment&
 /// The way back: a sharp edge may pass between the samples of a rounder surface.
 bool ErrorTracker::ridgesAreNear(const ChangedStar& changed, const SampleAssignment& assignment,
                                  double maxDistanceMm) const {
+    if (assignment.moves.empty()) return true;
     const int n = changed.star.count;
     const int first = changed.star.isOpen ? 1 : 0;  // the spoke between two triangles
     const double spacingMm = kRidgeSpacing * std::max(sampleSpacingMm_, maxDistanceMm);

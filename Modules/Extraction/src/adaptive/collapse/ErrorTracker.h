@@ -52,8 +52,10 @@ public:
 
     /// Finds for every sample of the star's triangles the near one of the changed triangles.
     /// \param result  what is found; its memory is used again
-    /// \return false when a sample, or a point of the star, would be farther than maxDistanceMm
-    bool assign(const ChangedStar& changed, double maxDistanceMm, SampleAssignment& result) const;
+    /// \return VertexFar, RidgeFar or SampleFar when one would be farther than maxDistanceMm, or
+    /// None
+    Refusal assign(const ChangedStar& changed, double maxDistanceMm,
+                   SampleAssignment& result) const;
 
     /// Hands the samples over as assign() found.
     void commit(const ChangedStar& changed, const SampleAssignment& assignment);
@@ -66,8 +68,8 @@ private:
     template <class F>
     static void forEachTriangle(const Star& star, const F& f);
     void collect(const Star& star, SampleAssignment& result) const;
-    bool starIsNear(const ChangedStar& changed, double maxDistanceMm,
-                    SampleAssignment& result) const;
+    bool vertexIsNear(const ChangedStar& changed, double maxDistanceMm,
+                      SampleAssignment& result) const;
     bool samplesAreNear(const ChangedStar& changed, double most, SampleAssignment& result) const;
     SampleAssignment::Move nearest(const ChangedStar& changed, std::uint32_t sample, int start,
                                    double& squaredDistance) const;

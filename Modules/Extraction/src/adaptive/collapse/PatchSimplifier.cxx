@@ -12,7 +12,8 @@ PatchSimplifier::PatchSimplifier(Patch& patch, const MetricFrame& frame, const P
       limits_(limits),
       topology_(patch),
       errors_(patch, frame),
-      guard_(patch, topology_, frame, limits.provesAll) {}
+      guard_(patch, topology_, frame, limits.provesAll),
+      tried_(patch.states, limits.triedCost) {}
 
 QuadricMinimum PatchSimplifier::bestPlace(std::uint32_t a, std::uint32_t b) const {
     const Quadric sum = patch_.quadrics[a] + patch_.quadrics[b];
@@ -36,73 +37,47 @@ double PatchSimplifier::costOf(std::uint32_t halfEdge) const {
     return cost > limits_.maxCost ? CollapseQueue::kNever : cost;
 }
 
-bool PatchSimplifier::isTried(std::uint32_t halfEdge, double cost) const {
-    return cost <= limits_.triedCost &&
-           patch_.states[topology_.from(halfEdge)] == Patch::State::Tried &&
-           patch_.states[topology_.to(halfEdge)] == Patch::State::Tried;
-}
-
-void PatchSimplifier::noteUntried(std::uint32_t halfEdge) {
-    untried_.insert(untried_.end(), {topology_.from(halfEdge), topology_.to(halfEdge)});
-}
-
-/// For the next cut.
-void PatchSimplifier::passOnUntried() {
-    for (const std::uint32_t v : untried_) {
-        if (patch_.states[v] == Patch::State::Tried) patch_.states[v] = Patch::State::Open;
-    }
-    untried_.clear();
-}
-
-void PatchSimplifier::setState(std::uint32_t v, Patch::State state) {
-    if (patch_.states[v] != Patch::State::Final) patch_.states[v] = state;
-}
-
-/// What lies around the changed star may be tried again.
-void PatchSimplifier::markChanged(const Star& star) {
-    for (int i = 0; i < star.ringCount(); ++i) setState(star.ring[i], Patch::State::Open);
-}
-
-const PatchSimplifier::Change* PatchSimplifier::evaluateCollapse(std::uint32_t halfEdge) {
+Refusal PatchSimplifier::evaluateCollapse(std::uint32_t halfEdge) {
     Change& change = change_;
-    if (!topology_.starOfEdge(halfEdge, change.star.star)) return nullptr;
+    if (!topology_.starOfEdge(halfEdge, change.star.star)) return Refusal::Topology;
     change.vertex = topology_.from(halfEdge);
     change.halfEdge = halfEdge;
     change.star.vertex = bestPlace(change.vertex, topology_.to(halfEdge)).point;
     if (!isInBox(change.star.vertex)) {
-        noteUntried(halfEdge);
-        return nullptr;
+        passOn(halfEdge);
+        return Refusal::OutsideBox;
     }
-    return staysNear(change) && crossesNothing(change) ? &change : nullptr;
+    const Refusal refusal = shapeOrDistance(change);
+    return refusal == Refusal::None && !crossesNothing(change) ? Refusal::Crossing : refusal;
 }
 
-const PatchSimplifier::Change* PatchSimplifier::evaluateFit(std::uint32_t vertex) {
+bool PatchSimplifier::evaluateFit(std::uint32_t vertex) {
     Change& change = change_;
-    if (topology_.isOnBorder(vertex) || !topology_.starOf(vertex, change.star.star)) return nullptr;
+    if (topology_.isOnBorder(vertex) || !topology_.starOf(vertex, change.star.star)) return false;
     change.vertex = vertex;
     change.halfEdge = PatchTopology::kNone;
     change.star.vertex = patch_.points[vertex];
-    if (!shapeStar(patch_, limits_.shape, change.star)) return nullptr;
+    if (shapeStar(patch_, limits_.shape, change.star) != Refusal::None) return false;
     const std::optional<StarFit> before = errors_.measure(change.star);
-    if (!before) return nullptr;
+    if (!before) return false;
     const Quadric& quadric = patch_.quadrics[vertex];
     const double mostError = quadric.weight() * limits_.maxDistanceMm * limits_.maxDistanceMm,
                  farthest =
                      std::max(before->largestSquare, limits_.maxFittedMm * limits_.maxFittedMm);
     change.star.vertex = fittedPlace(change.star, quadric);
-    const bool isBetter = quadric.at(change.star.vertex) <= mostError &&
-                          isInBox(change.star.vertex) && staysNear(change) &&
-                          change.samples.sumOfSquares < before->sumOfSquares &&
-                          change.samples.largestSquare <= farthest;
-    return isBetter && crossesNothing(change) ? &change : nullptr;
+    return quadric.at(change.star.vertex) <= mostError && isInBox(change.star.vertex) &&
+           shapeOrDistance(change) == Refusal::None &&
+           change.samples.sumOfSquares < before->sumOfSquares &&
+           change.samples.largestSquare <= farthest && crossesNothing(change);
 }
 
 void PatchSimplifier::apply(const Change& change) {
     if (change.halfEdge != PatchTopology::kNone) {
         const std::uint32_t other = topology_.to(change.halfEdge);
         topology_.collapse(change.halfEdge, change.star.star);
-        markChanged(change.star.star);
-        setState(change.vertex, Patch::State::Open);
+        const Star& star = change.star.star;
+        for (int i = 0; i < star.ringCount(); ++i) tried_.open(star.ring[i]);
+        tried_.open(change.vertex);
         patch_.quadrics[change.vertex] += patch_.quadrics[other];
         if (change.star.star.isOpen) patch_.marks[change.vertex] = Patch::kBorder;
         if (!patch_.heirs.empty()) patch_.heirs[other] = change.vertex;
@@ -112,8 +87,8 @@ void PatchSimplifier::apply(const Change& change) {
     patch_.points[change.vertex] = change.star.vertex;
 }
 
-void PatchSimplifier::settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, int largestSide,
-                                      std::vector<double>* costs) {
+void PatchSimplifier::clusterFlatVertices(const std::vector<std::uint8_t>& isFlat, int largestSide,
+                                          std::vector<double>* costs) {
     const auto boxAt = [&](std::uint32_t v, int side) {
         const Vec3 index = frame_.toIndex(patch_.points[v]);
         return Index3{static_cast<std::int64_t>(std::floor(index.x / side)),
@@ -126,9 +101,8 @@ void PatchSimplifier::settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, i
             const std::uint32_t a = topology_.from(h), b = topology_.to(h);
             if (isFlat[a] == 0 || isFlat[b] == 0 || !mayChange(a) || !mayChange(b)) continue;
             if (boxAt(a, side) != boxAt(b, side)) continue;
-            const Change* change = evaluateCollapse(h);
-            if (change == nullptr) continue;
-            apply(*change);
+            if (evaluateCollapse(h) != Refusal::None) continue;
+            apply(change_);
             if (costs != nullptr) costs->push_back(0);
         }
     }
@@ -138,36 +112,35 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
     CollapseQueue queue(topology_, patch_);
     queue.fill(patch_, [&](std::uint32_t h) {
         if (topology_.isMovable(topology_.from(h)) != topology_.isMovable(topology_.to(h)))
-            noteUntried(h);
+            passOn(h);
         const double cost = costOf(h);
-        return isTried(h, cost) ? CollapseQueue::kNever : cost;
+        return tried_.has(topology_.from(h), topology_.to(h), cost) ? CollapseQueue::kNever : cost;
     });
     for (std::uint32_t v = 0; v < patch_.points.size(); ++v) {
-        if (topology_.isMovable(v) && patch_.states[v] == Patch::State::Open) {
-            patch_.states[v] = Patch::State::Tried;
-        }
+        if (topology_.isMovable(v)) tried_.begin(v);
     }
     for (std::int64_t made = 0; made < most;) {
         const CollapseQueue::Edge edge = queue.cheapest();
         if (edge.halfEdge == CollapseQueue::kNone) break;
-        const Change* change = evaluateCollapse(edge.halfEdge);
-        if (change == nullptr) {
+        if (evaluateCollapse(edge.halfEdge) != Refusal::None) {
             queue.refuse(edge.halfEdge);
             continue;
         }
-        apply(*change);
+        apply(change_);
         ++made;
         if (costs != nullptr) costs->push_back(edge.cost);
-        queue.update(change->vertex, change->star.star, [&](std::uint32_t h) { return costOf(h); });
+        queue.update(change_.vertex, change_.star.star, [&](std::uint32_t h) { return costOf(h); });
     }
-    queue.forEachLeft([&](std::uint32_t h) { noteUntried(h); });
-    passOnUntried();
+    queue.forEachLeft([&](std::uint32_t h) { passOn(h); });
+    tried_.finish();
 }
 
-/// The star has the shape asked for and lies near its samples.
-bool PatchSimplifier::staysNear(Change& change) const {
-    return shapeStar(patch_, limits_.shape, change.star) && !turnsOver(change) &&
-           errors_.assign(change.star, limits_.maxDistanceMm, change.samples);
+/// What refuses the star for its shape, or for its distance from the full-resolution surface.
+Refusal PatchSimplifier::shapeOrDistance(Change& change) const {
+    const Refusal refusal = shapeStar(patch_, limits_.shape, change.star);
+    if (refusal != Refusal::None) return refusal;
+    if (turnsOver(change)) return Refusal::InsideOut;
+    return errors_.assign(change.star, limits_.maxDistanceMm, change.samples);
 }
 
 /// The star and one more triangle are all of a piece, and would be inside out: a bent sheet can
@@ -198,7 +171,7 @@ bool PatchSimplifier::turnsOver(const Change& change) const {
     return (before > 0) != (after > 0);
 }
 
-/// \pre staysNear() was true
+/// \pre shapeOrDistance() refused nothing
 bool PatchSimplifier::crossesNothing(const Change& change) {
     return !guard_.needsProof(change.star, change.samples.isCrowded) ||
            guard_.crossesNothing(change.star);
@@ -217,9 +190,9 @@ void PatchSimplifier::fitVertices() {
     for (std::uint32_t v = 0; v < patch_.points.size(); ++v) {
         if (!mayChange(v) || patch_.states[v] == Patch::State::Fitted) continue;
         // one with too many triangles is not fitted, and stays as it is
-        const Change* change = evaluateFit(v);
+        const bool isBetter = evaluateFit(v);
         patch_.states[v] = Patch::State::Fitted;
-        if (change != nullptr) apply(*change);
+        if (isBetter) apply(change_);
     }
 }
 

@@ -8,6 +8,7 @@
 #include "adaptive/collapse/CollapseQueue.h"
 #include "adaptive/collapse/CrossingGuard.h"
 #include "adaptive/collapse/ErrorTracker.h"
+#include "adaptive/collapse/TriedEdges.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "adaptive/mesh/Patch.h"
 #include "adaptive/mesh/PatchTopology.h"
@@ -39,8 +40,8 @@ public:
     /// \param isFlat       of each vertex: all triangles around it lie in one plane
     /// \param largestSide  cells
     /// \param costs        gets a 0 for each collapse; may be null
-    void settleFlatBoxes(const std::vector<std::uint8_t>& isFlat, int largestSide,
-                         std::vector<double>* costs);
+    void clusterFlatVertices(const std::vector<std::uint8_t>& isFlat, int largestSide,
+                             std::vector<double>* costs);
 
     /// Collapses edges until none is left within the limits, at most `most` of them.
     /// \param costs  gets the cost of each, in order; may be null
@@ -63,25 +64,22 @@ private:
     bool mayChange(std::uint32_t v) const {
         return topology_.isMovable(v) && patch_.states[v] != Patch::State::Final;
     }
-    void setState(std::uint32_t v, Patch::State state);
-    void markChanged(const Star& star);
     QuadricMinimum bestPlace(std::uint32_t a, std::uint32_t b) const;
     /// What collapsing an edge costs; kNever beyond the limits.
     double costOf(std::uint32_t halfEdge) const;
-    /// As long as nothing around an edge has changed since it was tried, it is not tried again.
-    bool isTried(std::uint32_t halfEdge, double cost) const;
-    void noteUntried(std::uint32_t halfEdge);
-    void passOnUntried();
+    void passOn(std::uint32_t halfEdge) {
+        tried_.passOn(topology_.from(halfEdge), topology_.to(halfEdge));
+    }
 
-    /// What collapsing the edge would do; null when it must not be. Valid until the next
-    /// evaluation: its memory, 5 kB and the samples, is used again.
-    const Change* evaluateCollapse(std::uint32_t halfEdge);
-    /// What moving the vertex to where its triangles fit the samples would do; null when that must
-    /// not be, or is no better. As above.
-    const Change* evaluateFit(std::uint32_t vertex);
+    /// Fills change_ with what collapsing the edge would do.
+    Refusal evaluateCollapse(std::uint32_t halfEdge);
+    /// Fills change_ with what moving the vertex to where its triangles fit the samples would do.
+    /// \return whether that may be, and is better
+    bool evaluateFit(std::uint32_t vertex);
+    /// \pre nothing refused the change
     void apply(const Change& change);
 
-    bool staysNear(Change& change) const;
+    Refusal shapeOrDistance(Change& change) const;
     bool turnsOver(const Change& change) const;
     bool crossesNothing(const Change& change);
     bool isInBox(const Vec3& p) const;
@@ -93,9 +91,8 @@ private:
     PatchTopology topology_;
     ErrorTracker errors_;
     CrossingGuard guard_;
-    /// Ends of edges that were not tried, or led out of the box: another cut may allow those.
-    std::vector<std::uint32_t> untried_;
-    Change change_;  ///< the one that is evaluated
+    TriedEdges tried_;
+    Change change_;  ///< the one that is evaluated: 5 kB and the samples
 };
 
 }  // namespace adaptiso::detail

@@ -107,13 +107,13 @@ std::vector<std::int64_t> MeshSurface::insideOut(const SimplifiedSurface& surfac
 }
 
 SimplifiedSurface MeshSurface::firstRound(const PatchLimits& limits, CollapseCosts* costs) const {
-    SimplifiedSurface surface = whole(limits.keepsHeirs);
+    SimplifiedSurface surface = unchanged(limits.keepsHeirs);
     PatchRound(surface, {}, frame()).run({limits}, costs);
     return surface;
 }
 
 /// The mesh as it is.
-SimplifiedSurface MeshSurface::whole(bool keepsHeirs) const {
+SimplifiedSurface MeshSurface::unchanged(bool keepsHeirs) const {
     SimplifiedSurface surface;
     reserveInHugePages(surface.points, parts_.points.size());
     surface.points = parts_.points;

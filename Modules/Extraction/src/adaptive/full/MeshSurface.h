@@ -39,7 +39,7 @@ public:
 private:
     using Around = OrderedBuckets<std::uint32_t>;
 
-    SimplifiedSurface whole(bool keepsHeirs) const;
+    SimplifiedSurface unchanged(bool keepsHeirs) const;
     std::vector<Vec3> addPoints(const Around& around, SimplifiedSurface& surface) const;
     InsideOutPieces judge(const TriangleView& surface, std::span<const std::uint32_t> marks) const;
     std::vector<std::uint8_t> clearancesOf(const SimplifiedSurface& surface,

@@ -328,7 +328,7 @@ BrickSurface simplifyBrick(const FineBrick& made, const Index3& lowIndex, const 
     std::iota(patch.heirs.begin(), patch.heirs.end(), 0U);
     PatchSimplifier simplifier(patch, frame, limits);
     if (limits.maxCost > 0 && !isFlat.empty()) {
-        simplifier.settleFlatBoxes(isFlat, Brick::kSide / 2, costs);
+        simplifier.clusterFlatVertices(isFlat, Brick::kSide / 2, costs);
     }
     simplifier.collapseEdges(patch.ownTriangles, costs);
     const std::vector<std::uint32_t> newVertex = takeOver(patch, result);
@@ -354,18 +354,18 @@ public:
     void add(const BrickSurface& brick) {
         requireRoomFor(brick);
         makeRoomFor(brick);
-        const auto firstTriangle = static_cast<Number>(whole_.triangles.size());
+        const auto firstTriangle = static_cast<Number>(joined_.triangles.size());
         numberVertices(brick, firstTriangle);
         for (const auto& t : brick.triangles) {
-            whole_.triangles.push_back({number_[t[0]], number_[t[1]], number_[t[2]]});
+            joined_.triangles.push_back({number_[t[0]], number_[t[1]], number_[t[2]]});
         }
         addFine(brick);
-        whole_.samples.insert(whole_.samples.end(), brick.samples.begin(), brick.samples.end());
+        joined_.samples.insert(joined_.samples.end(), brick.samples.begin(), brick.samples.end());
         for (const std::uint32_t t : brick.sampleTriangle) {
-            whole_.sampleTriangle.push_back(firstTriangle + t);
+            joined_.sampleTriangle.push_back(firstTriangle + t);
         }
-        whole_.fineTriangles += std::ssize(brick.fine.triangles);
-        whole_.tableTriangles += brick.tableTriangles;
+        joined_.fineTriangles += std::ssize(brick.fine.triangles);
+        joined_.tableTriangles += brick.tableTriangles;
     }
 
     SimplifiedSurface join() {
@@ -375,16 +375,16 @@ public:
         std::sort(order.begin(), order.end(),
                   [&](Number a, Number b) { return walls_[a].edge < walls_[b].edge; });
         for (const Number wall : order) {
-            place[wall] = static_cast<Number>(whole_.fine.points.size());
+            place[wall] = static_cast<Number>(joined_.fine.points.size());
             addWallSample(walls_[wall]);
         }
-        for (auto& t : whole_.fine.triangles) {
+        for (auto& t : joined_.fine.triangles) {
             for (Number& v : t) {
                 if (v >= BrickSurface::kOnWall) v = place[v - BrickSurface::kOnWall];
             }
         }
-        if (!whole_.quadrics.empty()) whole_.quadrics.resize(whole_.points.size());
-        return std::move(whole_);
+        if (!joined_.quadrics.empty()) joined_.quadrics.resize(joined_.points.size());
+        return std::move(joined_);
     }
 
 private:
@@ -402,9 +402,9 @@ private:
         const auto fits = [](const auto& whole, const auto& part, std::size_t most) {
             return part.size() <= most - whole.size();
         };
-        if (fits(whole_.fine.triangles, brick.fine.triangles, SurfaceState::kMost) &&
-            fits(whole_.points, brick.points, SurfaceState::kMost) &&
-            fits(whole_.samples, brick.samples, SimplifiedSurface::kMostSamples - walls_.size())) {
+        if (fits(joined_.fine.triangles, brick.fine.triangles, SurfaceState::kMost) &&
+            fits(joined_.points, brick.points, SurfaceState::kMost) &&
+            fits(joined_.samples, brick.samples, SimplifiedSurface::kMostSamples - walls_.size())) {
             return;
         }
         throw InvalidInput(
@@ -426,25 +426,25 @@ private:
                                             kMostGrowth * needed);
             reserveInHugePages(list, static_cast<std::size_t>(space));
         };
-        grow(whole_.points, brick.points.size());
-        grow(whole_.states, brick.points.size());
-        if (!brick.isWhole) grow(whole_.quadrics, brick.points.size());
-        grow(whole_.triangles, brick.triangles.size());
+        grow(joined_.points, brick.points.size());
+        grow(joined_.states, brick.points.size());
+        if (!brick.isWhole) grow(joined_.quadrics, brick.points.size());
+        grow(joined_.triangles, brick.triangles.size());
         // those on walls come last
         const std::size_t samples = brick.samples.size() + walls_.size() + brick.walls.size();
-        grow(whole_.samples, samples);
-        grow(whole_.sampleTriangle, samples);
-        grow(whole_.fine.triangles, brick.fine.triangles.size());
+        grow(joined_.samples, samples);
+        grow(joined_.sampleTriangle, samples);
+        grow(joined_.fine.triangles, brick.fine.triangles.size());
         if (keepsHeirs_)
-            grow(whole_.heirs, brick.heirs.size() + walls_.size() + brick.walls.size());
-        grow(whole_.fine.points, brick.fine.points.size() + walls_.size() + brick.walls.size());
+            grow(joined_.heirs, brick.heirs.size() + walls_.size() + brick.walls.size());
+        grow(joined_.fine.points, brick.fine.points.size() + walls_.size() + brick.walls.size());
     }
 
     /// Gives the brick's vertices their numbers in the whole, and appends those that are new: at a
     /// wall the first brick keeps the vertex, the others add their quadrics to it.
     void numberVertices(const BrickSurface& brick, Number firstTriangle) {
         constexpr Number kNew = ~Number{0};
-        if (!brick.isWhole) whole_.quadrics.resize(whole_.points.size());
+        if (!brick.isWhole) joined_.quadrics.resize(joined_.points.size());
         number_.assign(brick.points.size(), kNew);
         for (const auto& wall : brick.walls) {
             const auto known = wallAt_.find(wall.edge);
@@ -452,18 +452,18 @@ private:
         }
         for (std::size_t v = 0; v < number_.size(); ++v) {
             if (number_[v] == kNew) {
-                number_[v] = static_cast<Number>(whole_.points.size());
-                whole_.points.push_back(brick.points[v]);
-                whole_.states.push_back(brick.states[v]);
-                if (!brick.isWhole) whole_.quadrics.push_back(brick.quadrics[v]);
+                number_[v] = static_cast<Number>(joined_.points.size());
+                joined_.points.push_back(brick.points[v]);
+                joined_.states.push_back(brick.states[v]);
+                if (!brick.isWhole) joined_.quadrics.push_back(brick.quadrics[v]);
                 continue;
             }
             // a brick that is left whole keeps its walls, too
             if (brick.states[v] == Patch::State::Final) {
-                whole_.states[number_[v]] = Patch::State::Final;
+                joined_.states[number_[v]] = Patch::State::Final;
             }
             if (!brick.isWhole) {
-                StoredQuadric& sum = whole_.quadrics[number_[v]];
+                StoredQuadric& sum = joined_.quadrics[number_[v]];
                 for (std::size_t n = 0; n < sum.number.size(); ++n) {
                     sum.number[n] += brick.quadrics[v].number[n];
                 }
@@ -477,38 +477,39 @@ private:
                                   Vec3{}, SheetClearance::kAlone});
             }
             wallNumber_.push_back(static_cast<Number>(at->second));
-            WallVertex& whole = walls_[at->second];
-            whole.normal += wall.normal;
-            whole.clearance = std::min(whole.clearance, wall.clearance);
+            WallVertex& joined = walls_[at->second];
+            joined.normal += wall.normal;
+            joined.clearance = std::min(joined.clearance, wall.clearance);
         }
     }
 
     /// \pre numberVertices() has numbered the brick's walls
     void addFine(const BrickSurface& brick) {
         const FineMesh& fine = brick.fine;
-        const auto first = static_cast<Number>(whole_.fine.points.size());
-        whole_.fine.points.insert(whole_.fine.points.end(), fine.points.begin(), fine.points.end());
+        const auto first = static_cast<Number>(joined_.fine.points.size());
+        joined_.fine.points.insert(joined_.fine.points.end(), fine.points.begin(),
+                                   fine.points.end());
         if (keepsHeirs_) {
-            for (const Number heir : brick.heirs) whole_.heirs.push_back(number_[heir]);
+            for (const Number heir : brick.heirs) joined_.heirs.push_back(number_[heir]);
         }
         const auto numberOf = [&](Number v) {
             constexpr Number kOnWall = BrickSurface::kOnWall;
             return v < kOnWall ? first + v : kOnWall + wallNumber_[v - kOnWall];
         };
         for (const auto& [a, b, c] : fine.triangles) {
-            whole_.fine.triangles.push_back({numberOf(a), numberOf(b), numberOf(c)});
+            joined_.fine.triangles.push_back({numberOf(a), numberOf(b), numberOf(c)});
         }
     }
 
     void addWallSample(const WallVertex& wall) {
         Sample sample;
         sample.clearance = wall.clearance;
-        sample.setPoint(whole_.points[wall.vertex]);
+        sample.setPoint(joined_.points[wall.vertex]);
         sample.setNormal(wall.normal);
-        whole_.samples.push_back(sample);
-        whole_.sampleTriangle.push_back(wall.triangle);
-        whole_.fine.points.push_back(whole_.points[wall.vertex]);
-        if (keepsHeirs_) whole_.heirs.push_back(wall.vertex);
+        joined_.samples.push_back(sample);
+        joined_.sampleTriangle.push_back(wall.triangle);
+        joined_.fine.points.push_back(joined_.points[wall.vertex]);
+        if (keepsHeirs_) joined_.heirs.push_back(wall.vertex);
     }
 
     const Bricks& bricks_;
@@ -519,7 +520,7 @@ private:
     std::vector<Number> wallNumber_;  ///< in walls_, of a brick's
     std::vector<WallVertex> walls_;
     std::unordered_map<std::uint64_t, std::size_t> wallAt_;  ///< by edge
-    SimplifiedSurface whole_;
+    SimplifiedSurface joined_;
 };
 
 }  // namespace

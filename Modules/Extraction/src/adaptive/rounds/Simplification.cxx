@@ -8,6 +8,7 @@
 
 #include "adaptiso/Core/Memory.h"
 #include "adaptive/Parameters.h"
+#include "adaptive/collapse/TriedEdges.h"
 #include "adaptive/rounds/BorderMarks.h"
 
 namespace adaptiso::detail {
@@ -31,7 +32,7 @@ std::optional<PatchCut> cutAround(const SimplifiedSurface& surface, const Metric
 }
 
 /// All of it stays as it is, as noise at full resolution does.
-bool isSettled(const SurfaceState& surface) {
+bool isAllFinal(const SurfaceState& surface) {
     return std::all_of(surface.states.begin(), surface.states.end(),
                        [](Patch::State state) { return state == Patch::State::Final; });
 }
@@ -117,7 +118,7 @@ PatchCut Simplification::nextCut(const SimplifiedSurface& surface) {
 void Simplification::roundUpTo(double cost, SimplifiedSurface& surface, bool fits) {
     limits_.triedCost = limits_.maxCost;
     limits_.maxCost = cost;
-    if (isSettled(surface)) return;
+    if (isAllFinal(surface)) return;
     PatchWork work{limits_};
     work.fits = fits;
     PatchRound(surface, nextCut(surface), frame_).run(work);
@@ -138,16 +139,14 @@ SimplifiedSurface Simplification::beginGently() {
         roundUpTo(cost * costUnit_, surface);
     }
     // what was refused for its distance is to be tried again
-    for (Patch::State& state : surface.states) {
-        if (state == Patch::State::Tried) state = Patch::State::Open;
-    }
+    TriedEdges::openAll(surface.states);
     limits_.maxDistanceMm = distanceMm;
     return surface;
 }
 
 SimplifiedSurface Simplification::toLimits() {
     SimplifiedSurface surface = beginGently();
-    if (surface.quadrics.empty()) return surface;  // all was left whole
+    if (surface.quadrics.empty()) return surface;  // all bricks were left whole
     for (const double cost : kBoundCosts) {
         if (cost * costUnit_ > limits_.maxCost) roundUpTo(cost * costUnit_, surface);
     }
@@ -282,9 +281,7 @@ void Simplification::approach(SimplifiedSurface& surface, std::int64_t target, d
 void Simplification::goFarther(SimplifiedSurface& surface) {
     limits_.maxDistanceMm *= 2;
     limits_.provesAll = true;  // beyond what single sheets are certain of
-    for (Patch::State& state : surface.states) {
-        if (state == Patch::State::Tried) state = Patch::State::Open;
-    }
+    TriedEdges::openAll(surface.states);
 }
 
 /// Forgets the planes of the full surface: vertices get those of the triangles that there are.
@@ -314,8 +311,8 @@ void Simplification::fit(SimplifiedSurface& surface) {
     PatchWork work{limits_};
     work.collapses = false;
     work.fits = true;
-    const bool isWhole = surface.triangleCount() == surface.fineTriangles;
-    for (; !isWhole && fits_ < 2 && !isSettled(surface); ++fits_) {
+    const bool isFull = surface.triangleCount() == surface.fineTriangles;
+    for (; !isFull && fits_ < 2 && !isAllFinal(surface); ++fits_) {
         PatchRound(surface, nextCut(surface), frame_).run(work);
     }
     freeMemory(surface.quadrics);
