@@ -16,6 +16,8 @@ namespace {
 
 std::function<void(const std::string&)> progressObserver;
 
+const StageTimer kSinceStart;
+
 void show(const std::string& text) {
     if (progressObserver) return progressObserver(text);
     std::cerr << "\r\033[K" << text << std::flush;
@@ -39,10 +41,13 @@ void ProgressLine::show(std::string_view stage, double fraction) {
     write(std::string(stage) + " " + std::to_string(static_cast<int>(percent)) + " %");
 }
 
-void ProgressLine::write(const std::string& text) {
-    if (!isShown_ || text == written_) return;
+void ProgressLine::write(std::string text) {
+    if (!isShown_) return;
+    if (!progressObserver)
+        text += ", " + std::to_string(static_cast<int>(kSinceStart.total())) + " s";
+    if (text == written_) return;
     adaptiso::show(text);
-    written_ = text;
+    written_ = std::move(text);
 }
 
 void ProgressLine::clear() {

@@ -16,8 +16,9 @@ namespace adaptiso {
 /// terminal: for a program that runs inside a page.
 void observeProgress(std::function<void(const std::string&)> observer);
 
-/// One line on a terminal's stderr that says what is going on ("extract  42 %"), and nothing at
-/// all when stderr is a file or a pipe, or with --quiet. The line is wiped at the end.
+/// One line on a terminal's stderr that says what is going on ("extract 42 %, 3 s", the time since
+/// the program began), and nothing at all when stderr is a file or a pipe, or with --quiet. The
+/// line is wiped at the end.
 class ProgressLine {
 public:
     explicit ProgressLine(bool isQuiet);
@@ -36,7 +37,7 @@ public:
     ProgressCallback callback();
 
 private:
-    void write(const std::string& text);
+    void write(std::string text);
 
     bool isShown_;
     std::string written_;

@@ -92,30 +92,54 @@ namespace {
 
 std::string terminatedProgram;
 
+constexpr std::size_t kColumns = 80;
+
+/// Words of `text` on lines of at most `width` characters.
+std::string folded(const std::string& text, std::size_t width, const std::string& indent = "") {
+    std::istringstream words(text);
+    std::string result;
+    std::size_t used = 0;
+    for (std::string word; words >> word; used += word.size()) {
+        if (used > 0) {
+            const bool isFull = used + 1 + word.size() > width;
+            result += isFull ? '\n' + indent : " ";
+            used = isFull ? 0 : used + 1;
+        }
+        result += word;
+    }
+    return result;
+}
+
 /// Help texts folded to 80 columns; CLI11 2.1 leaves that to the terminal.
 class FoldedHelp : public CLI::Formatter {
 public:
     std::string make_option_desc(const CLI::Option* option) const override {
-        constexpr std::size_t kColumns = 80;
         return folded(option->get_description(), kColumns - get_column_width());
     }
-
-private:
-    static std::string folded(const std::string& text, std::size_t width) {
-        std::istringstream words(text);
-        std::string result;
-        std::size_t used = 0;
-        for (std::string word; words >> word; used += word.size()) {
-            if (used > 0) {
-                const bool isFull = used + 1 + word.size() > width;
-                result += isFull ? '\n' : ' ';
-                used = isFull ? 0 : used + 1;
-            }
-            result += word;
-        }
-        return result;
-    }
 };
+
+/// One screen, for -h alone: usage, the options' names by group, the first example.
+std::string shortHelp(const CLI::App& app) {
+    std::string text = FoldedHelp().make_usage(&app, app.get_name());
+    text.insert(0, folded(app.get_description(), kColumns) + "\n");
+    for (const std::string& group : app.get_groups()) {
+        std::string names;
+        for (const CLI::Option* option : app.get_options()) {
+            if (option->get_group() != group || !option->nonpositional()) continue;
+            const bool takesValue = option->get_items_expected_max() > 0;
+            const std::string value = takesValue ? "=" + option->get_type_name() : "";
+            names += "--" + option->get_lnames().front() + value + " ";
+        }
+        if (names.empty()) continue;
+        text += group + ":\n  " + folded(names, kColumns - 2, "  ") + "\n";
+    }
+    const std::string& footer = app.get_footer();
+    const std::size_t begin = footer.find("  " + app.get_name());
+    if (begin != std::string::npos) {
+        text += "\nExample:\n" + footer.substr(begin, footer.find('\n', begin) - begin) + "\n";
+    }
+    return text + "\nAll of it: " + app.get_name() + " --help, or man " + app.get_name() + "\n";
+}
 
 /// Tells why a run has failed, on stderr and to whom --json was asked for.
 int fail(const Program& program, Verdict verdict) {
@@ -169,6 +193,10 @@ int runApp(int argc, const char* const* argv, const Program& program,
         declare(app);
         if (argc == 2 && std::string_view(argv[1]) == "--help-json") {
             std::cout << optionsJson(app);
+            return runParsed(program, [] { return flushResults(), kExitOk; });
+        }
+        if (argc == 2 && std::string_view(argv[1]) == "-h") {
+            std::cout << shortHelp(app);
             return runParsed(program, [] { return flushResults(), kExitOk; });
         }
         refuseMissingValues(app);

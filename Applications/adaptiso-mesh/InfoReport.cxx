@@ -98,6 +98,27 @@ void printValues(std::ostream& out, const ValueSummary& values, bool isInteger) 
     if (values.histogram) printHistogram(out, *values.histogram, isInteger);
 }
 
+/// `path` as a shell takes it.
+std::string quoted(const std::string& path) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+,:@%";
+    if (path.find_first_not_of(kPlain) == std::string::npos) return path;
+    std::string text = "'";
+    for (const char c : path) text += c == '\'' ? "'\\''" : std::string(1, c);
+    return text + "'";
+}
+
+/// Commands to go on with.
+void printNext(std::ostream& out, const std::string& input, const ImageInfo& info) {
+    if (!info.refusals.empty() || info.values.otsu.size() < 2) return;
+    std::string command = "adaptiso-mesh " + oneLine(quoted(input));
+    if (info.series) command += " --series " + std::to_string(info.series->number);
+    out << "next        " << command << " --iso auto --largest --fill-cavities\n            "
+        << command;
+    for (const double threshold : info.values.otsu[1]) out << " --iso " << formatShort(threshold);
+    out << " --report try.html\n";
+}
+
 Json valuesJson(const ValueSummary& values) {
     Json percentiles = Json::array();
     for (std::size_t n = 0; n < values.percentiles.size(); ++n) {
@@ -169,6 +190,7 @@ void printInfo(std::ostream& out, const MeshOptions& options, const ImageInfo& i
     printAxes(out, geometry);
     printValues(out, info.values, isInteger(info.pixelType));
     for (const std::string& refusal : info.refusals) out << "refused     " << refusal << '\n';
+    printNext(out, options.input, info);
 }
 
 std::string infoJson(const MeshOptions& options, const ImageInfo& info, const Verdict& verdict) {

@@ -101,6 +101,16 @@ class Help(ApplicationTest):
             self.assertIn("Usage: ", done.stdout)
             self.assertEqual(done.stderr, "")
 
+    def test_h_is_one_screen_with_every_option(self):
+        for program in PROGRAMS:
+            short = run_program(self.folder, program, "-h").stdout
+            self.assertLessEqual(len(short.splitlines()), 45, program)
+            self.assertLessEqual(max(map(len, short.splitlines())), 100, program)
+            said = json.loads(run_program(self.folder, program, "--help-json").stdout)
+            for option in said["options"]:
+                for name in option["names"][-1:]:
+                    self.assertRegex(short, rf"{name}\b", program)
+
     def test_tells_examples_exit_codes_and_formats(self):
         text = self.mesh("--help").stdout
         for word in ("Examples:", "Exit codes:", ".vtp", ".stl", ".gii", ".pial", ".tri", "Otsu",

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import shlex
 
 from DicomTest import SECRETS, Sphere
 from support import (BAD_INPUT, SOURCE, USAGE, ApplicationTest, Image, ball, from_function,
@@ -77,6 +78,11 @@ class Info(ApplicationTest):
         surface = self.report("in.nii", "--iso", "auto", "-o", "a.ply")["surfaces"][0]
         self.assertEqual(otsu[0], [surface["isovalue"]])
         self.assertRegex(self.mesh("in.nii", "--info").stdout, "3 classes: 50, 550")
+        self.path("its name.nii").symlink_to("in.nii")
+        for commands in re.findall(r"(?s)\nnext        (.*)", self.mesh("its name.nii", "--info").stdout):
+            for command in commands.splitlines():
+                self.mesh(*shlex.split(command)[1:])
+        self.assertTrue(self.path("its name-iso50.vtp").exists())
 
     def test_the_histogram_has_a_row_for_each_value_of_a_mask(self):
         write_nifti(self.path("in.nii"), from_function(

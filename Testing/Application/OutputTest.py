@@ -300,7 +300,7 @@ class Streams(ApplicationTest):
         shown = os.read(leader, 100000)
         os.close(leader)
         self.assertEqual(done.returncode, OK)
-        self.assertIn(b"read ...", shown)
+        self.assertRegex(shown, rb"read \.\.\., \d+ s\r")
         self.assertTrue(shown.endswith(b"\r\x1b[K"), shown)
 
 
