@@ -437,6 +437,22 @@ class OtherFormats(ApplicationTest):
                    ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
         self.check_cut("x.tif")
 
+    def test_tiff_pages_that_itk_reads_wrong_are_refused(self):
+        from PIL import Image
+
+        def page(kind, size=(8, 6)):
+            return Image.new(kind, size, 7)
+
+        for name, pages, fault, tags in (
+                ("size", [page("L"), page("L", (16, 12))], "its pages differ", {}),
+                ("type", [page("I;16"), page("L")], "its pages differ", {}),
+                ("colour", [page("L"), page("RGB")], "its pages differ", {}),
+                ("integers", [page("I"), page("I")], "32-bit integers", {}),
+                ("white", [page("L"), page("L")], "0 is white", {262: 0})):
+            with self.subTest(name):
+                pages[0].save(self.path("x.tif"), save_all=True, append_images=pages[1:], tiffinfo=tags)
+                self.assert_fails(BAD_INPUT, fault, "x.tif", "--info")
+
     @has("rawtominc", "voxeltoworld")
     def test_minc_lies_where_its_own_tools_have_it(self):
         for version in ([], ["-2"]):  # netCDF, HDF5

@@ -14,6 +14,7 @@
 #include <itkVTKImageIO.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <fstream>
 #include <span>
@@ -149,14 +150,46 @@ private:
     bool isLittle_;
 };
 
-/// The directories of all pages are there; libtiff takes those that are for the whole.
+/// Width, height, bits, photometry, samples a pixel, and their format, of a page of a TIFF.
+std::array<std::uint64_t, 6> tiffLayout(Numbers& file, std::uint64_t page, bool& isThumbnail) {
+    constexpr std::array kTags{256, 257, 258, 262, 277, 339};
+    std::array<std::uint64_t, 6> layout{0, 0, 1, 1, 1, 1};
+    isThumbnail = false;
+    for (std::uint64_t left = file.at(page, 2), at = page + 2; left > 0; --left, at += 12) {
+        const auto tag = static_cast<int>(file.at(at, 2));
+        const std::uint64_t value =
+            file.at(at + 8, file.at(at + 2, 2) == 3 ? 2 : 4);  // short, long
+        const auto* const found = std::ranges::find(kTags, tag);
+        if (found != kTags.end()) layout[static_cast<std::size_t>(found - kTags.begin())] = value;
+        if (tag == 254) isThumbnail = (value & 1) != 0;
+    }
+    return layout;
+}
+
+/// The directories of all pages are there; libtiff takes those that are for the whole. ITK reads
+/// all pages as the first one.
 void requireWholeTiff(const std::filesystem::path& path) {
+    const auto refuse = [&](const char* fault) { return FileError(path.string() + fault); };
     Numbers file(path, std::ifstream(path).get() == 'I');  // "II": Intel's order
     const std::uint64_t most = std::filesystem::file_size(path);
+    std::optional<std::array<std::uint64_t, 6>> first;
     std::uint64_t pages = 0;
     for (std::uint64_t page = file.at(4, 4); page != 0;
          page = file.at(page + 2 + 12 * file.at(page, 2), 4)) {
         if (++pages > most / 18) throw cutOff(path);  // a ring
+        bool isThumbnail = false;
+        const auto layout = tiffLayout(file, page, isThumbnail);
+        if (isThumbnail) continue;
+        if (!first) first = layout;
+        if (layout != *first)
+            throw refuse(": its pages differ in size or pixels; give pages of one kind");
+    }
+    if (first && first->at(2) == 32 && first->at(5) != 3) {
+        throw refuse(
+            ": has 32-bit integers, which ITK's reader of TIFF does not read; save floats");
+    }
+    if (first && first->at(3) == 0) {
+        throw refuse(": 0 is white in it, which ITK's reader of TIFF turns over; save black as 0");
     }
 }
 
