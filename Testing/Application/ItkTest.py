@@ -428,6 +428,19 @@ class OtherFormats(ApplicationTest):
                 self.check(name, kind, {"guessed-orientation"} | ({"guessed-unit"} if make is mrc else set()))
                 self.check_cut(name)
 
+    def test_mrc_that_itk_reads_wrong_is_refused(self):
+        whole = bytearray(mrc())
+        whole[64:72] = struct.pack("<2i", 2, 1)
+        self.path("swapped.mrc").write_bytes(whole)
+        self.assert_fails(BAD_INPUT, "are not x, y and z", "swapped.mrc", "--info")
+        whole = bytearray(mrc()[:1024 + 192])
+        whole[12:16] = bytes(4)
+        self.path("signed.mrc").write_bytes(whole)
+        self.assert_fails(BAD_INPUT, "signed 8-bit samples", "signed.mrc", "--info")
+        whole[152:160] = struct.pack("<2i", 1146047817, 0)
+        self.path("imod.mrc").write_bytes(whole)
+        self.assertEqual(self.image("imod.mrc")[2]["sizeVoxels"], list(SIZE))
+
     def test_tiff_of_several_pages(self):
         from PIL import Image
         pages = [Image.frombytes("I;16", (8, 6), struct.pack("<48H", *samples()[48 * k:48 * k + 48]))

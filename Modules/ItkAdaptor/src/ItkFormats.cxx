@@ -227,6 +227,26 @@ void requireWholeNetCdf(const std::filesystem::path& path) {
         throw cutOff(path);  // the last may lack its fill
 }
 
+/// ITK's reader takes 8-bit samples for unsigned ones, as IMOD wrote them once, and the axes for x,
+/// y, z in this order.
+void requirePlainMrc(const std::filesystem::path& path) {
+    Numbers file(path, Numbers(path, true).at(212, 1) == 0x44);  // the machine's stamp
+    constexpr std::uint64_t kImod = 1146047817;
+    const bool isUnsigned = file.at(152, 4) == kImod && (file.at(156, 4) & 1) == 0;
+    if (file.at(12, 4) == 0 && !isUnsigned) {
+        throw FileError(path.string() +
+                        ": has signed 8-bit samples (mode 0), which ITK's reader of "
+                        "MRC takes for unsigned ones; save 16 bits (mode 1)");
+    }
+    for (std::uint64_t axis = 0; axis < 3; ++axis) {
+        const std::uint64_t named = file.at(64 + 4 * axis, 4);
+        if (named == 0 || named == axis + 1) continue;
+        throw FileError(path.string() +
+                        ": its columns, rows and sections are not x, y and z, which "
+                        "ITK's reader of MRC ignores; reorder them");
+    }
+}
+
 /// Its header is 14336 bytes; ITK's reader takes the end of each file of the series for the slice.
 void requireWholeGe4(itk::ImageIOBase& io, const std::filesystem::path& path) {
     const std::filesystem::path folder = path.parent_path();
@@ -274,6 +294,7 @@ void readWhole(const Format& format, itk::ImageIOBase& io, const ItkRequest& req
 ReadVolume readBy(const Format& format, itk::ImageIOBase& io, const ItkRequest& request) {
     if (format.name == "MINC") requireWholeNetCdf(request.file);
     if (format.name == "GE 4") requireWholeGe4(io, request.file);
+    if (format.name == "MRC") requirePlainMrc(request.file);
     if (format.name == "TIFF") requireWholeTiff(request.file);
     if (format.name == "Stimulate") requireSafeStimulate(request.file);
     io.ReadImageInformation();
