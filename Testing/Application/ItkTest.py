@@ -540,7 +540,8 @@ class OtherFormats(ApplicationTest):
         self.path("x.sdt").write_bytes(big(samples()))
         self.check("x.spr", "Stimulate (ITK)", {"guessed-orientation"})
         for line, fault in ((f"stimFileName: {self.path('x.sdt')}", "outside its own folder"),
-                            ("dataType: LWORD", "32-bit integers")):
+                            ("dataType: LWORD", "reads wrong"),
+                            ("dataType: COMPLEX", "reads wrong")):
             self.path("y.spr").write_text(STIMULATE + line + "\n")
             self.assert_fails(BAD_INPUT, fault, "y.spr", "--info")
 

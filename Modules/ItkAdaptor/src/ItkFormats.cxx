@@ -258,15 +258,16 @@ void requireWholeGe4(itk::ImageIOBase& io, const std::filesystem::path& path) {
     }
 }
 
-/// ITK's reader takes 32-bit integers for 16-bit ones, and data from any folder.
+/// ITK's reader takes 32-bit integers for 16-bit ones, complex samples for real ones, and data from
+/// any folder.
 void requireSafeStimulate(const std::filesystem::path& path) {
     std::ifstream file(path);
     for (std::string line; std::getline(file, line);) {
         const auto has = [&](std::string_view text) { return line.find(text) != line.npos; };
-        if (has("dataType") && has("LWORD")) {
+        if (has("dataType") && (has("LWORD") || has("COMPLEX"))) {
             throw FileError(path.string() +
-                            ": has 32-bit integers (LWORD), which ITK's reader of "
-                            "Stimulate reads wrong; convert it to NIfTI");
+                            ": has samples (LWORD or COMPLEX) that ITK's reader of Stimulate reads "
+                            "wrong; convert it to NIfTI");
         }
         if (has("stimFileName") && has("/")) {
             throw FileError(path.string() +
