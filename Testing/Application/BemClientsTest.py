@@ -574,6 +574,20 @@ class RealHead(SharedFolderTest):
         self.assertIn("inner-skull-dented", codes[0])
         self.assertEqual(codes[1], {"guessed-brain"})
 
+    def test_a_contrast_that_thresholds_are_not_made_for_is_a_warning(self):
+        """Grey and white matter 1.8 times as far apart, as at 7 T: thresholds lose a third of the brain. 1.4 times is sound."""
+        image = nibabel.load(TEMPLATES / "ch2.nii.gz")
+        t1 = np.asarray(image.dataobj).astype(np.float32)
+        brain = np.asarray(nibabel.load(TEMPLATES / "ch2bet.nii.gz").dataobj) > 0
+        level = np.median(t1[brain])
+        for factor, is_strong in ((1.4, False), (1.8, True)):
+            scan = t1.copy()
+            scan[brain] = level * np.clip(1 + factor * (t1[brain] / level - 1), 0, 2)
+            save(self.path("scan.nii"), scan, image.affine)
+            self.bem("--t1", "scan.nii", "--meg", "--vertices", 162, "--dry-run", "--json", "scan.json")
+            texts = [w["text"] for w in json.loads(self.path("scan.json").read_text())["warnings"]]
+            self.assertEqual(any("between quartiles" in text for text in texts), is_strong)
+
     def test_a_bad_scan_gives_the_same_inner_skull(self):
         """Brighter to one side by 10 to 30 % along each axis, noise of 5 %, and the right side cut off: more than half of the
         brain was once lost, and all checks passed."""
