@@ -547,14 +547,12 @@ class RealHead(SharedFolderTest):
         place = {name: ",".join(map(str, right[name])) for name in ("Nz", "Iz", "LPA", "RPA")}
         self.bem("--t1", TEMPLATES / "ch2.nii.gz", "--brain-mask", TEMPLATES / "ch2bet.nii.gz", "--montage", "10-05",
                  f"--nasion={place['Nz']}", f"--inion={place['Iz']}", f"--left-ear={place['LPA']}",
-                 f"--right-ear={place['RPA']}", "--vertices", 642, "-o", "montage")
+                 f"--right-ear={place['RPA']}", "-o", "montage")
         rows = [row.split("\t") for row in (self.path("montage") / "electrodes.tsv").read_text().splitlines()[1:]]
         off = {row[0]: np.linalg.norm(np.array(row[1:4], float) - right[row[0]]) for row in rows if row[0] in right}
         self.assertGreater(len(off), 250)
-        self.assertLess(np.mean(list(off.values())), 5)
-        self.assertLess(max(off.values()), 10, max(off, key=off.get))
-        for name in ("Cz", "Oz", "Fpz", "Iz", "T7", "T8"):
-            self.assertLess(off[name], 5, name)
+        self.assertLess(np.mean(list(off.values())), 2.5)
+        self.assertLess(max(off.values()), 5, max(off, key=off.get))
 
     def test_a_lesion_at_the_cortex_is_warned_of_or_marked(self):
         """A cavity of 20 mm radius, as dark as CSF, dents the inner skull by 25 mm; all checks of the surfaces pass."""
