@@ -12,16 +12,16 @@ namespace {
 
 using Id = WallMesh::Id;
 
-constexpr std::int64_t kMostCells = 1 << 24;
 /// Where less than one in so many triangles is asked for, what is near them is looked up.
 constexpr std::size_t kFew = 4;
 /// Where more of the walls than one in so many full triangles are to be proved, all are mapped.
 constexpr std::size_t kOfAll = 6;
 
-BoundingBox boxOfAll(const WallMesh& mesh) {
-    BoundingBox box{mesh.point(0), mesh.point(0)};
-    for (std::uint32_t v = 1; v < mesh.pointCount(); ++v) box.add(mesh.point(v));
-    return box;
+/// The numbers below a count.
+std::vector<Id> firstNumbers(Id count) {
+    std::vector<Id> numbers(count);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    return numbers;
 }
 
 /// Pairs of triangles that cross, of which one is asked for.
@@ -46,7 +46,6 @@ WallMender::WallMender(WallCollapser& collapser, double limitMm, bool mayGrow)
       limitMm_(limitMm),
       boundMm_(limitMm),
       mayGrow_(mayGrow),
-      cells_(boxOfAll(mesh_), 2 * collapser.voxelMm(), kMostCells),
       isLast_(mesh_.firstTriangle(), 0),
       isFullProved_(mesh_.fullTriangles(), 1),
       witnessesOf_(mesh_.fullTriangles()) {
@@ -55,7 +54,7 @@ WallMender::WallMender(WallCollapser& collapser, double limitMm, bool mayGrow)
         isLast_.push_back(mesh_.makerOf(t) == kNone ? 1 : 0);
     }
     if (mesh_.firstTriangle() != 0) {
-        full_.assign(mesh_.fullTriangles(), [&](Id t) { return boxAround(t, 0); });
+        full_ = NearTriangles(mesh_, firstNumbers(mesh_.fullTriangles()));
     }
 }
 
@@ -100,9 +99,8 @@ void WallMender::findCrossings() {
     }
     if (asked.empty()) return;
     if (kFew * asked.size() < alive.size()) {
-        MarkedCells marks(cells_);
-        for (const Id t : asked) marks.mark(boxAround(t, 0));
-        std::erase_if(alive, [&](Id t) { return !marks.isMarked(boxAround(t, 0)); });
+        const NearTriangles near(mesh_, asked);
+        std::erase_if(alive, [&](Id t) { return !near.hasOne(mesh_, boxAround(t, 0)); });
     }
     std::vector<std::uint8_t> areAsked;
     std::vector<Vec3> points;
@@ -140,7 +138,7 @@ void WallMender::forgetChanged() {
             continue;
         }
         const Id wall = mesh_.triangle(t).wall;
-        full_.forEachNearOften(boxAround(t, boundMm_), [&](Id f) {
+        full_.forEach(mesh_, boxAround(t, boundMm_), [&](Id f) {
             if (witnessesOf_[f].count == 0 && mesh_.triangle(f).wall == wall) isFullProved_[f] = 0;
         });
     }
@@ -174,16 +172,12 @@ void WallMender::blameNear(const std::vector<WallPlace>& places) {
         if (changes_.size() == before) unexplained.push_back(place.triangle);
     }
     if (unexplained.empty()) return;
-    TriangleGrid grid;
-    grid.assign(static_cast<Id>(unexplained.size()),
-                [&](Id n) { return boxAround(unexplained[n], boundMm_); });
+    const NearTriangles near(mesh_, std::move(unexplained));
     for (Id t = 0; t < mesh_.triangleCount(); ++t) {
         if (mesh_.isTriangleAlive(t) || mesh_.killerOf(t) >= mesh_.changeCount()) continue;
         const Id killer = mesh_.killerOf(t);
         if (!mesh_.isChangeStanding(killer)) continue;
-        bool isNear = false;
-        grid.forEachNear(boxAround(t, 0), [&](Id) { isNear = true; });
-        if (isNear) changes_.push_back(killer);
+        if (near.hasOne(mesh_, boxAround(t, boundMm_))) changes_.push_back(killer);
     }
 }
 
@@ -191,9 +185,7 @@ void WallMender::blameNear(const std::vector<WallPlace>& places) {
 /// of their neighbours.
 const WallSurface& WallMender::fullNear(const std::vector<Id>& triangles) {
     if (!wholeFull_ && (mayGrow_ || kFew * triangles.size() > mesh_.fullTriangles())) {
-        std::vector<Id> all(mesh_.fullTriangles());
-        std::iota(all.begin(), all.end(), 0);
-        wholeFull_.emplace(mesh_, std::move(all));
+        wholeFull_.emplace(mesh_, firstNumbers(mesh_.fullTriangles()));
     }
     if (wholeFull_) return *wholeFull_;
     std::vector<std::uint8_t> isIn(mesh_.triangleCount(), 0);
@@ -279,8 +271,7 @@ void WallMender::proveByMap() {
         mesh_.firstTriangle() == 0 && kOfAll * unproved.size() > mesh_.fullTriangles();
     std::vector<Id> full;
     if (areAll) {
-        full.resize(mesh_.fullTriangles());
-        std::iota(full.begin(), full.end(), 0);
+        full = firstNumbers(mesh_.fullTriangles());
     } else {
         full = unprovedFull();
         const std::vector<Id> over = fullOver(unproved);

@@ -92,8 +92,7 @@ private:
     const WallMesh& mesh_;
     double limitMm_, boundMm_;
     bool mayGrow_;
-    SpaceCells cells_;
-    TriangleGrid full_;  ///< triangles of the full walls; none where the walls began as these
+    NearTriangles full_;  ///< triangles of the full walls; none where the walls began as these
     std::optional<WallSurface> wholeFull_, nearFull_;
     std::vector<std::uint8_t> isClear_;       ///< of triangles: known to cross nothing
     std::vector<std::uint8_t> isProved_;      ///< of triangles: within the limit of the full walls

@@ -84,6 +84,7 @@ public:
     std::int64_t aliveTriangles() const { return alive_; }
 
     const Vec3& point(Id v) const { return points_[v]; }
+    std::span<const Vec3> points() const { return points_; }
     Kind kind(Id v) const { return kinds_[v]; }
     bool isAlive(Id v) const { return count_[v] > 0; }
     const WallTriangle& triangle(Id t) const { return triangles_[t]; }
