@@ -59,6 +59,16 @@ std::string counted(std::int64_t count, const std::string& what) {
     return formatCount(count) + " " + what + (count == 1 ? "" : "s");
 }
 
+/// "1 piece", "3 pieces, 12,718 cavities".
+std::string piecesText(const TopologyReport& topology) {
+    const std::int64_t cavities = std::ranges::count_if(
+        topology.components,
+        [](const SurfaceComponent& c) { return c.isClosed() && !c.isOutward(); });
+    const std::string pieces = counted(std::ssize(topology.components) - cavities, "piece");
+    if (cavities == 0) return pieces;
+    return pieces + ", " + formatCount(cavities) + (cavities == 1 ? " cavity" : " cavities");
+}
+
 void printSurface(std::ostream& out, const MeshRun& run, const SurfaceSummary& surface) {
     const bool isWritten = !run.failsStrict();
     const TopologyReport& topology = surface.topology;
@@ -67,9 +77,8 @@ void printSurface(std::ostream& out, const MeshRun& run, const SurfaceSummary& s
         << (surface.isAutomatic ? " (chosen by Otsu's method)" : "") << ", " << surface.format->name
         << ", " << toString(surface.frame) << '\n';
     out << "  " << counted(topology.triangles, "triangle") << ", " << formatCount(topology.vertices)
-        << " vertices, " << counted(std::ssize(topology.components), "component")
-        << "; marching cubes makes " << formatCount(surface.statistics.marchingCubesTriangles)
-        << '\n';
+        << " vertices, " << piecesText(topology) << "; marching cubes makes "
+        << formatCount(surface.statistics.marchingCubesTriangles) << '\n';
     if (surface.volumeMm3) {
         out << "  closed, area " << formatMeasure(surface.areaMm2) << " mm2, volume "
             << formatMeasure(*surface.volumeMm3) << " mm3\n";

@@ -207,6 +207,7 @@ class Pieces(ApplicationTest):
 
     def test_all(self):
         self.assertEqual(self.radii(), [13, -8, 4])
+        self.assertIn(", 2 pieces, 1 cavity;", self.mesh("onion.nii", "--iso", "0").stdout)
 
     def test_fill_cavities(self):
         self.assertEqual(self.radii("--fill-cavities"), [13])
