@@ -39,15 +39,25 @@ to_chars_result shortest(char* first, char* last, T value, bool mayBeFixed = tru
                                                    : (value < 0 ? "-inf" : "inf");
         return copied(first, last, text, strlen(text));
     }
-    const string scientific = fmt::format("{:e}", value);  // shortest digits, exponent of 2 or more
-    if (!mayBeFixed) return copied(first, last, scientific.data(), scientific.size());
-    const size_t e = scientific.find('e');
-    const bool isNegative = scientific[0] == '-';
+    const bool isNegative = std::signbit(value);
+    const string general = fmt::format("{}", std::abs(value));  // shortest, in either notation
+    const string mantissa = general.substr(0, general.find('e'));
+    int exponent = static_cast<int>(std::min(mantissa.find('.'), mantissa.size())) - 1;
+    if (mantissa.size() < general.size()) exponent += std::atoi(&general[mantissa.size() + 1]);
     string digits;
-    for (const char c : string_view(scientific).substr(0, e)) {
-        if (c >= '0' && c <= '9') digits += c;
+    for (const char c : mantissa) {
+        if (c == '.') continue;
+        if (c == '0' && digits.empty() && value != 0) {
+            --exponent;
+        } else {
+            digits += c;
+        }
     }
-    const int exponent = std::atoi(scientific.c_str() + e + 1);
+    digits.resize(std::max<size_t>(digits.find_last_not_of('0') + 1, 1));
+    string scientific = (isNegative ? "-" : "") + digits;
+    if (digits.size() > 1) scientific.insert(isNegative ? 2 : 1, ".");
+    scientific += fmt::format("e{}{:02}", exponent < 0 ? '-' : '+', std::abs(exponent));
+    if (!mayBeFixed) return copied(first, last, scientific.data(), scientific.size());
     const int count = static_cast<int>(digits.size());
     string fixed = isNegative ? "-" : "";
     if (exponent < 0) {
