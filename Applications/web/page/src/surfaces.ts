@@ -71,7 +71,8 @@ export class CheckTab {
     if (files.length === 0) return task.refuse("Give a mesh first.");
     const args = files.map((file) => file.path);
     if (byId<HTMLInputElement>("nested").checked) args.push("--nested");
-    args.push("--profile", byId<HTMLSelectElement>("profile").value, "--json", kReport);
+    const profile = byId<HTMLSelectElement>("profile").value;
+    args.push(...(profile === "" ? [] : ["--profile", profile]), "--json", kReport);
     const run: Run = { program: "adaptiso-check", args, files }, done = await task.run(run);
     const report = done === undefined ? undefined : reportOf(done) as unknown as CheckReport | undefined;
     if (done === undefined || report?.surfaces === undefined) return;

@@ -37,6 +37,7 @@ export async function openPage(browserName, { width = 1280, height = 900, isDark
 }
 
 export async function give(page, selector, ...files) {
+  await page.evaluate(() => { delete document.body.dataset.scan; });
   const input = await page.$(selector);
   await input.uploadFile(...files);
 }
