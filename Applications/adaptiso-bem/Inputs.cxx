@@ -1,3 +1,5 @@
+#include <deque>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -7,7 +9,7 @@
 #include "Run.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
-#include "adaptiso/HeadModel/SourceError.h"
+#include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -33,27 +35,23 @@ ReadVolume readMainImage(const fs::path& path, const std::string& role, BemRun& 
     return read;
 }
 
-/// The boundaries that `make` finds. Errors name the option and the file.
-template <class Make>
-HeadBoundaries timed(BemRun& run, const std::string& option, const fs::path& path,
-                     const Make& make) {
-    try {
-        return run.timer.time("boundaries", make);
-    } catch (const SourceError& error) {
-        const BemOptions& options = run.options;
-        const std::string mask = options.brainMask.empty()
-                                     ? "--aseg " + options.aseg.string()
-                                     : "--brain-mask " + options.brainMask.string();
-        const std::string source = error.source() == BoundarySource::BrainMask ? mask
-                                   : error.source() == BoundarySource::Lesion
-                                       ? "--lesion " + options.lesion.string()
-                                   : error.source() == BoundarySource::HeadMask
-                                       ? "--head-mask " + options.headMask.string()
-                                       : "--pial";
-        throw InvalidInput(source + ": " + error.what());
-    } catch (const InvalidInput& error) {
-        throw InvalidInput(option + " " + path.string() + ": " + error.what());
-    }
+/// The boundaries in `images`. Errors name the option and the file.
+HeadBoundaries boundariesIn(const BemImages& images, BemRun& run,
+                            const BoundaryOptions& boundaries) {
+    const BemOptions& options = run.options;
+    const std::map<std::string, fs::path> files{
+        {"t1", options.t1},         {"brain-mask", options.brainMask},
+        {"aseg", options.aseg},     {"lesion", options.lesion},
+        {"labels", options.labels}, {"head-mask", options.headMask},
+        {"ct", options.ct},
+    };
+    const auto naming = [&](const std::string& name) {
+        const auto file = files.find(name);
+        if (name == "probabilities") return "--" + name + " " + options.probabilities[0].string();
+        return "--" + name + (file == files.end() ? "" : " " + file->second.string());
+    };
+    return run.timer.time(
+        "boundaries", [&] { return findBoundaries(run.model.source, images, boundaries, naming); });
 }
 
 /// Surfaces of the cortex, in the model's space.
@@ -76,75 +74,41 @@ std::vector<TriangleMesh> readCortex(BemRun& run, const std::vector<fs::path>& p
     return surfaces;
 }
 
-HeadBoundaries fromT1(BemRun& run, const BoundaryOptions& boundaries) {
-    const BemOptions& options = run.options;
-    std::optional<ReadVolume> t1, mask, aseg, lesion;
-    BrainSources brain;
-    run.timer.time("read", [&] {
-        t1 = readMainImage(options.t1, "t1", run);
-        if (!options.brainMask.empty()) mask = readImage(options.brainMask, "brain mask", run);
-        if (!options.aseg.empty()) aseg = readImage(options.aseg, "aseg", run);
-        if (!options.lesion.empty()) lesion = readImage(options.lesion, "lesion mask", run);
-        if (!options.pial.empty()) {
-            brain.pial = readCortex(run, options.pial, "--pial", "pial surface", 0);
-        }
-    });
-    if (mask) brain.mask = mask->volume.view();
-    if (aseg) brain.aseg = aseg->volume.view();
-    if (lesion) brain.lesion = lesion->volume.view();
-    run.model.pial = brain.pial;
-    return timed(run, "--t1", options.t1,
-                 [&] { return boundariesFromT1(t1->volume, brain, boundaries); });
-}
-
-HeadBoundaries fromLabels(BemRun& run, const BoundaryOptions& boundaries) {
-    const BemOptions& options = run.options;
-    std::optional<ReadVolume> labels, mask;
-    run.timer.time("read", [&] {
-        labels = readMainImage(options.labels, "labels", run);
-        if (!options.headMask.empty()) mask = readImage(options.headMask, "head mask", run);
-    });
-    std::optional<VolumeView> head;
-    if (mask) head = mask->volume.view();
-    return timed(run, "--labels", options.labels, [&] {
-        return boundariesFromLabels(labels->volume, options.tissues, boundaries, head);
-    });
-}
-
-HeadBoundaries fromProbabilities(BemRun& run, const BoundaryOptions& boundaries) {
-    std::vector<ReadVolume> maps;
-    run.timer.time("read", [&] {
-        for (const fs::path& path : run.options.probabilities) {
-            maps.push_back(readMainImage(path, "probabilities", run));
-        }
-    });
-    std::vector<VolumeView> views;
-    for (const ReadVolume& map : maps) views.push_back(map.volume.view());
-    return timed(run, "--probabilities", run.options.probabilities.front(),
-                 [&] { return boundariesFromProbabilities(views, boundaries); });
-}
-
 }  // namespace
 
 HeadBoundaries boundariesFromImages(BemRun& run) {
     const BemOptions& options = run.options;
+    const std::string& source = run.model.source;
     BoundaryOptions boundaries = options.model.boundaries;
     boundaries.progress = run.progress.callback();
     run.progress.show("read");
-    HeadBoundaries result;
-    if (run.model.source == "t1") {
-        result = fromT1(run, boundaries);
-    } else if (run.model.source == "labels") {
-        result = fromLabels(run, boundaries);
-    } else if (run.model.source == "probabilities") {
-        result = fromProbabilities(run, boundaries);
-    } else {
-        const ReadVolume ct =
-            run.timer.time("read", [&] { return readMainImage(options.ct, "ct", run); });
-        result =
-            timed(run, "--ct", options.ct, [&] { return boundariesFromCt(ct.volume, boundaries); });
-    }
-    return result;
+    std::deque<ReadVolume> read;  // what views are of
+    BemImages images;
+    images.tissues = options.tissues;
+    const auto readMask = [&](const fs::path& path, const char* role,
+                              std::optional<VolumeView>& view) {
+        if (path.empty()) return;
+        view = read.emplace_back(readImage(path, role, run)).volume.view();
+    };
+    run.timer.time("read", [&] {
+        std::vector<fs::path> main{source == "t1"       ? options.t1
+                                   : source == "labels" ? options.labels
+                                                        : options.ct};
+        if (source == "probabilities") main = options.probabilities;
+        for (const fs::path& path : main) {
+            images.main.push_back(
+                read.emplace_back(readMainImage(path, source, run)).volume.view());
+        }
+        readMask(options.brainMask, "brain mask", images.brain.mask);
+        readMask(options.aseg, "aseg", images.brain.aseg);
+        readMask(options.lesion, "lesion mask", images.brain.lesion);
+        readMask(options.headMask, "head mask", images.headMask);
+        if (!options.pial.empty()) {
+            images.brain.pial = readCortex(run, options.pial, "--pial", "pial surface", 0);
+        }
+    });
+    run.model.pial = images.brain.pial;
+    return boundariesIn(images, run, boundaries);
 }
 
 std::vector<TriangleMesh> readSurfaces(BemRun& run) {

@@ -37,7 +37,6 @@ struct BemOptions {
     std::filesystem::path volume;  ///< with surfaces: the image whose tkRAS is written
     ReadOptions read;              ///< of the main image
     BemModelOptions model;
-    bool namesCsf = false;  ///< the conductivity of CSF was given
     BemFileOptions files;
 
     std::filesystem::path electrodes;                      ///< a file; empty: none

@@ -12,7 +12,7 @@
 #include "Common/RunApp.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/Text.h"
-#include "adaptiso/SurfaceChecks/Checks.h"
+#include "adaptiso/HeadPipeline/BemRules.h"
 
 namespace adaptiso::bem {
 namespace {
@@ -39,19 +39,21 @@ std::vector<std::string> parts(const std::string& text, char separator) {
     return result;
 }
 
-/// Numbers joined by a separator. \throws UsageError  naming option and rule
-std::vector<double> numbers(const std::string& option, const std::string& text, char separator,
-                            std::size_t least, std::size_t most, const std::string& rule) {
+/// Takes numbers joined by a separator; `take` says whether they are as many as the rule wants.
+/// \throws UsageError  naming option and rule
+void takeNumbers(const std::string& option, const std::string& text, char separator,
+                 const std::string& rule,
+                 const std::function<bool(const std::vector<double>&)>& take) {
     std::vector<double> values;
+    bool areNumbers = true;
     for (const std::string& part : parts(text, separator)) {
         const std::optional<double> value = parseFiniteNumber(part);
-        if (!value) throw UsageError(option + " " + text + ": must be " + rule);
-        values.push_back(*value);
+        areNumbers = areNumbers && value;
+        values.push_back(value.value_or(0));
     }
-    if (values.size() < least || values.size() > most) {
+    if (!areNumbers || !take(values)) {
         throw UsageError(option + " " + text + ": must be " + rule);
     }
-    return values;
 }
 
 /// "brain=1,2,3"
@@ -147,109 +149,65 @@ void declareInput(CLI::App& app, BemOptions& options) {
 
 void declareHead(CLI::App& app, BemOptions& options) {
     const OptionGroup group(app, kHead);
-    BoundaryOptions& head = options.model.boundaries;
-    const auto length = [&](const char* name, double& target, double most, const char* help) {
-        group.number(name, "MM", target, {.least = 0, .most = most, .unit = "mm"}, help);
-    };
+    BemModelOptions& model = options.model;
     group.value(
         "--layers", "1|3|4",
-        [&head](const std::string& text) {
-            const std::size_t choice = parseChoice("--layers", text, {"1", "3", "4"});
-            head.withBrain = choice == 2;
-            if (choice == 0) head.innerSkullOnly = true;
+        [&model](const std::string& text) {
+            const std::vector<std::string> counts{"1", "3", "4"};
+            setLayers(model, counts[parseChoice("--layers", text, counts)].front() - '0');
         },
         "3 (default): inner skull, outer skull, skin; 4: the brain within the inner skull as "
         "well, CSF between them; 1: as --meg");
-    group.flag("--meg", head.innerSkullOnly, "The inner skull alone");
+    group.flag("--meg", model.boundaries.innerSkullOnly, "The inner skull alone");
     group.value(
         "--min-gap", "MM[,MM[,MM]]",
-        [&head](const std::string& text) {
-            const std::vector<double> gaps = numbers("--min-gap", text, ',', 1, 3,
-                                                     "one to three numbers of mm: SKULL,SCALP,CSF");
-            head.minSkullMm = gaps.front();
-            head.minScalpMm = gaps.size() > 1 ? gaps[1] : gaps.front();
-            if (gaps.size() > 2) head.minCsfMm = gaps[2];
-            constexpr double kLeast = CheckRules::kDefaultMinGapMm, kMost = 20;
-            const auto [least, most] = std::minmax_element(gaps.begin(), gaps.end());
-            if (!(*least >= kLeast) || !(*most <= kMost)) {
-                throw UsageError("--min-gap " + text + ": must be " + formatNumber(kLeast) +
-                                 " mm or more, as adaptiso-check wants it, and at most " +
-                                 formatNumber(kMost));
-            }
+        [&model](const std::string& text) {
+            takeNumbers("--min-gap", text, ',', kMinGapRule,
+                        [&](const auto& gaps) { return setMinGaps(model, gaps); });
         },
         "Least thickness of skull, scalp and (with --layers 4) CSF, guaranteed (default: 2,2,1)");
-    length("--csf", head.csfMm, 20, "T1: from the brain mask to the inner skull (default: 2)");
-    length("--skull", head.skullMm, 200,
-           "T1: thickness of the skull where the image does not show it (default: 6)");
-    length("--max-skull", head.maxSkullMm, 200,
-           "Bone farther than this from the inner skull (face, neck) counts as scalp (default: "
-           "20)");
-    group.number("--skull-hu", "HU", head.skullHu, {.unit = "HU"},
-                 "CT: isovalue of bone (default: 300)");
-    group.number("--skin-hu", "HU", head.skinHu, {.unit = "HU"},
-                 "CT: isovalue of skin (default: -300)");
-    length("--closing", head.closingMm, 30,
-           "Gaps and canals narrower than twice this are closed (default: 10)");
-    length("--sulci", head.sulciMm, 30,
-           "Sulci of the brain's own surface narrower than twice this are closed (default: 3)");
-    length("--smoothing", head.smoothingMm, 10,
-           "Standard deviation of the Gaussian that boundaries are smoothed with (default: 1.5)");
-    length("--cut-necks", head.cutNecksMm, 20,
-           "Cut off what of the inner skull a ball of this radius can't enter and that reaches "
-           "more than 10 mm, as leaks down a foramen do (default: 8; 0: cut nothing)");
-    length("--voxel", head.stepMm, 5,
-           "Side of the voxels that the head is worked on (default: the image's own if they are "
-           "cubes of 0.7 to 1.5 mm, else 1)");
+    for (const BemNumber& number : bemNumbers()) {
+        const bool isHu = number.mostMm == 0;
+        const NumberRule rule = isHu ? NumberRule{.unit = "HU"}
+                                     : NumberRule{.least = 0, .most = number.mostMm, .unit = "mm"};
+        group.number("--" + std::string(number.name), isHu ? "HU" : "MM",
+                     model.boundaries.*number.value, rule, std::string(number.help));
+    }
 }
 
 void declareSurfaces(CLI::App& app, BemOptions& options) {
     const OptionGroup mesh(app, kMesh);
-    constexpr std::int64_t kMostVertices = 200'000;
     mesh.values(
         "--vertices", "N[,N,N]",
         [&options](const std::vector<std::string>& texts) {
             for (const std::string& text : texts) {
                 for (const std::string& count : parts(text, ',')) {
                     options.model.vertices.push_back(
-                        parseCount("--vertices", count, 42, kMostVertices));
+                        parseCount("--vertices", count, kLeastBemVertices, kMostBemVertices));
                 }
             }
         },
         "Vertices of each surface, evenly spread: 642, 1281, 2562 or any number (default: 2562; "
         "with --layers 4 by the layers' thickness, 10,000 in all at most); or one number for each "
         "surface, inside out: N,N,N");
-    mesh.count("--most-vertices", options.model.mostVertices, 168, 4 * kMostVertices,
+    mesh.count("--most-vertices", options.model.mostVertices, 168, 4 * kMostBemVertices,
                "With --layers 4, without --vertices and --edge-length: at most N vertices in all "
                "(default: 10000)");
     mesh.value(
         "--edge-length", "MIN:MAX",
         [&options](const std::string& text) {
-            const std::vector<double> range =
-                numbers("--edge-length", text, ':', 2, 2, "two lengths in mm: MIN:MAX");
-            if (!(range[0] > 0) || !(range[0] <= range[1])) {
-                throw UsageError("--edge-length " + text + ": must be 0 < MIN <= MAX");
-            }
-            options.model.edgeLengthMm = EdgeLengthRange{range[0], range[1]};
+            takeNumbers("--edge-length", text, ':', kEdgeLengthRule, [&](const auto& lengths) {
+                return setEdgeLengths(options.model, lengths);
+            });
         },
         "Adaptive: edges of MIN mm where a surface bends or another is near, up to MAX mm; with "
         "--vertices lengths are scaled to reach that number");
     mesh.value(
         "--conductivity", "BRAIN,[CSF,]SKULL,SCALP",
         [&options](const std::string& text) {
-            const std::vector<double> values =
-                numbers("--conductivity", text, ',', 3, 4,
-                        "three or four numbers: BRAIN,[CSF,]SKULL,SCALP in S/m");
-            ConductivityModel& sigma = options.model.conductivities;
-            sigma.brain = values.front();
-            options.namesCsf = values.size() == 4;
-            if (options.namesCsf) sigma.csf = values[1];
-            sigma.skull = values[values.size() - 2];
-            sigma.scalp = values.back();
-            try {
-                checkConductivities(options.model.conductivities);
-            } catch (const InvalidInput& error) {
-                throw UsageError("--conductivity " + text + ": " + error.what());
-            }
+            takeNumbers("--conductivity", text, ',', kConductivityRule, [&](const auto& sigmas) {
+                return setConductivities(options.model, sigmas);
+            });
         },
         "Conductivities in S/m (default: 0.3,0.006,0.3; with --layers 4: 0.3,1.79,0.006,0.3)");
 }
@@ -284,9 +242,10 @@ void addPoint(CLI::App& app, const std::string& name, std::optional<Vec3>& targe
     group.value(
         name, "X,Y,Z",
         [&target, name](const std::string& text) {
-            const std::vector<double> p =
-                numbers(name, text, ',', 3, 3, "three numbers of mm: X,Y,Z");
-            target = Vec3{p[0], p[1], p[2]};
+            takeNumbers(name, text, ',', "three numbers of mm: X,Y,Z", [&](const auto& p) {
+                if (p.size() == 3) target = Vec3{p[0], p[1], p[2]};
+                return p.size() == 3;
+            });
         },
         description);
 }
@@ -350,82 +309,23 @@ void declareToolboxes(CLI::App& app, BemOptions& options) {
     addFlag("--vtp", files.writesVtp, "Viewers: .vtp");
 }
 
-/// Checks options against each other.
-void checkCombinations(const BemOptions& options) {
-    const int sources =
-        static_cast<int>(!options.t1.empty()) + static_cast<int>(!options.labels.empty()) +
-        static_cast<int>(!options.probabilities.empty()) + static_cast<int>(!options.ct.empty()) +
-        static_cast<int>(!options.surfaces.empty());
+/// Checks options against each other: those of the model by bemFault(), then the program's own.
+void checkCombinations(const CLI::App& app, const BemOptions& options) {
     const auto require = [](bool isGood, const std::string& message) {
         if (!isGood) throw UsageError(message);
     };
-    require(sources == 1,
-            "one of --t1, --labels, --probabilities, --ct, --surfaces must be given, and one only");
-    require(options.brainMask.empty() || !options.t1.empty(), "--brain-mask needs --t1");
-    require(options.aseg.empty() || !options.t1.empty(), "--aseg needs --t1");
-    require(options.lesion.empty() || !options.t1.empty(), "--lesion needs --t1");
-    const BoundaryOptions& layers = options.model.boundaries;
-    require(options.pial.empty() || !options.t1.empty(), "--pial needs --t1");
-    const SourceOptions& dipoles = options.model.sources;
+    BemRequest request{{}, options.tissues, options.surfaces.size()};
+    for (const std::string& name : givenOptions(app)) request.given.insert(name.substr(2));
+    const std::string fault =
+        bemFault(options.model, request, [](const std::string& name) { return "--" + name; });
+    require(fault.empty(), fault);
+    checkInputCoordinates(options.inputCoordinates,
+                          options.surfaces.size() + options.pial.size() + options.sources.size());
     require(options.sources.size() <= 2, "--sources: must be one or two surfaces");
-    require(options.sources.empty() || dipoles.gridMm == 0,
-            "--sources and --source-grid exclude each other");
-    require(dipoles.count == SourceOptions{}.count || !options.sources.empty(),
-            "--source-count needs --sources");
-    require(!layers.withBrain || !layers.innerSkullOnly, "--layers 4 and --meg exclude each other");
-    require(
-        !layers.withBrain || options.ct.empty(),
-        "--layers 4 does not go with --ct: a CT does not show where the brain ends and CSF begins");
-    require(layers.withBrain || !options.namesCsf, "--conductivity: four numbers need --layers 4");
-    require(!layers.withBrain || options.labels.empty() || !options.tissues.csf.empty(),
-            "--layers 4 needs --tissue csf=... as well");
-    require(options.volume.empty() || !options.surfaces.empty(), "--volume needs --surfaces");
-    const std::size_t meshes =
-        options.surfaces.size() + options.pial.size() + options.sources.size();
-    require(options.inputCoordinates.empty() || meshes > 0,
-            "--input-coordinates needs --surfaces, --pial or --sources");
-    checkInputCoordinates(options.inputCoordinates, meshes);
-    const bool namesTissues = !options.tissues.brain.empty() || options.tissues.othersAreBrain;
-    require(options.labels.empty() || namesTissues,
-            "--labels needs --preset, or --tissue brain=..., skull=... and scalp=...");
-    require(options.labels.empty() || options.model.boundaries.innerSkullOnly ||
-                (!options.tissues.skull.empty() &&
-                 (!options.tissues.scalp.empty() || !options.headMask.empty())),
-            "--labels needs --tissue skull=... and scalp=... as well (or --head-mask, or --meg)");
-    require(options.headMask.empty() || !options.labels.empty(), "--head-mask needs --labels");
-    require(
-        !options.labels.empty() || (!namesTissues && options.tissues.csf.empty() &&
-                                    options.tissues.skull.empty() && options.tissues.scalp.empty()),
-        "--tissue and --preset need --labels");
-    require(
-        options.surfaces.empty() || options.surfaces.size() == options.model.surfaceCount(),
-        "--surfaces needs " + std::to_string(options.model.surfaceCount()) + " files, inside out");
-    require(options.model.vertices.size() <= 1 ||
-                options.model.vertices.size() == options.model.surfaceCount(),
-            "--vertices: must be one number, or " + std::to_string(options.model.surfaceCount()) +
-                " with commas between them");
-    const BoundaryOptions& head = options.model.boundaries;
-    require(head.maxSkullMm > head.minSkullMm, "--max-skull must be more than --min-gap");
-    require(
-        options.t1.empty() || (head.skullMm >= head.minSkullMm && head.skullMm <= head.maxSkullMm),
-        "--skull must lie between --min-gap and --max-skull");
-    constexpr double kAirHu = -1000, kSoftTissueHu = 40;
-    require(options.ct.empty() || (head.skinHu > kAirHu && head.skinHu < head.skullHu &&
-                                   head.skullHu > kSoftTissueHu),
-            "--skin-hu must lie above air (-1000 HU) and below --skull-hu, and that above soft "
-            "tissue (40 HU)");
     const bool namesLandmarks = options.nasion || options.leftEar || options.rightEar;
-    const bool wantsElectrodes =
-        !options.electrodes.empty() || options.model.electrodes.positions || namesLandmarks;
-    require(options.electrodes.empty() || !options.model.electrodes.positions,
-            "--electrodes and --montage exclude each other");
     require(!namesLandmarks || (options.nasion && options.leftEar && options.rightEar),
             "--nasion, --left-ear and --right-ear need each other");
     require(!options.inion || namesLandmarks, "--inion needs --nasion, --left-ear and --right-ear");
-    require(!wantsElectrodes || options.model.hasSkin(),
-            "electrodes and landmarks need a skin: not with --meg");
-    require(!options.model.electrodes.frame || !options.electrodes.empty(),
-            "--electrodes-in needs --electrodes");
     require(!options.files.writesBesa || options.model.hasSkin(),
             "--besa needs a skin: not with --meg");
     require(options.isDryRun || !options.output.empty(), "-o DIR is needed (or --dry-run)");
@@ -479,8 +379,8 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
                          kTetrahedra);
     declareToolboxes(app, options);
     declareCommonOptions(app, options.common, "of the model only the report is then written");
-    afterParsing(app, [&options] {
-        checkCombinations(options);
+    afterParsing(app, [&app, &options] {
+        checkCombinations(app, options);
         for (const CoordinateFrame frame : options.inputCoordinates) {
             options.model.inputCoordinates.emplace_back(frameWord(frame));
         }

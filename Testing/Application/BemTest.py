@@ -441,7 +441,7 @@ class BadInput(BemTest):
             "skull=... and scalp=": ("--labels", "a.nii", "--tissue", "brain=1", "-o", "m"),
             "must be brain, csf, skull or scalp": ("--labels", "a.nii", "--tissue", "eyes=1", "-o", "m"),
             "labels with commas": ("--labels", "a.nii", "--tissue", "brain=1,x", "-o", "m"),
-            "need --labels": ("--t1", "a.nii", "--preset", "charm", "-o", "m"),
+            "--preset needs --labels": ("--t1", "a.nii", "--preset", "charm", "-o", "m"),
             "--surfaces needs 3 files": ("--surfaces", "a.stl", "-o", "m"),
             "--surfaces needs 1 files": ("--surfaces", "a.stl", "b.stl", "--meg", "-o", "m"),
             "-o DIR is needed": ("--t1", "a.nii"),
@@ -463,7 +463,7 @@ class BadInput(BemTest):
             "--smoothing 11: must be a number from 0 to 10, in mm":
                 ("--t1", "a.nii", "-o", "m", "--smoothing", "11"),
             "--skin-hu must lie above air": ("--ct", "a.nii", "-o", "m", "--skin-hu", "400"),
-            "--conductivity 1,2,30: a conductivity of 30 S/m":
+            "--conductivity: a conductivity of 30 S/m":
                 ("--t1", "a.nii", "-o", "m", "--conductivity", "1,2,30"),
         }
         for pattern, arguments in cases.items():

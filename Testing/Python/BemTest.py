@@ -384,7 +384,7 @@ class Failures(unittest.TestCase):
         common = {"tissues": "totalsegmentator", "labels": labels, "affine": affine()}
         for part, named in (("head_mask", {**common}),
                             ("head_mask: the head mask", {**common, "head_mask": body[:-1]}),
-                            ("head_mask: needs labels", {"t1": labels, "head_mask": body})):
+                            ("head_mask needs labels", {"t1": labels, "head_mask": body})):
             with self.assertRaisesRegex(adaptiso.Error, part):
                 adaptiso.bem(**named)
         self.assertEqual(len(adaptiso.bem(meg=True, **common, **QUICK).surfaces), 1)

@@ -1,6 +1,7 @@
 #include "adaptiso/HeadPipeline/BemJson.h"
 
 #include "adaptiso/HeadModel/Tetrahedra.h"
+#include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/HeadPipeline/TetrahedraJson.h"
 
 namespace adaptiso {
@@ -171,31 +172,22 @@ Json bemOptionsJson(const BemModelOptions& options) {
     if (options.edgeLengthMm) {
         edges = {options.edgeLengthMm->minimumMm, options.edgeLengthMm->maximumMm};
     }
-    return {
-        {"layers", options.surfaceCount()},
-        {"vertices", options.vertices.empty() ? Json(nullptr) : Json(options.vertices)},
-        {"edgeLengthMm", edges},
-        {"minGapMm", {b.minSkullMm, b.minScalpMm}},
-        {"minCsfMm", b.minCsfMm},
-        {"sulciMm", b.sulciMm},
-        {"smoothingMm", b.smoothingMm},
-        {"closingMm", b.closingMm},
-        {"cutNecksMm", b.cutNecksMm},
-        {"voxelMm", b.stepMm > 0 ? Json(b.stepMm) : Json(nullptr)},
-        {"csfMm", b.csfMm},
-        {"skullMm", b.skullMm},
-        {"maxSkullMm", b.maxSkullMm},
-        {"skullHu", b.skullHu},
-        {"skinHu", b.skinHu},
-        {"conductivity",
-         {{"brain", options.conductivities.brain},
-          {"csf", options.boundaries.withBrain ? Json(options.conductivities.csf) : Json(nullptr)},
-          {"skull", options.conductivities.skull},
-          {"scalp", options.conductivities.scalp}}},
-        {"inputCoordinates", options.inputCoordinates},
-        {"sourceCount", options.sources.count},
-        {"sourceGridMm",
-         options.sources.gridMm > 0 ? Json(options.sources.gridMm) : Json(nullptr)}};
+    Json json{{"layers", options.surfaceCount()},
+              {"vertices", options.vertices.empty() ? Json(nullptr) : Json(options.vertices)},
+              {"edgeLengthMm", edges},
+              {"minGapMm", {b.minSkullMm, b.minScalpMm}},
+              {"minCsfMm", b.minCsfMm}};
+    for (const BemNumber& number : bemNumbers()) json[std::string(number.key)] = b.*number.value;
+    if (b.stepMm == 0) json["voxelMm"] = nullptr;
+    json["conductivity"] = {{"brain", options.conductivities.brain},
+                            {"csf", b.withBrain ? Json(options.conductivities.csf) : Json(nullptr)},
+                            {"skull", options.conductivities.skull},
+                            {"scalp", options.conductivities.scalp}};
+    json["inputCoordinates"] = options.inputCoordinates;
+    json["sourceCount"] = options.sources.count;
+    json["sourceGridMm"] =
+        options.sources.gridMm > 0 ? Json(options.sources.gridMm) : Json(nullptr);
+    return json;
 }
 
 Json bemModelJson(const BemModel& model) {

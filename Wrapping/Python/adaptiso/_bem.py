@@ -6,8 +6,6 @@ import contextlib
 import json
 import logging
 import os
-import shutil
-import uuid
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -33,8 +31,6 @@ SURFACES = ("brain", "inner_skull", "outer_skull", "outer_skin")
 _MNE_SURFACES = {"inner_skull": 1, "outer_skull": 3, "outer_skin": 4}
 _MNE_MRI = 5
 
-#: S/m [Baumann1997]
-_CSF = 1.79
 _LANDMARKS = ("nasion", "left_ear", "right_ear")
 
 Point = Tuple[float, float, float]
@@ -79,7 +75,7 @@ class _Carried:
     def report(self) -> str:
         return str(self.state["report_text"])
 
-    def write(self, folder: str, options: Dict[str, Any]) -> None:
+    def write(self, folder: str, options: Dict[str, Any], replace: bool) -> None:
         raise Error("save: this model was pickled; save it in the process that made it")
 
     def page(self, deface: bool) -> str:
@@ -87,8 +83,8 @@ class _Carried:
                     "it")
 
 
-def _unpickled(state: Dict[str, Any], conductivity: Tuple[float, ...], threads: int) -> "HeadModel":
-    return HeadModel(_Carried(state), conductivity, threads)
+def _unpickled(state: Dict[str, Any], threads: int) -> "HeadModel":
+    return HeadModel(_Carried(state), threads)
 
 
 class HeadModel:
@@ -114,13 +110,10 @@ class HeadModel:
         Surfaces, measures and checks: the report adaptiso-bem/1, points in LPS mm.
     """
 
-    __slots__ = ("_data", "_surfaces", "_check", "_report", "_conductivity", "_threads",
-                 "__weakref__")
+    __slots__ = ("_data", "_surfaces", "_check", "_report", "_threads", "__weakref__")
 
-    def __init__(self, data: Union[_adaptiso.HeadModelData, _Carried], conductivity: Tuple[float, ...],
-                 threads: int) -> None:
+    def __init__(self, data: Union[_adaptiso.HeadModelData, _Carried], threads: int) -> None:
         self._data = data
-        self._conductivity = conductivity
         self._threads = threads
         self._surfaces: Optional[Dict[str, Mesh]] = None
         self._check: Optional[Check] = None
@@ -171,8 +164,8 @@ class HeadModel:
         list of dict
             From outside in, as MNE has them.
         """
-        brain, _, skull, scalp = self._conductivity
-        sigmas = {"inner_skull": brain, "outer_skull": skull, "outer_skin": scalp}
+        conductivity = self.report["options"]["conductivity"]
+        sigmas = dict(zip(_MNE_SURFACES, map(conductivity.get, ("brain", "skull", "scalp"))))
         list_ = []
         for name, mesh in reversed(list(self.surfaces.items())):
             if name not in _MNE_SURFACES:
@@ -228,18 +221,9 @@ class HeadModel:
             raise Error("frame tkras: the model does not know its image; give volume= to bem")
         if besa and not self._data.landmarks:
             raise Error("besa: the model has no landmarks; give landmarks= to bem")
-        _require_replaceable(target, flag("replace", replace))
-        temporary = f"{target}-{uuid.uuid4().hex}"
-        try:
-            os.mkdir(temporary)
-            self._data.write(temporary, options)
-            _put_in_place(temporary, target)
-        except OSError as error:
-            raise Error(f"{target}: can't be written: {error.strerror}") from None
-        except Error as error:
-            raise Error(str(error).replace(temporary, target)) from None
-        finally:
-            shutil.rmtree(temporary, ignore_errors=True)
+        if not flag("replace", replace) and os.path.isdir(target) and os.listdir(target):
+            raise Error(f"{target}: exists and is not empty; replace=True replaces a model")
+        self._data.write(target, options, replace)
 
     def report_html(self, *, deface: bool = False) -> str:
         """The page of ``adaptiso-bem --report``: verdict, surfaces on the image and in 3-D, gaps,
@@ -270,7 +254,7 @@ class HeadModel:
                   "landmarks")}
         state["meshes"] = list(self.surfaces.values())
         state["check_text"], state["report_text"] = data.check(self._threads), data.report()
-        return _unpickled, (state, self._conductivity, self._threads)
+        return _unpickled, (state, self._threads)
 
     def __repr__(self) -> str:
         if not self._data.has_model:
@@ -285,32 +269,21 @@ class _Source(NamedTuple):
 
     kind: str
     images: List[Samples]
-    mask: Optional[Samples]
-    aseg: Optional[Samples]
-    lesion: Optional[Samples]
-    head_mask: Optional[Samples]
+    masks: Dict[str, Samples]
     pial: List[Mesh]
     sources: List[Mesh]
     surfaces: List[Mesh]
     inputs: List[List[str]]
     warnings: List[Warned]
 
-    def as_dict(self, preset: str, tissues: Dict[str, List[int]]) -> Dict[str, Any]:
+    def as_dict(self) -> Dict[str, Any]:
         """Arguments for C++."""
         return {"kind": self.kind, "images": [image.volume for image in self.images],
-                "brain_mask": None if self.mask is None else self.mask.volume,
-                "aseg": None if self.aseg is None else self.aseg.volume,
-                "lesion": None if self.lesion is None else self.lesion.volume,
-                "head_mask": None if self.head_mask is None else self.head_mask.volume,
+                "masks": {name: image.volume for name, image in self.masks.items()},
                 "pial": [mesh._data for mesh in self.pial],
                 "sources": [mesh._data for mesh in self.sources],
                 "surfaces": [mesh._data for mesh in self.surfaces], "inputs": self.inputs,
-                "warnings": self.warnings, "preset": preset, "tissues": tissues}
-
-    def all_images(self) -> List[Samples]:
-        """Every image that is looked at."""
-        marked = (self.mask, self.aseg, self.lesion, self.head_mask)
-        return self.images + [image for image in marked if image is not None]
+                "warnings": self.warnings}
 
 
 def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any = None,
@@ -463,97 +436,70 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
     >>> [surface["id"] for surface in model.to_mne()]
     [4, 3, 1]
     """
-    count_ = _layers(layers, meg)
+    given = {name: value for name, value in (
+        ("t1", t1), ("labels", labels), ("probabilities", probabilities), ("ct", ct),
+        ("surfaces", surfaces), ("brain_mask", brain_mask), ("aseg", aseg), ("lesion", lesion),
+        ("head_mask", head_mask), ("pial", pial), ("volume", volume), ("tissues", tissues),
+        ("input_coordinates", input_coordinates), ("electrodes", electrodes),
+        ("electrodes_in", electrodes_in), ("montage", montage), ("landmarks", landmarks),
+        ("sources", sources), ("source_grid", source_grid))
+        if value is not None}
     options: Dict[str, Any] = {
-        "layers": count_,
-        "vertices": _vertices(vertices, count_),
-        "edge_length": _edge_length(edge_length),
-        "min_gap": _gaps(min_gap),
-        "csf": _length("csf", csf, 20),
-        "skull": _length("skull", skull, 200),
-        "max_skull": _length("max_skull", max_skull, 200),
-        "skull_hu": number("skull_hu", skull_hu),
-        "skin_hu": number("skin_hu", skin_hu),
-        "closing": _length("closing", closing, 30),
-        "sulci": _length("sulci", sulci, 30),
-        "smoothing": _length("smoothing", smoothing, 10),
-        "cut_necks": _length("cut_necks", cut_necks, 20),
-        "voxel": 0.0 if voxel is None else _length("voxel", voxel, 5),
-        "conductivity": _conductivities(conductivity, count_),
+        "layers": count("layers", layers),
+        "meg": flag("meg", meg),
+        "vertices": [] if vertices is None else [
+            count("vertices", part)
+            for part in (vertices if hasattr(vertices, "__iter__") else [vertices])],
+        "edge_length": None if edge_length is None else _numbers("edge_length", edge_length),
+        "min_gap": _numbers("min_gap", min_gap if isinstance(min_gap, (tuple, list)) else [min_gap]),
+        "conductivity": _numbers("conductivity", conductivity),
         "head_shape": flag("head_shape", head_shape),
         "source_count": count("source_count", source_count, 1, 1000000),
         "source_grid": 0.0 if source_grid is None else number(
             "source_grid", source_grid, "a number from 1 to 50, in mm", lambda mm: 1 <= mm <= 50),
-        "input_coordinates": [],
-        **_electrodes(electrodes, electrodes_in, montage, landmarks, count_),
+        "input_coordinates": ([input_coordinates] if isinstance(input_coordinates, str)
+                              else [frame for frame in input_coordinates or () if frame]),
+        **{name: number(name, value) for name, value in (
+            ("csf", csf), ("skull", skull), ("max_skull", max_skull), ("skull_hu", skull_hu),
+            ("skin_hu", skin_hu), ("closing", closing), ("sulci", sulci), ("smoothing", smoothing),
+            ("cut_necks", cut_necks), ("voxel", 0 if voxel is None else voxel))},
+        **_electrodes(electrodes, electrodes_in, montage, landmarks),
     }
     given_threads, callback = checked_threads(threads), checked_progress(progress)
-    _require_thicknesses(options, t1 is not None, ct is not None)
-    if count_ == 4 and ct is not None:
-        raise Error("layers 4: a CT does not show where the brain ends and CSF begins")
-    preset, lists = _tissues(tissues, labels is not None, count_, head_mask is not None)
-    source = _source(t1, brain_mask, aseg, lesion, pial, labels, head_mask, probabilities, ct,
-                     surfaces, volume, input_coordinates, affine, count_, sources)
-    if sources is not None and source_grid is not None:
-        raise Error("sources and source_grid: exclude each other")
-    if input_coordinates is not None:
-        options["input_coordinates"] = ([input_coordinates] if isinstance(input_coordinates, str)
-                                        else [frame for frame in input_coordinates if frame])
+    named = _tissues(tissues)
+    _adaptiso.check_bem(list(given), named, options,
+                        0 if surfaces is None else len(_listed_surfaces("surfaces", surfaces)))
+    source = _source(given, input_coordinates, affine)
     with contextlib.ExitStack() as meanwhile:
-        for image in source.all_images():
+        for image in (*source.images, *source.masks.values()):
             meanwhile.enter_context(read_only(image.user))
-        data = _adaptiso.make_bem(source.as_dict(preset, lists), options, given_threads, callback)
+        data = _adaptiso.make_bem({**source.as_dict(), **named}, options, given_threads, callback)
     for warning in data.warnings[len(source.warnings):]:
         logger.warning("bem: %s", warning)
-    model = HeadModel(data, options["conductivity"], given_threads)
+    model = HeadModel(data, given_threads)
     if not data.has_model:
         raise NoModel(f"no model: {data.failure}", model)
     return model
 
 
-def _source(t1: Any, brain_mask: Any, aseg: Any, lesion: Any, pial: Any, labels: Any,
-            head_mask: Any, probabilities: Any, ct: Any, surfaces: Any, volume: Any,
-            input_coordinates: Any, affine: Any, layers: int, sources: Any) -> _Source:
+def _source(given: Dict[str, Any], input_coordinates: Any, affine: Any) -> _Source:
     """The input that is given. \\raises Error"""
-    given = {"t1": t1, "labels": labels, "probabilities": probabilities, "ct": ct,
-             "surfaces": surfaces}
-    kinds = [kind for kind, value in given.items() if value is not None]
-    if len(kinds) != 1:
-        raise Error("one of t1, labels, probabilities, ct and surfaces must be given, and one only")
-    kind = kinds[0]
-    for name, value in (("brain_mask", brain_mask), ("aseg", aseg), ("lesion", lesion),
-                        ("pial", pial)):
-        if value is not None and kind != "t1":
-            raise Error(f"{name}: needs t1")
-    if head_mask is not None and kind != "labels":
-        raise Error("head_mask: needs labels")
-    if volume is not None and kind != "surfaces":
-        raise Error("volume: needs surfaces")
-    if input_coordinates is not None and surfaces is None and pial is None and sources is None:
-        raise Error("input_coordinates: needs surfaces, pial or sources")
-    source = _Source(kind, [], None, None, None, None, [], [], [], [], [])
-    if kind == "surfaces":
-        if volume is not None:
-            source.images.append(_image("volume", volume, affine, source))
-        source.surfaces.extend(_surfaces("surfaces", surfaces, input_coordinates, source))
-        if len(source.surfaces) != layers:
-            raise Error(f"surfaces: are {len(source.surfaces)}, must be {layers}, from inside out")
-        if sources is not None:
-            source.sources.extend(_surfaces("sources", sources, input_coordinates, source))
-        return source
-    images = listed(kind, probabilities) if kind == "probabilities" else [given[kind]]
-    if not images:
-        raise Error("probabilities: no map is given; must be grey, white, CSF, bone, soft tissue")
-    source.images.extend(_image(kind, image, affine, source) for image in images)
-    mask = None if brain_mask is None else _image("brain_mask", brain_mask, affine, source)
-    labelled = None if aseg is None else _image("aseg", aseg, affine, source)
-    head = None if head_mask is None else _image("head_mask", head_mask, affine, source)
-    if pial is not None:
-        source.pial.extend(_surfaces("pial", pial, input_coordinates, source))
-    if sources is not None:
-        source.sources.extend(_surfaces("sources", sources, input_coordinates, source))
-    marked = None if lesion is None else _image("lesion", lesion, affine, source)
-    return source._replace(mask=mask, aseg=labelled, lesion=marked, head_mask=head)
+    kind = next(name for name in ("t1", "labels", "probabilities", "ct", "surfaces")
+                if name in given)
+    source = _Source(kind, [], {}, [], [], [], [], [])
+    if kind != "surfaces":
+        images = listed(kind, given[kind]) if kind == "probabilities" else [given[kind]]
+        source.images.extend(_image(kind, image, affine, source) for image in images)
+    elif "volume" in given:
+        source.images.append(_image("volume", given["volume"], affine, source))
+    for name in ("brain_mask", "aseg", "lesion", "head_mask"):
+        if name in given:
+            source.masks[name] = _image(name, given[name], affine, source)
+    for name, meshes in (("pial", source.pial), ("sources", source.sources),
+                         ("surfaces", source.surfaces)):
+        if name in given:
+            meshes.extend(_surfaces(name, given[name], input_coordinates, source))
+    return source
 
 
 def _image(name: str, image: Any, affine: Any, source: _Source) -> Samples:
@@ -563,16 +509,20 @@ def _image(name: str, image: Any, affine: Any, source: _Source) -> Samples:
     except Error as error:
         text = str(error)
         raise Error(name + text[5:] if text.startswith("image") else f"{name}: {text}") from None
-    role = name.replace("_", " ")
+    role = "lesion mask" if name == "lesion" else name.replace("_", " ")
     source.inputs.append([samples.file, role, samples.format])
     source.warnings.extend(warning.of(samples.file or role) for warning in samples.warnings)
     return samples
 
 
+def _listed_surfaces(name: str, surfaces: Any) -> List[Any]:
+    return listed(name, surfaces.values() if isinstance(surfaces, Mapping) else surfaces)
+
+
 def _surfaces(name: str, surfaces: Any, input_coordinates: Any, source: _Source) -> List[Mesh]:
     role = {"surfaces": "surface", "pial": "pial surface", "sources": "source surface"}[name]
     meshes = []
-    given = listed(name, surfaces.values() if isinstance(surfaces, Mapping) else surfaces)
+    given = _listed_surfaces(name, surfaces)
     for surface, stated in zip(given, stated_frames(input_coordinates, given)):
         if stated is not None and not is_path(surface):
             raise Error("input_coordinates: is for files; a mesh in memory has its frame")
@@ -599,67 +549,23 @@ def _surfaces(name: str, surfaces: Any, input_coordinates: Any, source: _Source)
     return meshes
 
 
-def _length(name: str, value: Any, most: float) -> float:
-    return number(name, value, f"a number from 0 to {most}, in mm",
-                  lambda length: 0 <= length <= most)
-
-
-def _layers(layers: Any, meg: Any) -> int:
-    """Surfaces of the model. \\raises Error"""
-    number_ = count("layers", layers, 1, 4)
-    if number_ == 2:
-        raise Error("layers 2: must be 1, 3 or 4")
-    if flag("meg", meg) and number_ == 4:
-        raise Error("meg: is one layer, not 4")
-    return 1 if meg else number_
-
-
-def _conductivities(value: Any, layers: int) -> Tuple[float, ...]:
-    """Conductivities of brain, CSF, skull, scalp. \\raises Error"""
-    values = [number("conductivity", part) for part in listed("conductivity", value)]
-    if len(values) == 3:
-        values.insert(1, _CSF)
-    elif len(values) != 4:
-        raise Error(f"conductivity {shown(value)}: must be three numbers: brain, skull, scalp; or "
-                    "four: brain, CSF, skull, scalp")
-    elif layers != 4:
-        raise Error("conductivity: four numbers need layers=4")
-    return tuple(values)
-
-
-def _gaps(value: Any) -> Tuple[float, ...]:
-    parts = list(value) if isinstance(value, (tuple, list)) else [value, value]
-    if len(parts) == 2:
-        parts.append(1)
-    if len(parts) != 3:
-        raise Error(f"min_gap {shown(value)}: must be one number, or two or three: skull, scalp, "
-                    "CSF")
-    return tuple(number("min_gap", part, "a number from 0.5 to 20, in mm",
-                        lambda gap: 0.5 <= gap <= 20) for part in parts)
+def _numbers(name: str, value: Any) -> List[float]:
+    return [number(name, part) for part in listed(name, value)]
 
 
 def _point(name: str, value: Any) -> Point:
-    x, y, z = (number(name, part) for part in _exactly(3, name, value))
+    parts = listed(name, value, "3 numbers")
+    if len(parts) != 3:
+        raise Error(f"{name} {shown(value)}: must be 3 numbers")
+    x, y, z = (number(name, part) for part in parts)
     return x, y, z
 
 
-def _exactly(size: int, name: str, value: Any) -> List[Any]:
-    parts = listed(name, value, f"{size} numbers")
-    if len(parts) != size:
-        raise Error(f"{name} {shown(value)}: must be {size} numbers")
-    return parts
-
-
-def _electrodes(electrodes: Any, frame: Any, montage: Any, landmarks: Any,
-                layers: int) -> Dict[str, Any]:
+def _electrodes(electrodes: Any, frame: Any, montage: Any, landmarks: Any) -> Dict[str, Any]:
     """Electrodes and landmarks, for C++. \\raises Error"""
     options: Dict[str, Any] = {"electrodes": None, "electrodes_name": "", "electrodes_in": None,
                                "montage": None, "landmarks": None, "inion": None,
                                "guesses_landmarks": landmarks == "guess"}
-    if electrodes is not None and montage is not None:
-        raise Error("electrodes and montage: exclude each other")
-    if layers == 1 and (electrodes is not None or montage is not None or landmarks is not None):
-        raise Error("electrodes, montage and landmarks: need a skin, not one layer")
     if isinstance(electrodes, Mapping):
         for name in electrodes:
             if not isinstance(name, str) or not name.isprintable() or not name:
@@ -671,7 +577,7 @@ def _electrodes(electrodes: Any, frame: Any, montage: Any, landmarks: Any,
         options["electrodes"] = checked_path("electrodes", electrodes)
         options["electrodes_name"] = base_name(options["electrodes"])
     if frame is not None:
-        if electrodes is None or isinstance(electrodes, Mapping):
+        if isinstance(electrodes, Mapping):
             raise Error("electrodes_in: needs a file of electrodes")
         options["electrodes_in"] = word("electrodes_in", frame, ("ras", "lps", "tkras"))
     if montage is not None:
@@ -686,93 +592,15 @@ def _electrodes(electrodes: Any, frame: Any, montage: Any, landmarks: Any,
     return options
 
 
-def _vertices(value: Any, layers: int) -> List[int]:
-    if value is None:
-        return []
-    parts = listed("vertices", value) if hasattr(value, "__iter__") else [value]
-    if len(parts) not in (1, layers):
-        raise Error(f"vertices {shown(value)}: must be one number, or {layers}")
-    return [count("vertices", part, 42, 200000) for part in parts]
-
-
-def _edge_length(value: Any) -> Optional[Tuple[float, float]]:
-    if value is None:
-        return None
-    parts = [number("edge_length", part) for part in listed("edge_length", value)]
-    if len(parts) != 2 or not 0 < parts[0] <= parts[1]:
-        raise Error(f"edge_length {shown(value)}: must be two lengths in mm, 0 < shortest <= "
-                    "longest")
-    return parts[0], parts[1]
-
-
-def _require_thicknesses(options: Dict[str, Any], is_t1: bool, is_ct: bool) -> None:
-    """Checks options against each other. \\raises Error"""
-    least, most = options["min_gap"][0], options["max_skull"]
-    if not most > least:
-        raise Error("max_skull: must be more than min_gap")
-    if is_t1 and not least <= options["skull"] <= most:
-        raise Error("skull: must lie between min_gap and max_skull")
-    if is_ct and not -1000 < options["skin_hu"] < options["skull_hu"] > 40:
-        raise Error("skin_hu: must lie above air (-1000 HU) and below skull_hu, and that above "
-                    "soft tissue (40 HU)")
-
-
-def _tissues(value: Any, is_needed: bool, layers: int,
-             has_head: bool) -> Tuple[str, Dict[str, List[int]]]:
-    """A preset's name, or the labels of each tissue. \\raises Error"""
-    lists: Dict[str, List[int]] = {name: [] for name in TISSUES}
-    if value is None:
-        if is_needed:
-            raise Error("labels: need tissues, whose they are or which labels: 'charm', "
-                        "{'brain': [1], 'skull': [2], 'scalp': [3]}")
-        return "", lists
-    if not is_needed:
-        raise Error("tissues: need labels")
-    if isinstance(value, str):
-        preset = word("tissues", value, PRESETS)
-        if preset == "totalsegmentator" and layers > 1 and not has_head:
-            raise Error("tissues 'totalsegmentator': has no scalp; give head_mask, or meg=True")
-        return preset, lists
+def _tissues(value: Any) -> Dict[str, Any]:
+    """A preset's name, or the labels of tissues, for C++. \\raises Error"""
+    if value is None or isinstance(value, str):
+        return {"preset": "" if value is None else word("tissues", value, PRESETS), "tissues": {}}
     if not isinstance(value, Mapping) or not set(value) <= set(TISSUES):
         raise Error(f"tissues {shown(value)}: must be one of {', '.join(PRESETS)}, or a dict of "
                     "brain, csf, skull and scalp")
-    needed = {1: ("brain",), 3: ("brain", "skull", "scalp"), 4: TISSUES}[layers]
-    for name in TISSUES:
-        labels = value.get(name, [])
-        labels = (listed(f"tissues, {name}", labels) if hasattr(labels, "__iter__")
-                  else [labels])
-        lists[name] = [count(f"tissues, {name}", label, -2**63, 2**63 - 1) for label in labels]
-        if not lists[name] and name in needed and not (name == "scalp" and has_head):
-            raise Error(f"tissues: {name} has no label")
-    return "", lists
-
-
-def _require_replaceable(target: str, replace: bool) -> None:
-    if not os.path.lexists(target):
-        return
-    if not os.path.isdir(target):
-        raise Error(f"{target}: exists and is no folder")
-    names = os.listdir(target)
-    if names and not replace:
-        raise Error(f"{target}: exists and is not empty; replace=True replaces a model")
-    own = frozenset(_adaptiso.bem_file_names())  # as adaptiso-bem has it
-    for name in names:
-        file = os.path.join(target, name)
-        if name not in own or os.path.islink(file) or not os.path.isfile(file):
-            raise Error(f"{target}: holds {name}, which is not of a model; it is not replaced")
-
-
-def _put_in_place(folder: str, target: str) -> None:
-    """`folder` under the name of `target`, whose files, if any, go. \\raises OSError"""
-    if not os.path.isdir(target) or not os.listdir(target):
-        os.rename(folder, target)
-        return
-    old = f"{target}-{uuid.uuid4().hex}"
-    os.rename(target, old)
-    try:
-        os.rename(folder, target)
-    except OSError:
-        os.rename(old, target)
-        raise
-    with contextlib.suppress(OSError):
-        shutil.rmtree(old)
+    return {"preset": "", "tissues": {
+        name: [count(f"tissues, {name}", label, -2**63, 2**63 - 1)
+               for label in (listed(f"tissues, {name}", labels)
+                             if hasattr(labels, "__iter__") else [labels])]
+        for name, labels in value.items()}}

@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,20 +15,20 @@
 
 #include "Arrays.h"
 #include "Calls.h"
+#include "Common/AtomicOutput.h"
 #include "MeshData.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Warning.h"
-#include "adaptiso/HeadModel/ConductivityModel.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
 #include "adaptiso/HeadModel/Landmarks.h"
-#include "adaptiso/HeadModel/SourceError.h"
 #include "adaptiso/HeadPipeline/BemElectrodes.h"
 #include "adaptiso/HeadPipeline/BemFiles.h"
 #include "adaptiso/HeadPipeline/BemJson.h"
 #include "adaptiso/HeadPipeline/BemModel.h"
 #include "adaptiso/HeadPipeline/BemReport.h"
+#include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/HeadPipeline/BemSources.h"
 #include "adaptiso/HeadPipeline/BemSurfaces.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -42,15 +41,17 @@ namespace py = pybind11;
 
 /// Input of a head model: images, or ready surfaces.
 struct HeadSources {
+    using Volumes = std::vector<std::shared_ptr<ArrayVolume>>;
+    using Meshes = std::vector<std::shared_ptr<MeshData>>;
+
     std::string source;  ///< "t1", "labels", "probabilities", "ct", "surfaces"
-    std::vector<std::shared_ptr<ArrayVolume>> images;  ///< with surfaces: the one they belong to
-    std::shared_ptr<ArrayVolume> brainMask, aseg, lesion;  ///< with t1; may be null
-    std::shared_ptr<ArrayVolume> headMask;                 ///< with labels; may be null
-    std::vector<std::shared_ptr<MeshData>> pial, cortex;   ///< with t1; for sources
+    Volumes images;      ///< with surfaces: the one they belong to
+    std::map<std::string, std::shared_ptr<ArrayVolume>> masks;  ///< by argument: "brain_mask"
+    Meshes pial, cortex;                                        ///< with t1; for sources
     TissueLabels tissues;
-    std::vector<std::shared_ptr<MeshData>> surfaces;  ///< inside out, in one frame
-    std::vector<BemInput> inputs;                     ///< one for each of them
-    std::vector<Warning> warnings;                    ///< of reading
+    Meshes surfaces;                ///< inside out, in one frame
+    std::vector<BemInput> inputs;   ///< one for each of them
+    std::vector<Warning> warnings;  ///< of reading
 };
 
 /// A head model, or the reason for its absence.
@@ -74,10 +75,12 @@ public:
     /// The report adaptiso-bem/1.
     std::string report(const BemFileOptions& options) const;
 
-    /// Writes the model's files into a folder that is there, and report.json; reads them back and
-    /// checks them again.
+    /// Writes the model's folder, whole or not at all: its files, read back and checked again, and
+    /// report.json.
     /// \throws InvalidInput  they don't keep what is promised
-    void write(const std::filesystem::path& folder, const BemFileOptions& options) const;
+    /// \throws FileError     the folder can't be written, or may not be replaced
+    void write(const std::filesystem::path& folder, const BemFileOptions& options,
+               bool mayReplace) const;
 
     /// The page of adaptiso-bem's --report.
     std::string page(bool leavesOutFaces) const;
@@ -131,8 +134,25 @@ TriangleMesh inLps(const MeshData& surface, const std::optional<ImageGeometry>& 
     return mesh;
 }
 
+/// The name of an argument for an option's: "brain_mask" for "brain-mask".
+std::string argumentName(const std::string& option) {
+    if (option == "tissue" || option == "preset") return "tissues";
+    if (option == "nasion") return "landmarks";
+    std::string name = option;
+    std::ranges::replace(name, '-', '_');
+    return name;
+}
+
+std::string optionName(const std::string& argument) {
+    if (argument == "tissues") return "tissue";
+    if (argument == "landmarks") return "nasion";
+    std::string name = argument;
+    std::ranges::replace(name, '_', '-');
+    return name;
+}
+
 /// Surfaces of the cortex in LPS mm; those in tkRAS without a volume of their own are of `image`'s.
-std::vector<TriangleMesh> cortexOf(const std::vector<std::shared_ptr<MeshData>>& surfaces,
+std::vector<TriangleMesh> cortexOf(const HeadSources::Meshes& surfaces,
                                    const std::optional<ImageGeometry>& image) {
     std::vector<TriangleMesh> meshes;
     for (const auto& surface : surfaces) {
@@ -143,43 +163,22 @@ std::vector<TriangleMesh> cortexOf(const std::vector<std::shared_ptr<MeshData>>&
     return meshes;
 }
 
-HeadBoundaries boundariesOfT1(const HeadSources& sources, const BoundaryOptions& options) {
-    const VolumeView& t1 = sources.images.front()->view;
-    BrainSources brain;
-    if (sources.brainMask) brain.mask = sources.brainMask->view;
-    if (sources.aseg) brain.aseg = sources.aseg->view;
-    if (sources.lesion) brain.lesion = sources.lesion->view;
-    brain.pial = cortexOf(sources.pial, t1.geometry());
-    return boundariesFromT1(t1, brain, options);
-}
-
 HeadBoundaries boundariesOf(const HeadSources& sources, const BoundaryOptions& options) {
-    if (sources.source == "t1") return boundariesOfT1(sources, options);
-    std::vector<VolumeView> views;
-    for (const auto& image : sources.images) views.push_back(image->view);
-    if (sources.source == "labels") {
-        std::optional<VolumeView> head;
-        if (sources.headMask) head = sources.headMask->view;
-        return boundariesFromLabels(views.front(), sources.tissues, options, head);
+    BemImages images;
+    for (const auto& image : sources.images) images.main.push_back(image->view);
+    images.tissues = sources.tissues;
+    const auto take = [&](const char* argument, std::optional<VolumeView>& view) {
+        const auto mask = sources.masks.find(argument);
+        if (mask != sources.masks.end()) view = mask->second->view;
+    };
+    take("brain_mask", images.brain.mask);
+    take("aseg", images.brain.aseg);
+    take("lesion", images.brain.lesion);
+    take("head_mask", images.headMask);
+    if (!images.main.empty()) {
+        images.brain.pial = cortexOf(sources.pial, images.main.front().geometry());
     }
-    if (sources.source == "probabilities") return boundariesFromProbabilities(views, options);
-    return boundariesFromCt(views.front(), options);
-}
-
-/// Faults of an image, with the name of the argument.
-HeadBoundaries namedBoundaries(const HeadSources& sources, const BoundaryOptions& options) {
-    try {
-        return boundariesOf(sources, options);
-    } catch (const SourceError& error) {
-        const std::string name = error.source() == BoundarySource::BrainMask
-                                     ? (sources.brainMask ? "brain_mask" : "aseg")
-                                 : error.source() == BoundarySource::Lesion   ? "lesion"
-                                 : error.source() == BoundarySource::HeadMask ? "head_mask"
-                                                                              : "pial";
-        throw InvalidInput(name + ": " + error.what());
-    } catch (const InvalidInput& error) {
-        throw InvalidInput(sources.source + ": " + error.what());
-    }
+    return findBoundaries(sources.source, images, options, argumentName);
 }
 
 /// The surfaces in LPS mm; of loose tkRAS in the LPS of a stand-in, as the program has it.
@@ -204,7 +203,7 @@ std::vector<TriangleMesh> firstSurfaces(const HeadSources& sources, BemModel& mo
         BoundaryOptions boundaries = model.options.boundaries;
         boundaries.progress = hooks.progress;
         HeadBoundaries found;
-        hooks.stage("boundaries", [&] { found = namedBoundaries(sources, boundaries); });
+        hooks.stage("boundaries", [&] { found = boundariesOf(sources, boundaries); });
         return extractSurfaces(found, model, hooks);
     }
     try {
@@ -233,13 +232,6 @@ void putSources(BemModel& model, const BemHooks& hooks) {
         throw InvalidInput((model.options.sources.gridMm > 0 ? "source_grid: " : "sources: ") +
                            std::string(error.what()));
     }
-}
-
-void writeText(const fs::path& path, const std::string& text) {
-    std::ofstream file(path, std::ios::binary | std::ios::trunc);
-    file.write(text.data(), static_cast<std::streamsize>(text.size()));
-    file.close();
-    if (!file) throw FileError(path.string() + ": can't be written: " + std::strerror(errno));
 }
 
 }  // namespace
@@ -350,19 +342,24 @@ std::string HeadModelData::report(const BemFileOptions& options) const {
     return reportOf(model_, options, {});
 }
 
-void HeadModelData::write(const fs::path& folder, const BemFileOptions& options) const {
-    std::vector<std::string> names;
-    writeBemFiles(model_, options, std::string(kProgramName) + " " + ADAPTISO_VERSION,
-                  [&](const std::string& name) {
-                      names.push_back(name);
-                      return folder / name;
-                  });
+void HeadModelData::write(const fs::path& target, const BemFileOptions& options,
+                          bool mayReplace) const {
+    OwnNames ownNames;
+    if (mayReplace) {
+        ownNames = [names = bemFileNames()](std::string_view name) {
+            return std::find(names.begin(), names.end(), name) != names.end();
+        };
+    }
+    AtomicFolder folder(target, ownNames);
+    folder.fill([&] {
+        writeBemFiles(model_, options, std::string(kProgramName) + " " + ADAPTISO_VERSION,
+                      [&](const std::string& name) { return folder.place(name); });
+    });
     BemModel written = model_;
-    checkBemFiles(folder, options, written);
+    checkBemFiles(folder.path(), options, written);
     if (!written.hasModel()) throw InvalidInput("no model: " + written.failureText());
-    Files files;
-    for (const std::string& name : names) files.emplace_back(name, fs::file_size(folder / name));
-    writeText(folder / "report.json", reportOf(written, options, files));
+    folder.writeText("report.json", reportOf(written, options, folder.files()));
+    folder.commit();
 }
 
 std::string HeadModelData::page(bool leavesOutFaces) const {
@@ -384,41 +381,11 @@ T take(const py::dict& options, const char* key) {
     return options[key].cast<T>();
 }
 
-BoundaryOptions boundariesOf(const py::dict& options) {
-    BoundaryOptions head;
-    const auto layers = take<int>(options, "layers");
-    head.innerSkullOnly = layers == 1;
-    head.withBrain = layers == 4;
-    const auto gaps = take<std::array<double, 3>>(options, "min_gap");
-    head.minSkullMm = gaps[0];
-    head.minScalpMm = gaps[1];
-    head.minCsfMm = gaps[2];
-    head.csfMm = take<double>(options, "csf");
-    head.skullMm = take<double>(options, "skull");
-    head.maxSkullMm = take<double>(options, "max_skull");
-    head.skullHu = take<double>(options, "skull_hu");
-    head.skinHu = take<double>(options, "skin_hu");
-    head.closingMm = take<double>(options, "closing");
-    head.sulciMm = take<double>(options, "sulci");
-    head.smoothingMm = take<double>(options, "smoothing");
-    head.cutNecksMm = take<double>(options, "cut_necks");
-    head.stepMm = take<double>(options, "voxel");
-    return head;
-}
-
-ConductivityModel conductivitiesOf(const py::dict& options) {
-    const auto of = take<std::array<double, 4>>(options, "conductivity");
-    ConductivityModel model;
-    model.brain = of[0];
-    model.csf = of[1];
-    model.skull = of[2];
-    model.scalp = of[3];
-    try {
-        checkConductivities(model);
-    } catch (const InvalidInput& error) {
-        throw InvalidInput(std::string("conductivity: ") + error.what());
-    }
-    return model;
+/// \throws InvalidInput  as many numbers do not do
+void takeNumbers(const py::dict& options, const char* name, const char* rule,
+                 const std::function<bool(const std::vector<double>&)>& set) {
+    const auto values = take<std::optional<std::vector<double>>>(options, name);
+    if (values && !set(*values)) throw InvalidInput(std::string(name) + ": must be " + rule);
 }
 
 using Place = std::array<double, 3>;  ///< scanner RAS mm
@@ -472,16 +439,24 @@ ElectrodeOptions electrodesOf(const py::dict& options) {
     return wanted;
 }
 
+/// Without electrodes.
 BemModelOptions modelOptionsOf(const py::dict& options) {
     BemModelOptions model;
-    model.boundaries = boundariesOf(options);
-    model.vertices = take<std::vector<std::int64_t>>(options, "vertices");
-    using Range = std::optional<std::pair<double, double>>;
-    if (const auto range = take<Range>(options, "edge_length")) {
-        model.edgeLengthMm = {range->first, range->second};
+    model.boundaries.innerSkullOnly = take<bool>(options, "meg");
+    if (!setLayers(model, take<std::int64_t>(options, "layers"))) {
+        throw InvalidInput("layers: must be 1, 3 or 4");
     }
-    model.conductivities = conductivitiesOf(options);
-    model.electrodes = electrodesOf(options);
+    for (const BemNumber& number : bemNumbers()) {
+        const std::string name = argumentName(std::string(number.name));
+        model.boundaries.*number.value = take<double>(options, name.c_str());
+    }
+    takeNumbers(options, "min_gap", kMinGapRule,
+                [&](const auto& gaps) { return setMinGaps(model, gaps); });
+    takeNumbers(options, "edge_length", kEdgeLengthRule,
+                [&](const auto& lengths) { return setEdgeLengths(model, lengths); });
+    takeNumbers(options, "conductivity", kConductivityRule,
+                [&](const auto& sigmas) { return setConductivities(model, sigmas); });
+    model.vertices = take<std::vector<std::int64_t>>(options, "vertices");
     model.sources.count = take<std::int64_t>(options, "source_count");
     model.sources.gridMm = take<double>(options, "source_grid");
     model.wantsHeadShape = take<bool>(options, "head_shape");
@@ -492,33 +467,36 @@ BemModelOptions modelOptionsOf(const py::dict& options) {
 TissueLabels tissuesOf(const py::dict& source) {
     const auto preset = take<std::string>(source, "preset");
     if (!preset.empty()) return tissuePreset(preset);
-    const py::dict lists = source["tissues"];
-    const auto list = [&](const char* name) {
-        return take<std::vector<std::int64_t>>(lists, name);
-    };
-    return {list("brain"), list("skull"), list("scalp"), false, list("csf")};
+    auto lists = take<std::map<std::string, std::vector<std::int64_t>>>(source, "tissues");
+    return {lists["brain"], lists["skull"], lists["scalp"], false, lists["csf"]};
 }
 
 HeadSources sourcesOf(const py::dict& from) {
-    using Volumes = std::vector<std::shared_ptr<ArrayVolume>>;
-    using Meshes = std::vector<std::shared_ptr<MeshData>>;
     HeadSources sources;
     sources.source = take<std::string>(from, "kind");
-    sources.images = take<Volumes>(from, "images");
-    sources.brainMask = take<std::shared_ptr<ArrayVolume>>(from, "brain_mask");
-    sources.aseg = take<std::shared_ptr<ArrayVolume>>(from, "aseg");
-    sources.lesion = take<std::shared_ptr<ArrayVolume>>(from, "lesion");
-    sources.headMask = take<std::shared_ptr<ArrayVolume>>(from, "head_mask");
-    sources.pial = take<Meshes>(from, "pial");
-    sources.cortex = take<Meshes>(from, "sources");
+    sources.images = take<HeadSources::Volumes>(from, "images");
+    sources.masks = take<std::map<std::string, std::shared_ptr<ArrayVolume>>>(from, "masks");
+    sources.pial = take<HeadSources::Meshes>(from, "pial");
+    sources.cortex = take<HeadSources::Meshes>(from, "sources");
     sources.tissues = tissuesOf(from);
-    sources.surfaces = take<Meshes>(from, "surfaces");
+    sources.surfaces = take<HeadSources::Meshes>(from, "surfaces");
     for (const auto& [file, role, format] :
          take<std::vector<std::array<std::string, 3>>>(from, "inputs")) {
         sources.inputs.push_back({file, role, format});
     }
     sources.warnings = take<std::vector<Warning>>(from, "warnings");
     return sources;
+}
+
+/// \param given     arguments that are not None
+/// \param surfaces  ready ones
+/// \throws InvalidInput  options that break a rule
+void checkBem(const std::vector<std::string>& given, const py::dict& tissues,
+              const py::dict& options, std::size_t surfaces) {
+    BemRequest request{{}, tissuesOf(tissues), surfaces};
+    for (const std::string& argument : given) request.given.insert(optionName(argument));
+    const std::string fault = bemFault(modelOptionsOf(options), request, argumentName);
+    if (!fault.empty()) throw InvalidInput(fault);
 }
 
 BemFileOptions bemFilesOf(const py::dict& from) {
@@ -576,20 +554,23 @@ void declareHeadModels(py::module_& module) {
         .def("report", [](const HeadModelData& self) { return self.report({}); })
         .def(
             "write",
-            [](const HeadModelData& self, const std::string& folder, const py::dict& options) {
+            [](const HeadModelData& self, const std::string& folder, const py::dict& options,
+               bool mayReplace) {
                 const BemFileOptions files = bemFilesOf(options);
-                runUnlocked(0, [&] { self.write(folder, files); });
+                runUnlocked(0, [&] { self.write(folder, files, mayReplace); });
             },
-            py::arg("folder"), py::arg("options"))
+            py::arg("folder"), py::arg("options"), py::arg("replace"))
         .def("page", &HeadModelData::page, py::arg("deface"));
     module.def(
         "make_bem",
         [](const py::dict& source, const py::dict& options, int threads, py::object progress) {
-            return HeadModelData::make(sourcesOf(source), modelOptionsOf(options), threads,
-                                       std::move(progress));
+            BemModelOptions model = modelOptionsOf(options);
+            model.electrodes = electrodesOf(options);
+            return HeadModelData::make(sourcesOf(source), model, threads, std::move(progress));
         },
         py::arg("source"), py::arg("options"), py::arg("threads"), py::arg("progress"));
-    module.def("bem_file_names", &bemFileNames);
+    module.def("check_bem", &checkBem, py::arg("given"), py::arg("tissues"), py::arg("options"),
+               py::arg("surfaces"));
 }
 
 }  // namespace adaptiso::python

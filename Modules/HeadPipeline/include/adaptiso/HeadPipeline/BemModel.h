@@ -60,6 +60,7 @@ struct BemModelOptions {
     std::int64_t mostVertices = 10'000;  ///< of four layers in all, where no number is given
     std::optional<EdgeLengthRange> edgeLengthMm;
     ConductivityModel conductivities;
+    bool namesCsf = false;  ///< the conductivity of CSF is given
     ElectrodeOptions electrodes{};
     SourceOptions sources{};
     bool wantsHeadShape = false;                  ///< the skin alone as well, for coregistration

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adaptiso/HeadPipeline/BemModel.h"
+
+namespace adaptiso {
+
+/// A number that shapes a head model: one row is an option of adaptiso-bem (--max-skull), an
+/// argument of Python (max_skull) and a key of the report.
+struct BemNumber {
+    std::string_view name;  ///< "max-skull"
+    std::string_view key;   ///< "maxSkullMm"
+    double BoundaryOptions::*value;
+    double mostMm;  ///< from 0 to this, mm; 0: any number, HU
+    std::string_view help;
+};
+
+/// By the report's order of keys.
+std::span<const BemNumber> bemNumbers();
+
+inline constexpr std::int64_t kLeastBemVertices = 42, kMostBemVertices = 200'000;
+
+/// Set what is given as a list. \return false: as many values are not allowed
+bool setLayers(BemModelOptions& options, std::int64_t layers);
+bool setMinGaps(BemModelOptions& options, std::span<const double> gapsMm);
+bool setEdgeLengths(BemModelOptions& options, std::span<const double> lengthsMm);
+bool setConductivities(BemModelOptions& options, std::span<const double> sigmas);
+
+inline constexpr const char* kMinGapRule = "one to three numbers of mm: SKULL,SCALP,CSF";
+inline constexpr const char* kEdgeLengthRule = "two lengths in mm: MIN:MAX";
+inline constexpr const char* kConductivityRule =
+    "three or four numbers: BRAIN,[CSF,]SKULL,SCALP in S/m";
+
+/// A request for a head model, besides the model's own options.
+struct BemRequest {
+    std::set<std::string, std::less<>> given;  ///< inputs and options: "t1", "brain-mask"
+    TissueLabels tissues;
+    std::size_t surfaces = 0;  ///< ready ones
+};
+
+/// Writes the name of an option ("max-skull") as the user knows it.
+using BemNaming = std::function<std::string(const std::string& name)>;
+
+/// `text` with each name in braces ("{max-skull} must be more than {min-gap}") by `naming`.
+std::string named(const std::string& text, const BemNaming& naming);
+
+/// Checks options by themselves, against each other, and against what is given.
+/// \return the first rule that is broken, in one line; empty: none is
+std::string bemFault(const BemModelOptions& options, const BemRequest& request,
+                     const BemNaming& naming);
+
+/// The images of a head, by source.
+struct BemImages {
+    std::vector<VolumeView> main;  ///< the T1, label map or CT, or the maps
+    BrainSources brain;            ///< with a T1
+    TissueLabels tissues;          ///< with labels
+    std::optional<VolumeView> headMask;
+};
+
+/// Finds the head's boundaries. \param source  "t1", "labels", "probabilities" or "ct"
+/// \throws InvalidInput  as the functions of HeadBoundaries.h, naming the input
+HeadBoundaries findBoundaries(const std::string& source, const BemImages& images,
+                              const BoundaryOptions& options, const BemNaming& naming);
+
+}  // namespace adaptiso

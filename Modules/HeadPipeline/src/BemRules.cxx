@@ -1,0 +1,232 @@
+#include "adaptiso/HeadPipeline/BemRules.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
+#include "adaptiso/HeadModel/SourceError.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr double kMostGapMm = 20;
+
+constexpr std::array<BemNumber, 10> kNumbers{{
+    {"sulci", "sulciMm", &BoundaryOptions::sulciMm, 30,
+     "Sulci of the brain's own surface narrower than twice this are closed (default: 3)"},
+    {"smoothing", "smoothingMm", &BoundaryOptions::smoothingMm, 10,
+     "Standard deviation of the Gaussian that boundaries are smoothed with (default: 1.5)"},
+    {"closing", "closingMm", &BoundaryOptions::closingMm, 30,
+     "Gaps and canals narrower than twice this are closed (default: 10)"},
+    {"cut-necks", "cutNecksMm", &BoundaryOptions::cutNecksMm, 20,
+     "Cut off what of the inner skull a ball of this radius can't enter and that reaches more "
+     "than 10 mm, as leaks down a foramen do (default: 8; 0: cut nothing)"},
+    {"voxel", "voxelMm", &BoundaryOptions::stepMm, 5,
+     "Side of the voxels that the head is worked on (default: the image's own if they are cubes "
+     "of 0.7 to 1.5 mm, else 1)"},
+    {"csf", "csfMm", &BoundaryOptions::csfMm, 20,
+     "T1: from the brain mask to the inner skull (default: 2)"},
+    {"skull", "skullMm", &BoundaryOptions::skullMm, 200,
+     "T1: thickness of the skull where the image does not show it (default: 6)"},
+    {"max-skull", "maxSkullMm", &BoundaryOptions::maxSkullMm, 200,
+     "Bone farther than this from the inner skull (face, neck) counts as scalp (default: 20)"},
+    {"skull-hu", "skullHu", &BoundaryOptions::skullHu, 0, "CT: isovalue of bone (default: 300)"},
+    {"skin-hu", "skinHu", &BoundaryOptions::skinHu, 0, "CT: isovalue of skin (default: -300)"},
+}};
+
+/// Options that need another.
+constexpr std::array<std::pair<const char*, const char*>, 10> kNeeds{{
+    {"brain-mask", "t1"},
+    {"aseg", "t1"},
+    {"lesion", "t1"},
+    {"pial", "t1"},
+    {"volume", "surfaces"},
+    {"head-mask", "labels"},
+    {"preset", "labels"},
+    {"tissue", "labels"},
+    {"electrodes-in", "electrodes"},
+    {"source-count", "sources"},
+}};
+
+using Fault = std::optional<std::string>;
+
+Fault faultOfNumbers(const BemModelOptions& options) {
+    const BoundaryOptions& head = options.boundaries;
+    for (const BemNumber& number : kNumbers) {
+        const double value = head.*number.value;
+        if (number.mostMm == 0 || (value >= 0 && value <= number.mostMm)) continue;
+        return "{" + std::string(number.name) + "} " + formatNumber(value) +
+               ": must be a number from 0 to " + formatNumber(number.mostMm) + ", in mm";
+    }
+    const auto [least, most] = std::minmax({head.minSkullMm, head.minScalpMm, head.minCsfMm});
+    if (!(least >= CheckRules::kDefaultMinGapMm) || !(most <= kMostGapMm)) {
+        return "{min-gap} must be " + formatNumber(CheckRules::kDefaultMinGapMm) +
+               " mm or more, as adaptiso-check wants it, and at most " + formatNumber(kMostGapMm);
+    }
+    if (const auto& edges = options.edgeLengthMm;
+        edges && (!(edges->minimumMm > 0) || !(edges->minimumMm <= edges->maximumMm))) {
+        return "{edge-length} must be 0 < MIN <= MAX";
+    }
+    for (const std::int64_t count : options.vertices) {
+        if (count >= kLeastBemVertices && count <= kMostBemVertices) continue;
+        return "{vertices} " + std::to_string(count) + ": must be a whole number from " +
+               std::to_string(kLeastBemVertices) + " to " + std::to_string(kMostBemVertices);
+    }
+    try {
+        checkConductivities(options.conductivities);
+    } catch (const InvalidInput& error) {
+        return std::string("{conductivity}: ") + error.what();
+    }
+    return std::nullopt;
+}
+
+Fault faultOfInputs(const BemModelOptions& options, const BemRequest& request) {
+    const auto has = [&](std::string_view name) { return request.given.contains(name); };
+    const auto sources =
+        std::ranges::count_if(std::array{"t1", "labels", "probabilities", "ct", "surfaces"}, has);
+    if (sources != 1) {
+        return "one of {t1}, {labels}, {probabilities}, {ct}, {surfaces} must be given, and one "
+               "only";
+    }
+    for (const auto& [option, needed] : kNeeds) {
+        if (has(option) && !has(needed)) {
+            return "{" + std::string(option) + "} needs {" + needed + "}";
+        }
+    }
+    const bool withBrain = options.boundaries.withBrain, isOne = options.boundaries.innerSkullOnly;
+    const std::string count = std::to_string(options.surfaceCount());
+    const TissueLabels& tissues = request.tissues;
+    const bool hasLabels = has("labels");
+    const std::pair<bool, std::string> faults[] = {
+        {withBrain && isOne, "{layers} 4 and {meg} exclude each other"},
+        {withBrain && has("ct"),
+         "{layers} 4 does not go with {ct}: a CT does not show where the brain ends and CSF "
+         "begins"},
+        {options.namesCsf && !withBrain, "{conductivity}: four numbers need {layers} 4"},
+        {has("input-coordinates") && !has("surfaces") && !has("pial") && !has("sources"),
+         "{input-coordinates} needs {surfaces}, {pial} or {sources}"},
+        {hasLabels && tissues.brain.empty() && !tissues.othersAreBrain,
+         "{labels} needs {preset}, or {tissue} brain=..., skull=... and scalp=..."},
+        {hasLabels && withBrain && tissues.csf.empty(),
+         "{layers} 4 needs {tissue} csf=... as well"},
+        {hasLabels && !isOne &&
+             (tissues.skull.empty() || (tissues.scalp.empty() && !has("head-mask"))),
+         "{labels} needs {tissue} skull=... and scalp=... as well (or {head-mask}, or {meg})"},
+        {has("surfaces") && request.surfaces != options.surfaceCount(),
+         "{surfaces} needs " + count + " files, inside out"},
+        {options.vertices.size() > 1 && options.vertices.size() != options.surfaceCount(),
+         "{vertices} must be one number, or " + count},
+    };
+    for (const auto& [isBroken, rule] : faults) {
+        if (isBroken) return rule;
+    }
+    return std::nullopt;
+}
+
+Fault faultOfCombinations(const BemModelOptions& options, const BemRequest& request) {
+    const auto has = [&](std::string_view name) { return request.given.contains(name); };
+    const BoundaryOptions& head = options.boundaries;
+    constexpr double kAirHu = -1000, kSoftTissueHu = 40;
+    const bool areHuGood =
+        head.skinHu > kAirHu && head.skinHu < head.skullHu && head.skullHu > kSoftTissueHu;
+    const bool isSkullGood = head.skullMm >= head.minSkullMm && head.skullMm <= head.maxSkullMm;
+    if (!(head.maxSkullMm > head.minSkullMm)) return "{max-skull} must be more than {min-gap}";
+    if (has("t1") && !isSkullGood) return "{skull} must lie between {min-gap} and {max-skull}";
+    if (has("ct") && !areHuGood) {
+        return "{skin-hu} must lie above air (-1000 HU) and below {skull-hu}, and that above soft "
+               "tissue (40 HU)";
+    }
+    const bool hasMontage = has("montage");
+    if (has("sources") && has("source-grid")) {
+        return "{sources} and {source-grid} exclude each other";
+    }
+    if (has("electrodes") && hasMontage) return "{electrodes} and {montage} exclude each other";
+    if ((has("electrodes") || hasMontage || has("nasion")) && !options.hasSkin()) {
+        return "electrodes and landmarks need a skin: not with {meg}";
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::span<const BemNumber> bemNumbers() {
+    return kNumbers;
+}
+
+bool setLayers(BemModelOptions& options, std::int64_t layers) {
+    options.boundaries.withBrain = layers == 4;
+    if (layers == 1) options.boundaries.innerSkullOnly = true;
+    return layers == 1 || layers == 3 || layers == 4;
+}
+
+bool setMinGaps(BemModelOptions& options, std::span<const double> gapsMm) {
+    if (gapsMm.empty() || gapsMm.size() > 3) return false;
+    options.boundaries.minSkullMm = gapsMm.front();
+    options.boundaries.minScalpMm = gapsMm.size() > 1 ? gapsMm[1] : gapsMm.front();
+    if (gapsMm.size() > 2) options.boundaries.minCsfMm = gapsMm[2];
+    return true;
+}
+
+bool setEdgeLengths(BemModelOptions& options, std::span<const double> lengthsMm) {
+    if (lengthsMm.size() != 2) return false;
+    options.edgeLengthMm = EdgeLengthRange{lengthsMm[0], lengthsMm[1]};
+    return true;
+}
+
+bool setConductivities(BemModelOptions& options, std::span<const double> sigmas) {
+    if (sigmas.size() != 3 && sigmas.size() != 4) return false;
+    options.namesCsf = sigmas.size() == 4;
+    options.conductivities.brain = sigmas.front();
+    if (options.namesCsf) options.conductivities.csf = sigmas[1];
+    options.conductivities.skull = sigmas[sigmas.size() - 2];
+    options.conductivities.scalp = sigmas.back();
+    return true;
+}
+
+std::string named(const std::string& text, const BemNaming& naming) {
+    std::string result;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t begin = text.find('{', at), end = text.find('}', begin);
+        result += text.substr(at, begin - at);
+        if (end == std::string::npos) break;
+        result += naming(text.substr(begin + 1, end - begin - 1));
+        at = end + 1;
+    }
+    return result;
+}
+
+std::string bemFault(const BemModelOptions& options, const BemRequest& request,
+                     const BemNaming& naming) {
+    Fault fault = faultOfInputs(options, request);
+    if (!fault) fault = faultOfNumbers(options);
+    if (!fault) fault = faultOfCombinations(options, request);
+    return fault ? named(*fault, naming) : "";
+}
+
+HeadBoundaries findBoundaries(const std::string& source, const BemImages& images,
+                              const BoundaryOptions& options, const BemNaming& naming) {
+    try {
+        if (source == "t1") return boundariesFromT1(images.main.front(), images.brain, options);
+        if (source == "labels") {
+            return boundariesFromLabels(images.main.front(), images.tissues, options,
+                                        images.headMask);
+        }
+        if (source == "probabilities") return boundariesFromProbabilities(images.main, options);
+        return boundariesFromCt(images.main.front(), options);
+    } catch (const SourceError& error) {
+        const char* name = "pial";
+        if (error.source() == BoundarySource::Lesion) name = "lesion";
+        if (error.source() == BoundarySource::HeadMask) name = "head-mask";
+        if (error.source() == BoundarySource::BrainMask) {
+            name = images.brain.mask ? "brain-mask" : "aseg";
+        }
+        throw InvalidInput(naming(name) + ": " + error.what());
+    } catch (const InvalidInput& error) {
+        throw InvalidInput(naming(source) + ": " + error.what());
+    }
+}
+
+}  // namespace adaptiso
