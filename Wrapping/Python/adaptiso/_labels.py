@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, count, is_path, listed, optional_number, path as checked_path,
+from ._arguments import (Progress, aim, count, is_path, listed, path as checked_path,
                          progress as checked_progress, shown, threads as checked_threads)
 from ._images import base_name, read_only, samples_of
 from ._mesh import Mesh
@@ -293,11 +293,7 @@ def labels(image: Any, *, max_error: Optional[float] = None, triangles: Optional
     (True, True)
     """
     options: Dict[str, Any] = {
-        "max_error": optional_number("max_error", max_error, "a number from 0, in mm",
-                                     lambda value: value >= 0),
-        "triangles": None if triangles is None else count("triangles", triangles),
-        "reduction": optional_number("reduction", reduction, "a number from 0 to 1",
-                                     lambda value: 0 <= value <= 1),
+        **aim(max_error, triangles, reduction, zero=True),
         "threads": checked_threads(threads),
         "progress": checked_progress(progress),
     }

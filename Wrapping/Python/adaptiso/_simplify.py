@@ -6,7 +6,7 @@ from typing import Any, Optional
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, count, flag, number, optional_number, progress as checked_progress,
+from ._arguments import (Progress, aim, flag, progress as checked_progress, smallest_angle,
                          threads as checked_threads)
 from ._mesh import Mesh, mesh_data_of, stated_frames
 
@@ -75,13 +75,7 @@ def simplify(mesh: Any, faces: Any = None, *, max_error: Optional[float] = None,
     given = mesh if faces is None else (mesh, faces)
     data = mesh_data_of(given, False, *stated_frames(input_coordinates, [given]))
     made, found = _adaptiso.simplify_mesh(
-        data,
-        optional_number("max_error", max_error, "a number above 0", lambda value: value > 0),
-        None if triangles is None else count("triangles", triangles),
-        optional_number("reduction", reduction, "a number from 0 to 1",
-                        lambda value: 0 <= value <= 1),
-        0.0 if min_angle is None else number("min_angle", min_angle,
-                                             "a number from 0 to 40, in degrees",
-                                             lambda value: 0 <= value <= 40),
-        flag("keep_borders", keep_borders), checked_threads(threads), checked_progress(progress))
+        data, **aim(max_error, triangles, reduction, unit=""), min_angle=smallest_angle(min_angle),
+        keep_borders=flag("keep_borders", keep_borders), threads=checked_threads(threads),
+        progress=checked_progress(progress))
     return Mesh._of(made, found)

@@ -6,8 +6,8 @@ from typing import Any, Dict, List, Optional, Tuple, Union
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, Warned, count, flag, number, optional_number, progress as checked_progress,
-                         threads as checked_threads, word)
+from ._arguments import (Progress, Warned, aim, flag, number, progress as checked_progress,
+                         smallest_angle, threads as checked_threads, word)
 from ._images import Samples, keep_read_only, prepared, read_only, samples_of
 from ._mesh import Mesh
 
@@ -165,14 +165,8 @@ def _options(level: Any, max_error: Any, triangles: Any, reduction: Any, min_ang
         raise Error(f"level {level!r}: must be a number or 'auto'")
     return {
         "level": None if isinstance(level, str) else number("level", level, "a number or 'auto'"),
-        "max_error": optional_number("max_error", max_error, "a number above 0, in mm",
-                                     lambda value: value > 0),
-        "triangles": None if triangles is None else count("triangles", triangles),
-        "reduction": optional_number("reduction", reduction, "a number from 0 to 1",
-                                     lambda value: 0 <= value <= 1),
-        "min_angle": 0.0 if min_angle is None else number(
-            "min_angle", min_angle, "a number from 0 to 40, in degrees",
-            lambda value: 0 <= value <= 40),
+        **aim(max_error, triangles, reduction),
+        "min_angle": smallest_angle(min_angle),
         "method": word("method", method, METHODS),
         "largest": flag("largest", largest),
         "min_volume": number("min_volume", min_volume, "a number from 0, in mm3",

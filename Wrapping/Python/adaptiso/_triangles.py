@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
 import logging
 import os
-import uuid
-from typing import Callable, Generic, Optional, TypeVar, Union
+from typing import Generic, Optional, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _adaptiso
-from ._adaptiso import Error
 from ._arguments import word
 
 Vertices = npt.NDArray[np.float64]
@@ -22,7 +19,6 @@ FRAMES = ("ras", "lps", "tkras", "voxel")
 
 logger = logging.getLogger("adaptiso")
 
-Result = TypeVar("Result")
 Data = TypeVar("Data", bound=Union[_adaptiso.MeshData, _adaptiso.LabelData])
 
 
@@ -47,31 +43,6 @@ class Triangles(Generic[Data]):
         """\\raises Error"""
         if frame is not None:
             word("frame", frame, FRAMES)
-        warning = save_whole(name, lambda temporary: self._data.write(temporary, frame))
+        warning = self._data.write(name, frame)
         if warning:
             logger.warning("%s: %s", os.path.basename(name), warning)
-
-
-def save_whole(path: str, write: Callable[[str], Result]) -> Result:
-    """Writes a file by `write` under a temporary name beside it, and renames it; returns what
-    `write` returns. \\raises Error"""
-    if os.path.basename(path) in ("", ".", ".."):
-        raise Error(f"{path}: is a folder's name; give a file's")
-    name = os.path.realpath(path)
-    if os.path.exists(name) and not os.path.isfile(name):
-        raise Error(f"{name}: is no regular file; give another name")
-    folder, file = os.path.split(name)
-    stem, extension = os.path.splitext(file)
-    temporary = os.path.join(folder, f".{stem[:80]}-{uuid.uuid4().hex}{extension}")
-    try:
-        result = write(temporary)
-        os.replace(temporary, name)
-        return result
-    except BaseException as error:
-        with contextlib.suppress(OSError):
-            os.unlink(temporary)
-        if isinstance(error, Error):
-            raise Error(str(error).replace(temporary, name)) from None
-        if isinstance(error, OSError):
-            raise Error(f"{name}: can't be written: {error.strerror}") from None
-        raise

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include "Arrays.h"
 #include "Calls.h"
+#include "Common/AtomicOutput.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Json/Json.h"
@@ -193,6 +195,17 @@ std::string MeshData::report() {
 
 std::string MeshData::write(const std::string& path, std::optional<CoordinateFrame> frame,
                             std::vector<CellArray> cellArrays) const {
+    AtomicOutput output(path);
+    std::string warning;
+    output.write([&](const std::filesystem::path& file) {
+        warning = writeTo(file.string(), frame, std::move(cellArrays));
+    });
+    AtomicOutput::commit({&output, 1});
+    return warning;
+}
+
+std::string MeshData::writeTo(const std::string& path, std::optional<CoordinateFrame> frame,
+                              std::vector<CellArray> cellArrays) const {
     const MeshFormat& format = findMeshFormat(path);
     MeshWriteOptions options;
     options.cellArrays = std::move(cellArrays);

@@ -95,12 +95,17 @@ public:
 
     /// Writes a file in place, in `frame` or in the format's own. Points of an unknown frame are
     /// written as they are, and the file says no frame.
+    /// Writes a file, whole or not at all.
     /// \param cellArrays  as MeshWriteOptions has them
     /// \return a warning, without the file's name: the format's digits take the file beyond the
     ///         bound that was asked for; else ""
     /// \throws InvalidInput  a frame that the format can't hold, or digits that do not do
     std::string write(const std::string& path, std::optional<CoordinateFrame> frame,
                       std::vector<CellArray> cellArrays = {}) const;
+
+    /// The same in place.
+    std::string writeTo(const std::string& path, std::optional<CoordinateFrame> frame,
+                        std::vector<CellArray> cellArrays) const;
 
     /// The mesh in the viewer of report pages, for a notebook. \pre it has triangles
     std::string notebook(const std::string& title) const;
