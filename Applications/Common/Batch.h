@@ -19,12 +19,13 @@ struct BatchItem {
     std::vector<std::filesystem::path> inputs;  ///< one, or the surfaces of one head
     std::filesystem::path folder{};             ///< for outputs and record
     std::string fault{};                        ///< why it fails without being run; may be empty
-    std::string output{};  ///< the value of --output where none is given; may be empty
 };
 
 /// The program that a batch runs.
 struct BatchProgram {
     std::string name;  ///< "adaptiso-mesh"
+    /// The value of --output where none is given, with "{name}" or "{file}"; may be empty.
+    std::string defaultOutput{};
     /// Options that name a file to read besides the inputs ("--volume"), and files to write.
     std::vector<std::string> inputOptions{}, outputOptions{};
     /// The option of which each value makes a surface ("--iso"), and the files of these surfaces
@@ -82,11 +83,9 @@ EarlierRun findEarlierRun(const BatchProgram& program, const PlannedRun& run,
 
 /// Settings and callbacks of runRuns().
 struct BatchRunning {
-    std::filesystem::path folder;       ///< that the batch writes to; may be empty
-    std::filesystem::path summary{};    ///< a page to write; may be empty
-    bool isBids = false;                ///< the page shows records below sub-* too
-    std::vector<BatchItem> expected{};  ///< to be named on the page where they were not run
-    std::string* jsonLines = nullptr;   ///< takes the lines of --json FILE
+    std::filesystem::path folder;      ///< that the batch writes to; may be empty
+    std::filesystem::path summary{};   ///< a page to write; may be empty
+    std::string* jsonLines = nullptr;  ///< takes the lines of --json FILE
 };
 
 /// Runs the program once for each of `runs` in processes of their own, `batch.jobs` at a time, and
@@ -98,18 +97,15 @@ std::vector<RunRecord> runRuns(const BatchProgram& program, const std::vector<Pl
                                const BatchOptions& batch, const BatchRunning& running,
                                const CommonOptions& common);
 
-/// Names an input; finds a BIDS dataset's inputs (findBidsScans() and its like).
+/// Names an input.
 using NameInput = std::function<std::string(const std::filesystem::path&)>;
-using FindInBids = std::function<std::vector<BatchItem>(
-    const std::filesystem::path&, const std::vector<std::string>&, const std::filesystem::path&)>;
 
-/// The items of a program's command line: its inputs, those of --list, or those of --bids.
+/// The items of a program's command line: its inputs and those of --list.
 /// \param areOneItem  the inputs, and those of a line of --list, are one item
-/// \throws UsageError  --bids with other inputs  \throws InvalidInput  \throws FileError
+/// \throws InvalidInput, FileError
 std::vector<BatchItem> findBatchItems(const BatchOptions& batch,
                                       const std::vector<std::filesystem::path>& inputs,
-                                      const NameInput& nameOf, const FindInBids& findInBids,
-                                      bool areOneItem = false);
+                                      const NameInput& nameOf, bool areOneItem = false);
 
 /// The batch mode of a program: plans, runs, prints totals, writes page and JSON lines.
 /// \return kExitOk, or kExitCheckFailed if any input failed

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "Common/OptionValues.h"
+#include "Common/UsageWords.h"
 
 namespace adaptiso {
 namespace {
@@ -13,33 +14,38 @@ namespace {
 constexpr const char* kGroup = "Many inputs (each a run of its own, in a process of its own)";
 
 /// Options that are not those of a single run of the batch.
-constexpr std::array<std::string_view, 11> kOfTheBatch{
-    "list", "bids",          "participant", "output-dir", "summary",    "jobs",
-    "json", "skip-existing", "quiet",       "threads",    "no-warnings"};
+constexpr std::array<std::string_view, 9> kOfTheBatch{"list",  "output-dir", "summary",
+                                                      "jobs",  "json",       "skip-existing",
+                                                      "quiet", "threads",    "no-warnings"};
 
 }  // namespace
 
-void declareBatchOptions(CLI::App& app, BatchOptions& options, const std::string& bidsFinds) {
+void declareBatchOptions(CLI::App& app, BatchOptions& options) {
     const OptionGroup running(app, kGroup);
     running.text("--list", "FILE", options.list,
                  "Take the inputs that FILE lists (- for stdin), one a line; a name to use for "
-                 "it may follow after a tab. Lines that begin with # are left out");
-    running.text("--bids", "ROOT", options.bids,
-                 "Take " + bidsFinds + " of a BIDS dataset; write under derivatives/adaptiso");
-    running.text("--participant", "LABEL", options.participants,
-                 "With --bids: take those of participant LABEL (01 or sub-01) only. Give it "
-                 "several times for several");
+                 "it may follow after a tab. Skips lines that begin with #");
     running.text("--output-dir", "DIR", options.outputFolder,
-                 "Write into this folder (made where need be) instead of the current one or "
-                 "derivatives/adaptiso");
+                 "Write into this folder (made where need be) instead of the current one");
     running.count("--jobs", options.jobs, 1, 1024, "Work on N inputs at a time (default: 1)");
     running.flag("--skip-existing", options.skipsExisting,
                  "Skip inputs already processed with the same options and unchanged files; repeat "
                  "their results");
     running.text("--summary", "FILE", options.summary,
                  "Write a page (HTML) of all runs that have a record in the output folder, with "
-                 "links to what they made (default with --bids or --output-dir: summary.html "
-                 "there)");
+                 "links to what they made (default with --output-dir: summary.html there)");
+}
+
+bool holdsName(const std::filesystem::path& output) {
+    return output.string().find("{name}") != std::string::npos;
+}
+
+void checkPlaceholders(const std::vector<std::pair<const char*, std::filesystem::path>>& named,
+                       const BatchOptions& batch, const CommonOptions& common) {
+    for (const auto& [option, output] : named) requirePlaceholders(option, output, {"{name}"});
+    requirePlaceholders("--summary", batch.summary, {});
+    requirePlaceholders("--output-dir", batch.outputFolder, {});
+    requirePlaceholders("--json", common.json, {});
 }
 
 void keepRunOptions(const CLI::App& app, BatchOptions& options) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "Common/CommonOptions.h"
@@ -13,8 +14,6 @@ namespace adaptiso {
 /// What a program that takes many inputs is asked to do with them.
 struct BatchOptions {
     std::filesystem::path list;  ///< inputs, one a line; "-" for stdin, empty for none
-    std::filesystem::path bids;  ///< a BIDS dataset, empty for none
-    std::vector<std::string> participants;
     std::filesystem::path outputFolder;
     std::filesystem::path summary;
     std::optional<int> jobs;
@@ -22,17 +21,24 @@ struct BatchOptions {
 
     /// An option of this struct is given.
     bool isAsked() const {
-        return !list.empty() || !bids.empty() || !participants.empty() || !outputFolder.empty() ||
-               !summary.empty() || jobs || skipsExisting;
+        return !list.empty() || !outputFolder.empty() || !summary.empty() || jobs || skipsExisting;
     }
     /// The options of every run, as given ("--iso=100"), without those of this struct, --json,
     /// --quiet, --no-warnings and --threads. Set by keepRunOptions().
     std::vector<std::string> runOptions{};
 };
 
-/// Adds --list, --bids, --participant, --output-dir, --summary, --jobs and --skip-existing.
-/// \param bidsFinds  what --bids looks for, for the help text
-void declareBatchOptions(CLI::App& app, BatchOptions& options, const std::string& bidsFinds);
+/// Adds --list, --output-dir, --summary, --jobs and --skip-existing.
+void declareBatchOptions(CLI::App& app, BatchOptions& options);
+
+/// An output's name holds "{name}", which stands for an input's.
+bool holdsName(const std::filesystem::path& output);
+
+/// Checks the placeholders in the names of outputs, given with their options.
+/// \param named  may hold "{name}"; those of the batch and of --json hold none
+/// \throws UsageError
+void checkPlaceholders(const std::vector<std::pair<const char*, std::filesystem::path>>& named,
+                       const BatchOptions& batch, const CommonOptions& common);
 
 /// Fills `options.runOptions` from what was parsed. \pre parsing is done
 void keepRunOptions(const CLI::App& app, BatchOptions& options);

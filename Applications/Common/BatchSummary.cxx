@@ -204,56 +204,34 @@ SummaryRow summaryRow(const fs::path& file, const RunRecord& record) {
     return row;
 }
 
-std::vector<SummaryRow> summaryRows(const fs::path& folder, bool hasSubjects,
-                                    const std::map<fs::path, RunRecord>& own,
-                                    const std::vector<BatchItem>& expected) {
-    std::vector<std::pair<fs::path, SummaryRow>> placed;
-    std::set<std::pair<fs::path, std::string>> known;  // folders and names of items
-    const auto add = [&](const fs::path& file, const RunRecord& record) {
-        known.emplace(detail::folderOf(file).lexically_normal(), record.name);
-        placed.emplace_back(file, summaryRow(file, record));
-    };
-    const auto addFaulty = [&](const fs::path& path, const std::string& name,
-                               const std::string& file, RunState state, const char* fault) {
-        placed.emplace_back(path, SummaryRow{"", name, file, state, fault});
-    };
-    for (const fs::path& file : recordFiles(folder, hasSubjects)) {
+std::vector<SummaryRow> summaryRows(const fs::path& folder,
+                                    const std::map<fs::path, RunRecord>& own) {
+    std::map<fs::path, SummaryRow> byFile;
+    for (const auto& [file, record] : own) byFile.emplace(file, summaryRow(file, record));
+    for (const fs::path& file : recordFiles(folder, false)) {
         RunRecord record;
         const RecordFault fault =
             own.contains(file) ? RecordFault::Missing : readRecord(file, record);
-        if (fault == RecordFault::None) add(file, record);
+        if (fault == RecordFault::None) byFile.emplace(file, summaryRow(file, record));
         if (fault == RecordFault::None || fault == RecordFault::Missing) continue;
-        addFaulty(file, file.filename().string(), "", RunState::NotFinished,
-                  fault == RecordFault::OfAnotherVersion
-                      ? "a record of another version of adaptiso; run it again"
-                      : "a damaged record; run it again");
+        byFile.emplace(file,
+                       SummaryRow{"", file.filename().string(), "", RunState::NotFinished,
+                                  fault == RecordFault::OfAnotherVersion
+                                      ? "a record of another version of adaptiso; run it again"
+                                      : "a damaged record; run it again"});
     }
-    for (const auto& [file, record] : own) add(file, record);
-    const auto isKnown = [&](const BatchItem& item) {
-        return known.contains({item.folder.lexically_normal(), item.name});
-    };
-    // if none of them is known, the surfaces were made by another program
-    const bool areOurs = std::ranges::any_of(expected, isKnown);
-    for (const BatchItem& item : expected) {
-        if (!areOurs || isKnown(item)) continue;
-        addFaulty(item.folder / item.name, item.name, baseName(item.inputs.front()),
-                  RunState::NotRun, "not run");
-    }
-    std::stable_sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) {
-        return std::tie(a.second.state, a.first) < std::tie(b.second.state, b.first);
-    });
     std::vector<SummaryRow> rows;
-    for (auto& [file, row] : placed) rows.push_back(std::move(row));
+    for (auto& [file, row] : byFile) rows.push_back(std::move(row));
+    std::ranges::stable_sort(rows, {}, &SummaryRow::state);
     return rows;
 }
 
-void writeSummary(const fs::path& page, const fs::path& folder, bool hasSubjects,
-                  const std::map<fs::path, RunRecord>& own,
-                  const std::vector<BatchItem>& expected) {
+void writeSummary(const fs::path& page, const fs::path& folder,
+                  const std::map<fs::path, RunRecord>& own) {
     const int lock = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
     if (lock >= 0) flock(lock, LOCK_EX);  // fails where the file system has none
     try {
-        writeWhole(page, summaryPage(summaryRows(folder, hasSubjects, own, expected), page));
+        writeWhole(page, summaryPage(summaryRows(folder, own), page));
     } catch (...) {
         close(lock);
         throw;

@@ -38,21 +38,19 @@ struct SummaryRow {
 /// with the record.
 SummaryRow summaryRow(const std::filesystem::path& file, const RunRecord& record);
 
-/// A line for every record in `folder`, with `own`, which replace those in their files, and for
-/// each of `expected` without a record if others of them have one: the worst first, then by path.
-std::vector<SummaryRow> summaryRows(const std::filesystem::path& folder, bool hasSubjects,
-                                    const std::map<std::filesystem::path, RunRecord>& own,
-                                    const std::vector<BatchItem>& expected);
-
 /// A page of HTML without scripts that lists `rows` in their order, the verdict in words and
 /// colour, with links relative to `page`, and a thumbnail where there is a picture: one of the
 /// row's pictures, or the first in its report.
 std::string summaryPage(const std::vector<SummaryRow>& rows, const std::filesystem::path& page);
 
+/// A line for every record in `folder`, with `own`, which replace those in their files: the worst
+/// first, then by path.
+std::vector<SummaryRow> summaryRows(const std::filesystem::path& folder,
+                                    const std::map<std::filesystem::path, RunRecord>& own);
+
 /// Writes the page of summaryRows(). Of several processes that write it at once the last shows all
 /// records, where the file system has locks. \throws FileError
 void writeSummary(const std::filesystem::path& page, const std::filesystem::path& folder,
-                  bool hasSubjects, const std::map<std::filesystem::path, RunRecord>& own,
-                  const std::vector<BatchItem>& expected);
+                  const std::map<std::filesystem::path, RunRecord>& own);
 
 }  // namespace adaptiso

@@ -42,4 +42,13 @@ std::string inputStem(const fs::path& input) {
     return name;
 }
 
+std::string bidsLabel(std::string_view number) {
+    std::string label;
+    for (const char c : number) {
+        if (c == '+') continue;  // of an exponent, which has a sign in any case
+        label += c == '.' ? 'p' : c == '-' ? 'm' : c;
+    }
+    return label;
+}
+
 }  // namespace adaptiso

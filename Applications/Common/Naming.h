@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <typeinfo>
 #include <utility>
 
@@ -16,6 +17,13 @@ std::string baseName(const std::filesystem::path& path);
 /// "scans/brain.nii.gz"; the folder's own name of a folder, however it is written, without
 /// ".zarr" or ".ome.zarr".
 std::string inputStem(const std::filesystem::path& input);
+
+/// The placeholder for bidsLabel() of an isovalue in a file's name.
+inline constexpr std::string_view kIsoLabel = "{isolabel}";
+
+/// A number's text in letters and digits, as a BIDS label must be: "411p5" for "411.5", "m300" for
+/// "-300", "1em07" for "1e-07". Two numbers never share a label.
+std::string bidsLabel(std::string_view number);
 
 /// Calls `work`. Puts `subject` before the message of an InvalidInput that it throws: the option or
 /// file concerned, which the library does not know. \return what `work` returns

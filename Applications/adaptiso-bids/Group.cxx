@@ -1,5 +1,3 @@
-#include "Group.h"
-
 #include <algorithm>
 #include <fstream>
 #include <iostream>
@@ -8,14 +6,15 @@
 #include <utility>
 
 #include "Common/BatchSummary.h"
-#include "Common/Bids.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/Verdict.h"
+#include "Dataset.h"
 #include "Jobs.h"
+#include "QualityTable.h"
 #include "adaptiso/Core/Text.h"
 
-namespace adaptiso {
+namespace adaptiso::bids {
 namespace {
 
 namespace fs = std::filesystem;
@@ -429,13 +428,37 @@ std::string dumped(const Json& json) {
     return jsonText(json) + "\n";
 }
 
+/// An entry of SourceDatasets, with the dataset's DOI if it states one.
+Json sourceOf(const fs::path& root) {
+    std::ifstream file(root / kDescription);
+    const Json said = Json::parse(file, nullptr, false);
+    Json source{{"URL", "bids:raw:"}};
+    if (!said.is_object() || !said.contains("DatasetDOI")) return source;
+    std::string doi = said["DatasetDOI"].is_string() ? said["DatasetDOI"].get<std::string>() : "";
+    if (doi.starts_with("doi:")) doi.erase(0, 4);
+    if (doi.empty()) return source;
+    source["DOI"] = doi;
+    source["URL"] = doi.starts_with("http") ? doi : "https://doi.org/" + doi;
+    return source;
+}
+
+/// dataset_description.json
 Json descriptionOf(const BidsOptions& options) {
-    Json json = bidsDescription(options.dataset, options.output, kProgram);
-    json["GeneratedBy"][0][kOptionsSum] = sumOf(askedOf(options));
+    std::error_code error;
+    const auto linkTo = [&](const fs::path& dataset) {
+        return fs::proximate(dataset, options.output, error).generic_string();
+    };
+    Json maker{{"Name", kProgram}, {"Version", programVersion()}};
+    if (constexpr std::string_view home = ADAPTISO_HOMEPAGE; !home.empty()) maker["CodeURL"] = home;
+    maker[kOptionsSum] = sumOf(askedOf(options));
+    Json json{{"Name", "adaptiso"},
+              {"BIDSVersion", "1.8.0"},
+              {"DatasetType", "derivative"},
+              {"GeneratedBy", Json::array({maker})},
+              {"SourceDatasets", {sourceOf(options.dataset)}},
+              {"DatasetLinks", {{"raw", linkTo(options.dataset)}}}};
     if (!options.segmentations.empty()) {
-        std::error_code error;
-        json["DatasetLinks"]["segmentations"] =
-            fs::proximate(options.segmentations, options.output, error).generic_string();
+        json["DatasetLinks"]["segmentations"] = linkTo(options.segmentations);
         json["SourceDatasets"].push_back({{"URL", "bids:segmentations:"}});
     }
     return json;
@@ -556,4 +579,4 @@ int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
     return missing.empty() ? kExitOk : kExitCheckFailed;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::bids

@@ -5,14 +5,14 @@
 #include <string_view>
 #include <utility>
 
-#include "Common/Bids.h"
 #include "Common/OptionValues.h"
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
+#include "Dataset.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/Formats.h"
 
-namespace adaptiso {
+namespace adaptiso::bids {
 namespace {
 
 namespace fs = std::filesystem;
@@ -150,7 +150,6 @@ Job newJob(const BidsOptions& options, const std::string& product) {
     program.removesFormer = true;
     program.asked = askedOf(options, product);
     BatchOptions& batch = job.batch;
-    batch.bids = options.dataset;
     batch.outputFolder = options.output;
     batch.jobs = options.jobs;
     batch.skipsExisting = true;
@@ -294,4 +293,4 @@ Job checkJob(const BidsOptions& options, const Job& surfaces) {
     return job;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::bids

@@ -7,7 +7,7 @@
 #include "Common/Batch.h"
 #include "Pipeline.h"
 
-namespace adaptiso {
+namespace adaptiso::bids {
 
 /// One kind of result, as a batch of another program.
 struct Job {
@@ -48,4 +48,4 @@ std::vector<std::string> programOptions(const std::string& option, const std::st
                                         const ProgramInfo& program,
                                         const std::vector<std::string>& refused);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::bids

@@ -6,10 +6,9 @@
 #include "Common/Verdict.h"
 #include "Common/Warnings.h"
 #include "Dataset.h"
-#include "Group.h"
 #include "Jobs.h"
 
-namespace adaptiso {
+namespace adaptiso::bids {
 namespace {
 
 constexpr const char* kProgram = "adaptiso-bids";
@@ -85,4 +84,4 @@ int runBids(const BidsOptions& options) {
     return printVerdict(kProgram, verdict, "");
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::bids

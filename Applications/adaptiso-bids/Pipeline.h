@@ -8,7 +8,7 @@
 
 #include "Common/CommonOptions.h"
 
-namespace adaptiso {
+namespace adaptiso::bids {
 
 /// The two levels of a BIDS App.
 enum class BidsLevel { Participant, Group };
@@ -45,4 +45,4 @@ struct BidsOptions {
 /// \throws UsageError, InvalidInput, FileError
 int runBids(const BidsOptions& options);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::bids

@@ -9,7 +9,7 @@
 
 #include "adaptiso/Core/Text.h"
 
-namespace adaptiso {
+namespace adaptiso::bids {
 namespace {
 
 struct Column {
@@ -184,4 +184,4 @@ std::vector<std::optional<double>> robustScores(std::span<const std::optional<do
     return scores;
 }
 
-}  // namespace adaptiso
+}  // namespace adaptiso::bids

@@ -9,7 +9,7 @@
 
 #include "Common/Json.h"
 
-namespace adaptiso {
+namespace adaptiso::bids {
 
 /// The numbers of a row, in their order.
 enum class Measure {
@@ -71,4 +71,4 @@ double medianOf(std::span<const std::optional<double>> values);
 /// \return  empty for a missing value; all empty if fewer than 5 values are there, or all are equal
 std::vector<std::optional<double>> robustScores(std::span<const std::optional<double>> values);
 
-}  // namespace adaptiso
+}  // namespace adaptiso::bids

@@ -1,9 +1,11 @@
 #include "Pipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <utility>
 
+#include "Common/Batch.h"
 #include "Common/CommonFrame.h"
 #include "Common/ImageOptions.h"
 #include "Common/Json.h"
@@ -13,9 +15,12 @@
 #include "Common/Warnings.h"
 #include "Run.h"
 #include "SelfTest.h"
+#include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
 namespace adaptiso::checker {
 namespace {
@@ -24,18 +29,52 @@ namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "adaptiso-check";
 
-/// The stages of a run, as progress, `seconds` of the report and README.md name them.
-constexpr const char* kRead = "read";
-constexpr const char* kExtract = "extract";
-constexpr const char* kCheck = "check";
-constexpr const char* kNesting = "nesting";
-constexpr const char* kIsosurface = "isosurface";
-constexpr const char* kPlausibility = "plausibility";
-
 void checkOutputs(const CheckOptions& options) {
     std::vector<fs::path> inputs = options.files;
     inputs.push_back(options.volume);
     OutputPlan(inputs).check(options.common, options.report);
+}
+
+/// The isosurface of a volume, to hold others against.
+struct Isosurface {
+    double isovalue = 0;
+    double voxelMm = 0;  ///< the side of a cube as large as a voxel
+    TriangleMesh mesh;   ///< by marching cubes, closed at the volume's border; LPS mm
+};
+
+/// \throws InvalidInput  the volume has no surface at `isovalue`
+Isosurface extractIsosurface(const VolumeView& volume, double isovalue) {
+    Isosurface isosurface;
+    isosurface.isovalue = isovalue;
+    isosurface.voxelMm = std::cbrt(volume.geometry().voxelVolumeMm3());
+    ExtractionOptions extract;
+    extract.isovalue = isovalue;
+    extract.method = Method::MarchingCubes;
+    extract.computeNormals = false;
+    isosurface.mesh = extractSurface(volume, SpanSpaceIndex::build(volume, {}), extract).mesh;
+    if (!(surfaceArea(isosurface.mesh) > 0)) {
+        const ValueRange range = valueRange(volume);
+        throw InvalidInput("there is no surface; the range is " + formatShort(range.minimum) +
+                           " to " + formatShort(range.maximum));
+    }
+    return isosurface;
+}
+
+/// How far the surface lies from the isosurface: points spread over its area, and its vertices.
+/// \param mesh  LPS mm; triangles with a corner that is not finite are left out
+/// \return empty when nothing with area is left
+std::optional<DistanceStatistics> isosurfaceDeviation(const TriangleMesh& mesh,
+                                                      const Isosurface& isosurface) {
+    TriangleMesh finite;
+    finite.points = mesh.points;
+    std::copy_if(mesh.triangles.begin(), mesh.triangles.end(), std::back_inserter(finite.triangles),
+                 [&](const Triangle& t) {
+                     return std::all_of(t.begin(), t.end(), [&](VertexId v) {
+                         return std::isfinite(squaredNorm(mesh.points[v]));
+                     });
+                 });
+    if (!(surfaceArea(finite) > 0)) return std::nullopt;
+    return surfaceDistance(finite, isosurface.mesh, {.isSymmetric = false}).aToB;
 }
 
 /// Fills a run.
@@ -74,13 +113,13 @@ private:
     void readImage() {
         if (options_.volume.empty()) return;
         std::optional<ReadVolume> read;
-        run_.stage(kRead, [&] { read = adaptiso::readImage(options_.volume, options_.read); });
+        run_.stage("read", [&] { read = adaptiso::readImage(options_.volume, options_.read); });
         image_ = read->volume.view().geometry();
         run_.volume = VolumeSummary{read->format, *image_};
         if (options_.report.isWanted()) shown_.image = *read;
         warnOfVolume(read->warnings);
         if (!options_.isovalue) return;
-        run_.stage(kExtract, [&] {
+        run_.stage("extract", [&] {
             const Preprocessed prepared =
                 preprocessImage(std::move(read->volume), options_.preprocessing, options_.volume);
             warnOfVolume(prepared.warnings);
@@ -104,7 +143,7 @@ private:
         SurfaceRun& surface = run_.surfaces.back();
         Loaded loaded{number, {file, {}}};
         try {
-            run_.stage(kRead, [&] { readSurface(loaded.mesh, surface); });
+            run_.stage("read", [&] { readSurface(loaded.mesh, surface); });
         } catch (const Error& error) {
             addUnread(surface, error.what());
             return;
@@ -112,7 +151,7 @@ private:
             addUnread(surface, file.string() + ": too large for this machine's memory");
             return;
         }
-        run_.stage(kCheck, [&] {
+        run_.stage("check", [&] {
             surface.facts = measureSurface(
                 loaded.mesh.file.mesh, sizeLimitsOf(options_.profileInUse()), options_.maxPairs);
             surface.checks = judgeSurface(surface.facts, options_);
@@ -174,7 +213,7 @@ private:
 
     void checkNested() {
         if (meshes_.size() < 2) return;
-        run_.stage(kNesting, [&] {
+        run_.stage("nesting", [&] {
             run_.nestingFrame = meshes_.front().mesh.file.frame;
             if (!areInOneFrame()) {
                 const CommonFrame common = moveToOneFrame();
@@ -201,7 +240,7 @@ private:
     /// Checks the plausibility of a head model's boundary, or of all of them.
     void askWhatIsUsual() {
         if (options_.profileInUse() != Profile::Bem || meshes_.empty()) return;
-        run_.stage(kPlausibility, [&] {
+        run_.stage("plausibility", [&] {
             std::vector<NamedMesh> meshes;
             for (const Loaded& loaded : meshes_) meshes.push_back(loaded.mesh);
             const CommonFrame common = bringToOneFrame(meshes, image_);
@@ -227,7 +266,7 @@ private:
 
     void measureDeviations() {
         if (!isosurface_ || meshes_.empty()) return;
-        run_.stage(kIsosurface, [&] {
+        run_.stage("isosurface", [&] {
             moveToOneFrame();
             for (const Loaded& loaded : meshes_) {
                 SurfaceRun& surface = run_.surfaces[loaded.number];
@@ -289,6 +328,15 @@ Verdict verdictOf(const CheckRun& run) {
         run.surfaces, [](const SurfaceRun& surface) { return !surface.error.empty(); });
     if (unread != run.surfaces.end()) return {kExitBadInput, unread->error};
     return {run.hasPassed() ? kExitOk : kExitCheckFailed};
+}
+
+/// A run for each of many surfaces, or of many heads. \return, \throws as runBatch()
+int runCheckBatch(const CheckOptions& options) {
+    BatchProgram program{"adaptiso-check", "", {"--volume"}, {"--report", "--pictures"}};
+    program.keepsRecords = false;
+    const auto nameOf = [](const fs::path& file) { return file.filename().string(); };
+    return runBatch(program, findBatchItems(options.batch, options.files, nameOf, options.isNested),
+                    options.batch, options.common);
 }
 
 }  // namespace

@@ -68,25 +68,6 @@ struct CheckRun : ProgramRun {
     bool hasUnreadable() const;
 };
 
-/// The isosurface of a volume, to hold others against.
-struct Isosurface {
-    double isovalue = 0;
-    double voxelMm = 0;  ///< the side of a cube as large as a voxel
-    TriangleMesh mesh;   ///< by marching cubes, closed at the volume's border; LPS mm
-};
-
-/// \throws InvalidInput  the volume has no surface at `isovalue`
-Isosurface extractIsosurface(const VolumeView& volume, double isovalue);
-
-/// How far the surface lies from the isosurface: points spread over its area, and its vertices.
-/// \param mesh  LPS mm; triangles with a corner that is not finite are left out
-/// \return empty when nothing with area is left
-std::optional<DistanceStatistics> isosurfaceDeviation(const TriangleMesh& mesh,
-                                                      const Isosurface& isosurface);
-
-/// Runs adaptiso-check for each of many surfaces, or of many heads. \return, \throws as runBatch()
-int runCheckBatch(const CheckOptions& options);
-
 /// The report that --json asks for, as README.md describes it: schema "adaptiso-check/1". Holds
 /// file names without folders. A number that is not known, or not finite, is null.
 std::string jsonReport(const CheckRun& run);
@@ -111,15 +92,5 @@ struct ShownSurfaces {
 /// The report of a run. The image, if any, stays with `shown`, which must outlive the report; the
 /// meshes are moved out of it.
 Report makeReport(const CheckRun& run, ShownSurfaces& shown);
-
-/// Where the checks that failed say to look: holes, crossings, what is not manifold, slivers, the
-/// point farthest from the isosurface. Defects near each other are one spot; of many, the first.
-/// \param mesh  of the surface, LPS mm
-std::vector<ReportSpot> spotsOf(const SurfaceRun& surface, const TriangleMesh& mesh);
-
-/// The spots of two nested surfaces; the smallest gap is always listed.
-std::vector<ReportSpot> spotsOf(const NestingRun& pair, const std::string& innerName,
-                                const std::string& outerName, const TriangleMesh& inner,
-                                const TriangleMesh& outer);
 
 }  // namespace adaptiso::checker

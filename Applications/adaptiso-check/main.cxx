@@ -85,20 +85,9 @@ void declareOutput(CLI::App& app, CheckOptions& options) {
     declareReportOptions(app, options.report, kOutput);
 }
 
-/// Checks placeholders in outputs' names: {name} is an input of a batch.
-void checkPlaceholders(const CheckOptions& options) {
-    const std::vector<std::string> forRun =
-        options.batch.isAsked() ? std::vector<std::string>{"{name}"} : std::vector<std::string>{};
-    requirePlaceholders("--report", options.report.page, forRun);
-    requirePlaceholders("--pictures", options.report.pictures, forRun);
-    requirePlaceholders("--summary", options.batch.summary, {});
-    requirePlaceholders("--output-dir", options.batch.outputFolder, {});
-    requirePlaceholders("--json", options.common.json, {});
-}
-
 /// Checks options against each other.
 void checkCombinations(const CheckOptions& options) {
-    const bool findsFiles = !options.batch.list.empty() || !options.batch.bids.empty();
+    const bool findsFiles = !options.batch.list.empty();
     if (options.files.empty() && !findsFiles) {
         throw UsageError("FILE is missing: the surfaces to check");
     }
@@ -155,7 +144,7 @@ void declareCheckOptions(CLI::App& app, CheckOptions& options) {
     declareRequirements(app, options);
     declareSelfTest(app, options);
     declareOutput(app, options);
-    declareBatchOptions(app, options.batch, "the surfaces in derivatives/adaptiso");
+    declareBatchOptions(app, options.batch);
     declareCommonOptions(app, options.common, "reports are written all the same");
     afterParsing(app, [&app, &options] {
         if (options.isSelfTest) {
@@ -163,7 +152,12 @@ void declareCheckOptions(CLI::App& app, CheckOptions& options) {
             return;
         }
         checkCombinations(options);
-        checkPlaceholders(options);
+        const std::vector<std::pair<const char*, std::filesystem::path>> named{
+            {"--report", options.report.page}, {"--pictures", options.report.pictures}};
+        checkPlaceholders(named, options.batch, options.common);
+        for (const auto& [option, output] : named) {
+            if (!options.batch.isAsked()) requirePlaceholders(option, output, {});
+        }
         if (options.batch.isAsked()) keepRunOptions(app, options.batch);
     });
 }

@@ -27,12 +27,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "adaptiso-compare";
 
-/// The stages of a run, as progress, `seconds` of the report and README.md name them.
-constexpr const char* kRead = "read";
-constexpr const char* kDistance = "distance";
-constexpr const char* kOverlap = "overlap";
-constexpr const char* kWrite = "write";
-
 /// Checks the outputs before a file is read.
 void checkOutputs(const CompareOptions& options) {
     const std::array inputs{options.a, options.b, options.volume};
@@ -203,15 +197,15 @@ int runCompare(const CompareOptions& options) {
     checkOutputs(options);
 
     std::array<NamedMesh, 2> surfaces;
-    const CommonFrame common = run.stage(kRead, [&] { return readInputs(run, surfaces); });
+    const CommonFrame common = run.stage("read", [&] { return readInputs(run, surfaces); });
     TriangleMesh &a = surfaces[0].file.mesh, &b = surfaces[1].file.mesh;
-    run.distances = run.stage(kDistance, [&] {
+    run.distances = run.stage("distance", [&] {
         return surfaceDistance(a, b,
                                {options.samples, options.isSymmetric, run.progress.callback()});
     });
     run.checks = makeChecks(run);
-    run.stage(kOverlap, [&] { measureOverlap(run, a, b); });
-    run.stage(kWrite, [&] {
+    run.stage("overlap", [&] { measureOverlap(run, a, b); });
+    run.stage("write", [&] {
         if (!options.colored.empty()) writeColored(run, a, b, common);
     });
     if (options.report.isWanted()) {

@@ -2,13 +2,35 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
 #include "PieceFile.h"
-#include "PieceUnion.h"
 
 namespace adaptiso::giant {
+
+/// Places by their bits: vertices on the borders of pieces that have the same are one.
+struct HashOfBits {
+    std::size_t operator()(const Vec3& p) const {
+        std::uint64_t hash = 0;
+        for (int a = 0; a < 3; ++a) {
+            std::uint64_t bits = 0;
+            const double along = p[a];
+            std::memcpy(&bits, &along, sizeof bits);
+            hash = (hash ^ (bits ^ bits >> 29)) * 0x9E3779B97F4A7C15u;
+        }
+        return hash;
+    }
+};
+struct SameBits {
+    bool operator()(const Vec3& p, const Vec3& q) const {
+        return std::memcmp(&p, &q, sizeof p) == 0;
+    }
+};
+template <class T>
+using AtPlace = std::unordered_map<Vec3, T, HashOfBits, SameBits>;
 
 /// The border between pieces read and pieces to come: the vertices that have an edge whose
 /// other triangle has not been seen. Once it has, the surface is closed around a vertex, no other

@@ -5,13 +5,13 @@
 #include <optional>
 #include <ostream>
 
+#include "BorderFront.h"
 #include "Common/AtomicOutput.h"
 #include "Common/Json.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/Verdict.h"
-#include "PieceUnion.h"
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
@@ -25,6 +25,38 @@ namespace {
 /// The share of the bound for the first pass; the second gets the rest. It changes little, and that
 /// costs more the smaller its share is; a large share costs triangles everywhere.
 constexpr double kTileShare = 0.9;
+
+/// Pieces as one mesh.
+class PieceUnion {
+public:
+    void add(const Piece& piece) {
+        constexpr VertexId kNew = -1;
+        std::vector<VertexId> number(piece.mesh.points.size(), kNew);
+        for (const BorderVertex& v : piece.summary.border) {
+            const auto [at, isNew] = known_.try_emplace(v.index, std::ssize(mesh_.points));
+            if (isNew) append(piece.mesh, v.vertex);
+            number[v.vertex] = at->second;
+        }
+        for (std::size_t v = 0; v < number.size(); ++v) {
+            if (number[v] != kNew) continue;
+            number[v] = std::ssize(mesh_.points);
+            append(piece.mesh, v);
+        }
+        for (const auto& [a, b, c] : piece.mesh.triangles) {
+            mesh_.triangles.push_back({number[a], number[b], number[c]});
+        }
+    }
+    const TriangleMesh& mesh() const { return mesh_; }
+
+private:
+    void append(const TriangleMesh& mesh, std::size_t v) {
+        mesh_.points.push_back(mesh.points[v]);
+        mesh_.normals.push_back(mesh.normals[v]);
+    }
+
+    TriangleMesh mesh_;
+    AtPlace<VertexId> known_;
+};
 
 /// The pieces that a step made and found.
 struct StepCounts {

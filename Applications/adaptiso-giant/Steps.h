@@ -11,9 +11,7 @@
 #include "Common/Json.h"
 #include "GiantPlan.h"
 #include "PieceFile.h"
-#include "PieceJoiner.h"
 #include "Pipeline.h"
-#include "adaptiso/Report/Report.h"
 
 namespace adaptiso::giant {
 
@@ -63,11 +61,5 @@ int runSeamStep(const GiantOptions& options);
 /// \param key  of the plan that is to be joined; empty: that which is there
 int runJoinStep(const GiantOptions& options, const std::string& key = {});
 int runAllSteps(const GiantOptions& options);
-
-/// The report that the page shows.
-/// \param json    the report of the join
-/// \param coarse  a copy of the surface that a browser can show, LPS mm
-Report giantReport(const GiantPlan& plan, const GiantSurface& surface, const Json& json,
-                   TriangleMesh coarse);
 
 }  // namespace adaptiso::giant

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "Common/AtomicOutput.h"
+#include "Common/Batch.h"
 #include "Common/CommonFrame.h"
 #include "Common/ImageOptions.h"
 #include "Common/Json.h"
@@ -24,15 +25,6 @@ namespace adaptiso::labels {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The stages of a run, as progress, `seconds` of the report and README.md name them, beside those
-/// of checkComplex().
-constexpr const char* kRead = "read";
-constexpr const char* kExtract = "extract";
-constexpr const char* kFit = "fit";
-constexpr const char* kMeasure = "measure";
-constexpr const char* kTetrahedra = "tetrahedra";
-constexpr const char* kWrite = "write";
 
 fs::path outputFolder(const LabelsOptions& options) {
     return options.output.empty() ? fs::path(inputStem(options.input) + "-labels") : options.output;
@@ -202,6 +194,16 @@ void writePage(LabelsRun& run, const RegionSurfaces& surfaces, const VolumeView&
     });
 }
 
+/// Each input as a run of its own. \return an exit code
+int runLabelsBatch(const LabelsOptions& options) {
+    return runBatch({"adaptiso-labels",
+                     "{name}-labels",
+                     {"--names", "--volume"},
+                     {"--output", "--report", "--pictures"}},
+                    findBatchItems(options.batch, options.inputs, inputStem), options.batch,
+                    options.common);
+}
+
 }  // namespace
 
 int runLabels(const LabelsOptions& given) {
@@ -214,16 +216,16 @@ int runLabels(const LabelsOptions& given) {
     requireMesher(options.tetrahedra);
 
     LabelCensus census;
-    const Volume volume = run.stage(kRead, [&] { return readMap(options, run, census); });
+    const Volume volume = run.stage("read", [&] { return readMap(options, run, census); });
     const VolumeView& map = volume.view();
-    run.stage(kRead, [&] { nameRegions(chooseLabels(census, options), census, run); });
+    run.stage("read", [&] { nameRegions(chooseLabels(census, options), census, run); });
     requireTetrahedraLabels(run);
     checkConductivities(run);
     run.printNewWarnings();
 
-    LabelComplex complex = run.stage(kExtract, [&] { return extract(map, run); });
-    run.stage(kFit, [&] { fitToFiles(complex, run); });
-    run.stage(kMeasure, [&] { measure(complex, run); });
+    LabelComplex complex = run.stage("extract", [&] { return extract(map, run); });
+    run.stage("fit", [&] { fitToFiles(complex, run); });
+    run.stage("measure", [&] { measure(complex, run); });
     const RegionSurfaces surfaces(complex, run.regions);
     if (run.format->precision == CoordinatePrecision::Float64) {
         checkComplex(complex, surfaces, map, run);
@@ -232,7 +234,7 @@ int runLabels(const LabelsOptions& given) {
         checkComplex(stored, RegionSurfaces(stored, run.regions), map, run);
     }
     if (options.tetrahedra.isAsked() && run.holdsPromises()) {
-        run.stage(kTetrahedra, [&] { makeTetrahedra(complex, run); });
+        run.stage("tetrahedra", [&] { makeTetrahedra(complex, run); });
     }
     warnOfCount(run);
     if (!run.leavesGiftiOut && !fitsGifti(run)) {
@@ -244,7 +246,7 @@ int runLabels(const LabelsOptions& given) {
 
     std::optional<AtomicFolder> folder;
     if (run.writesFolder()) {
-        run.stage(kWrite, [&] {
+        run.stage("write", [&] {
             folder.emplace(run.folder, replaceable(options, run.folder));
             writeFiles(complex, surfaces, run, *folder);
             folder->writeText("report.json", folderReport(run));

@@ -114,9 +114,6 @@ struct LabelsRun : ProgramRun {
     std::string nameOf(Label label) const;
 };
 
-/// Each input as a run of its own. \return an exit code
-int runLabelsBatch(const LabelsOptions& options);
-
 /// The report of --json, as README.md describes it.
 std::string jsonReport(const LabelsRun& run);
 

@@ -42,7 +42,7 @@ std::string parseFormat(std::string text) {
 
 /// Checks options against each other.
 void checkCombinations(const LabelsOptions& options) {
-    if (options.inputs.empty() && options.batch.list.empty() && options.batch.bids.empty()) {
+    if (options.inputs.empty() && options.batch.list.empty()) {
         throw UsageError("SEG is missing: the label map to make surfaces of");
     }
     if (!options.volume.empty() && !options.report.isWanted()) {
@@ -63,13 +63,10 @@ void checkCombinations(const LabelsOptions& options) {
         throw UsageError("--conductivities: are written with --layers");
     }
     requireDisjoint(options.merges);
-    const std::vector<std::string> forRun{"{name}"};
-    requirePlaceholders("--output", options.output, forRun);
-    requirePlaceholders("--report", options.report.page, forRun);
-    requirePlaceholders("--pictures", options.report.pictures, forRun);
-    requirePlaceholders("--summary", options.batch.summary, {});
-    requirePlaceholders("--output-dir", options.batch.outputFolder, {});
-    requirePlaceholders("--json", options.common.json, {});
+    checkPlaceholders({{"--output", options.output},
+                       {"--report", options.report.page},
+                       {"--pictures", options.report.pictures}},
+                      options.batch, options.common);
 }
 
 void declareInput(CLI::App& app, LabelsOptions& options) {
@@ -180,8 +177,8 @@ constexpr const char* kFooter = R"(Examples:
       the full resolution, which the bound is measured against
   adaptiso-labels head.nii.gz --layers --conductivities 1=0.33,2=0.0066,3=0.33
       the walls for OpenMEEG as well, in the folder layers
-  adaptiso-labels --bids derivatives/segmentation --skip-existing
-      each *_dseg image a run of its own
+  adaptiso-labels *_dseg.nii.gz --output-dir surfaces --skip-existing
+      each image a run of its own
 
 Exit codes: 0 done, 1 the walls do not keep what is promised of them, one or
 more of many inputs failed, or a warning with --strict, 2 wrong usage, 3 bad
@@ -204,7 +201,7 @@ void declareLabelsOptions(CLI::App& app, LabelsOptions& options) {
                          kTetrahedra);
     declareOutput(app, options);
     declareLayers(app, options);
-    declareBatchOptions(app, options.batch, "the label maps, *_dseg");
+    declareBatchOptions(app, options.batch);
     declareCommonOptions(app, options.common, "no folder is then written, reports are");
     afterParsing(app, [&app, &options] {
         if (!options.inputs.empty()) options.input = options.inputs.front();

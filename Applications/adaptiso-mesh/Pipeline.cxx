@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <functional>
 #include <optional>
+#include <string_view>
 #include <utility>
 
+#include "Common/Batch.h"
 #include "Common/CommonFrame.h"
 #include "Common/Json.h"
 #include "Common/Naming.h"
@@ -12,7 +14,6 @@
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
 #include "Common/Warnings.h"
-#include "Info.h"
 #include "Run.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -29,20 +30,49 @@ namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "adaptiso-mesh";
 
-/// The stages of a run, as progress, `seconds` of the report and README.md name them, beside those
-/// of finishSurface().
-constexpr const char* kRead = "read";
-constexpr const char* kPreprocess = "preprocess";
-constexpr const char* kIndex = "index";
-constexpr const char* kExtract = "extract";
-constexpr const char* kVerify = "verify";
-constexpr const char* kWrite = "write";
-
 /// Pairs of triangles that cross, to be shown on the page; all are counted.
 constexpr std::int64_t kMaxShownPairs = 1000;
 
 std::string isovalueText(const IsovalueChoice& choice) {
     return choice.isAutomatic() ? "auto" : formatNumber(*choice.value);
+}
+
+std::string replaced(std::string text, std::string_view place, const std::string& by) {
+    for (std::size_t at = text.find(place); at != std::string::npos;
+         at = text.find(place, at + by.size())) {
+        text.replace(at, place.size(), by);
+    }
+    return text;
+}
+
+/// "lh-iso50.surf.gii" of "lh.surf.gii": GIFTI surfaces have an extension of two parts.
+fs::path insertBeforeExtension(const fs::path& path, const std::string& text) {
+    const std::string name = path.filename().string();
+    constexpr std::string_view kTwoParts = ".surf.gii";
+    const std::size_t kept = name.size() - std::min(name.size(), kTwoParts.size());
+    const bool hasTwoParts = kept > 0 && lowerCase(name.substr(kept)) == kTwoParts;
+    const std::string stem = hasTwoParts ? name.substr(0, kept) : path.stem().string();
+    return path.parent_path() / (stem + text + name.substr(stem.size()));
+}
+
+/// \param isOne  there is one isovalue
+fs::path outputPath(const fs::path& output, bool isOne, const std::string& isovalue) {
+    const std::string name = output.filename().string();
+    const std::string named =
+        replaced(replaced(name, "{iso}", isovalue), kIsoLabel, bidsLabel(isovalue));
+    if (named != name) return output.parent_path() / named;
+    return isOne ? output : insertBeforeExtension(output, "-iso" + isovalue);
+}
+
+/// The file that the surface at an isovalue goes to.
+///
+/// Without an output in `options`: "<stem>-iso<isovalue>.vtp" in the current folder. An output
+/// with "{iso}" in its name has the isovalue in that place. Otherwise the output is taken as it
+/// is for one isovalue, and for several gets "-iso<isovalue>" before its extension.
+/// \param isovalue  as text: formatNumber(), or "auto" while it is not known yet
+fs::path outputPath(const MeshOptions& options, const std::string& isovalue) {
+    if (options.output.empty()) return inputStem(options.input) + "-iso" + isovalue + ".vtp";
+    return outputPath(options.output, options.isovalues.size() == 1, isovalue);
 }
 
 /// Checks the outputs before the volume is read.
@@ -105,7 +135,7 @@ InputSummary summarize(const ReadVolume& read) {
 /// The volume to work on.
 Volume prepare(Volume read, MeshRun& run) {
     if (run.options.preprocessing.changesNothing()) return read;
-    return run.stage(kPreprocess, [&] {
+    return run.stage("preprocess", [&] {
         Preprocessed done =
             preprocessImage(std::move(read), run.options.preprocessing, run.options.input);
         const VolumeView& view = done.volume.view();
@@ -130,7 +160,7 @@ auto choosingPieces(const MeshOptions& options, const Work& work) {
 TriangleMesh extract(const VolumeView& volume, const SpanSpaceIndex& index, MeshRun& run,
                      SurfaceSummary& summary) {
     const MeshOptions& options = run.options;
-    TriangleMesh mesh = run.stage(kExtract, [&] {
+    TriangleMesh mesh = run.stage("extract", [&] {
         ExtractionOptions extract = options.extraction();
         extract.isovalue = summary.isovalue;
         extract.computeNormals = summary.format->holdsNormals;
@@ -169,7 +199,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
                             askedBoundMm(options.extraction(), volume.geometry())};
     if (options.verifies) {
         summary.verification = run.stage(
-            kVerify, [&] { return verify(volume, index, mesh, digits, options, summary); });
+            "verify", [&] { return verify(volume, index, mesh, digits, options, summary); });
     }
 
     const bool isShown = options.report.isWanted();
@@ -191,7 +221,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         }
     });
 
-    run.stage(kWrite, [&] {
+    run.stage("write", [&] {
         AtomicOutput& output = run.addOutput(summary.file);
         output.write([&](const fs::path& path) { writeMesh(finished.mesh, path, write); });
         summary.bytes = fs::file_size(output.temporary());
@@ -253,6 +283,25 @@ std::string writtenText(const MeshRun& run) {
     return text + (run.surfaces.size() == 1 ? " is written" : " are written");
 }
 
+/// A run for each of many inputs. \return, \throws as runBatch()
+int runMeshBatch(const MeshOptions& options) {
+    BatchProgram program{"adaptiso-mesh",
+                         "{name}-iso{iso}.vtp",
+                         {},
+                         {"--output", "--report", "--pictures"},
+                         "--iso"};
+    program.surfaceFiles = [&options](const fs::path& output, const auto&) {
+        std::vector<fs::path> files;
+        for (const IsovalueChoice& choice : options.isovalues) {
+            files.push_back(
+                outputPath(output, options.isovalues.size() == 1, isovalueText(choice)));
+        }
+        return files;
+    };
+    return runBatch(program, findBatchItems(options.batch, options.inputs, inputStem),
+                    options.batch, options.common);
+}
+
 }  // namespace
 
 int runMesh(const MeshOptions& options) {
@@ -265,16 +314,16 @@ int runMesh(const MeshOptions& options) {
     checkOutputs(options);
 
     ReadVolume read =
-        run.stage(kRead, [&] { return readImage(options.input, options.image.read); });
-    run.input = run.stage(kRead, [&] { return summarize(read); });
+        run.stage("read", [&] { return readImage(options.input, options.image.read); });
+    run.input = run.stage("read", [&] { return summarize(read); });
     const Volume prepared = prepare(std::move(read.volume), run);
     const VolumeView& volume = prepared.view();
     addWarnings(run.warnings, run.input.warnings, inputName(options));
     run.printNewWarnings();
     const std::vector<double> isovalues =
-        run.stage(kRead, [&] { return chooseIsovalues(volume, run); });
+        run.stage("read", [&] { return chooseIsovalues(volume, run); });
 
-    const SpanSpaceIndex index = run.stage(kIndex, [&] {
+    const SpanSpaceIndex index = run.stage("index", [&] {
         return naming(baseName(options.input),
                       [&] { return SpanSpaceIndex::build(volume, options.index); });
     });

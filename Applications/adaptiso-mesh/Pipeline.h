@@ -45,14 +45,10 @@ struct MeshOptions {
     ReportOptions report;
     CommonOptions common;
 
-    /// Whether an output's name holds the placeholder {name}.
-    static bool namesInput(const std::filesystem::path& output) {
-        return output.string().find("{name}") != std::string::npos;
-    }
     /// Whether each input is a run of its own (Batch.h).
     bool isBatch() const {
-        return batch.isAsked() || inputs.size() > 1 || namesInput(output) ||
-               namesInput(report.page) || namesInput(report.pictures);
+        return batch.isAsked() || inputs.size() > 1 || holdsName(output) ||
+               holdsName(report.page) || holdsName(report.pictures);
     }
     /// Options for every surface, without isovalue, normals and progress.
     ExtractionOptions extraction() const {

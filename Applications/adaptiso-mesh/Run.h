@@ -74,14 +74,6 @@ struct MeshRun : ProgramRun {
     const ValueRange& range() const { return preprocessed ? preprocessed->range : input.range; }
 };
 
-/// The file that the surface at an isovalue goes to.
-///
-/// Without an output in `options`: "<stem>-iso<isovalue>.vtp" in the current folder. An output
-/// with "{iso}" in its name has the isovalue in that place. Otherwise the output is taken as it
-/// is for one isovalue, and for several gets "-iso<isovalue>" before its extension.
-/// \param isovalue  as text: formatNumber(), or "auto" while it is not known yet
-std::filesystem::path outputPath(const MeshOptions& options, const std::string& isovalue);
-
 /// Checks what the method adaptive promises by code that it does not use: no two triangles cross,
 /// no piece is inside out, components and Euler characteristic are those of the surface of marching
 /// cubes, and points sampled on either surface, with the file's digits, lie within the bound of the
@@ -92,8 +84,10 @@ Verification verify(const VolumeView& volume, const SpanSpaceIndex& index, const
                     const FileDigits& digits, const MeshOptions& options,
                     const SurfaceRecord& record);
 
-/// Runs adaptiso-mesh for each of many inputs. \return, \throws as runBatch()
-int runMeshBatch(const MeshOptions& options);
+/// Prints what adaptiso-mesh would read: geometry, values, thresholds.
+/// \return kExitOk; kExitCheckFailed with --strict and warnings
+/// \throws Error  as reading and preprocessing do, once the report has been delivered that says so
+int runInfo(const MeshOptions& options);
 
 /// The report that --json asks for, as README.md describes it: schema "adaptiso-mesh/1". Holds
 /// file names without folders. A number that is not known, or not finite, is null.

@@ -47,22 +47,9 @@ void checkLookingOnly(const MeshOptions& options) {
     }
 }
 
-/// Checks placeholders in outputs' names: {name} is an input of a batch, {iso} in the surface's
-/// name for the isovalue.
-void checkPlaceholders(const MeshOptions& options) {
-    const std::vector<std::string> forRun{"{name}"}, forSurface{"{iso}", "{isolabel}", "{name}"};
-    requirePlaceholders("--output", options.output.parent_path(), forRun);
-    requirePlaceholders("--output", options.output.filename(), forSurface);
-    requirePlaceholders("--report", options.report.page, forRun);
-    requirePlaceholders("--pictures", options.report.pictures, forRun);
-    requirePlaceholders("--summary", options.batch.summary, {});
-    requirePlaceholders("--output-dir", options.batch.outputFolder, {});
-    requirePlaceholders("--json", options.common.json, {});
-}
-
 /// Checks options against each other.
 void checkCombinations(const MeshOptions& options) {
-    if (options.inputs.empty() && options.batch.list.empty() && options.batch.bids.empty()) {
+    if (options.inputs.empty() && options.batch.list.empty()) {
         throw UsageError("INPUT is missing: the image to make surfaces of");
     }
     checkLookingOnly(options);
@@ -220,8 +207,8 @@ constexpr const char* kFooter = R"(Examples:
   adaptiso-mesh T1.mgz --iso 90 -o lh.pial
       a FreeSurfer surface in tkRAS
   adaptiso-mesh *.nii.gz --iso auto -o '{name}.stl' --output-dir meshes --jobs 4
-  adaptiso-mesh --bids study --iso auto --skip-existing
-      each image a run of its own; the second goes on where it was interrupted
+      each image a run of its own; with --skip-existing it goes on where it was
+      interrupted
 
 Exit codes: 0 done, 1 one or more of many inputs failed, or a warning with
 --strict, 2 wrong usage, 3 bad input (or no memory or disk left), 4 internal
@@ -239,12 +226,17 @@ void declareMeshOptions(CLI::App& app, MeshOptions& options) {
     declareSurface(app, options);
     declarePieces(app, options);
     declareOutput(app, options);
-    declareBatchOptions(app, options.batch, "the T1w images");
+    declareBatchOptions(app, options.batch);
     declareCommonOptions(app, options.common, "no surface is then written, reports are");
     afterParsing(app, [&app, &options] {
         if (!options.inputs.empty()) options.input = options.inputs.front();
         checkCombinations(options);
-        checkPlaceholders(options);
+        requirePlaceholders("--output", options.output.filename(),
+                            {"{iso}", "{isolabel}", "{name}"});
+        checkPlaceholders({{"--output", options.output.parent_path()},
+                           {"--report", options.report.page},
+                           {"--pictures", options.report.pictures}},
+                          options.batch, options.common);
         if (options.isBatch()) keepRunOptions(app, options.batch);
     });
 }

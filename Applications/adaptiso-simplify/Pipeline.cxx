@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "Common/Batch.h"
 #include "Common/CommonFrame.h"
 #include "Common/Json.h"
 #include "Common/Naming.h"
@@ -17,14 +18,6 @@ namespace adaptiso::simplifier {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The stages of a run, as progress, `seconds` of the report and README.md name them.
-constexpr const char* kRead = "read";
-constexpr const char* kCheck = "check";
-constexpr const char* kSimplify = "simplify";
-constexpr const char* kValues = "values";
-constexpr const char* kWrite = "write";
-constexpr const char* kVerify = "verify";
 
 /// Values in files of their own belong to points by number.
 void requirePointOrder(const MeshFormat& format, const fs::path& data) {
@@ -240,15 +233,15 @@ MeshFile writeFiles(const TriangleMesh& mesh, TakenValues values, const MeshFile
 void finish(Simplified result, const MeshFile& input, const std::vector<PointData>& data,
             const FrameChange& change, SimplifyRun& run) {
     TakenValues values =
-        run.stage(kValues, [&] { return takeValues(input, data, result.mesh, run); });
+        run.stage("values", [&] { return takeValues(input, data, result.mesh, run); });
     TriangleMesh settled;
-    MeshFile written = run.stage(kWrite, [&] {
+    MeshFile written = run.stage("write", [&] {
         if (!run.output.format->holdsNormals) result.mesh.normals.clear();
         settled = result.mesh;
         fitToDigits(settled, change, run);
         return writeFiles(change.apply(settled), std::move(values), input, change, run);
     });
-    run.stage(kVerify, [&] {
+    run.stage("verify", [&] {
         summarize(written.mesh, run.output);
         verify({input.mesh, result.mesh, change.undo(std::move(written.mesh)),
                 run.roundingMm + frameRoundingMm(result.mesh, change)},
@@ -289,6 +282,13 @@ FrameChange chooseFrame(const MeshFile& input, SimplifyRun& run) {
     return change;
 }
 
+/// A run for each of many surfaces. \return, \throws as runBatch()
+int runSimplifyBatch(const SimplifyCommand& command) {
+    return runBatch(
+        {"adaptiso-simplify", "{file}", {"--data"}, {"--output", "--report", "--pictures"}},
+        findBatchItems(command.batch, command.inputs, surfaceName), command.batch, command.common);
+}
+
 }  // namespace
 
 int runSimplify(const SimplifyCommand& command) {
@@ -296,7 +296,7 @@ int runSimplify(const SimplifyCommand& command) {
     SimplifyRun run(command);
     checkOutputs(run);
 
-    const MeshFile input = run.stage(kRead, [&] {
+    const MeshFile input = run.stage("read", [&] {
         return readMesh(command.input,
                         {.keepsPointArrays = true,
                          .inputCoordinates = statedFrame(command.inputCoordinates, 0)});
@@ -310,13 +310,13 @@ int runSimplify(const SimplifyCommand& command) {
                            ": its triangles have no area, so there is nothing to simplify");
     }
     requireProvable(input.mesh, command);
-    const std::vector<PointData> data = run.stage(kRead, [&] { return readData(run); });
+    const std::vector<PointData> data = run.stage("read", [&] { return readData(run); });
     const FrameChange change = chooseFrame(input, run);
-    run.stage(kCheck, [&] { check(input.mesh, run); });
+    run.stage("check", [&] { check(input.mesh, run); });
 
     TriangleMesh shown;
     if (!run.failsSoundness()) {
-        Simplified result = run.stage(kSimplify, [&] { return simplifySurface(input.mesh, run); });
+        Simplified result = run.stage("simplify", [&] { return simplifySurface(input.mesh, run); });
         if (command.report.isWanted()) shown = result.mesh;
         finish(std::move(result), input, data, change, run);
         warnOfFindings(run);

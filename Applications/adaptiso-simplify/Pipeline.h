@@ -28,15 +28,11 @@ struct SimplifyCommand {
     ReportOptions report;
     CommonOptions common;
 
-    /// The name of a file has a place for an input's.
-    static bool namesInput(const std::filesystem::path& file) {
-        return file.string().find("{name}") != std::string::npos;
-    }
     /// Whether each input is a run of its own (Batch.h).
     bool isBatch() const {
-        return batch.isAsked() || inputs.size() > 1 || namesInput(output) ||
-               namesInput(report.page) || namesInput(report.pictures) ||
-               std::any_of(data.begin(), data.end(), namesInput);
+        return batch.isAsked() || inputs.size() > 1 || holdsName(output) ||
+               holdsName(report.page) || holdsName(report.pictures) ||
+               std::any_of(data.begin(), data.end(), holdsName);
     }
 };
 

@@ -113,9 +113,6 @@ std::filesystem::path surfaceFile(const std::filesystem::path& output,
 std::filesystem::path dataFile(const std::filesystem::path& data,
                                const std::filesystem::path& surface);
 
-/// "sub-01_hemi-L_desc-simplified_pial.surf.gii", BIDS's way to name what was made of a file.
-std::string bidsName(const std::filesystem::path& input);
-
 /// How the points of a file go to those of another.
 struct FrameChange {
     CoordinateFrame frame{};              ///< of the output
@@ -189,9 +186,6 @@ struct VerifiedSurface {
 /// \throws InvalidInput   the format has too few digits for the result
 /// \throws InternalError  a promise is broken
 void verify(const VerifiedSurface& surface, SimplifyRun& run);
-
-/// Runs adaptiso-simplify for each of many surfaces. \return, \throws as runBatch()
-int runSimplifyBatch(const SimplifyCommand& command);
 
 /// The report of --json, as README.md describes it, with a line break at the end.
 std::string jsonReport(const SimplifyRun& run);

@@ -28,36 +28,20 @@ void checkAim(const SimplifyOptions& aim) {
     }
 }
 
-/// Checks placeholders in the names of outputs and of files of values: {name} is an input of a
-/// batch.
-void checkPlaceholders(const SimplifyCommand& command) {
-    const std::vector<std::string> forRun{"{name}"};
-    for (const std::filesystem::path& data : command.data) {
-        requirePlaceholders("--data", data, forRun);
-    }
-    requirePlaceholders("--output", command.output, forRun);
-    requirePlaceholders("--report", command.report.page, forRun);
-    requirePlaceholders("--pictures", command.report.pictures, forRun);
-    requirePlaceholders("--summary", command.batch.summary, {});
-    requirePlaceholders("--output-dir", command.batch.outputFolder, {});
-    requirePlaceholders("--json", command.common.json, {});
-}
-
 /// Checks options against each other.
 void checkCombinations(const SimplifyCommand& command) {
-    const bool findsInputs = !command.batch.list.empty() || !command.batch.bids.empty();
-    if (command.inputs.empty() && !findsInputs) {
+    if (command.inputs.empty() && command.batch.list.empty()) {
         throw UsageError("MESH is missing: the surface to simplify");
     }
     checkInputCoordinates(command.inputCoordinates, 1);
     checkAim(command.aim);
-    const bool hasFolder = !command.batch.outputFolder.empty() || !command.batch.bids.empty();
+    const bool hasFolder = !command.batch.outputFolder.empty();
     if (command.output.empty() && !hasFolder) {
         throw UsageError("--output is missing: the file to write, or a folder");
     }
     if (hasFolder && isFolder(command.output)) {
         throw UsageError("--output " + command.output.string() +
-                         ": is a folder, and --output-dir or --bids names one; give one of them");
+                         ": is a folder, and --output-dir names one; give one of them");
     }
 }
 
@@ -147,11 +131,16 @@ void declareSimplifyOptions(CLI::App& app, SimplifyCommand& command) {
     declareAim(app, command.aim);
     declareKept(app, command);
     declareOutput(app, command);
-    declareBatchOptions(app, command.batch, "the surfaces in derivatives/adaptiso");
+    declareBatchOptions(app, command.batch);
     declareCommonOptions(app, command.common, "no surface is then written, reports are");
     afterParsing(app, [&app, &command] {
         checkCombinations(command);
-        checkPlaceholders(command);
+        std::vector<std::pair<const char*, std::filesystem::path>> named{
+            {"--output", command.output},
+            {"--report", command.report.page},
+            {"--pictures", command.report.pictures}};
+        for (const std::filesystem::path& data : command.data) named.emplace_back("--data", data);
+        checkPlaceholders(named, command.batch, command.common);
         if (!command.inputs.empty()) command.input = command.inputs.front();
         if (!command.isBatch()) return;
         keepRunOptions(app, command.batch);

@@ -94,24 +94,11 @@ TEST_F(BatchRecordTest, RowsAreThoseOfAllProgramsTheWorstFirst) {
     writeRecord(folder_ / "a.adaptiso-check.json", done);
     put("notes.json", "{}");
     put("deeper/c.adaptiso-mesh.json", "{}");  // not of this folder
-    const auto rows = summaryRows(folder_, true, {}, {});
+    const auto rows = summaryRows(folder_, {});
     ASSERT_EQ(rows.size(), 2u);
     EXPECT_EQ(rows[0].state, RunState::Failed);
     EXPECT_EQ(rows[0].says, "no image");
     EXPECT_EQ(rows[1].program, "adaptiso-check");
-}
-
-TEST_F(BatchRecordTest, ExpectedOnesCountOnlyWhereOthersAreKnown) {
-    const fs::path anat = folder_ / "sub-1" / "anat";
-    fs::create_directories(anat);
-    const std::vector<BatchItem> expected{{"a", {"a.nii"}, anat}, {"b", {"b.nii"}, anat}};
-    EXPECT_TRUE(summaryRows(folder_, true, {}, expected).empty());
-    writeRecord(anat / "a.stl.adaptiso-mesh.json", recordOfRun("adaptiso-mesh"));
-    const auto rows = summaryRows(folder_, true, {}, expected);
-    ASSERT_EQ(rows.size(), 2u);
-    EXPECT_EQ(rows[0].state, RunState::NotRun);
-    EXPECT_EQ(rows[0].name, "b");
-    EXPECT_EQ(rows[1].state, RunState::Done);
 }
 
 // FIPS 180-4's examples, as sha256sum prints them

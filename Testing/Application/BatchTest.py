@@ -118,8 +118,7 @@ class ManyInputs(BatchTest):
     def test_wrong_usage(self):
         for pattern, arguments in (
                 ("--output x.stl: needs {name}", ("a.nii", "b.nii", "-o", "x.stl")),
-                ("--participant: needs --bids", ("a.nii", "--participant", "1")),
-                ("--bids: finds its inputs itself", ("a.nii", "--bids", ".")),
+                ("--bids: there is no such option", ("a.nii", "--bids", ".")),
                 ("--jobs", ("a.nii", "--jobs", "0"))):
             with self.subTest(pattern):
                 self.assert_fails(USAGE, pattern, *arguments, "--iso", 100)
@@ -258,85 +257,6 @@ class Ends(BatchTest):
         lines = self.lines(OK, "a.nii", "long.nii", "b.nii", "--iso", 128, "--output-dir", "out",
                            "--skip-existing")
         self.assertEqual([line["earlierRun"] for line in lines], [True, False, False])
-
-
-class Bids(BatchTest):
-    def setUp(self):
-        super().setUp()
-        for scan in ("sub-02/anat/sub-02_T1w", "sub-01/ses-1/anat/sub-01_ses-1_T1w",
-                     "sub-01/ses-2/anat/sub-01_ses-2_acq-hi_T1w", "sub-01/ses-1/anat/sub-01_ses-1_T2w",
-                     "sub-03/func/sub-03_bold"):
-            path = self.path(f"study/{scan}.nii")
-            path.parent.mkdir(parents=True, exist_ok=True)
-            write_nifti(path, ball(24, 8))
-        subprocess.run(["gzip", self.path("study/sub-02/anat/sub-02_T1w.nii")], check=True)
-        self.path("study/dataset_description.json").write_text('{"Name": "x", "BIDSVersion": "1.8.0"}')
-
-    def surfaces(self):
-        root = self.path("study/derivatives/adaptiso")
-        return sorted(str(path.relative_to(root)) for path in root.rglob("*.vtp"))
-
-    def test_every_t1w_image_goes_under_derivatives(self):
-        lines = self.lines(OK, "--bids", "study", "--iso", 100)
-        self.assertEqual([line["name"] for line in lines],
-                         ["sub-01_ses-1", "sub-01_ses-2_acq-hi", "sub-02"])
-        self.assertEqual(self.surfaces(), [
-            "sub-01/ses-1/anat/sub-01_ses-1_desc-iso100_mesh.vtp",
-            "sub-01/ses-2/anat/sub-01_ses-2_acq-hi_desc-iso100_mesh.vtp",
-            "sub-02/anat/sub-02_desc-iso100_mesh.vtp"])
-        said = json.loads(self.path("study/derivatives/adaptiso/dataset_description.json").read_text())
-        self.assertEqual((said["DatasetType"], said["GeneratedBy"][0]["Name"]),
-                         ("derivative", "adaptiso-mesh"))
-        self.assertTrue(self.path("study/derivatives/adaptiso/summary.html").exists())
-
-    def test_names_hold_letters_and_digits_alone_whatever_the_isovalue(self):
-        self.lines(OK, "--bids", "study", "--participant", "02", "--iso", 100.5, "--iso", -3, "--iso", "auto")
-        self.lines(OK, "--bids", "study", "--participant", "02", "--iso", -2.5, "-o",
-                   "{name}_desc-iso{iso}_mesh.stl")
-        root = self.path("study/derivatives/adaptiso")
-        made = sorted(path.name for path in root.rglob("*_mesh.*") if path.suffix in (".vtp", ".stl"))
-        self.assertLess({"sub-02_desc-iso100p5_mesh.vtp", "sub-02_desc-isom2p5_mesh.stl",
-                         "sub-02_desc-isom3_mesh.vtp"}, set(made))
-        self.assertEqual(len(made), 4)
-        for name in made:
-            self.assertRegex(name, r"^sub-02_desc-[a-zA-Z0-9]+_mesh\.(vtp|stl)$")
-        again = self.lines(OK, "--bids", "study", "--participant", "02", "--iso", 100.5, "--iso", -3,
-                           "--iso", "auto", "--skip-existing")
-        self.assertEqual([line["earlierRun"] for line in again], [True])
-
-    def test_the_dataset_says_what_made_it_and_of_what(self):
-        study = self.path("study/dataset_description.json")
-        study.write_text('{"Name": "x", "BIDSVersion": "1.8.0", "DatasetDOI": "doi:10.1/abc"}')
-        self.batch(OK, "--bids", "study", "--participant", "02", "--iso", 100)
-        said = json.loads(self.path("study/derivatives/adaptiso/dataset_description.json").read_text())
-        made = said["GeneratedBy"][0]
-        self.assertRegex(made["Version"], r"^\d+\.\d+")
-        self.assertNotIn("example.org", made.get("CodeURL", ""))  # the packager's, or none
-        self.assertEqual(said["SourceDatasets"], [{"DOI": "10.1/abc", "URL": "https://doi.org/10.1/abc"}])
-        self.assertEqual(said["DatasetLinks"], {"raw": "../.."})
-
-    def test_participants_and_going_on(self):
-        self.batch(OK, "--bids", "study", "--participant", "02", "--iso", 100)
-        self.assertEqual(len(self.surfaces()), 1)
-        lines = self.lines(OK, "--bids", "study", "--participant", "sub-02", "--participant", "01",
-                           "--iso", 100, "--skip-existing")
-        self.assertEqual([line["earlierRun"] for line in lines], [True, False, False])
-
-    def test_surfaces_are_checked_where_they_are(self):
-        self.batch(OK, "--bids", "study", "--iso", 100, "-o", "{name}_mesh.stl", "--output-dir", "other")
-        self.batch(OK, "--bids", "study", "--iso", 100, "-o", "{name}_mesh.stl")
-        lines = self.lines(OK, "--bids", "study", program=CHECK)
-        self.assertEqual([line["name"] for line in lines],
-                         ["sub-01_ses-1_mesh.stl", "sub-01_ses-2_acq-hi_mesh.stl", "sub-02_mesh.stl"])
-        again = self.lines(OK, "--bids", "study", "--skip-existing", program=CHECK)
-        self.assertEqual([line["earlierRun"] for line in again], [True] * 3)
-
-    def test_faults(self):
-        for pattern, arguments in (("sub-09", ("--bids", "study", "--participant", "09")),
-                                   ("no T1w image in .*sub-03", ("--bids", "study", "--participant", "03")),
-                                   ("no BIDS dataset", ("--bids", "study/sub-01"))):
-            with self.subTest(pattern):
-                self.assert_fails(BAD_INPUT, pattern, *arguments, "--iso", 100)
 
 
 class Checks(BatchTest):

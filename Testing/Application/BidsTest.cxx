@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "Common/Bids.h"
+#include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "adaptiso-bids/Jobs.h"
 #include "adaptiso-bids/QualityTable.h"
 
-namespace adaptiso {
+namespace adaptiso::bids {
 namespace {
 
 using Values = std::vector<std::optional<double>>;
@@ -109,4 +109,4 @@ TEST(ProgramOptions, GiveValuesTheirCommas) {
 }
 
 }  // namespace
-}  // namespace adaptiso
+}  // namespace adaptiso::bids

@@ -510,19 +510,6 @@ class BatchTest(LabelsTest):
         self.assertEqual(again.returncode, OK, again.stderr)
         self.assertTrue(self.path("made/summary.html").is_file())
 
-    def test_a_dataset(self):
-        anat = self.path("study/sub-01/anat")
-        anat.mkdir(parents=True)
-        self.path("study/dataset_description.json").write_text(
-            '{"Name": "x", "BIDSVersion": "1.8.0"}')
-        write_nifti(anat / "sub-01_desc-aseg_dseg.nii", three_boxes())
-        self.path("study/desc-aseg_dseg.tsv").write_text("index\tname\n1\tleft\n2\tright\n7\tin\n")
-        self.labels("--bids", "study", "-q")
-        tables = list(self.path("study").rglob("regions.tsv"))
-        self.assertEqual(len(tables), 1, list(self.path("study").rglob("*")))
-        self.assertIn("sub-01_desc-aseg", str(tables[0]))
-        self.assertIn("1\tleft\t", tables[0].read_text())
-
 
 class LayersTest(LabelsTest):
     """The walls as OpenMEEG takes them."""

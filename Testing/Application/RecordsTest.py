@@ -301,33 +301,6 @@ class SummaryPage(RecordsTest):
         self.assertEqual(self.rows()[1], "1 of 4 failed")
 
 
-class BidsPage(RecordsTest):
-    def setUp(self):
-        super().setUp()
-        for n in range(1, 4):
-            path = self.path(f"study/sub-0{n}/anat/sub-0{n}_T1w.nii")
-            path.parent.mkdir(parents=True)
-            write_nifti(path, ball(24, 8))
-        self.path("study/dataset_description.json").write_text('{"Name": "x", "BIDSVersion": "1.8.0"}')
-        self.page = "study/derivatives/adaptiso/summary.html"
-
-    def test_one_participant_is_not_all(self):
-        self.lines(OK, "--bids", "study", "--iso", 100, "--participant", "01")
-        rows, title = self.rows(self.page)
-        self.assertEqual(title, "2 of 3 not run")
-        self.assertEqual(rows["sub-02", ""][0], "not run")
-        self.lines(OK, "--bids", "study", "--iso", 100)
-        self.assertEqual(self.rows(self.page)[1], "All 3 done")
-        self.lines(OK, "--bids", "study", "--iso", 100, "--participant", "01")
-        self.assertEqual(self.rows(self.page)[1], "All 3 done")
-
-    def test_checks_add_their_rows(self):
-        self.path("study/sub-02/anat/sub-02_T1w.nii").write_text("no image")
-        self.lines(CHECK_FAILED, "--bids", "study", "--iso", 100)
-        self.lines(OK, "--bids", "study", program=CHECK)
-        self.assertEqual(self.rows(self.page)[1], "1 of 5 failed")
-
-
 class LeftByAKill(RecordsTest):
     """Temporaries of a process that had no time to remove them."""
 

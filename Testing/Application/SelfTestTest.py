@@ -74,7 +74,7 @@ class SelfTest(ApplicationTest):
         self.mesh("ball.nii", "--iso", "100", "-o", "ball.stl")
 
     def test_takes_nothing_else(self):
-        for extra in (["ball.stl"], ["--nested"], ["--profile", "bem"], ["--bids", "x"]):
+        for extra in (["ball.stl"], ["--nested"], ["--profile", "bem"], ["--list", "x"]):
             done = self.run_check("--self-test", *extra)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             self.assertRegex(done.stderr, r"^adaptiso-check: --self-test: not together with ")

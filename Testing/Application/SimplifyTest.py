@@ -377,17 +377,6 @@ class Batches(SimplifyTest):
         lines = [json.loads(line) for line in done.stdout.splitlines()]
         self.assertEqual(lines[0]["outputs"], ["x-one.vtp"])
 
-    def test_bids_surfaces_are_simplified_once(self):
-        folder = self.path("study/derivatives/adaptiso/sub-01/anat")
-        folder.mkdir(parents=True)
-        self.path("study/dataset_description.json").write_text('{"Name": "x"}')
-        self.write("study/derivatives/adaptiso/sub-01/anat/sub-01_skin.off", BALL)
-        for _ in range(2):
-            done = self.run_simplify("--bids", "study", "--max-error", "0.2")
-            self.assertEqual(done.returncode, OK, done.stderr + done.stdout)
-        self.assertEqual({p.name for p in folder.iterdir() if p.suffix == ".off"},
-                         {"sub-01_skin.off", "sub-01_desc-simplified_skin.off"})
-
 
 def documented_keys():
     """The keys in the first column of README.md's table; a key that begins with a dot belongs to

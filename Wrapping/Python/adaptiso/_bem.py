@@ -402,10 +402,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         Instead of `sources`: dipoles along x, y and z at the points of a grid, mm apart, 1 to 50.
     head_shape : bool
         Keep the skin alone as well, as finely as it was found, for ``save(folder, fif=True)``.
-    threads : int
-        0: as many as the machine has.
-    progress : callable, optional
-        Called as ``progress(stage, fraction)`` now and then; what it raises ends the call.
+    threads, progress
+        As for `surface`.
 
     Returns
     -------

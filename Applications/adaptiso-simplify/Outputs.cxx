@@ -2,6 +2,7 @@
 #include <array>
 #include <string_view>
 
+#include "Common/CommonFrame.h"
 #include "Run.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
@@ -47,7 +48,43 @@ std::string marked(const std::string& name) {
     return name.substr(0, at) + "." + std::string(kMark) + name.substr(at);
 }
 
+bool needsVolume(CoordinateFrame frame) {
+    return frame == CoordinateFrame::TkRas || frame == CoordinateFrame::Voxel;
+}
+
 }  // namespace
+
+FrameChange changeFrame(const MeshFile& input, std::optional<CoordinateFrame> wanted,
+                        const MeshFormat& output) {
+    FrameChange change;
+    change.isSaid = input.frame || wanted;
+    const CoordinateFrame from = input.frame.value_or(CoordinateFrame::Ras);
+    change.frame = wanted.value_or(from);
+    if (!input.frame && (wanted || output.id == MeshFormatId::FreeSurfer)) {
+        const char* const what = wanted ? "--coordinates" : "FreeSurfer's format";
+        throw InvalidInput("does not say its coordinate frame, which " + std::string(what) +
+                           " needs" + kStateIt);
+    }
+    if (change.frame == from) return change;
+    for (const CoordinateFrame frame : {from, change.frame}) {
+        if (!needsVolume(frame) || input.volume) continue;
+        throw InvalidInput("is in " + std::string(toString(from)) +
+                           ", and does not say the volume by which it would be in " +
+                           std::string(toString(change.frame)));
+    }
+    change.move = lpsToFrame(change.frame, input.volume) * inverse(lpsToFrame(from, input.volume));
+    return change;
+}
+
+PageFrame pageFrame(const MeshFile& input) {
+    const CoordinateFrame frame = input.frame.value_or(CoordinateFrame::Ras);
+    if (!needsVolume(frame) || input.volume) {
+        return {inverse(lpsToFrame(frame, input.volume)),
+                input.frame ? "scanner RAS mm" : kUnsaidFrame};
+    }
+    return {inverse(lpsToFrame(CoordinateFrame::Ras, std::nullopt)),
+            frame == CoordinateFrame::TkRas ? "FreeSurfer's tkRAS mm" : "voxel indices"};
+}
 
 bool isFolder(const fs::path& path) {
     std::error_code error;
@@ -68,14 +105,6 @@ fs::path dataFile(const fs::path& data, const fs::path& surface) {
     const std::string name = data.filename().string();
     const fs::path file = surface.parent_path() / name;
     return areSame(file, data) ? surface.parent_path() / marked(name) : file;
-}
-
-std::string bidsName(const fs::path& input) {
-    const std::string name = input.filename().string();
-    const std::size_t suffix = name.rfind('_');
-    const std::string entity = "_desc-" + std::string(kMark);
-    if (suffix == std::string::npos) return marked(name);
-    return name.substr(0, suffix) + entity + name.substr(suffix);
 }
 
 }  // namespace adaptiso::simplifier

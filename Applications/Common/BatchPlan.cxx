@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <sstream>
+#include <string_view>
+#include <thread>
+
+#include "Common/Batch.h"
+#include "Common/RunApp.h"
+#include "Common/Sha256.h"
+#include "Common/Verdict.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kName = "{name}";
+constexpr const char* kOutput = "--output";
+
+bool isIn(const std::vector<std::string>& words, const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::string replaced(std::string text, std::string_view place, std::string_view by) {
+    for (std::size_t at = text.find(place); at != std::string::npos;
+         at = text.find(place, at + by.size())) {
+        text.replace(at, place.size(), by);
+    }
+    return text;
+}
+
+/// "--output" and its value, of "--output=value".
+std::pair<std::string, std::string> split(const std::string& option) {
+    const std::size_t equals = option.find('=');
+    if (equals == std::string::npos) return {option, ""};
+    return {option.substr(0, equals), option.substr(equals + 1)};
+}
+
+std::string folderName(const fs::path& file) {
+    const fs::path folder = fs::weakly_canonical(fs::absolute(file)).parent_path();
+    return folder.has_filename() ? folder.filename().string() : "surfaces";
+}
+
+/// An input a line, with a name after a tab where one is given; with `areOneItem` the surfaces of
+/// one head, with tabs between.
+std::vector<BatchItem> readList(const fs::path& list, bool areOneItem, const NameInput& nameOf) {
+    const std::string option = "--list " + list.string();
+    std::ifstream file;
+    if (list != "-") file.open(list);
+    if (!file || fs::is_directory(list)) throw FileError(option + ": can't be read");
+    std::istream& in = list == "-" ? std::cin : file;
+    std::vector<BatchItem> items;
+    for (std::string line; std::getline(in, line);) {
+        if (line.ends_with('\r')) line.pop_back();
+        if (line.starts_with('#')) continue;
+        std::vector<std::string> parts;
+        std::istringstream stream(line);
+        for (std::string part; std::getline(stream, part, '\t');) {
+            if (!part.empty()) parts.push_back(part);
+        }
+        if (parts.empty()) continue;
+        BatchItem item;
+        if (areOneItem) {
+            item = {folderName(parts[0]), {parts.begin(), parts.end()}};
+        } else if (parts.size() <= 2) {
+            item = {parts.size() == 2 ? parts[1] : nameOf(parts[0]), {parts[0]}};
+        } else {
+            throw InvalidInput(option + ": '" + line +
+                               "' has more than two parts: an input and its name");
+        }
+        if (item.name.find('/') != std::string::npos || item.name == "." || item.name == "..") {
+            throw InvalidInput(option + ": '" + item.name + "' is no name for files");
+        }
+        items.push_back(std::move(item));
+    }
+    if (in.bad()) throw FileError(option + ": can't be read");
+    if (items.empty()) throw InvalidInput(option + ": names no input");
+    return items;
+}
+
+void checkOptions(const BatchProgram& program, const BatchOptions& batch) {
+    const auto require = [](bool isGood, const std::string& message) {
+        if (!isGood) throw UsageError(message);
+    };
+    require(!batch.skipsExisting || program.keepsRecords || !batch.outputFolder.empty(),
+            "--skip-existing: needs --output-dir, where records are kept");
+    for (const std::string& option : batch.runOptions) {
+        const auto [name, value] = split(option);
+        if (!isIn(program.outputOptions, name)) continue;
+        require(holdsName(value),
+                name + " " + value +
+                    ": needs {name} in it, or the runs for all inputs would write the same");
+    }
+}
+
+}  // namespace
+
+std::vector<BatchItem> findBatchItems(const BatchOptions& batch,
+                                      const std::vector<fs::path>& inputs, const NameInput& nameOf,
+                                      bool areOneItem) {
+    std::vector<BatchItem> items;
+    if (areOneItem && !inputs.empty()) items.push_back({folderName(inputs.front()), inputs});
+    if (!areOneItem) {
+        for (const fs::path& input : inputs) items.push_back({nameOf(input), {input}});
+    }
+    if (!batch.list.empty()) {
+        for (BatchItem& item : readList(batch.list, areOneItem, nameOf)) {
+            items.push_back(std::move(item));
+        }
+    }
+    for (BatchItem& item : items) item.folder = batch.outputFolder;
+    return items;
+}
+
+std::vector<PlannedRun> planRuns(const BatchProgram& program, std::vector<BatchItem> items,
+                                 const BatchOptions& batch, const CommonOptions& common) {
+    std::map<fs::path, const PlannedRun*> names, files;
+    const auto refuse = [&](const BatchItem& a, const PlannedRun* b, const std::string& why) {
+        throw InvalidInput(a.inputs.front().string() + " and " + b->item.inputs.front().string() +
+                           ": both " + why);
+    };
+    std::string threads;
+    if (common.threads) {
+        threads = "--threads=" + std::to_string(*common.threads);
+    } else if (batch.jobs.value_or(1) > 1) {
+        const int machine = static_cast<int>(std::thread::hardware_concurrency());
+        threads = "--threads=" + std::to_string(std::max(1, machine / *batch.jobs));
+    }
+    std::vector<PlannedRun> runs;
+    runs.reserve(items.size());
+    for (BatchItem& each : items) {
+        PlannedRun& run = runs.emplace_back(PlannedRun{std::move(each)});
+        const BatchItem& item = run.item;
+        run.inputs = item.inputs;
+        std::string output =
+            replaced(program.defaultOutput, "{file}", item.inputs.front().filename().string());
+        std::vector<std::string> surfaceValues;
+        for (const std::string& option : batch.runOptions) {
+            const auto [name, pattern] = split(option);
+            const std::string value = replaced(pattern, kName, item.name);
+            if (name == kOutput) {
+                output = pattern;
+            } else if (isIn(program.outputOptions, name)) {
+                run.extras.emplace_back(name, item.folder / value);
+                run.arguments.push_back(name + "=" + (item.folder / value).string());
+            } else {
+                run.arguments.push_back(replaced(option, kName, item.name));
+                if (isIn(program.inputOptions, name)) {
+                    run.inputs.emplace_back(value);
+                    continue;
+                }
+                run.options.push_back({name, sha256Of(value)});
+                if (name == program.surfaceOption) surfaceValues.push_back(value);
+            }
+        }
+        output = replaced(output, kName, item.name);
+        run.record = item.folder / item.name;
+        if (!output.empty()) {
+            run.outputFolder = output;
+            run.arguments.push_back(std::string(kOutput) + "=" + (item.folder / output).string());
+            if (program.surfaceFiles && !surfaceValues.empty()) {
+                run.surfaces = program.surfaceFiles(item.folder / output, surfaceValues);
+                run.record = run.surfaces.front();
+            }
+        }
+        run.record = recordFile(item.folder, run.record, program.name);
+        if (!threads.empty()) run.arguments.push_back(threads);
+        run.arguments.insert(run.arguments.end(), {"--quiet", "--no-warnings", "--json=-"});
+        if (program.inputOption.empty()) run.arguments.emplace_back("--");
+        for (const fs::path& input : item.inputs) {
+            run.arguments.push_back((program.inputOption.empty() ? "" : program.inputOption + "=") +
+                                    input.string());
+        }
+        if (const auto [at, isNew] = names.emplace(item.folder / item.name, &run); !isNew) {
+            refuse(item, at->second,
+                   "are named '" + item.name + "'; give them names of their own in a --list");
+        }
+        for (const fs::path& surface : run.surfaces) {
+            if (const auto [at, isNew] = files.emplace(surface, &run); !isNew) {
+                refuse(item, at->second, "would write " + surface.filename().string());
+            }
+        }
+    }
+    return runs;
+}
+
+int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const BatchOptions& batch,
+             const CommonOptions& common) {
+    checkOptions(program, batch);
+    BatchRunning running{batch.outputFolder, batch.summary};
+    const std::vector<PlannedRun> runs = planRuns(program, std::move(items), batch, common);
+    if (!running.folder.empty()) makeFolders(running.folder);
+    if (running.summary.empty() && !running.folder.empty()) {
+        running.summary = running.folder / "summary.html";
+    }
+    for (const fs::path& file : {running.summary, fs::path(common.json)}) {
+        if (file.empty() || file == "-") continue;
+        checkOutput(file);
+        for (const PlannedRun& run : runs) {
+            for (const fs::path& input : run.item.inputs) checkNotInput(file, input);
+        }
+    }
+    std::string lines;
+    running.jsonLines = &lines;
+    const std::vector<RunRecord> records = runRuns(program, runs, batch, running, common);
+    if (common.wantsJson() && !common.wantsJsonOnStdout()) writeWhole(common.json, lines);
+    const auto failed = std::ranges::count_if(records, std::not_fn(&RunRecord::hasPassed));
+    const auto before = std::ranges::count_if(records, std::mem_fn(&RunRecord::isOfEarlierRun));
+    if (!common.isQuiet && !common.wantsJsonOnStdout()) {
+        std::cout << records.size() << " input" << (records.size() == 1 ? "" : "s") << ", "
+                  << failed << " failed";
+        if (before > 0) std::cout << ", " << before << " of an earlier run";
+        std::cout << '\n';
+    }
+    flushResults();
+    return failed == 0 ? kExitOk : kExitCheckFailed;
+}
+
+}  // namespace adaptiso
