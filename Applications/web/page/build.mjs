@@ -14,6 +14,10 @@ async function bundle(entry, format, options = {}) {
   return result.outputFiles[0].text.replaceAll('"__VERSION__"', JSON.stringify(version));
 }
 
+/** niivue carries the codecs of Zarr as WebAssembly in base64, more than half of it. It reads no Zarr here. */
+const withoutCodecs = { name: "withoutCodecs", setup: (bundler) => bundler.onLoad({ filter: /niivue\/dist\/index\.js$/ }, ({ path }) =>
+  ({ contents: read(path).toString().replace(/__toBinary\("[^"]*"\)/g, '__toBinary("")') })) };
+
 const packed = (bytes) => gzipSync(bytes, { level: 9 }).toString("base64");
 const read = (path) => readFileSync(path);
 const inScript = (text) => text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
@@ -26,7 +30,8 @@ const parts = {
   RUN: kRun,
   WASM: packed(read(join(folder, "adaptiso.wasm"))),
   WORKER: packed(worker),
-  NIIVUE: packed(inScript(await bundle("node_modules/@niivue/niivue/dist/index.js", "iife", { globalName: "niivue" }))),
+  NIIVUE: packed(inScript(await bundle("node_modules/@niivue/niivue/dist/index.js", "iife",
+    { globalName: "niivue", plugins: [withoutCodecs] }))),
   SCRIPT: inScript(await bundle("src/main.ts", "iife")),
 };
 const page = read(join(here, "src/page.html")).toString().replace(/\{\{([A-Z]+)\}\}/g, (_, name) => parts[name]);
