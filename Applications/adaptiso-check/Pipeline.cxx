@@ -17,6 +17,7 @@
 #include "SelfTest.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
+#include "adaptiso/Core/PortableMath.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -46,7 +47,7 @@ struct Isosurface {
 Isosurface extractIsosurface(const VolumeView& volume, double isovalue) {
     Isosurface isosurface;
     isosurface.isovalue = isovalue;
-    isosurface.voxelMm = std::cbrt(volume.geometry().voxelVolumeMm3());
+    isosurface.voxelMm = portable::cubeRoot(volume.geometry().voxelVolumeMm3());
     ExtractionOptions extract;
     extract.isovalue = isovalue;
     extract.method = Method::MarchingCubes;

@@ -14,6 +14,7 @@
 #include "Common/RunApp.h"
 #include "Run.h"
 #include "adaptiso/Core/Memory.h"
+#include "adaptiso/Core/PortableMath.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
@@ -69,7 +70,7 @@ SurfaceSummary summarize(const NamedMesh& surface, std::optional<CoordinateFrame
 
 /// The side of a cube as large as a voxel.
 double meanVoxelSideMm(const ImageGeometry& geometry) {
-    return std::cbrt(geometry.voxelVolumeMm3());
+    return portable::cubeRoot(geometry.voxelVolumeMm3());
 }
 
 void readImage(CompareRun& run) {

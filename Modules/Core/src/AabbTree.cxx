@@ -95,6 +95,10 @@ void AabbTree::build(std::vector<Item>& items, const Subtree& subtree) {
     const std::int64_t end = leafEnd(subtree.firstLeaf + subtree.leaves - 1);
     BoundingBox& box = boxes_[subtree.node] = BoundingBox::empty();
     if (subtree.isLeaf()) {
+        // of triangles equally near the first is chosen, and libraries' nth_element() leave any
+        // order
+        std::sort(items.begin() + begin, items.begin() + end,
+                  [](const Item& a, const Item& b) { return a.triangle < b.triangle; });
         for (std::int64_t n = begin; n < end; ++n) {
             order_[n] = items[n].triangle;
             for (const VertexId v : mesh_->triangles[order_[n]]) box.add(mesh_->points[v]);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/PortableMath.h"
 
 namespace adaptiso::headmodel {
 namespace {
@@ -42,7 +43,7 @@ std::vector<Block> blocksOf(const std::vector<float>& values, double airLevel, c
                 blocks.push_back(
                     {Vec3{static_cast<double>(i) + middle, static_cast<double>(j) + middle,
                           static_cast<double>(k) + middle},
-                     std::log(sum / static_cast<double>(count))});
+                     portable::log(sum / static_cast<double>(count))});
             }
         }
     }
@@ -120,7 +121,7 @@ public:
         for (int n = 1; n + 1 < static_cast<int>(histogram.size()); ++n) {
             const double share =
                 (histogram[n - 1] + 2 * histogram[n] + histogram[n + 1]) / (4 * count);
-            if (share > 0) entropy -= share * std::log(share);
+            if (share > 0) entropy -= share * portable::log(share);
         }
         return entropy;
     }
@@ -229,11 +230,11 @@ void BiasField::removeFrom(std::vector<float>& values, double airLevel, const In
 }
 
 double BiasField::least() const {
-    return std::exp(leastLog_);
+    return portable::exp(leastLog_);
 }
 
 double BiasField::most() const {
-    return std::exp(mostLog_);
+    return portable::exp(mostLog_);
 }
 
 }  // namespace adaptiso::headmodel

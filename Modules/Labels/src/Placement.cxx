@@ -9,6 +9,7 @@
 
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/PortableMath.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -87,8 +88,9 @@ std::vector<double> seriesOf(int rounds) {
         double sum = 0;
         for (int i = 0; i < kSamples; ++i) {
             const double angle = std::numbers::pi * (i + 0.5) / kSamples;
-            const double k = 1 - std::cos(angle);
-            sum += std::pow((1 - kInward * k) * (1 - kOutward * k), rounds) * std::cos(n * angle);
+            const double k = 1 - portable::cos(angle);
+            sum += portable::power((1 - kInward * k) * (1 - kOutward * k), rounds) *
+                   portable::cos(n * angle);
         }
         series.push_back((n == 0 ? 1.0 : 2.0) / kSamples * sum);
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "Placement.h"
+#include "adaptiso/Core/PortableMath.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -76,9 +77,9 @@ struct Region {
     double lack() const {
         constexpr double kFree = 0.01, kThick = 1.5;  // thickness: a third of a ball's radius
         // nothing is thicker than a ball: what smoothing closed up has next to no area left
-        const double ofBall = std::cbrt(voxels / (36 * std::numbers::pi));
+        const double ofBall = portable::cubeRoot(voxels / (36 * std::numbers::pi));
         const double thickness = std::min(voxels / std::max(area, 1e-9), ofBall) / kThick;
-        const double free = kFree * voxels * (1 + std::pow(thickness, 4));
+        const double free = kFree * voxels * (1 + portable::power(thickness, 4));
         const double all = voxels - volume;
         return all - std::clamp(all, -free, free);
     }

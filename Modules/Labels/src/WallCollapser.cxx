@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/PortableMath.h"
 
 namespace adaptiso::detail {
 
@@ -36,8 +37,8 @@ WallCollapser::WallCollapser(const WallPatch& patch, const ImageGeometry& geomet
       mesh_(patch),
       centres_(geometry),
       firstNew_(static_cast<Id>(mesh_.pointCount())),
-      voxelMm_(std::cbrt(geometry.voxelVolumeMm3())),
-      largestCosine_(std::cos(minAngleDeg * std::numbers::pi / 180)),
+      voxelMm_(portable::cubeRoot(geometry.voxelVolumeMm3())),
+      largestCosine_(portable::cos(minAngleDeg * std::numbers::pi / 180)),
       quadrics_(mesh_.pointCount()),
       origin_(mesh_.pointCount(), kNone),
       tried_(mesh_.pointCount(), -1),

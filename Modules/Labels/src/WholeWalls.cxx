@@ -13,6 +13,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/PortableMath.h"
 #include "adaptiso/SurfaceProof/PieceBound.h"
 
 namespace adaptiso::detail {
@@ -499,7 +500,7 @@ constexpr double kCubeLimits = 24;
 
 SimplifiedWalls simplifyWalls(LabelComplex&& full, const ImageGeometry& geometry,
                               const SimplifyOptions& options) {
-    const double h = std::cbrt(geometry.voxelVolumeMm3());
+    const double h = portable::cubeRoot(geometry.voxelVolumeMm3());
     const auto tell = [&](double part) {
         if (options.progress) options.progress("simplify", part);
     };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/PortableMath.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -22,9 +23,9 @@ struct Coefficients {
 Coefficients coefficientsFor(double sigma) {
     constexpr double kA1 = 1.3530, kB1 = 1.8151, kW1 = 0.6681, kL1 = -1.3932;
     constexpr double kA2 = -0.3531, kB2 = 0.0902, kW2 = 2.0787, kL2 = -1.3732;
-    const double sin1 = std::sin(kW1 / sigma), sin2 = std::sin(kW2 / sigma);
-    const double cos1 = std::cos(kW1 / sigma), cos2 = std::cos(kW2 / sigma);
-    const double exp1 = std::exp(kL1 / sigma), exp2 = std::exp(kL2 / sigma);
+    const double sin1 = portable::sin(kW1 / sigma), sin2 = portable::sin(kW2 / sigma);
+    const double cos1 = portable::cos(kW1 / sigma), cos2 = portable::cos(kW2 / sigma);
+    const double exp1 = portable::exp(kL1 / sigma), exp2 = portable::exp(kL2 / sigma);
 
     Coefficients c{};
     c.d[3] = exp1 * exp1 * exp2 * exp2;

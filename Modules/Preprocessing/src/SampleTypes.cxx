@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/PortableMath.h"
 
 namespace adaptiso::detail {
 
@@ -142,7 +143,7 @@ std::vector<double> discreteGaussian(double variance) {
         double mean = 0;
         for (int point = 0; point < points; ++point) {
             const double x = 2 * std::numbers::pi * point / points;
-            mean += std::exp(variance * (std::cos(x) - 1)) * std::cos(n * x);
+            mean += portable::exp(variance * (portable::cos(x) - 1)) * portable::cos(n * x);
         }
         return mean / points;
     };

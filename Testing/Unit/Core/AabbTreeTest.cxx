@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include "Support/Meshes.h"
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso {
 namespace {
@@ -179,10 +179,19 @@ TEST(AabbTree, HoldsManyTrianglesInOnePlace) {
     EXPECT_EQ(tree.closestPoint({0.5, 0.5, 3}).squaredDistanceMm2, 4);
 }
 
+TEST(AabbTree, LeavesHoldTheirTrianglesByNumber) {
+    const TriangleMesh mesh = testing::icosphere(3);
+    const AabbTree tree(mesh);
+    for (std::size_t first = 0; first < mesh.triangles.size(); first += 4) {
+        const auto leaf = tree.triangles().subspan(first, 4);  // 1280 triangles: all are full
+        EXPECT_TRUE(std::is_sorted(leaf.begin(), leaf.end())) << first;
+    }
+}
+
 TEST(AabbTree, AnswersAreTheSameWhateverTheNumberOfThreads) {
     const TriangleMesh mesh = testing::icosphere(5);  // 20480 triangles: built by several tasks
-    const auto run = [&](std::size_t threads) {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    const auto run = [&](int threads) {
+        const ThreadLimitGuard control(threads);
         const AabbTree tree(mesh);
         std::vector<std::int64_t> order;
         tree.forEachOverlap(boundingBox(mesh), [&](std::int64_t t) { order.push_back(t); });

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "adaptiso/Core/PortableMath.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
@@ -22,7 +23,7 @@ double sharpestSquaredCosine(double a, double b, double c, double area2Squared) 
 bool anglesMayStay(const Patch& patch, const Star& star, const StarLimits& limits,
                    double sharpest) {
     const auto point = [&](std::uint32_t v) { return patch.points[v]; };
-    const double cosine = std::cos(limits.leastAngleDeg * std::numbers::pi / 180);
+    const double cosine = portable::cos(limits.leastAngleDeg * std::numbers::pi / 180);
     if (sharpest <= cosine * cosine) return true;
     double sharpestBefore = 0;
     const auto addBefore = [&](const Vec3& p, const Vec3& q, const Vec3& r) {

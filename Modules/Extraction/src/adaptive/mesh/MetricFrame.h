@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/PortableMath.h"
 
 namespace adaptiso::detail {
 
@@ -13,7 +14,7 @@ namespace adaptiso::detail {
 class MetricFrame {
 public:
     explicit MetricFrame(const ImageGeometry& geometry)
-        : voxelMm_(cubeRoot(geometry.voxelVolumeMm3())) {
+        : voxelMm_(portable::cubeRoot(geometry.voxelVolumeMm3())) {
         // QR by Gram-Schmidt: indexToPhysical = Q R, and R is what is wanted
         const auto& c = geometry.indexToPhysical.column;
         const Vec3 x = normalized(c[0]);
@@ -37,12 +38,6 @@ public:
     double voxelMm() const { return voxelMm_; }
 
 private:
-    /// With the same digits for a volume eight times as large, which std::cbrt() does not promise.
-    static double cubeRoot(double volume) {
-        const int third = static_cast<int>(std::floor(std::ilogb(volume) / 3.0));
-        return std::ldexp(std::cbrt(std::ldexp(volume, -3 * third)), third);
-    }
-
     Mat3 toFrame_, toIndex_;
     double narrowestMm_, voxelMm_;
 };
