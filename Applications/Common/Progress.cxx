@@ -62,9 +62,13 @@ ProgressCallback ProgressLine::callback() {
 }
 
 double peakMemoryMb() {
+#ifdef __EMSCRIPTEN__  // the memory that a page gives to WebAssembly grows and does not shrink
+    return static_cast<double>(__builtin_wasm_memory_size(0)) * 65536 / 1e6;
+#else
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;  // Linux counts KiB
+#endif
 }
 
 double StageTimer::seconds(std::string_view stage) const {

@@ -257,8 +257,9 @@ RegionSurfaces::RegionSurfaces(const LabelComplex& complex, const std::vector<Re
 }
 
 TriangleMesh RegionSurfaces::surface(std::size_t n) const {
-    const std::span<const std::int64_t> own(triangles_.begin() + begins_[n],
-                                            triangles_.begin() + begins_[n + 1]);
+    const auto own = std::span(triangles_)
+                         .subspan(static_cast<std::size_t>(begins_[n]),
+                                  static_cast<std::size_t>(begins_[n + 1] - begins_[n]));
     std::vector<VertexId> used;
     used.reserve(3 * own.size());
     for (const std::int64_t t : own) {

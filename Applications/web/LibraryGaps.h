@@ -9,6 +9,7 @@
 #include <atomic>
 #include <bit>
 #include <charconv>
+#include <cstdint>
 #include <functional>
 #include <initializer_list>
 #include <iterator>
@@ -58,6 +59,24 @@ private:
 template <class T>
 atomic_ref(T&) -> atomic_ref<T>;
 
+// ---- <source_location>
+
+struct source_location {
+    static constexpr source_location current(const char* file = __builtin_FILE(),
+                                             uint_least32_t line = __builtin_LINE()) {
+        source_location here;
+        here.file_ = file;
+        here.line_ = line;
+        return here;
+    }
+    constexpr const char* file_name() const { return file_; }
+    constexpr uint_least32_t line() const { return line_; }
+
+private:
+    const char* file_ = "";
+    uint_least32_t line_ = 0;
+};
+
 // ---- <charconv> of doubles and floats. fmt finds the digits; their layout is the standard's:
 // printf's.
 
@@ -90,18 +109,38 @@ auto projected(Less less, Projection projection) {
                          std::forward<Arguments>(arguments)...);   \
     }
 ADAPTISO_RANGE(adjacent_find)
-ADAPTISO_RANGE(all_of)
-ADAPTISO_RANGE(any_of)
 ADAPTISO_RANGE(copy)
-ADAPTISO_RANGE(count_if)
 ADAPTISO_RANGE(fill)
-ADAPTISO_RANGE(find_if)
 ADAPTISO_RANGE(is_sorted)
-ADAPTISO_RANGE(none_of)
+ADAPTISO_RANGE(move)
 ADAPTISO_RANGE(replace)
 ADAPTISO_RANGE(reverse)
 ADAPTISO_RANGE(transform)
 #undef ADAPTISO_RANGE
+
+#define ADAPTISO_PREDICATE(name)                                                             \
+    template <class Range, class Predicate, class Projection = identity>                     \
+    constexpr auto name(Range&& range, Predicate predicate, Projection projection = {}) {    \
+        return std::name(std::begin(range), std::end(range), [&](auto&& each) -> bool {      \
+            return std::invoke(predicate,                                                    \
+                               std::invoke(projection, std::forward<decltype(each)>(each))); \
+        });                                                                                  \
+    }
+ADAPTISO_PREDICATE(all_of)
+ADAPTISO_PREDICATE(any_of)
+ADAPTISO_PREDICATE(count_if)
+ADAPTISO_PREDICATE(find_if)
+ADAPTISO_PREDICATE(none_of)
+#undef ADAPTISO_PREDICATE
+
+template <class A, class B>
+constexpr bool equal(const A& a, const B& b) {
+    return std::equal(std::begin(a), std::end(a), std::begin(b), std::end(b));
+}
+template <class Range>
+constexpr auto unique(Range&& range) {
+    return subrange(std::unique(std::begin(range), std::end(range)), std::end(range));
+}
 
 template <class Range, class T, class Projection = identity>
 constexpr auto find(Range&& range, const T& value, Projection projection = {}) {

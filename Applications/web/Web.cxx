@@ -1,9 +1,13 @@
 #include <emscripten.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -24,9 +28,9 @@
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 #include "adaptiso/SurfacePipeline/FinishSurface.h"
 
-EM_JS(void, showProgress, (const char* text), {
-    if (Module["onProgress"]) Module["onProgress"](UTF8ToString(text));
-})
+EM_JS(int, processNumber, (), { return typeof process == "object" ? process.pid : 1; })
+EM_JS(int, hasProgress, (), { return Module["onProgress"] ? 1 : 0; })
+EM_JS(void, showProgress, (const char* text), { Module["onProgress"](UTF8ToString(text)); })
 
 /// The page's WebAssembly. main() is that of the programs, chosen by the name they are called by,
 /// so that the page refuses, prints and writes what they do, to the byte. The functions below it
@@ -276,12 +280,31 @@ EMSCRIPTEN_KEEPALIVE const float* adaptisoValues() {
     return web::shown.values.data();
 }
 
+/// Temporaries are named by it: Emscripten's is 42 for all.
+pid_t getpid() {
+    return processNumber();
+}
+
+/// `adaptiso mesh` becomes adaptiso-mesh. \return only where that is not in here
+int execv(const char* path, char* const* argv) {
+    const auto program = kPrograms.find(std::filesystem::path(path).filename().string());
+    if (program != kPrograms.end()) {
+        int argc = 0;
+        while (argv[argc] != nullptr) ++argc;
+        std::exit(program->second(argc, const_cast<char**>(argv)));
+    }
+    errno = ENOSYS;
+    return -1;
+}
+
 }  // extern "C"
 
 int main(int argc, char** argv) {
-    adaptiso::observeProgress([](const std::string& text) { showProgress(text.c_str()); });
+    if (hasProgress() != 0) {
+        adaptiso::observeProgress([](const std::string& text) { showProgress(text.c_str()); });
+    }
     const auto program = kPrograms.find(argv[0]);
     if (program != kPrograms.end()) return program->second(argc, argv);
-    std::cerr << argv[0] << ": is not in this page; use the program\n";
+    std::cerr << argv[0] << ": is not among the programs in WebAssembly\n";
     return adaptiso::kExitUsage;
 }

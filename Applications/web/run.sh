@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# Installs what it needs and builds the page: build/web/adaptiso.html, one file. Debian 12, as root or
-# with sudo, and Node 20 or later with npm. Running it again is harmless.
+# Installs what it needs and builds the page, build/web/adaptiso.html, one file, and the npm package,
+# build/web/npm/adaptiso-VERSION.tgz. Debian 12, as root or with sudo, and Node 20 or later with npm.
+# Running it again is harmless.
 #
-#   Applications/web/run.sh            the page
-#   Applications/web/run.sh --test     the page, then its tests in Chromium and Firefox
+#   Applications/web/run.sh            both
+#   Applications/web/run.sh --test     and tries them: the programs under Node, the page in Chromium and
+#                                      Firefox
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -20,11 +22,12 @@ fi
 
 export NODE_PATH=/usr/share/nodejs  # acorn, which Emscripten's linker needs, for a Node that is not Debian's
 cmake --log-level=WARNING --preset web
-cmake --build --preset web --target adaptisoWeb
+cmake --build --preset web --target adaptisoWeb adaptisoNode
+version=$(sed -n 's/^project(adaptiso VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+node Applications/web/npm/build.mjs build/web "$version"
 cd Applications/web/page
 npm ci --ignore-scripts --no-audit --no-fund --silent
 npm run --silent check
-version=$(sed -n 's/^project(adaptiso VERSION \([0-9.]*\).*/\1/p' "$top/CMakeLists.txt")
 node build.mjs "$top/build/web" "$version"
 if [[ ${1:-} == --test ]]; then
     programs=${ADAPTISO_PROGRAMS:-$top/build/release/bin}
@@ -32,5 +35,6 @@ if [[ ${1:-} == --test ]]; then
         echo "Applications/web/run.sh: the tests compare with the native programs, which $programs lacks: cmake --preset release && cmake --build --preset release --target programs" >&2
         exit 1
     fi
+    ADAPTISO_SOURCE=$top ADAPTISO_BIN=$programs python3 -B "$top/Testing/Application/WebTest.py"
     xvfb-run --auto-servernum node --test --test-concurrency=1 test/  # Firefox has WebGL on a screen alone
 fi

@@ -18,7 +18,11 @@ void runPieces(std::int64_t count, std::int64_t grain, BodyRef<std::int64_t, std
 }
 
 void runLargestFirst(std::span<const std::int64_t> sizes, BodyRef<std::int64_t> body) {
-    for (std::int64_t n = 0; n < std::ssize(sizes); ++n) {
+    std::vector<std::int64_t> order(sizes.size());
+    std::iota(order.begin(), order.end(), std::int64_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::int64_t a, std::int64_t b) { return sizes[a] > sizes[b]; });
+    for (const std::int64_t n : order) {
         InterruptionCheck::ask();
         body(n);
     }

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <limits>
 #include <new>
 
 #include "Fence.h"
@@ -115,6 +116,14 @@ std::uint64_t requireImageBytes(const std::filesystem::path& file, const Index3&
 
 SampleBuffer allocateSamples(const std::filesystem::path& file, std::uint64_t byteCount) {
     SampleBuffer samples;
+    if (byteCount > std::numeric_limits<std::size_t>::max()) {
+        refuseShort(
+            file,
+            fmt::format("its samples take {:.1f} GB of memory, and a build of 32 bits, such as "
+                        "WebAssembly, has 4 GB",
+                        static_cast<double>(byteCount) / 1e9),
+            "use the programs of a 64-bit machine");
+    }
     if (isBehindFence()) {
         samples = allocateSharedBytes(byteCount);
     } else {

@@ -61,8 +61,8 @@ public:
     /// mesh.
     const WallTriangle& fullTriangle(Id full) const { return patch_.fullTriangles[full]; }
     std::span<const Id> fullAround(Id sample) const {
-        return {fullAround_.data() + fullBegin_[sample],
-                fullBegin_[sample + 1] - fullBegin_[sample]};
+        return std::span(fullAround_)
+            .subspan(fullBegin_[sample], fullBegin_[sample + 1] - fullBegin_[sample]);
     }
     template <class F>
     void forEachSample(Id triangle, const F& f) const {

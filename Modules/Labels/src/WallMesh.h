@@ -93,7 +93,9 @@ public:
     Id killerOf(Id t) const { return killer_[t]; }
     /// The change that made it; kNone for a triangle of the full walls.
     Id makerOf(Id t) const { return maker_[t]; }
-    std::span<const Id> around(Id v) const { return {entries_.data() + begin_[v], count_[v]}; }
+    std::span<const Id> around(Id v) const {
+        return std::span(entries_).subspan(begin_[v], count_[v]);
+    }
     std::array<Vec3, 3> cornersOf(Id t) const {
         const auto& v = triangles_[t].v;
         return {points_[v[0]], points_[v[1]], points_[v[2]]};
@@ -107,7 +109,7 @@ public:
         Id madeBegin, madeEnd;
     };
     std::span<const Id> removedBy(const Change& c) const {
-        return {removed_.data() + c.removedBegin, c.removedEnd - c.removedBegin};
+        return std::span(removed_).subspan(c.removedBegin, c.removedEnd - c.removedBegin);
     }
     const Change& change(Id n) const { return changes_[n]; }
     /// It was not taken back.

@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -21,7 +22,7 @@ std::string text(double value) {
     return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
-std::string text(std::int64_t value) {
+std::string text(std::integral auto value) {
     return std::to_string(value);
 }
 
@@ -130,15 +131,15 @@ std::string tetgenInput(const MesherInput& input, double elementMm) {
     poly += text(std::ssize(input.triangles)) + " 1\n";
     for (std::size_t t = 0; t < input.triangles.size(); ++t) {
         const auto& [a, b, c] = input.triangles[t];
-        poly += "1 0 " + text(std::int64_t{input.walls[t]}) + "\n3 " + text(a) + " " + text(b) +
-                " " + text(c) + "\n";
+        poly +=
+            "1 0 " + text(input.walls[t]) + "\n3 " + text(a) + " " + text(b) + " " + text(c) + "\n";
     }
     const double mm3 = elementMm * elementMm * elementMm / (6 * std::numbers::sqrt2);
     poly += "0\n" + text(std::ssize(input.volumes)) + "\n";
     number = 0;
     for (const MesherVolume& volume : input.volumes) {
-        poly += text(++number) + " " + text(volume.insideMm) + " " +
-                text(std::int64_t{volume.region}) + " " + text(mm3) + "\n";
+        poly += text(++number) + " " + text(volume.insideMm) + " " + text(volume.region) + " " +
+                text(mm3) + "\n";
     }
     return poly;
 }
@@ -151,7 +152,7 @@ std::string gmshWalls(const MesherInput& input) {
     msh += "$EndNodes\n$Elements\n" + text(std::ssize(input.triangles)) + "\n";
     for (std::size_t t = 0; t < input.triangles.size(); ++t) {
         const auto& [a, b, c] = input.triangles[t];
-        const std::string wall = text(std::int64_t{input.walls[t]});
+        const std::string wall = text(input.walls[t]);
         msh += text(static_cast<std::int64_t>(t + 1)) + " 2 2 " + wall + " " + wall + " " +
                text(a + 1) + " " + text(b + 1) + " " + text(c + 1) + "\n";
     }
@@ -170,7 +171,7 @@ std::string gmshScript(const MesherInput& input, std::string_view wallsFile, dou
         const std::string name = text(++number);
         std::string walls;
         for (const std::int32_t wall : volume.walls) {
-            walls += (walls.empty() ? "" : ", ") + text(std::int64_t{wall});
+            walls += (walls.empty() ? "" : ", ") + text(wall);
         }
         script += "Surface Loop(" + name + ") = {" + walls + "};\nVolume(" + name + ") = {" + name +
                   "};\n";
@@ -178,7 +179,7 @@ std::string gmshScript(const MesherInput& input, std::string_view wallsFile, dou
         list += (list.empty() ? "" : ", ") + name;
     }
     for (const auto& [region, list] : volumesOf) {
-        script += "Physical Volume(" + text(std::int64_t{region}) + ") = {" + list + "};\n";
+        script += "Physical Volume(" + text(region) + ") = {" + list + "};\n";
     }
     return script;
 }

@@ -174,9 +174,9 @@ public:
     }
     TextFile& operator<<(std::int64_t number) {
         std::array<char, 24> digits;
-        return *this << std::string_view(
-                   digits.data(),
-                   std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
+        char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+        return *this << std::string_view(digits.data(),
+                                         static_cast<std::size_t>(end - digits.data()));
     }
     TextFile& operator<<(const Vec3& p) {
         for (int a = 0; a < 3; ++a) {
@@ -184,7 +184,8 @@ public:
             const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), p[a] + 0.0,
                                            std::chars_format::general, 9)
                                  .ptr;
-            *this << (a == 0 ? "" : " ") << std::string_view(digits.data(), end);
+            *this << (a == 0 ? "" : " ")
+                  << std::string_view(digits.data(), static_cast<std::size_t>(end - digits.data()));
         }
         return *this;
     }
