@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes all of a release from a clean clone of HEAD: the Debian source package and packages, the archive, the page,
-# the bill of materials and SHA256SUMS. Takes half an hour on two cores; no compiler cache is used.
+# the npm package, the bill of materials and SHA256SUMS. Takes half an hour on two cores; no compiler cache is used.
 #
 #   Packaging/release.sh FOLDER            into FOLDER, which is made anew
 #   Packaging/release.sh --twice FOLDER    again into FOLDER.again, from a clone of another name and depth, in another
@@ -38,7 +38,7 @@ release() {
     "$1/Packaging/archive.sh" "$1/build/release" "$2"
     cp "$1/build/release/Packaging/adaptiso.spdx.json" "$2"
     "$1/Applications/web/run.sh"
-    cp "$1/build/web/adaptiso.html" "$2"
+    cp "$1"/build/web/adaptiso.html "$1"/build/web/npm/adaptiso-*.tgz "$2"
     (cd "$2" && sha256sum -- * >SHA256SUMS)
 }
 
