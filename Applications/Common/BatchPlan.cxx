@@ -135,6 +135,12 @@ std::vector<PlannedRun> planRuns(const BatchProgram& program, std::vector<BatchI
         PlannedRun& run = runs.emplace_back(PlannedRun{std::move(each)});
         const BatchItem& item = run.item;
         run.inputs = item.inputs;
+        // a run of it would be many inputs again, and so without end
+        if (holdsName(item.name)) {
+            throw InvalidInput(item.inputs.front().string() +
+                               ": the name has {name} in it, which stands for the inputs' names; "
+                               "rename the file");
+        }
         std::string output =
             replaced(program.defaultOutput, "{file}", item.inputs.front().filename().string());
         std::vector<std::string> surfaceValues;

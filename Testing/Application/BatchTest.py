@@ -115,6 +115,13 @@ class ManyInputs(BatchTest):
         self.assert_fails(BAD_INPUT, "x/a.nii and a.nii: both are named 'a'", "a.nii", "x/a.nii",
                           "--iso", 100)
 
+    def test_an_input_whose_name_stands_for_names_is_refused(self):
+        """Its run was once taken for many inputs again, whose run was taken for many inputs again."""
+        self.path("a.nii").rename(self.path("{name}.nii"))
+        self.assert_fails(BAD_INPUT, "{name}.nii: the name has {name} in it", "{name}.nii", "b.nii", "--iso", 100)
+        self.path("list").write_text("b.nii\tx{name}\n")
+        self.assert_fails(BAD_INPUT, "b.nii: the name has {name} in it", "--list", "list", "--iso", 100, "-o", "{name}.stl")
+
     def test_wrong_usage(self):
         for pattern, arguments in (
                 ("--output x.stl: needs {name}", ("a.nii", "b.nii", "-o", "x.stl")),
