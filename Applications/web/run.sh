@@ -4,8 +4,8 @@
 # Running it again is harmless.
 #
 #   Applications/web/run.sh            both
-#   Applications/web/run.sh --test     and tries them: the programs under Node, the page in Chromium and
-#                                      Firefox
+#   Applications/web/run.sh --test     and tries them: the programs and the package under Node, the page in
+#                                      Chromium and Firefox
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -36,5 +36,6 @@ if [[ ${1:-} == --test ]]; then
         exit 1
     fi
     ADAPTISO_SOURCE=$top ADAPTISO_BIN=$programs python3 -B "$top/Testing/Application/WebTest.py"
-    xvfb-run --auto-servernum node --test --test-concurrency=1 test/  # Firefox has WebGL on a screen alone
+    node --test "$top"/Applications/web/npm/test/*.test.mjs
+    xvfb-run --auto-servernum node --test --test-concurrency=1 test/*.test.mjs  # Firefox has WebGL on a screen alone
 fi

@@ -31,13 +31,14 @@ def layers(x, y, z):
     return 1 if r < 62 else 2 if r < 70 else 3 if r < 78 else 0
 
 
-def without_run(value):
+def without_run(value, is_angle=False):
     if isinstance(value, dict):
-        return {key: without_run(of) for key, of in value.items() if key not in OF_THE_RUN}
+        return {key: without_run(of, is_angle or key.endswith("Deg") or key == "solidAngleShare")
+                for key, of in value.items() if key not in OF_THE_RUN}
     if isinstance(value, list):
-        return [without_run(of) for of in value]
+        return [without_run(of, is_angle) for of in value]
     # angles are atan2's, whose last digit is the C library's
-    return float(f"{value:.12g}") if isinstance(value, float) else value
+    return float(f"{value:.12g}") if is_angle and isinstance(value, float) else value
 
 
 class WebTest(ApplicationTest):

@@ -9,12 +9,13 @@ export interface ImageArray {
   /** Voxels along i, j, k. */
   size: [number, number, number];
   /** Three rows of four, or four of four: voxel index to scanner RAS mm, as nibabel's `affine`. */
-  affine: number[];
+  affine: ArrayLike<number>;
 }
 /** A triangle mesh: points in scanner RAS mm, three numbers each; triangles counter-clockwise seen from outside. */
 export interface MeshArray { points: Float64Array | Float32Array; triangles: Uint32Array }
 
-/** A file: bytes with the name they go by; `path` may have folders (`model/head.surf`). */
+/** A file: bytes with the name they go by; `path` is relative and may have folders (`model/head.surf`). Inputs of
+ *  one name are kept apart, in folders `1`, `2`, ... that lines may then name. */
 export interface NamedFile { path: string; bytes: Uint8Array }
 export type ImageInput = ImageArray | NamedFile | File;
 export type MeshInput = MeshArray | NamedFile | File;
@@ -72,7 +73,7 @@ export interface BemOptions extends RunOptions { mask?: ImageInput; vertices?: n
 /** adaptiso-bem: a head model, as the files of its folder. */
 export function bem(t1: ImageInput, options?: BemOptions): Promise<RunResult>;
 
-/** Any of the programs with its own arguments, on files in memory. */
+/** Any of the programs with its own arguments, on files in memory, each at a relative path of its own. */
 export function run(program: "mesh" | "simplify" | "check" | "compare" | "labels" | "bem", args: string[],
-  files: NamedFile[], options?: RunOptions & { folders?: string[] }): Promise<{ exitCode: number; stdout: string;
+  files: NamedFile[], options?: Omit<RunOptions, "args"> & { folders?: string[] }): Promise<{ exitCode: number; stdout: string;
   stderr: string; files: NamedFile[]; memoryBytes: number }>;

@@ -12,13 +12,20 @@ export class AdaptisoError extends Error {
 const isNode = typeof process === "object" && typeof process.versions?.node === "string";
 let compiled;
 
+async function readWasm() {
+  const url = new URL("./adaptiso.wasm", import.meta.url);
+  if (isNode) return (await import("node:fs/promises")).readFile(url);
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${url}: HTTP ${response.status}`);
+  return response.arrayBuffer();
+}
+
+/** Once for all runs; after a failure the next run tries again. */
 function compile() {
-  compiled ??= (async () => {
-    const url = new URL("./adaptiso.wasm", import.meta.url);
-    if (!isNode) return WebAssembly.compile(await (await fetch(url)).arrayBuffer());
-    const { readFile } = await import("node:fs/promises");
-    return WebAssembly.compile(await readFile(url));
-  })();
+  compiled ??= readWasm().then((bytes) => WebAssembly.compile(bytes)).catch((error) => {
+    compiled = undefined;
+    throw new AdaptisoError(`adaptiso.wasm cannot be loaded: ${error.message}`, 4);
+  });
   return compiled;
 }
 
@@ -32,8 +39,25 @@ async function makeWorker() {
   return worker;
 }
 
+/** A path below the job's folder: `./x` is `x`. */
+function normalPath(path) {
+  const parts = String(path).split("/").filter((part) => part !== "" && part !== ".");
+  if (typeof path !== "string" || path.startsWith("/") || parts.length === 0 || parts.includes("..")) {
+    throw new AdaptisoError(`the path "${path}" must be relative, without "..": give the file's name`, 2);
+  }
+  return parts.join("/");
+}
+
+function normalFile({ path, bytes }) {
+  if (!(bytes instanceof Uint8Array)) throw new AdaptisoError(`${path}: bytes must be a Uint8Array`, 2);
+  return { path: normalPath(path), bytes };
+}
+
 export async function run(program, args, files, { onProgress, signal, folders = [] } = {}) {
   signal?.throwIfAborted();
+  const job = { program, args, files: files.map(normalFile), folders: folders.map(normalPath) };
+  const paths = job.files.map((file) => file.path), twice = paths.find((path, n) => paths.indexOf(path) !== n);
+  if (twice !== undefined) throw new AdaptisoError(`two files have the path "${twice}": give each a path of its own`, 2);
   const module = await compile(), worker = await makeWorker();
   let abort;
   try {
@@ -47,7 +71,7 @@ export async function run(program, args, files, { onProgress, signal, folders = 
         else if (data.failure !== undefined) reject(new AdaptisoError(`adaptiso-${program}: ${data.failure}`, 4));
         else resolve(data.result);
       };
-      worker.postMessage({ module, program, args, files, folders });
+      worker.postMessage({ module, ...job });
     });
   } finally {
     signal?.removeEventListener("abort", abort);
@@ -55,15 +79,30 @@ export async function run(program, args, files, { onProgress, signal, folders = 
   }
 }
 
-const kReport = "adaptiso-report.json";
+const kReport = "adaptiso-report.json", kSurface = "adaptiso-surface.ply", kRegions = "regions", kModel = "model";
 
-/** Runs with a report. \param mayFail  exit code 1, a check failed, is no error */
-async function runReported(program, args, files, options) {
+/** Inputs at their own names; in folders 1, 2, ... where two have the same, or one has an output's. */
+function apart(inputs) {
+  const files = inputs.map(normalFile), paths = [...files.map((file) => file.path), kReport, kSurface, kRegions, kModel];
+  const meet = paths.some((one, n) => paths.some((other, m) => n !== m && `${other}/`.startsWith(`${one}/`)));
+  return meet ? files.map(({ path, bytes }, n) => ({ path: `${n + 1}/${path}`, bytes })) : files;
+}
+
+function writtenFile(program, done, path) {
+  const file = done.files.find((each) => each.path === path);
+  if (file === undefined) {
+    throw new AdaptisoError(`adaptiso-${program}: wrote no result with these options.args: use run() for them`, 2);
+  }
+  return file;
+}
+
+/** Runs with a report. \param mayFail  exit code 1, a check failed, is no error \param inputs  after all options */
+async function runReported(program, args, inputs, files, options) {
   const { mayFail = false, args: further = [], ...rest } = options;
-  const done = await run(program, [...args, ...further, "--json", kReport], files, rest);
+  const done = await run(program, [...args, ...further, "--json", kReport, ...(inputs.length > 0 ? ["--"] : []), ...inputs], files, rest);
   const lines = done.stderr.split("\n").filter((line) => line !== "");
   if (done.exitCode > (mayFail ? 1 : 0)) throw new AdaptisoError(lines.at(-1) ?? `adaptiso-${program} failed`, done.exitCode);
-  const report = done.files.find((file) => file.path === kReport);
+  const report = writtenFile(program, done, kReport);
   return { exitCode: done.exitCode, report: JSON.parse(new TextDecoder().decode(report.bytes)),
     warnings: lines.filter((line) => line.includes("warning: ")), files: done.files.filter((file) => file !== report),
     memoryBytes: done.memoryBytes };
@@ -76,8 +115,17 @@ const kTypes = [[Uint8Array, 2], [Int16Array, 4], [Int32Array, 8], [Float32Array
 function nifti({ data, size, affine }) {
   const code = kTypes.find(([type]) => data instanceof type)?.[1];
   if (code === undefined) throw new AdaptisoError("image.data is no typed array that an image may have", 3);
+  if (size?.length !== 3 || !Array.from(size).every((n) => Number.isSafeInteger(n) && n > 0)) {
+    throw new AdaptisoError("image.size must be three whole numbers above 0: voxels along i, j, k", 3);
+  }
+  if (![12, 16].includes(affine?.length) || !Array.from(affine).every(Number.isFinite)) {
+    throw new AdaptisoError("image.affine must be 12 or 16 finite numbers, row by row: voxel index to scanner RAS mm", 3);
+  }
+  if (affine.length === 16 && [0, 0, 0, 1].some((x, n) => affine[12 + n] !== x)) {
+    throw new AdaptisoError("image.affine's fourth row must be 0, 0, 0, 1: give the matrix row by row", 3);
+  }
   if (data.length !== size[0] * size[1] * size[2]) {
-    throw new AdaptisoError(`image.data has ${data.length} samples, image.size asks for ${size.join(" x ")}`, 3);
+    throw new AdaptisoError(`image.data has ${data.length} samples, image.size asks for ${Array.from(size).join(" x ")}`, 3);
   }
   const bytes = new Uint8Array(544 + data.byteLength), view = new DataView(bytes.buffer);  // NIfTI-2: doubles
   view.setInt32(0, 540, true);
@@ -99,6 +147,9 @@ function nifti({ data, size, affine }) {
 
 /** A mesh as binary PLY in RAS. */
 function ply({ points, triangles }) {
+  if (![points, triangles].every((array) => ArrayBuffer.isView(array) && array.length % 3 === 0)) {
+    throw new AdaptisoError("mesh.points and mesh.triangles must be typed arrays, three numbers each", 3);
+  }
   const head = new TextEncoder().encode(`ply\nformat binary_little_endian 1.0\ncomment SPACE=RAS\nelement vertex ${points.length / 3}\n`
     + "property double x\nproperty double y\nproperty double z\n"
     + `element face ${triangles.length / 3}\nproperty list uchar int vertex_indices\nend_header\n`);
@@ -115,7 +166,7 @@ function ply({ points, triangles }) {
 
 /** The points and triangles of a PLY that the programs wrote. */
 function parsePly(bytes) {
-  const head = new TextDecoder().decode(bytes.subarray(0, 4096)).split("end_header\n")[0];
+  const head = new TextDecoder("latin1").decode(bytes.subarray(0, 4096)).split("end_header\n")[0];
   const count = (element) => Number(new RegExp(`element ${element} (\\d+)`).exec(head)[1]);
   const vertexPart = head.split("element vertex")[1].split("element")[0];
   const sizes = [...vertexPart.matchAll(/property (\w+) \w+/g)].map(([, type]) => (type === "double" ? 8 : type === "uchar" ? 1 : 4));
@@ -135,10 +186,11 @@ function parsePly(bytes) {
 
 /** \param toBytes  of arrays \param name  what arrays are called */
 async function toFile(input, toBytes, name) {
+  if (typeof input !== "object" || input === null) throw new AdaptisoError("an input must be arrays, a NamedFile or a File", 2);
   if (typeof File === "function" && input instanceof File) {
     return { path: input.name, bytes: new Uint8Array(await input.arrayBuffer()) };
   }
-  if (input?.bytes !== undefined) return { path: input.path, bytes: new Uint8Array(input.bytes) };
+  if (input.bytes !== undefined) return input;
   return { path: name, bytes: toBytes(input) };
 }
 const imageFile = (input, name = "image.nii") => toFile(input, nifti, name);
@@ -149,41 +201,38 @@ function aimOf({ maxErrorMm, triangles }) {
     ...(triangles === undefined ? [] : ["--triangles", String(triangles)])];
 }
 
-async function makeSurface(program, args, files, options) {
-  const { iso: _iso, maxErrorMm: _mm, triangles: _count, ...rest } = options;
-  const kOutput = "adaptiso-surface.ply";
-  const done = await runReported(program, [...args, "--coordinates", "ras", "-o", kOutput], files, rest);
-  return { ...done, mesh: parsePly(done.files.find((file) => file.path === kOutput).bytes) };
+async function makeSurface(program, args, file, options) {
+  const { iso: _iso, maxErrorMm: _mm, triangles: _count, ...rest } = options, [placed] = apart([file]);
+  const done = await runReported(program, [...args, ...aimOf(options), "--coordinates", "ras", "-o", kSurface], [placed.path], [placed], rest);
+  return { ...done, mesh: parsePly(writtenFile(program, done, kSurface).bytes) };
 }
 
 export async function mesh(image, options = {}) {
-  const file = await imageFile(image);
-  return makeSurface("mesh", [file.path, "--iso", String(options.iso ?? "auto"), ...aimOf(options)], [file], options);
+  return makeSurface("mesh", ["--iso", String(options.iso ?? "auto")], await imageFile(image), options);
 }
 
 export async function simplify(surface, options = {}) {
-  const file = await meshFile(surface);
-  return makeSurface("simplify", [file.path, ...aimOf(options)], [file], options);
+  return makeSurface("simplify", [], await meshFile(surface), options);
 }
 
 export async function check(surfaces, options = {}) {
   const all = Array.isArray(surfaces) ? surfaces : [surfaces];
-  const files = await Promise.all(all.map((one, n) => meshFile(one, `surface-${n + 1}.ply`)));
-  return runReported("check", files.map((file) => file.path), files, { ...options, mayFail: true });
+  const files = apart(await Promise.all(all.map((one, n) => meshFile(one, `surface-${n + 1}.ply`))));
+  return runReported("check", [], files.map((file) => file.path), files, { ...options, mayFail: true });
 }
 
 export async function compare(a, b, options = {}) {
-  const files = [await meshFile(a, "a.ply"), await meshFile(b, "b.ply")];
-  return runReported("compare", files.map((file) => file.path), files, { ...options, mayFail: true });
+  const files = apart([await meshFile(a, "a.ply"), await meshFile(b, "b.ply")]);
+  return runReported("compare", [], files.map((file) => file.path), files, { ...options, mayFail: true });
 }
 
 export async function labels(image, { format = "stl", ...options } = {}) {
-  const file = await imageFile(image, "labels.nii");
-  return runReported("labels", [file.path, "-o", "regions", "--format", format], [file], options);
+  const [file] = apart([await imageFile(image, "labels.nii")]);
+  return runReported("labels", ["-o", kRegions, "--format", format], [file.path], [file], options);
 }
 
 export async function bem(t1, { mask, vertices, ...options } = {}) {
-  const files = [await imageFile(t1, "t1.nii"), ...(mask === undefined ? [] : [await imageFile(mask, "mask.nii")])];
-  return runReported("bem", ["--t1", files[0].path, ...(mask === undefined ? [] : ["--brain-mask", files[1].path]),
-    ...(vertices === undefined ? [] : ["--vertices", String(vertices)]), "-o", "model"], files, options);
+  const files = apart([await imageFile(t1, "t1.nii"), ...(mask === undefined ? [] : [await imageFile(mask, "mask.nii")])]);
+  return runReported("bem", [`--t1=${files[0].path}`, ...(mask === undefined ? [] : [`--brain-mask=${files[1].path}`]),
+    ...(vertices === undefined ? [] : ["--vertices", String(vertices)]), "-o", kModel], [], files, options);
 }

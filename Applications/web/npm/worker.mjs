@@ -12,17 +12,17 @@ function filesBelow(fs, folder) {
 
 async function run({ module, program, args, files, folders }, send) {
   const stdout = [], stderr = [];
-  const instance = await createAdaptiso({
+  const instance = await new Promise((resolve, reject) => createAdaptiso({
     thisProgram: `adaptiso-${program}`,
     print: (line) => stdout.push(line),
     printErr: (line) => stderr.push(line),
     onProgress: (text) => send({ progress: text }),
     instantiateWasm: (imports, done) => {
-      WebAssembly.instantiate(module, imports).then(done);
+      WebAssembly.instantiate(module, imports).then(done).catch(reject);  // which the glue waits for without end
       return {};
     },
     quit: (_status, thrown) => { throw thrown; },
-  });
+  }).then(resolve, reject));
   const { FS } = instance;
   FS.mkdirTree(kFolder);
   FS.chdir(kFolder);

@@ -6,14 +6,14 @@ import { nifti } from "./nifti";
 import type { ImageFacts, InputFile } from "./protocol";
 import { kMostMemory, type Page, type Task, tooLarge } from "./task";
 
-/** What it takes unpacked: gzip keeps its length modulo 4 GiB in the last four bytes. */
+/** What it takes unpacked, at least: gzip ends with the length of its last member, modulo 4 GiB. */
 async function unpackedBytes({ data }: InputFile): Promise<number> {
   const size = data instanceof Blob ? data.size : data.length;
   if (!(data instanceof Blob) || size < 18) return size;
   const [one, other] = new Uint8Array(await data.slice(0, 2).arrayBuffer());
   if (one !== 0x1f || other !== 0x8b) return size;
   const length = new DataView(await data.slice(-4).arrayBuffer()).getUint32(0, true);
-  return size + (length < size / 2 ? length + 2 ** 32 : length);
+  return length < size / 2 ? size : size + length;  // less: several members, as BGZF's, or padding
 }
 
 export class Scan {

@@ -28,9 +28,15 @@ class Meshes {
       byId(`${id}-names`).textContent = this.files.map((file) => file.path).join(", ");
       this.task.part(".result").hidden = true;
       this.task.refuse("");
-      await this.show(this.files);
+      await this.show(this.apart);
     });
     byId(`${id}-form`).addEventListener("submit", (event) => { event.preventDefault(); void make(); });
+  }
+
+  /** The files at their own names; in folders 1, 2, ... where two have the same. */
+  get apart(): InputFile[] {
+    if (new Set(this.files.map(({ path }) => path)).size === this.files.length) return this.files;
+    return this.files.map((file, n) => ({ ...file, path: `${n + 1}/${file.path}` }));
   }
 
   async open(file: InputFile): Promise<OpenedMesh> {
@@ -67,7 +73,7 @@ export class CheckTab {
   constructor(page: Page) { this.meshes = new Meshes("check", page, 8, () => this.make()); }
 
   private async make(): Promise<void> {
-    const { task, files, page, shown } = this.meshes;
+    const { task, apart: files, page, shown } = this.meshes;
     if (files.length === 0) return task.refuse("Give a mesh first.");
     const args = files.map((file) => file.path);
     if (byId<HTMLInputElement>("nested").checked) args.push("--nested");
@@ -79,7 +85,7 @@ export class CheckTab {
     const bad = report.surfaces.filter((surface) => !surface.passed).length;
     const title = bad === 0 ? `${formatCount(report.surfaces.length)} of ${formatCount(report.surfaces.length)} surfaces pass`
       : `${formatCount(bad)} of ${formatCount(report.surfaces.length)} surfaces fail`;
-    const details = report.surfaces.map((surface) => {
+    const details = report.surfaces.map((surface, n) => {
       const list = make("ul", { className: "checks" });
       for (const check of surface.checks ?? []) {
         list.append(make("li", { className: check.outcome },
@@ -87,7 +93,7 @@ export class CheckTab {
           + `${check.finding === "" ? "" : `: ${check.finding}`}`));
       }
       const places = make("p", { className: "saves" });
-      const shape = shown.find(({ name }) => name === surface.file)?.shape;
+      const shape = shown.find(({ name }) => name === files[n].path)?.shape;
       for (const example of (surface.examples ?? []).slice(0, 12)) {
         // a vertex lies right whatever the file's frame is
         const vertex = example.vertices?.[0], point = shape && vertex !== undefined && 3 * vertex < shape.points.length
@@ -97,7 +103,7 @@ export class CheckTab {
         button.addEventListener("click", async () => (await page.view())?.moveTo(point));
         places.append(button);
       }
-      return make("details", { open: !surface.passed }, make("summary", {}, `${surface.file}: ${surface.error ?? (surface.passed
+      return make("details", { open: !surface.passed }, make("summary", {}, `${files[n].path}: ${surface.error ?? (surface.passed
         ? "passes" : `fails ${surface.failed.join(", ")}`)}`), list, places);
     });
     await task.show(title, run, done, [], details);
@@ -140,11 +146,10 @@ export class CompareTab {
   constructor(page: Page) { this.meshes = new Meshes("compare", page, 2, () => this.make()); }
 
   private async make(): Promise<void> {
-    const { task, files } = this.meshes;
+    const { task, apart: files } = this.meshes;
     if (files.length !== 2) return task.refuse("Give two meshes first.");
-    const given = files.map((file, n) => ({ ...file, path: files[0].path === files[1].path ? `${"ab"[n]}/${file.path}` : file.path }));
-    const args = [...given.map((file) => file.path), "--colored", "distance.vtp", "--json", kReport];
-    const run: Run = { program: "adaptiso-compare", args, files: given }, done = await task.run(run);
+    const args = [...files.map((file) => file.path), "--colored", "distance.vtp", "--json", kReport];
+    const run: Run = { program: "adaptiso-compare", args, files }, done = await task.run(run);
     if (done === undefined || done.exitCode !== 0) return;
     const { combined, aToB } = (reportOf(done) as { distances: Record<string, { meanMm: number; p95Mm: number; maxMm: number } | null> }).distances;
     const all = combined ?? aToB, mm = (value: number): string => `${Number(value.toPrecision(3))} mm`;

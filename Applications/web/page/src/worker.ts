@@ -35,14 +35,14 @@ function reply(message: Reply, transfer: Transferable[] = []): void {
 }
 
 async function makeInstance(options: Record<string, unknown>): Promise<Instance> {
-  const instance = await createAdaptiso({
+  const instance = await new Promise<Instance>((resolve, reject) => createAdaptiso({
     ...options,
     instantiateWasm: (imports: WebAssembly.Imports, done: (instance: WebAssembly.Instance) => void) => {
-      WebAssembly.instantiate(module, imports).then(done);
+      WebAssembly.instantiate(module, imports).then(done).catch(reject);  // which the glue waits for without end
       return {};
     },
     quit: (_status: number, thrown: unknown) => { throw thrown; },
-  });
+  }).then(resolve, reject));
   instance.FS.mkdirTree(kFolder);
   instance.FS.chdir(kFolder);
   return instance;

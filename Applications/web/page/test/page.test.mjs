@@ -1,9 +1,10 @@
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
-import { readFileSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
+import { gzipSync } from "node:zlib";
 import validator from "gltf-validator";
 import { balls, dicomSlice, ended, give, headLabels, kBrowsers, kPage, makeFolder, native, openPage, picture, press, saved, textOf,
   writeNifti } from "./support.mjs";
@@ -52,6 +53,14 @@ for (const browserName of kBrowsers) {
       assert.match(await textOf(page, "#mesh .verdict"), /^[\d,]+ triangles; no point farther than 0\.(3|29\d) mm \(proved\); closed; 0 pairs cross/);
       await page.waitForFunction(() => document.body.dataset.shown === "example.stl", { timeout: 60_000 });
       await picture(page, `${browserName}-example`);
+    });
+
+    it("opens gzip of several members, the last empty, as BGZF is", async () => {
+      const bytes = readFileSync(join(folder, "balls.nii"));
+      const members = [bytes.subarray(0, 40000), bytes.subarray(40000), Buffer.alloc(0)].map((part) => gzipSync(part));
+      writeFileSync(join(folder, "members.nii.gz"), Buffer.concat(members));
+      await give(page, "#scan-files", join(folder, "members.nii.gz"));
+      await page.waitForFunction(() => document.body.dataset.scan === "members.nii.gz", { timeout: 60_000 });
     });
 
     it("shows a preview within a second that follows the slider", async () => {
@@ -275,6 +284,23 @@ for (const browserName of kBrowsers) {
       const report = read((await saved(page, open.downloads, "#check .saves .main", "check.json")).toString());
       native(folder, "adaptiso-check", "balls.ply", "--json", "native.json");
       assert.deepEqual(report, read(readFileSync(join(folder, "native.json"))));
+    });
+
+    it("tells meshes of one name apart", async () => {
+      await press(page, "#tab-check");
+      for (const [name, radius] of [["left", 8], ["right", 16]]) {
+        mkdirSync(join(folder, name), { recursive: true });
+        writeNifti(join(folder, "ball.nii"), [40, 40, 40], (i, j, k) => Math.max(0, 100 + 5 * (radius - Math.hypot(i - 20, j - 20, k - 20))));
+        native(folder, "adaptiso-mesh", "ball.nii", "--iso", "100", "-o", `${name}/ball.ply`);
+      }
+      await give(page, "#check-files", join(folder, "left/ball.ply"), join(folder, "right/ball.ply"));
+      await page.waitForFunction(() => /\d\/ball\.ply \d\/ball\.ply$/.test(document.body.dataset.shown), { timeout: 60_000 });
+      await press(page, "#check .go");
+      assert.equal(await ended(page, "check"), "");
+      const { surfaces } = JSON.parse((await saved(page, open.downloads, "#check .saves .main", "check.json")).toString());
+      const [small, large] = surfaces.slice(-2).map((surface) => surface.size.extentMm[0]);
+      assert.ok(Math.abs(small - 16) < 0.7 && Math.abs(large - 32) < 0.7, `${small}, ${large}`);
+      assert.match(await textOf(page, "#check .result"), /\d\/ball\.ply: .*\d\/ball\.ply: /s);
     });
 
     it("simplifies and compares meshes as the programs do", async () => {
