@@ -28,6 +28,10 @@ trap 'rm -rf "$work"' EXIT
 # release CLONE TO
 release() {
     git clone -q --no-local "$top" "$1"
+    if [ -n "$(ls -A "$2" 2>/dev/null)" ] && [ ! -e "$2/SHA256SUMS" ]; then
+        echo "release.sh: $2 holds other files; name an empty folder, or that of a release" >&2
+        exit 1
+    fi
     rm -rf "$2"
     mkdir -p "$2"
     cmake --log-level=ERROR -S "$1" -B "$1/build/release" -G Ninja -DCMAKE_BUILD_TYPE=Release \

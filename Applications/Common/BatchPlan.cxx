@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "Common/Batch.h"
+#include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/Verdict.h"
@@ -22,14 +23,6 @@ constexpr const char* kOutput = "--output";
 
 bool isIn(const std::vector<std::string>& words, const std::string& word) {
     return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-std::string replaced(std::string text, std::string_view place, std::string_view by) {
-    for (std::size_t at = text.find(place); at != std::string::npos;
-         at = text.find(place, at + by.size())) {
-        text.replace(at, place.size(), by);
-    }
-    return text;
 }
 
 /// "--output" and its value, of "--output=value".

@@ -16,6 +16,14 @@ std::string baseName(const fs::path& path) {
     return fs::canonical(path, error).filename().string();
 }
 
+std::string replaced(std::string text, std::string_view place, std::string_view by) {
+    for (std::size_t at = text.find(place); at != std::string::npos;
+         at = text.find(place, at + by.size())) {
+        text.replace(at, place.size(), by);
+    }
+    return text;
+}
+
 std::string inputStem(const fs::path& input) {
     constexpr std::array<std::string_view, 14> kImageExtensions{
         ".nii.gz", ".nii", ".hdr.gz", ".hdr", ".img.gz", ".img", ".nrrd",

@@ -13,6 +13,9 @@ namespace adaptiso {
 /// The last part of a path, never a folder above it; the folder's own name for ".".
 std::string baseName(const std::filesystem::path& path);
 
+/// `text` with `by` wherever `place` stood. \pre place is not empty
+std::string replaced(std::string text, std::string_view place, std::string_view by);
+
 /// The input's name without folder and without the extensions of image files: "brain" of
 /// "scans/brain.nii.gz"; the folder's own name of a folder, however it is written, without
 /// ".zarr" or ".ome.zarr".

@@ -285,15 +285,19 @@ std::string quoted(const std::string& path) {
     return text + "'";
 }
 
-/// Commands to go on with.
-void printNext(std::ostream& out, const std::string& input, const ImageInfo& info) {
+/// Commands to go on with: the options given, and isovalues to try.
+void printNext(std::ostream& out, const MeshOptions& options, const ImageInfo& info) {
     if (!info.refusals.empty() || info.values.otsu.size() < 2) return;
-    std::string command = "adaptiso-mesh " + oneLine(quoted(input));
-    if (info.series) command += " --series " + std::to_string(info.series->number);
-    out << "next        " << command << " --iso auto --largest --fill-cavities\n            "
-        << command;
+    std::string command = "adaptiso-mesh";
+    for (const std::string& option : options.batch.runOptions) {
+        if (option != "--info" && option != "--show-phi") command += " " + quoted(option);
+    }
+    const std::string input = baseName(options.input);
+    const std::string end = (input.starts_with('-') ? " -- " : " ") + quoted(input) + "\n";
+    out << "next        " << oneLine(command + " --iso auto --largest --fill-cavities" + end)
+        << "\n            " << oneLine(command);
     for (const double threshold : info.values.otsu[1]) out << " --iso " << formatShort(threshold);
-    out << " --report try.html\n";
+    out << " --report try.html" << oneLine(end) << '\n';
 }
 
 Json valuesJson(const ValueSummary& values) {
@@ -365,7 +369,7 @@ void printInfo(std::ostream& out, const MeshOptions& options, const ImageInfo& i
     printAxes(out, geometry);
     printValues(out, info.values, isInteger(info.pixelType));
     for (const std::string& refusal : info.refusals) out << "refused     " << refusal << '\n';
-    printNext(out, options.input, info);
+    printNext(out, options, info);
 }
 
 std::string infoJson(const MeshOptions& options, const ImageInfo& info, const Verdict& verdict) {

@@ -37,14 +37,6 @@ std::string isovalueText(const IsovalueChoice& choice) {
     return choice.isAutomatic() ? "auto" : formatNumber(*choice.value);
 }
 
-std::string replaced(std::string text, std::string_view place, const std::string& by) {
-    for (std::size_t at = text.find(place); at != std::string::npos;
-         at = text.find(place, at + by.size())) {
-        text.replace(at, place.size(), by);
-    }
-    return text;
-}
-
 /// "lh-iso50.surf.gii" of "lh.surf.gii": GIFTI surfaces have an extension of two parts.
 fs::path insertBeforeExtension(const fs::path& path, const std::string& text) {
     const std::string name = path.filename().string();

@@ -237,7 +237,7 @@ void declareMeshOptions(CLI::App& app, MeshOptions& options) {
                            {"--report", options.report.page},
                            {"--pictures", options.report.pictures}},
                           options.batch, options.common);
-        if (options.isBatch()) keepRunOptions(app, options.batch);
+        if (options.isBatch() || options.image.tellsInfo) keepRunOptions(app, options.batch);
     });
 }
 

@@ -491,16 +491,19 @@ class Toolboxes(SharedFolderTest):
 
 @unittest.skipUnless((TEMPLATES / "ch2.nii.gz").exists(), "needs Debian's mricron-data")
 class RealHead(SharedFolderTest):
+    def make_masked(self):
+        if not self.path("masked").exists():
+            self.bem("--t1", TEMPLATES / "ch2.nii.gz", "--brain-mask", TEMPLATES / "ch2bet.nii.gz",
+                     "--vertices", 642, "-o", "masked")
+
     def test_with_a_brain_mask(self):
-        self.bem("--t1", TEMPLATES / "ch2.nii.gz", "--brain-mask", TEMPLATES / "ch2bet.nii.gz",
-                 "--vertices", 642, "-o", "masked")
+        self.make_masked()
         self.accepted("masked", solve=False)  # spheres' models are solved
         self.assert_head("masked")
 
     def test_head_points_bring_a_cap_to_the_head(self):
         """Points of ch2's skin in the frame of nasion and ears, which are given 10 mm too low and in front."""
-        if not self.path("masked").exists():
-            self.test_with_a_brain_mask()
+        self.make_masked()
         skin, _ = scanner_points(self.path("masked/outer_skin.surf"))
         nasion, left, right = np.array(((0, 87, -35), (-86, -20, -42), (86, -20, -42)), float)
         head = mne.transforms.get_ras_to_neuromag_trans(nasion, left, right)

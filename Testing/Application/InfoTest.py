@@ -78,10 +78,19 @@ class Info(ApplicationTest):
         surface = self.report("in.nii", "--iso", "auto", "-o", "a.ply")["surfaces"][0]
         self.assertEqual(otsu[0], [surface["isovalue"]])
         self.assertRegex(self.mesh("in.nii", "--info").stdout, "3 classes: 50, 550")
-        self.path("its name.nii").symlink_to("in.nii")
-        for commands in re.findall(r"(?s)\nnext        (.*)", self.mesh("its name.nii", "--info").stdout):
-            for command in commands.splitlines():
-                self.mesh(*shlex.split(command)[1:])
+
+    def test_ends_with_commands_that_make_surfaces_of_this_input(self):
+        image = from_function(20, "h", lambda x, y, z: 0 if x < -5 else 100 if x < 3 else 1000)
+        for name, options in (("its name.nii", ()), ("-x.nii", ("--smooth", "1", "--crop", ":,2:18,:"))):
+            write_nifti(self.path(name), image)
+            text = self.mesh(*options, "--info", "--", name).stdout
+            commands = text.partition("\nnext        ")[2].splitlines()
+            self.assertEqual(len(commands), 2)
+            for command in commands:
+                words = shlex.split(command)
+                self.assertEqual([word for word in words if word.startswith(("--smooth", "--crop"))],
+                                 ["--crop=:,2:18,:", "--smooth=1"] if options else [])
+                self.mesh(*words[1:])
         self.assertTrue(self.path("its name-iso50.vtp").exists())
 
     def test_the_histogram_has_a_row_for_each_value_of_a_mask(self):

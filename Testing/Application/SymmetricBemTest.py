@@ -57,7 +57,6 @@ class SymmetricBem(unittest.TestCase):
         truth = spheres.potentials(layers, places, moments, electrodes)
         values = solution.potentials(places, moments)
         found = at_electrodes(surfaces[-1].points, triangles, values, electrodes)
-        self.assertGreater(len(dipoles), 100)
         rdm, mag = spheres.rdm_and_mag(found, truth)
         return rdm.mean(), mag.mean()
 
@@ -85,6 +84,7 @@ class ModelsFiles(BemTest):
         solution = symmetricBem.Solution([symmetricBem.Surface(*mesh) for mesh in meshes], layers.conductivities)
         dipoles = np.loadtxt(self.path("model") / "dipoles.txt")
         dipoles = dipoles[np.linalg.norm(dipoles[:, :3], axis=1) > 0]  # the series has no direction in the middle
+        self.assertGreater(len(dipoles), 100)
         electrodes = np.loadtxt(self.path("model") / "electrodes.txt")
         self.assertEqual((dipoles.shape[1], len(electrodes)), (6, 21))
         values = solution.potentials(dipoles[:, :3], dipoles[:, 3:])

@@ -106,7 +106,7 @@ print(*(b - a for a, b in zip(before, after)))
         # 10,000 leaked meshes of 24 points and 44 triangles alone would be 16 MB
         self.assertLess(grown, 3e6)
         self.assertEqual(references, 0)
-        self.assertLess(abs(nones), 50)  # of the interpreter's own
+        self.assertLess(abs(nones), 500)  # the interpreter's own; a leak a call is 10,000
         self.assertLess(objects, 50)
 
     def test_reports_and_errors_of_progress_are_freed(self):

@@ -118,7 +118,7 @@ class IsosurfaceTest(InFolder):
         reader.SetFileName(str(BRAIN))
         filter.SetInputConnection(reader.GetOutputPort())
         filter.Update()
-        self.assertEqual(filter.GetOutput().GetNumberOfPolys(), 228_736)
+        self.assertEqual(filter.GetOutput().GetNumberOfPolys(), 228_714)
 
     def test_values_that_are_not_reached_have_no_surface(self):
         filter = Isosurface()

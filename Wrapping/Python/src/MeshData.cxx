@@ -195,6 +195,7 @@ std::string MeshData::report() {
 
 std::string MeshData::write(const std::string& path, std::optional<CoordinateFrame> frame,
                             std::vector<CellArray> cellArrays) const {
+    findMeshFormat(path);  // or the message would name the temporary's extension
     AtomicOutput output(path);
     std::string warning;
     output.write([&](const std::filesystem::path& file) {

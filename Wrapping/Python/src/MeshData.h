@@ -93,9 +93,8 @@ public:
     /// The bound that the mesh was asked to keep, mm; none: none, or not known.
     void setAskedBoundMm(std::optional<double> bound) { askedBoundMm_ = bound; }
 
-    /// Writes a file in place, in `frame` or in the format's own. Points of an unknown frame are
-    /// written as they are, and the file says no frame.
-    /// Writes a file, whole or not at all.
+    /// Writes a file, whole or not at all, in `frame` or in the format's own. Points of an unknown
+    /// frame are written as they are, and the file says no frame.
     /// \param cellArrays  as MeshWriteOptions has them
     /// \return a warning, without the file's name: the format's digits take the file beyond the
     ///         bound that was asked for; else ""
