@@ -6,7 +6,7 @@ import { fileURLToPath } from "node:url";
 
 const [build, version] = process.argv.slice(2);
 const here = dirname(fileURLToPath(import.meta.url)), folder = join(build, "npm", "adaptiso");
-rmSync(folder, { recursive: true, force: true });
+rmSync(join(build, "npm"), { recursive: true, force: true });
 mkdirSync(folder, { recursive: true });
 for (const name of ["README.md", "bin.mjs", "index.mjs", "index.d.ts", "worker.mjs"]) copyFileSync(join(here, name), join(folder, name));
 copyFileSync(join(here, "../../../LICENSE"), join(folder, "LICENSE"));

@@ -47,11 +47,15 @@ async function serve(job, send) {
   }
 }
 
-if (typeof self === "object" && typeof self.postMessage === "function") {
-  self.onmessage = ({ data }) => serve(data, (message, transfer = []) => self.postMessage(message, transfer));
-} else {
+async function serveThread() {
   const { parentPort } = await import("node:worker_threads"), { createRequire } = await import("node:module");
   globalThis.require = createRequire(import.meta.url);  // which Emscripten's glue takes for granted
   globalThis.__dirname = "";
   parentPort.once("message", (data) => serve(data, (message, transfer = []) => parentPort.postMessage(message, transfer)));
+}
+
+if (typeof self === "object" && typeof self.postMessage === "function") {
+  self.onmessage = ({ data }) => serve(data, (message, transfer = []) => self.postMessage(message, transfer));
+} else {
+  serveThread();  // not awaited: bundlers make workers that know no top-level await
 }

@@ -6,7 +6,7 @@ import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import puppeteer from "puppeteer-core";
 
-const kTop = resolve(import.meta.dirname ?? ".", "../../../..");
+export const kTop = resolve(import.meta.dirname ?? ".", "../../../..");
 export const kPage = process.env.ADAPTISO_PAGE ?? join(kTop, "build/web/adaptiso.html");
 const kPrograms = process.env.ADAPTISO_PROGRAMS ?? join(kTop, "build/release/bin");
 export const kPictures = process.env.ADAPTISO_PICTURES ?? join(kTop, "build/web/pictures");
