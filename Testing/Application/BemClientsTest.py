@@ -2,6 +2,7 @@
 python3-nibabel; exits 77 (skipped) without them.
 """
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -521,6 +522,9 @@ class RealHead(SharedFolderTest):
         report = json.loads((self.path("fitted") / "report.json").read_text())
         self.assertEqual((report["headPoints"]["count"], report["landmarks"]["origin"]), (len(scalp), "file"))
         self.assertLess(report["headPoints"]["meanMm"], 2)
+        moved, = (note for note in report["notes"] if note.startswith("landmarks: the head points moved those given: nasion by"))
+        for mm in re.findall(r"([\d.]+) mm", moved):  # given 10 mm off, found to 5 mm
+            self.assertTrue(5 < float(mm) < 15, moved)
         self.assertGreater(report["headPoints"]["largestMm"], 15)
         trans = mne.read_trans(self.path("fitted/head-mri-trans.fif"))
         space, = mne.read_source_spaces(self.path("fitted/sources-src.fif"))

@@ -89,7 +89,15 @@ void fitHeadPoints(const std::vector<NamedPoint>& points, const Landmarks& own,
     const SkinFit fit = fitToSkin(headPoints, model.meshes.back(), own, *placed.landmarks);
     move = fit.move;
     placed.headPoints = HeadPoints{std::ssize(headPoints), fit};
-    placed.landmarks = Landmarks{move(own.nasionMm), move(own.leftEarMm), move(own.rightEarMm)};
+    const Landmarks fitted{move(own.nasionMm), move(own.leftEarMm), move(own.rightEarMm)};
+    if (const auto& given = model.options.electrodes.landmarks) {
+        const auto off = [](const Vec3& a, const Vec3& b) { return formatFixed(norm(b - a), 1); };
+        model.notes.push_back("landmarks: the head points moved those given: nasion by " +
+                              off(given->nasionMm, fitted.nasionMm) + " mm, left ear by " +
+                              off(given->leftEarMm, fitted.leftEarMm) + " mm, right ear by " +
+                              off(given->rightEarMm, fitted.rightEarMm) + " mm");
+    }
+    placed.landmarks = fitted;
     placed.landmarkOrigin = "file";
     std::erase_if(model.warnings, [](const Warning& w) { return w.code == "guessed-landmarks"; });
     const std::string off =
