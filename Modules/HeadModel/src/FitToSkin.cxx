@@ -5,6 +5,7 @@
 
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/PortableMath.h"
 #include "adaptiso/HeadModel/Landmarks.h"
 
 namespace adaptiso {
@@ -34,7 +35,7 @@ std::array<double, 6> solved(Equations e) {
 
 /// About an axis through `pivot`, by the vector's length (radians).
 AffineTransform rotation(const Vec3& vector, const Vec3& pivot) {
-    const double angle = norm(vector), s = std::sin(angle), c = std::cos(angle);
+    const double angle = norm(vector), s = portable::sin(angle), c = portable::cos(angle);
     const Vec3 axis = normalized(vector);
     AffineTransform turn;
     for (int a = 0; a < 3; ++a) {
