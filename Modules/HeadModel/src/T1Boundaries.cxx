@@ -627,7 +627,9 @@ void warnOfContrast(const std::vector<float>& innerSkull, const Head& head,
         std::nth_element(levels.begin(), at, levels.end());
         return *at - head.levels.air;
     };
-    const double spread = (quartile(3) - quartile(1)) / quartile(2);
+    const double middle = quartile(2);
+    if (!(middle > 0)) return;
+    const double spread = (quartile(3) - quartile(1)) / middle;
     if (spread <= kWide) return;
     warnings.push_back({"brain-doubtful",
                         "the brain's levels spread by " + percentOf(spread) +
