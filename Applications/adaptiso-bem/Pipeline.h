@@ -33,6 +33,7 @@ struct BemOptions {
     std::vector<std::filesystem::path> pial;     ///< with t1
     std::vector<std::filesystem::path> sources;  ///< the cortex, for sources; two at most
     TissueLabels tissues;                        ///< with labels
+    std::string preset;                          ///< whose; empty: none
     std::filesystem::path headMask;              ///< with labels: all that lies within the skin
     std::filesystem::path volume;  ///< with surfaces: the image whose tkRAS is written
     ReadOptions read;              ///< of the main image

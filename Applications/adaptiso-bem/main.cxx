@@ -123,8 +123,8 @@ void declareInput(CLI::App& app, BemOptions& options) {
     input.value(
         "--preset", choiceName(kPresets),
         [&options](const std::string& text) {
-            const std::string& name = kPresets[parseChoice("--preset", text, kPresets)];
-            addPreset(options.tissues, tissuePreset(name));
+            options.preset = kPresets[parseChoice("--preset", text, kPresets)];
+            addPreset(options.tissues, tissuePreset(options.preset));
         },
         "The labels of SimNIBS's charm or headreco, of FreeSurfer's aseg, of SAMSEG, or of "
         "TotalSegmentator (task total: brain and skull; with --head-mask)");
@@ -314,14 +314,14 @@ void checkCombinations(const CLI::App& app, const BemOptions& options) {
     const auto require = [](bool isGood, const std::string& message) {
         if (!isGood) throw UsageError(message);
     };
-    BemRequest request{{}, options.tissues, options.surfaces.size()};
+    BemRequest request{
+        {}, options.tissues, options.surfaces.size(), options.sources.size(), options.preset};
     for (const std::string& name : givenOptions(app)) request.given.insert(name.substr(2));
     const std::string fault =
         bemFault(options.model, request, [](const std::string& name) { return "--" + name; });
     require(fault.empty(), fault);
     checkInputCoordinates(options.inputCoordinates,
                           options.surfaces.size() + options.pial.size() + options.sources.size());
-    require(options.sources.size() <= 2, "--sources: must be one or two surfaces");
     const bool namesLandmarks = options.nasion || options.leftEar || options.rightEar;
     require(!namesLandmarks || (options.nasion && options.leftEar && options.rightEar),
             "--nasion, --left-ear and --right-ear need each other");

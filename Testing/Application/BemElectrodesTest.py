@@ -4,7 +4,7 @@ import json
 import math
 
 from support import BAD_INPUT, USAGE, main
-from bemSupport import RADII, BemTest
+from bemSupport import RADII, BemTest, read_tri
 
 SKIN = RADII[-1]
 LANDMARKS = ("--nasion", f"0,{SKIN},0", f"--left-ear=-{SKIN},0,0", "--right-ear", f"{SKIN},0,0")
@@ -172,6 +172,35 @@ class Sources(BemTest):
         report = self.report("again")["sources"]
         self.assertEqual((report["counts"], report["moved"], report["dropped"]), ([40], 40, 0))
 
+    def write_stl(self, name, points, triangles):
+        facets = ("facet normal 0 0 0 outer loop " + " ".join(f"vertex {x} {y} {z}" for x, y, z in (points[v] for v in t))
+                  + " endloop endfacet" for t in triangles)
+        self.path(name).write_text("\n".join(["solid s", *facets, "endsolid s", ""]))
+
+    def test_an_open_surface_keeps_its_orientation(self):
+        """A part of a ball: it encloses nothing that could say which side is out."""
+        self.bem(*self.labels(), "-o", "model")
+        points, triangles = read_tri(self.path("model") / "inner_skull.tri")
+        low = [(x / 3, y / 3, z / 3 - 25) for x, y, z in points]
+        bowl = [t for t in triangles if all(low[v][2] < -25 for v in t)]
+        for name, sign, kept in (("out", 1, bowl), ("in", -1, [t[::-1] for t in bowl])):
+            self.write_stl("half.stl", low, kept)
+            done = self.bem(*self.labels(), "--sources", "half.stl", "--input-coordinates", "ras", "-o", name)
+            self.assertIn("sources: surface 1 is open, so its orientation is not checked", done.stdout)
+            for line in (self.path(name) / "dipoles.txt").read_text().splitlines():
+                x, y, z, *normal = map(float, line.split())
+                self.assertGreater(sign * sum(a * b for a, b in zip((x, y, z + 25), normal)), 0)
+
+    def test_a_surface_without_room_for_sources_asks_for_more_vertices(self):
+        """A disc 60 mm thick and 240 mm wide with 42 vertices: edges of 40 to 120 mm, and no place is deeper than 30 mm."""
+        self.bem(*self.labels()[:4], "--meg", "--voxel", 3, "--closing", 4, "--vertices", 42, "-o", "ball")
+        points, triangles = read_tri(self.path("ball") / "inner_skull.tri")
+        self.write_stl("flat.stl", [(2 * x, 2 * y, z / 2) for x, y, z in points], triangles)
+        self.write_stl("in.stl", [(x, y, z / 4) for x, y, z in points], triangles)
+        self.fails(BAD_INPUT, r"--sources: no source finds a place within inner_skull, one edge away from it; give more vertices",
+                   "--surfaces", "flat.stl", "--meg", "--vertices", 42, "--sources", "in.stl",
+                   "--input-coordinates", "ras", "-o", "m")
+
     def test_refusals(self):
         labels = self.labels()
         self.fails(USAGE, "--source-count needs --sources", *labels, "--source-count", 100, "-o", "m")
@@ -179,6 +208,9 @@ class Sources(BemTest):
         self.fails(USAGE, "must be one or two surfaces", *labels, "--sources", "a", "b", "c", "-o", "m")
         self.fails(USAGE, "--source-grid 0.5: must be", *labels, "--source-grid", 0.5, "-o", "m")
         self.fails(BAD_INPUT, "a.surf: ", *labels, "--sources", "a.surf", "-o", "m")
+        self.bem(*labels, "-o", "model")
+        self.fails(BAD_INPUT, "--sources: both surfaces are the same; give one for each hemisphere", *labels, "--sources",
+                   "model/inner_skull.surf", "model/inner_skull.surf", "-o", "m")
 
 
 if __name__ == "__main__":

@@ -230,7 +230,7 @@ class Presets(BemTest):
                  "all")
         for name in ("inner_skull.surf", "outer_skin.tri"):
             self.assertEqual((self.path("total") / name).read_bytes(), (self.path("all") / name).read_bytes())
-        self.fails(USAGE, "or --head-mask", "--labels", "total.nii", "--preset", "totalsegmentator", "-o", "m")
+        self.fails(USAGE, "totalsegmentator has no scalp: give --head-mask", "--labels", "total.nii", "--preset", "totalsegmentator", "-o", "m")
         small = head(values=(1, 1, 1))
         small.spacing = tuple(2 * s for s in small.spacing)
         write_nifti(self.path("other.nii"), small)

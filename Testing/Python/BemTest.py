@@ -294,6 +294,30 @@ class FourLayers(InFolder):
         far = adaptiso.Mesh(cortex.vertices + 200, cortex.faces)
         with self.assertRaisesRegex(adaptiso.Error, "sources: 100.0 % of the sources lie outside inner_skull"):
             adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), sources=[far], **QUICK)
+        for options, rule in (({"sources": [cortex] * 3}, "sources must be one or two surfaces"),
+                              ({"sources": []}, "sources must be one or two surfaces"),
+                              ({"sources": [cortex] * 2}, "sources: both surfaces are the same"),
+                              ({"source_count": 50}, "source_count needs sources"),
+                              ({"source_count": 4098, "source_grid": 15}, "source_count needs sources")):
+            with self.assertRaisesRegex(adaptiso.Error, rule):
+                adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), **options, **QUICK)
+
+    def test_stated_frames_are_of_all_surfaces_in_order(self):
+        ready = [self.folder / f"{name}.stl" for name in NAMES]
+        for name, path in zip(NAMES, ready):
+            three_spheres().surfaces[name].save(path)
+        cortex = adaptiso.Mesh(three_spheres().surfaces["inner_skull"].vertices / 2 + (9, 0, 0),
+                               three_spheres().surfaces["inner_skull"].faces)
+        lps = adaptiso.Mesh(cortex.vertices * (-1, -1, 1), cortex.faces)
+        lps.save(self.folder / "lh.stl")
+        options = {"surfaces": ready, "sources": [self.folder / "lh.stl"]}
+        model = adaptiso.bem(**options, input_coordinates=["ras"] * 3 + ["lps"], vertices=162)
+        model.save(self.folder / "model")
+        places = np.loadtxt(self.folder / "model" / "dipoles.txt")[:, :3]
+        np.testing.assert_allclose(places.mean(axis=0), cortex.vertices.mean(axis=0), atol=0.01)
+        for words in (["ras"] * 3, ["lps"], ["ras"] * 5):
+            with self.assertRaisesRegex(adaptiso.Error, "one for each surface"):
+                adaptiso.bem(**options, input_coordinates=words)
 
     @needs("nibabel")
     def test_pial_surfaces_and_aseg_are_taken_as_by_the_program(self):
@@ -382,7 +406,9 @@ class Failures(unittest.TestCase):
     def test_a_head_mask_goes_with_labels_and_on_their_grid(self):
         labels, body = spheres((90, 91, 0)), (spheres() > 0).astype(np.uint8)
         common = {"tissues": "totalsegmentator", "labels": labels, "affine": affine()}
-        for part, named in (("head_mask", {**common}),
+        with self.assertRaisesRegex(adaptiso.Error, "^labels needs tissues brain=..., skull=... and scalp=...$"):
+            adaptiso.bem(labels=labels)
+        for part, named in (("totalsegmentator has no scalp: give head_mask", {**common}),
                             ("head_mask: the head mask", {**common, "head_mask": body[:-1]}),
                             ("head_mask needs labels", {"t1": labels, "head_mask": body})):
             with self.assertRaisesRegex(adaptiso.Error, part):

@@ -12,6 +12,7 @@
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
+#include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso {
 namespace {
@@ -152,9 +153,11 @@ std::vector<Vec3> SourceSpace::orientations(std::int64_t point) const {
 }
 
 SourceSpace surfaceSources(TriangleMesh surface, std::int64_t count) {
-    if (enclosedVolume(surface) < 0) flipOrientation(surface);
+    const bool isClosed = checkTopology(surface, {.maxExamplesPerDefect = 0}).isClosed();
+    if (isClosed && enclosedVolume(surface) < 0) flipOrientation(surface);
     surface.normals = areaWeightedNormals(surface);
     SourceSpace sources{std::move(surface), {}};
+    sources.isOpen = !isClosed;
     const std::vector<VertexId> vertices = verticesOfTriangles(sources.surface);
     if (count >= std::ssize(vertices)) {
         sources.used.assign(vertices.begin(), vertices.end());

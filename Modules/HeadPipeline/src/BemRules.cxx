@@ -83,7 +83,8 @@ Fault faultOfNumbers(const BemModelOptions& options) {
     return std::nullopt;
 }
 
-Fault faultOfInputs(const BemModelOptions& options, const BemRequest& request) {
+Fault faultOfInputs(const BemModelOptions& options, const BemRequest& request,
+                    const BemNaming& naming) {
     const auto has = [&](std::string_view name) { return request.given.contains(name); };
     const auto sources =
         std::ranges::count_if(std::array{"t1", "labels", "probabilities", "ct", "surfaces"}, has);
@@ -100,6 +101,8 @@ Fault faultOfInputs(const BemModelOptions& options, const BemRequest& request) {
     const std::string count = std::to_string(options.surfaceCount());
     const TissueLabels& tissues = request.tissues;
     const bool hasLabels = has("labels");
+    const std::string presetOr = naming("preset") == naming("tissue") ? "" : "{preset}, or ";
+    const std::string& preset = request.preset;
     const std::pair<bool, std::string> faults[] = {
         {withBrain && isOne, "{layers} 4 and {meg} exclude each other"},
         {withBrain && has("ct"),
@@ -109,14 +112,19 @@ Fault faultOfInputs(const BemModelOptions& options, const BemRequest& request) {
         {has("input-coordinates") && !has("surfaces") && !has("pial") && !has("sources"),
          "{input-coordinates} needs {surfaces}, {pial} or {sources}"},
         {hasLabels && tissues.brain.empty() && !tissues.othersAreBrain,
-         "{labels} needs {preset}, or {tissue} brain=..., skull=... and scalp=..."},
+         "{labels} needs " + presetOr + "{tissue} brain=..., skull=... and scalp=..."},
         {hasLabels && withBrain && tissues.csf.empty(),
          "{layers} 4 needs {tissue} csf=... as well"},
+        {hasLabels && !isOne && !preset.empty() && !tissues.skull.empty() &&
+             tissues.scalp.empty() && !has("head-mask"),
+         preset + " has no scalp: give {head-mask} (or {meg})"},
         {hasLabels && !isOne &&
              (tissues.skull.empty() || (tissues.scalp.empty() && !has("head-mask"))),
          "{labels} needs {tissue} skull=... and scalp=... as well (or {head-mask}, or {meg})"},
         {has("surfaces") && request.surfaces != options.surfaceCount(),
          "{surfaces} needs " + count + " files, inside out"},
+        {has("sources") && (request.sources < 1 || request.sources > 2),
+         "{sources} must be one or two surfaces"},
         {options.vertices.size() > 1 && options.vertices.size() != options.surfaceCount(),
          "{vertices} must be one number, or " + count},
     };
@@ -200,7 +208,7 @@ std::string named(const std::string& text, const BemNaming& naming) {
 
 std::string bemFault(const BemModelOptions& options, const BemRequest& request,
                      const BemNaming& naming) {
-    Fault fault = faultOfInputs(options, request);
+    Fault fault = faultOfInputs(options, request, naming);
     if (!fault) fault = faultOfNumbers(options);
     if (!fault) fault = faultOfCombinations(options, request);
     return fault ? named(*fault, naming) : "";

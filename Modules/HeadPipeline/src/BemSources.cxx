@@ -1,6 +1,7 @@
 #include "adaptiso/HeadPipeline/BemSources.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
@@ -38,9 +39,13 @@ void tellMoves(const BemSources& sources, const std::string& surface, BemModel& 
     const std::int64_t count = sources.count(), all = count + moves.dropped;
     constexpr double kMostOutside = 0.5, kManyOutside = 0.05, kFarMm = 5;
     const auto outside = static_cast<double>(moves.outside);
-    if (outside > kMostOutside * static_cast<double>(all) || count == 0) {
+    if (outside > kMostOutside * static_cast<double>(all)) {
         throw InvalidInput(percentText(moves.outside, all) + " of the sources lie outside " +
                            surface + "; are the surfaces of this head, in the same space?");
+    }
+    if (count == 0) {
+        throw InvalidInput("no source finds a place within " + surface +
+                           ", one edge away from it; give more vertices");
     }
     if (moves.moved + moves.dropped > 0) {
         model.notes.push_back("sources: " + formatCount(moves.moved) + " nearer to " + surface +
@@ -84,8 +89,18 @@ void placeSources(BemModel& model, const BemHooks& hooks) {
                                    ", one edge away; give a finer grid, or more vertices");
             }
         }
+        if (options.surfaces.size() == 2 &&
+            options.surfaces[0].points == options.surfaces[1].points) {
+            throw InvalidInput("both surfaces are the same; give one for each hemisphere");
+        }
         for (TriangleMesh& surface : options.surfaces) {
             sources.spaces.push_back(surfaceSources(std::move(surface), options.count));
+            if (sources.spaces.back().isOpen) {
+                model.notes.push_back(
+                    "sources: surface " + std::to_string(sources.spaces.size()) +
+                    " is open, so its orientation is not checked: dipoles point along its "
+                    "triangles' normals");
+            }
             add(sources.moves, keepWithin(sources.spaces.back(), compartment));
         }
         options.surfaces.clear();

@@ -50,6 +50,23 @@ TEST(SourceSpace, NormalsOfASurfaceInsideOutPointOutward) {
     }
 }
 
+TEST(SourceSpace, AnOpenSurfaceKeepsItsOrientation) {
+    TriangleMesh half = icosphere(3, {}, 30);
+    std::erase_if(half.triangles, [&](const Triangle& t) {
+        return half.points[t[0]].z + half.points[t[1]].z + half.points[t[2]].z < 0;
+    });
+    for (const double side : {1, -1}) {
+        const SourceSpace sources = surfaceSources(half, 10);
+        EXPECT_TRUE(sources.isOpen);
+        for (const std::int64_t n : sources.used) {
+            EXPECT_GT(side * dot(sources.orientations(n)[0], normalized(half.points[n])),
+                      0.9);  // at the rim triangles lie on one side alone
+        }
+        flipOrientation(half);
+    }
+    EXPECT_FALSE(surfaceSources(kSkull, 10).isOpen);
+}
+
 TEST(SourceSpace, SourcesNearerThanAnEdgeMoveInwardsAndFarOnesStay) {
     TriangleMesh cortex = icosphere(3, {}, 60);
     for (Vec3& p : cortex.points) {

@@ -300,7 +300,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         voxel: Optional[float] = None, conductivity: Sequence[float] = (0.3, 0.006, 0.3),
         electrodes: Union[Mapping[str, Point], Any] = None, electrodes_in: Optional[str] = None,
         montage: Optional[str] = None, landmarks: Union[Mapping[str, Point], str, None] = None,
-        sources: Optional[Sequence[Any]] = None, source_count: int = 4098,
+        sources: Optional[Sequence[Any]] = None, source_count: Optional[int] = None,
         source_grid: Optional[float] = None, head_shape: bool = False, threads: int = 0,
         progress: Optional[Progress] = None) -> HeadModel:
     """Make the nested surfaces of a head model: inner skull, outer skull, outer skin, and with four
@@ -396,8 +396,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         The cortex, as `surfaces`: ``["lh.white", "rh.white"]``: dipoles along its normals, none
         nearer to the innermost surface than one edge; `save` writes dipoles.txt (OpenMEEG) and
         sources-src.fif (MNE).
-    source_count : int
-        Sources of each of these surfaces, spread evenly.
+    source_count : int, optional
+        With `sources`: of each of these surfaces, spread evenly. Default: 4098.
     source_grid : float, optional
         Instead of `sources`: dipoles along x, y and z at the points of a grid, mm apart, 1 to 50.
     head_shape : bool
@@ -440,7 +440,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         ("head_mask", head_mask), ("pial", pial), ("volume", volume), ("tissues", tissues),
         ("input_coordinates", input_coordinates), ("electrodes", electrodes),
         ("electrodes_in", electrodes_in), ("montage", montage), ("landmarks", landmarks),
-        ("sources", sources), ("source_grid", source_grid))
+        ("sources", sources), ("source_count", source_count), ("source_grid", source_grid))
         if value is not None}
     options: Dict[str, Any] = {
         "layers": count("layers", layers),
@@ -452,7 +452,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         "min_gap": _numbers("min_gap", min_gap if isinstance(min_gap, (tuple, list)) else [min_gap]),
         "conductivity": _numbers("conductivity", conductivity),
         "head_shape": flag("head_shape", head_shape),
-        "source_count": count("source_count", source_count, 1, 1000000),
+        "source_count": (None if source_count is None
+                         else count("source_count", source_count, 1, 1000000)),
         "source_grid": 0.0 if source_grid is None else number(
             "source_grid", source_grid, "a number from 1 to 50, in mm", lambda mm: 1 <= mm <= 50),
         "input_coordinates": ([input_coordinates] if isinstance(input_coordinates, str)
@@ -466,7 +467,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
     given_threads, callback = checked_threads(threads), checked_progress(progress)
     named = _tissues(tissues)
     _adaptiso.check_bem(list(given), named, options,
-                        0 if surfaces is None else len(_listed_surfaces("surfaces", surfaces)))
+                        0 if surfaces is None else len(_listed_surfaces("surfaces", surfaces)),
+                        0 if sources is None else len(_listed_surfaces("sources", sources)))
     source = _source(given, input_coordinates, affine)
     with contextlib.ExitStack() as meanwhile:
         for image in (*source.images, *source.masks.values()):
@@ -493,10 +495,13 @@ def _source(given: Dict[str, Any], input_coordinates: Any, affine: Any) -> _Sour
     for name in ("brain_mask", "aseg", "lesion", "head_mask"):
         if name in given:
             source.masks[name] = _image(name, given[name], affine, source)
-    for name, meshes in (("pial", source.pial), ("sources", source.sources),
-                         ("surfaces", source.surfaces)):
-        if name in given:
-            meshes.extend(_surfaces(name, given[name], input_coordinates, source))
+    groups = [(name, meshes, _listed_surfaces(name, given[name]))
+              for name, meshes in (("surfaces", source.surfaces), ("pial", source.pial),
+                                   ("sources", source.sources)) if name in given]
+    frames = iter(stated_frames(input_coordinates,
+                                [surface for _, _, group in groups for surface in group]))
+    for name, meshes, group in groups:
+        meshes.extend(_surfaces(name, [(surface, next(frames)) for surface in group], source))
     return source
 
 
@@ -517,11 +522,11 @@ def _listed_surfaces(name: str, surfaces: Any) -> List[Any]:
     return listed(name, surfaces.values() if isinstance(surfaces, Mapping) else surfaces)
 
 
-def _surfaces(name: str, surfaces: Any, input_coordinates: Any, source: _Source) -> List[Mesh]:
+def _surfaces(name: str, framed: List[Tuple[Any, Optional[str]]], source: _Source) -> List[Mesh]:
+    """Meshes of surfaces, each with the frame stated for it. \\raises Error"""
     role = {"surfaces": "surface", "pial": "pial surface", "sources": "source surface"}[name]
     meshes = []
-    given = _listed_surfaces(name, surfaces)
-    for surface, stated in zip(given, stated_frames(input_coordinates, given)):
+    for surface, stated in framed:
         if stated is not None and not is_path(surface):
             raise Error("input_coordinates: is for files; a mesh in memory has its frame")
         file = base_name(checked_path(name, surface)) if is_path(surface) else ""

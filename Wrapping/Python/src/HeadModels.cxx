@@ -457,7 +457,9 @@ BemModelOptions modelOptionsOf(const py::dict& options) {
     takeNumbers(options, "conductivity", kConductivityRule,
                 [&](const auto& sigmas) { return setConductivities(model, sigmas); });
     model.vertices = take<std::vector<std::int64_t>>(options, "vertices");
-    model.sources.count = take<std::int64_t>(options, "source_count");
+    if (const auto count = take<std::optional<std::int64_t>>(options, "source_count")) {
+        model.sources.count = *count;
+    }
     model.sources.gridMm = take<double>(options, "source_grid");
     model.wantsHeadShape = take<bool>(options, "head_shape");
     model.inputCoordinates = take<std::vector<std::string>>(options, "input_coordinates");
@@ -490,10 +492,12 @@ HeadSources sourcesOf(const py::dict& from) {
 
 /// \param given     arguments that are not None
 /// \param surfaces  ready ones
+/// \param sources   surfaces of the cortex
 /// \throws InvalidInput  options that break a rule
 void checkBem(const std::vector<std::string>& given, const py::dict& tissues,
-              const py::dict& options, std::size_t surfaces) {
-    BemRequest request{{}, tissuesOf(tissues), surfaces};
+              const py::dict& options, std::size_t surfaces, std::size_t sources) {
+    BemRequest request{
+        {}, tissuesOf(tissues), surfaces, sources, take<std::string>(tissues, "preset")};
     for (const std::string& argument : given) request.given.insert(optionName(argument));
     const std::string fault = bemFault(modelOptionsOf(options), request, argumentName);
     if (!fault.empty()) throw InvalidInput(fault);
@@ -570,7 +574,7 @@ void declareHeadModels(py::module_& module) {
         },
         py::arg("source"), py::arg("options"), py::arg("threads"), py::arg("progress"));
     module.def("check_bem", &checkBem, py::arg("given"), py::arg("tissues"), py::arg("options"),
-               py::arg("surfaces"));
+               py::arg("surfaces"), py::arg("sources"));
 }
 
 }  // namespace adaptiso::python

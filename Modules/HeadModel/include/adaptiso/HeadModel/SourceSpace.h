@@ -15,6 +15,7 @@ struct SourceSpace {
     TriangleMesh surface;
     std::vector<std::int64_t> used;       ///< numbers of the points that are sources, ascending
     std::optional<ImageGeometry> grid{};  ///< LPS mm
+    bool isOpen = false;                  ///< the surface has a boundary: normals are as given
 
     /// Unit dipoles: along the normal or, of a grid, along each axis.
     std::vector<Vec3> orientations(std::int64_t point) const;
@@ -22,7 +23,8 @@ struct SourceSpace {
 
 /// Sources at `count` vertices spread evenly over a surface: each next one is the vertex that lies
 /// farthest, along edges, from those taken [Eldar1997]. All vertices where there are no more; those
-/// of no triangle are left out. A surface that is inside out is turned.
+/// of no triangle are left out. A closed surface that is inside out is turned; an open one
+/// has no inside and keeps its orientation.
 /// Cost: O(V log V log count), V vertices. \pre count > 0
 SourceSpace surfaceSources(TriangleMesh surface, std::int64_t count);
 

@@ -43,6 +43,8 @@ struct BemRequest {
     std::set<std::string, std::less<>> given;  ///< inputs and options: "t1", "brain-mask"
     TissueLabels tissues;
     std::size_t surfaces = 0;  ///< ready ones
+    std::size_t sources = 0;   ///< surfaces of the cortex
+    std::string preset{};      ///< whose tissues; empty: none
 };
 
 /// Writes the name of an option ("max-skull") as the user knows it.
