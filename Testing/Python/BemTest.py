@@ -429,6 +429,8 @@ class Failures(unittest.TestCase):
                 {"labels": labels, "tissues": {"brain": ["one"], "skull": [1], "scalp": [3]}},
                 {"labels": labels, "tissues": {"brain": [9], "skull": [2], "scalp": [3]}},
                 {"labels": labels, "tissues": TISSUES, "vertices": 3},
+                {"labels": labels, "tissues": TISSUES, "vertices": np.array(0.5)},
+                {"labels": labels, "tissues": {"brain": np.array("one"), "skull": [1], "scalp": [3]}},
                 {"labels": labels, "tissues": TISSUES, "vertices": [162, 162]},
                 {"labels": labels, "tissues": TISSUES, "edge_length": (5, 3)},
                 {"labels": labels, "tissues": TISSUES, "edge_length": (0.01, 0.02)},

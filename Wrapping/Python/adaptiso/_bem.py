@@ -446,8 +446,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         "layers": count("layers", layers),
         "meg": flag("meg", meg),
         "vertices": [] if vertices is None else [
-            count("vertices", part)
-            for part in (vertices if hasattr(vertices, "__iter__") else [vertices])],
+            count("vertices", part) for part in _one_or_more("vertices", vertices)],
         "edge_length": None if edge_length is None else _numbers("edge_length", edge_length),
         "min_gap": _numbers("min_gap", min_gap if isinstance(min_gap, (tuple, list)) else [min_gap]),
         "conductivity": _numbers("conductivity", conductivity),
@@ -552,6 +551,12 @@ def _surfaces(name: str, framed: List[Tuple[Any, Optional[str]]], source: _Sourc
     return meshes
 
 
+def _one_or_more(name: str, value: Any) -> List[Any]:
+    """The parts of a sequence, or the one value: an array without axes is one. \\raises Error"""
+    is_sequence = hasattr(value, "__iter__") and getattr(value, "ndim", 1) > 0
+    return listed(name, value) if is_sequence else [value]
+
+
 def _numbers(name: str, value: Any) -> List[float]:
     return [number(name, part) for part in listed(name, value)]
 
@@ -604,6 +609,5 @@ def _tissues(value: Any) -> Dict[str, Any]:
                     "brain, csf, skull and scalp")
     return {"preset": "", "tissues": {
         name: [count(f"tissues, {name}", label, -2**63, 2**63 - 1)
-               for label in (listed(f"tissues, {name}", labels)
-                             if hasattr(labels, "__iter__") else [labels])]
+               for label in _one_or_more(f"tissues, {name}", labels)]
         for name, labels in value.items()}}
