@@ -1,7 +1,7 @@
-// Examples/vite with the npm package, as its README says: built, and served while it is written.
+// Examples/vite with the npm package, as its README says: built, and served while it is written; and NiiVue.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { cpSync, existsSync, readdirSync, rmSync } from "node:fs";
+import { cpSync, existsSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { after, before, describe, it } from "node:test";
 import puppeteer from "puppeteer-core";
@@ -19,38 +19,71 @@ describe("the example with Vite", { skip: !kBrowsers.includes("chrome") }, () =>
   before(async () => {
     folder = makeFolder();
     cpSync(join(kTop, "Examples/vite"), folder, { recursive: true });
-    call("npm", "install", "--ignore-scripts", "--no-audit", "--no-fund", "--silent", resolve(kPackages, kArchive));
+    call("npm", "install", "--ignore-scripts", "--no-audit", "--no-fund", "--silent", resolve(kPackages, kArchive), "@niivue/niivue@0.69.0");
     call("npx", "vite", "build", "--logLevel", "error");
-    writeNifti(join(folder, "balls.nii"), [48, 48, 48], balls);
-    browser = await puppeteer.launch({ executablePath: "/usr/bin/chromium", headless: true, args: ["--no-sandbox"], timeout: 120_000 });
+    writeNifti(join(folder, "balls.nii"), [48, 48, 48], balls, [[280, "FloatLE", 1.5], [292, "FloatLE", -30], [308, "FloatLE", 12]]);
+    browser = await puppeteer.launch({ executablePath: "/usr/bin/chromium", headless: true,
+      args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"], timeout: 120_000 });
   });
   after(async () => {
     await browser?.close();
     rmSync(folder, { recursive: true, force: true });
   });
 
+  /** Calls `use` with a page of a server of Vite. */
+  async function served(args, path, use) {
+    const server = spawn("node_modules/.bin/vite", args, { cwd: folder, env: { ...process.env, NO_COLOR: "1" } });
+    try {
+      const address = await new Promise((done, fail) => {
+        server.stdout.on("data", (text) => { if (/Local: +\S/.test(text)) done(/Local: +(\S+)/.exec(text)[1]); });
+        server.on("exit", (code) => fail(new Error(`vite ended with ${code}`)));
+      });
+      const page = await browser.newPage();
+      await page.goto(address + path, { waitUntil: "networkidle0" });
+      await use(page);
+    } finally {
+      server.kill();
+    }
+  }
+
   for (const [name, args] of [["built", ["preview"]], ["served", []]]) {
     it(`makes a surface of a file, ${name}`, async () => {
-      const server = spawn("node_modules/.bin/vite", args, { cwd: folder, env: { ...process.env, NO_COLOR: "1" } });
-      try {
-        const address = await new Promise((done, fail) => {
-          server.stdout.on("data", (text) => { if (/Local: +\S/.test(text)) done(/Local: +(\S+)/.exec(text)[1]); });
-          server.on("exit", (code) => fail(new Error(`vite ended with ${code}`)));
-        });
-        const page = await browser.newPage();
-        await page.goto(address, { waitUntil: "networkidle0" });
-        const ended = () => page.waitForFunction(() => document.getElementById("state").textContent !== "" && document.getElementById("cancel").disabled,
-          { timeout: 60_000 });
-        await (await page.$("#image")).uploadFile(join(folder, "balls.nii"));
-        await ended();
-        assert.match(await page.$eval("#state", (element) => element.textContent), /^\d{3,} triangles$/);
-        await page.$eval("#state", (element) => { element.textContent = ""; });
-        await (await page.$("#image")).uploadFile(join(folder, "package.json"));
-        await ended();
-        assert.match(await page.$eval("#state", (element) => element.textContent), /^adaptiso-mesh: package\.json: /);
-      } finally {
-        server.kill();
-      }
+      await served(args, "", async (page) => {
+        const state = async (file) => {
+          await page.$eval("#state", (element) => { element.textContent = ""; });
+          await (await page.$("#image")).uploadFile(join(folder, file));
+          await page.waitForFunction(() => document.getElementById("state").textContent !== "" && document.getElementById("cancel").disabled,
+            { timeout: 60_000 });
+          return page.$eval("#state", (element) => element.textContent);
+        };
+        assert.match(await state("balls.nii"), /^\d{3,} triangles$/);
+        assert.match(await state("package.json"), /^adaptiso-mesh: package\.json: /);
+      });
     });
   }
+
+  it("adds to NiiVue the surface of the volume it shows, where the file's own lies", async () => {
+    writeFileSync(join(folder, "niivue.html"), '<canvas id="gl" width="400" height="400"></canvas><script type="module" src="./niivue.js"></script>');
+    writeFileSync(join(folder, "niivue.js"), `
+      import { Niivue } from "@niivue/niivue";
+      import { mesh } from "adaptiso";
+      import { addSurface } from "adaptiso/niivue";
+      const niivue = new Niivue(), refusal = await addSurface(niivue).catch((error) => error.message);
+      await niivue.attachToCanvas(document.getElementById("gl"));
+      await niivue.loadVolumes([{ url: "./balls.nii" }]);
+      const { added } = await addSurface(niivue, { iso: 120 });
+      const bytes = new Uint8Array(await (await fetch("./balls.nii")).arrayBuffer());
+      const { mesh: own } = await mesh({ path: "balls.nii", bytes }, { iso: 120 });
+      window.found = { refusal, meshes: niivue.meshes.length, points: [...added.pts], triangles: [...added.tris],
+        own: { points: [...own.points], triangles: [...own.triangles] } };`);
+    await served([], "niivue.html", async (page) => {
+      await page.waitForFunction(() => window.found !== undefined, { timeout: 60_000 });
+      const { refusal, meshes, points, triangles, own } = await page.evaluate(() => window.found);
+      assert.match(refusal, /^addSurface: niivue shows no volume/);
+      assert.equal(meshes, 1);
+      assert.deepEqual(triangles, own.triangles);
+      assert.equal(points.length, own.points.length);
+      assert.ok(points.every((x, n) => Math.abs(x - own.points[n]) < 1e-5));  // NiiVue's are floats
+    });
+  });
 });
