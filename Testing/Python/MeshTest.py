@@ -68,6 +68,13 @@ class Values(unittest.TestCase):
         self.assertEqual(mesh.report, {})
         self.assertIsNone(mesh.error_bound)
 
+    def test_triangles_that_name_a_vertex_twice_are_checked(self):
+        """Of two that share it a corner outside the triangle was read, which ended the program."""
+        rows = np.zeros((9, 3), int)
+        rows[[0, 1, 7], 2] = 4, 2, 3
+        check = adaptiso.check((rows, rows), threads=1)
+        self.assertIn("noDegenerateTriangles", check.failed)
+
     def test_arrays_that_are_no_mesh_are_refused(self):
         points, faces = np.eye(3), [[0, 1, 2]]
         for arguments in ((points[:, :2], faces), (points, [[0, 1]]), (points, [[0, 1, 3]]),

@@ -48,6 +48,7 @@ bool areClear(std::span<const Vec3> points, const std::array<Id, 3>& s, const st
     }
     if (shared == 3) return false;
     const int other = inT[0] < 0 ? 0 : inT[1] < 0 ? 1 : 2;  // the corner of s that t does not have
+    if (inT[(other + 1) % 3] == inT[(other + 2) % 3]) return false;  // s names a vertex twice
     const Corners fromEdge = cornersFrom(s, (other + 1) % 3);
     const int otherInT = 3 - inT[(other + 1) % 3] - inT[(other + 2) % 3];
     return touchAtEdgeOnly(fromEdge, {fromEdge[1], fromEdge[0], points[t[otherInT]]}, squaredSine);
