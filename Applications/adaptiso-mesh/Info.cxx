@@ -1,3 +1,5 @@
+#include "Info.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,24 +32,6 @@
 namespace adaptiso::mesher {
 namespace {
 
-/// How an image's axes lie in space.
-struct AxesSummary {
-    std::string orientation;  ///< where i, j and k lead, nearest: "LPS", "RAS", ...
-    Vec3 anglesDeg;           ///< between j and k, k and i, i and j
-    double tiltDeg = 0;       ///< between k and the normal of i and j
-
-    /// Not at right angles, by more than headers round.
-    bool isSheared() const;
-};
-/// Statistics of an image's values, for --info.
-struct ValueSummary {
-    std::int64_t finite = 0;
-    std::int64_t notFinite = 0;                ///< NaN or infinite
-    std::vector<double> percentiles;           ///< of kPercents; empty when none is finite
-    std::optional<SampleHistogram> histogram;  ///< none when all are equal, or none is finite
-    std::vector<std::vector<double>> otsu;     ///< one, two and three thresholds, or none
-};
-inline constexpr double kPercents[] = {0, 0.1, 1, 5, 25, 50, 75, 95, 99, 99.9, 100};
 /// Content of the --info report.
 struct ImageInfo {
     std::string fault;  ///< why the image is refused, its path left out; the rest is empty then
@@ -93,20 +77,6 @@ bool isInteger(PixelType type) {
     return type != PixelType::Float32 && type != PixelType::Float64;
 }
 
-bool AxesSummary::isSheared() const {
-    constexpr double kHeadersRoundDeg = 0.01;  // DICOM's six digits of a cosine: 0.0001
-    return std::max({std::abs(anglesDeg.x - 90), std::abs(anglesDeg.y - 90),
-                     std::abs(anglesDeg.z - 90)}) > kHeadersRoundDeg;
-}
-
-AxesSummary summarizeAxes(const ImageGeometry& geometry) {
-    const auto& [i, j, k] = geometry.indexToPhysical.column;
-    const double fromNormal = angleDeg(k, cross(i, j));
-    return {orientationOf(geometry.indexToPhysical),
-            {angleDeg(j, k), angleDeg(k, i), angleDeg(i, j)},
-            std::min(fromNormal, 180 - fromNormal)};
-}
-
 /// Where the samples lie but for a thousandth on both sides; whole numbers fill whole bins.
 SampleHistogram histogramOf(const VolumeView& volume, double low, double high) {
     constexpr double kBins = 256;
@@ -120,6 +90,22 @@ SampleHistogram histogramOf(const VolumeView& volume, double low, double high) {
 double percentile(const ValueSummary& values, double percent) {
     const auto* const place = std::find(std::begin(kPercents), std::end(kPercents), percent);
     return values.percentiles[static_cast<std::size_t>(place - std::begin(kPercents))];
+}
+
+}  // namespace
+
+bool AxesSummary::isSheared() const {
+    constexpr double kHeadersRoundDeg = 0.01;  // DICOM's six digits of a cosine: 0.0001
+    return std::max({std::abs(anglesDeg.x - 90), std::abs(anglesDeg.y - 90),
+                     std::abs(anglesDeg.z - 90)}) > kHeadersRoundDeg;
+}
+
+AxesSummary summarizeAxes(const ImageGeometry& geometry) {
+    const auto& [i, j, k] = geometry.indexToPhysical.column;
+    const double fromNormal = angleDeg(k, cross(i, j));
+    return {orientationOf(geometry.indexToPhysical),
+            {angleDeg(j, k), angleDeg(k, i), angleDeg(i, j)},
+            std::min(fromNormal, 180 - fromNormal)};
 }
 
 ValueSummary summarizeValues(const VolumeView& volume) {
@@ -136,6 +122,8 @@ ValueSummary summarizeValues(const VolumeView& volume) {
     values.otsu = otsuThresholds(volume, 3);
     return values;
 }
+
+namespace {
 
 std::vector<Warning> namedWarnings(const MeshOptions& options, const ImageInfo& info) {
     std::vector<Warning> warnings;
