@@ -30,6 +30,11 @@
 #include "adaptiso/ImageIO/SampleStatistics.h"
 
 namespace adaptiso::mesher {
+
+bool isInteger(PixelType type) {
+    return type != PixelType::Float32 && type != PixelType::Float64;
+}
+
 namespace {
 
 /// Content of the --info report.
@@ -71,10 +76,6 @@ std::string orientationOf(const Mat3& axes) {
         code[bestAxis] = (isPositive ? kPositive : kNegative)[bestRow][0];
     }
     return code;
-}
-
-bool isInteger(PixelType type) {
-    return type != PixelType::Float32 && type != PixelType::Float64;
 }
 
 /// Where the samples lie but for a thousandth on both sides; whole numbers fill whole bins.

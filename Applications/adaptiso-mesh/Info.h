@@ -22,6 +22,8 @@ struct AxesSummary {
 };
 AxesSummary summarizeAxes(const ImageGeometry& geometry);
 
+bool isInteger(PixelType type);
+
 /// Statistics of an image's values, for --info.
 struct ValueSummary {
     std::int64_t finite = 0;
