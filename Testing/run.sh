@@ -22,5 +22,6 @@ fi
 
 cmake --log-level=WARNING --preset release
 cmake --build --preset release
-exec ctest --preset release --output-on-failure -LE long -j 2 \
+# one more than there are processors: some tests wait for Slurm, for browsers, for a time to pass
+exec ctest --preset release --output-on-failure -LE long -j "$(($(nproc) + 1))" \
     --output-junit "$top/build/release/junit.xml" "$@"
