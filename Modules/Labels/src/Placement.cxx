@@ -309,7 +309,8 @@ std::vector<Vec3> startPoints(const LabelGrid& grid, const DualComplex& complex,
 std::vector<Vec3> smooth(const std::vector<Room>& rooms, const Neighbours& neighbours,
                          std::vector<Vec3>&& points) {
     Smoother smoother(rooms, neighbours, std::move(points));
-    smoother.smoothAtOnce(seriesOf(kRoundsAtOnce));
+    static const std::vector<double> series = seriesOf(kRoundsAtOnce);
+    smoother.smoothAtOnce(series);
     for (int round = 0; round < kRounds; ++round) {
         smoother.step(kInward);
         smoother.step(kOutward);
