@@ -16,6 +16,7 @@ STARTER = Path(os.environ.get("ADAPTISO_WEB", SOURCE / "build/web")) / "npm/adap
 NODE = shutil.which("node")
 
 #: What a report has of the run, not of the result.
+MEANS = ("solidAngleShare", "mean", "meanMm", "rms", "rmsMm")
 OF_THE_RUN = {"seconds", "peakMemoryMb", "threads", "version", "startedAt", "finishedAt", "command", "host",
               "libraries", "program", "date", "work"}
 
@@ -31,14 +32,14 @@ def layers(x, y, z):
     return 1 if r < 62 else 2 if r < 70 else 3 if r < 78 else 0
 
 
-def without_run(value, is_angle=False):
+def without_run(value, is_rounded=False):
     if isinstance(value, dict):
-        return {key: without_run(of, is_angle or key.endswith("Deg") or key == "solidAngleShare")
+        return {key: without_run(of, is_rounded or key.endswith("Deg") or key in MEANS)
                 for key, of in value.items() if key not in OF_THE_RUN}
     if isinstance(value, list):
-        return [without_run(of, is_angle) for of in value]
-    # angles are atan2's, whose last digit is the C library's
-    return float(f"{value:.12g}") if is_angle and isinstance(value, float) else value
+        return [without_run(of, is_rounded) for of in value]
+    # angles are atan2's, whose last digit is the C library's; means of distances differ in their last two
+    return float(f"{value:.12g}") if is_rounded and isinstance(value, float) else value
 
 
 class WebTest(ApplicationTest):
