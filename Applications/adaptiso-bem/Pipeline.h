@@ -24,7 +24,7 @@ struct BemOptions {
     std::filesystem::path ct;
     std::vector<std::filesystem::path> surfaces;
 
-    /// Of surfaces, pial, sources in this order; empty: as they say.
+    /// Frames of the surface, pial and source files, in this order. Empty: as the files say.
     std::vector<CoordinateFrame> inputCoordinates;
 
     std::filesystem::path brainMask;             ///< with t1

@@ -57,7 +57,7 @@ std::vector<std::string> partsOf(const std::string& path) {
     return parts;
 }
 
-/// Whether the path, or a folder above it, matches; "**" stands for any number of folders.
+/// Matches the path or a folder above it; "**" stands for any number of folders.
 bool fits(std::span<const std::string> pattern, std::span<const std::string> path) {
     if (pattern.empty()) return true;
     if (pattern[0] == "**" && fits(pattern.subspan(1), path)) return true;

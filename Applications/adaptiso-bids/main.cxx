@@ -118,8 +118,8 @@ constexpr const char* kFooter = R"(Examples:
       by the options of the participant level: quality.tsv, summary.html, who is
       missing and why
 
-What is there from the same inputs (by checksum), options and version is not
-made again. A participant may be run again at any time, by several at once too.
+Skips results already made from the same inputs (by checksum), options and
+version. A participant may be run again at any time, by several at once too.
 
 Exit codes: 0 done, 1 a scan or a participant failed, or (group) is missing,
 2 wrong usage, 3 bad input (or no memory or disk left, or a run was killed: try

@@ -25,7 +25,7 @@ export async function filesOf(data: DataTransfer): Promise<InputFile[]> {
 
 const takers = new Map<Element, (files: InputFile[]) => void>();
 
-/** What is dropped outside all zones is for the first one that is seen; it must not take the page away. */
+/** Gives files dropped beside the zones to the first visible zone; the browser would open them in place of the page. */
 export function takeStrayFiles(): void {
   takeFiles(document.body, (files) => {
     const zone = document.querySelector("[role=tabpanel]:not([hidden]) .drop");

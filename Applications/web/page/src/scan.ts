@@ -6,7 +6,7 @@ import { nifti } from "./nifti";
 import type { ImageFacts, InputFile } from "./protocol";
 import { kMostMemory, type Page, type Task, tooLarge } from "./task";
 
-/** What it takes unpacked, at least: gzip ends with the length of its last member, modulo 4 GiB. */
+/** Least size after unpacking, bytes: gzip ends with the length of its last member, modulo 4 GiB. */
 async function unpackedBytes({ data }: InputFile): Promise<number> {
   const size = data instanceof Blob ? data.size : data.length;
   if (!(data instanceof Blob) || size < 18) return size;

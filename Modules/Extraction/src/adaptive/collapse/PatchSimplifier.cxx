@@ -135,7 +135,7 @@ void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* cost
     tried_.finish();
 }
 
-/// What refuses the star for its shape, or for its distance from the full-resolution surface.
+/// The reason to refuse the star: its shape, or its distance from the full-resolution surface.
 Refusal PatchSimplifier::shapeOrDistance(Change& change) const {
     const Refusal refusal = shapeStar(patch_, limits_.shape, change.star);
     if (refusal != Refusal::None) return refusal;
