@@ -112,6 +112,7 @@ public:
         walk(folder, 0);
         std::ranges::sort(dicomFiles_);
         refuseStandIns();
+        if (dicomFiles_.empty()) refuseOtherFormat();
     }
 
     const std::vector<fs::path>& dicomFiles() const { return dicomFiles_; }
@@ -212,6 +213,17 @@ private:
                                         found[0].fault, remedy));
         }
         damaged_.insert(damaged_.end(), found.begin(), found.end());
+    }
+
+    /// Slices as pictures, most often.
+    void refuseOtherFormat() {
+        if (others_.empty()) return;
+        const auto foreign = findForeignContent(others_.front());
+        if (!foreign || foreign->kind == ForeignKind::StandIn) return;
+        refuse(folder_,
+               fmt::format("no DICOM file found in this folder: {} {}",
+                           displayName(others_.front().filename()), foreign->fault),
+               foreign->remedy);
     }
 
     /// One that lies beside what it holds is a copy; alone, it is a slice that would be missing.

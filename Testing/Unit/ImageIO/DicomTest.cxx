@@ -251,6 +251,8 @@ TEST(DicomDamage, DeepNestingAndWrongLengthsAreRefused) {
 TEST(DicomFolder, WithoutImagesIsRefused) {
     const TempFolder folder;
     expectRefusal(folder.path(), "no DICOM file found");
+    writeFile(folder / "slice2.png", "\x89PNG\r\n\x1a\n" + std::string(60, ' '));
+    expectRefusal(folder.path(), "slice2.png is a PNG picture; convert pictures to NRRD");
     writeFile(folder / "slice.dcm", "");
     EXPECT_NE(refusalOf(folder.path()).find("a slice would be missing"), std::string::npos);
 }
