@@ -11,7 +11,7 @@
 
 namespace adaptiso {
 
-/// What a program that takes many inputs is asked to do with them.
+/// Options of a program that takes many inputs.
 struct BatchOptions {
     std::filesystem::path list;  ///< inputs, one a line; "-" for stdin, empty for none
     std::filesystem::path outputFolder;

@@ -57,7 +57,7 @@ struct CommonFrame {
     CoordinateFrame frame = CoordinateFrame::Ras;
     bool isKnown = true;                  ///< else no file says one; points are as if it were Ras
     std::optional<ImageGeometry> volume;  ///< for TkRas, as lpsToFrame() needs it
-    std::vector<Warning> warnings;        ///< what had to be assumed
+    std::vector<Warning> warnings;        ///< assumptions made
 
     std::optional<CoordinateFrame> known() const {
         return isKnown ? std::optional(frame) : std::nullopt;

@@ -106,7 +106,7 @@ std::vector<QualityRow> rowsOfReport(const QualityRow& scan, const Json& report,
     return rows;
 }
 
-/// What exists of a dataset: lines of the page, each with its rows of the table.
+/// State of a dataset: lines of the page, each with its rows of the table.
 class DatasetStatus {
 public:
     struct Entry {

@@ -13,7 +13,7 @@ namespace adaptiso::bids {
 /// The two levels of a BIDS App.
 enum class BidsLevel { Participant, Group };
 
-/// What adaptiso-bids can make, in its order.
+/// Products that adaptiso-bids can make, in their order.
 inline constexpr const char* kProducts[] = {"surfaces", "bem", "labels", "check"};
 
 struct BidsOptions {
@@ -23,7 +23,7 @@ struct BidsOptions {
     std::vector<std::string> participants, sessions;  ///< labels; empty for all
     bool skipsValidation = false;
 
-    /// What to make, of kProducts, each with its program's options: "iso=100,largest".
+    /// Products to make (kProducts), each with its program's options: "iso=100,largest".
     std::map<std::string, std::string> wanted;
     std::map<std::string, std::string> lists;  ///< the same options as given; empty if not
     std::filesystem::path segmentations;       ///< a dataset; empty for `dataset`

@@ -85,7 +85,7 @@ struct ShownSurfaces {
     std::vector<Shown> surfaces;
     /// TkRas if the scanner's frame is unknown; empty if no file states a frame
     std::optional<CoordinateFrame> frame = CoordinateFrame::Ras;
-    std::vector<std::string> notes;  ///< what had to be assumed
+    std::vector<std::string> notes;  ///< assumptions made
     std::optional<ReadVolume> image;
 };
 

@@ -36,7 +36,7 @@ struct Measurement {
     double tolerance = 0;  ///< 0 for counts
     double measured = 0;
     int digits = 0;        ///< decimals to show
-    std::string error{};   ///< what kept it from being measured; empty: nothing
+    std::string error{};   ///< why it could not be measured; else empty
     bool isYesNo = false;  ///< 1 is yes, 0 is no
 
     /// Never of what is not a number.

@@ -46,7 +46,7 @@ struct ImageInfo {
     ImageGeometry geometry;  ///< as preprocessed, like all that follows
     PixelType pixelType{};
     ValueSummary values;
-    std::vector<std::string> refusals;  ///< what making a surface would be refused for
+    std::vector<std::string> refusals;  ///< reasons to refuse a surface
     std::optional<DicomSeries> series;  ///< with --show-phi, of DICOM
 };
 

@@ -74,7 +74,7 @@ struct SimplifyRun : ProgramRun {
 
     const SimplifyCommand& command;
     SurfaceSummary input{};
-    std::vector<Finding> findings{};  ///< what is not sound of the input; empty: it is sound
+    std::vector<Finding> findings{};  ///< faults of the input; empty: it is sound
     /// The result; empty (`output.triangles` 0) if the surface was refused.
     SurfaceSummary output{};
     SimplifyStatistics statistics{};

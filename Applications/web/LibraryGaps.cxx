@@ -132,7 +132,7 @@ from_chars_result from_chars(const char* first, const char* last, float& value) 
 
 }  // namespace std
 
-// What Emscripten's C library declares and lacks: files are in memory, and a page starts no child.
+// Functions that Emscripten's C library declares and lacks: files are in memory, without children.
 extern "C" {
 int syncfs(int) {
     return 0;

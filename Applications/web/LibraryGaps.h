@@ -1,6 +1,6 @@
 #pragma once
 
-/// What the C++20 library of Emscripten 3.1.6 (libc++ 14) lacks, in namespace std: included before
+/// Parts that the C++20 library of Emscripten 3.1.6 (libc++ 14) lacks, in std: included before
 /// every source of the build for the browser, so that the modules need no second wording. Each part
 /// goes when a newer library has it; Decisions/0012-the-programs-in-a-page.md says why it stands
 /// here.

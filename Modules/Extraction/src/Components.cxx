@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t kNone = -1;
 
-/// What is known of one component before anything is compared.
+/// Measures of one component, made before components are compared.
 struct Piece {
     double volumeMm3 = 0;  ///< signed; negative: a cavity
     double areaMm2 = 0;

@@ -7,7 +7,7 @@
 
 namespace adaptiso::headmodel {
 
-/// What a mask is as a solid of voxels.
+/// Topology of a mask as a solid of voxels.
 struct MaskTopology {
     std::int64_t eulerCharacteristic = 0;  ///< of the solid of closed cubes: 1 for a ball
     /// Squares of four and cubes of eight voxels in which only voxels that touch by an edge or a

@@ -7,7 +7,7 @@
 
 namespace adaptiso::headmodel {
 
-/// What a coil's sensitivity makes of an image: tissue of one kind is brighter here than there.
+/// Brightness by a coil's sensitivity: tissue of one kind is brighter here than there.
 /// The logarithm is a quadratic of place, kept within what the tissue looked at has.
 class BiasField {
 public:

@@ -21,7 +21,7 @@ void unite(std::vector<float>& part, const std::vector<float>& more) {
     for (std::size_t n = 0; n < part.size(); ++n) part[n] = std::max(part[n], more[n]);
 }
 
-/// What of the mask is tissue: CSF is dark in a T1. All of it where that leaves too little.
+/// Part of the mask that is tissue: CSF is dark in a T1. All of it where that leaves too little.
 std::vector<float> tissuePart(const BrainInT1& head, std::vector<std::string>& notes) {
     constexpr double kLevel = 0.5, kLeastShare = 0.6;
     const double level = head.levels.air + kLevel * (head.levels.tissue - head.levels.air);

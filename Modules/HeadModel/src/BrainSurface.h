@@ -14,7 +14,7 @@ namespace adaptiso::headmodel {
 /// outside.
 std::vector<float> asegPart(const VolumeView& aseg, const ImageGeometry& grid);
 
-/// What lies within surfaces of the cortex, of both hemispheres.
+/// Solid within the cortex's surfaces, of both hemispheres.
 /// \throws SourceError  pial surfaces that enclose nothing
 std::vector<float> pialPart(const std::vector<TriangleMesh>& pial, const ImageGeometry& grid);
 

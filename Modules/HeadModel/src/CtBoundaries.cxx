@@ -31,7 +31,7 @@ Mask both(const Mask& a, const Mask& b) {
     return result;
 }
 
-/// What is in the head and not bone.
+/// Voxels in `a` and not in `b`.
 Mask without(const Mask& a, const Mask& b) {
     Mask result(a.size());
     for (std::size_t n = 0; n < a.size(); ++n) result[n] = a[n] & (b[n] ^ 1);
@@ -73,7 +73,7 @@ struct Head {
     ImageGeometry grid;
     std::vector<float> hu;
     std::vector<std::uint8_t> faces;  ///< imageFaces(), 0 where something was taken off
-    Mask solid;                       ///< what is above the level of skin
+    Mask solid;                       ///< voxels above the level of skin
 };
 
 /// The part of a volume that a box holds, and where it lies.

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kModel = "headmodel";
 
-/// What lies within a surface, as FieldTrip names tissues. Without a surface of its own the brain
+/// Tissue within a surface, by FieldTrip's names. Without a surface of its own the brain
 /// fills the inner skull.
 std::string tissueWithin(HeadSurface surface, std::size_t count) {
     switch (surface) {

@@ -17,7 +17,7 @@ const char* interfaceOf(std::size_t n, std::size_t count) {
     return kInterfaces[static_cast<std::size_t>(headSurface(n, count))];
 }
 
-/// What lies within surface n. Without a brain's surface the inner skull holds the brain.
+/// Domain within surface n. Without a brain's surface the inner skull holds the brain.
 const char* domainOf(std::size_t n, std::size_t count) {
     constexpr std::array<const char*, kHeadSurfaceCount> kFour{"Brain", "CSF", "Skull", "Skin"};
     constexpr std::array<const char*, 3> kThree{"Brain", "Skull", "Skin"};

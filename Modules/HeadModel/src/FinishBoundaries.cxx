@@ -118,7 +118,7 @@ BoxedSolid boxed(const std::vector<float>& part, const ImageGeometry& grid, doub
     return box;
 }
 
-/// What of the grid lies inside.
+/// Voxels of the grid inside the solid.
 Mask insideOf(const BoxedSolid& solid, const Index3& size) {
     Mask inside(static_cast<std::size_t>(size[0] * size[1] * size[2]), 0);
     const Mask inBox = above(solid.field.part, kFractionIsovalue);

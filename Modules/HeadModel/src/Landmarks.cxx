@@ -16,15 +16,15 @@ using namespace headmodel;
 
 namespace {
 
-// Of FreeSurfer's average head, by the length of its inner skull: how far below the top and behind
-// the front of the inner skull.
+// Measured on FreeSurfer's average head, in lengths of its inner skull: distance below the top and
+// behind the front of the inner skull.
 constexpr double kNasionBelow = 0.66, kEarBelow = 0.69, kEarBehind = 0.566;
 // By proportion a head that is tilted has its nose's tip for a nasion, 48 mm off.
 constexpr double kSeenNasionMm = 5, kProportionMm = 50, kEarMm = 20;
 
 constexpr Vec3 kForward{0, -1, 0};  // LPS
 
-/// What of a head the proportions are of.
+/// Extent of a head that proportions refer to.
 struct Frame {
     double middleX, frontY, topZ, lengthMm;
 };

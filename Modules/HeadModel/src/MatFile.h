@@ -41,7 +41,7 @@ MatVariable readMatVariable(const std::filesystem::path& path, const char* name)
 
 /// A field of a struct array's item. \throws FileError  it is not there
 matvar_t& matField(matvar_t& item, const char* field, std::size_t index = 0);
-/// What matPoints(), matTriangles(), matRow() and matText() made. \throws FileError  it is not that
+/// Inverses of matPoints(), matTriangles(), matRow(), matText(). \throws FileError  another kind
 std::vector<Vec3> pointsOf(const matvar_t& variable);
 std::vector<Triangle> trianglesOf(const matvar_t& variable, std::size_t points,
                                   bool isClockwise = false);

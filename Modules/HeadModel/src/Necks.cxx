@@ -69,7 +69,7 @@ Vec3 placeOf(std::int64_t voxel, const ImageGeometry& grid) {
                             static_cast<double>(voxel / slice)});
 }
 
-/// What hangs together farther out than the stub, of those that reach far enough.
+/// Components farther out than the stub that reach far enough.
 std::vector<Neck> necksAlong(const std::vector<float>& way, const ImageGeometry& grid,
                              const std::vector<Step>& steps) {
     Mask left(way.size());

@@ -43,12 +43,12 @@ void checkInput(const std::vector<TriangleMesh>& surfaces, const NestOptions& op
     }
 }
 
-/// Of surface n to surface n + 1.
+/// Least gap between surfaces n and n + 1.
 double gapOf(const NestOptions& options, std::size_t n) {
     return options.minGapsMm[options.minGapsMm.size() == 1 ? 0 : n];
 }
 
-/// What no movement is to mend: surfaces that cross themselves, or were given in a wrong order.
+/// Faults that no movement can mend: surfaces that cross themselves, or in a wrong order.
 std::vector<Finding> findHopeless(const std::vector<TriangleMesh>& surfaces) {
     std::vector<Finding> findings;
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
@@ -89,7 +89,7 @@ SurfaceMove measureMove(const TriangleMesh& before, const TriangleMesh& after) {
     return move;
 }
 
-/// What a caller relies on, found out by other code than what made it so.
+/// Checks the promised gaps and nesting by code other than that which made them.
 void verify(const NestOptions& options, NestResult& result) {
     for (std::size_t n = 0; n + 1 < result.surfaces.size(); ++n) {
         const double wanted = gapOf(options, n);

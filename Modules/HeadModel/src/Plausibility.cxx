@@ -214,7 +214,7 @@ private:
         }
     }
 
-    /// What of a surface lies on one plane.
+    /// Part of a surface that lies on one plane.
     struct Flat {
         double areaMm2 = 0;
         std::vector<VertexId> vertices;
@@ -271,7 +271,7 @@ private:
         return flats;
     }
 
-    /// Of a face by the direction (LPS) that it faces to.
+    /// Name of a face by its outward direction (LPS).
     static std::string faceName(const Vec3& outward) {
         constexpr std::array<std::array<const char*, 2>, 3> kNames{
             {{"right", "left"}, {"front", "back"}, {"lower", "upper"}}};

@@ -86,7 +86,7 @@ Lack lackOf(const Vec3& p, const Asked& surface, Side wanted, double gapMm) {
     return lack;
 }
 
-/// What each vertex of the moving surface still has to go, as far as is known.
+/// Way that each vertex of the moving surface still has to go, as far as is known.
 class Needs {
 public:
     explicit Needs(std::size_t vertices) : mm_(vertices), direction_(vertices) {}
@@ -105,7 +105,7 @@ private:
     std::vector<Vec3> direction_;
 };
 
-/// Of the moving surface's vertices: on the wrong side, or too near.
+/// Adds needs of the moving surface's vertices: on the wrong side, or too near.
 void addOwnVertices(const TriangleMesh& moving, const Asked& fixed, const PushOptions& options,
                     Needs& needs) {
     const Side wanted = options.isOutward ? Side::Outside : Side::Inside;
@@ -120,7 +120,7 @@ void addOwnVertices(const TriangleMesh& moving, const Asked& fixed, const PushOp
     }
 }
 
-/// Of the other surface's vertices: those that poke through a triangle move it.
+/// Adds needs from the other surface's vertices: those that poke through a triangle move it.
 void addOtherVertices(const Asked& moving, const TriangleMesh& fixed, const PushOptions& options,
                       Needs& needs) {
     const Side wanted = options.isOutward ? Side::Inside : Side::Outside;
@@ -138,7 +138,7 @@ void addOtherVertices(const Asked& moving, const TriangleMesh& fixed, const Push
     }
 }
 
-/// Of pairs of triangles: too near between their vertices. Pairs that meet go apart along the
+/// Adds needs from pairs of triangles too near between vertices. Pairs that meet part along the
 /// moving triangle's normal.
 void addTriangles(const Asked& moving, const Asked& fixed, const PushOptions& options,
                   Needs& needs) {

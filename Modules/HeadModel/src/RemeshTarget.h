@@ -45,7 +45,7 @@ public:
     /// near without hanging together there is not jumped to. Costs a fraction of project() when the
     /// point moved by a few triangles.
     Landing slide(const Vec3& p, std::int64_t from) const;
-    /// What the surface has at its own vertex.
+    /// Landing at the surface's own vertex.
     Landing atVertex(VertexId v) const;
 
     /// Least squares quadric over the vertices that hang together with the landing within

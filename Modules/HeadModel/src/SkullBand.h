@@ -7,7 +7,7 @@
 
 namespace adaptiso::headmodel {
 
-/// What the search for the skull in a T1 found.
+/// Result of the search for the skull in a T1.
 struct SkullBand {
     std::vector<float> outerSkull;  ///< raw part of voxels inside the outer skull
     std::vector<Vec3> seenMm;       ///< where rays show the outer skull

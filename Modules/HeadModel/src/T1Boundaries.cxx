@@ -34,7 +34,7 @@ struct Head {
     Mask mask;                   ///< closed and filled
     double cutMm2 = 0;           ///< of its side, where tissue was taken out of the image
     BiasField bias;              ///< as it was taken out of t1
-    bool isFramed = false;       ///< what is thinner than 12 mm is no part of it
+    bool isFramed = false;       ///< parts thinner than 12 mm do not belong to it
     double darkShare = 1;        ///< of what lies 6 to 16 mm below the skin: bone
     Mask lesion;                 ///< given as such; else empty
     bool isFluidBright = false;  ///< a T2
@@ -335,7 +335,7 @@ double partAtSkin(const Mask& brain, const std::vector<float>& belowSkin, double
     return static_cast<double>(near) / static_cast<double>(voxelsIn(brain));
 }
 
-/// What a brain can be: not the wrong size, not at the skin.
+/// Checks that a brain has a possible size and does not touch the skin.
 bool isPlausibleBrain(const Mask& brain, const Head& head, const std::vector<float>& belowSkin) {
     // scalp and skull are thicker together; on a T2 CSF, which touches the skull, is in it
     const double nearestMm = head.isFluidBright ? 5 : 8;
@@ -398,7 +398,7 @@ Mask withoutHoles(const Mask& mask, const Index3& size) {
     return result;
 }
 
-/// What thresholds and morphology know of the brain.
+/// Search for the brain by thresholds and morphology.
 class BrainSearch {
 public:
     explicit BrainSearch(const Head& head)
@@ -415,7 +415,7 @@ public:
         middle_ = ballAround(deepestVoxel(depth), head.grid, 20);
     }
 
-    /// What hangs together with the head's middle by more than twice `radiusMm`.
+    /// Voxels connected with the head's middle by more than twice `radiusMm`.
     Mask looseAt(double radiusMm) const {
         const Index3& size = head_.grid.size;
         const Mask core = componentsWith(middle_, eroded(tissue_, head_.grid, radiusMm), size);
@@ -566,7 +566,7 @@ std::string percentOf(double share) {
     return shortNumber(std::round(100 * share)) + " %";
 }
 
-/// What lies around the inner skull tells whether it is in its place. Right ones have 2 to 8 % of
+/// Checks the inner skull's place by the tissue around it. Right ones have 2 to 8 % of
 /// rays that begin in tissue (at the temples and the base), brains that lost a part 13 to 60 %.
 void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<Warning>& warnings) {
     constexpr double kUsuallySeen = 0.6, kUsuallyInTissue = 0.12, kMostInTissue = 0.3;

@@ -46,7 +46,7 @@ void guessUnit(PointFile& file, const std::string& name, BemModel& model) {
     model.warnings.push_back({"guessed-unit", "does not say its unit; taken for " + unit, name});
 }
 
-/// Of tkRAS the volume whose FreeSurfer files are written; without one these are in scanner RAS.
+/// tkRAS refers to the volume whose FreeSurfer files are written; without one it is scanner RAS.
 AffineTransform toLps(CoordinateFrame frame, const BemModel& model) {
     if (frame == CoordinateFrame::TkRas && !model.tkRasVolume) frame = CoordinateFrame::Ras;
     return inverse(lpsToFrame(frame, model.tkRasVolume));

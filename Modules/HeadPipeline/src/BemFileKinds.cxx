@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr double kMetreMm = 1000;
 
-/// What all kinds are made from.
+/// Input of all kinds.
 struct Source {
     const BemModel& model;
     const BemFileOptions& options;

@@ -83,8 +83,8 @@ void note(BemModel& model, std::size_t n, const std::string& text) {
     model.notes.push_back(bemSurfaceName(n, model.options.surfaceCount()) + ": " + text);
 }
 
-/// What is to be done to a surface. Does what leaves the surface where it is: drops what is of no
-/// use, merges vertices, turns it outward.
+/// Returns the work that a surface needs. Does at once what leaves it in its place: drops useless
+/// triangles, merges vertices, turns it outward.
 Need tidied(std::size_t n, TriangleMesh& mesh, BemModel& model) {
     const std::size_t vertices = mesh.points.size();
     const std::int64_t dropped = dropUseless(mesh);

@@ -21,7 +21,7 @@ constexpr double kFitMm = 0.5;
 /// Files keep floats: a gap must not fall short by their rounding (3e-5 mm at 500 mm).
 constexpr double kRoundingMm = 1e-4;
 
-/// Of four surfaces the thinnest layer, the CSF, decides how short edges are: adaptive lengths,
+/// The thinnest of four layers, the CSF, decides how short edges are: adaptive lengths,
 /// scaled until the whole model has no more vertices than solvers take. What flat triangles do to
 /// the layers' thickness cancels in part where surfaces are alike: of limits tried on spheres 4 to
 /// 5 mm lost at no eccentricity, 4 to 8 mm at 0.9 (HeadModel.md).

@@ -29,7 +29,7 @@
 namespace adaptiso {
 namespace {
 
-/// What a reader of ITK does not know; the warning of it.
+/// A property that a reader of ITK does not know, and its warning.
 struct Doubt {
     const char *code, *text;
 };

@@ -1,4 +1,4 @@
-// What ITK looks for in the libraries of ITK_AUTOLOAD_PATH.
+// Entry point that ITK looks for in the libraries of ITK_AUTOLOAD_PATH.
 #include <itkObjectFactoryBase.h>
 #include <itkVersion.h>
 

@@ -15,7 +15,7 @@ class FilterRun {
 public:
     explicit FilterRun(vtkAlgorithm& filter) : filter_(filter) {}
 
-    /// Of part `part` of `parts` equal ones.
+    /// Progress of part `part` of `parts` equal ones.
     ProgressCallback progress(int part = 0, int parts = 1);
 
     /// \return  why the work failed, one line; empty where it is done or was aborted

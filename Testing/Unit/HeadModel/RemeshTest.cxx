@@ -24,7 +24,7 @@ namespace {
 
 using namespace adaptiso::testing;
 
-constexpr double kWantedAngleDeg = 35;  // 5th percentile, issue 6
+constexpr double kWantedAngleDeg = 35;  // 5th percentile
 
 Implicit ball(double radiusMm) {
     return [=](const Vec3& p) { return radiusMm - norm(p - Vec3{0.23, -0.31, 0.17}); };

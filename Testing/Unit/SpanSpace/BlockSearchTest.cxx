@@ -36,7 +36,7 @@ Volume loneSample(const Index3& size, const Index3& place) {
     return Volume::fromSamples(std::move(samples), geometry);
 }
 
-/// What issue 3 grants the kd-tree: 1.2 times the answer and the square root of all blocks.
+/// Bound of the kd-tree's visits: 1.2 times the answer and the square root of all blocks.
 double grantedVisits(const SpanSpaceIndex& index, const BlockQuery& query) {
     return 1.2 * static_cast<double>(query.blocks.size()) +
            std::sqrt(static_cast<double>(index.grid().blockCount()));

@@ -88,7 +88,7 @@ TEST(SpanSpaceIndex, VisitsFewNodesBesidesTheAnswer) {
     const SpanSpaceIndex index = SpanSpaceIndex::build(truth.volume, {4, Border::Closed});
     for (const double isovalue : {10.0, 40.0, 64.0, 100.0, 127.0}) {
         const BlockQuery query = index.blocksAt(isovalue);
-        // the bound of issue 3: 1.2 times the answer and the square root of all blocks
+        // 1.2 times the answer and the square root of all blocks
         EXPECT_LE(static_cast<double>(query.nodesVisited),
                   1.2 * static_cast<double>(query.blocks.size()) +
                       std::sqrt(static_cast<double>(index.grid().blockCount())))

@@ -1,4 +1,4 @@
-// What the tests share: browsers, inputs made here, and the native programs.
+// Shared by the tests: browsers, inputs made here, and the native programs.
 import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";

@@ -50,7 +50,7 @@ public:
     }
 
 private:
-    /// What a run made, and what was found of it.
+    /// Result of a run, and its proof.
     struct Attempt {
         SimplifiedSurface surface;
         DistanceProof proof;
@@ -173,7 +173,7 @@ private:
         return changes;
     }
 
-    /// Of places beyond the bound, each once: some have hundreds of places.
+    /// Triangles with places beyond the bound, each once: some have hundreds of places.
     static std::vector<SurfaceState::Number> trianglesOf(const ErrorBound& error) {
         std::vector<SurfaceState::Number> triangles;
         for (const PlaceBeyond& place : error.beyondLimit) {

@@ -37,8 +37,8 @@ inline constexpr double kCountMissed = 0.001;
 /// A round of mending gains little when it leaves more than this part of the triangles with places
 /// beyond the bound.
 inline constexpr double kMended = 0.5;
-/// Of the bound: a part of the surface that is thinner is a web or a needle, where the height over
-/// a sample's tangent plane says little of how far a point is from the surface. The allowed
+/// As a fraction of the bound: a thinner part of the surface is a web or a needle, where the height
+/// over a sample's tangent plane says little about a point's distance to the surface. The allowed
 /// distance is smaller there from the start. Chosen by runs that had to begin again: ch2 at 60.5
 /// (three runs) and 100.5 (1,591 vertices undone) take one, for .5 and .2 % more triangles.
 inline constexpr double kWeb = 0.5;
@@ -146,13 +146,13 @@ inline constexpr double kFineRounding = 1e-9;
 
 // ---- Meshes (simplify(), MeshSurface) ----
 
-/// Of the bound: collapsing needles, triangles without area, may move vertices as far.
+/// As a fraction of the bound: collapsing needles (no area) may move vertices as far.
 inline constexpr double kNeedlePart = 0.01;
 
 /// Triangles for each voxel's face of surface, by which a mesh gets voxels: marching cubes' on
 /// scans. Of them, the widest that they are made for the bound's sake.
 inline constexpr double kTrianglesPerFace = 3, kWidestVoxel = 3;
-/// Of the mesh's extent: below it places could not be numbered in 64 bits.
+/// As a fraction of the mesh's extent: below it places could not be numbered in 64 bits.
 inline constexpr double kLeastVoxel = 1e-15;
 
 // ---- Collapses (PatchSimplifier, ChangedStar, ErrorTracker, CrossingGuard) ----

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kChunkBlocks = 256;
 
-/// What is kept of an active block.
+/// Record of an active block.
 template <int N, class Id>
 struct AscBlock : BlockVertices<N, Id> {
     std::uint32_t firstBox = 0;  ///< in the chunk; of the boxes that hold surface
@@ -134,7 +134,7 @@ void climbBlocks(AscSurface<N, Id>& surface) {
     });
 }
 
-/// What the boxes of a chunk add up to.
+/// Sums over the boxes of a chunk.
 template <int N>
 struct AscTally {
     std::array<BoxCount, N + 1> counts{};  ///< by longest side

@@ -24,7 +24,7 @@ std::uint16_t caseOf(const BoxCases& cases, const BlockSamples<N>& samples, cons
     return cases.caseIndex(corners, joined);
 }
 
-/// What the surface of the full grid is in a simple box of more than one cell.
+/// Surface of the full grid in a simple box of more than one cell.
 struct BoxCensus {
     std::int64_t marchingCubesTriangles = 0;
     bool changesTopology = false;  ///< a disc for each loop on its faces is not the same surface

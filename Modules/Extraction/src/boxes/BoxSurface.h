@@ -54,7 +54,7 @@ struct BoxRecord {
     int level() const { return place >> 12; }
 };
 
-/// What is kept of an active block.
+/// Record of an active block.
 template <int N, class Id>
 struct BlockRecord : BlockVertices<N, Id> {
     BoxTree<N> tree;
@@ -120,7 +120,7 @@ struct HalfEdgeRef {
 template <int N, class Id>
 HalfEdgeRef twinAcrossFace(const BoxSurface<N, Id>& surface, const HalfEdgeRef& ref);
 
-/// What blocks are divided into: boxes as large as they are simple, or unit boxes.
+/// Division of blocks: boxes as large as they are simple, or unit boxes.
 enum class Division { Simple, Unit };
 
 /// How far facets merge: as far as they agree, or not beyond the faces of their block.

@@ -33,7 +33,7 @@ class LatticeSampler {
 public:
     static std::unique_ptr<LatticeSampler> make(const VolumeView& volume, double isovalue,
                                                 Border border);
-    /// Of a volume with a closed border of which only a part is in memory: all indices are those
+    /// For a volume with a closed border of which only a part is in memory: all indices are those
     /// of the whole. \pre nothing is asked that needs samples of the volume that are not there
     /// \param window  the samples that are there; its geometry's size alone counts
     /// \param first   index of its first sample

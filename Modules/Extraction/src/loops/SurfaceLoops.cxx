@@ -9,7 +9,7 @@
 namespace adaptiso::detail {
 namespace {
 
-/// What the loops say of a vertex.
+/// Use of a vertex by the loops.
 struct VertexUse {
     std::uint8_t loops = 0;    ///< passages of loops, capped
     bool needed : 1 = false;   ///< a loop turns here

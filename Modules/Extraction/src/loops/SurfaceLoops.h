@@ -8,7 +8,7 @@
 
 namespace adaptiso::detail {
 
-/// What a loop bounds, as one word: a part of a plane (PlaneKey) or, in space, a disc in a box
+/// Key of the facet that a loop bounds: a part of a plane (PlaneKey) or, in space, a disc in a box
 /// (BoxKey). The top bit tells them apart.
 struct LoopKey {
     std::uint64_t word = 0;

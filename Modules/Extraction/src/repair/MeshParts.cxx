@@ -24,7 +24,7 @@ namespace {
 constexpr std::int64_t kPiece = 1 << 12;
 /// Below, a mesh fits a processor's cache in any order.
 constexpr double kManyTriangles = 1 << 15;
-/// Of the number of points: how far apart the ends of an edge are in the list, in the mean.
+/// As a fraction of the points: mean distance of an edge's ends in the list.
 /// Marching cubes' are a hundredth, in any order a third.
 constexpr double kScattered = 0.1;
 

@@ -19,7 +19,7 @@ struct MeshParts {
     Vec3 origin;
     std::vector<Vec3> points;  ///< those that triangles use
     std::vector<Triangle> triangles;
-    /// Of each point: Patch::kPlain, or for those that were cut apart Patch::kBorder + 1 + the
+    /// Per point: Patch::kPlain, or for those that were cut apart Patch::kBorder + 1 + the
     /// number of the input's point in nonManifold. Empty: all plain.
     std::vector<std::uint32_t> marks;
     std::vector<std::uint8_t> isKept;        ///< of each point: it stays. Empty: none is

@@ -8,8 +8,8 @@
 namespace adaptiso {
 namespace {
 
-/// What comes this near a wall between tiles may change, in cells: there the first pass has left
-/// full resolution, a cell deep. All else is as it can be.
+/// Triangles this near a wall between tiles may change, in cells: there the first pass has left
+/// full resolution, a cell deep. All others are final.
 constexpr double kReach = 2;
 
 BoundingBox extentOf(const TriangleMesh& mesh, const Triangle& t) {

@@ -111,7 +111,7 @@ public:
         mesh = withoutUnusedPoints(mesh);
     }
 
-    /// What was left out beside it again, joined by the bits of its points.
+    /// Joins the part and the triangles that were left out, by the bits of their points.
     SimplifiedPart withRest(const SimplifiedPart& part) const {
         SimplifiedPart all;
         all.errorBoundMm = part.errorBoundMm;
@@ -255,8 +255,8 @@ private:
         return part;
     }
 
-    /// What was to be kept is there, and what is new lies in the box. Says of each triangle whether
-    /// it was kept.
+    /// Checks that kept triangles are there, and new ones lie in the box. Sets for each triangle
+    /// whether it was kept.
     bool isGood(SimplifiedPart& part) const {
         std::set<Triangle> kept;
         for (std::size_t t = 0; t < isKept_.size(); ++t) {

@@ -24,7 +24,7 @@ enum class Method {
 };
 std::string_view toString(Method method);
 
-/// What Method::Adaptive aims at. With neither bound nor count the bound is
+/// Aims of Method::Adaptive. With neither bound nor count the bound is
 /// kDefaultMaxErrorVoxels; with both, triangles are dropped until either stops it.
 struct AdaptiveOptions {
     /// Fraction of the least distance between planes of samples. Chosen by measurement:
@@ -45,7 +45,7 @@ struct AdaptiveOptions {
     friend bool operator==(const AdaptiveOptions&, const AdaptiveOptions&) = default;
 };
 
-/// Of Method::DiscretizedMarchingCubes.
+/// Options of Method::DiscretizedMarchingCubes.
 struct DiscretizedOptions {
     /// Put the vertices at the crossings, as the other methods do, instead of at the midpoints of
     /// their lattice edges.
@@ -81,14 +81,14 @@ struct ExtractionStatistics {
     /// Boxes in which the surface of the full grid is not a set of discs, one for each loop on the
     /// box's faces: there the box's discs change its topology (a tunnel becomes two caps).
     std::int64_t boxesChangingTopology = 0;
-    /// What MarchingCubes makes of the same surface, without the two triangles that it adds for
+    /// Triangles that MarchingCubes makes of the same surface, without the two that it adds for
     /// each loop that it fills from the middle.
     std::int64_t marchingCubesTriangles = 0;
-    /// Of Method::Adaptive: the proved bound of the distance to the surface of MarchingCubes, both
-    /// ways, mm.
+    /// Proved bound of the distance to the surface of MarchingCubes, both ways, mm
+    /// (Method::Adaptive).
     std::optional<double> errorBoundMm;
-    /// Of Method::Adaptive: the count that maxTriangles and reduction ask for, where they do. The
-    /// mesh has more triangles when the bound (maxErrorMm) or the surface's topology does not allow
+    /// Count that maxTriangles and reduction ask for, if they do (Method::Adaptive). The mesh has
+    /// more triangles when the bound (maxErrorMm) or the surface's topology does not allow
     /// as few.
     std::optional<std::int64_t> wantedTriangles;
     std::optional<AdaptiveWork> adaptiveWork;  ///< of Method::Adaptive

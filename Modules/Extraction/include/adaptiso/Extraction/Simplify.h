@@ -11,7 +11,7 @@
 
 namespace adaptiso {
 
-/// What simplify() aims at. With a bound and a count, triangles are dropped until either stops it.
+/// Aims of simplify(). With a bound and a count, triangles are dropped until either stops it.
 ///
 /// Lengths are in the mesh's own unit, which need not be the millimetre: nothing depends on the
 /// scale.
@@ -29,10 +29,10 @@ struct SimplifyOptions {
     ProgressCallback progress;  ///< called as the work goes on; may be empty
 };
 
-/// What was found of the input, and what is proved of the result.
+/// Facts found about the input, and the bound proved for the result.
 struct SimplifyStatistics {
-    /// Of the input, without area: dropped. Where a corner lies on the opposite side the triangle
-    /// across it is split there, and where two corners lie next to each other they become one, so
+    /// The input's triangles without area: dropped. If a corner lies on the opposite side, the one
+    /// across it is split there; if two corners lie next to each other, they become one, so
     /// that the surface does not open.
     std::int64_t degenerateTriangles = 0;
     std::int64_t duplicateTriangles = 0;  ///< of the input, with the corners of another: dropped

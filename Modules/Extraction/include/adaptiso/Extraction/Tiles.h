@@ -38,7 +38,7 @@ public:
     Index3 tiles() const;  ///< along each axis
     /// Cells, by their sample of lowest index; -1 and the last sample's are the outermost.
     IndexBox cellsOf(const Index3& tile) const;
-    /// What is needed of the volume to make a tile: its samples, and one more for normals.
+    /// Samples of the volume needed to make a tile: its own, and one more for normals.
     IndexBox samplesOf(const Index3& tile) const;
     /// The place that vertices of a tile have, in continuous indices.
     BoundingBox boxOf(const Index3& tile) const;
@@ -117,7 +117,7 @@ SimplifiedPart simplifyInBox(const TriangleMesh& mesh, std::vector<std::uint8_t>
 /// continuous indices all that reach into the box.
 struct SeamPart {
     TriangleMesh mesh;
-    /// Of each triangle: it does not lie in the box as a whole, or comes near no wall of tiles.
+    /// Per triangle: 1 if it does not lie in the box as a whole, or comes near no wall of tiles.
     std::vector<std::uint8_t> isFixed;
 };
 
@@ -125,8 +125,8 @@ struct SeamPart {
 ///               simplifyInBox(); joined, so that points are there once
 SeamPart seamPartOf(const TriangleMesh& tiles, const TileCut& cut, const Index3& seam);
 
-/// What of a seam box's part after simplifyInBox() is its own: what lies in the box, and of the
-/// fixed triangles those whose middle does. All seam boxes' own triangles are the whole surface.
+/// Returns a seam box's own triangles after simplifyInBox(): those that lie in the box, and fixed
+/// ones whose middle does. All seam boxes' own triangles together are the whole surface.
 TriangleMesh ownTriangles(const SimplifiedPart& part, const TileCut& cut, const Index3& seam);
 
 /// A mesh without the points that no triangle uses.

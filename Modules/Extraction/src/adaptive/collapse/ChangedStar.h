@@ -43,7 +43,7 @@ struct ChangedStar {
     Vec3 normal;  ///< mean of the triangles' before the change, by area
 };
 
-/// What a changed star must be to be worth having.
+/// Conditions that a changed star must meet.
 struct StarLimits {
     double leastAngleDeg = 0;  ///< refuse angles below this unless the worst one before was worse
 };

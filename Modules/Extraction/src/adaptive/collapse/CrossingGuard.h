@@ -61,7 +61,7 @@ private:
             return first[1] <= y && y <= last[1] && first[2] <= z && z <= last[2];
         }
     };
-    /// What is kept of a triangle, side by side: a search looks at all of it.
+    /// Cached data of a triangle, side by side: a search reads all of it.
     struct Known {
         Box box;
         bool hasBox = false;  ///< it is known

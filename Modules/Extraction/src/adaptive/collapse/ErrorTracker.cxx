@@ -197,7 +197,7 @@ bool ErrorTracker::borderIsNear(const ChangedStar& changed, const SampleAssignme
            squaredDistanceToSegment(q - own.e1, own.e2 - own.e1) <= squaredLimit;
 }
 
-/// Of the samples that are handed over, but for differences of a ten-thousandth.
+/// Nearest of the samples that are handed over, but for differences of a ten-thousandth.
 const Sample& ErrorTracker::sampleNearest(const Vec3& p, const SampleAssignment& assignment) const {
     // a number of 32 bits for each, by which the compiler takes several at once: the square, as
     // floats that are not negative sort by their bits, with the place in its last bits

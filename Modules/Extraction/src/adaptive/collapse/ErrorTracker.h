@@ -10,8 +10,8 @@
 
 namespace adaptiso::detail {
 
-/// What a changed star does to the samples of its triangles: which of the new triangles each one
-/// is handed to, and how far from it it then is.
+/// Reassignment of a changed star's samples: the new triangle that each one is handed to, and its
+/// distance to it.
 struct SampleAssignment {
     struct Move {
         std::uint32_t sample;

@@ -19,7 +19,7 @@ struct PatchLimits {
     double maxCost = 0;        ///< of a collapse, mm2 x mm2
     double triedCost = -1;     ///< maxCost when the points that are tried were
     double maxDistanceMm = 0;  ///< of a sample from the triangle that it is assigned to
-    /// Of a sample from the triangles of a fitted vertex, unless some sample was as far before.
+    /// Largest distance of a sample from a fitted vertex's triangles, unless one was as far before.
     double maxFittedMm = std::numeric_limits<double>::max();
     /// Parts of the surface that are thinner keep nearer to their samples.
     double webMm = 0;
@@ -65,7 +65,7 @@ private:
         return topology_.isMovable(v) && patch_.states[v] != Patch::State::Final;
     }
     QuadricMinimum bestPlace(std::uint32_t a, std::uint32_t b) const;
-    /// What collapsing an edge costs; kNever beyond the limits.
+    /// Cost of collapsing an edge; kNever beyond the limits.
     double costOf(std::uint32_t halfEdge) const;
     void passOn(std::uint32_t halfEdge) {
         tried_.passOn(topology_.from(halfEdge), topology_.to(halfEdge));

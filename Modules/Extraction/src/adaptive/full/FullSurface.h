@@ -36,8 +36,8 @@ public:
     /// In physical coordinates. Triangles keep their numbers.
     virtual TriangleMesh meshOf(const SimplifiedSurface& surface) const = 0;
 
-    /// Of each triangle of meshOf() the cell that it is known to lie in, such that those of
-    /// different cells do not cross; kNoCell where that is not known. Empty: of none it is.
+    /// Per triangle of meshOf(), the cell that it is known to lie in, such that those of different
+    /// cells do not cross; kNoCell if unknown. Empty if unknown for all.
     /// \param isFine  of each triangle: 1 for those that the full surface has, too
     virtual std::vector<std::uint64_t> cellsOf(const SimplifiedSurface&,
                                                const std::vector<std::uint8_t>& /*isFine*/) const {
@@ -47,8 +47,8 @@ public:
     /// A point of meshOf(), as a continuous index of the frame.
     virtual Vec3 indexOf(const Vec3& point) const = 0;
 
-    /// Of triangles of meshOf() that cross others, leaves those that did so from the beginning
-    /// out.
+    /// Removes from `crossing`, triangles of meshOf() that cross others, those that did so from the
+    /// beginning.
     virtual void forgiveCrossings(const TriangleMesh& mesh,
                                   std::vector<std::int64_t>& crossing) const = 0;
 

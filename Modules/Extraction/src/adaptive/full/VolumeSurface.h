@@ -15,8 +15,8 @@ public:
     VolumeSurface(const ImageGeometry& geometry, const LatticeSampler& sampler,
                   const Bricks& bricks);
 
-    /// Of a part of a surface whose open border is known to others: what lies outside `moving`
-    /// stays at full resolution, and new vertices stay in `box`.
+    /// For a part of a surface whose open border is shared with others: all outside `moving` stays
+    /// at full resolution, and new vertices stay in `box`.
     /// \param moving  continuous sample indices \param box  metric frame
     void stayIn(const BoundingBox& moving, const BoundingBox& box);
 

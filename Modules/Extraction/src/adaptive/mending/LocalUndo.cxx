@@ -213,7 +213,7 @@ LocalUndo::Numbers LocalUndo::faults() const {
     return vertices;
 }
 
-/// Of triangles between the full surface and this one.
+/// Corners of flat triangles between the full surface and this one.
 LocalUndo::Numbers LocalUndo::flatCorners() const {
     Numbers corners;
     for (const Triangle& t : fresh_) {
@@ -288,7 +288,7 @@ void LocalUndo::handOver(const Numbers& removed, const Numbers& numbers) {
     }
 }
 
-/// Of those equally near the first. \param tree  of the fresh ones
+/// The first of those equally near. \param tree  of the fresh ones
 std::ptrdiff_t LocalUndo::nearestFresh(const Vec3& p, const TriangleTree& tree) const {
     constexpr double kRounding = 1 + 1e-9;
     const TriangleView view{surface_.points, fresh_};

@@ -77,8 +77,8 @@ struct Patch {
     /// makes can meet what other patches make at the same time in boxes of their own.
     Vec3 lowIndex, highIndex;
 
-    /// Of a cube of `side` cells. A hair inside, so that no rounding takes a vertex out, and none
-    /// comes to lie in a wall beside those that are fixed there.
+    /// Sets the box of a cube of `side` cells, a hair smaller, so that no rounding takes a vertex
+    /// out, and none comes to lie in a wall beside those that are fixed there.
     void setBox(const Index3& low, std::int64_t side) {
         constexpr double kInside = 1e-6;
         for (int a = 0; a < 3; ++a) {

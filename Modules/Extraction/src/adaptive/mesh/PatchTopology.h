@@ -8,8 +8,8 @@
 
 namespace adaptiso::detail {
 
-/// What would change around a vertex or an edge: the ring of vertices around it and the triangles
-/// within. After the change triangle i has the corners (new vertex, ring[i], ring[i + 1]). At an
+/// Neighbourhood of a vertex or an edge that a change affects: the ring of vertices around it and
+/// the triangles within. Then triangle i has the corners (new vertex, ring[i], ring[i + 1]). At an
 /// open border the ring is a chain from border to border.
 struct Star {
     static constexpr int kMost = 48;

@@ -10,7 +10,7 @@
 
 namespace adaptiso::detail {
 
-/// What rounds of simplification change of a surface, in the metric frame.
+/// Parts of a surface that rounds of simplification change, in the metric frame.
 struct SurfaceState {
     using Number = std::uint32_t;  ///< of a point or a triangle
     using Triangle = std::array<Number, 3>;
@@ -20,13 +20,13 @@ struct SurfaceState {
 
     std::vector<Vec3> points;
     std::vector<Patch::State> states;  ///< of each point
-    /// Of each point: Patch::kPlain; Patch::kBorder on an open border that may be simplified;
+    /// Per point: Patch::kPlain; Patch::kBorder on an open border that may be simplified;
     /// above, a number of the point's own, by which it is known in the end. Empty: all are plain.
     std::vector<std::uint32_t> marks;
     std::vector<Triangle> triangles;
     std::vector<Number> sampleTriangle;  ///< that each sample is assigned to
-    /// Of each vertex of the full-resolution surface: the point that it was merged into, or still
-    /// is. Empty: not asked for.
+    /// Per vertex of the full-resolution surface: the point that it was merged into, or still is.
+    /// Empty: not asked for.
     std::vector<Number> heirs;
 
     std::int64_t triangleCount() const { return static_cast<std::int64_t>(triangles.size()); }
@@ -43,7 +43,7 @@ struct SimplifiedSurface : SurfaceState {
     static constexpr Number kGone = ~Number{0};
     static constexpr std::size_t kMostSamples = ~Number{0};
 
-    /// Of each point, seen from it. Empty once nothing is collapsed or fitted any more, and where
+    /// Per point, relative to it. Empty once nothing is collapsed or fitted any more, and where
     /// nothing ever can be.
     std::vector<StoredQuadric> quadrics;
     /// The full-resolution surface's vertices in their order, and between them middles of its
@@ -63,7 +63,7 @@ struct SimplifiedSurface : SurfaceState {
     }
 };
 
-/// What was changed of a surface.
+/// Changes of a surface.
 struct SurfaceChanges {
     std::vector<SurfaceState::Number>
         triangles;                ///< that are new or changed, or got another number

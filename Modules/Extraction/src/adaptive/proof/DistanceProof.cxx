@@ -27,7 +27,7 @@ Corners cornersOf(const SimplifiedSurface& surface, std::uint64_t t) {
     return {surface.points[c[0]], surface.points[c[1]], surface.points[c[2]]};
 }
 
-/// What is proved of some triangles.
+/// Bounds proved for some triangles.
 struct PartBound {
     double provedMm = 0;    ///< of all that lies within the limit
     double farthestMm = 0;  ///< of the rest
@@ -165,16 +165,16 @@ private:
     PartBound result_;
 };
 
-/// What is proved, but for which triangles.
+/// Input of a proof, but for the triangles' numbers.
 struct Task {
     Target<std::uint32_t> fine;
     Target<Number> simplified;
-    /// Of each vertex of the full surface, the triangle that it is assigned to.
+    /// Per vertex of the full surface, the triangle that it is assigned to.
     std::vector<Number> assigned;
     double voxelMm, enoughMm, limitMm;
 };
 
-/// What the full surface's triangles were found to be.
+/// Facts found about the full surface's triangles.
 struct FineFound {
     std::vector<std::uint8_t> isMapped;  ///< of each one: the map has it
     std::vector<std::uint8_t> isFine;    ///< of each simplified one: it is one of them
@@ -206,7 +206,7 @@ Number sameTriangle(const Task& task, std::uint32_t t) {
     return onto.find(corners[0], corners[1], corners[2]);
 }
 
-/// Of the full surface to the simplified one.
+/// Proves the distance of the full surface to the simplified one.
 PartBound proveFine(const Task& task, const std::vector<std::uint8_t>& isKnown, std::int64_t begin,
                     std::int64_t end, PieceMap& map, FineFound& found) {
     const Target<Number>& to = task.simplified;
@@ -251,7 +251,7 @@ void addBorders(const Task& task, std::int64_t begin, std::int64_t end, PieceMap
     });
 }
 
-/// Of the simplified surface to the full one.
+/// Proves the distance of the simplified surface to the full one.
 /// \param starts  of each triangle, where walks on the full surface start
 PartBound proveSimplified(const Task& task, const std::vector<std::uint8_t>& isKnown,
                           const std::vector<std::uint32_t>& starts, std::int64_t begin,
@@ -316,7 +316,7 @@ std::vector<std::uint32_t> startsOf(const SimplifiedSurface& surface, const Task
     return starts;
 }
 
-/// Of each vertex of the full surface.
+/// Assigned triangle of each vertex of the full surface.
 std::vector<Number> assignedOf(const SimplifiedSurface& surface, std::size_t vertices) {
     std::vector<Number> assigned;
     assigned.reserve(vertices);
@@ -464,7 +464,7 @@ void DistanceProof::remember(std::size_t triangles, std::vector<PlaceBeyond> bey
     beyond_ = std::move(beyond);
 }
 
-/// What is to be proved: the new triangles, and the full surface near those that came or went and
+/// Triangles to prove: the new ones, and the full surface near those that came or went and
 /// where it lay beyond the limit.
 DistanceProof::Scope DistanceProof::scopeOf(const SimplifiedSurface& surface,
                                             const SurfaceChanges& changes) {

@@ -54,12 +54,12 @@ public:
     /// The same of the last surface, which is still there, after some changes.
     ErrorBound proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes);
 
-    /// Of each triangle of the last surface: 1 for one that the full surface has too, with the same
-    /// corners. Some of those may have 0.
+    /// Per triangle of the last surface: 1 if the full surface has it too, with the same corners.
+    /// Some of those may have 0.
     const std::vector<std::uint8_t>& isFine() const { return isFine_; }
 
 private:
-    /// What is to be proved: all where a list is empty.
+    /// Triangles to prove: all if a list is empty.
     struct Scope {
         std::vector<std::uint8_t> isKnown;      ///< of each triangle of the simplified surface
         std::vector<std::uint8_t> isFineKnown;  ///< of each one of the full surface

@@ -106,7 +106,7 @@ std::vector<std::uint32_t> takeOver(Patch& patch, BrickSurface& brick) {
 /// volumes, and nearly all are simplified soundly: they are no webs.
 constexpr double kHairGap = 3 * kHair;
 
-/// What lies near a brick's vertices.
+/// Distances to other sheets at a brick's vertices.
 struct Nearness {
     std::vector<std::uint8_t> clearance;  ///< see SheetClearance
     std::vector<std::uint8_t> isInWeb;    ///< see PatchLimits::webMm
@@ -230,7 +230,7 @@ std::vector<std::uint32_t> trianglesAt(const FineSurface& fine) {
     return triangleAt;
 }
 
-/// What is kept of the full-resolution surface, for the proof and to be brought back.
+/// Keeps the full-resolution surface, for the proof and to be brought back.
 /// \param heirOf  says of each vertex what the brick has in its place
 template <class HeirOf>
 void keepFine(const FineBrick& made, const HeirOf& heirOf, BrickSurface& brick) {
@@ -390,7 +390,7 @@ public:
 private:
     using Number = SurfaceState::Number;
 
-    /// What is known of a vertex on walls; those of the bricks before, all together.
+    /// A vertex on walls, from the bricks before, all together.
     struct WallVertex {
         std::uint64_t edge;
         Number vertex, triangle;

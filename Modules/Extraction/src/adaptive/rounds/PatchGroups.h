@@ -29,7 +29,7 @@ public:
     std::size_t count() const { return total_; }
     Index3 cubeAt(const Vec3& p) const { return cubeAtIndex(frame_.toIndex(p)); }
     Index3 cubeAtIndex(const Vec3& index) const;
-    /// Of a cube, if it is one of them.
+    /// Number of a cube, if it is one of them.
     std::optional<std::uint32_t> find(const Index3& cube) const;
     /// \pre it is one of them
     std::uint32_t numberOf(const Index3& cube) const {
@@ -111,7 +111,7 @@ private:
     Buckets<std::uint32_t, std::uint32_t> members_;
 };
 
-/// What a thread needs while it works on patches, one after the other.
+/// Buffers of a thread that works on patches, one after the other.
 struct PatchScratch {
     std::vector<std::uint32_t> samples;        ///< of the patch's own triangles, in its order
     std::vector<std::uint32_t> outsideNumber;  ///< number + 1 in the patch, of the whole's vertices
@@ -174,7 +174,7 @@ private:
     std::vector<std::uint32_t> placeOfTriangle_;  ///< in its cube, or among the obstacles
     std::vector<std::uint32_t> obstacleTriangles_;
     Groups vertices_, triangles_;
-    /// Of each cube, if some triangles are settled: the index box that its own ones stay in.
+    /// Per cube, if some triangles are settled: the index box that its own ones stay in.
     std::vector<BoundingBox> reach_;
     Groups samples_;                                     ///< of the cubes' triangles
     Groups strayedSamples_;                              ///< of each obstacle

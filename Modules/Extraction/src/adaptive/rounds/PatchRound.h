@@ -11,7 +11,7 @@
 
 namespace adaptiso::detail {
 
-/// What a round does in every patch.
+/// Work of a round in every patch.
 struct PatchWork {
     PatchLimits limits;
     bool collapses = true;
@@ -20,7 +20,7 @@ struct PatchWork {
     bool fits = false;
 };
 
-/// What a round would do, by some of its patches.
+/// Estimate of a round, from some of its patches.
 struct PatchTrial {
     CollapseCosts costs;  ///< of their collapses
     double share = 1;     ///< of all patches' triangles

@@ -6,7 +6,7 @@
 
 namespace adaptiso {
 
-/// What the compartments of a head model conduct, in S/m. The defaults are MNE's (0.3, 0.006, 0.3
+/// Conductivities of a head model's compartments, S/m. The defaults are MNE's (0.3, 0.006, 0.3
 /// in mne.make_bem_model; skull to brain 1 : 50). Published ratios lie between 1 : 15 and 1 : 80;
 /// 0.33, 0.0041, 0.33 (1 : 80) is the classic choice [Rush1969].
 struct ConductivityModel {
@@ -15,7 +15,7 @@ struct ConductivityModel {
     double scalp = 0.3;
     double csf = 1.79;  ///< of four layers [Baumann1997]
 
-    /// Of the compartment that a surface bounds from outside, in a model of `count` surfaces.
+    /// Conductivity within `surface` and outside the next one, in a model of `count` surfaces.
     double within(HeadSurface surface, std::size_t count) const;
 };
 

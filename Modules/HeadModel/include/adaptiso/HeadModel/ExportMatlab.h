@@ -38,7 +38,7 @@ std::string fieldTripCoordsys(CoordinateFrame frame);
 void writeFieldTripModel(std::span<const HeadLayer> layers, const std::filesystem::path& path,
                          CoordinateFrame frame);
 
-/// What writeFieldTripModel() wrote, inside out; surfaces are told by their tissue.
+/// Reads a file of writeFieldTripModel(), inside out; surfaces are recognised by their tissue.
 /// \throws FileError
 std::vector<HeadLayer> readFieldTripModel(const std::filesystem::path& path);
 
@@ -50,7 +50,7 @@ std::vector<HeadLayer> readFieldTripModel(const std::filesystem::path& path);
 void writeBrainstormSurface(const TriangleMesh& metres, const std::filesystem::path& path,
                             const std::string& comment);
 
-/// What writeBrainstormSurface() wrote, counter-clockwise, without normals. \throws FileError
+/// Reads a file of writeBrainstormSurface(), counter-clockwise, without normals. \throws FileError
 TriangleMesh readBrainstormSurface(const std::filesystem::path& path);
 
 }  // namespace adaptiso

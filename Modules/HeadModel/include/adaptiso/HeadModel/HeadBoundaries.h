@@ -68,8 +68,8 @@ struct BoundaryOptions {
 /// mesh steps that follow see to the rest).
 struct HeadBoundaries {
     std::vector<FractionField> solids;  ///< by headSurface()
-    std::vector<std::string> notes;     ///< what was guessed or changed, one line each
-    std::vector<Warning> warnings;      ///< what makes the result doubtful
+    std::vector<std::string> notes;     ///< guesses and changes, one line each
+    std::vector<Warning> warnings;      ///< doubts about the result
     /// For each solid the places (LPS mm) where the image itself shows its surface: sides of
     /// labels, levels that are passed, ends of the skull's dark band. The rest was closed, filled,
     /// cut, grown or taken as usual. Empty where nobody looked (surfaces).
@@ -99,7 +99,7 @@ struct HeadBoundaries {
 HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<VolumeView>& brainMask,
                                 const BoundaryOptions& options = {});
 
-/// What is known of the brain besides a T1. All in the same space.
+/// Sources for the brain besides a T1. All in the same space.
 struct BrainSources {
     std::optional<VolumeView> mask;  ///< as above
     /// Labels of FreeSurfer or FastSurfer (aseg): all but 0, CSF and what lies outside of the brain

@@ -25,7 +25,7 @@ struct NestOptions {
     double maxMoveMm = 15;  ///< a vertex that would have to go further is a finding
 };
 
-/// What became of one surface.
+/// Changes of one surface.
 struct SurfaceMove {
     std::int64_t movedVertices = 0;
     double meanMm = 0;  ///< of those moved

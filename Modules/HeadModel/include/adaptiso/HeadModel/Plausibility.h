@@ -12,8 +12,8 @@
 
 namespace adaptiso {
 
-/// What is usual of adults' heads and of meshes for boundary elements. What lies outside may be
-/// right: it is noted, and nothing fails.
+/// Usual ranges of adults' heads and of meshes for boundary elements. Values outside may be right:
+/// they are noted, and nothing fails.
 struct UsualHead {
     /// Inside of the inner skull, cm3: the means of 49 adults, women 1289 (SD 111), men 1469 (SD
     /// 102) [Matsumae1996], and three to four standard deviations.
@@ -49,7 +49,7 @@ struct HeadNote {
     std::size_t surface = 0;          ///< number of the surface asked about
     std::optional<std::size_t> next;  ///< and of its neighbour, where it is about both
     bool isNoted = false;             ///< unusual: worth a look
-    std::string finding;              ///< what was measured, against what
+    std::string finding;              ///< the value measured, and its usual range
     std::vector<Vec3> pointsMm{};     ///< where to look; in the surfaces' frame
     /// Code of the warning where what is noted makes a head model doubtful; else empty.
     std::string_view warning{};

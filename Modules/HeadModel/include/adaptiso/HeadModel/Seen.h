@@ -8,7 +8,7 @@ namespace adaptiso {
 
 /// Farther than this from all that the image shows counts as this far, mm.
 inline constexpr double kFarFromSeenMm = 10;
-/// What lies as near to it is seen: a voxel and what smoothing and triangles take, mm.
+/// Largest distance to an edge in the image that counts as seen: a voxel, smoothing, triangles; mm.
 inline constexpr double kSeenWithinMm = 3;
 
 /// How much of a surface follows what the image shows.

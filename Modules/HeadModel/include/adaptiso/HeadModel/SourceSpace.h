@@ -32,7 +32,7 @@ SourceSpace surfaceSources(TriangleMesh surface, std::int64_t count);
 /// at least one of its edges away. \pre stepMm > 0
 SourceSpace gridSources(const TriangleMesh& compartment, double stepMm);
 
-/// What keepWithin() did.
+/// Changes by keepWithin().
 struct SourceMoves {
     std::int64_t moved = 0, dropped = 0;
     std::int64_t outside = 0;           ///< lay outside by more than 0.5 mm; moved or dropped

@@ -27,7 +27,7 @@ struct BemFileOptions {
     bool writesBesa = false;     ///< head.sfp: landmarks, electrodes and the skin's points
 };
 
-/// Of a model with electrodes: BIDS, ASA, BESA, FIFF, and a line of three numbers for OpenMEEG.
+/// Files of a model with electrodes: BIDS, ASA, BESA, FIFF, and OpenMEEG's (three numbers a line).
 inline constexpr const char* kElectrodesTsv = "electrodes.tsv";
 inline constexpr const char* kElectrodesJson = "coordsystem.json";
 inline constexpr const char* kElectrodesElc = "electrodes.elc";
@@ -35,12 +35,12 @@ inline constexpr const char* kElectrodesSfp = "electrodes.sfp";
 inline constexpr const char* kElectrodesFif = "electrodes-dig.fif";
 inline constexpr const char* kElectrodesTxt = "electrodes.txt";
 inline constexpr const char* kBesaFile = "head.sfp";
-/// Of a model with sources: a line "x y z ox oy oz" a dipole, and MNE's source space.
+/// Files of a model with sources: a line "x y z ox oy oz" a dipole, and MNE's source space.
 inline constexpr const char* kDipolesTxt = "dipoles.txt";
 inline constexpr const char* kSourcesFif = "sources-src.fif";
-/// Of a model with landmarks: MNE's head coordinates to those of the .surf and .fif files.
+/// File of a model with landmarks: MNE's head coordinates to those of the .surf and .fif files.
 inline constexpr const char* kHeadToMriFif = "head-mri-trans.fif";
-/// Of a model with tetrahedra, in BemFileOptions::frame, mm.
+/// Files of a model with tetrahedra, in BemFileOptions::frame, mm.
 inline constexpr const char* kMsh22File = "head.msh";
 inline constexpr const char* kMsh41File = "head-4.1.msh";
 inline constexpr const char* kVtuFile = "head.vtu";

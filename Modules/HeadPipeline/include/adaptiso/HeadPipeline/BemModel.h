@@ -29,7 +29,7 @@
 
 namespace adaptiso {
 
-/// What is to be put on the skin of a model.
+/// Electrodes to put on the skin of a model.
 struct ElectrodeOptions {
     std::optional<PointFile> file;         ///< electrodes as read
     std::string fileName;                  ///< without folders
@@ -50,7 +50,7 @@ struct SourceOptions {
     bool areWanted() const { return !surfaces.empty() || gridMm > 0; }
 };
 
-/// What a head model is to be, whatever it is made from.
+/// Options of a head model, whatever it is made from.
 struct BemModelOptions {
     BoundaryOptions boundaries;  ///< layers, gaps, thicknesses, isovalues
     /// One number for all surfaces or one for each; empty: by edge length or, without that, 2,562
@@ -79,7 +79,7 @@ struct BemModelOptions {
     bool hasSkin() const { return surfaceCount() > 1; }
 };
 
-/// What the model is made from, for the reports.
+/// An input of the model, for the reports.
 struct BemInput {
     std::string file;    ///< without folders; empty: no file
     std::string role;    ///< "t1", "brain mask", "labels", ...
@@ -89,7 +89,7 @@ struct BemInput {
 /// One surface, from dense to final.
 struct BemSurface {
     std::int64_t denseTriangles = 0;  ///< 0: the surface was taken as it came
-    /// Of a ready surface that only needs other triangles, and as many.
+    /// Vertices of a ready surface that only needs other triangles, and as many.
     std::optional<std::int64_t> ownVertices;
     std::optional<RemeshStatistics> remesh;
     SurfaceMove move;  ///< by nesting
@@ -101,7 +101,7 @@ struct BemSurface {
     double solidAngleShare = 0;
     Vec3 extentMm;
     std::optional<SeenSurface> seen{};     ///< of the final mesh; empty if not measured
-    std::optional<double> segmentedMm3{};  ///< what it encloses in the segmentation it is made from
+    std::optional<double> segmentedMm3{};  ///< its volume in the segmentation
 };
 
 /// A promise about the model, kept or not.
@@ -159,8 +159,8 @@ struct BemModel {
     BemModelOptions options;
     std::string source;  ///< "t1", "labels", "probabilities", "ct", "surfaces"
     std::vector<BemInput> inputs;
-    std::vector<Warning> warnings;             ///< what makes the result doubtful
-    std::vector<std::string> notes;            ///< what was guessed, found or changed
+    std::vector<Warning> warnings;             ///< doubts about the result
+    std::vector<std::string> notes;            ///< guesses, findings, changes
     std::optional<ImageGeometry> image;        ///< the main image's
     std::optional<ImageGeometry> tkRasVolume;  ///< whose tkRAS the FreeSurfer files are in
     std::string tkRasName;                     ///< of that volume, for the footer
@@ -179,7 +179,7 @@ struct BemModel {
     std::vector<TriangleMesh> pial{};         ///< LPS mm, as given: to lie within the inner skull
     std::vector<NestedGap> gaps;
     std::vector<BemCheck> checks;
-    std::vector<ToldNote> plausibility;  ///< what is unusual of adults' heads
+    std::vector<ToldNote> plausibility;  ///< unusual properties of the head
     std::vector<Finding> findings;       ///< why there is no model; points in LPS mm
 
     bool hasModel() const { return findings.empty(); }

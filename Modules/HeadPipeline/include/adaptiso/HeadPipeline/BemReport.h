@@ -10,8 +10,8 @@
 
 namespace adaptiso {
 
-/// What a page tells and shows of a head model, or of why there is none. What is left to add is
-/// the volume, the times, and who made it when.
+/// Page of a head model, or of why there is none. The caller adds the volume, the times, and who
+/// made it when.
 /// \param files  names and bytes of what was written; may be empty
 Report bemReport(const BemModel& model,
                  const std::vector<std::pair<std::string, std::uintmax_t>>& files);

@@ -20,7 +20,7 @@ struct ItkRequest {
     std::function<std::int64_t(std::int64_t count)> chooseVolume;
 };
 
-/// What libadaptisoItkIO.so has for readVolume(): ITK's own readers of other formats. It is loaded
+/// Function of libadaptisoItkIO.so for readVolume(): ITK's readers of other formats. It is loaded
 /// when such a file is met, and runs in the sandbox process.
 /// `result` stays empty where no reader takes the file. \throws FileError
 using ItkReader = void (*)(const ItkRequest& request, std::optional<ReadVolume>& result);

@@ -66,7 +66,7 @@ public:
     itkGetConstMacro(ClosedBorder, bool);
     itkBooleanMacro(ClosedBorder);
 
-    /// Of the output: the proved distance to the surface of marching cubes, both ways, mm.
+    /// Proved distance of the output to the surface of marching cubes, both ways, mm.
     itkGetConstMacro(ErrorBound, double);
 
 protected:

@@ -13,7 +13,7 @@ namespace adaptiso {
 /// direction. A DICOM file of one slice is left to ITK's own reader, which itk::ImageSeriesReader
 /// needs.
 ///
-/// What readVolume() refuses is an itk::ExceptionObject with the same line. The metadata dictionary
+/// Files that readVolume() refuses throw an itk::ExceptionObject with the same line. The dictionary
 /// has `adaptiso.format` and, where there are any, `adaptiso.warnings` (one a line).
 /// Reading the information decodes the file; its samples are kept until Read() has copied them.
 class ItkImageIO : public itk::ImageIOBase {

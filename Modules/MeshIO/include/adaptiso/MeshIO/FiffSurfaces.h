@@ -35,7 +35,7 @@ struct FiffSources {
     TriangleMesh mesh;                  ///< with normals; of a grid its points alone, x fastest
     std::vector<std::int64_t> used;     ///< numbers of the points that are sources
 
-    /// Of points on a grid: its size and place, and those of the image.
+    /// Size and place of a grid of points, and those of the image.
     struct Grid {
         std::array<std::int32_t, 3> size, imageSize;
         AffineTransform toMri, imageToMri, mriToRas;  ///< offsets in metres

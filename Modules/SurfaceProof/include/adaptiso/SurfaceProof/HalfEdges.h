@@ -114,8 +114,8 @@ private:
         }
     }
 
-    /// Of several that lead to one vertex the first goes with the first that comes from it, and so
-    /// on.
+    /// The first of several that lead to a vertex is paired with the first that comes from it, and
+    /// so on.
     static Index oppositeOf(std::size_t spoke, std::span<const Spoke> spokes) {
         const Index other = spokes[spoke].to;
         std::size_t before = 0;

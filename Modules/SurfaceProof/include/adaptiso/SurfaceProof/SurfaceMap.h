@@ -67,7 +67,7 @@ public:
         bool isKnown() const { return squared >= 0; }
     };
 
-    /// What a triangle's image has in one triangle of the other surface.
+    /// Part of a triangle's image in one triangle of the other surface.
     struct Part {
         Index triangle;
         Vec3 area2;  ///< twice its area vector
@@ -143,7 +143,7 @@ public:
         }
         return takeApart(corners, squaredDistance);
     }
-    /// Of the last triangle mapped; a triangle of the other surface may have several.
+    /// Parts of the last triangle mapped; a triangle of the other surface may have several.
     std::span<const Part> parts() const { return {part_.data(), parts_}; }
 
 private:
@@ -433,7 +433,7 @@ inline double shareOf(const Vec3& area2, const Corners& triangle) {
 /// How far from 1 rounding may take that sum.
 inline constexpr double kCoverRounding = 1e-3;
 
-/// What a SurfaceMap's images cover of the other surface: see shareOf(). For pieces side by side:
+/// Share of the other surface that a SurfaceMap's images cover, shareOf(). For pieces in parallel:
 /// shares are summed as whole numbers of a small part, so that their order changes nothing.
 class SharedCover {
 public:

@@ -327,7 +327,7 @@ private:
         return inner;
     }
 
-    /// Of a triangle's edge: what lies less than that beyond it stays.
+    /// As a fraction of a triangle's edge: points less than that beyond it stay.
     static constexpr double kHair = 1e-9;
 
     std::array<double, ConvexPiece::kMost> side_{};  ///< of the corners to the plane at an edge

@@ -61,7 +61,7 @@ public:
     vtkGetMacro(ComputeScalars, vtkTypeBool);
     vtkBooleanMacro(ComputeScalars, vtkTypeBool);
 
-    /// What the image's coordinates are, in mm. Unknown (default): as its field data say
+    /// Frame of the image's coordinates, mm. Unknown (default): as its field data say
     /// (`CoordinateFrame`, `SPACE`); where they do not, neither does the output.
     enum Frame { FRAME_UNKNOWN, FRAME_RAS, FRAME_LPS };
     vtkSetClampMacro(CoordinateFrame, int, FRAME_UNKNOWN, FRAME_LPS);
