@@ -1,6 +1,6 @@
-// Reads one image with this library, behind the fence and without it, as an ITK ImageIO, and with
-// ITK alone; or, with --iso, makes its surface by extractSurface() and by the filters for ITK and
-// VTK: in turn within one process. Testing/Benchmark/README.md explains the columns.
+// Reads one image with this library, in the sandbox process and without it, as an ITK ImageIO, and
+// with ITK alone; or, with --iso, makes its surface by extractSurface() and by the filters for ITK
+// and VTK: in turn within one process. Testing/Benchmark/README.md explains the columns.
 #include <itkGDCMImageIO.h>
 #include <itkGDCMSeriesFileNames.h>
 #include <itkImageFileReader.h>
@@ -192,9 +192,9 @@ int main(int argc, char** argv) {
     app.add_option("--only", only, "One run of the way of this name, with its memory");
     CLI11_PARSE(app, argc, argv);
 
-    ReadOptions fenced, unfenced;
-    unfenced.fence = false;
-    const adaptiso::ReadVolume scan = adaptiso::readVolume(input, fenced);
+    ReadOptions sandboxed, unsandboxed;
+    unsandboxed.sandbox = false;
+    const adaptiso::ReadVolume scan = adaptiso::readVolume(input, sandboxed);
     const adaptiso::VolumeView& view = scan.volume.view();
     const auto ours = [&](const ReadOptions& options) {
         adaptiso::valueRange(adaptiso::readVolume(input, options).volume);
@@ -212,8 +212,8 @@ int main(int argc, char** argv) {
             ways.push_back({"vtkFilter", [&] { extractByVtk<T>(view, *isovalue); }});
             return;
         }
-        ways.push_back({"unfenced", [&] { ours(unfenced); }});
-        ways.push_back({"fenced", [&] { ours(fenced); }});
+        ways.push_back({"unsandboxed", [&] { ours(unsandboxed); }});
+        ways.push_back({"sandboxed", [&] { ours(sandboxed); }});
         ways.push_back({"plugged", [&] { readPlugged<T>(input); }});
         ways.push_back({"itk", [&] { readWithItk<T>(input); }});
     };

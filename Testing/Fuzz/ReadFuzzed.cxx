@@ -25,7 +25,7 @@ void requireSound(const VolumeView& volume) {
 }  // namespace
 
 void readFuzzed(const std::filesystem::path& input, ReadOptions options) {
-    options.fence = false;
+    options.sandbox = false;
     try {
         const ReadVolume read = readVolume(input, options);
         requireSound(read.volume.view());

@@ -7,7 +7,7 @@
 namespace adaptiso::fuzz {
 
 /// Reads a volume, or is refused with a FileError; aborts when the volume is not what readVolume()
-/// promises. Without the fence: a fork for each input would be slow and hide what is looked for.
+/// promises. Without the sandbox: a fork for each input would be slow and hide what is looked for.
 void readFuzzed(const std::filesystem::path& input, ReadOptions options = {});
 
 /// listSeries() with the same rule.

@@ -24,7 +24,7 @@ void addImageSeeds(Seeds& seeds);
 void addDicomSeeds(Seeds& seeds);
 void addMeshSeeds(Seeds& seeds);
 void addZarrSeeds(Seeds& seeds);
-void addFenceSeeds(Seeds& seeds);
+void addSandboxSeeds(Seeds& seeds);
 void addIndexSeeds(Seeds& seeds);
 void addOpenMeegSeeds(Seeds& seeds);
 void addLabelSeeds(Seeds& seeds);

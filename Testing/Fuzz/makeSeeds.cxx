@@ -4,7 +4,7 @@
 #include <exception>
 #include <fstream>
 
-#include "Fence.h"
+#include "Sandbox.h"
 #include "Seeds.h"
 #include "SmallVolume.h"
 #include "adaptiso-giant/GiantPlan.h"
@@ -23,19 +23,19 @@ void Seeds::add(const std::string& target, std::string_view bytes) {
     if (!stream) throw FileError(file.string() + ": can't be written");
 }
 
-void addFenceSeeds(Seeds& seeds) {
-    detail::FenceAnswer answer;
-    answer.kind = detail::FenceAnswer::Kind::Volume;
+void addSandboxSeeds(Seeds& seeds) {
+    detail::SandboxAnswer answer;
+    answer.kind = detail::SandboxAnswer::Kind::Volume;
     answer.pixelType = PixelType::Int16;
     answer.geometry = smallVolume(0).view().geometry();
     answer.byteCount = 2 * 7 * 6 * 5;
     answer.format = "DICOM";
     answer.warnings = {{"gantry-tilt", "one"}, {"stray-bits", "and another"}};
-    seeds.add("fence", detail::packFenceAnswer(answer));
-    answer.kind = detail::FenceAnswer::Kind::FileError;
+    seeds.add("sandbox", detail::packSandboxAnswer(answer));
+    answer.kind = detail::SandboxAnswer::Kind::FileError;
     answer.message = "x.dcm: is damaged";
     answer.warnings.clear();
-    seeds.add("fence", detail::packFenceAnswer(answer));
+    seeds.add("sandbox", detail::packSandboxAnswer(answer));
 }
 
 void addOpenMeegSeeds(Seeds& seeds) {
@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
         adaptiso::fuzz::addDicomSeeds(seeds);
         adaptiso::fuzz::addMeshSeeds(seeds);
         adaptiso::fuzz::addZarrSeeds(seeds);
-        adaptiso::fuzz::addFenceSeeds(seeds);
+        adaptiso::fuzz::addSandboxSeeds(seeds);
         adaptiso::fuzz::addOpenMeegSeeds(seeds);
         adaptiso::fuzz::addLabelSeeds(seeds);
         adaptiso::fuzz::addGiantSeeds(seeds);

@@ -7,11 +7,11 @@
 #include "DicomGroups.h"
 #include "DicomPixels.h"
 #include "DicomStack.h"
-#include "Fence.h"
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "Readers.h"
 #include "Samples.h"
+#include "Sandbox.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 
@@ -103,8 +103,8 @@ ReadVolume readImages(const fs::path& input, DicomInput images, const ReadOption
         Volume volume = decodeDicomStack(input, images.files, stack, all);
         return ReadVolume{std::move(volume), "DICOM", std::move(all)};
     };
-    const bool isFenced = options.fence && needsGdcm(images.files, stack);
-    return isFenced ? readBehindFence(input, fenceLimitsFor(input), decode) : decode();
+    const bool isSandboxed = options.sandbox && needsGdcm(images.files, stack);
+    return isSandboxed ? readInSandbox(input, sandboxLimitsFor(input), decode) : decode();
 }
 
 // ---- the list

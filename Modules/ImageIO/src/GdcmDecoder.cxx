@@ -11,8 +11,8 @@
 #include <cstring>
 #include <memory>
 
-#include "Fence.h"
 #include "FileFault.h"
+#include "Sandbox.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -94,7 +94,7 @@ bool decode(std::string_view stream, const std::string& transferSyntax,
 void decodeWithGdcm(const std::filesystem::path& file, std::string_view stream,
                     const std::string& transferSyntax, const Codestream& codestream,
                     std::span<std::byte> samples) {
-    blameBehindFence(file);
+    blameInSandbox(file);
     const SilentGdcm silence;
     bool isDecoded = false;
     try {

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "Fence.h"
 #include "Readers.h"
 #include "Samples.h"
+#include "Sandbox.h"
 #include "adaptiso/Core/Errors.h"
 
 #ifndef ADAPTISO_LIBRARY_FOLDER  // below the prefix; fuzzers have none
@@ -70,7 +70,7 @@ std::optional<ReadVolume> readWithItk(const fs::path& input, const ReadOptions& 
         return std::move(*result);
     };
     try {
-        return options.fence ? readBehindFence(input, fenceLimitsFor(input), read) : read();
+        return options.sandbox ? readInSandbox(input, sandboxLimitsFor(input), read) : read();
     } catch (const InvalidInput& error) {
         if (*error.what() != '\0') throw;
         return std::nullopt;

@@ -6,8 +6,8 @@
 #include <limits>
 #include <new>
 
-#include "Fence.h"
 #include "FileFault.h"
+#include "Sandbox.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -124,7 +124,7 @@ SampleBuffer allocateSamples(const std::filesystem::path& file, std::uint64_t by
                         static_cast<double>(byteCount) / 1e9),
             "use the programs of a 64-bit machine");
     }
-    if (isBehindFence()) {
+    if (isInSandbox()) {
         samples = allocateSharedBytes(byteCount);
     } else {
         samples.reset(new (std::nothrow) std::byte[byteCount]);

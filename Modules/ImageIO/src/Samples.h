@@ -45,7 +45,7 @@ std::uint64_t requireImageBytes(const std::filesystem::path& file, const Index3&
 /// a * b. \throws FileError when that is more than any file holds
 std::uint64_t requireProduct(const std::filesystem::path& file, std::uint64_t a, std::uint64_t b);
 
-/// Behind a fence it is memory that the parent process sees too.
+/// In a sandbox process it is memory that the parent process sees too.
 /// \throws FileError when memory is short
 SampleBuffer allocateSamples(const std::filesystem::path& file, std::uint64_t byteCount);
 

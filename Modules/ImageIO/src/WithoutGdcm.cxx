@@ -1,7 +1,7 @@
-#include "Fence.h"
 #include "FileFault.h"
 #include "GdcmDecoder.h"
 #include "Readers.h"
+#include "Sandbox.h"
 
 /// A build without GDCM: compressed DICOM and ITK's formats are refused, so that nothing needs a
 /// sandbox process.
@@ -13,18 +13,18 @@ void decodeWithGdcm(const std::filesystem::path& file, std::string_view, const s
            "convert it to NIfTI with dcm2niix, or use the programs");
 }
 
-FenceLimits fenceLimitsFor(const std::filesystem::path&) {
+SandboxLimits sandboxLimitsFor(const std::filesystem::path&) {
     return {};
 }
 
-ReadVolume readBehindFence(const std::filesystem::path&, const FenceLimits&,
-                           const std::function<ReadVolume()>& read) {
+ReadVolume readInSandbox(const std::filesystem::path&, const SandboxLimits&,
+                         const std::function<ReadVolume()>& read) {
     return read();
 }
 
-void blameBehindFence(const std::filesystem::path&) {}
+void blameInSandbox(const std::filesystem::path&) {}
 
-bool isBehindFence() {
+bool isInSandbox() {
     return false;
 }
 

@@ -37,7 +37,7 @@ struct ReadOptions {
     /// Run GDCM's decoders in a child process with limits on time and memory, so that their abort,
     /// crash, hang or hunger becomes a FileError. Without it they run in this process, for callers
     /// that must not fork, or that debug a decoder.
-    bool fence = true;
+    bool sandbox = true;
 };
 
 /// A scan as read: the samples in the file's own pixel type, where they lie, and what a user
@@ -97,7 +97,7 @@ struct ReadVolume {
 ///         is guessed.
 /// \pre  not called from two threads at once for DICOM (GDCM's message switches are global).
 /// \throws FileError  as well when GDCM's decoder crashes or takes more than it may: 15 s
-///         and 1 s for each MB of input, 1 GiB and 64 bytes for each byte (ReadOptions::fence)
+///         and 1 s for each MB of input, 1 GiB and 64 bytes for each byte (ReadOptions::sandbox)
 /// \post no process or file of this call's is left
 /// Cost: one copy of the samples, and one DICOM file's; one pass.
 ReadVolume readVolume(const std::filesystem::path& input, const ReadOptions& options = {});

@@ -2,7 +2,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "Fence.h"
+#include "Sandbox.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -43,7 +43,7 @@ std::optional<std::string> takeText(std::string_view& bytes) {
 
 }  // namespace
 
-std::string packFenceAnswer(const FenceAnswer& answer) {
+std::string packSandboxAnswer(const SandboxAnswer& answer) {
     std::vector<std::string_view> texts{answer.message, answer.format};
     for (const Warning& warning : answer.warnings) {
         texts.insert(texts.end(), {warning.code, warning.text});
@@ -69,18 +69,18 @@ std::string packFenceAnswer(const FenceAnswer& answer) {
     return std::string(reinterpret_cast<const char*>(&fixed), sizeof fixed) + tail;
 }
 
-std::optional<FenceAnswer> parseFenceAnswer(std::string_view bytes) {
+std::optional<SandboxAnswer> parseSandboxAnswer(std::string_view bytes) {
     Fixed fixed{};
     if (bytes.size() < sizeof fixed || bytes.size() > kLongestAnswer) return std::nullopt;
     std::memcpy(&fixed, bytes.data(), sizeof fixed);
     if (fixed.magic != kMagic || fixed.wholeBytes != bytes.size() ||
-        fixed.kind > static_cast<std::uint32_t>(FenceAnswer::Kind::UnknownError) ||
+        fixed.kind > static_cast<std::uint32_t>(SandboxAnswer::Kind::UnknownError) ||
         fixed.pixelType > static_cast<std::uint32_t>(PixelType::Float64) || fixed.textCount < 2 ||
         fixed.textCount % 2 != 0) {
         return std::nullopt;
     }
-    FenceAnswer answer;
-    answer.kind = static_cast<FenceAnswer::Kind>(fixed.kind);
+    SandboxAnswer answer;
+    answer.kind = static_cast<SandboxAnswer::Kind>(fixed.kind);
     answer.pixelType = static_cast<PixelType>(fixed.pixelType);
     for (int axis = 0; axis < 3; ++axis) {
         answer.geometry.size[static_cast<std::size_t>(axis)] = fixed.size[axis];

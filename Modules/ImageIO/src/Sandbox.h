@@ -20,17 +20,17 @@
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 /// Runs untrusted code: GDCM and ITK assert(), abort(), loop and overrun buffers
-/// on odd files. Decisions/0003-decoders-behind-a-fence.md says why it is a forked child.
+/// on odd files. Decisions/0003-decoders-in-a-sandbox.md says why it is a forked child.
 namespace adaptiso::detail {
 
-struct FenceLimits {
+struct SandboxLimits {
     std::chrono::milliseconds time;  ///< of the wall clock, from start to answer
     std::uint64_t memoryBytes;       ///< heap and stack above what the parent has; samples apart
 };
 
 /// Generous for what honest files take: 15 s and 1 s for each MB of input; 1 GiB and 64 bytes for
 /// each byte of input, at most the machine's memory.
-FenceLimits fenceLimitsFor(const std::filesystem::path& input);
+SandboxLimits sandboxLimitsFor(const std::filesystem::path& input);
 
 /// Runs `read` in a child process and hands back what it returns. Its samples are not copied: the
 /// child decodes into shared memory (allocateSamples), which the volume then owns.
@@ -40,25 +40,26 @@ FenceLimits fenceLimitsFor(const std::filesystem::path& input);
 ///
 /// \param input  what a message names when the child can't say more itself
 /// \param read   uses no other thread and no lock that one may hold: no TBB (a forked child has
-///               the calling thread alone). Behind a fence already, it is called directly.
+///               the calling thread alone). In a sandbox process already, it is called directly.
 /// \throws what `read` throws of this library's errors; FileError when the child crashes, ends
 ///         early, answers nonsense or exceeds a limit, and for other exceptions
-ReadVolume readBehindFence(const std::filesystem::path& input, const FenceLimits& limits,
-                           const std::function<ReadVolume()>& read);
+ReadVolume readInSandbox(const std::filesystem::path& input, const SandboxLimits& limits,
+                         const std::function<ReadVolume()>& read);
 
-/// Behind a fence: from now on a crash or a limit reached is laid to `file`, not to the input.
-void blameBehindFence(const std::filesystem::path& file);
+/// In a sandbox process: from now on a crash or a limit reached is laid to `file`, not to the
+/// input.
+void blameInSandbox(const std::filesystem::path& file);
 
-bool isBehindFence();
+bool isInSandbox();
 
-/// Memory that outlives the child. \pre isBehindFence() \return empty when memory is short
+/// Memory that outlives the child. \pre isInSandbox() \return empty when memory is short
 std::shared_ptr<std::byte[]> allocateSharedBytes(std::uint64_t byteCount);
 
 /// The machine's memory and swap space.
 std::uint64_t machineMemoryBytes();
 
-/// Answer of a fenced child to its parent: a volume's description, or the error it threw.
-struct FenceAnswer {
+/// Answer of a sandboxed child to its parent: a volume's description, or the error it threw.
+struct SandboxAnswer {
     enum class Kind : std::uint32_t {
         Volume,
         FileError,
@@ -81,22 +82,22 @@ struct FenceAnswer {
 /// Longer answers are refused.
 inline constexpr std::size_t kLongestAnswer = std::size_t{1} << 20;
 
-std::string packFenceAnswer(const FenceAnswer& answer);
+std::string packSandboxAnswer(const SandboxAnswer& answer);
 
 /// \param bytes  from a process whose memory may be damaged: anything at all
 /// \return nothing unless `bytes` is one whole answer. Control characters of texts become blanks.
-std::optional<FenceAnswer> parseFenceAnswer(std::string_view bytes);
+std::optional<SandboxAnswer> parseSandboxAnswer(std::string_view bytes);
 
-/// Input of a fenced child.
-struct FenceChildSetup {
+/// Input of a sandboxed child.
+struct SandboxChildSetup {
     int answerPipe;             ///< to write the answer into
     int sharedMemory;           ///< a memfd that the samples go into
     std::span<char> blameNote;  ///< shared with the parent, zeros
     std::uint64_t memoryBytes;  ///< the limit
 };
 
-/// Forks. The child fences itself in, calls `read`, writes a FenceAnswer and ends.
+/// Forks. The child confines itself, calls `read`, writes a SandboxAnswer and ends.
 /// \return the child's id to the parent, -1 with errno when it can't be made. Never to the child.
-pid_t forkFenceChild(const FenceChildSetup& setup, const std::function<ReadVolume()>& read);
+pid_t forkSandboxChild(const SandboxChildSetup& setup, const std::function<ReadVolume()>& read);
 
 }  // namespace adaptiso::detail

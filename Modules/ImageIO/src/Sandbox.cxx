@@ -1,4 +1,4 @@
-#include "Fence.h"
+#include "Sandbox.h"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -123,7 +123,7 @@ bool collect(int pipe, Clock::time_point deadline, std::string& answer) {
 
 /// The volume's samples as a read-only view of the child's memory, which nobody can change or
 /// shorten any more.
-std::shared_ptr<const void> mapSamples(int memory, const FenceAnswer& answer) {
+std::shared_ptr<const void> mapSamples(int memory, const SandboxAnswer& answer) {
     if (::fcntl(memory, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE) != 0) return {};
     void* const samples = ::mmap(nullptr, answer.byteCount, PROT_READ, MAP_PRIVATE, memory,
                                  static_cast<off_t>(answer.offset));
@@ -133,13 +133,13 @@ std::shared_ptr<const void> mapSamples(int memory, const FenceAnswer& answer) {
             }};
 }
 
-bool holdsSamples(int memory, const FenceAnswer& answer) {
+bool holdsSamples(int memory, const SandboxAnswer& answer) {
     const off_t end = ::lseek(memory, 0, SEEK_END);
     return end >= 0 && answer.offset <= static_cast<std::uint64_t>(end) &&
            answer.byteCount <= static_cast<std::uint64_t>(end) - answer.offset;
 }
 
-ReadVolume volumeOf(const fs::path& input, int memory, FenceAnswer answer) {
+ReadVolume volumeOf(const fs::path& input, int memory, SandboxAnswer answer) {
     if (!holdsSamples(memory, answer) ||
         answer.byteCount != requireImageBytes(input, answer.geometry.size, answer.pixelType)) {
         refuse(input, "its decoder answered nonsense", "the file is damaged");
@@ -177,18 +177,18 @@ ReadVolume volumeOf(const fs::path& input, int memory, FenceAnswer answer) {
            "the file is damaged or of an unknown kind");
 }
 
-[[noreturn]] void rethrow(const fs::path& file, const FenceAnswer& answer,
-                          const FenceLimits& limits) {
+[[noreturn]] void rethrow(const fs::path& file, const SandboxAnswer& answer,
+                          const SandboxLimits& limits) {
     switch (answer.kind) {
-        case FenceAnswer::Kind::FileError:
+        case SandboxAnswer::Kind::FileError:
             throw FileError(answer.message);
-        case FenceAnswer::Kind::Shortage:
+        case SandboxAnswer::Kind::Shortage:
             throw Shortage(answer.message);
-        case FenceAnswer::Kind::InvalidInput:
+        case SandboxAnswer::Kind::InvalidInput:
             throw InvalidInput(answer.message);
-        case FenceAnswer::Kind::InternalError:
+        case SandboxAnswer::Kind::InternalError:
             throw InternalError(answer.message);
-        case FenceAnswer::Kind::OutOfMemory:
+        case SandboxAnswer::Kind::OutOfMemory:
             refuse(file,
                    fmt::format("decoding it asks for more than {} MB of memory",
                                limits.memoryBytes / 1'000'000),
@@ -206,7 +206,7 @@ std::uint64_t machineMemoryBytes() {
     return (std::uint64_t{info.totalram} + info.totalswap) * info.mem_unit;
 }
 
-FenceLimits fenceLimitsFor(const fs::path& input) {
+SandboxLimits sandboxLimitsFor(const fs::path& input) {
     std::error_code error;
     std::uint64_t inputBytes = 0;
     if (fs::is_directory(input, error)) {
@@ -228,9 +228,9 @@ FenceLimits fenceLimitsFor(const fs::path& input) {
             std::min(kMemoryFloor + kMemoryPerByte * inputBytes, machineMemoryBytes())};
 }
 
-ReadVolume readBehindFence(const fs::path& input, const FenceLimits& limits,
-                           const std::function<ReadVolume()>& read) {
-    if (isBehindFence()) return read();
+ReadVolume readInSandbox(const fs::path& input, const SandboxLimits& limits,
+                         const std::function<ReadVolume()>& read) {
+    if (isInSandbox()) return read();
 
     const FileDescriptor memory(::memfd_create("adaptiso", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     int ends[2] = {-1, -1};
@@ -241,7 +241,7 @@ ReadVolume readBehindFence(const fs::path& input, const FenceLimits& limits,
     if (!blame.isUsable()) refuseStart(input);
 
     const Clock::time_point deadline = Clock::now() + limits.time;
-    const pid_t pid = forkFenceChild(
+    const pid_t pid = forkSandboxChild(
         {childsEnd.number(), memory.number(), blame.bytes(), limits.memoryBytes}, read);
     if (pid < 0) refuseStart(input);
     ChildProcess child(pid);
@@ -258,14 +258,14 @@ ReadVolume readBehindFence(const fs::path& input, const FenceLimits& limits,
                "the file is damaged, or the disk or machine too slow");
     }
     if (bytes.empty()) refuseSilence(blamed, status);
-    std::optional<FenceAnswer> answer = parseFenceAnswer(bytes);
+    std::optional<SandboxAnswer> answer = parseSandboxAnswer(bytes);
     if (!answer) {
         // one that answers without an end was stopped by us
         const bool isCut = WIFSIGNALED(status) && bytes.size() <= kLongestAnswer;
         if (isCut) refuseSilence(blamed, status);
         refuse(blamed, "its decoder answered nonsense", "the file is damaged");
     }
-    if (answer->kind != FenceAnswer::Kind::Volume) rethrow(blamed, *answer, limits);
+    if (answer->kind != SandboxAnswer::Kind::Volume) rethrow(blamed, *answer, limits);
     return volumeOf(input, memory.number(), std::move(*answer));
 }
 

@@ -16,21 +16,21 @@
 #include <numeric>
 #include <thread>
 
-#include "Fence.h"
 #include "Fixtures.h"
 #include "Samples.h"
+#include "Sandbox.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::testing {
 namespace {
 
-using detail::FenceAnswer;
-using detail::FenceLimits;
-using detail::readBehindFence;
+using detail::readInSandbox;
+using detail::SandboxAnswer;
+using detail::SandboxLimits;
 using namespace std::chrono_literals;
 
 // a second is far more than these reads take, also under a sanitizer on a busy machine
-constexpr FenceLimits kRoomy{30s, std::uint64_t{1} << 30};
+constexpr SandboxLimits kRoomy{30s, std::uint64_t{1} << 30};
 const std::filesystem::path kInput = "folder/x.dcm";
 
 const ImageGeometry kGeometry{{4, 3, 2}, {1, 2, 3}, Mat3{{{{2, 0, 0}, {0.5, 3, 0}, {0, 1, -4}}}}};
@@ -44,9 +44,9 @@ ReadVolume made(const std::shared_ptr<std::byte[]>& samples) {
 }
 
 /// The message of the FileError; fails the test when there is none.
-std::string refusal(const std::function<ReadVolume()>& read, const FenceLimits& limits = kRoomy) {
+std::string refusal(const std::function<ReadVolume()>& read, const SandboxLimits& limits = kRoomy) {
     try {
-        readBehindFence(kInput, limits, read);
+        readInSandbox(kInput, limits, read);
     } catch (const FileError& error) {
         return error.what();
     }
@@ -65,9 +65,9 @@ void expectNoChildLeft() {
     EXPECT_EQ(errno, ECHILD);
 }
 
-TEST(Fence, HandsTheVolumeBackWhole) {
+TEST(Sandbox, HandsTheVolumeBackWhole) {
     const ReadVolume result =
-        readBehindFence(kInput, kRoomy, [] { return made(detail::allocateSamples(kInput, 48)); });
+        readInSandbox(kInput, kRoomy, [] { return made(detail::allocateSamples(kInput, 48)); });
     EXPECT_EQ(samplesIn<std::int16_t>(result.volume), countingSamples<std::int16_t>(24));
     EXPECT_EQ(result.volume.view().geometry(), kGeometry);
     EXPECT_EQ(result.format, "DICOM");
@@ -75,13 +75,13 @@ TEST(Fence, HandsTheVolumeBackWhole) {
     expectNoChildLeft();
 }
 
-TEST(Fence, TakesSamplesFromWhereverTheyLie) {
-    const ReadVolume fromHeap = readBehindFence(kInput, kRoomy, [] {
+TEST(Sandbox, TakesSamplesFromWhereverTheyLie) {
+    const ReadVolume fromHeap = readInSandbox(kInput, kRoomy, [] {
         return ReadVolume{
             Volume::fromSamples(countingSamples<std::int16_t>(24), kGeometry), "x", {}};
     });
     EXPECT_EQ(samplesIn<std::int16_t>(fromHeap.volume), countingSamples<std::int16_t>(24));
-    const ReadVolume fromSecondBlock = readBehindFence(kInput, kRoomy, [] {
+    const ReadVolume fromSecondBlock = readInSandbox(kInput, kRoomy, [] {
         const auto first = detail::allocateSamples(kInput, 5000);
         { const auto given = detail::allocateSamples(kInput, 9000); }
         return made(detail::allocateSamples(kInput, 48));
@@ -89,22 +89,22 @@ TEST(Fence, TakesSamplesFromWhereverTheyLie) {
     EXPECT_EQ(samplesIn<std::int16_t>(fromSecondBlock.volume), countingSamples<std::int16_t>(24));
 }
 
-TEST(Fence, KeepsSamplesAsLongAsTheVolumeLives) {
+TEST(Sandbox, KeepsSamplesAsLongAsTheVolumeLives) {
     std::optional<Volume> kept;
     {
-        const ReadVolume result = readBehindFence(
-            kInput, kRoomy, [] { return made(detail::allocateSamples(kInput, 48)); });
+        const ReadVolume result =
+            readInSandbox(kInput, kRoomy, [] { return made(detail::allocateSamples(kInput, 48)); });
         kept = result.volume;
     }
     EXPECT_EQ(samplesIn<std::int16_t>(*kept), countingSamples<std::int16_t>(24));
 }
 
-TEST(Fence, PassesTheLibrarysErrorsOn) {
+TEST(Sandbox, PassesTheLibrarysErrorsOn) {
     EXPECT_EQ(refusal([]() -> ReadVolume { throw FileError("slice 3: is odd"); }),
               "slice 3: is odd");
-    EXPECT_THROW(readBehindFence(kInput, kRoomy, []() -> ReadVolume { throw InvalidInput("x"); }),
+    EXPECT_THROW(readInSandbox(kInput, kRoomy, []() -> ReadVolume { throw InvalidInput("x"); }),
                  InvalidInput);
-    EXPECT_THROW(readBehindFence(kInput, kRoomy, []() -> ReadVolume { throw InternalError("x"); }),
+    EXPECT_THROW(readInSandbox(kInput, kRoomy, []() -> ReadVolume { throw InternalError("x"); }),
                  InternalError);
     expectOneLine(refusal([]() -> ReadVolume { throw std::runtime_error("a.cxx:7:\nthis=0x5"); }),
                   "can't be decoded");
@@ -112,7 +112,7 @@ TEST(Fence, PassesTheLibrarysErrorsOn) {
     expectNoChildLeft();
 }
 
-TEST(Fence, TurnsEveryDeathIntoOneLine) {
+TEST(Sandbox, TurnsEveryDeathIntoOneLine) {
     expectOneLine(refusal([]() -> ReadVolume { std::abort(); }), "crashed (signal 6");
     expectOneLine(refusal([]() -> ReadVolume { ::raise(SIGSEGV), std::abort(); }),
                   "crashed (signal 11");
@@ -134,7 +134,7 @@ int recurse(volatile char* outer, int depth) {
     return inner + frame[0];
 }
 
-TEST(Fence, TurnsStackOverflowIntoOneLine) {
+TEST(Sandbox, TurnsStackOverflowIntoOneLine) {
     const std::string message = refusal([]() -> ReadVolume {
         volatile char start = 0;
         std::_Exit(recurse(&start, 0));
@@ -145,8 +145,8 @@ TEST(Fence, TurnsStackOverflowIntoOneLine) {
     EXPECT_TRUE(message.starts_with("folder/x.dcm: ")) << message;
 }
 
-TEST(Fence, StopsWhatDoesNotEnd) {
-    const FenceLimits hasty{300ms, kRoomy.memoryBytes};
+TEST(Sandbox, StopsWhatDoesNotEnd) {
+    const SandboxLimits hasty{300ms, kRoomy.memoryBytes};
     const auto begin = std::chrono::steady_clock::now();
     expectOneLine(refusal(
                       []() -> ReadVolume {
@@ -176,11 +176,11 @@ TEST(Fence, StopsWhatDoesNotEnd) {
     expectNoChildLeft();
 }
 
-TEST(Fence, BoundsMemory) {
+TEST(Sandbox, BoundsMemory) {
 #ifdef ADAPTISO_SANITIZED
     GTEST_SKIP() << "sanitizers end the process when memory is short";
 #endif
-    const FenceLimits small{30s, std::uint64_t{64} << 20};
+    const SandboxLimits small{30s, std::uint64_t{64} << 20};
     const auto hoard = []() -> ReadVolume {
         for (;;) {
             auto* const block = new std::byte[std::size_t{1} << 20];
@@ -194,20 +194,20 @@ TEST(Fence, BoundsMemory) {
                   "memory");
     // 32 MB beyond what the parent has, which counts for nothing
     const std::vector<std::byte> parents(std::size_t{128} << 20, std::byte{1});
-    EXPECT_EQ(readBehindFence(kInput, small,
-                              [] {
-                                  const std::vector<std::byte> some(std::size_t{32} << 20,
-                                                                    std::byte{1});
-                                  return made(detail::allocateSamples(kInput, 48));
-                              })
+    EXPECT_EQ(readInSandbox(kInput, small,
+                            [] {
+                                const std::vector<std::byte> some(std::size_t{32} << 20,
+                                                                  std::byte{1});
+                                return made(detail::allocateSamples(kInput, 48));
+                            })
                   .format,
               "DICOM");
 }
 
-TEST(Fence, NamesTheFileThatTheDecoderWasGiven) {
+TEST(Sandbox, NamesTheFileThatTheDecoderWasGiven) {
     EXPECT_TRUE(refusal([]() -> ReadVolume {
-                    detail::blameBehindFence("folder/longer-name.dcm");
-                    detail::blameBehindFence("folder/y.dcm");
+                    detail::blameInSandbox("folder/longer-name.dcm");
+                    detail::blameInSandbox("folder/y.dcm");
                     std::abort();
                 }).starts_with("folder/y.dcm: its decoder crashed"));
 }
@@ -221,50 +221,50 @@ TEST(Fence, NamesTheFileThatTheDecoderWasGiven) {
     std::_Exit(0);
 }
 
-TEST(Fence, BelievesNoGarbage) {
+TEST(Sandbox, BelievesNoGarbage) {
     const std::string noise(5000, '\xA5');
-    FenceAnswer lie{FenceAnswer::Kind::Volume, "", PixelType::Int16, kGeometry, 0, 48, "x", {}};
-    const std::string promisesSamplesThatAreNotThere = packFenceAnswer(lie);
+    SandboxAnswer lie{SandboxAnswer::Kind::Volume, "", PixelType::Int16, kGeometry, 0, 48, "x", {}};
+    const std::string promisesSamplesThatAreNotThere = packSandboxAnswer(lie);
     for (const std::string& bytes : {noise, std::string(3, '\0'), promisesSamplesThatAreNotThere,
                                      promisesSamplesThatAreNotThere.substr(0, 100),
                                      std::string(detail::kLongestAnswer + 5, '\1')}) {
         expectOneLine(refusal([&]() -> ReadVolume { answer(bytes); }), "nonsense");
     }
-    const auto liesAfterAllocating = [&](const FenceAnswer& told) {
+    const auto liesAfterAllocating = [&](const SandboxAnswer& told) {
         return refusal([&]() -> ReadVolume {
             const auto samples = detail::allocateSamples(kInput, 48);
-            answer(packFenceAnswer(told));
+            answer(packSandboxAnswer(told));
         });
     };
-    FenceAnswer outside = lie;
+    SandboxAnswer outside = lie;
     outside.offset = ~std::uint64_t{0} - 10;
     expectOneLine(liesAfterAllocating(outside), "nonsense");
-    FenceAnswer tooShort = lie;
+    SandboxAnswer tooShort = lie;
     tooShort.byteCount = 46;
     expectOneLine(liesAfterAllocating(tooShort), "nonsense");
-    FenceAnswer huge = lie;
+    SandboxAnswer huge = lie;
     huge.geometry.size = {1 << 30, 1 << 30, 1 << 30};
     EXPECT_TRUE(liesAfterAllocating(huge).starts_with("folder/x.dcm: "));
-    FenceAnswer flat = lie;
+    SandboxAnswer flat = lie;
     flat.geometry.indexToPhysical.column[1] = flat.geometry.indexToPhysical.column[0];
     expectOneLine(liesAfterAllocating(flat), "singular");
-    FenceAnswer escape{
-        FenceAnswer::Kind::FileError, "folder/x.dcm: \x1b[2J\n", {}, {}, 0, 0, "", {}};
+    SandboxAnswer escape{
+        SandboxAnswer::Kind::FileError, "folder/x.dcm: \x1b[2J\n", {}, {}, 0, 0, "", {}};
     expectOneLine(liesAfterAllocating(escape), "folder/x.dcm:  [2J");
     expectNoChildLeft();
 }
 
-TEST(FenceAnswer, ParsesOnlyWholeAnswers) {
-    const FenceAnswer told{FenceAnswer::Kind::Volume,
-                           "",
-                           PixelType::Float64,
-                           kGeometry,
-                           4096,
-                           192,
-                           "DICOM",
-                           {{"gantry-tilt", "tilted"}, {"stray-bits", "odd"}}};
-    const std::string bytes = packFenceAnswer(told);
-    const auto parsed = detail::parseFenceAnswer(bytes);
+TEST(SandboxAnswer, ParsesOnlyWholeAnswers) {
+    const SandboxAnswer told{SandboxAnswer::Kind::Volume,
+                             "",
+                             PixelType::Float64,
+                             kGeometry,
+                             4096,
+                             192,
+                             "DICOM",
+                             {{"gantry-tilt", "tilted"}, {"stray-bits", "odd"}}};
+    const std::string bytes = packSandboxAnswer(told);
+    const auto parsed = detail::parseSandboxAnswer(bytes);
     ASSERT_TRUE(parsed);
     EXPECT_EQ(parsed->geometry, kGeometry);
     EXPECT_EQ(parsed->pixelType, PixelType::Float64);
@@ -273,21 +273,21 @@ TEST(FenceAnswer, ParsesOnlyWholeAnswers) {
     EXPECT_EQ(parsed->format, "DICOM");
     EXPECT_EQ(parsed->warnings, told.warnings);
     for (std::size_t length = 0; length < bytes.size(); ++length) {
-        EXPECT_FALSE(detail::parseFenceAnswer(std::string_view(bytes).substr(0, length)));
+        EXPECT_FALSE(detail::parseSandboxAnswer(std::string_view(bytes).substr(0, length)));
     }
-    EXPECT_FALSE(detail::parseFenceAnswer(bytes + "x"));
+    EXPECT_FALSE(detail::parseSandboxAnswer(bytes + "x"));
     // any one byte wrong: no crash, and never a text beyond the answer
     for (std::size_t i = 0; i < bytes.size(); ++i) {
         std::string damaged = bytes;
         damaged[i] = static_cast<char>(damaged[i] ^ 0xff);
-        (void)detail::parseFenceAnswer(damaged);
+        (void)detail::parseSandboxAnswer(damaged);
     }
 }
 
-TEST(Fence, SilencesTheDecoder) {
+TEST(Sandbox, SilencesTheDecoder) {
     ::testing::internal::CaptureStderr();
     ::testing::internal::CaptureStdout();
-    readBehindFence(kInput, kRoomy, [] {
+    readInSandbox(kInput, kRoomy, [] {
         (void)!::write(STDERR_FILENO, "noise", 5);
         (void)!::write(STDOUT_FILENO, "noise", 5);
         std::fprintf(stderr, "noise");
@@ -298,12 +298,12 @@ TEST(Fence, SilencesTheDecoder) {
     EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(Fence, GivesTheDecoderNoFileOfTheCallers) {
+TEST(Sandbox, GivesTheDecoderNoFileOfTheCallers) {
     const TempFolder folder;
     const auto file = writeFile(folder / "output", "precious");
     std::ofstream output(file, std::ios::app);
     output << "unwritten";  // in the stream's buffer, which the child must not flush
-    readBehindFence(kInput, kRoomy, [] {
+    readInSandbox(kInput, kRoomy, [] {
         for (int number = 3; number < 1024; ++number) {
             if (::lseek(number, 0, SEEK_CUR) >= 0 && ::ftruncate(number, 1 << 20) == 0) continue;
         }
@@ -317,7 +317,7 @@ void countSignal(int) {
     ++handled;
 }
 
-TEST(Fence, LeavesTheCallersSignalHandlersAlone) {
+TEST(Sandbox, LeavesTheCallersSignalHandlersAlone) {
     struct sigaction action {
     }, before{};
     action.sa_handler = countSignal;
@@ -331,7 +331,7 @@ TEST(Fence, LeavesTheCallersSignalHandlersAlone) {
                   "interrupted (signal 15)");
     // in the parent it does, and reading goes on
     const pid_t self = ::getpid();
-    const ReadVolume result = readBehindFence(kInput, kRoomy, [self] {
+    const ReadVolume result = readInSandbox(kInput, kRoomy, [self] {
         for (int i = 0; i < 5; ++i) {
             ::kill(self, SIGTERM);
             ::usleep(2000);
@@ -343,18 +343,18 @@ TEST(Fence, LeavesTheCallersSignalHandlersAlone) {
     sigaction(SIGTERM, &before, nullptr);
 }
 
-TEST(Fence, WorksWhereTheCallerIgnoresItsChildren) {
+TEST(Sandbox, WorksWhereTheCallerIgnoresItsChildren) {
     const auto before = std::signal(SIGCHLD, SIG_IGN);
     EXPECT_EQ(
-        readBehindFence(kInput, kRoomy, [] { return made(detail::allocateSamples(kInput, 48)); })
+        readInSandbox(kInput, kRoomy, [] { return made(detail::allocateSamples(kInput, 48)); })
             .format,
         "DICOM");
     expectOneLine(refusal([]() -> ReadVolume { std::abort(); }), "ended early");
     std::signal(SIGCHLD, before);
 }
 
-TEST(Fence, EndsWithItsParent) {
-    // a process in between starts a fenced read that does not end, tells its child's id and dies
+TEST(Sandbox, EndsWithItsParent) {
+    // a process in between starts a sandboxed read that does not end, tells its child's id and dies
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
     const pid_t between = ::fork();
@@ -371,7 +371,7 @@ TEST(Fence, EndsWithItsParent) {
             (void)!::write(ends[1], &child, sizeof child);
         }).detach();
         try {
-            readBehindFence(kInput, kRoomy, [id]() -> ReadVolume {
+            readInSandbox(kInput, kRoomy, [id]() -> ReadVolume {
                 *id = ::getpid();
                 for (;;) ::pause();
             });
@@ -396,7 +396,7 @@ TEST(Fence, EndsWithItsParent) {
     ::close(ends[1]);
 }
 
-TEST(Fence, WorksWhileOtherThreadsAllocate) {
+TEST(Sandbox, WorksWhileOtherThreadsAllocate) {
     // fork copies one thread alone; the heap's locks must not stay locked in the child
     std::atomic<bool> goesOn{true};
     std::vector<std::thread> threads;
@@ -406,12 +406,11 @@ TEST(Fence, WorksWhileOtherThreadsAllocate) {
         });
     }
     for (int n = 0; n < 50; ++n) {
-        EXPECT_EQ(readBehindFence(kInput, kRoomy,
-                                  [] {
-                                      const std::vector<std::string> some(100,
-                                                                          std::string(99, 'x'));
-                                      return made(detail::allocateSamples(kInput, 48));
-                                  })
+        EXPECT_EQ(readInSandbox(kInput, kRoomy,
+                                [] {
+                                    const std::vector<std::string> some(100, std::string(99, 'x'));
+                                    return made(detail::allocateSamples(kInput, 48));
+                                })
                       .format,
                   "DICOM");
     }
@@ -420,31 +419,31 @@ TEST(Fence, WorksWhileOtherThreadsAllocate) {
     expectNoChildLeft();
 }
 
-TEST(FenceLimits, GrowWithTheInput) {
+TEST(SandboxLimits, GrowWithTheInput) {
     const TempFolder folder;
     writeFile(folder / "a", std::string(2'000'000, 'x'));
     writeFile(folder / "b", std::string(1'000'000, 'x'));
-    EXPECT_EQ(detail::fenceLimitsFor(folder / "a").time, 17s);
-    EXPECT_EQ(detail::fenceLimitsFor(folder.path()).time, 18s);
-    EXPECT_EQ(detail::fenceLimitsFor(folder / "a").memoryBytes,
+    EXPECT_EQ(detail::sandboxLimitsFor(folder / "a").time, 17s);
+    EXPECT_EQ(detail::sandboxLimitsFor(folder.path()).time, 18s);
+    EXPECT_EQ(detail::sandboxLimitsFor(folder / "a").memoryBytes,
               std::min<std::uint64_t>((std::uint64_t{1} << 30) + 128'000'000,
                                       detail::machineMemoryBytes()));
-    EXPECT_EQ(detail::fenceLimitsFor(folder / "missing").time, 15s);
+    EXPECT_EQ(detail::sandboxLimitsFor(folder / "missing").time, 15s);
 }
 
-TEST(ReadVolume, ReadsDicomAlikeWithTheFenceAndWithoutIt) {
+TEST(ReadVolume, ReadsDicomAlikeWithTheSandboxAndWithoutIt) {
     const TempFolder folder;
     for (int k = 0; k < 4; ++k) {
         writeFile(folder / std::to_string(k), stackedSlice(k).bytes());
     }
-    const ReadVolume fenced = readVolume(folder.path());
-    ReadOptions withoutFence;
-    withoutFence.fence = false;
-    const ReadVolume open = readVolume(folder.path(), withoutFence);
-    EXPECT_EQ(samplesIn<std::uint16_t>(fenced.volume), samplesIn<std::uint16_t>(open.volume));
-    EXPECT_EQ(fenced.volume.view().geometry(), open.volume.view().geometry());
-    EXPECT_EQ(fenced.format, open.format);
-    EXPECT_EQ(fenced.warnings, open.warnings);
+    const ReadVolume sandboxed = readVolume(folder.path());
+    ReadOptions withoutSandbox;
+    withoutSandbox.sandbox = false;
+    const ReadVolume open = readVolume(folder.path(), withoutSandbox);
+    EXPECT_EQ(samplesIn<std::uint16_t>(sandboxed.volume), samplesIn<std::uint16_t>(open.volume));
+    EXPECT_EQ(sandboxed.volume.view().geometry(), open.volume.view().geometry());
+    EXPECT_EQ(sandboxed.format, open.format);
+    EXPECT_EQ(sandboxed.warnings, open.warnings);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include <optional>
 #include <string>
 
-#include "Fence.h"
+#include "Sandbox.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Shortage.h"
 
@@ -79,7 +79,7 @@ private:
     std::shared_ptr<std::byte[]> copy_;
 };
 
-SharedArena* arena = nullptr;  // of this process, when it is a child behind a fence
+SharedArena* arena = nullptr;  // of this process, when it is a child in a sandbox process
 
 void limit(int resource, rlim_t soft) {
     rlimit now{};
@@ -122,7 +122,7 @@ void closeOtherFiles(int one, int other) {
     ::close_range(std::max(high + 1, 3U), ~0U, 0);
 }
 
-void fenceIn(const FenceChildSetup& setup, pid_t parent) {
+void sandboxIn(const SandboxChildSetup& setup, pid_t parent) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(1);  // it died before
     const std::uint64_t inherited = dataBytes();
@@ -134,9 +134,9 @@ void fenceIn(const FenceChildSetup& setup, pid_t parent) {
     ::prctl(PR_SET_DUMPABLE, 0);  // nor may a crash reporter have it
 }
 
-FenceAnswer answerOf(const std::function<ReadVolume()>& read, std::optional<ReadVolume>& result) {
-    FenceAnswer answer;
-    const auto failed = [&](FenceAnswer::Kind kind, const char* message) {
+SandboxAnswer answerOf(const std::function<ReadVolume()>& read, std::optional<ReadVolume>& result) {
+    SandboxAnswer answer;
+    const auto failed = [&](SandboxAnswer::Kind kind, const char* message) {
         answer.kind = kind;
         answer.message = message;
     };
@@ -149,19 +149,19 @@ FenceAnswer answerOf(const std::function<ReadVolume()>& read, std::optional<Read
         answer.offset = arena->offsetOf(view.samples(), answer.byteCount);
         answer.format = result->format;
         answer.warnings = result->warnings;
-        answer.kind = FenceAnswer::Kind::Volume;
+        answer.kind = SandboxAnswer::Kind::Volume;
     } catch (const Shortage& error) {
-        failed(FenceAnswer::Kind::Shortage, error.what());
+        failed(SandboxAnswer::Kind::Shortage, error.what());
     } catch (const FileError& error) {
-        failed(FenceAnswer::Kind::FileError, error.what());
+        failed(SandboxAnswer::Kind::FileError, error.what());
     } catch (const InvalidInput& error) {
-        failed(FenceAnswer::Kind::InvalidInput, error.what());
+        failed(SandboxAnswer::Kind::InvalidInput, error.what());
     } catch (const InternalError& error) {
-        failed(FenceAnswer::Kind::InternalError, error.what());
+        failed(SandboxAnswer::Kind::InternalError, error.what());
     } catch (const std::bad_alloc&) {
-        failed(FenceAnswer::Kind::OutOfMemory, "");
+        failed(SandboxAnswer::Kind::OutOfMemory, "");
     } catch (...) {  // the decoders' own: several lines of source places
-        failed(FenceAnswer::Kind::UnknownError, "");
+        failed(SandboxAnswer::Kind::UnknownError, "");
     }
     return answer;
 }
@@ -176,19 +176,19 @@ bool writeWhole(int file, std::string_view bytes) {
     return true;
 }
 
-[[noreturn]] void runChild(const FenceChildSetup& setup, pid_t parent,
+[[noreturn]] void runChild(const SandboxChildSetup& setup, pid_t parent,
                            const std::function<ReadVolume()>& read) {
-    fenceIn(setup, parent);
+    sandboxIn(setup, parent);
     SharedArena ownArena(setup.sharedMemory, setup.blameNote);
     arena = &ownArena;
     std::optional<ReadVolume> result;  // its samples must stay until the parent has the answer
-    const bool isTold = writeWhole(setup.answerPipe, packFenceAnswer(answerOf(read, result)));
+    const bool isTold = writeWhole(setup.answerPipe, packSandboxAnswer(answerOf(read, result)));
     ::_exit(isTold ? 0 : 1);  // no destructors: they are the parent's to run
 }
 
 }  // namespace
 
-pid_t forkFenceChild(const FenceChildSetup& setup, const std::function<ReadVolume()>& read) {
+pid_t forkSandboxChild(const SandboxChildSetup& setup, const std::function<ReadVolume()>& read) {
     // no handler of the parent's may run in the child before they are forgotten
     sigset_t all, before;
     sigfillset(&all);
@@ -202,11 +202,11 @@ pid_t forkFenceChild(const FenceChildSetup& setup, const std::function<ReadVolum
     return pid;
 }
 
-bool isBehindFence() {
+bool isInSandbox() {
     return arena != nullptr;
 }
 
-void blameBehindFence(const std::filesystem::path& file) {
+void blameInSandbox(const std::filesystem::path& file) {
     if (arena != nullptr) arena->blame(file.native());
 }
 
