@@ -102,9 +102,10 @@ void WallCollapser::beginAsIs() {
         if (patch_.isTried[v - first] != 0) leastCost_[v] = kInfinity;
     }
     for (Id s = 0; s < samples_.size(); ++s) {
-        const SampleHome& home = patch_.homes[s];
-        samples_[s].tightness = home.tightness;
-        if (home.triangle != kNone) link(s, mesh_.firstTriangle() + home.triangle, home.slot);
+        const WallAssignment& assigned = patch_.assignments[s];
+        samples_[s].tightness = assigned.tightness;
+        if (assigned.triangle != kNone)
+            link(s, mesh_.firstTriangle() + assigned.triangle, assigned.slot);
     }
 }
 
@@ -151,7 +152,7 @@ void WallCollapser::addQuadrics() {
 
 void WallCollapser::link(Id sample, Id triangle, std::uint8_t slot) {
     Sample& own = samples_[sample];
-    own.home = triangle;
+    own.assigned = triangle;
     own.slot = slot;
     own.next = firstSample_[triangle];
     firstSample_[triangle] = sample;
@@ -306,7 +307,7 @@ bool WallCollapser::tryCollapse(Id u, Id v, Plan plan, double limitMm) {
     const bool isMoved = mesh_.kind(u) == mesh_.kind(v);
     if (isMoved && plan.kind == Kind::Wall) keepVolume(u, v, plan);
     if (!isInRoom(plan.point) || !keepsShape(u, v, plan.point)) return false;
-    if (!findHomes(u, v, plan, limitMm)) return false;
+    if (!assignSamples(u, v, plan, limitMm)) return false;
     if (isMoved && !isNearFull(plan.point, nearestSample_, limitMm)) return false;
     if (mark_.size() < mesh_.pointCount()) mark_.resize(mesh_.pointCount(), 0);
     ++stamp_;
@@ -318,8 +319,8 @@ bool WallCollapser::tryCollapse(Id u, Id v, Plan plan, double limitMm) {
     const auto& change = mesh_.change(n);
     firstSample_.resize(mesh_.triangleCount(), kNone);
     for (const Id t : star_) firstSample_[t] = kNone;
-    for (const NewHome& home : newHomes_) {
-        link(home.sample, change.madeBegin + home.star, home.slot);
+    for (const NewAssignment& assigned : newAssignments_) {
+        link(assigned.sample, change.madeBegin + assigned.star, assigned.slot);
     }
     quadrics_.push_back(quadrics_[u] + quadrics_[v]);
     origin_.push_back(nearestSample_);
@@ -397,7 +398,7 @@ void WallCollapser::undo(Id change) {
             for (Id s = firstSample_[t]; s != kNone;) {
                 const Id next = samples_[s].next;
                 double best2 = kInfinity;
-                Id home = star[t - c.madeBegin];
+                Id assigned = star[t - c.madeBegin];
                 for (const Id to : star) {
                     if (mesh_.triangle(to).wall != mesh_.triangle(t).wall) continue;
                     const auto p = mesh_.cornersOf(to);
@@ -406,10 +407,10 @@ void WallCollapser::undo(Id change) {
                         squaredNorm(at - closestPointOnTriangle(at, p[0], p[1], p[2]));
                     if (d2 < best2) {
                         best2 = d2;
-                        home = to;
+                        assigned = to;
                     }
                 }
-                link(s, home, samples_[s].slot);
+                link(s, assigned, samples_[s].slot);
                 s = next;
             }
             firstSample_[t] = kNone;
@@ -436,11 +437,12 @@ void WallCollapser::tightenNear(Id triangle) {
 WallCollapser::Id WallCollapser::meshNear(Id full) const {
     const auto& t = patch_.fullTriangles[full];
     for (const Id v : t.v) {
-        if (samples_[v].home != kNone && samples_[v].slot == kOnWall) return samples_[v].home;
+        if (samples_[v].assigned != kNone && samples_[v].slot == kOnWall)
+            return samples_[v].assigned;
     }
     for (const Id v : t.v) {
-        if (samples_[v].home == kNone) continue;
-        const auto& own = mesh_.triangle(samples_[v].home);
+        if (samples_[v].assigned == kNone) continue;
+        const auto& own = mesh_.triangle(samples_[v].assigned);
         for (const Id x : own.v) {
             for (const Id at : mesh_.around(x)) {
                 if (mesh_.triangle(at).wall == t.wall) return at;

@@ -52,9 +52,9 @@ public:
         return v < firstNew_ && patch_.isFrozen[v - mesh_.firstPoint()] != 0;
     }
     /// Where a sample is assigned to: samples are the vertices of the full walls.
-    SampleHome homeOf(Id sample) const {
+    WallAssignment assignmentOf(Id sample) const {
         const Sample& s = samples_[sample];
-        return {s.home, s.tightness, s.slot};
+        return {s.assigned, s.tightness, s.slot};
     }
 
     /// From the full walls: a triangle, those at a vertex, samples that are assigned to one of the
@@ -95,16 +95,17 @@ private:
     /// A sample, and the triangle that it is assigned to: one of a list.
     struct Sample {
         Vec3 point;
-        Id home = kNone, next = kNone;
-        float tightness = SampleHome().tightness;  ///< part of the limit that it may use
-        std::uint8_t slot = SampleHome::kOnWall;   ///< edge of the home that it is assigned to
+        Id assigned = kNone, next = kNone;
+        float tightness = WallAssignment().tightness;  ///< part of the limit that it may use
+        std::uint8_t slot =
+            WallAssignment::kOnWall;  ///< edge of the triangle that it is assigned to
     };
-    struct NewHome {
+    struct NewAssignment {
         Id sample, star;
         std::uint8_t slot;
     };
     static constexpr float kTighter = 0.6F;
-    static constexpr std::uint8_t kOnWall = SampleHome::kOnWall;
+    static constexpr std::uint8_t kOnWall = WallAssignment::kOnWall;
 
     void findFans();
     void beginFull();
@@ -122,9 +123,11 @@ private:
     bool sweepsCentre(Id u, Id v, const Vec3& point) const;
     bool isInRoom(const Vec3& point) const;
     void findParts(Id u, Id v, const Plan& plan);
-    bool findHomes(Id u, Id v, const Plan& plan, double limitMm);
-    double homeOnWall(const Vec3& p, Id wall, std::size_t first, double limit2, NewHome& home);
-    double homeOnCurve(const Vec3& p, Id u, Id v, const Plan& plan, std::size_t i, NewHome& home);
+    bool assignSamples(Id u, Id v, const Plan& plan, double limitMm);
+    double assignOnWall(const Vec3& p, Id wall, std::size_t first, double limit2,
+                        NewAssignment& assigned);
+    double assignOnCurve(const Vec3& p, Id u, Id v, const Plan& plan, std::size_t i,
+                         NewAssignment& assigned);
     bool isNearFull(const Vec3& point, Id sample, double limitMm) const;
     void link(Id sample, Id triangle, std::uint8_t slot);
     bool spokesAreNear(const Plan& plan, double limitMm);
@@ -204,13 +207,13 @@ private:
     std::vector<std::uint32_t> mark_;
     std::uint32_t stamp_ = 0;
     std::vector<Id> common_;
-    std::vector<NewHome> newHomes_;
+    std::vector<NewAssignment> newAssignments_;
     struct OnSpoke {
         Vec3 point;
         Id nearest;  ///< sample
     };
     std::vector<OnSpoke> onSpokes_;
-    SamplePoints samplePoints_;  ///< of the new homes, in their order
+    SamplePoints samplePoints_;  ///< of the new assignments, in their order
     Id nearestSample_ = kNone;
 };
 

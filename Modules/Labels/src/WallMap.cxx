@@ -142,20 +142,20 @@ private:
     /// \return false if there are no more
     bool findFoot(Id v, Id wall, Foot& foot) const {
         const Vec3& point = mesh_.point(v);
-        const SampleHome home = whole_.collapser_.homeOf(v);
+        const WallAssignment assigned = whole_.collapser_.assignmentOf(v);
         foot.p = foot.q = kNone;
-        if (home.triangle == kNone) {
+        if (assigned.triangle == kNone) {
             foot.p = mesh_.firstPoint() == 0 && mesh_.isAlive(v) ? v : whole_.stillAt(point);
             if (foot.p == kNone) return false;
             foot.vertex = {point, point, placeAtVertex(foot.p, wall), 0};
-        } else if (home.slot == SampleHome::kOnWall) {
-            const Id place = whole_.places_[home.triangle];
-            if (place == kNone || mesh_.triangle(home.triangle).wall != wall) return false;
+        } else if (assigned.slot == WallAssignment::kOnWall) {
+            const Id place = whole_.places_[assigned.triangle];
+            if (place == kNone || mesh_.triangle(assigned.triangle).wall != wall) return false;
             foot.vertex = map_.vertexAt(point, place);
         } else {
-            const auto& c = mesh_.triangle(home.triangle).v;
-            foot.p = c[home.slot];
-            foot.q = c[(home.slot + 1) % 3];
+            const auto& c = mesh_.triangle(assigned.triangle).v;
+            foot.p = c[assigned.slot];
+            foot.q = c[(assigned.slot + 1) % 3];
             const Vec3 image = nearestOnSegment(point, mesh_.point(foot.p), mesh_.point(foot.q));
             foot.vertex = {point, image, placeAtEdge(foot.p, foot.q, wall),
                            squaredNorm(point - image)};

@@ -246,11 +246,11 @@ std::vector<WallMender::Id> WallMender::aliveTriangles(bool areAll,
     if (!areAll) {
         for (const Id f : full) {
             for (const Id sample : collapser_.fullTriangle(f).v) {
-                const Id home = collapser_.homeOf(sample).triangle;
-                if (home == kNone) {
+                const Id assigned = collapser_.assignmentOf(sample).triangle;
+                if (assigned == kNone) {
                     isNear[sample] = 1;
                 } else {
-                    for (const Id v : mesh_.triangle(home).v) isNear[v] = 1;
+                    for (const Id v : mesh_.triangle(assigned).v) isNear[v] = 1;
                 }
             }
         }

@@ -23,7 +23,7 @@ struct WallTriangle {
 
 /// Where a sample of the full walls is assigned to: a triangle of the walls as they are, and where
 /// on it.
-struct SampleHome {
+struct WallAssignment {
     static constexpr std::uint8_t kOnWall = 3;
 
     std::uint32_t triangle = ~std::uint32_t{0};  ///< unset at first
@@ -47,7 +47,7 @@ struct WallPatch {
     std::vector<Id> origins;            ///< of each vertex, one of the full walls near it
     std::vector<std::uint8_t> isTried;  ///< of vertices: no edge there can collapse as they are
     std::vector<WallTriangle> triangles;
-    std::vector<SampleHome> homes;  ///< of the full walls' vertices
+    std::vector<WallAssignment> assignments;  ///< of the full walls' vertices
 
     std::vector<std::uint8_t> isOwn;     ///< of vertices: in the cube
     std::vector<std::uint8_t> isFrozen;  ///< of vertices: do not move

@@ -77,9 +77,10 @@ double largestSampleDistance(const WallCollapser& collapser) {
     const WallMesh& mesh = collapser.mesh();
     double largest = 0;
     for (Id s = 0; s < mesh.fullPoints(); ++s) {
-        const Id home = collapser.homeOf(s).triangle;
-        if (home == kNone) continue;
-        largest = std::max(largest, squaredDistanceToTriangle(mesh.point(s), mesh.cornersOf(home)));
+        const Id assigned = collapser.assignmentOf(s).triangle;
+        if (assigned == kNone) continue;
+        largest =
+            std::max(largest, squaredDistanceToTriangle(mesh.point(s), mesh.cornersOf(assigned)));
     }
     return std::sqrt(largest);
 }
@@ -182,8 +183,8 @@ struct WholeWalls::Made {
     std::vector<WallTriangle> triangles;  ///< by these points
     struct Sample {
         Id sample;
-        SampleHome home;  ///< one of these triangles,
-        bool isInCube;    ///< or one that reaches out of the cube, by its number before
+        WallAssignment assigned;  ///< one of these triangles,
+        bool isInCube;            ///< or one that reaches out of the cube, by its number before
     };
     std::vector<Sample> samples;
     double boundMm = 0;
@@ -212,7 +213,7 @@ WholeWalls::WholeWalls(LabelComplex&& full, const ImageGeometry& geometry)
         for (int c = 0; c < 3; ++c) full_[t].v[c] = static_cast<Id>(full.triangles[t][c]);
     }
     full = {};
-    homes_.resize(fullPoints_.size());
+    assignments_.resize(fullPoints_.size());
 }
 
 WholeWalls::Lists WholeWalls::listsOf(const CubeCut& cut, const WallAim& aim) const {
@@ -264,8 +265,8 @@ WholeWalls::Lists WholeWalls::listsOf(const CubeCut& cut, const WallAim& aim) co
         for (Id t = 0; t < full_.size(); ++t) giveReached(fullPoints_, full_[t], around, t, give);
     });
     lists.samples.assign(all.size(), [&](const auto& give) {
-        for (Id s = 0; s < homes_.size(); ++s) {
-            if (homes_[s].triangle != kNone) give(homes_[s].triangle, s);
+        for (Id s = 0; s < assignments_.size(); ++s) {
+            if (assignments_[s].triangle != kNone) give(assignments_[s].triangle, s);
         }
     });
     return lists;
@@ -342,14 +343,15 @@ void WholeWalls::addFull(const Lists& lists, std::int64_t cube, WallPatch& patch
     for (const Id t : lists.own.of(cube)) {
         for (const Id s : lists.samples.of(t)) numbers.fullVertices.numberOf(s);
     }
-    const auto addHome = [&](Id sample) {
-        SampleHome home = homes_[sample];
-        if (home.triangle != kNone) home.triangle = numbers.triangles.find(home.triangle);
-        patch.homes.push_back(home);
+    const auto addAssignment = [&](Id sample) {
+        WallAssignment assigned = assignments_[sample];
+        if (assigned.triangle != kNone)
+            assigned.triangle = numbers.triangles.find(assigned.triangle);
+        patch.assignments.push_back(assigned);
     };
     for (const Id v : numbers.fullVertices.ids()) {
         patch.fullPoints.push_back(fullPoints_[v]);
-        addHome(v);
+        addAssignment(v);
     }
     for (std::size_t n = 0; n < patch.points.size(); ++n) {
         const Id v = numbers.vertices.ids()[n];
@@ -399,13 +401,13 @@ WholeWalls::Made WholeWalls::simplifyOne(const CubeCut& cut, const Lists& lists,
     for (Id s = 0; s < samples; ++s) {
         // those that this cube alone can have moved
         const bool isMine =
-            isFull() ? patch.isOwn[s] != 0 : patch.homes[s].triangle < numbers.ownTriangles;
-        SampleHome home = collapser.homeOf(s);
-        if (!isMine || home.triangle == kNone) continue;
-        const bool isInCube = newTriangle[home.triangle] != kNone;
-        home.triangle = isInCube ? newTriangle[home.triangle]
-                                 : numbers.triangles.ids()[home.triangle - firstTriangle];
-        made.samples.push_back({fullVertices.ids()[s], home, isInCube});
+            isFull() ? patch.isOwn[s] != 0 : patch.assignments[s].triangle < numbers.ownTriangles;
+        WallAssignment assigned = collapser.assignmentOf(s);
+        if (!isMine || assigned.triangle == kNone) continue;
+        const bool isInCube = newTriangle[assigned.triangle] != kNone;
+        assigned.triangle = isInCube ? newTriangle[assigned.triangle]
+                                     : numbers.triangles.ids()[assigned.triangle - firstTriangle];
+        made.samples.push_back({fullVertices.ids()[s], assigned, isInCube});
     }
     return made;
 }
@@ -448,13 +450,13 @@ void WholeWalls::join(const Lists& lists, std::vector<Made>& made) {
         triangleNow[t] = static_cast<Id>(newTriangles.size());
         newTriangles.push_back(triangle);
     }
-    for (SampleHome& home : homes_) {
-        if (home.triangle != kNone) home.triangle = triangleNow[home.triangle];
+    for (WallAssignment& assigned : assignments_) {
+        if (assigned.triangle != kNone) assigned.triangle = triangleNow[assigned.triangle];
     }
     for (std::size_t n = 0; n < made.size(); ++n) {
         for (const Made::Sample& sample : made[n].samples) {
-            homes_[sample.sample] = sample.home;
-            Id& triangle = homes_[sample.sample].triangle;
+            assignments_[sample.sample] = sample.assigned;
+            Id& triangle = assignments_[sample.sample].triangle;
             triangle = sample.isInCube ? triangleBases[n] + triangle : triangleNow[triangle];
         }
     }

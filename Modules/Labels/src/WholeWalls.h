@@ -100,7 +100,7 @@ private:
     std::vector<Id> origins_;
     std::vector<std::uint8_t> isTried_;
     std::vector<WallTriangle> triangles_;
-    std::vector<SampleHome> homes_;
+    std::vector<WallAssignment> assignments_;
 };
 
 struct SimplifyOptions {

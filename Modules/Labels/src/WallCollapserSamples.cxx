@@ -63,15 +63,15 @@ void WallCollapser::findParts(Id u, Id v, const Plan& plan) {
 
 /// The part of a wall that a sample belongs to: one that it lies over and within the limit, or the
 /// nearest one. \return  the squared distance
-double WallCollapser::homeOnWall(const Vec3& p, Id wall, std::size_t first, double limit2,
-                                 NewHome& home) {
+double WallCollapser::assignOnWall(const Vec3& p, Id wall, std::size_t first, double limit2,
+                                   NewAssignment& assigned) {
     for (std::size_t step = 0; step < kept_; ++step) {
         const std::size_t n = first + step < kept_ ? first + step : first + step - kept_;
         const Part& part = parts_[n];
         if (part.wall != wall || part.plane.isFlat() || !part.plane.isUnder(p)) continue;
         const double height = part.plane.heightOf(p);
         if (height * height > limit2) continue;
-        home.star = static_cast<Id>(n);
+        assigned.star = static_cast<Id>(n);
         return height * height;
     }
     double best2 = kInfinity;
@@ -84,19 +84,19 @@ double WallCollapser::homeOnWall(const Vec3& p, Id wall, std::size_t first, doub
         const double d2 = squaredNorm(p - closestPointOnTriangle(p, c[0], c[1], c[2]));
         if (d2 < best2) {
             best2 = d2;
-            home.star = static_cast<Id>(n);
+            assigned.star = static_cast<Id>(n);
         }
     }
     return best2;
 }
 
 /// The same for a sample on a curve, of a triangle of the star.
-double WallCollapser::homeOnCurve(const Vec3& p, Id u, Id v, const Plan& plan, std::size_t i,
-                                  NewHome& home) {
+double WallCollapser::assignOnCurve(const Vec3& p, Id u, Id v, const Plan& plan, std::size_t i,
+                                    NewAssignment& assigned) {
     const auto& t = mesh_.triangle(star_[i]);
-    const Id a = t.v[home.slot], b = t.v[(home.slot + 1) % 3];
+    const Id a = t.v[assigned.slot], b = t.v[(assigned.slot + 1) % 3];
     if (a != u && a != v && b != u && b != v && i < kept_) {
-        home.star = static_cast<Id>(i);
+        assigned.star = static_cast<Id>(i);
         return 0;
     }
     double best2 = kInfinity;
@@ -104,17 +104,17 @@ double WallCollapser::homeOnCurve(const Vec3& p, Id u, Id v, const Plan& plan, s
         const double d2 = squaredDistanceToSegment(p, plan.point, part.end);
         if (d2 >= best2) continue;
         best2 = d2;
-        home.star = part.star;
-        home.slot = part.slot;
+        assigned.star = part.star;
+        assigned.slot = part.slot;
     }
     return best2;
 }
 
 /// Assigns the samples of the star to what replaces it.
 /// \return false when one lies too far from that
-bool WallCollapser::findHomes(Id u, Id v, const Plan& plan, double limitMm) {
+bool WallCollapser::assignSamples(Id u, Id v, const Plan& plan, double limitMm) {
     findParts(u, v, plan);
-    newHomes_.clear();
+    newAssignments_.clear();
     samplePoints_.clear();
     double nearest2 = kInfinity;
     nearestSample_ = kNone;
@@ -123,17 +123,17 @@ bool WallCollapser::findHomes(Id u, Id v, const Plan& plan, double limitMm) {
         for (Id s = firstSample_[star_[i]]; s != kNone; s = samples_[s].next) {
             const Sample& sample = samples_[s];
             const Vec3& p = sample.point;
-            NewHome home{s, kNone, sample.slot};
+            NewAssignment assigned{s, kNone, sample.slot};
             const double allowed = limitMm * sample.tightness, limit2 = allowed * allowed;
             const double squared = sample.slot == kOnWall
-                                       ? homeOnWall(p, wall, i < kept_ ? i : 0, limit2, home)
-                                       : homeOnCurve(p, u, v, plan, i, home);
+                                       ? assignOnWall(p, wall, i < kept_ ? i : 0, limit2, assigned)
+                                       : assignOnCurve(p, u, v, plan, i, assigned);
             if (!(squared <= limit2)) return false;
             if (const double d2 = squaredNorm(p - plan.point); d2 < nearest2) {
                 nearest2 = d2;
                 nearestSample_ = s;
             }
-            newHomes_.push_back(home);
+            newAssignments_.push_back(assigned);
             samplePoints_.add(p);
         }
     }
@@ -186,7 +186,7 @@ bool WallCollapser::spokesAreNear(const Plan& plan, double limitMm) {
     const double long2 = kLongVoxels * kLongVoxels * voxelMm_ * voxelMm_;
     onSpokes_.clear();
     const auto ask = [&](const Vec3& point) {
-        const Id nearest = newHomes_[samplePoints_.nearestTo(point)].sample;
+        const Id nearest = newAssignments_[samplePoints_.nearestTo(point)].sample;
         // what lies there is asked for soon
         __builtin_prefetch(fans_.data() + fullBegin_[nearest]);
         __builtin_prefetch(fans_.data() + fullBegin_[nearest] + 2);
