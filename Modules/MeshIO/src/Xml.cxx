@@ -13,6 +13,12 @@
 #include "Bytes.h"
 #include "adaptiso/Core/Errors.h"
 
+// expat 2.9 deprecates the names without 64
+#if XML_MAJOR_VERSION == 2 && XML_MINOR_VERSION < 9
+#define XML_GetCurrentByteIndex64 XML_GetCurrentByteIndex
+#define XML_GetCurrentLineNumber64 XML_GetCurrentLineNumber
+#endif
+
 namespace adaptiso::meshio {
 
 namespace {
@@ -72,7 +78,7 @@ private:
 
     void stop() {
         isStopped_ = true;
-        stopPosition_ = static_cast<std::size_t>(XML_GetCurrentByteIndex(parser_));
+        stopPosition_ = static_cast<std::size_t>(XML_GetCurrentByteIndex64(parser_));
         XML_StopParser(parser_, XML_FALSE);
     }
 
@@ -112,7 +118,7 @@ std::size_t parseXml(std::string_view bytes, XmlHandler& handler) {
         if (bridge.isStopped()) return bridge.stopPosition();
         if (status != XML_STATUS_OK) {
             damaged("its XML breaks off in line " +
-                    std::to_string(XML_GetCurrentLineNumber(parser.get())) + " (" +
+                    std::to_string(XML_GetCurrentLineNumber64(parser.get())) + " (" +
                     XML_ErrorString(XML_GetErrorCode(parser.get())) + ")");
         }
     }

@@ -93,7 +93,8 @@ TriangleTree::Pairs::Pairs(const TriangleTree& tree, const TriangleView& of) : t
 unsigned TriangleTree::Pairs::LeafBoxes::overlapping(const Box& o) const {
     std::array<std::int32_t, kLeafTriangles> overlaps;
     for (std::size_t i = 0; i < kLeafTriangles; ++i) {
-        overlaps[i] = (low[0][i] <= o.high[0]) & (o.low[0] <= high[0][i]) &
+        // int: Clang warns of & between bools
+        overlaps[i] = int{low[0][i] <= o.high[0]} & (o.low[0] <= high[0][i]) &
                       (low[1][i] <= o.high[1]) & (o.low[1] <= high[1][i]) &
                       (low[2][i] <= o.high[2]) & (o.low[2] <= high[2][i]);
     }

@@ -237,9 +237,10 @@ bool CrossingGuard::crossesNothing(const ChangedStar& changed) {
         std::array<std::uint8_t, Star::kMost> overlaps;
         for (int i = 0; i < n; ++i) {
             overlaps[i] = static_cast<std::uint8_t>(
-                (wedgeLow_[0][i] <= box.high[0]) & (box.low[0] <= wedgeHigh_[0][i]) &
-                (wedgeLow_[1][i] <= box.high[1]) & (box.low[1] <= wedgeHigh_[1][i]) &
-                (wedgeLow_[2][i] <= box.high[2]) & (box.low[2] <= wedgeHigh_[2][i]));
+                int{wedgeLow_[0][i] <= box.high[0]} &  // int: Clang warns of & between bools
+                (box.low[0] <= wedgeHigh_[0][i]) & (wedgeLow_[1][i] <= box.high[1]) &
+                (box.low[1] <= wedgeHigh_[1][i]) & (wedgeLow_[2][i] <= box.high[2]) &
+                (box.low[2] <= wedgeHigh_[2][i]));
         }
         for (int i = 0; i < n; ++i) {
             if (overlaps[i] != 0 && !isClear(changed, i, other)) return false;
