@@ -54,8 +54,9 @@ std::string programVersion() {
 }
 
 std::string versionText(const std::string& programName) {
-    return programName + " " + programVersion() + "\nbuilt with ITK " ADAPTISO_ITK_VERSION ", " +
-           threadingName();
+    const std::string itk = ADAPTISO_ITK_VERSION;
+    return programName + " " + programVersion() + "\nbuilt " +
+           (itk.empty() ? "without ITK" : "with ITK " + itk) + ", " + threadingName();
 }
 
 struct ThreadLimit::Impl {

@@ -121,6 +121,10 @@ class WebTest(ApplicationTest):
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertRegex(done.stderr, r"\Aadaptiso-mesh: huge.nii: its samples take 6.9 GB of memory, .*64-bit.*\n\Z")
 
+    def test_its_version_names_what_it_was_built_without(self):
+        done = subprocess.run([NODE, str(STARTER), "mesh", "--version"], text=True, stdout=subprocess.PIPE, check=True)
+        self.assertRegex(done.stdout, r"\Aadaptiso-mesh \d+\.\d+\.\d+\nbuilt without ITK, one thread\n\Z")
+
     def test_says_how_much_memory_it_took(self):
         self.write_bumpy()
         text = self.run_both("mesh", "bumpy.nii", "--iso", 100, "-o", "m.ply")
