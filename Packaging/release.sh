@@ -40,7 +40,7 @@ release() {
     "$1/Packaging/debian.sh" source "$2"
     "$1/Packaging/debian.sh" binary "$2" "$1/build/release"
     "$1/Packaging/archive.sh" "$1/build/release" "$2"
-    cp "$1/build/release/Packaging/adaptiso.spdx.json" "$2"
+    cp "$1/build/release/Packaging/adaptiso.spdx.json" "$1/Packaging/Containerfile" "$2"
     "$1/Applications/web/run.sh"
     cp "$1"/build/web/adaptiso.html "$1"/build/web/npm/adaptiso-*.tgz "$2"
     (cd "$2" && sha256sum -- * >SHA256SUMS)

@@ -8,6 +8,8 @@
 #   Testing/BareMachine/try.sh --package DEB [LOG]  the package alone, which is there already
 #   Testing/BareMachine/try.sh --archive TGZ [LOG]  the archive of Packaging/archive.sh: unpacked and
 #                                                   used without root on Debian 12, 13 and unstable
+#   Testing/BareMachine/try.sh --container TGZ [LOG]  the container of that archive, made by buildah on a
+#                                                   minimal Debian in the place of a registry's
 #
 # Works in a folder under /tmp and in mount and process namespaces of its own: when it ends, however
 # it ends, its mounts and processes are gone. It removes the folder and leaves the log. Packages
@@ -28,7 +30,7 @@ repository=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
 what=${1:-}
 given=
 case $what in
-    --package | --archive)
+    --package | --archive | --container)
         given=$(realpath -e "${2:?"$what needs a file"}")
         shift 2
         set -- HEAD "$@"
@@ -165,6 +167,31 @@ tryArchive() {
     done
 }
 
+# The container of the archive $given, from a minimal Debian, as its user, who has no rights.
+tryContainer() {
+    local container scans=/usr/share/mricron/templates
+    buildah() { command buildah --storage-driver vfs --root "$work/storage" --runroot "$work/run" "$@"; }
+    makeRoot
+    mkdir "$work/context" "$work/data"
+    cp "$given" "$work/context/"
+    cp "$scans/ch2bet.nii.gz" "$work/data/"
+    chown -R 1000:1000 "$work/data"
+    container=$(buildah from scratch)
+    tar -C "$root" --one-file-system -cf "$work/base.tar" .
+    buildah add -q "$container" "$work/base.tar" /
+    buildah commit -q "$container" localhost/debian:12-slim
+    buildah bud --isolation chroot --build-arg BASE=localhost/debian:12-slim -t adaptiso \
+        -f "$repository/Packaging/Containerfile" "$work/context"
+    container=$(buildah from adaptiso)
+    buildah inspect --format '{{.OCIv1.Config.Entrypoint}} {{.OCIv1.Config.User}}' "$container" | grep -x '\[adaptiso\] adaptiso'
+    local began=$SECONDS
+    buildah run --isolation chroot -v "$work/data:/data" "$container" adaptiso mesh ch2bet.nii.gz --iso 100 -o brain.stl
+    printf 'container: first surface  %s s\n' $((SECONDS - began)) >>"$work/summary"
+    buildah run --isolation chroot "$container" adaptiso check --self-test
+    sha256sum "$work/data/brain.stl" >>"$work/summary"
+    buildah images >>"$work/summary"
+}
+
 # Makes the package of the clone's programs; its name is then in $deb.
 makePackage() {
     runInside "package: make" ". Applications/quickstart/packages.sh &&
@@ -196,6 +223,7 @@ echo "try.sh: writing $log"
 case $what in
     --package) tryPackage >"$log" 2>&1 ;;
     --archive) tryArchive >"$log" 2>&1 ;;
+    --container) tryContainer >"$log" 2>&1 ;;
     *) tryAll >"$log" 2>&1 ;;
 esac
 cat "$work/summary"
