@@ -10,6 +10,9 @@
 #                                                   used without root on Debian 12, 13 and unstable
 #   Testing/BareMachine/try.sh --container TGZ [LOG]  the container of that archive, made by buildah on a
 #                                                   minimal Debian in the place of a registry's
+#   Testing/BareMachine/try.sh --npm TGZ [LOG]      the npm package, by Debian 12's Node 18 without root
+#
+# Every way ends with the bytes of ch2bet's surface at 100, which are the same by all of them.
 #
 # Works in a folder under /tmp and in mount and process namespaces of its own: when it ends, however
 # it ends, its mounts and processes are gone. It removes the folder and leaves the log. Packages
@@ -30,7 +33,7 @@ repository=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
 what=${1:-}
 given=
 case $what in
-    --package | --archive | --container)
+    --package | --archive | --container | --npm)
         given=$(realpath -e "${2:?"$what needs a file"}")
         shift 2
         set -- HEAD "$@"
@@ -116,6 +119,11 @@ requireFile() {
     fi
 }
 
+# recordBytes FILE: ch2bet's surface at 100, in STL
+recordBytes() {
+    sha256sum <"$1" | sed 's/ .*/  ch2bet at 100/' >>"$work/summary"
+}
+
 # The package $deb on a Debian of its own: installed by apt with what it depends on, and no more, then
 # used as a user does, on a scan that is brought along.
 tryPackage() {
@@ -133,6 +141,7 @@ tryPackage() {
         "$(sed -n '/^%post/,/^%environment/{/^%/!p}' "$repository/Examples/cohort/adaptiso.def")"
     runInside "package: adaptiso-mesh" \
         "adaptiso-mesh ch2bet.nii.gz --iso 100 -o brain.stl && adaptiso-check --profile view brain.stl"
+    recordBytes "$root/root/brain.stl"
     inside=/ runInside "package: the others" \
         "adaptiso-bem --version && adaptiso-bids -v && adaptiso-compare /root/brain.stl /root/brain.stl &&
         adaptiso-simplify /root/brain.stl --max-error 0.5 -o /root/small.stl"
@@ -156,9 +165,10 @@ tryArchive() {
         cp "$repository/Packaging/debian/tests/session" "$root/tmp/"
         user=1000:1000
         runInside "$release: first surface" "tar -xzf /tmp/archive.tar.gz --strip-components=1 &&
-            bin/adaptiso-mesh ch2bet.nii.gz --iso 100 --pictures pictures"
+            bin/adaptiso-mesh ch2bet.nii.gz --iso 100 -o brain.stl --pictures pictures"
+        recordBytes "$root$inside/brain.stl"
         runInside "$release: self test" "bin/adaptiso-check --self-test"
-        runInside "$release: session" "PATH=\$PWD/bin:\$PATH sh /tmp/session . && sha256sum ch2bet-iso100.vtp"
+        runInside "$release: session" "PATH=\$PWD/bin:\$PATH sh /tmp/session ."
         user=
         if [ "$release" = bookworm ]; then  # for whose Python the package is
             runInside "$release: Python" "apt-get update && apt-get install -y python3-numpy &&
@@ -188,8 +198,24 @@ tryContainer() {
     buildah run --isolation chroot -v "$work/data:/data" "$container" adaptiso mesh ch2bet.nii.gz --iso 100 -o brain.stl
     printf 'container: first surface  %s s\n' $((SECONDS - began)) >>"$work/summary"
     buildah run --isolation chroot "$container" adaptiso check --self-test
-    sha256sum "$work/data/brain.stl" >>"$work/summary"
+    recordBytes "$work/data/brain.stl"
     buildah images >>"$work/summary"
+}
+
+# The npm package $given, by a user without rights.
+tryNpm() {
+    inside=/home/person
+    makeRoot
+    mkdir -p "$root$inside"
+    cp /usr/share/mricron/templates/ch2bet.nii.gz "$root$inside/"
+    cp "$given" "$root$inside/adaptiso.tgz"
+    chown -R 1000:1000 "$root$inside"
+    runInside "npm: Node" "apt-get update && apt-get install -y --no-install-recommends nodejs npm && node --version"
+    user=1000:1000
+    runInside "npm: first surface" "export HOME=\$PWD &&
+        npx --yes -p ./adaptiso.tgz adaptiso mesh ch2bet.nii.gz --iso 100 -o brain.stl"
+    recordBytes "$root$inside/brain.stl"
+    user=
 }
 
 # Makes the package of the clone's programs; its name is then in $deb.
@@ -210,6 +236,9 @@ tryAll() {
     requireFile out/quickstart/brain.vtp
     requireFile out/quickstart/pictures/surface-1.png
     runInside "quickstart, again" Applications/quickstart/run.sh
+    runInside "quickstart: a surface" \
+        "build/release/bin/adaptiso-mesh /usr/share/mricron/templates/ch2bet.nii.gz --iso 100 -o out/brain.stl"
+    recordBytes "$root$clone/out/brain.stl"
     runInside "tests" Testing/run.sh
     runInside "tests, again" Testing/run.sh
     printf 'clone with its build folders: %s MB\n' "$(du -sm "$root$clone" | cut -f 1)" \
@@ -224,6 +253,7 @@ case $what in
     --package) tryPackage >"$log" 2>&1 ;;
     --archive) tryArchive >"$log" 2>&1 ;;
     --container) tryContainer >"$log" 2>&1 ;;
+    --npm) tryNpm >"$log" 2>&1 ;;
     *) tryAll >"$log" 2>&1 ;;
 esac
 cat "$work/summary"
