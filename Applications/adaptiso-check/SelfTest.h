@@ -1,18 +1,14 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <iosfwd>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "Common/ProgramRun.h"
 #include "Pipeline.h"
-#include "Support/AnalyticVolumes.h"
-#include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Report/Report.h"
 
@@ -67,50 +63,6 @@ struct SelfTest {
 /// \throws FileError  there is nowhere to write
 /// Cost: about 3 s on two cores, 200 MB.
 SelfTest runSelfTestCases(const std::function<void(const std::string&)>& progress);
-
-/// A solid whose size is known on paper, and what its tolerances follow from.
-struct Solid {
-    testing::Shape shape;
-    Vec3 centreMm;                ///< LPS
-    double smallestRadiusMm = 0;  ///< of its surface's curvature
-};
-
-Solid ball(const Vec3& centreMm, double radiusMm);
-/// Ring about an axis along z. \pre majorRadiusMm > minorRadiusMm
-Solid ring(const Vec3& centreMm, double majorRadiusMm, double minorRadiusMm);
-
-/// An image in memory, int16 as a CT has it.
-struct Phantom {
-    ImageGeometry geometry;
-    std::vector<std::int16_t> samples;  ///< x fastest
-};
-
-/// testing::obliqueGeometry() with the middle of the image at `centreMm`.
-ImageGeometry obliqueGeometry(const Index3& size, const Vec3& spacingMm, const Vec3& centreMm);
-
-/// Samples of distance: kSurface on the solid's surface, kPerMm more for each mm inwards.
-inline constexpr double kSurface = 1000, kPerMm = 100;
-Phantom distancePhantom(const Solid& solid, const ImageGeometry& geometry);
-
-/// Two steel balls of this diameter (mm) in air as a CT sees them: each sample is the mean over its
-/// voxel, with noise of 20 HU; -1000 in air, 3000 in the balls. 0.5 mm voxels.
-Phantom bearingBalls(double diameterMm);
-inline constexpr double kBallSurface = 1000;  ///< half of a voxel is ball
-
-/// The image as an uncompressed NIfTI-1 file.
-std::string niftiFile(const Phantom& phantom);
-
-/// A mesh with one defect, and the name of the check that has to find it.
-struct PlantedDefect {
-    std::string name;
-    std::string_view key;  ///< Check::key
-    TriangleMesh mesh;
-};
-
-/// One for each check of a single surface.
-/// \param ball  closed and sound, one piece of genus 0, 60 mm wide
-/// \param ring  the same of genus 1
-std::vector<PlantedDefect> plantDefects(const TriangleMesh& ball, const TriangleMesh& ring);
 
 /// The machine, as names and values: host, processor, threads, memory, system, libraries.
 using Machine = std::vector<std::pair<std::string, std::string>>;

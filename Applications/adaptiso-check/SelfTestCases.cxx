@@ -10,6 +10,7 @@
 #include "Common/RunApp.h"
 #include "SelfTest.h"
 #include "Support/Meshes.h"
+#include "Support/ScannedPhantoms.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -26,6 +27,100 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using testing::kDistanceSurface, testing::kDistancePerMm;
+
+/// A solid whose size is known on paper, and what its tolerances follow from.
+struct Solid {
+    testing::Shape shape;
+    Vec3 centreMm;                ///< LPS
+    double smallestRadiusMm = 0;  ///< of its surface's curvature
+};
+
+Solid ball(const Vec3& centreMm, double radiusMm) {
+    return {testing::sphere(centreMm, radiusMm), centreMm, radiusMm};
+}
+
+/// Ring about an axis along z. \pre majorRadiusMm > minorRadiusMm
+Solid ring(const Vec3& centreMm, double majorRadiusMm, double minorRadiusMm) {
+    return {testing::torus(centreMm, majorRadiusMm, minorRadiusMm), centreMm,
+            std::min(minorRadiusMm, majorRadiusMm - minorRadiusMm)};
+}
+
+/// Turned about an axis that no voxel axis shares, the solid in the middle.
+ImageGeometry obliqueGeometry(const Index3& size, const Vec3& spacingMm, const Solid& solid) {
+    ImageGeometry geometry = testing::obliqueGeometry(size, spacingMm);
+    geometry.originMm += solid.centreMm;
+    return geometry;
+}
+
+/// A mesh with one defect, and the name of the check that has to find it.
+struct PlantedDefect {
+    std::string name;
+    std::string_view key;  ///< Check::key
+    TriangleMesh mesh;
+};
+
+/// The first triangle cut in three from a point close to its first corner.
+TriangleMesh withSlivers(TriangleMesh mesh) {
+    const Triangle t = mesh.triangles.front();
+    const Vec3 corner = mesh.points[t[0]];
+    const VertexId added = std::ssize(mesh.points);
+    mesh.points.push_back(corner +
+                          0.001 * ((mesh.points[t[1]] - corner) + (mesh.points[t[2]] - corner)));
+    mesh.triangles.front() = {added, t[1], t[2]};
+    mesh.triangles.push_back({t[0], t[1], added});
+    mesh.triangles.push_back({t[0], added, t[2]});
+    return mesh;
+}
+
+/// One for each check of a single surface.
+/// \param ball  closed and sound, one piece of genus 0, 60 mm wide
+/// \param ring  the same of genus 1
+std::vector<PlantedDefect> plantDefects(const TriangleMesh& ball, const TriangleMesh& ring) {
+    std::vector<PlantedDefect> planted;
+    TriangleMesh sound = ball;
+    sound.normals = {};
+    const auto plant = [&](const char* name, std::string_view key, const auto& make) {
+        planted.push_back({name, key, make(sound)});
+    };
+    plant("a coordinate that is no number", "finiteCoordinates", testing::withNanCoordinate);
+    plant("a vertex number beyond the last", "indicesInRange", testing::withIndexOutOfRange);
+    plant("a triangle missing", "closed", testing::withHole);
+    plant("a fin on an edge", "manifoldEdges", [](TriangleMesh mesh) {
+        const Triangle t = mesh.triangles.front();
+        mesh.points.push_back(mesh.points[t[0]] + Vec3{100, 0, 0});
+        mesh.triangles.push_back({t[0], t[1], std::ssize(mesh.points) - 1});
+        return mesh;
+    });
+    plant("two balls touching at a vertex", "manifoldVertices",
+          [](const TriangleMesh&) { return testing::twoSpheresTouchingAtAVertex(); });
+    plant("a triangle turned round", "consistentOrientation", testing::withFlippedTriangle);
+    plant("inside out", "outward", [](TriangleMesh mesh) {
+        flipOrientation(mesh);
+        return mesh;
+    });
+    plant("a second piece", "oneComponent", [](const TriangleMesh& mesh) {
+        return testing::merged({mesh, testing::translated(mesh, {100, 0, 0})});
+    });
+    plant("a handle", "genusZero", [&](const TriangleMesh&) { return ring; });
+    plant("a triangle without area", "noDegenerateTriangles", testing::withRepeatedIndex);
+    plant("a triangle twice", "noDuplicateTriangles", testing::withDuplicateTriangle);
+    plant("two vertices at one place", "noDuplicateVertices", [](TriangleMesh mesh) {
+        mesh.points.push_back(mesh.points[mesh.triangles.front()[0]]);
+        mesh.triangles.front()[0] = std::ssize(mesh.points) - 1;
+        return mesh;
+    });
+    plant("a vertex of no triangle", "noUnusedVertices", testing::withUnusedVertex);
+    plant("two balls that cross", "noSelfIntersections",
+          [](const TriangleMesh&) { return testing::crossingSpheres(2); });
+    plant("slivers", "minAngle", withSlivers);
+    plant("metres taken for millimetres", "plausibleSize", [](TriangleMesh mesh) {
+        for (Vec3& p : mesh.points) p = 0.001 * p;
+        return mesh;
+    });
+    return planted;
+}
+
 /// How far a surface of triangles may lie from the solid's: the chord of a cell's diagonal on the
 /// sharpest bend, once for the samples (distances are not linear across a bend) and once for the
 /// triangles; the rounding of the samples; and the bound that the method promises.
@@ -36,7 +131,7 @@ double allowedMm(const Solid& solid, const ImageGeometry& geometry, Method metho
         method == Method::Adaptive
             ? AdaptiveOptions::kDefaultMaxErrorVoxels * std::min({voxelMm.x, voxelMm.y, voxelMm.z})
             : 0;
-    return 2 * chordMm + 0.5 / kPerMm + boundMm;
+    return 2 * chordMm + 0.5 / kDistancePerMm + boundMm;
 }
 
 /// The middle of the solid that a closed mesh encloses.
@@ -158,8 +253,8 @@ private:
     }
 
     /// As the programs do it, from the image's file to the mesh's.
-    TriangleMesh throughFiles(const Phantom& phantom, double isovalue, Method method) {
-        const ReadVolume read = readVolume(writeImage(niftiFile(phantom)));
+    TriangleMesh throughFiles(const VolumeView& phantom, double isovalue, Method method) {
+        const ReadVolume read = readVolume(writeImage(testing::niftiFile(phantom)));
         return writtenAndRead(extract(read.volume, isovalue, method), ".vtp");
     }
 
@@ -196,10 +291,9 @@ private:
     void measureBall(Method method) {
         about(named("ball of 40 mm", method), [&] {
             const Solid solid = ball({-12, 7, 31}, 20);
-            const ImageGeometry geometry =
-                obliqueGeometry({54, 54, 34}, {0.9, 0.9, 1.5}, solid.centreMm);
-            const TriangleMesh mesh =
-                throughFiles(distancePhantom(solid, geometry), kSurface, method);
+            const ImageGeometry geometry = obliqueGeometry({54, 54, 34}, {0.9, 0.9, 1.5}, solid);
+            const TriangleMesh mesh = throughFiles(testing::distanceScan(solid.shape, geometry),
+                                                   kDistanceSurface, method);
             addSolid(solid, geometry, method, mesh);
         });
     }
@@ -207,9 +301,9 @@ private:
     void measureTorus(Method method) {
         about(named("torus of 40 and 16 mm", method), [&] {
             const Solid solid = ring({25, -40, -8}, 20, 8);
-            const ImageGeometry geometry =
-                obliqueGeometry({84, 84, 60}, {0.8, 0.8, 1}, solid.centreMm);
-            TriangleMesh mesh = throughFiles(distancePhantom(solid, geometry), kSurface, method);
+            const ImageGeometry geometry = obliqueGeometry({84, 84, 60}, {0.8, 0.8, 1}, solid);
+            TriangleMesh mesh = throughFiles(testing::distanceScan(solid.shape, geometry),
+                                             kDistanceSurface, method);
             addSolid(solid, geometry, method, mesh);
             test_.shown.push_back({subject_, std::move(mesh)});
         });
@@ -220,12 +314,11 @@ private:
         about(named("nested spheres", method), [&] {
             constexpr double kInnerMm = 30, kOuterMm = 34;
             const Solid solid = ball({0, 0, 0}, kInnerMm);
-            const ImageGeometry geometry =
-                obliqueGeometry({60, 60, 60}, {1.25, 1.25, 1.25}, solid.centreMm);
-            const Phantom phantom = distancePhantom(solid, geometry);
-            const TriangleMesh inner = throughFiles(phantom, kSurface, method);
-            const TriangleMesh outer =
-                throughFiles(phantom, kSurface - kPerMm * (kOuterMm - kInnerMm), method);
+            const ImageGeometry geometry = obliqueGeometry({60, 60, 60}, {1.25, 1.25, 1.25}, solid);
+            const Volume phantom = testing::distanceScan(solid.shape, geometry);
+            const TriangleMesh inner = throughFiles(phantom, kDistanceSurface, method);
+            const TriangleMesh outer = throughFiles(
+                phantom, kDistanceSurface - kDistancePerMm * (kOuterMm - kInnerMm), method);
             const double allowed = 2 * allowedMm(solid, geometry, method);
             const NestingReport report = checkNesting(inner, outer);
             addYes("one lies in the other", report.isStrictlyNested());
@@ -242,8 +335,8 @@ private:
         about(named("two bearing balls in CT", method), [&] {
             constexpr double kDiameterMm = 10;
             constexpr double kToleranceMm = 0.05;  // a tenth of a voxel, as makers of CT are asked
-            const Phantom phantom = bearingBalls(kDiameterMm);
-            TriangleMesh mesh = throughFiles(phantom, kBallSurface, method);
+            const Volume phantom = testing::bearingBalls(kDiameterMm);
+            TriangleMesh mesh = throughFiles(phantom, testing::kBallSurface, method);
             addSound(mesh, 2, 0);
             for (const SurfaceComponent& piece : checkTopology(mesh).components) {
                 add("diameter of the ball as large", "mm", kDiameterMm, kToleranceMm,
@@ -256,24 +349,22 @@ private:
     void compareThreads() {
         about("torus, one thread and all", [&] {
             const Solid solid = ring({0, 0, 0}, 20, 8);
-            const Phantom phantom =
-                distancePhantom(solid, obliqueGeometry({84, 84, 60}, {0.8, 0.8, 1}, {0, 0, 0}));
-            const VolumeView volume(phantom.samples.data(), phantom.geometry);
-            const TriangleMesh byAll = extract(volume, kSurface, Method::Adaptive);
+            const Volume phantom = testing::distanceScan(
+                solid.shape, obliqueGeometry({84, 84, 60}, {0.8, 0.8, 1}, solid));
+            const TriangleMesh byAll = extract(phantom, kDistanceSurface, Method::Adaptive);
             CommonOptions one;
             one.threads = 1;
             const ThreadLimit limit(one);
-            addYes("same surface", extract(volume, kSurface, Method::Adaptive) == byAll);
+            addYes("same surface", extract(phantom, kDistanceSurface, Method::Adaptive) == byAll);
         });
     }
 
     /// A surface without a fault, not even a sliver, to plant defects in.
     static TriangleMesh faultless(const Solid& solid) {
         constexpr double kMinAngleDeg = 10;
-        const Phantom phantom =
-            distancePhantom(solid, obliqueGeometry({80, 80, 76}, {1, 1, 1}, solid.centreMm));
-        return extract(VolumeView(phantom.samples.data(), phantom.geometry), kSurface,
-                       Method::Adaptive, kMinAngleDeg);
+        const Volume phantom =
+            testing::distanceScan(solid.shape, obliqueGeometry({80, 80, 76}, {1, 1, 1}, solid));
+        return extract(phantom, kDistanceSurface, Method::Adaptive, kMinAngleDeg);
     }
     static TriangleMesh plainBall() { return faultless(ball({0, 0, 0}, 30)); }
 
@@ -342,8 +433,8 @@ private:
 
     void refuseDamaged() {
         const Solid solid = ball({0, 0, 0}, 8);
-        const std::string image = niftiFile(
-            distancePhantom(solid, obliqueGeometry({24, 24, 24}, {1, 1, 1}, solid.centreMm)));
+        const std::string image = testing::niftiFile(
+            testing::distanceScan(solid.shape, obliqueGeometry({24, 24, 24}, {1, 1, 1}, solid)));
         addRefused("image cut short",
                    [&] { readVolume(writeImage(image.substr(0, image.size() - 1000))); });
         addRefused("image whose axes are one line", [&] {
