@@ -187,7 +187,7 @@ function parsePly(bytes) {
 /** \param toBytes  of arrays \param name  what arrays are called */
 async function toFile(input, toBytes, name) {
   if (typeof input !== "object" || input === null) throw new AdaptisoError("an input must be arrays, a NamedFile or a File", 2);
-  if (typeof File === "function" && input instanceof File) {
+  if (typeof input.arrayBuffer === "function") {  // also of node:buffer, which is no global of Node 18
     return { path: input.name, bytes: new Uint8Array(await input.arrayBuffer()) };
   }
   if (input.bytes !== undefined) return input;

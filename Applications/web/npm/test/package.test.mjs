@@ -1,5 +1,6 @@
 // The functions of the npm package under Node, on arrays and files; ADAPTISO_WEB or build/web holds what is tried.
 import assert from "node:assert/strict";
+import { File } from "node:buffer";
 import { cpSync, mkdtempSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
@@ -89,7 +90,7 @@ describe("mesh", () => {
     const without = await mesh(ball(12), { iso: 100, triangles: 500 });
     assert.notDeepEqual(without.mesh.points, arrays.mesh.points);
   });
-  it("reads a File", { skip: typeof File !== "function" }, async () => {
+  it("reads a File", async () => {
     near(volume((await mesh(new File([nifti1(ball(12))], "ball.nii"), { iso: 100 })).mesh), ballVolume(12), 0.03);
   });
   it("reads names that look like options", async () => {
